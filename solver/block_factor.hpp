@@ -1,0 +1,58 @@
+// Direct solution of A x = b by block elimination from the leaves of a rod to its root, O(n) on chains and trees.
+//
+// Joints are eliminated in the reverse of a breadth-first order that starts at the held segments, so that the remaining
+// neighbours of an eliminated joint (its parent and its siblings) are coupled already: no block fills in, as in the
+// body-and-joint tree of Deul et al. 2018. Loops are handled by the fill-in that a symbolic elimination finds.
+//
+// Per joint k, with S the block left on the diagonal and B_p the blocks towards the joints p eliminated later:
+//   X_p = S^-1 B_p,  y = S^-1 b_k,  A_pq -= B_p^T X_q,  b_p -= B_p^T y      and backwards   x_k = y - sum_p X_p x_p.
+// S is inverted by Gauss-Jordan steps on whole rows; b rides along in a spare lane of the rows, so the forward
+// substitution costs nothing. Pivots are those of LDL^T: one that is not positive means that A is not positive
+// definite.
+#pragma once
+
+#include <vector>
+
+#include "solver/block_matrix.hpp"
+#include "solver/outcome.hpp"
+#include "solver/rod.hpp"
+
+namespace rodsweep {
+
+/// Joints of the rod in breadth-first order from the static segments (then from segment 0 of what they don't reach).
+std::vector<int> root_to_leaf_order(const Rod& rod);
+
+class BlockFactor {
+ public:
+  /// `order`: block rows, eliminated from the last to the first.
+  BlockFactor(const BlockMatrix& pattern, const std::vector<int>& order);
+
+  /// Factorises and solves. `a` has the pattern of construction. On anything but `converged`, x is not to be used.
+  SolveOutcome solve(const BlockMatrix& a, const VectorX& b, VectorX& x);
+
+  /// Off-diagonal blocks that are not in the matrix; zero for chains and trees.
+  int fill_in() const { return fill_in_; }
+
+ private:
+  struct Column {            ///< one elimination, in the order of elimination
+    int row;                 ///< block row of A
+    int off_begin, off_end;  ///< its later neighbours: entries of off_
+    int update_begin;        ///< its pairs of later neighbours: entries of updates_
+    int diagonal_source;     ///< block of A
+  };
+  struct Off {
+    int position;  ///< of the neighbour in the elimination order
+    int source;    ///< block of A whose columns are this block's rows; -1 for fill
+  };
+  void load(const BlockMatrix& a, const VectorX& b);
+
+  std::vector<Column> columns_;
+  std::vector<Off> off_;
+  std::vector<int> updates_;           ///< target of A_pq -= B_p^T X_q: entry of off_, for the pairs p < q in order
+  std::vector<Block6> diagonal_work_;  ///< rows, lane 6 the right-hand side
+  std::vector<Block6> off_work_;       ///< rows of B_p before, of X_p after its elimination
+  std::vector<Lane8> solution_;        ///< y, then x; lane 6 is -1 for the back substitution
+  int fill_in_ = 0;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,254 @@
+#include "solver/conjugate_gradient.hpp"
+
+#include <petscksp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "solver/petsc_check.hpp"
+#include "solver/petsc_vector.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double divergence_limit = 1e8;
+
+/// What the convergence test compares with.
+struct Target {
+  double tolerance = 0;
+  double reference = 0;
+};
+
+PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReason* reason, void* context) {
+  const Target& target = *static_cast<const Target*>(context);
+  *reason = KSP_CONVERGED_ITERATING;
+  if (!std::isfinite(norm))
+    *reason = KSP_DIVERGED_NANORINF;
+  else if (norm <= target.tolerance * target.reference)
+    *reason = KSP_CONVERGED_RTOL;
+  else if (norm > divergence_limit * target.reference)
+    *reason = KSP_DIVERGED_DTOL;
+  return 0;
+}
+
+const BlockMatrix& matrix_of(Mat shell) {
+  void* context = nullptr;
+  petsc_check(MatShellGetContext(shell, &context), "MatShellGetContext");
+  return *static_cast<const BlockMatrix*>(context);
+}
+
+PetscErrorCode multiply(Mat shell, Vec x, Vec y) {
+  matrix_of(shell).multiply(vector_data(x), vector_data(y));
+  return 0;
+}
+
+PetscErrorCode extract_diagonal(Mat shell, Vec diagonal) {
+  const BlockMatrix& a = matrix_of(shell);
+  double* out = vector_data(diagonal);
+  for (int row = 0; row < a.block_rows(); ++row)
+    for (int i = 0; i < 6; ++i) out[6 * row + i] = a.blocks[static_cast<std::size_t>(a.diagonal(row))].column[i][i];
+  return 0;
+}
+
+SolveOutcome outcome_of(KSPConvergedReason reason) {
+  switch (reason) {
+    case KSP_CONVERGED_RTOL: return SolveOutcome::converged;
+    case KSP_DIVERGED_ITS: return SolveOutcome::iteration_limit;
+    case KSP_DIVERGED_NANORINF: return SolveOutcome::not_a_number;
+    case KSP_DIVERGED_INDEFINITE_MAT:
+    case KSP_DIVERGED_INDEFINITE_PC:
+    case KSP_DIVERGED_PC_FAILED: return SolveOutcome::indefinite;
+    default: return reason > 0 ? SolveOutcome::converged : SolveOutcome::diverged;
+  }
+}
+
+PCType pc_type(Preconditioner p) {
+  switch (p) {
+    case Preconditioner::none: return PCNONE;
+    case Preconditioner::jacobi: return PCJACOBI;
+    case Preconditioner::point_block_jacobi: return PCPBJACOBI;
+    case Preconditioner::icc: return PCICC;
+    case Preconditioner::cholesky: return PCCHOLESKY;
+  }
+  return PCNONE;
+}
+
+}  // namespace
+
+struct ConjugateGradient::Impl {
+  const BlockMatrix& a;
+  CgSettings settings;
+  Mat shell = nullptr;
+  Mat entries = nullptr;  ///< copy of the blocks for preconditioners that factorise; else null
+  KSP ksp = nullptr;
+  Vec b = nullptr, x = nullptr, scratch = nullptr;
+  Target target;
+  bool stale = true;  ///< the preconditioner is of older entries
+  std::vector<PetscReal> history_buffer;
+  std::vector<double> history;
+
+  Impl(const BlockMatrix& matrix, const CgSettings& s);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void create_entries(bool symmetric);
+  void copy_entries();
+  void refresh();
+};
+
+ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : a(matrix), settings(s) {
+  const PetscInt n = a.unknowns();
+  if (settings.max_iterations <= 0)
+    settings.max_iterations = std::min(10 * n, int{std::numeric_limits<std::int16_t>::max()});
+
+  petsc_check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, const_cast<BlockMatrix*>(&a), &shell), "MatCreateShell");
+  petsc_check(MatShellSetManageScalingShifts(shell), "MatShellSetManageScalingShifts");
+  petsc_check(MatShellSetOperation(shell, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)), "MatShellSetOperation");
+  petsc_check(MatShellSetOperation(shell, MATOP_GET_DIAGONAL, reinterpret_cast<void (*)()>(extract_diagonal)),
+              "MatShellSetOperation");
+  petsc_check(MatSetOption(shell, MAT_SYMMETRIC, PETSC_TRUE), "MatSetOption");
+  b = create_vector(n);
+  x = create_vector(n);
+  scratch = create_vector(n);
+
+  if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
+  if (settings.preconditioner == Preconditioner::icc || settings.preconditioner == Preconditioner::cholesky)
+    create_entries(true);
+
+  PC pc = nullptr;
+  petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
+  petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");
+  petsc_check(KSPSetNormType(ksp, settings.norm == Norm::natural ? KSP_NORM_NATURAL : KSP_NORM_UNPRECONDITIONED),
+              "KSPSetNormType");
+  petsc_check(KSPGetPC(ksp, &pc), "KSPGetPC");
+  petsc_check(PCSetType(pc, pc_type(settings.preconditioner)), "PCSetType");
+  petsc_check(KSPSetOperators(ksp, shell, entries ? entries : shell), "KSPSetOperators");
+  petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, settings.max_iterations), "KSPSetTolerances");
+  petsc_check(KSPSetConvergenceTest(ksp, test_convergence, &target, nullptr), "KSPSetConvergenceTest");
+}
+
+ConjugateGradient::Impl::~Impl() {
+  // A destructor cannot report; PETSc prints what it has to say.
+  KSPDestroy(&ksp);
+  MatDestroy(&entries);
+  MatDestroy(&shell);
+  VecDestroy(&scratch);
+  VecDestroy(&x);
+  VecDestroy(&b);
+}
+
+void ConjugateGradient::Impl::create_entries(bool symmetric) {
+  std::vector<PetscInt> start{0}, columns;
+  for (int row = 0; row < a.block_rows(); ++row) {
+    for (int k = a.row_begin(row); k < a.row_end(row); ++k)
+      if (!symmetric || a.column(k) >= row) columns.push_back(a.column(k));
+    start.push_back(static_cast<PetscInt>(columns.size()));
+  }
+  const PetscInt n = a.unknowns();
+  petsc_check(MatCreate(PETSC_COMM_SELF, &entries), "MatCreate");
+  petsc_check(MatSetSizes(entries, n, n, n, n), "MatSetSizes");
+  petsc_check(MatSetType(entries, symmetric ? MATSEQSBAIJ : MATSEQBAIJ), "MatSetType");
+  if (symmetric)
+    petsc_check(MatSeqSBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
+                "MatSeqSBAIJSetPreallocationCSR");
+  else
+    petsc_check(MatSeqBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
+                "MatSeqBAIJSetPreallocationCSR");
+}
+
+void ConjugateGradient::Impl::refresh() {
+  if (!stale) return;
+  stale = false;
+  if (entries) copy_entries();
+  // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
+  Mat changed = entries ? entries : shell;
+  petsc_check(MatAssemblyBegin(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
+  petsc_check(MatAssemblyEnd(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
+}
+
+void ConjugateGradient::Impl::copy_entries() {
+  // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper ones.
+  const bool symmetric = settings.preconditioner != Preconditioner::point_block_jacobi;
+  PetscScalar* out = nullptr;
+  petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out), "MatSeqBAIJGetArray");
+  PetscScalar* at = out;
+  for (int row = 0; row < a.block_rows(); ++row)
+    for (int k = a.row_begin(row); k < a.row_end(row); ++k) {
+      if (symmetric && a.column(k) < row) continue;
+      for (const Lane8& column : a.blocks[static_cast<std::size_t>(k)].column)
+        store6(std::exchange(at, at + 6), column);
+    }
+  petsc_check(symmetric ? MatSeqSBAIJRestoreArray(entries, &out) : MatSeqBAIJRestoreArray(entries, &out),
+              "MatSeqBAIJRestoreArray");
+}
+
+ConjugateGradient::ConjugateGradient(const BlockMatrix& a, const CgSettings& settings)
+    : impl_(std::make_unique<Impl>(a, settings)) {}
+ConjugateGradient::~ConjugateGradient() = default;
+ConjugateGradient::ConjugateGradient(ConjugateGradient&&) noexcept = default;
+ConjugateGradient& ConjugateGradient::operator=(ConjugateGradient&&) noexcept = default;
+
+void ConjugateGradient::matrix_changed() { impl_->stale = true; }
+
+CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, bool nonzero, double tolerance, double reference) {
+  Impl& s = *impl_;
+  s.refresh();
+  s.target = {tolerance, reference};
+  const VectorView rhs(s.b, const_cast<double*>(b.data())), solution(s.x, x.data());
+  petsc_check(KSPSetInitialGuessNonzero(s.ksp, nonzero ? PETSC_TRUE : PETSC_FALSE), "KSPSetInitialGuessNonzero");
+  petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
+
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  petsc_check(KSPGetConvergedReason(s.ksp, &reason), "KSPGetConvergedReason");
+  petsc_check(KSPGetIterationNumber(s.ksp, &iterations), "KSPGetIterationNumber");
+  if (!s.history_buffer.empty()) {
+    const PetscReal* norms = nullptr;
+    PetscInt count = 0;
+    petsc_check(KSPGetResidualHistory(s.ksp, &norms, &count), "KSPGetResidualHistory");
+    s.history.assign(norms, norms + count);
+  }
+  return {outcome_of(reason), static_cast<int>(iterations)};
+}
+
+double ConjugateGradient::norm_of(const VectorX& b) {
+  Impl& s = *impl_;
+  if (s.settings.norm == Norm::true_residual) return b.norm();
+  s.refresh();
+  const VectorView rhs(s.b, const_cast<double*>(b.data()));
+  PC pc = nullptr;
+  PetscScalar square = 0;
+  petsc_check(KSPSetUp(s.ksp), "KSPSetUp");
+  petsc_check(KSPGetPC(s.ksp, &pc), "KSPGetPC");
+  petsc_check(PCApply(pc, s.b, s.scratch), "PCApply");
+  petsc_check(VecDot(s.b, s.scratch, &square), "VecDot");
+  return std::sqrt(square);
+}
+
+void ConjugateGradient::record_history(bool on) {
+  Impl& s = *impl_;
+  s.history.clear();
+  s.history.reserve(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);
+  s.history_buffer.resize(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);
+  if (on)
+    petsc_check(KSPSetResidualHistory(s.ksp, s.history_buffer.data(), static_cast<PetscInt>(s.history_buffer.size()),
+                                      PETSC_TRUE),
+                "KSPSetResidualHistory");
+}
+
+const std::vector<double>& ConjugateGradient::history() const { return impl_->history; }
+
+void iterations_to(const std::vector<double>& history, double reference, const std::vector<double>& tolerances,
+                   std::int16_t* out) {
+  for (std::size_t t = 0; t < tolerances.size(); ++t) {
+    out[t] = -1;
+    for (std::size_t i = 0; i < history.size() && out[t] < 0; ++i)
+      if (history[i] <= tolerances[t] * reference) out[t] = static_cast<std::int16_t>(i);
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,142 @@
+#include "solver/linear_system.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "solver/rotation.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// Lane i is one, the others zero.
+constexpr Lane8 unit[6] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0},
+                           {0, 0, 0, 1, 0, 0, 0, 0}, {0, 0, 0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1, 0, 0}};
+
+}  // namespace
+
+LinearSystem::LinearSystem(const Rod& rod)
+    : linearization_(rod), rhs_(VectorX::Zero(6 * rod.joint_count())), impulse_(rod.segments.size()) {
+  std::vector<std::vector<Side>> by_segment(rod.segments.size());
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    for (const bool is_b : {false, true}) {
+      const std::size_t segment = static_cast<std::size_t>(is_b ? joint.b : joint.a);
+      if (!rod.segments[segment].is_static) by_segment[segment].push_back({k, is_b});
+    }
+  }
+  std::vector<std::pair<int, int>> couplings;
+  side_start_.push_back(0);
+  for (const std::vector<Side>& sides : by_segment) {
+    for (const Side& u : sides)
+      for (const Side& v : sides) couplings.emplace_back(u.joint, v.joint);
+    sides_.insert(sides_.end(), sides.begin(), sides.end());
+    side_start_.push_back(static_cast<int>(sides_.size()));
+  }
+  matrix_ = BlockMatrix(rod.joint_count(), couplings);
+
+  std::vector<bool> written(matrix_.blocks.size(), false);
+  for (const std::vector<Side>& sides : by_segment)
+    for (const Side& u : sides)
+      for (const Side& v : sides) {
+        const int block = matrix_.find(u.joint, v.joint);
+        contributions_.push_back({block, !written[static_cast<std::size_t>(block)]});
+        written[static_cast<std::size_t>(block)] = true;
+      }
+  // A joint between two static segments is in no contribution: its row is alpha~ alone, and must not be singular.
+  for (int k = 0; k < rod.joint_count(); ++k)
+    if (!written[static_cast<std::size_t>(matrix_.diagonal(k))])
+      throw SceneError("joint " + std::to_string(k) + " joins two static segments; remove it or free one of them");
+}
+
+void LinearSystem::assemble(const Rod& rod, double dt) {
+  const double inverse_dt2 = 1 / (dt * dt);
+  linearize(rod, linearization_);
+  assemble_matrix(rod, inverse_dt2);
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
+    rhs_.segment<6>(row) = -linearization_.constraint.segment<6>(row) -
+                           inverse_dt2 * rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
+  }
+}
+
+void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
+  const Contribution* next = contributions_.data();
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    const Segment& segment = rod.segments[s];
+    const Vector3& axis = linearization_.axis[s];
+    // World inverse inertia: V = i_t I + (i_a - i_t) t t^T.
+    const double transverse = segment.inverse_inertia_transverse;
+    const double excess = segment.inverse_inertia_axial - transverse;
+
+    for (int u = side_start_[s]; u < side_start_[s + 1]; ++u) {
+      const Side& side_u = sides_[static_cast<std::size_t>(u)];
+      const JointJacobian& jacobian_u = linearization_.joints[static_cast<std::size_t>(side_u.joint)];
+      const Lane8* k = side_u.is_b ? jacobian_u.rotation_b : jacobian_u.rotation_a;
+      const Lane8 along = excess * (k[0] * axis.x() + k[1] * axis.y() + k[2] * axis.z());
+      const Lane8 kv0 = k[0] * transverse + along * axis.x();
+      const Lane8 kv1 = k[1] * transverse + along * axis.y();
+      const Lane8 kv2 = k[2] * transverse + along * axis.z();
+
+      for (int v = side_start_[s]; v < side_start_[s + 1]; ++v, ++next) {
+        const Side& side_v = sides_[static_cast<std::size_t>(v)];
+        const JointJacobian& jacobian_v = linearization_.joints[static_cast<std::size_t>(side_v.joint)];
+        const Lane8* kk = side_v.is_b ? jacobian_v.rotation_b : jacobian_v.rotation_a;
+        const double sign = side_u.is_b == side_v.is_b ? 1 : -1;
+        const double linear = sign * segment.inverse_mass * jacobian_u.inverse_length * jacobian_v.inverse_length;
+
+        Block6& block = matrix_.blocks[static_cast<std::size_t>(next->block)];
+        Lane8 product[6];
+        for (int c = 0; c < 6; ++c) product[c] = kv0 * kk[0][c] + kv1 * kk[1][c] + kv2 * kk[2][c];
+        for (int c = 0; c < 3; ++c) product[c] += unit[c] * linear;
+        if (!next->first) {
+          for (int c = 0; c < 6; ++c) block.column[c] += product[c];
+          continue;
+        }
+        if (side_u.joint == side_v.joint) {
+          const Vector6& alpha = rod.joints[static_cast<std::size_t>(side_u.joint)].compliance;
+          for (int c = 0; c < 6; ++c) product[c] += unit[c] * (inverse_dt2 * alpha[c]);
+        }
+        for (int c = 0; c < 6; ++c) block.column[c] = product[c];
+      }
+    }
+  }
+}
+
+void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
+  std::fill(impulse_.begin(), impulse_.end(), Lane8{});
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Joint& joint = rod.joints[k];
+    const JointJacobian& jacobian = linearization_.joints[k];
+    const double* dl = delta_lambda.data() + 6 * k;
+    const Lane8 multiplier = load6(dl);
+    Lane8 terms[6];
+    for (int c = 0; c < 3; ++c) terms[c] = jacobian.rotation_a[c] * multiplier;
+    for (int c = 0; c < 3; ++c) terms[3 + c] = jacobian.rotation_b[c] * multiplier;
+    const Lane8 torque = sum_lanes(terms);  // on a in lanes 0..2, on b in lanes 3..5
+    const Lane8 force = multiplier * jacobian.inverse_length;
+    impulse_[static_cast<std::size_t>(joint.a)] += __builtin_shuffle(force, torque, Mask8{0, 1, 2, 8, 9, 10, 14, 14});
+    impulse_[static_cast<std::size_t>(joint.b)] +=
+        __builtin_shuffle(-force, torque, Mask8{0, 1, 2, 11, 12, 13, 14, 14});
+  }
+  rod.lambda += delta_lambda;
+
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    const Segment& segment = rod.segments[s];
+    if (segment.is_static) continue;
+    const Lane8& f = impulse_[s];
+    const Vector3& axis = linearization_.axis[s];
+    const Vector3 torque(f[3], f[4], f[5]);
+    const double excess = segment.inverse_inertia_axial - segment.inverse_inertia_transverse;
+    const Vector3 turn = segment.inverse_inertia_transverse * torque + (excess * axis.dot(torque)) * axis;
+    rod.position[s] += segment.inverse_mass * Vector3(f[0], f[1], f[2]);
+    rod.orientation[s] = rotated(rod.orientation[s], turn);
+  }
+}
+
+double LinearSystem::newton_residual() const {
+  // maxCoeff() does not promise to see a NaN; the sum does.
+  if (rhs_.size() == 0) return 0;  // a single segment has nothing to satisfy
+  return std::isfinite(rhs_.sum()) ? rhs_.lpNorm<Eigen::Infinity>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace rodsweep

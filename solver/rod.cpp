@@ -1,0 +1,91 @@
+#include "solver/rod.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace rodsweep {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+[[noreturn]] void refuse(const std::string& what, int index, const std::string& quantity, double value,
+                         const std::string& bound) {
+  throw SceneError(what + " " + std::to_string(index) + ": " + quantity + " is " + std::to_string(value) +
+                   "; must be " + bound);
+}
+
+bool finite(const Vector3& v) { return v.allFinite(); }
+
+Segment make_segment(const SegmentSpec& s, int index) {
+  const bool point = s.is_static && s.length_m == 0;  // a wall: no extent, no mass needed
+  if (!(s.length_m > 0) && !point) refuse("segment", index, "length_m", s.length_m, "positive (zero only when static)");
+  if (!(s.radius_m > 0) && !s.is_static) refuse("segment", index, "radius_m", s.radius_m, "positive");
+  if (!(s.density_kg_m3 > 0) && !s.is_static) refuse("segment", index, "density_kg_m3", s.density_kg_m3, "positive");
+  if (!finite(s.position_m)) throw SceneError("segment " + std::to_string(index) + ": position is not finite");
+  if (!(std::abs(s.orientation.norm() - 1) < 1e-6))
+    refuse("segment", index, "orientation norm", s.orientation.norm(), "1");
+
+  Segment out{};
+  out.length_m = s.length_m;
+  out.radius_m = s.radius_m;
+  out.density_kg_m3 = s.density_kg_m3;
+  out.is_static = s.is_static;
+  out.mass = s.density_kg_m3 * pi * s.radius_m * s.radius_m * s.length_m;
+  out.inertia_transverse = out.mass * (3 * s.radius_m * s.radius_m + s.length_m * s.length_m) / 12;
+  out.inertia_axial = out.mass * s.radius_m * s.radius_m / 2;
+  if (!s.is_static) {
+    out.inverse_mass = 1 / out.mass;
+    out.inverse_inertia_transverse = 1 / out.inertia_transverse;
+    out.inverse_inertia_axial = 1 / out.inertia_axial;
+    if (!std::isfinite(out.inverse_mass) || !std::isfinite(out.inverse_inertia_axial))
+      refuse("segment", index, "mass", out.mass, "large enough to be inverted");
+  }
+  return out;
+}
+
+Joint make_joint(const JointSpec& j, const std::vector<SegmentSpec>& segments, int index) {
+  const int n = static_cast<int>(segments.size());
+  if (j.a < 0 || j.a >= n) refuse("joint", index, "segment a", j.a, "from 0 to " + std::to_string(n - 1));
+  if (j.b < 0 || j.b >= n) refuse("joint", index, "segment b", j.b, "from 0 to " + std::to_string(n - 1));
+  if (j.a == j.b) refuse("joint", index, "segment b", j.b, "different from segment a");
+  const SegmentSpec &a = segments[static_cast<std::size_t>(j.a)], &b = segments[static_cast<std::size_t>(j.b)];
+  Joint out{j.a, j.b, j.arm_a_m, j.arm_b_m, (a.length_m + b.length_m) / 2, j.compliance_per_j, Quaternion::Identity()};
+  if (!(out.length > 0)) refuse("joint", index, "length", out.length, "positive: two zero-length segments meet");
+  for (int row = 0; row < 6; ++row)
+    if (!(out.compliance[row] >= 0) || !std::isfinite(out.compliance[row]))
+      refuse("joint", index, "compliance of row " + std::to_string(row), out.compliance[row], "finite and at least 0");
+  out.rest = j.rest ? j.rest->normalized() : (a.orientation.conjugate() * b.orientation).normalized();
+  if (out.rest.w() < 0) out.rest.coeffs() = -out.rest.coeffs();
+  return out;
+}
+
+}  // namespace
+
+Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointSpec>& joint_specs) {
+  if (segment_specs.empty()) throw SceneError("a rod needs at least one segment");
+  int index = 0;
+  for (const SegmentSpec& s : segment_specs) {
+    segments.push_back(make_segment(s, index++));
+    position.push_back(s.position_m);
+    orientation.push_back(s.orientation.normalized());
+  }
+  index = 0;
+  for (const JointSpec& j : joint_specs) joints.push_back(make_joint(j, segment_specs, index++));
+  velocity.assign(segments.size(), Vector3::Zero());
+  angular_velocity.assign(segments.size(), Vector3::Zero());
+  lambda = VectorX::Zero(6 * joint_count());
+}
+
+Vector6 joint_compliance(double length_m, double radius_m, double youngs_modulus_pa, double torsion_modulus_pa,
+                         double stretch_per_j) {
+  const double r4 = radius_m * radius_m * radius_m * radius_m;
+  const double bend = length_m / (youngs_modulus_pa * pi * r4 / 4);
+  const double twist = length_m / (torsion_modulus_pa * pi * r4 / 2);
+  Vector6 alpha;
+  alpha << stretch_per_j, stretch_per_j, stretch_per_j, bend, bend, twist;
+  return alpha;
+}
+
+double inextensible_compliance(double joint_length_m, double force_n) { return 1e-7 / (joint_length_m * force_n); }
+
+}  // namespace rodsweep

@@ -1,0 +1,17 @@
+// Wall time of a few statements, from a monotonic clock [s].
+#pragma once
+
+#include <chrono>
+
+namespace rodsweep {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,27 @@
+// The letters used in formulas throughout the solver, and the fixed-size types behind them. All quantities are SI.
+//
+//   x_i  segment centre [m]              q_i  orientation, unit quaternion, local z along the rod
+//   v_i  linear velocity [m/s]           w_i  angular velocity, world frame [rad/s]
+//   l    joint length, the mean of its two segments' lengths [m]
+//   C    constraint values (6 per joint, dimensionless): stretch-shear (3), then bend-twist (3)
+//   J    Jacobian of C with respect to (x, theta) of the two segments, theta a world-frame rotation vector
+//   M    mass matrix, block diagonal: m_i (3x3), world inertia tensor (3x3)
+//   alpha   compliance [1/J], alpha~ = alpha / dt^2 [1/(kg m^2)]
+//   lambda  Lagrange multipliers [kg m^2]: J^T lambda / dt^2 are the generalised forces
+//   A = J M^-1 J^T + alpha~,  b = -C - alpha~ lambda
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace rodsweep {
+
+using Vector3 = Eigen::Vector3d;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix3 = Eigen::Matrix3d;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;  // column-major, 36 contiguous doubles, no alignment requirement beyond
+                                              // double's vector
+using VectorX = Eigen::VectorXd;
+using Quaternion = Eigen::Quaterniond;
+
+}  // namespace rodsweep
