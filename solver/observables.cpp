@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/linearization.hpp"
 #include "solver/rotation.hpp"
@@ -57,6 +58,20 @@ double joint_gap(const Rod& rod) {
   double worst = 0;
   for (const Joint& j : rod.joints)
     worst = std::max(worst, (point_on_a(rod, j) - point_on_b(rod, j)).norm() / j.length);
+  return worst;
+}
+
+double newton_residual(const Rod& rod, double dt) {
+  Linearization at(rod);
+  linearize(rod, at);
+  double worst = 0;
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
+    const Vector6 force = rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row)) / (dt * dt);
+    const Vector6 residual = at.constraint.segment<6>(row) + force;
+    if (!residual.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    worst = std::max(worst, residual.lpNorm<Eigen::Infinity>());
+  }
   return worst;
 }
 

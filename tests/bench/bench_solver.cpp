@@ -1,0 +1,168 @@
+// What a time step and a CG iteration cost. Google Benchmark times the cases; at the end one table sets their medians
+// beside the targets, as ratios measured in this run.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bare_cg.hpp"
+#include "solver/conjugate_gradient.hpp"
+#include "solver/petsc_session.hpp"
+#include "solver/scenes.hpp"
+#include "solver/time_step.hpp"
+
+namespace {
+
+using namespace rodsweep;
+
+constexpr int sizes[] = {10, 30, 50, 100, 500};
+constexpr int cg_iterations = 100;
+
+BendingRod rod_of(int segments) {
+  BendingRod rod;
+  rod.segments = segments;
+  rod.length_m = 2;
+  rod.initial_angle_deg = 20;
+  rod.youngs_modulus_pa = 1e6;
+  return rod;
+}
+
+/// A rod in the middle of its motion.
+Scene moving_scene(int segments) {
+  Scene scene = build_scene(rod_of(segments));
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 6, 1e-9});
+  for (int i = 0; i < 20; ++i) stepper.step(projection);
+  return scene;
+}
+
+void direct_step(benchmark::State& state) {
+  Scene scene = moving_scene(static_cast<int>(state.range(0)));
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 1, 0});
+  for (auto _ : state) benchmark::DoNotOptimize(stepper.step(projection));
+}
+
+void assemble(benchmark::State& state) {
+  const Scene scene = moving_scene(static_cast<int>(state.range(0)));
+  LinearSystem system(scene.rods.front());
+  for (auto _ : state) {
+    system.assemble(scene.rods.front(), 0.02);
+    benchmark::ClobberMemory();
+  }
+}
+
+void factor_and_solve(benchmark::State& state) {
+  const Scene scene = moving_scene(static_cast<int>(state.range(0)));
+  LinearSystem system(scene.rods.front());
+  system.assemble(scene.rods.front(), 0.02);
+  BlockFactor factor(system.matrix(), root_to_leaf_order(scene.rods.front()));
+  VectorX x = system.rhs();
+  for (auto _ : state) benchmark::DoNotOptimize(factor.solve(system.matrix(), system.rhs(), x));
+}
+
+void multiply(benchmark::State& state) {
+  const Scene scene = moving_scene(static_cast<int>(state.range(0)));
+  LinearSystem system(scene.rods.front());
+  system.assemble(scene.rods.front(), 0.02);
+  const VectorX x = VectorX::Random(system.rhs().size());
+  VectorX y = x;
+  for (auto _ : state) {
+    system.matrix().multiply(x.data(), y.data());
+    benchmark::ClobberMemory();
+  }
+}
+
+/// `cg_iterations` of them on a random right-hand side, which none of the sizes solves exactly by then.
+struct CgCase {
+  Scene scene;
+  LinearSystem system;
+  VectorX b, x;
+
+  explicit CgCase(int segments) : scene(moving_scene(segments)), system(scene.rods.front()) {
+    system.assemble(scene.rods.front(), 0.02);
+    b = VectorX::Random(system.rhs().size());
+    x = VectorX::Zero(b.size());
+  }
+};
+
+void bare_cg(benchmark::State& state) {
+  CgCase c(static_cast<int>(state.range(0)));
+  BareCg cg(c.system.matrix());
+  for (auto _ : state) benchmark::DoNotOptimize(cg.run(c.b, c.x, cg_iterations));
+}
+
+void petsc_cg(benchmark::State& state) {
+  CgCase c(static_cast<int>(state.range(0)));
+  ConjugateGradient cg(c.system.matrix(), {Preconditioner::jacobi, Norm::true_residual, cg_iterations});
+  for (auto _ : state) {
+    const CgReport report = cg.solve(c.b, c.x, false, 0, 1);
+    if (report.iterations != cg_iterations) state.SkipWithError("CG ended early");
+  }
+}
+
+/// Prints as usual and keeps the medians [s].
+class Medians : public benchmark::ConsoleReporter {
+ public:
+  Medians() : ConsoleReporter(OO_None) {}
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs)
+      if (run.aggregate_name == "median")
+        seconds_[run.run_name.function_name + "/" + run.run_name.args] = run.GetAdjustedRealTime() * 1e-9;
+  }
+  double operator()(const std::string& function, int n) const {
+    const auto at = seconds_.find(function + "/" + std::to_string(n));
+    return at == seconds_.end() ? 0 : at->second;
+  }
+
+ private:
+  std::map<std::string, double> seconds_;
+};
+
+void print_summary(const Medians& median) {
+  std::printf("\nWhole direct step, one Newton iteration, per segment (target: at most 0.7 us from N = 30 on)\n");
+  std::printf("%6s %10s %22s %22s\n", "N", "step [us]", "assembly, share [%]", "factor+solve [%]");
+  for (const int n : sizes) {
+    const double step = median("direct_step", n);
+    std::printf("%6d %10.3f %22.0f %22.0f\n", n, step / n * 1e6, 100 * median("assemble", n) / step,
+                100 * median("factor_and_solve", n) / step);
+  }
+  std::printf("\nCG per iteration, Jacobi (target: KSP at most 1.6 times the bare loop from N = 50 on)\n");
+  std::printf("%6s %14s %14s %8s %22s\n", "N", "bare [us]", "KSPCG [us]", "ratio", "product, of bare [%]");
+  for (const int n : sizes) {
+    const double bare = median("bare_cg", n) / cg_iterations, petsc = median("petsc_cg", n) / cg_iterations;
+    std::printf("%6d %14.3f %14.3f %8.2f %22.0f\n", n, bare * 1e6, petsc * 1e6, petsc / bare,
+                100 * median("multiply", n) / bare);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const PetscSession petsc;
+  for (const auto& [name, function] : {std::pair{"direct_step", direct_step},
+                                       {"assemble", assemble},
+                                       {"factor_and_solve", factor_and_solve},
+                                       {"multiply", multiply},
+                                       {"bare_cg", bare_cg},
+                                       {"petsc_cg", petsc_cg}})
+    for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
+  // Medians over interleaved repetitions by default; the command line comes after and wins.
+  std::string defaults[] = {"--benchmark_repetitions=9", "--benchmark_enable_random_interleaving=true",
+                            "--benchmark_min_time=0.05", "--benchmark_report_aggregates_only=true"};
+  std::vector<char*> arguments{argv[0]};
+  for (std::string& argument : defaults) arguments.push_back(argument.data());
+  arguments.insert(arguments.end(), argv + 1, argv + argc);
+  argc = static_cast<int>(arguments.size());
+  argv = arguments.data();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  Medians medians;
+  benchmark::RunSpecifiedBenchmarks(&medians);
+  print_summary(medians);
+}
