@@ -122,14 +122,12 @@ BlockFactor::BlockFactor(const BlockMatrix& pattern, const std::vector<int>& ord
   }
   for (Column& column : columns_) {
     column.update_begin = static_cast<int>(updates_.size());
-    for (int p = column.off_begin; p < column.off_end; ++p) {
-      const Column& target = columns_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];
-      for (int q = p + 1; q < column.off_end; ++q) {
-        int entry = target.off_begin;
+    for (int q = column.off_begin; q < column.off_end; ++q)
+      for (int p = column.off_begin; p < q; ++p) {
+        int entry = columns_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)].off_begin;
         while (off_[static_cast<std::size_t>(entry)].position != off_[static_cast<std::size_t>(q)].position) ++entry;
         updates_.push_back(entry);
       }
-    }
   }
   diagonal_work_.resize(n);
   off_work_.resize(off_.size());

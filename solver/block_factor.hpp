@@ -48,7 +48,7 @@ class BlockFactor {
 
   std::vector<Column> columns_;
   std::vector<Off> off_;
-  std::vector<int> updates_;           ///< target of A_pq -= B_p^T X_q: entry of off_, for the pairs p < q in order
+  std::vector<int> updates_;           ///< target of A_pq -= B_p^T X_q: entry of off_; for every q, its p < q
   std::vector<Block6> diagonal_work_;  ///< rows, lane 6 the right-hand side
   std::vector<Block6> off_work_;       ///< rows of B_p before, of X_p after its elimination
   std::vector<Lane8> solution_;        ///< y, then x; lane 6 is -1 for the back substitution

@@ -234,10 +234,9 @@ void ConjugateGradient::record_history(bool on) {
   s.history.clear();
   s.history.reserve(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);
   s.history_buffer.resize(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);
-  if (on)
-    petsc_check(KSPSetResidualHistory(s.ksp, s.history_buffer.data(), static_cast<PetscInt>(s.history_buffer.size()),
-                                      PETSC_TRUE),
-                "KSPSetResidualHistory");
+  petsc_check(KSPSetResidualHistory(s.ksp, on ? s.history_buffer.data() : nullptr,
+                                    static_cast<PetscInt>(s.history_buffer.size()), PETSC_TRUE),
+              "KSPSetResidualHistory");
 }
 
 const std::vector<double>& ConjugateGradient::history() const { return impl_->history; }

@@ -14,6 +14,14 @@ std::vector<VectorX> vectors_for(const Scene& scene) {
   return out;
 }
 
+/// SplitMix64 (Steele, Lea, Flood 2014); std::seed_seq would allocate.
+std::uint64_t mixed(std::uint64_t z) {
+  z += 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
 /// r^T D^-1 r, D the diagonal of A.
 double jacobi_norm_squared(const BlockMatrix& a, const VectorX& r) {
   double sum = 0;
@@ -72,9 +80,9 @@ bool OracleGuess::propose(const LinearSystem& system, const SolvePosition& at, V
   }
   VectorX &noise = noise_[static_cast<std::size_t>(at.rod)], &scratch = scratch_[static_cast<std::size_t>(at.rod)];
   // One stream per solve, so that the draw does not depend on what was solved before.
-  std::seed_seq where{seed_ & 0xffffffffu, seed_ >> 32, static_cast<std::uint64_t>(at.step),
-                      static_cast<std::uint64_t>(at.newton), static_cast<std::uint64_t>(at.rod)};
-  std::mt19937_64 engine(where);
+  std::uint64_t stream = mixed(seed_);
+  for (const int part : {at.step, at.newton, at.rod}) stream = mixed(stream + static_cast<std::uint64_t>(part));
+  std::mt19937_64 engine(stream);
   std::normal_distribution<double> normal;
   for (double& entry : noise) entry = normal(engine);
   const double size = std::sqrt(energy_norm_squared(system.matrix(), noise, scratch));

@@ -1,6 +1,7 @@
 #include "solver/rod.hpp"
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
 namespace rodsweep {
@@ -10,18 +11,21 @@ constexpr double pi = 3.14159265358979323846;
 
 [[noreturn]] void refuse(const std::string& what, int index, const std::string& quantity, double value,
                          const std::string& bound) {
-  throw SceneError(what + " " + std::to_string(index) + ": " + quantity + " is " + std::to_string(value) +
-                   "; must be " + bound);
+  std::ostringstream text;
+  text << what << " " << index << ": " << quantity << " is " << value << "; must be " << bound;
+  throw SceneError(text.str());
 }
 
-bool finite(const Vector3& v) { return v.allFinite(); }
+bool positive(double value) { return value > 0 && std::isfinite(value); }
 
 Segment make_segment(const SegmentSpec& s, int index) {
   const bool point = s.is_static && s.length_m == 0;  // a wall: no extent, no mass needed
-  if (!(s.length_m > 0) && !point) refuse("segment", index, "length_m", s.length_m, "positive (zero only when static)");
-  if (!(s.radius_m > 0) && !s.is_static) refuse("segment", index, "radius_m", s.radius_m, "positive");
-  if (!(s.density_kg_m3 > 0) && !s.is_static) refuse("segment", index, "density_kg_m3", s.density_kg_m3, "positive");
-  if (!finite(s.position_m)) throw SceneError("segment " + std::to_string(index) + ": position is not finite");
+  if (!positive(s.length_m) && !point)
+    refuse("segment", index, "length_m", s.length_m, "positive and finite (zero only when static)");
+  if (!positive(s.radius_m) && !s.is_static) refuse("segment", index, "radius_m", s.radius_m, "positive and finite");
+  if (!positive(s.density_kg_m3) && !s.is_static)
+    refuse("segment", index, "density_kg_m3", s.density_kg_m3, "positive and finite");
+  if (!s.position_m.allFinite()) throw SceneError("segment " + std::to_string(index) + ": position is not finite");
   if (!(std::abs(s.orientation.norm() - 1) < 1e-6))
     refuse("segment", index, "orientation norm", s.orientation.norm(), "1");
 
@@ -54,6 +58,10 @@ Joint make_joint(const JointSpec& j, const std::vector<SegmentSpec>& segments, i
   for (int row = 0; row < 6; ++row)
     if (!(out.compliance[row] >= 0) || !std::isfinite(out.compliance[row]))
       refuse("joint", index, "compliance of row " + std::to_string(row), out.compliance[row], "finite and at least 0");
+  if (!j.arm_a_m.allFinite() || !j.arm_b_m.allFinite())
+    throw SceneError("joint " + std::to_string(index) + ": an arm is not finite");
+  if (j.rest && !(std::abs(j.rest->norm() - 1) < 1e-6))
+    refuse("joint", index, "norm of the rest rotation", j.rest->norm(), "1");
   out.rest = j.rest ? j.rest->normalized() : (a.orientation.conjugate() * b.orientation).normalized();
   if (out.rest.w() < 0) out.rest.coeffs() = -out.rest.coeffs();
   return out;

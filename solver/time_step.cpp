@@ -1,6 +1,6 @@
 #include "solver/time_step.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 #include "solver/rotation.hpp"
 
@@ -27,14 +27,15 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
 
 StepReport TimeStepper::step(Projection& projection) {
   predict();
+  // Drag slows the constraints' forces like the loads', so that it cancels at rest and cannot shift an equilibrium.
+  const double dt_c = settings_.dt / std::sqrt(1 + scene_.damping_per_s * settings_.dt);
   StepReport report;
   bool converged = false;
   for (int newton = 0; newton < settings_.newton_iterations && !converged; ++newton) {
     converged = true;
     for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
       const SolvePosition at{steps_, newton, static_cast<int>(r)};
-      const SolveOutcome outcome =
-          projection.project(scene_.rods[r], at, settings_.dt, settings_.newton_tolerance).outcome;
+      const SolveOutcome outcome = projection.project(scene_.rods[r], at, dt_c, settings_.newton_tolerance).outcome;
       if (outcome == SolveOutcome::not_run) continue;
       converged = false;
       report.newton_iterations = newton + 1;

@@ -3,6 +3,7 @@
 //   v* = (v + dt a_ext) / (1 + c dt),  w* = (w + dt I^-1 (tau - w x I w)) / (1 + c dt)       explicit gyroscopic term
 //   x* = x + dt v*,  q* = normalise(q + dt [0, w*] q / 2);  held segments go to their pose at the end of the step
 //   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance
+//   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
 //   v = (x - x_old) / dt,  w = (2 / dt) Im(d) / Re(d),  d = q conj(q_old)
 // First order in dt. Nothing allocates after construction.
 #pragma once

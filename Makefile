@@ -1,0 +1,94 @@
+# rodsweep: every target does its own set-up, packages included. `make help` lists them.
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+MAKEFLAGS += --no-print-directory
+
+CORES    := $(shell nproc)
+BUILD    ?= build
+PREFIX   ?= /usr/local
+PYTHON   := /usr/bin/python3
+BUILD_TYPE    ?= Release
+PORTABLE      ?= 0
+WERROR        ?= 0
+SKIP_PACKAGES ?= 0
+
+yes = $(filter-out 0 no off,$(1))
+packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt $(1))
+# $(call configure,FOLDER,OPTIONS): quiet unless it fails; a folder that exists keeps its generator.
+configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G Ninja) -DCMAKE_BUILD_TYPE=$(BUILD_TYPE) \
+  -DRODSWEEP_NATIVE=$(if $(call yes,$(PORTABLE)),OFF,ON) -DRODSWEEP_WERROR=$(if $(call yes,$(WERROR)),ON,OFF) $(2) 2>&1) \
+  || { echo "$$log"; exit 1; }
+sources = $$(find solver network runner tests -name '*.[ch]pp')
+
+.PHONY: help configure build demo test test-long bench sanitize format format-check tidy install clean
+
+help:
+	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
+	@echo 'make test          build, run the tests'
+	@echo 'make test-long     the slow physics and sweep tests'
+	@echo 'make bench         build and run the benchmarks'
+	@echo 'make install       PREFIX=$(PREFIX): program, jobs and analysis scripts'
+	@echo 'make build         build only, into $(BUILD)/'
+	@echo 'make sanitize      unit tests under the address and undefined-behaviour sanitizers, in $(BUILD)-sanitize/'
+	@echo 'make format        clang-format the tree; make format-check only looks'
+	@echo 'make tidy          clang-tidy'
+	@echo 'make clean         remove $(BUILD)/ and $(BUILD)-sanitize/; results stay'
+	@echo
+	@echo 'PORTABLE=1 builds for any processor of this kind, WERROR=1 makes warnings errors, SKIP_PACKAGES=1 leaves apt-get alone.'
+
+configure:
+	@$(call packages,build)
+	@$(call configure,$(BUILD))
+
+build: configure
+	@cmake --build $(BUILD) -j $(CORES) --target rodsweep
+
+# One worker on every core and the master, which sleeps, beside them. Exit code 3: some tasks failed, the rest has figures.
+demo: build
+	@mkdir -p results; resume=; [ ! -e results/demo.h5 ] || resume=--resume; \
+	code=0; cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/demo.json -o results/demo.h5 $$resume </dev/null || code=$$?; \
+	[ $$code = 0 ] || [ $$code = 3 ] || { echo "The demo stopped early; 'make demo' continues it."; exit $$code; }; \
+	$(PYTHON) analysis/spatial.py results/demo.h5; \
+	$(PYTHON) analysis/summary.py results/demo.h5; \
+	exit $$code
+
+test: configure
+	@cmake --build $(BUILD) -j $(CORES)
+	@ctest --test-dir $(BUILD) -j $(CORES) -LE long --output-on-failure --no-tests=error
+
+test-long: configure
+	@cmake --build $(BUILD) -j $(CORES)
+	@ctest --test-dir $(BUILD) -j $(CORES) -L long --output-on-failure --no-tests=error
+
+# The bench programs are outside of `all`: only this target builds and runs them.
+bench:
+	@$(call packages,build develop)
+	@$(call configure,$(BUILD),-DRODSWEEP_BENCH=ON)
+	@cmake --build $(BUILD) -j $(CORES) --target benchmarks </dev/null
+
+sanitize: BUILD_TYPE = Debug
+sanitize:
+	@$(call packages,build)
+	@$(call configure,$(BUILD)-sanitize,-DRODSWEEP_SANITIZE=ON -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1')
+	@cmake --build $(BUILD)-sanitize -j $(CORES) --target unit_tests
+	@ctest --test-dir $(BUILD)-sanitize -j $(CORES) -L unit --output-on-failure --no-tests=error
+
+format:
+	@$(call packages,develop)
+	@clang-format -i $(sources)
+
+format-check:
+	@$(call packages,develop)
+	@clang-format --dry-run -Werror $(sources) && echo 'format: clean'
+
+tidy: build
+	@$(call packages,develop)
+	@run-clang-tidy -quiet -p $(BUILD) -j $(CORES) '^$(CURDIR)/(solver|network|runner)/.*\.cpp$$'
+
+install: build
+	@cmake --install $(BUILD) --prefix $(abspath $(PREFIX))
+
+clean:
+	@for folder in $(BUILD) $(BUILD)-sanitize; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done

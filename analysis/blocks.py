@@ -1,0 +1,131 @@
+"""The numbers of summary.py: everything measured about one group of simulations, and the same as flat records."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import groups
+import intervals
+import measures
+import timings
+
+TIMES = ("assemble_us", "guess_us", "cg_us", "direct_us")
+
+
+@dataclass(frozen=True)
+class Block:
+    """Estimates over the simulations of a group. Those that the file cannot give are None."""
+    title: str
+    scene: str
+    settings: dict
+    sims: measures.Simulations
+    ratio: intervals.Estimate = None             # [guess, tolerance]
+    zero_iterations: np.ndarray = None           # [tolerance] per solve from zero; None for all Newton iterations
+    unreached: np.ndarray = None                 # [guess, tolerance] solves
+    speedup: dict = None                         # definition: Estimate [guess], over zero-guess CG
+    speedup_over_direct: dict = None             # the same over the direct solve
+    direct_speedup: dict = None                  # definition: Estimate, of the direct solve over zero-guess CG
+    times: dict = None                           # assemble_us, guess_us, cg_us, direct_us per solve: Estimate [guess]
+    direct_times: dict = None                    # without guesses: assemble_us, direct_us per solve: Estimate
+    interruptions: str = ""                      # what was left out of the times
+    steps: dict = None                           # name: Estimate [guess] and largest [guess]
+
+
+def blocks(file, sims, by, newton):
+    """One per scene type, gridded key outside `scene`, and value of the key `by`."""
+    panels = groups.panels(file, sims, by, pooled="scene.", most=None)
+    found = []
+    for panel in panels:
+        if by is None:
+            found.append(_measured(file, sims, panel.title(), panel, panel.settings, panel.index, newton))
+            continue
+        points = groups.points(file, sims, panel, by)
+        for text, index in zip(points.text, points.index):
+            value = f"about {text}" if points.binned else text
+            found.append(_measured(file, sims, f"{panel.title()}, {by} = {value}", panel, {**panel.settings, by: text},
+                                   index, newton))
+    return found
+
+
+def _measured(file, sims, title, panel, settings, index, newton):
+    sims = sims.subset(index)
+    parts = {"steps": _steps(file, sims)}
+    if measures.has_guesses(file)[sims.any_task].all():
+        parts.update(_ratios(file, sims, newton))
+        if timings.timed(file):
+            parts.update(_times(file, sims, newton))
+    else:
+        direct = timings.direct_times(file, sims)
+        if np.isfinite(direct["direct_us"]).any():
+            parts["direct_times"] = {name: intervals.median(values, sims.sample)[0] for name, values in direct.items()}
+    return Block(title, panel.scene, settings, sims, **parts)
+
+
+def _steps(file, sims):
+    figures = measures.step_figures(file, sims)
+    found = {}
+    for name in ("newton_iterations", "newton_residual", "length_drift", "joint_gap"):
+        values = getattr(figures, name)
+        if np.isfinite(values).any():
+            found[name] = (intervals.median(values, sims.sample), np.fmax.reduce(values, axis=0))
+    return found
+
+
+def _ratios(file, sims, newton):
+    if file.zero is None:
+        return {}
+    ratios = measures.cg_ratios(file, sims, newton)
+    per_solve = intervals.mean(ratios.iterations_per_solve[:, file.zero], sims.sample).value
+    return {"ratio": intervals.mean(ratios.ratio, sims.sample), "unreached": np.nansum(ratios.unreached, axis=0),
+            "zero_iterations": per_solve if newton == "first" else None}
+
+
+def _times(file, sims, newton):
+    by_newton = timings.times(file, sims)
+    part = by_newton[newton]
+
+    def medians(values):
+        return {name: intervals.median(v, sims.sample) for name, v in values.items()}
+
+    microseconds = {name: getattr(part, name.replace("_us", "_s")) / part.solves * 1e6 for name in TIMES}
+    found = {"times": medians(microseconds), "interruptions": timings.interruptions(by_newton["all"], sims),
+             "speedup_over_direct": medians(timings.speedups(by_newton, newton, "direct"))}
+    if file.zero is not None:
+        found["speedup"] = medians(timings.speedups(by_newton, newton))
+        found["direct_speedup"] = medians(timings.direct_speedups(by_newton, newton, file.zero))
+    return found
+
+
+def records(file, block, guesses, tolerances, newton):
+    """Flat dictionaries, one per number, for CSV and JSON."""
+    common = {"scene": block.scene, "settings": "; ".join(f"{k}={v}" for k, v in block.settings.items()),
+              "newton": newton}
+
+    def record(quantity, estimate, guess="", tolerance="", unreached=""):
+        return {**common, "quantity": quantity, "guess": guess, "tolerance": tolerance, "value": float(estimate.value),
+                "low": float(estimate.low), "high": float(estimate.high), "simulations": int(estimate.count),
+                "unreached_solves": unreached}
+
+    labels = file.guesses or ["direct"]
+    guesses = guesses or [0]
+    found = []
+    if block.ratio is not None:
+        found += [record("cg_ratio", block.ratio[g, t], labels[g], float(file.tolerances[t]),
+                         int(block.unreached[g, t]))
+                  for g in guesses for t in tolerances]
+    timed = [("speedup_", block.speedup), ("speedup_over_direct_", block.speedup_over_direct), ("", block.times)]
+    found += [record(prefix + name, estimate[g], labels[g]) for prefix, estimates in timed if estimates
+              for name, estimate in estimates.items() for g in guesses]
+    if block.direct_speedup:
+        found += [record("speedup_" + name, estimate, "direct") for name, estimate in block.direct_speedup.items()]
+    if block.direct_times:
+        found += [{**record(name, estimate, "direct"), "newton": "all"}
+                  for name, estimate in block.direct_times.items()]
+    for name, (estimate, largest) in block.steps.items():
+        rows = guesses if block.sims.closed_loop else guesses[:1]
+        for g in rows:
+            label = labels[g] if block.sims.closed_loop else ""
+            found.append({**record(f"{name}_median", estimate[g], label), "newton": "all"})
+            found.append({**record(f"{name}_largest", estimate[g], label), "newton": "all",
+                          "value": float(largest[g]), "low": float("nan"), "high": float("nan")})
+    return found

@@ -1,0 +1,227 @@
+"""The figures of spatial.py: CG ratios, speedups and times of a Study along one parameter, a row per panel.
+
+Every figure says which Newton iterations, norm, tolerance and preconditioner it is of, over how many simulations, and
+what was left out.
+"""
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+import commandline
+import intervals
+import layout
+import measures
+import style
+import timings
+
+TIME_PARTS = ("assembly", "guess", "CG")
+SPEEDUP_TICKS = [[1], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 8]]   # of every decade, from coarse to fine
+
+
+def ratio_figure(study, tolerances):
+    """CG iterations over those from zero: a panel per tolerance, a line per guess."""
+    ratios = measures.cg_ratios(study.file, study.sims, study.newton)
+    estimates = [[intervals.mean(ratios.ratio[rows], study.sims.sample[rows]) for rows in points.index]
+                 for points in study.points]
+    lines = study.lines()
+    chosen = [(g, t) for g in lines for t in tolerances]
+    shown = [e[g, t] for row in estimates for e in row for g, t in chosen]
+    open_points = [[_unreached(ratios, rows) for rows in points.index] for points in study.points]
+    any_open = any(o[g, t] for row in open_points for o in row for g, t in chosen)
+    notes = [f"Iterations with a guess ÷ from zero, summed over a simulation: mean over {_sample(shown)}. "
+             f"Counted: {measures.NEWTON[study.newton]}."]
+    if any_open:
+        notes.append("Open markers: some of these solves missed the tolerance within the iteration limit and count "
+                     "what they used.")
+    width = study.width_mm
+    page = layout.Page(width, [p.title() for p in study.panels], len(tolerances), 4 if width > 100 else 2,
+                      40 if width > 100 else 30, _handles(study, lines, "zero guess (= 1)"), notes + [study.about()],
+                      ticks_mm=_ticks_mm(study))
+    top = 1.06 * max([1.0] + [float(np.nanmax([e.value, e.high])) for e in shown if np.isfinite(e.value)])
+    for axes_row, points, row, marks in zip(page.axes, study.points, estimates, open_points):
+        for k, (axes, t) in enumerate(zip(axes_row, tolerances)):
+            x = layout.XAxis(points)
+            axes.axhline(1, color=style.KINDS["zero"][0], linewidth=0.9, zorder=1.5)
+            for rank, g in enumerate(lines):
+                _line(axes, x.dodged(rank, len(lines)), [e[g, t] for e in row], study.style(g), points.categorical,
+                      [bool(m[g, t]) for m in marks])
+            axes.set_ylim(0, top)
+            axes.set_title("tolerance " + style.tolerance_text(study.file.tolerances[t]))
+            x.apply(axes)
+            _y_axis(axes, page, k, "CG ratio")
+    _x_labels(page, study)
+    return page
+
+
+def speedup_figure(study, by_newton):
+    """Time of zero-guess CG over the time with a guess, and over `direct`: a panel per definition."""
+    against_zero = timings.speedups(by_newton, study.newton)
+    direct = timings.direct_speedups(by_newton, study.newton, study.file.zero)
+    lines = study.lines()
+    rows = []
+    for points in study.points:
+        rows.append({name: [(intervals.median(against_zero[name][i], study.sims.sample[i]),
+                             intervals.median(direct[name][i], study.sims.sample[i])) for i in points.index]
+                     for name in timings.SPEEDUPS})
+    shown = [e[g] for row in rows for pairs in row.values() for e, _ in pairs for g in lines]
+    with_direct = any(np.isfinite(d.value) for row in rows for pairs in row.values() for _, d in pairs)
+    whole = "" if study.newton == "all" else "; the whole step has all Newton iterations"
+    notes = [f"Time of zero-guess CG ÷ time of the method, sums over a simulation: median over {_sample(shown)}. "
+             f"Counted: {measures.NEWTON[study.newton]}{whole}. "
+             f"Solved to tolerance {study.solve_tolerance()}. {timings.interruptions(by_newton['all'], study.sims)}"]
+    handles = _handles(study, lines, "zero-guess CG (= 1)")
+    if with_direct:
+        handles.append(_direct_handle("direct solve"))
+    width = study.width_mm
+    page = layout.Page(width, [p.title() for p in study.panels], 3, 3, 40 if width > 100 else 34, handles,
+                      notes + [study.about()], study.timing_warning(), ticks_mm=_ticks_mm(study))
+    bounds = [v for row in rows for pairs in row.values() for e, d in pairs for part in (*(e[g] for g in lines), d)
+              for v in (part.value, part.low, part.high) if np.isfinite(v) and v > 0]
+    low, high = min([0.8] + [0.92 * b for b in bounds]), max([1.25] + [1.08 * b for b in bounds])
+    for axes_row, points, row in zip(page.axes, study.points, rows):
+        for k, (axes, (name, title)) in enumerate(zip(axes_row, timings.SPEEDUPS.items())):
+            x = layout.XAxis(points)
+            axes.set_yscale("log")
+            axes.axhline(1, color=style.KINDS["zero"][0], linewidth=0.9, zorder=1.5)
+            for rank, g in enumerate(lines):
+                _line(axes, x.dodged(rank, len(lines) + 1), [e[g] for e, _ in row[name]], study.style(g),
+                      points.categorical)
+            if with_direct:
+                _line(axes, x.dodged(len(lines), len(lines) + 1), [d for _, d in row[name]],
+                      style.DIRECT, points.categorical)
+            axes.set_ylim(low, high)
+            axes.yaxis.set_major_locator(FixedLocator(_ticks(low, high)))
+            axes.yaxis.set_minor_locator(NullLocator())
+            axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}×"))
+            axes.set_title(title)
+            x.apply(axes)
+            _y_axis(axes, page, k, "speedup over zero-guess CG")
+    _x_labels(page, study)
+    return page
+
+
+def time_figure(study, by_newton):
+    """Microseconds per solve, stacked parts: a panel per guess; the direct solve of the same systems beside it."""
+    part = by_newton[study.newton]
+    values = np.stack([part.assemble_s, part.guess_s, part.cg_s, part.assemble_s + part.direct_s,
+                       part.assemble_s + part.guess_s + part.cg_s], axis=-1) / part.solves[..., None] * 1e6
+    rows = [[intervals.median(values[i], study.sims.sample[i]) for i in points.index] for points in study.points]
+    shown = [e[g, 4] for row in rows for e in row for g in study.guesses]
+    with_direct = any(np.isfinite(e.value[g, 3]) for row in rows for e in row for g in study.guesses)
+    notes = [f"Mean time of a solve in a simulation, median over {_sample(shown, ' of the total')}; parts in their "
+             f"median proportions. Counted: {measures.NEWTON[study.newton]}. "
+             f"Solved to tolerance {study.solve_tolerance()}. CG includes the preconditioner's set-up. "
+             f"{timings.interruptions(part, study.sims)}"]
+    handles = [Patch(facecolor=style.PARTS[name][0], hatch=style.PARTS[name][1], edgecolor="white", label=name)
+               for name in TIME_PARTS]
+    if with_direct:
+        handles.append(_direct_handle("assembly + direct solve"))
+    width, count = study.width_mm, len(study.guesses)
+    page = layout.Page(width, [p.title() for p in study.panels], count, _columns(count, 6 if width > 100 else 3),
+                      34 if width > 100 else 22, handles, notes + [study.about()], study.timing_warning(), gap_mm=3,
+                      ticks_mm=_ticks_mm(study))
+    for axes_row, points, row in zip(page.axes, study.points, rows):
+        top = 1.06 * np.nanmax([np.nanmax([e.value[study.guesses, 3:], e.high[study.guesses, 3:]]) for e in row])
+        for k, (axes, g) in enumerate(zip(axes_row, study.guesses)):
+            x = layout.XAxis(points, bars=True)
+            _stack(axes, x, [e[g] for e in row])
+            if with_direct:
+                _line(axes, x.position, [e[g, 3] for e in row], style.DIRECT, points.categorical, size=2.8)
+            axes.set_ylim(0, top)
+            page.title(axes, study.file.guesses[g], color=study.style(g).colour, weight="bold")
+            axes.grid(axis="x", visible=False)
+            x.apply(axes)
+            _y_axis(axes, page, k, "µs per solve")
+    _x_labels(page, study)
+    return page
+
+
+def _line(axes, x, estimates, guess_style, categorical, hollow=None, size=None):
+    """Values with their intervals; categories have no line between them."""
+    value, low, high = (np.array([getattr(e, name) for e in estimates], dtype=float)
+                        for name in ("value", "low", "high"))
+    bars = np.nan_to_num(np.stack([value - low, high - value]).clip(min=0))
+    line = {**guess_style.line(), "markersize": size}
+    if categorical:
+        line["linestyle"] = ""
+    container = axes.errorbar(x, value, yerr=bars, elinewidth=0.7, capsize=1.1, capthick=0.7, **line)
+    for bar in (*container[1], *container[2]):
+        bar.set_alpha(0.75)
+    hollow = np.zeros(len(value), dtype=bool) if hollow is None else np.array(hollow)
+    if hollow.any():
+        axes.plot(np.asarray(x)[hollow], value[hollow], linestyle="", marker=guess_style.marker,
+                  color=guess_style.colour, markerfacecolor="white", markeredgewidth=0.8, zorder=container[0].get_zorder() + 0.1)
+
+
+def _stack(axes, x, estimates):
+    """Bars whose parts have the proportions of their medians and whose height is the median of the total."""
+    parts = np.array([e.value[:3] for e in estimates])
+    total = np.array([e.value[4] for e in estimates])
+    parts = parts * (total / parts.sum(axis=1))[:, None]
+    left, width = x.edges()
+    bottom = np.zeros(len(total))
+    for k, name in enumerate(TIME_PARTS):
+        colour, hatch = style.PARTS[name]
+        axes.bar(left, parts[:, k], width, bottom=bottom, align="edge", color=colour, hatch=hatch, edgecolor="white",
+                 linewidth=0.3)
+        bottom = bottom + np.nan_to_num(parts[:, k])
+    low, high = (np.array([getattr(e, name)[4] for e in estimates], dtype=float) for name in ("low", "high"))
+    axes.errorbar(x.position, total, yerr=np.nan_to_num(np.stack([total - low, high - total]).clip(min=0)), fmt="none",
+                  ecolor="#222222", elinewidth=0.7, capsize=1.2, capthick=0.7)
+
+
+def _handles(study, lines, zero_text):
+    guesses = [Line2D([], [], label=study.file.guesses[g], **study.style(g).line()) for g in lines]
+    return guesses + [Line2D([], [], color=style.KINDS["zero"][0], linewidth=0.9, label=zero_text)]
+
+
+def _direct_handle(label):
+    return Line2D([], [], label=label, **style.DIRECT.line())
+
+
+def _ticks_mm(study):
+    """Room under the panels: more for words, which may have to lean."""
+    longest = max((len(text) for points in study.points if points.categorical for text in points.text), default=0)
+    return 5.5 if longest < 5 else min(14, 5 + 0.6 * longest)
+
+
+def _x_labels(page, study):
+    for row, points in enumerate(study.points):
+        page.label_x(row, study.x_label() + (f" (median of each of {len(points.index)} bins)" if points.binned else ""))
+
+
+def _y_axis(axes, page, panel, label):
+    if page.is_left(panel):
+        axes.set_ylabel(label, labelpad=2)
+    else:
+        axes.tick_params(labelleft=False)
+
+
+def _unreached(ratios, rows):
+    """[guess, tolerance]: did any solve of these simulations, of the guess or of zero, miss the tolerance?"""
+    return (np.nansum(ratios.unreached[rows], axis=0) + np.nansum(ratios.unreached_zero[rows], axis=0)) > 0
+
+
+def _sample(estimates, of=""):
+    """How many simulations the points stand for, and what the whiskers are."""
+    counts = commandline.range_text([int(e.count) for e in estimates])
+    simulations = "simulation" if counts == "1" else "simulations"
+    has_intervals = any(np.isfinite(e.low) for e in estimates)
+    return (f"{counts} {simulations} per point; " +
+            (f"whiskers: 95 % bootstrap intervals{of}" if has_intervals else "a single draw has no intervals"))
+
+
+def _columns(count, most):
+    """Columns of a row of `count` panels: as even as `most` allows."""
+    return -(-count // -(-count // most))
+
+
+def _ticks(low, high):
+    """The coarsest set with at least three ticks between the bounds, else the finest."""
+    for leading in SPEEDUP_TICKS:
+        ticks = [a * 10.0 ** k for k in range(-6, 7) for a in leading if low <= a * 10.0 ** k <= high]
+        if len(ticks) >= 3:
+            break
+    return ticks

@@ -1,0 +1,104 @@
+"""Which simulations of a sweep belong together in a panel and at a point of a figure, or in a block of a table.
+
+A key of the job is *gridded* where it varies although scene type, x and draw are the same; a key that only varies with
+the draw is a random one and is averaged over. Simulations that differ in a gridded key are never averaged: they go to
+panels of their own. (A table over all of a scene type pools the scene's own keys, never those of time or solve.)
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sweepfile import KeyNotFound
+
+MOST_PANELS = 6
+MOST_POINTS = 14   # more distinct values of x than this are binned
+BINS = 8
+
+
+@dataclass(frozen=True)
+class Panel:
+    scene: str
+    settings: dict        # gridded keys other than x: text of their value
+    index: np.ndarray     # rows of Simulations
+    def title(self):
+        name = self.scene.replace("_", " ").capitalize()
+        return ", ".join([name] + [f"{key} = {value}" for key, value in self.settings.items()])
+
+
+@dataclass(frozen=True)
+class Points:
+    """The points along x of one panel: position, tick text and rows of Simulations."""
+    position: np.ndarray
+    text: list
+    index: list
+    categorical: bool
+    binned: bool
+
+
+def gridded_keys(file, tasks, x, pooled=""):
+    """Keys that vary within (scene type, x, draw) over these tasks; those that begin with `pooled` are left out."""
+    fixed = [file.sample[tasks]]
+    fixed += [file.parameters[key].codes()[tasks] for key in ("scene.type", x) if key in file.parameters]
+    order = np.lexsort(fixed)
+    same = np.ones(max(0, len(tasks) - 1), dtype=bool)
+    for codes in fixed:
+        same &= codes[order][1:] == codes[order][:-1]
+    found = []
+    for parameter in file.parameters.values():
+        if not parameter.swept or parameter.name in ("scene.type", "guess", x):
+            continue
+        if pooled and parameter.name.startswith(pooled):
+            continue
+        codes = parameter.codes()[tasks][order]
+        if ((codes[1:] != codes[:-1]) & same).any():
+            found.append(parameter.name)
+    return found
+
+
+def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
+    """Panels by scene type and gridded keys, in the order of the tasks. Raises KeyNotFound for more than `most`."""
+    tasks = sims.any_task
+    keys = gridded_keys(file, tasks, x, pooled)
+    scenes = file.scene_types()[tasks]
+    if x == "scene.type":
+        scenes = np.full(len(tasks), "all scenes")
+    members = {}
+    for row, task in enumerate(tasks):
+        settings = {key: file.parameters[key].text(task) for key in keys}
+        members.setdefault((scenes[row], tuple(settings.items())), []).append(row)
+    if most is not None and len(members) > most:
+        raise KeyNotFound(f"{len(members)} panels are too many for a page (at most {most}): the job has a grid "
+                          f"over {', '.join(keys) or 'scene.type'} too; choose with --scene TYPE or --select KEY=VALUE")
+    return [Panel(scene, dict(settings), np.array(rows)) for (scene, settings), rows in members.items()]
+
+
+def applicable(file, sims, x):
+    """Rows of Simulations for whose scene the key x has a meaning. Raises KeyNotFound where there is none."""
+    parameter = file.parameter(x)
+    rows = np.flatnonzero(parameter.applies()[sims.any_task])
+    if not len(rows):
+        raise KeyNotFound(f"parameter {x!r} has no meaning for the chosen simulations")
+    return rows
+
+
+def points(file, sims, panel, x):
+    parameter, tasks = file.parameter(x), sims.any_task[panel.index]
+    codes = parameter.codes()[tasks]
+    distinct, first = np.unique(codes, return_index=True)
+    if parameter.numeric and len(distinct) > MOST_POINTS:
+        return _binned(parameter.values[tasks], panel.index)
+    if not parameter.numeric:
+        distinct = distinct[np.argsort(first)]
+    index = [panel.index[codes == code] for code in distinct]
+    representative = [sims.any_task[rows[0]] for rows in index]
+    text = [parameter.text(task) for task in representative]
+    position = parameter.values[representative] if parameter.numeric else np.arange(len(index))
+    return Points(np.asarray(position, dtype=float), text, index, not parameter.numeric, False)
+
+
+def _binned(values, index):
+    """Bins of (nearly) equal counts, each at the median of its values."""
+    parts = np.array_split(np.argsort(values, kind="stable"), BINS)
+    position = np.array([np.median(values[part]) for part in parts])
+    return Points(position, [f"{p:.3g}" for p in position], [index[part] for part in parts], False, True)

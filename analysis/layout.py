@@ -1,0 +1,151 @@
+"""Where things stand on a figure: a page of panels laid out in millimetres, and an x axis whose ticks never overlap."""
+
+import os
+import textwrap
+
+import numpy as np
+from matplotlib import pyplot as plt
+from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
+
+import style
+
+LOG_SPAN = 20        # positive x whose largest value exceeds the smallest by this factor get a logarithmic axis
+CHARACTER_MM = 1.45  # width of a digit of a tick, about
+
+
+class Page:
+    """A figure laid out in millimetres: warning, legend and notes over and under rows of equal panels.
+
+    Rows have titles of their own; panels of a row wrap at `columns`. axes[row][k] are the panels in order.
+    """
+
+    def __init__(self, width_mm, row_titles, panels_per_row, columns, panel_height_mm, handles, notes, warning="",
+                 left_mm=11, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5):
+        style.use()
+        self.figure = plt.figure(figsize=(width_mm * style.MM, 100 * style.MM))
+        legend, legend_mm = self._legend(handles, width_mm)
+        notes = [line for note in notes for line in textwrap.wrap(note, int((width_mm - 4) / 1.13),
+                                                                  break_on_hyphens=False)]
+        warned = textwrap.wrap(warning, int((width_mm - 4) / 1.35))
+        notes_mm, warning_mm, title_mm = 2.9 * len(notes) + 2, 3.4 * len(warned) + (1 if warned else 0), 5
+        columns = min(columns, panels_per_row)
+        lines = -(-panels_per_row // columns)
+        row_mm = title_mm + lines * (panel_titles_mm + panel_height_mm + ticks_mm) + 3.2
+        height = warning_mm + legend_mm + len(row_titles) * row_mm + notes_mm + 1
+        self.figure.set_size_inches(width_mm * style.MM, height * style.MM)
+        panel_width = (width_mm - left_mm - 2 - (columns - 1) * gap_mm) / columns
+        top = height - 1
+        for k, line in enumerate(warned):
+            self._text(2, top - 3.4 * k, line, width_mm, height, size=8, weight="bold", color=style.WARNING_COLOUR)
+        top -= warning_mm
+        if legend is not None:
+            legend.set_bbox_to_anchor((0, 0, 1, top / height), transform=self.figure.transFigure)
+        top -= legend_mm
+        self.axes = []
+        for title in row_titles:
+            self._text(2, top - 0.5, title, width_mm, height, size=8, weight="bold")
+            top -= title_mm
+            row = []
+            for k in range(panels_per_row):
+                line, column = divmod(k, columns)
+                x = left_mm + column * (panel_width + gap_mm)
+                y = top - line * (panel_titles_mm + panel_height_mm + ticks_mm) - panel_titles_mm - panel_height_mm
+                box = [x / width_mm, y / height, panel_width / width_mm, panel_height_mm / height]
+                row.append(self.figure.add_axes(box))
+            self.axes.append(row)
+            top -= row_mm - title_mm
+        for k, note in enumerate(notes):
+            self._text(2, notes_mm - 1 - 2.9 * k, note, width_mm, height, size=6, color="#333333")
+        self.columns, self.ticks_mm = columns, ticks_mm
+
+    def _text(self, x, y, text, width, height, **text_style):
+        self.figure.text(x / width, y / height, text, va="top", ha="left", **text_style)
+
+    def _legend(self, handles, width_mm):
+        """As few lines as fit the width, evenly filled."""
+        if not handles:
+            return None, 0
+        most = len(handles)
+        for columns in sorted({-(-most // lines) for lines in range(1, most + 1)}, reverse=True):
+            legend = self.figure.legend(handles=handles, loc="upper left", ncol=columns, handlelength=2.8,
+                                        columnspacing=1.4, handletextpad=0.5, borderpad=0.2, labelspacing=0.35)
+            box = legend.get_window_extent(self.figure.canvas.get_renderer())
+            if box.width / self.figure.dpi / style.MM <= width_mm - 2 or columns == 1:
+                return legend, box.height / self.figure.dpi / style.MM + 1.5
+            legend.remove()
+
+    def is_left(self, panel):
+        return panel % self.columns == 0
+
+    def label_x(self, row, text):
+        """One label in the middle under a row of panels."""
+        height = self.figure.get_size_inches()[1] / style.MM
+        boxes = [axes.get_position() for axes in self.axes[row]]
+        middle, bottom = (min(b.x0 for b in boxes) + max(b.x1 for b in boxes)) / 2, min(b.y0 for b in boxes)
+        self.figure.text(middle, bottom - (self.ticks_mm - 0.7) / height, text, ha="center", va="top")
+
+    def title(self, axes, text, **text_style):
+        """A panel's title, smaller where the panel is narrow."""
+        width = axes.get_position().width * self.figure.get_size_inches()[0] / style.MM
+        axes.set_title(text, fontsize=max(5.5, min(7.5, 7.5 * width / (1.55 * len(text)))), **text_style)
+
+    def save(self, folder, name):
+        """Writes PDF and PNG; returns their paths. The same figure gives the same bytes."""
+        os.makedirs(folder, exist_ok=True)
+        paths = [os.path.join(folder, f"{name}.{ending}") for ending in ("pdf", "png")]
+        self.figure.savefig(paths[0], metadata={"CreationDate": None, "Producer": None, "Creator": "rodsweep"})
+        self.figure.savefig(paths[1], metadata={"Software": "rodsweep"})
+        plt.close(self.figure)
+        return paths
+
+
+class XAxis:
+    """Positions along x and their ticks. Bars stand at even distances where the values are too dense for them."""
+
+    def __init__(self, points, bars=False):
+        values, self.text = points.position, points.text
+        self.log = not points.categorical and (values > 0).all() and values.max() > LOG_SPAN * values.min()
+        self.even = points.categorical
+        scaled = np.log10(values) if self.log else values
+        span = float(np.ptp(scaled)) or 1.0
+        if bars and not self.even and len(values) > 1 and np.diff(np.sort(scaled)).min() < 0.06 * span:
+            self.even, self.log = True, False
+        if self.even:
+            values = scaled = np.arange(len(values), dtype=float)
+            span = max(1.0, float(len(values) - 1))
+        self.position, self.scaled, self.span = values, scaled, span
+        self.gap = float(np.diff(np.sort(scaled)).min()) if len(values) > 1 else span
+        self.margin = 0.62 * self.gap if bars else 0.5 * self.gap if self.even else 0.1 * span
+        if len(values) == 1:
+            self.margin = span
+
+    def _unscaled(self, scaled):
+        return 10 ** scaled if self.log else scaled
+
+    def dodged(self, rank, count):
+        """Positions moved a little, so that intervals of several lines do not hide each other."""
+        width = 0.5 * self.gap if self.even else min(0.05 * self.span, 0.6 * self.gap)
+        return self._unscaled(self.scaled + width * (rank / max(1, count - 1) - 0.5))
+
+    def edges(self):
+        """Left edges and widths of bars."""
+        left, right = (self._unscaled(self.scaled + side * 0.36 * self.gap) for side in (-1, 1))
+        return left, right - left
+
+    def apply(self, axes):
+        if self.log:
+            axes.set_xscale("log")
+        axes.set_xlim(*self._unscaled(np.array([self.scaled.min() - self.margin, self.scaled.max() + self.margin])))
+        width_mm = axes.get_position().width * axes.figure.get_size_inches()[0] / style.MM
+        room = self.gap / (self.span + 2 * self.margin) * width_mm
+        fits = CHARACTER_MM * (0.7 + max(map(len, self.text))) <= room
+        if self.even or fits:
+            axes.xaxis.set_major_locator(FixedLocator(self.position))
+            axes.xaxis.set_minor_locator(NullLocator())
+            leaning = {} if fits else {"rotation": 25, "ha": "right", "rotation_mode": "anchor"}
+            axes.set_xticklabels(self.text, **leaning)
+        elif self.log:
+            axes.xaxis.set_major_locator(LogLocator(numticks=5))
+            axes.xaxis.set_minor_formatter(NullFormatter())
+        else:
+            axes.xaxis.set_major_locator(MaxNLocator(4))

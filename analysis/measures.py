@@ -1,0 +1,151 @@
+"""What a sweep measured, per simulation: CG ratios and how the steps went; times are in timings.py.
+
+A simulation is a parameter point. In a paired sweep one task tries every guess on the same systems; in a closed loop
+each guess is a task of its own, and tasks of one point belong together. Both end up in the same arrays, [simulation,
+guess, ...]. Sums run over a simulation first; ratios are of sums. Only tasks that ended `ok` count: a ratio over half a
+simulation would not be one. What is left out is counted in Simulations and shown by every script.
+"""
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+# Which solves count: of the first Newton iteration of every step, or of all.
+NEWTON = {"first": "first Newton iteration (j = 0)", "all": "all Newton iterations"}
+
+
+@dataclass(frozen=True)
+class Simulations:
+    """task[s, g]: the task that holds guess g of simulation s, or -1. Without a guess axis there is one column."""
+    task: np.ndarray
+    any_task: np.ndarray   # a task that stands for the simulation's parameters
+    sample: np.ndarray     # its draw of the random parameters
+    own: np.ndarray        # does each guess have a task of its own (closed loop)?
+
+    def __len__(self):
+        return len(self.task)
+
+    @property
+    def closed_loop(self):
+        return bool(self.own.any())
+
+    def subset(self, index):
+        return Simulations(self.task[index], self.any_task[index], self.sample[index], self.own[index])
+
+    def tasks(self):
+        """All task numbers in it, each once."""
+        return np.unique(self.task[self.task >= 0])
+
+    def gather(self, per_task, zero=None):
+        """[task, guess, ...] as [simulation, guess, ...], NaN where there is no task; of guess `zero` in every column."""
+        guesses = np.arange(self.task.shape[1]) if zero is None else np.full(self.task.shape[1], zero)
+        task = self.task[:, guesses]
+        out = np.asarray(per_task, dtype=float)[np.maximum(task, 0), guesses[None, :]]
+        out[task < 0] = np.nan
+        return out
+
+
+@dataclass(frozen=True)
+class Census:
+    """How many of the chosen tasks there are in each state."""
+    total: int
+    ok: int
+    pending: int
+    failed: dict   # outcome: count
+
+    def text(self):
+        failures = ", ".join(f"{count} {outcome}" for outcome, count in sorted(self.failed.items()))
+        return (f"{self.ok} of {self.total} tasks ok" + (f", failed: {failures}" if failures else ", none failed") +
+                (f", {self.pending} pending" if self.pending else ""))
+
+
+def census(file, chosen):
+    outcomes = Counter(file.outcome[chosen & file.complete & ~file.ok].tolist())
+    return Census(int(chosen.sum()), int((chosen & file.ok).sum()), int((chosen & ~file.complete).sum()),
+                  dict(outcomes))
+
+
+def has_guesses(file):
+    """Mask of the tasks that try guesses: a plain direct simulation has none."""
+    if not file.guesses:
+        return np.zeros(file.task_count, dtype=bool)
+    method = file.parameters.get("solve.method")
+    return np.ones(file.task_count, dtype=bool) if method is None else method.values != "direct"
+
+
+def simulations(file, chosen):
+    """The simulations among the tasks of the mask, by point."""
+    tasks = np.flatnonzero(chosen & file.ok)
+    points, row = np.unique(file.point[tasks], return_inverse=True)
+    task = np.full((len(points), max(1, len(file.guesses))), -1, dtype=np.int64)
+    own = file.own_guess[tasks]
+    task[row[own < 0]] = tasks[own < 0, None]
+    task[row[own >= 0], own[own >= 0]] = tasks[own >= 0]
+    any_task = np.zeros(len(points), dtype=np.int64)
+    any_task[row] = tasks
+    return Simulations(task, any_task, file.sample[any_task], file.own_guess[any_task] >= 0)
+
+
+@dataclass(frozen=True)
+class Ratios:
+    """[simulation, guess, tolerance]; unreached counts solves, of the guess and of the zero guess."""
+    ratio: np.ndarray
+    iterations_per_solve: np.ndarray
+    unreached: np.ndarray
+    unreached_zero: np.ndarray
+    solves: np.ndarray     # [simulation, guess] first Newton iterations; NaN for `all`, which is not stored per task
+
+
+def cg_ratios(file, sims, newton):
+    suffix = "" if newton == "first" else "_all"
+    shape = (file.task_count, len(file.guesses), len(file.tolerances))
+    tasks = sims.tasks()
+
+    def spread(name):
+        full = np.full(shape, np.nan)
+        values = file.results(name, tasks)
+        if values is not None:
+            full[tasks] = np.where(values < 0, np.nan, values)
+        return full
+
+    iterations, unreached = spread(f"iterations_sum{suffix}"), spread(f"unreached{suffix}")
+    steps = np.full(shape[:2], np.nan)
+    done = file.results("steps_done", tasks)
+    if newton == "first" and done is not None:
+        steps[tasks] = done[:, None]
+    own, zero = sims.gather(iterations), sims.gather(iterations, file.zero)
+    solves = sims.gather(steps)
+    ratio = np.divide(own, zero, out=np.full(own.shape, np.nan), where=zero > 0)
+    per_solve = np.divide(own, solves[..., None], out=np.full(own.shape, np.nan), where=solves[..., None] > 0)
+    return Ratios(ratio, per_solve, sims.gather(unreached), sims.gather(unreached, file.zero), solves)
+
+
+@dataclass(frozen=True)
+class StepFigures:
+    """[simulation, guess] over the steps of a simulation; a paired sweep has one trajectory for all guesses."""
+    newton_iterations: np.ndarray   # mean per step
+    newton_residual: np.ndarray     # largest at the end of a step
+    length_drift: np.ndarray        # largest magnitude
+    joint_gap: np.ndarray           # largest
+
+
+def step_figures(file, sims):
+    tasks = sims.tasks()
+    wanted = {name: f"/steps/{name}" for name in ("newton_iterations", "newton_residual", "length_drift", "joint_gap")}
+    wanted = {name: path for name, path in wanted.items() if file.has(path)}
+    largest = {name: np.full(file.task_count, np.nan) for name in ("newton_residual", "length_drift", "joint_gap")}
+    newton, steps = np.zeros(file.task_count), np.zeros(file.task_count)
+    for owners, starts, rows in file.step_blocks(tasks, list(wanted.values())):
+        for name in largest.keys() & wanted.keys():
+            np.fmax.at(largest[name], owners, np.fmax.reduceat(np.abs(rows[wanted[name]]), starts))
+        if "newton_iterations" in wanted:
+            used = rows[wanted["newton_iterations"]].astype(float)
+            np.add.at(newton, owners, np.add.reduceat(np.where(used >= 0, used, 0), starts))
+            np.add.at(steps, owners, np.add.reduceat((used >= 0).astype(float), starts))
+    newton = np.divide(newton, steps, out=np.full(file.task_count, np.nan), where=steps > 0)
+
+    def spread(values):
+        return sims.gather(np.broadcast_to(values[:, None], (file.task_count, sims.task.shape[1])))
+
+    return StepFigures(spread(newton), **{name: spread(values) for name, values in largest.items()})

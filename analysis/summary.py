@@ -1,0 +1,236 @@
+#!/usr/bin/python3
+"""Tables of a sweep: CG ratios with confidence intervals, three speedups, and how the simulations went.
+
+  CG ratio   CG iterations over those from the zero guess, summed over a simulation, mean over simulations
+  speedups   time of zero-guess CG (and of the direct solve) over the time with a guess, at the job's tolerance:
+             CG only, guess and CG, whole step; sums over a simulation, median over simulations
+  steps      Newton iterations, largest length drift and joint gap, over all steps of a simulation
+
+A block per scene type and per value of any grid of the job outside `scene`; --by KEY splits them further. Intervals are
+95 % bootstrap intervals over simulations.
+"""
+
+import csv
+import json
+import math
+import os
+import sys
+
+import blocks
+import commandline
+import groups
+import measures
+import timings
+from sweepfile import SweepFile
+
+EXAMPLES = """examples:
+  analysis/summary.py results/demo.h5
+  analysis/summary.py results/demo.h5 --by scene.segments --scene helix --newton all
+  analysis/summary.py results/demo.h5 --csv > demo.csv"""
+FAILURES_SHOWN = 5
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES)
+    made.add_argument("--by", metavar="KEY", help="a block for every value of this parameter, e.g. scene.segments")
+    kind = made.add_mutually_exclusive_group()
+    kind.add_argument("--csv", action="store_true", help="every number on a line of comma-separated values")
+    kind.add_argument("--json", action="store_true", help="the same numbers as JSON")
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        chosen = commandline.chosen_tasks(file, options)
+        tolerances = commandline.chosen_tolerances(file, options)
+        guesses = commandline.chosen_guesses(file, options)
+        census = measures.census(file, chosen)
+        sims = measures.simulations(file, chosen)
+        if options.by:
+            file.parameter(options.by)
+            sims = sims.subset(groups.applicable(file, sims, options.by)) if len(sims) else sims
+        found = blocks.blocks(file, sims, options.by, options.newton)
+        if options.csv or options.json:
+            records = [r for block in found for r in blocks.records(file, block, guesses, tolerances, options.newton)]
+            (write_csv if options.csv else write_json)(file, sims, census, records)
+        else:
+            lines = heading(file, sims, chosen, census)
+            lines += ratio_lines(file, found, guesses, tolerances, options.newton)
+            lines += speedup_lines(file, sims, found, guesses, options.newton)
+            lines += direct_lines(file, sims, found)
+            lines += step_lines(file, found, guesses)
+            print("\n".join(lines))
+    return 0
+
+
+def heading(file, sims, chosen, census):
+    job, runs = file.job(), file.runs()
+    revisions = ", ".join(sorted({str(run.get("revision", "")) for run in runs} - {""}))
+    name = f"job {job['name']}" if "name" in job else "job"
+    seed = f", seed {job['seed']}" if "seed" in job else ""
+    lines = [f"{file.path}: {name}{seed}" + (f", revision {revisions}" if revisions else ""),
+             census.text() + ("; failed tasks are left out of all numbers" if census.failed else "")]
+    failed = [t for t in range(file.task_count) if chosen[t] and file.complete[t] and not file.ok[t]]
+    messages = file.results("message", failed[:FAILURES_SHOWN]) if failed else None
+    for k, task in enumerate(failed[:FAILURES_SHOWN]):
+        said = f": {messages[k]}" if messages is not None and messages[k] else ""
+        lines.append(f"  task {task}: {file.outcome[task]}{said}")
+    if len(failed) > FAILURES_SHOWN:
+        lines.append(f"  and {len(failed) - FAILURES_SHOWN} more")
+    if not len(sims):
+        return lines + ["No simulation is complete yet."]
+    said = commandline.conditions(file, sims.tasks())
+    solver = (f"preconditioner {said['preconditioner']}; residual test: {said['norm']}"
+              if measures.has_guesses(file)[sims.tasks()].any() else "advanced by the direct solve, no guesses")
+    return lines + [f"{said['evaluation']} evaluation; {solver}; time step {said['step_s']} s"]
+
+
+def ratio_lines(file, found, guesses, tolerances, newton):
+    shown = [block for block in found if block.ratio is not None]
+    if not shown:
+        missing = file.guesses and file.zero is None and len(found)
+        return ["", "No CG ratios: the job has no zero guess."] if missing else []
+    lines = ["", f"CG ratio, {measures.NEWTON[newton]}: iterations over those from zero; "
+                 "mean over simulations [95 % interval]"]
+    missed_any = False
+    for block in shown:
+        rows = [[f"{block.title}, n = {_count(block.ratio.count[guesses])}"] +
+                [commandline.tolerance_label(file.tolerances[t]) for t in tolerances]]
+        for g in [g for g in guesses if g != file.zero]:
+            marks = ["*" if block.unreached[g, t] or block.unreached[file.zero, t] else "" for t in tolerances]
+            rows.append(["  " + file.guesses[g]] +
+                        [_interval(block.ratio[g, t]) + mark for t, mark in zip(tolerances, marks)])
+        if block.zero_iterations is not None:
+            rows.append(["  zero, iterations/solve"] + [f"{block.zero_iterations[t]:.1f}" for t in tolerances])
+        lines += [""] + aligned(rows)
+        lines += _missed(file, block, guesses, tolerances)
+    return lines
+
+
+def _missed(file, block, guesses, tolerances):
+    found = []
+    for t in tolerances:
+        counts = [f"{file.guesses[g]} {int(block.unreached[g, t])}" for g in sorted({*guesses, file.zero})
+                  if block.unreached[g, t]]
+        if counts:
+            found.append(f"      at {commandline.tolerance_label(file.tolerances[t])}: " + ", ".join(counts))
+    return ["  * with solves that missed the tolerance and count what they used:"] + found if found else []
+
+
+def speedup_lines(file, sims, found, guesses, newton):
+    shown = [block for block in found if block.times is not None]
+    if not shown:
+        untimed = any(block.ratio is not None for block in found)
+        return ["", 'No times: the file has no rows of single solves (record.solves is "summary").'] if untimed else []
+    values = file.parameters["solve.tolerance"].values[sims.tasks()] if "solve.tolerance" in file.parameters else []
+    tolerance = " / ".join(dict.fromkeys(commandline.tolerance_label(v) for v in values))
+    lines = ["", f"Time per solve and speedup over zero-guess CG, {measures.NEWTON[newton]}; whole step: all.",
+             f"Solved to tolerance {tolerance}; median over simulations [95 % interval]"]
+    warning = commandline.timing_warning(file, sims.tasks())
+    if warning:
+        lines.append("WARNING: " + warning)
+    names = list(timings.SPEEDUPS)
+    for block in shown:
+        rows = [[f"{block.title}, n = {_count(block.times['cg_us'].count[guesses])}", "guess µs", "solve µs"] +
+                [timings.SPEEDUPS[name] for name in names]]
+        for g in guesses:
+            over_zero = ["1" if g == file.zero else _interval(block.speedup[name][g]) if block.speedup else "-"
+                         for name in names]
+            rows.append(["  " + file.guesses[g], _fixed(block.times["guess_us"].value[g], 2),
+                         _fixed(block.times["cg_us"].value[g], 1)] + over_zero)
+        if block.direct_speedup and math.isfinite(block.times["direct_us"].value[file.zero]):
+            rows.append(["  direct", "-", _fixed(block.times["direct_us"].value[file.zero], 1)] +
+                        [_interval(block.direct_speedup[name]) for name in names])
+        lines += [""] + aligned(rows) + ([f"  {block.interruptions}"] if block.interruptions else [])
+    return lines
+
+
+def direct_lines(file, sims, found):
+    """Times of simulations that have no guesses."""
+    shown = [block for block in found if block.direct_times]
+    if not shown:
+        return []
+    rows = [["Direct solve: median over simulations [95 % interval]", "assembly µs", "solve µs"]]
+    for block in shown:
+        rows.append([f"  {block.title}, n = {_count(block.direct_times['direct_us'].count)}"] +
+                    [_interval(block.direct_times[name]) for name in ("assemble_us", "direct_us")])
+    warning = commandline.timing_warning(file, sims.tasks())
+    return [""] + ([f"WARNING: {warning}"] if warning else []) + aligned(rows)
+
+
+STEP_COLUMNS = {"newton_iterations": "Newton its/step", "newton_residual": "Newton residual",
+                "length_drift": "length drift", "joint_gap": "joint gap/length"}
+
+
+def step_lines(file, found, guesses):
+    names = [name for name in STEP_COLUMNS if any(name in block.steps for block in found)]
+    if not names:
+        return []
+    rows = [["Steps: median over simulations (largest)"] + [STEP_COLUMNS[name] for name in names]]
+    for block in found:
+        for g in guesses if block.sims.closed_loop else [0]:
+            title = f"{block.title}, {file.guesses[g]}" if block.sims.closed_loop else block.title
+            cells = []
+            for name in names:
+                estimate, largest = block.steps.get(name, (None, None))
+                cells.append("-" if estimate is None else f"{_number(estimate.value[g], 2)} ({_number(largest[g], 2)})")
+            rows.append([f"  {title}"] + cells)
+    return [""] + aligned(rows)
+
+
+def aligned(rows):
+    """Columns of equal width, the first to the left, the others to the right."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return ["  ".join([row[0].ljust(widths[0])] + [cell.rjust(w) for cell, w in zip(row[1:], widths[1:])]).rstrip()
+            for row in rows]
+
+
+def _interval(estimate):
+    if not math.isfinite(estimate.value):
+        return "-"
+    if not math.isfinite(estimate.low):
+        return f"{estimate.value:.2f}"
+    return f"{estimate.value:.2f} [{estimate.low:.2f}, {estimate.high:.2f}]"
+
+
+def _number(value, digits):
+    return f"{value:.{digits}g}" if math.isfinite(value) else "-"
+
+
+def _fixed(value, digits):
+    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
+
+
+def _count(counts):
+    return commandline.range_text(counts)
+
+
+COLUMNS = ("scene", "settings", "newton", "quantity", "guess", "tolerance", "value", "low", "high", "simulations",
+           "unreached_solves")
+
+
+def write_csv(file, sims, census, records):
+    """NaN (the one value that differs from itself) is an empty field. The first lines count the tasks."""
+    writer = csv.DictWriter(sys.stdout, COLUMNS, restval="", lineterminator="\n")
+    writer.writeheader()
+    counts = {"tasks": census.total, "tasks_ok": census.ok, "tasks_pending": census.pending,
+              **{f"tasks_{outcome}": count for outcome, count in sorted(census.failed.items())},
+              "tasks_timed_oversubscribed": int(bool(commandline.timing_warning(file, sims.tasks())))}
+    writer.writerows({"quantity": name, "value": count} for name, count in counts.items())
+    writer.writerows({key: "" if value != value else value for key, value in record.items()} for record in records)
+
+
+def write_json(file, sims, census, records):
+    numbers = [{key: None if value != value or value == "" else value for key, value in record.items()}
+               for record in records]
+    whole = {"file": os.path.basename(file.path), "job": file.job().get("name"),
+             "tasks": {"total": census.total, "ok": census.ok, "pending": census.pending, "failed": census.failed},
+             "conditions": commandline.conditions(file, sims.tasks()),
+             "oversubscribed": bool(commandline.timing_warning(file, sims.tasks())), "numbers": numbers}
+    json.dump(whole, sys.stdout, indent=1, ensure_ascii=False)
+    print()
+
+
+if __name__ == "__main__":
+    commandline.run("summary.py", main)

@@ -1,0 +1,292 @@
+"""The one reader of a rodsweep results file (HDF5, schema version 1; layout in runner/record.hpp).
+
+A SweepFile knows the tasks of a sweep, their parameters and the axes of guesses and tolerances. Results are masked by
+/tasks/state: rows of a task that is not complete are never handed out, since unwritten bytes read as perfect results.
+Rows of /solves, /steps and /timing come in blocks of bounded size. Datasets that a job did not ask for may be empty or
+absent. Raises SweepFileError with a message for the user when a file is missing, foreign or damaged, and KeyNotFound
+when a parameter, guess or tolerance that was asked for is not in it.
+"""
+
+import difflib
+import json
+import os
+from dataclasses import dataclass
+
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a sweep may still be writing, on a file system without locks
+import h5py
+import numpy as np
+
+PROGRAM = "rodsweep"
+SCHEMA_VERSION = 1
+BLOCK_ROWS = 1 << 17
+PLAN_COLUMNS = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")
+
+
+class SweepFileError(Exception):
+    """A file that cannot be read as a rodsweep results file."""
+
+
+class KeyNotFound(Exception):
+    """A name or value that the user asked for and that the file does not have."""
+
+
+def not_found(what, name, known):
+    known = [str(k) for k in known]
+    close = difflib.get_close_matches(str(name), known, 1, 0.4)
+    by_last_part = [k for k in known if k.rsplit(".", 1)[-1] == name]
+    hint = f"; did you mean {(by_last_part or close)[0]}?" if by_last_part or close else ""
+    listed = ", ".join(known) if known else "none"
+    return KeyNotFound(f"{what} {name!r} is not in the file{hint} Known: {listed}" if hint else
+                       f"{what} {name!r} is not in the file; known: {listed}")
+
+
+def as_text(value):
+    return value.decode("utf-8", "replace").rstrip("\0") if isinstance(value, bytes) else str(value)
+
+
+def decoded(values):
+    """Fixed or variable strings of HDF5 as an array of str; other types unchanged."""
+    if values.dtype.kind in "SO":
+        return np.array([as_text(v) for v in values.ravel()], dtype=str).reshape(values.shape)
+    return values
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One key of the job with its value for every task. Vectors have a second axis."""
+    name: str
+    unit: str
+    meaning: str
+    swept: bool
+    values: np.ndarray
+
+    @property
+    def numeric(self):
+        return self.values.ndim == 1 and self.values.dtype.kind in "iuf"
+
+    def applies(self):
+        """False where the key has no meaning for the task's scene: NaN, -1 or the empty string."""
+        first = self.values if self.values.ndim == 1 else self.values[:, 0]
+        if first.dtype.kind == "f":
+            return np.isfinite(first)
+        return first != ("" if first.dtype.kind == "U" else -1)
+
+    def codes(self):
+        """An integer per task, equal where the values are equal."""
+        axis = 0 if self.values.ndim > 1 else None
+        return np.unique(self.values, return_inverse=True, axis=axis)[1].reshape(len(self.values))
+
+    def text(self, task):
+        value = self.values[task]
+        if np.ndim(value):
+            return "(" + ", ".join(f"{v:g}" for v in value) + ")"
+        return str(value) if self.values.dtype.kind == "U" else f"{value:g}"
+
+
+class SweepFile:
+    """Use as `with SweepFile(path) as file:`. Task numbers index all per-task columns."""
+
+    def __init__(self, path):
+        self.path = os.fspath(path)
+        if not os.path.exists(self.path):
+            raise SweepFileError(f"{self.path}: there is no such file")
+        if os.path.isdir(self.path):
+            raise SweepFileError(f"{self.path} is a folder; give a results file (results/NAME.h5)")
+        try:
+            self.h5 = h5py.File(self.path, "r")
+        except OSError as error:
+            if not os.access(self.path, os.R_OK):
+                raise SweepFileError(f"{self.path}: no permission to read it") from error
+            kind = "damaged" if h5py.is_hdf5(self.path) else "not an HDF5 file"
+            raise SweepFileError(f"{self.path} is {kind}; give a file written by `rodsweep run`") from error
+        try:
+            self._open()
+        except BaseException:
+            self.h5.close()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.h5.close()
+
+    def _open(self):
+        program = as_text(self.h5.attrs.get("program", ""))
+        if program != PROGRAM:
+            found = f"its root attribute `program` is {program!r}" if program else "it has no root attribute `program`"
+            raise SweepFileError(f"{self.path} is an HDF5 file, but not one of {PROGRAM}: {found}")
+        version = int(self.h5.attrs.get("schema_version", 0))
+        if version != SCHEMA_VERSION:
+            raise SweepFileError(f"{self.path} has schema version {version}, these scripts read {SCHEMA_VERSION}; "
+                                 "use the analysis folder of the rodsweep that wrote it")
+        if not self.has("/tasks/state"):
+            kind = as_text(self.h5.attrs.get("kind", ""))
+            raise SweepFileError(f"{self.path} is a rodsweep file{f' of kind {kind}' if kind else ''} "
+                                 "without tasks (/tasks/state): not the results of a sweep")
+        self.complete = self.h5["/tasks/state"][:] == 1
+        self.task_count = len(self.complete)
+        self.outcome = np.full(self.task_count, "pending", dtype="U32")
+        self.outcome[self.complete] = decoded(self._required("/tasks/outcome")[:])[self.complete]
+        self.ok = self.complete & (self.outcome == "ok")
+        for name in PLAN_COLUMNS:
+            setattr(self, name, self._required(f"/tasks/{name}")[:])
+        self.guesses = [str(g) for g in decoded(self.h5["/axes/guess"][:])] if self.has("/axes/guess") else []
+        self.tolerances = self.h5["/axes/tolerance"][:] if self.has("/axes/tolerance") else np.empty(0)
+        self.zero = self.guesses.index("zero") if "zero" in self.guesses else None
+        self.parameters = self._read_parameters()
+
+    def _required(self, path):
+        if path not in self.h5:
+            raise SweepFileError(f"{self.path} is damaged or was never completely created: {path} is missing")
+        return self.h5[path]
+
+    def _read_parameters(self):
+        parameters = {}
+
+        def add(name, item):
+            if isinstance(item, h5py.Dataset):
+                key = name.replace("/", ".")
+                parameters[key] = Parameter(key, as_text(item.attrs.get("unit", "")),
+                                            as_text(item.attrs.get("meaning", "")),
+                                            bool(item.attrs.get("swept", False)), decoded(item[:]))
+
+        if "/tasks/parameters" in self.h5:
+            self.h5["/tasks/parameters"].visititems(add)
+        return parameters
+
+    def has(self, path):
+        """Whether a dataset is there and not empty."""
+        return path in self.h5 and isinstance(self.h5[path], h5py.Dataset) and self.h5[path].size > 0
+
+    def parameter(self, name):
+        if name not in self.parameters:
+            raise not_found("parameter", name, self.parameters)
+        return self.parameters[name]
+
+    def swept(self):
+        """Names of the parameters that vary over the job."""
+        return [p.name for p in self.parameters.values() if p.swept]
+
+    def scene_types(self):
+        """The scene type of every task; "scene" where the file does not say."""
+        if "scene.type" in self.parameters:
+            return self.parameters["scene.type"].values
+        return np.full(self.task_count, "scene")
+
+    def guess_index(self, label):
+        if label not in self.guesses:
+            raise not_found("guess", label, self.guesses)
+        return self.guesses.index(label)
+
+    def tolerance_index(self, value):
+        match = np.flatnonzero(np.isclose(self.tolerances, value, rtol=1e-6, atol=0))
+        if not len(match):
+            raise not_found("tolerance", f"{value:g}", [f"{t:g}" for t in self.tolerances])
+        return int(match[0])
+
+    def results(self, name, tasks):
+        """/tasks/<name> for task numbers that must be complete. None where the file lacks the column."""
+        path = f"/tasks/{name}"
+        tasks = np.asarray(tasks, dtype=np.int64)
+        if not self.complete[tasks].all():
+            raise ValueError(f"{path} was asked for tasks that are not complete")
+        return decoded(self.h5[path][:])[tasks] if self.has(path) else None
+
+    def select(self, conditions):
+        """Mask of the tasks that meet all of KEY=VALUE, KEY=A,B,… or KEY=LOW:HIGH (both ends included)."""
+        mask = np.ones(self.task_count, dtype=bool)
+        for condition in conditions:
+            key, equals, wanted = condition.partition("=")
+            if not equals or not wanted:
+                raise KeyNotFound(f"{condition!r}: write a selection as KEY=VALUE, KEY=A,B or KEY=LOW:HIGH")
+            parameter = self.parameter(key)
+            chosen = _meets(parameter, wanted)
+            if not chosen.any():
+                raise not_found(f"{key} =", wanted, sorted({parameter.text(t) for t in range(self.task_count)})[:12])
+            mask &= chosen
+        if not mask.any():
+            raise KeyNotFound("no task meets all of " + ", ".join(conditions))
+        return mask
+
+    def runs(self):
+        """One dictionary per start of the runner (rows of /runs that were used)."""
+        if "/runs" not in self.h5:
+            return []
+        columns = {name: decoded(item[:]) for name, item in self.h5["/runs"].items() if isinstance(item, h5py.Dataset)}
+        begins = columns.get("begin", np.empty(0, dtype=str))
+        return [{name: values[row] for name, values in columns.items() if row < len(values)}
+                for row in np.flatnonzero(begins != "")]
+
+    def oversubscribed(self, tasks):
+        """Whether any of these tasks was timed in a run with more ranks than cores."""
+        runs = self.runs()
+        marked = [bool(run.get("oversubscribed", 0)) for run in runs]
+        attempts = self.h5["/timing/tasks/attempt"][:][tasks] if self.has("/timing/tasks/attempt") else None
+        if attempts is None:
+            return any(marked)
+        return any(0 <= a < len(marked) and marked[a] for a in set(attempts.tolist()))
+
+    def job(self):
+        """The job as it was given, parsed; empty where it cannot be."""
+        if "/job/text" not in self.h5:
+            return {}
+        text = np.asarray(self.h5["/job/text"][()]).tobytes()  # one string, or an array of characters or of bytes
+        try:
+            parsed = json.loads(text.rstrip(b"\0").decode("utf-8", "replace"))
+        except ValueError:
+            return {}
+        return parsed if isinstance(parsed, dict) else {}
+
+    def solve_blocks(self, tasks, columns, limit=BLOCK_ROWS):
+        """Yields (tasks of the block, start of each within it, {column: rows}) over the tasks' rows of /solves."""
+        return self._blocks(tasks, self.first_solve, self.solves, columns, limit)
+
+    def step_blocks(self, tasks, columns, limit=BLOCK_ROWS):
+        """The same over rows of /steps. A task longer than `limit` comes in several blocks."""
+        return self._blocks(tasks, self.first_step, self.steps, columns, limit)
+
+    def _blocks(self, tasks, first, count, columns, limit):
+        tasks = np.asarray(tasks, dtype=np.int64)
+        if not self.complete[tasks].all():
+            raise ValueError("rows were asked for tasks that are not complete")
+        tasks = tasks[np.argsort(first[tasks], kind="stable")]
+        owners, starts, begin, end = [], [], 0, 0
+        for task in tasks[count[tasks] > 0]:
+            row, last = int(first[task]), int(first[task] + count[task])
+            while row < last:
+                if owners and (row != end or end - begin >= limit):
+                    yield self._block(owners, starts, begin, end, columns)
+                    owners, starts = [], []
+                if not owners:
+                    begin = end = row
+                take = min(last - row, limit - (end - begin))
+                owners.append(int(task))
+                starts.append(row - begin)
+                row += take
+                end = row
+        if owners:
+            yield self._block(owners, starts, begin, end, columns)
+
+    def _block(self, owners, starts, begin, end, columns):
+        return np.array(owners), np.array(starts), {path: self.h5[path][begin:end] for path in columns}
+
+
+def _meets(parameter, wanted):
+    if parameter.numeric and ":" in wanted:
+        low, _, high = wanted.partition(":")
+        return (parameter.values >= _number(low, -np.inf, wanted)) & (parameter.values <= _number(high, np.inf, wanted))
+    if parameter.numeric:
+        chosen = [np.isclose(parameter.values, _number(part, None, wanted), rtol=1e-9) for part in wanted.split(",")]
+        return np.any(chosen, axis=0)
+    texts = np.array([parameter.text(t) for t in range(len(parameter.values))])
+    return (texts == wanted) | np.isin(texts, wanted.split(","))
+
+
+def _number(text, empty, whole):
+    if not text.strip() and empty is not None:
+        return empty
+    try:
+        return float(text)
+    except ValueError:
+        raise KeyNotFound(f"{whole!r}: {text!r} is not a number") from None

@@ -1,0 +1,178 @@
+"""Times and speedups per simulation, from the rows of /timing: sums over a simulation, as CG ratios are.
+
+A row holds the times of the parts of one solve: assembly, each guess and its CG to the job's tolerance, the direct solve.
+They last microseconds, and the operating system's interruptions milliseconds: one would outweigh a whole simulation.
+A row is left out, for all guesses, where a part took over INTERRUPTED times its median in the simulation and FLOOR_S
+longer (CG: its median per iteration, with FIXED iterations for what every solve costs); sums are scaled up to all rows.
+Times.interrupted counts the rows left out.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import measures
+
+COLUMNS = ("/timing/solves/assemble_s", "/timing/solves/direct_s", "/timing/solves/guess_s", "/timing/solves/cg_s")
+ROWS = ("/solves/newton", "/solves/iterations")
+SPEEDUPS = {"cg": "CG only", "guess_cg": "guess + CG", "step": "whole step"}
+INTERRUPTED = 5
+FLOOR_S = 5e-6
+FIXED = 4
+
+
+@dataclass(frozen=True)
+class Times:
+    """Seconds summed over a simulation, [simulation, guess], over the solves that were timed for the guess.
+
+    zero_* are the zero guess's times on the same solves (closed loop: in its own task); direct_s is NaN unless it was
+    timed on all of them. rest_s belongs to all Newton iterations.
+    """
+    solves: np.ndarray
+    interrupted: np.ndarray
+    assemble_s: np.ndarray
+    guess_s: np.ndarray
+    cg_s: np.ndarray
+    direct_s: np.ndarray
+    rest_s: np.ndarray
+    zero_assemble_s: np.ndarray
+    zero_guess_s: np.ndarray
+    zero_cg_s: np.ndarray
+    zero_rest_s: np.ndarray
+
+
+def timed(file):
+    return bool(file.guesses) and all(file.has(path) for path in COLUMNS + ROWS)
+
+
+def times(file, sims):
+    """{"first": Times, "all": Times} from one pass over the rows."""
+    tasks, guesses, zero = sims.tasks(), len(file.guesses), file.zero
+    names = ("solves", "kept", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept", "zero_guess_s", "zero_cg_s")
+    sums = {newton: {name: np.zeros((file.task_count, guesses)) for name in names} for newton in measures.NEWTON}
+    rung = _timed_rung(file)
+    for owners, starts, rows in file.solve_blocks(tasks, COLUMNS + ROWS):
+        assemble, direct, guess, cg = (rows[path].astype(float) for path in COLUMNS)
+        assemble, direct = assemble[:, None], direct[:, None]
+        owner = np.repeat(owners, np.diff(np.append(starts, len(cg))))
+        valid = np.isfinite(guess) & np.isfinite(cg) & np.isfinite(assemble)
+        if zero is not None:  # in a paired sweep a guess and zero are compared on the same solves
+            valid &= valid[:, [zero]] | (file.own_guess[owner] >= 0)[:, None]
+        iterations = rows["/solves/iterations"][np.arange(len(cg)), :, rung[owner]].astype(float)
+        parts = np.concatenate([assemble, direct, guess, cg], axis=1)
+        work = np.ones(parts.shape)
+        work[:, -guesses:] = np.where(iterations >= 0, iterations + FIXED, np.nan)
+        smooth = ~_interrupted(starts, parts, work)[:, None]
+        for newton, counted in (("first", valid & (rows["/solves/newton"] == 0)[:, None]), ("all", valid)):
+            kept = counted & smooth
+            with_direct = kept & np.isfinite(direct)
+            parts = {"solves": counted, "kept": kept, "assemble_s": np.where(kept, assemble, 0),
+                     "guess_s": np.where(kept, guess, 0), "cg_s": np.where(kept, cg, 0),
+                     "direct_s": np.where(with_direct, direct, 0), "direct_kept": with_direct}
+            if zero is not None:
+                parts["zero_guess_s"] = np.where(kept, guess[:, [zero]], 0)
+                parts["zero_cg_s"] = np.where(kept, cg[:, [zero]], 0)
+            for name, values in parts.items():
+                np.add.at(sums[newton][name], owners, np.add.reduceat(values.astype(float), starts, axis=0))
+    rest = np.broadcast_to(_rest_s(file, tasks)[:, None], (file.task_count, guesses))
+    return {newton: _gathered(sims, zero, part, rest) for newton, part in sums.items()}
+
+
+def _timed_rung(file):
+    """Per task, the tolerance of the ladder that is nearest to that of the timed solves."""
+    parameter = file.parameters.get("solve.tolerance")
+    if parameter is None:
+        return np.zeros(file.task_count, dtype=int)
+    return np.argmin(np.abs(np.log(parameter.values[:, None] / file.tolerances[None, :])), axis=1)
+
+
+def _interrupted(starts, parts, work):
+    """Rows in which some part lasted far longer than its median per work over the rows of the task."""
+    found = np.zeros(len(parts), dtype=bool)
+    for begin, end in zip(starts, np.append(starts[1:], len(parts))):
+        rate = parts[begin:end] / work[begin:end]
+        there = np.isfinite(rate).any(axis=0)
+        if there.any():
+            seconds = parts[begin:end, there]
+            usual = np.nanmedian(rate[:, there], axis=0) * work[begin:end, there]
+            found[begin:end] = ((seconds > INTERRUPTED * usual) & (seconds > usual + FLOOR_S)).any(axis=1)
+    return found
+
+
+def _gathered(sims, zero, sums, rest):
+    """Sums of tasks as Times: by simulation, and scaled from the rows kept to all rows."""
+    scale = np.divide(sums["solves"], sums["kept"], out=np.full(sums["kept"].shape, np.nan), where=sums["kept"] > 0)
+
+    def of(name, guess=None):
+        return sims.gather(sums[name] * scale, guess)
+
+    direct = np.where(sims.gather(sums["direct_kept"]) == sims.gather(sums["kept"]), of("direct_s"), np.nan)
+    solves = sims.gather(sums["solves"])
+    if zero is None:
+        zero_assemble = zero_guess = zero_cg = zero_rest = np.full(sims.task.shape, np.nan)
+    else:
+        own = sims.own[:, None]
+        zero_assemble = np.where(own, of("assemble_s", zero), of("assemble_s"))
+        zero_guess = np.where(own, of("guess_s", zero), of("zero_guess_s"))
+        zero_cg = np.where(own, of("cg_s", zero), of("zero_cg_s"))
+        zero_rest = np.where(own, sims.gather(rest, zero), sims.gather(rest))
+    return Times(solves, solves - sims.gather(sums["kept"]), of("assemble_s"), of("guess_s"), of("cg_s"), direct,
+                 sims.gather(rest), zero_assemble, zero_guess, zero_cg, zero_rest)
+
+
+def _rest_s(file, tasks):
+    """Seconds of the steps outside assembly and solves per task, interruptions left out; NaN where none was recorded."""
+    total, kept, taken = (np.zeros(file.task_count) for _ in range(3))
+    if file.has("/timing/steps/rest_s"):
+        for owners, starts, rows in file.step_blocks(tasks, ["/timing/steps/rest_s"]):
+            rest = rows["/timing/steps/rest_s"].astype(float)
+            there = np.isfinite(rest)
+            smooth = there & ~_interrupted(starts, rest[:, None], np.ones((len(rest), 1)))
+            for sums, values in ((total, np.where(smooth, rest, 0)), (kept, smooth), (taken, there)):
+                np.add.at(sums, owners, np.add.reduceat(values.astype(float), starts))
+    return np.divide(total * taken, kept, out=np.full(file.task_count, np.nan), where=kept > 0)
+
+
+def speedups(by_newton, newton, against="zero"):
+    """{"cg", "guess_cg", "step"}: [simulation, guess], time of zero-guess CG or of `direct` over the guess's time.
+
+    The first two are over the chosen Newton iterations; the whole step always has all of them.
+    """
+    part, whole = by_newton[newton], by_newton["all"]
+    step = whole.assemble_s + whole.guess_s + whole.cg_s + whole.rest_s
+    if against == "direct":
+        return {"cg": part.direct_s / part.cg_s, "guess_cg": part.direct_s / (part.guess_s + part.cg_s),
+                "step": (whole.assemble_s + whole.direct_s + whole.rest_s) / step}
+    return {"cg": part.zero_cg_s / part.cg_s,
+            "guess_cg": (part.zero_guess_s + part.zero_cg_s) / (part.guess_s + part.cg_s),
+            "step": (whole.zero_assemble_s + whole.zero_guess_s + whole.zero_cg_s + whole.zero_rest_s) / step}
+
+
+def direct_speedups(by_newton, newton, zero):
+    """{"cg", "guess_cg", "step"}: [simulation], time of zero-guess CG over that of `direct` on the same systems."""
+    return {name: 1 / values[:, zero] for name, values in speedups(by_newton, newton, "direct").items()}
+
+
+def direct_times(file, sims):
+    """{"assemble_us", "direct_us"}: [simulation, 1], mean time per solve over all Newton iterations."""
+    tasks, paths = sims.tasks(), COLUMNS[:2]
+    sums, solves = np.zeros((2, file.task_count)), np.zeros(file.task_count)
+    if all(file.has(path) for path in paths):
+        for owners, starts, rows in file.solve_blocks(tasks, paths):
+            both = np.stack([rows[path].astype(float) for path in paths], axis=1)
+            kept = np.isfinite(both).all(axis=1) & ~_interrupted(starts, both, np.ones(both.shape))
+            for part, values in zip(sums, both.T):
+                np.add.at(part, owners, np.add.reduceat(np.where(kept, values, 0), starts))
+            np.add.at(solves, owners, np.add.reduceat(kept.astype(float), starts))
+    mean_us = np.divide(sums * 1e6, solves, out=np.full(sums.shape, np.nan), where=solves > 0)
+    return {name: mean_us[k][sims.any_task][:, None] for k, name in enumerate(("assemble_us", "direct_us"))}
+
+
+def interruptions(part, sims):
+    """What was left out of a Times, as a sentence; empty where nothing was."""
+    solves, left_out = (np.where(sims.own, np.nansum(count, axis=1), np.nan_to_num(count).max(axis=1, initial=0)).sum()
+                        for count in (part.solves, part.interrupted))
+    if not left_out:
+        return ""
+    return (f"Left out: {left_out:.0f} of {solves:.0f} solves that the operating system interrupted "
+            f"(a part lasted over {INTERRUPTED} times its median).")

@@ -1,0 +1,13 @@
+// What the program's exit code says. Scripts and schedulers rely on these numbers; --help lists them.
+#pragma once
+
+namespace rodsweep {
+
+enum class ExitCode : int {
+  ok = 0,            ///< all done
+  user_error = 2,    ///< the command line, a job or a file: nothing was computed, or a result could not be written
+  tasks_failed = 3,  ///< the sweep is complete, some of its tasks failed
+  stopped = 4,       ///< stopped early by a signal; --resume continues
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,16 @@
+// How messages, columns and random streams name a place in a job: "scene.segments", "guesses[2].oracle.error".
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace rodsweep {
+
+inline std::string member(const std::string& path, const std::string& name) {
+  return path.empty() ? name : path + "." + name;
+}
+
+inline std::string element(const std::string& path, std::size_t index) { return fmt::format("{}[{}]", path, index); }
+
+}  // namespace rodsweep

@@ -1,0 +1,60 @@
+// MPI's lifetime and the few collective operations that set a sweep up. Exactly one session per process, in main():
+// whatever uses MPI, PETSc or the results file is destroyed before it.
+//
+// Errors come back as codes and are thrown as MpiError with the name of the call; nothing here aborts.
+#pragma once
+
+#include <mpi.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace rodsweep {
+
+/// A failing MPI call: its name and MPI's own text.
+class MpiError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Another rank (or this one) could not do its part of something that all must do. what() is the same on every rank.
+class CollectiveError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+void check_mpi(int code, const char* call);
+
+class MpiSession {
+ public:
+  MpiSession();
+  ~MpiSession();
+  MpiSession(const MpiSession&) = delete;
+  MpiSession& operator=(const MpiSession&) = delete;
+
+  MPI_Comm world() const { return MPI_COMM_WORLD; }
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+
+ private:
+  int rank_ = 0, size_ = 1;
+};
+
+/// Rank 0's text on every rank.
+std::string broadcast(std::string text, MPI_Comm comm);
+int broadcast(int value, MPI_Comm comm);
+
+/// Does `part` on every rank. If it throws anywhere, every rank throws a CollectiveError with the message of the lowest
+/// rank at fault (and that rank's number, if it is not 0), so that an error is reported once and nobody waits for it.
+void collectively(MPI_Comm comm, const std::function<void()>& part);
+
+/// The ranks of a sweep beside the cores that they may run on (their affinity masks put together), host by host.
+struct Placement {
+  int workers = 1;              ///< ranks that compute: all but the master, or the one rank
+  int cores = 1;                ///< of all hosts
+  bool oversubscribed = false;  ///< on some host more workers than cores; the master sleeps and is not counted
+};
+Placement placement(MPI_Comm comm);
+
+}  // namespace rodsweep

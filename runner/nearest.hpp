@@ -1,0 +1,17 @@
+// The known word nearest to a mistyped one, for "did you mean". Distance: Damerau-Levenshtein (optimal string
+// alignment), ignoring case; a word that continues the mistyped one ("length" -> "length_m") is near too.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rodsweep {
+
+/// Empty if none of `known` is near enough to be meant.
+std::string nearest(std::string_view word, const std::vector<std::string>& known);
+
+/// "; did you mean "length_m"?", or nothing.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace rodsweep

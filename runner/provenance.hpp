@@ -1,0 +1,29 @@
+// Who made a file and with what: one row of /runs. Works without MPI_Init and PetscInitialize.
+#pragma once
+
+#include <string>
+
+namespace rodsweep {
+
+struct Provenance {
+  /// `host`: in a file the hosts of all ranks, which ResultsFile finds out.
+  std::string begin_utc, host, user_command, revision, versions, petsc_options;
+  int ranks = 1;
+  bool oversubscribed = false;  ///< more ranks than cores: timings are worthless
+};
+
+/// Begins now, on this host, with this program; `ranks` and `oversubscribed` are for the caller to complete.
+Provenance provenance_of_this_process(std::string user_command);
+
+/// The git revision of the sources when they were configured ("-dirty" with local changes), or "unknown".
+std::string source_revision();
+
+/// rodsweep, Open MPI (or another MPI), PETSc, HDF5, Eigen and the compiler, as "name version" joined by "; ".
+std::string library_versions();
+
+std::string host_name();
+
+/// Now, as 2025-11-21T16:05:09Z.
+std::string utc_now();
+
+}  // namespace rodsweep

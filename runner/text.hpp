@@ -1,0 +1,14 @@
+// Numbers and words for people: durations, sizes, command lines.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace rodsweep {
+
+std::string duration_text(double seconds);        ///< "850 ms", "12.3 s", "4 min 05 s", "2 h 03 min", "3 d 04 h"
+std::string bytes_text(std::int64_t bytes);       ///< "512 B", "4.2 MB", in powers of 1000
+std::string shell_quoted(std::string_view word);  ///< as it must be typed in a POSIX shell; plain words stay plain
+
+}  // namespace rodsweep

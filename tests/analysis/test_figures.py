@@ -1,0 +1,197 @@
+"""The figures: the planted numbers are drawn, no text overlaps another or leaves the page, styles tell guesses apart."""
+
+import argparse
+import itertools
+import os
+import tempfile
+import unittest
+
+import synthetic
+import figures
+import timings
+import numpy as np
+import spatial
+import style
+from matplotlib import colors, pyplot
+from sweepfile import SweepFile
+
+
+class Drawn(unittest.TestCase):
+    def study(self, width="174", newton="first", x="scene.segments", **settings):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(pyplot.close, "all")
+        settings.setdefault("steps", 2)
+        file = SweepFile(synthetic.Sweep(**settings).write(os.path.join(folder.name, "sweep.h5")))
+        self.addCleanup(file.h5.close)
+        return spatial.make_study(file, argparse.Namespace(select=[], scene=None, guess=None, x=x, newton=newton, width=width))
+
+    def page_texts(self, page):
+        return " ".join(text.get_text() for text in page.figure.findobj(match=pyplot.Text))
+
+    def line(self, axes, guess_style):
+        """The drawn values of a guess: the errorbar's line, or its open markers."""
+        return [line for line in axes.lines if line.get_color() == guess_style.colour and len(line.get_xdata()) > 1
+                and line.get_marker() == guess_style.marker]
+
+    def legible(self, page):
+        """No two texts overlap (by more than the room around letters) and none leaves the page."""
+        figure = page.figure
+        figure.draw_without_rendering()
+        renderer = figure.canvas.get_renderer()
+        width, height = figure.bbox.width, figure.bbox.height
+        texts = [*figure.texts, *(text for legend in figure.legends for text in legend.get_texts())]
+        for axes in figure.axes:
+            texts += [axes.title, axes.yaxis.label]
+            for axis in (axes.xaxis, axes.yaxis):
+                low, high = sorted(axis.get_view_interval())
+                texts += [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+        boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts
+                 if text.get_visible() and text.get_text().strip()]
+        self.assertGreater(len(boxes), 10)
+        for text, box in boxes:
+            self.assertGreater(min(box.x0, box.y0, width - box.x1, height - box.y1), -1, text)
+        for (one, a), (other, b) in itertools.combinations(boxes, 2):
+            across, along = min(a.x1, b.x1) - max(a.x0, b.x0), min(a.y1, b.y1) - max(a.y0, b.y0)
+            self.assertFalse(across > 1 and along > 2, f"{one!r} overlaps {other!r}")
+
+
+class Values(Drawn):
+    def test_ratios_are_drawn_where_they_were_planted_with_one_marked(self):
+        study = self.study()
+        page = figures.ratio_figure(study, [0, 1])
+        self.assertEqual(np.shape(page.axes), (2, 2))
+        for axes in np.ravel(page.axes):
+            line, = self.line(axes, study.styles["previous"])
+            np.testing.assert_allclose(line.get_ydata(), 0.5, atol=0.01)
+            np.testing.assert_allclose(line.get_xdata(), [10, 20, 40], rtol=0.15)
+            self.assertTrue(any(np.allclose(other.get_ydata(), 1) for other in axes.lines))
+            self.assertEqual(axes.get_ylim()[0], 0)
+
+    def test_every_figure_says_what_it_is_of(self):
+        study = self.study(failed={0: "diverged"}, pending=(1,))
+        by_newton = timings.times(study.file, study.sims)
+        for page in (figures.ratio_figure(study, [1]), figures.speedup_figure(study, by_newton),
+                     figures.time_figure(study, by_newton)):
+            said = self.page_texts(page)
+            for words in ("first Newton iteration (j = 0)", "‖b − Ax‖₂", "jacobi", "2–4 simulations per point",
+                          "22 of 24 tasks ok, failed: 1 diverged, 1 pending", "95 %", "Bending rod", "Helix"):
+                self.assertIn(" ".join(words.split()), " ".join(said.split()))
+        for page in (figures.speedup_figure(study, by_newton), figures.time_figure(study, by_newton)):
+            self.assertIn("tolerance 1e-2", " ".join(self.page_texts(page).split()))
+
+    def test_points_with_unreached_solves_have_open_markers(self):
+        plant = synthetic.Plant()
+        plant.reached = lambda guess, tolerance, newton, segments, draw: segments < 40
+        study = self.study(plant=plant)
+        page = figures.ratio_figure(study, [1])
+        marks = [line for line in page.axes[0][0].lines if line.get_markerfacecolor() == "white"]
+        self.assertEqual([len(mark.get_xdata()) for mark in marks], [1, 1, 1])
+        self.assertIn("missed the tolerance", " ".join(self.page_texts(page).split()))
+
+    def test_times_of_oversubscribed_runs_carry_a_warning(self):
+        for oversubscribed in (False, True):
+            study = self.study(oversubscribed=oversubscribed, scenes=("helix",))
+            by_newton = timings.times(study.file, study.sims)
+            for page in (figures.speedup_figure(study, by_newton), figures.time_figure(study, by_newton)):
+                self.assertEqual("more MPI ranks than cores" in self.page_texts(page), oversubscribed)
+            self.assertNotIn("more MPI ranks than cores", self.page_texts(figures.ratio_figure(study, [1])))
+
+    def test_speedups_and_the_direct_solve_beside_them(self):
+        study = self.study(scenes=("helix",))
+        page = figures.speedup_figure(study, timings.times(study.file, study.sims))
+        line, = self.line(page.axes[0][0], study.styles["quadratic"])
+        np.testing.assert_allclose(line.get_ydata(), 4, rtol=1e-5)
+        direct, = self.line(page.axes[0][0], style.DIRECT)
+        np.testing.assert_allclose(direct.get_ydata(), np.array([10, 20, 40]) / 8, rtol=1e-5)
+
+    def test_bars_stack_to_the_whole_time_of_a_solve(self):
+        study = self.study(scenes=("helix",))
+        page = figures.time_figure(study, timings.times(study.file, study.sims))
+        bars = [(patch.get_y(), patch.get_height()) for patch in page.axes[0][1].patches]
+        tops = sorted(y + height for y, height in bars)[-3:]
+        self.assertAlmostEqual(max(tops), 2 + 40 * 0.1 + 40 * 0.5, places=3)  # assembly, guess, CG of "previous", N = 40
+        self.assertEqual(len(bars), 9)
+
+
+class Legibility(Drawn):
+    GUESSES = ("zero", "previous", "linear", "quadratic", "oracle(0.1)", "oracle(0.01)")
+
+    def test_on_a_page_and_in_a_column(self):
+        for width, scenes in (("174", ("helix",)), ("84", ("bending_rod", "helix"))):
+            study = self.study(width=width, scenes=scenes, guesses=self.GUESSES, samples=2,
+                               grid={"scene.segments": [10, 20, 30, 40, 55]})
+            by_newton = timings.times(study.file, study.sims)
+            for page in (figures.ratio_figure(study, range(4)), figures.speedup_figure(study, by_newton),
+                         figures.time_figure(study, by_newton)):
+                self.assertAlmostEqual(page.figure.get_size_inches()[0] * 25.4, int(width))
+                self.legible(page)
+
+    def test_with_decades_words_and_bins_along_x(self):
+        for x, settings in (("scene.segments", {"grid": {"scene.segments": [10, 30, 100, 300, 1000]}}),
+                            ("scene.type", {"grid": {"scene.segments": [10]}}),
+                            ("scene.youngs_modulus_pa", {"grid": {"scene.segments": [10]}, "samples": 16})):
+            scenes = ("bending_rod", "helix") if x == "scene.type" else ("helix",)
+            study = self.study(x=x, **{"samples": 2, "scenes": scenes, **settings})
+            self.legible(figures.ratio_figure(study, range(4)))
+            self.legible(figures.time_figure(study, timings.times(study.file, study.sims)))
+
+    def test_a_grid_over_decades_has_a_logarithmic_axis_and_others_a_linear_one(self):
+        for segments, scale in (([10, 55], "linear"), ([10, 100, 500], "log")):
+            study = self.study(grid={"scene.segments": segments}, samples=2)
+            self.assertEqual(figures.ratio_figure(study, [0]).axes[0][0].get_xscale(), scale)
+
+    def test_one_draw_and_one_point_still_make_figures(self):
+        study = self.study(grid={"scene.segments": [10]}, samples=1, scenes=("helix",))
+        by_newton = timings.times(study.file, study.sims)
+        for page in (figures.ratio_figure(study, [0]), figures.speedup_figure(study, by_newton),
+                     figures.time_figure(study, by_newton)):
+            self.legible(page)
+            self.assertIn("1 simulation per point; a single draw has no intervals", " ".join(self.page_texts(page).split()))
+
+
+def seen_by(colour, deficiency):
+    """Linear-light colour as seen with full deuteranopia or protanopia (Machado, Oliveira and Fernandes 2009)."""
+    matrices = {"deuteranopia": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413],
+                                 [-0.011820, 0.042940, 0.968881]],
+                "protanopia": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216],
+                               [-0.003882, -0.048116, 1.051998]]}
+    linear = np.array([c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colors.to_rgb(colour)])
+    return np.clip(np.array(matrices[deficiency]) @ linear, 0, 1)
+
+
+class Styles(unittest.TestCase):
+    def test_a_guess_looks_the_same_whatever_else_is_in_the_file(self):
+        some, others = style.guess_styles(["zero", "quadratic"]), style.guess_styles(["previous", "copingnet", "quadratic"])
+        self.assertEqual(some["quadratic"], others["quadratic"])
+
+    def test_marker_and_dash_tell_all_kinds_apart_without_colour(self):
+        labels = [*style.KINDS, "oracle(0.01)", "oracle(0.001)", "mine", "yours"]
+        styles = style.guess_styles([label for label in labels if label != "zero"])
+        looks = {(s.marker, s.dash) for s in styles.values()}
+        self.assertEqual(len(looks), len(styles))
+        self.assertEqual(len({s.marker for s in styles.values()}), len(styles))
+
+    def test_neighbours_in_the_demo_stay_apart_for_the_colour_blind(self):
+        kinds = ("zero", "previous", "linear", "quadratic", "oracle", "guarded", "copingnet")
+        for deficiency in ("deuteranopia", "protanopia"):
+            seen = {kind: seen_by(style.KINDS[kind][0], deficiency) ** (1 / 2.2) for kind in kinds}
+            for a, b in itertools.combinations(kinds, 2):
+                self.assertGreater(np.linalg.norm(seen[a] - seen[b]), 0.1, f"{a} and {b} with {deficiency}")
+
+    def test_lines_stand_out_from_white_paper(self):
+        for label, guess_style in style.guess_styles(list(style.KINDS)).items():
+            linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colors.to_rgb(guess_style.colour)]
+            luminance = np.dot(linear, [0.2126, 0.7152, 0.0722])
+            self.assertGreater(1.05 / (luminance + 0.05), 2.8, label)
+
+    def test_names_of_parameters_with_their_units(self):
+        for name, unit, label in (("scene.youngs_modulus_pa", "Pa", "youngs modulus (Pa)"), ("time.step_s", "s", "step (s)"),
+                                  ("scene.density_kg_m3", "kg/m^3", "density (kg/m^3)"),
+                                  ("scene.damping_per_s", "1/s", "damping (1/s)"), ("scene.windings", "", "windings"),
+                                  ("scene.segments", "", "number of segments N")):
+            self.assertEqual(style.parameter_label(name, unit), label)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,85 @@
+"""What is averaged and what is kept apart: panels by scene and gridded keys, points along x, bins."""
+
+import os
+import tempfile
+import unittest
+
+import synthetic
+import groups
+import measures
+import numpy as np
+from sweepfile import KeyNotFound, SweepFile
+
+
+class Groups(unittest.TestCase):
+    def open(self, **settings):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        settings.setdefault("steps", 1)
+        file = SweepFile(synthetic.Sweep(**settings).write(os.path.join(folder.name, "sweep.h5")))
+        self.addCleanup(file.h5.close)
+        return file, measures.simulations(file, np.ones(file.task_count, dtype=bool))
+
+    def test_a_panel_per_scene_and_a_point_per_number_of_segments(self):
+        file, sims = self.open()
+        panels = groups.panels(file, sims, "scene.segments")
+        self.assertEqual([panel.title() for panel in panels], ["Bending rod", "Helix"])
+        points = groups.points(file, sims, panels[1], "scene.segments")
+        self.assertEqual(list(points.position), [10, 20, 40])
+        self.assertEqual([len(rows) for rows in points.index], [4, 4, 4])
+        for value, rows in zip((10, 20, 40), points.index):
+            self.assertEqual(set(file.parameter("scene.segments").values[sims.any_task[rows]]), {value})
+            self.assertEqual(set(file.scene_types()[sims.any_task[rows]]), {"helix"})
+
+    def test_random_keys_are_averaged_over_and_gridded_ones_kept_apart(self):
+        file, sims = self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01, 0.02]}, scenes=("helix",))
+        self.assertEqual(groups.gridded_keys(file, sims.any_task, "scene.segments"), ["time.step_s"])
+        panels = groups.panels(file, sims, "scene.segments")
+        self.assertEqual([panel.title() for panel in panels], ["Helix, time.step_s = 0.01", "Helix, time.step_s = 0.02"])
+        self.assertEqual([len(panel.index) for panel in panels], [8, 8])
+
+    def test_a_table_pools_the_keys_of_the_scene_alone(self):
+        file, sims = self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01, 0.02]}, scenes=("helix",))
+        panels = groups.panels(file, sims, None, pooled="scene.")
+        self.assertEqual([panel.settings for panel in panels], [{"time.step_s": "0.01"}, {"time.step_s": "0.02"}])
+
+    def test_keys_in_step_with_x_make_no_panels(self):
+        file, sims = self.open(grid={"scene.segments": [10, 20]}, scenes=("helix",), samples=2)
+        self.assertEqual(groups.gridded_keys(file, sims.any_task, "scene.segments"), [])
+
+    def test_the_guess_of_a_closed_loop_is_no_grid(self):
+        file, sims = self.open(closed_loop=True, failed={3: "diverged"}, samples=2)
+        self.assertEqual([panel.settings for panel in groups.panels(file, sims, "scene.segments")], [{}, {}])
+
+    def test_too_many_panels_ask_for_a_choice(self):
+        file, sims = self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01 * k for k in range(1, 5)]})
+        with self.assertRaisesRegex(KeyNotFound, r"8 panels.*at most 6.*time.step_s.*--select"):
+            groups.panels(file, sims, "scene.segments")
+
+    def test_many_values_of_x_are_binned_with_equal_counts(self):
+        file, sims = self.open(grid={"scene.segments": [10]}, samples=24, scenes=("helix",))
+        panel, = groups.panels(file, sims, "scene.youngs_modulus_pa")
+        points = groups.points(file, sims, panel, "scene.youngs_modulus_pa")
+        self.assertTrue(points.binned)
+        self.assertEqual([len(rows) for rows in points.index], [3] * groups.BINS)
+        self.assertTrue((np.diff(points.position) > 0).all())
+        self.assertEqual(sorted(np.concatenate(points.index)), list(range(24)))
+
+    def test_text_parameters_are_categories_in_order_of_appearance(self):
+        file, sims = self.open(scenes=("helix", "bending_rod"), grid={"scene.segments": [10]})
+        panel, = groups.panels(file, sims, "scene.type")
+        points = groups.points(file, sims, panel, "scene.type")
+        self.assertTrue(points.categorical)
+        self.assertEqual(points.text, ["helix", "bending_rod"])
+
+    def test_a_key_without_meaning_for_a_scene_leaves_it_out(self):
+        file, sims = self.open(samples=2)
+        rows = groups.applicable(file, sims, "scene.length_m")
+        self.assertEqual(set(file.scene_types()[sims.any_task[rows]]), {"bending_rod"})
+        helices = sims.subset(file.scene_types()[sims.any_task] == "helix")
+        with self.assertRaisesRegex(KeyNotFound, "'scene.length_m' has no meaning"):
+            groups.applicable(file, helices, "scene.length_m")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,75 @@
+"""Bootstrap intervals: their centre, their coverage, what they resample."""
+
+import unittest
+
+import synthetic  # noqa: F401  (makes analysis/ importable)
+import intervals
+import numpy as np
+
+
+class Centres(unittest.TestCase):
+    def test_mean_and_median_of_each_column(self):
+        values = np.array([[1.0, 5], [2, 5], [6, 5], [7, 8]])
+        np.testing.assert_allclose(intervals.mean(values).value, [4, 5.75])
+        np.testing.assert_allclose(intervals.median(values).value, [4, 5])
+
+    def test_nan_is_left_out_and_counted_out(self):
+        estimate = intervals.mean(np.array([[1.0, np.nan], [3, np.nan], [np.nan, np.nan]]))
+        self.assertEqual(estimate.value[0], 2)
+        self.assertEqual(list(estimate.count), [2, 0])
+        self.assertTrue(np.isnan([estimate.value[1], estimate.low[1], estimate.high[1]]).all())
+
+    def test_shapes_follow_the_values(self):
+        estimate = intervals.mean(np.ones((3, 4, 2)))
+        self.assertEqual(estimate.value.shape, (4, 2))
+        self.assertEqual(estimate[1, 0].value, 1)
+        self.assertEqual(intervals.median(np.ones((0, 4))).count.shape, (4,))
+
+
+class Intervals(unittest.TestCase):
+    def test_equal_values_have_an_interval_of_no_width(self):
+        estimate = intervals.mean(np.full(5, 0.5))
+        self.assertEqual((estimate.low, estimate.high), (0.5, 0.5))
+
+    def test_one_draw_has_no_interval(self):
+        self.assertTrue(np.isnan(intervals.mean(np.array([1.0])).low))
+        self.assertTrue(np.isnan(intervals.mean(np.array([1.0, 2, 3]), draws=[7, 7, 7]).low))
+
+    def test_simulations_of_one_draw_are_resampled_together(self):
+        """Ten copies of each draw say no more than one of each."""
+        values = np.random.default_rng(3).normal(size=6)
+        single = intervals.mean(values)
+        copied = intervals.mean(np.repeat(values, 10), draws=np.repeat(np.arange(6), 10))
+        independent = intervals.mean(np.repeat(values, 10))
+        np.testing.assert_allclose([copied.low, copied.high], [single.low, single.high])
+        self.assertLess(independent.high - independent.low, 0.5 * (copied.high - copied.low))
+
+    def test_the_same_values_give_the_same_interval(self):
+        values = np.random.default_rng(4).normal(size=9)
+        self.assertEqual(intervals.mean(values).low, intervals.mean(values).low)
+
+    def test_intervals_of_means_cover_the_truth_as_often_as_they_say(self):
+        """For very few simulations no interval within the data can: plain percentiles of five reach 83 %, these 90 %."""
+        generator = np.random.default_rng(5)
+        for n, least in ((5, 0.88), (20, 0.925)):
+            values = 0.4 + 0.1 * generator.normal(size=(n, 600))
+            estimate = intervals.mean(values, resamples=1500)
+            covered = np.mean((estimate.low <= 0.4) & (0.4 <= estimate.high))
+            self.assertGreater(covered, least, f"n = {n}")
+            self.assertLess(covered, 0.985, f"n = {n}")
+
+    def test_intervals_of_medians_cover_the_truth(self):
+        values = np.exp(np.random.default_rng(6).normal(size=(15, 300)))
+        estimate = intervals.median(values, resamples=1000)
+        covered = np.mean((estimate.low <= 1) & (1 <= estimate.high))
+        self.assertGreater(covered, 0.92)
+
+    def test_more_simulations_narrow_the_interval_as_the_square_root(self):
+        generator = np.random.default_rng(7)
+        widths = [np.mean(e.high - e.low) for n in (20, 80)
+                  for e in [intervals.mean(generator.normal(size=(n, 100)), resamples=1000)]]
+        self.assertAlmostEqual(widths[0] / widths[1], 2, delta=0.3)
+
+
+if __name__ == "__main__":
+    unittest.main()

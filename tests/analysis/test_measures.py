@@ -1,0 +1,254 @@
+"""Derived numbers against what was planted: CG ratios, times, speedups, steps; paired and closed loop; what is left out."""
+
+import os
+import tempfile
+import unittest
+
+import synthetic
+import h5py
+import measures
+import timings
+import numpy as np
+from sweepfile import SweepFile
+
+
+class Tables(unittest.TestCase):
+    def open(self, **settings):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.sweep = synthetic.Sweep(**settings)
+        file = SweepFile(self.sweep.write(os.path.join(folder.name, "sweep.h5")))
+        self.addCleanup(file.h5.close)
+        everything = np.ones(file.task_count, dtype=bool)
+        return file, measures.simulations(file, everything), measures.census(file, everything)
+
+
+    def changed(self, file, change):
+        path = file.path
+        file.h5.close()
+        with h5py.File(path, "r+") as h5:
+            change(h5)
+        again = SweepFile(path)
+        self.addCleanup(again.h5.close)
+        return again
+
+
+class Varied(synthetic.Plant):
+    """Qualities that differ between simulations, so that a ratio of sums is no mean of ratios."""
+
+    def zero_iterations(self, segments, tolerance):
+        return 100 * segments
+
+    def ratio(self, guess, tolerance, newton, segments, draw):
+        if guess == "zero":
+            return 1.0
+        return (0.2 + 0.1 * draw) if newton == 0 else 0.8
+
+
+class Ratios(Tables):
+    def test_planted_qualities_come_back_at_the_first_newton_iteration(self):
+        file, sims, _ = self.open()
+        ratios = measures.cg_ratios(file, sims, "first")
+        self.assertEqual(ratios.ratio.shape, (24, 4, 8))
+        for g, quality in enumerate((1, 0.5, 0.25, 0.1)):
+            np.testing.assert_allclose(ratios.ratio[:, g], quality, rtol=0.01)  # iterations are whole numbers
+        ten_segments = file.parameter("scene.segments").values[sims.any_task] == 10
+        np.testing.assert_allclose(ratios.iterations_per_solve[ten_segments, 0, 0], 220)
+
+    def test_all_newton_iterations_are_a_ratio_of_sums(self):
+        file, sims, _ = self.open(plant=Varied(), newton=3)
+        ratios = measures.cg_ratios(file, sims, "all")
+        draws = sims.sample
+        np.testing.assert_allclose(ratios.ratio[:, 1, 0], (0.2 + 0.1 * draws + 0.8 + 0.8) / 3)
+        self.assertTrue(np.isnan(ratios.solves).all())
+
+    def test_failed_and_pending_tasks_are_left_out_and_counted(self):
+        file, sims, census = self.open(pending=(0, 7), failed={1: "diverged", 2: "diverged", 9: "timed_out"})
+        self.assertEqual(len(sims), 24 - 5)
+        self.assertEqual((census.total, census.ok, census.pending), (24, 19, 2))
+        self.assertEqual(census.failed, {"diverged": 2, "timed_out": 1})
+        self.assertEqual(census.text(), "19 of 24 tasks ok, failed: 2 diverged, 1 timed_out, 2 pending")
+
+    def test_solves_that_missed_the_tolerance_are_counted(self):
+        plant = synthetic.Plant()
+        plant.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
+        file, sims, _ = self.open(plant=plant, steps=5, newton=3)
+        first, every = (measures.cg_ratios(file, sims, newton).unreached for newton in ("first", "all"))
+        np.testing.assert_array_equal(first[0, 1], [0, 0, 5, 5, 5, 5, 5, 5])
+        np.testing.assert_array_equal(every[0, 1, 2], 15)
+        np.testing.assert_array_equal(first[:, [0, 2, 3]], 0)
+
+    def test_a_zero_guess_without_iterations_makes_no_ratio(self):
+        plant = synthetic.Plant()
+        plant.zero_iterations = lambda segments, tolerance: 0 if segments == 10 else 50
+        file, sims, _ = self.open(plant=plant)
+        ratio = measures.cg_ratios(file, sims, "first").ratio
+        none = file.parameter("scene.segments").values[sims.any_task] == 10
+        self.assertTrue(np.isnan(ratio[none]).all())
+        self.assertTrue(np.isfinite(ratio[~none]).all())
+
+    def test_summaries_without_rows_have_ratios_but_no_times(self):
+        file, sims, _ = self.open(solves=False)
+        self.assertFalse(timings.timed(file))
+        np.testing.assert_allclose(measures.cg_ratios(file, sims, "first").ratio[:, 1], 0.5, rtol=5e-3)
+
+
+class ClosedLoop(Tables):
+    def test_guesses_are_paired_with_the_zero_task_of_their_point(self):
+        file, sims, _ = self.open(closed_loop=True, plant=Varied())
+        self.assertTrue(sims.closed_loop)
+        self.assertEqual((len(sims), file.task_count), (24, 96))
+        ratio = measures.cg_ratios(file, sims, "first").ratio
+        np.testing.assert_allclose(ratio[:, 2, 3], 0.2 + 0.1 * sims.sample)
+        np.testing.assert_allclose(ratio[:, 0], 1)
+
+    def test_it_says_the_same_as_a_paired_sweep_of_the_same_numbers(self):
+        found = []
+        for closed_loop in (False, True):
+            file, sims, _ = self.open(closed_loop=closed_loop)
+            by_newton = timings.times(file, sims)
+            found.append([measures.cg_ratios(file, sims, "all").ratio, *timings.speedups(by_newton, "first").values(),
+                          *timings.speedups(by_newton, "all", "direct").values()])
+        for paired, closed in zip(*found):
+            np.testing.assert_allclose(closed, paired)
+
+    def test_without_its_zero_task_a_point_has_no_ratio_and_without_one_guess_only_that_one_lacks(self):
+        file, sims, _ = self.open(closed_loop=True, failed={0: "diverged", 5: "diverged"})
+        ratio = measures.cg_ratios(file, sims, "first").ratio
+        self.assertTrue(np.isnan(ratio[0]).all())
+        np.testing.assert_array_equal(np.isnan(ratio[1, :, 0]), [False, True, False, False])
+        self.assertTrue(np.isfinite(ratio[2:]).all())
+        speedup = timings.speedups(timings.times(file, sims), "first")["cg"]
+        np.testing.assert_array_equal(np.isnan(speedup), np.isnan(ratio[..., 0]))
+
+
+class Times(Tables):
+    def setUp(self):
+        self.file, self.sims, _ = self.open(grid={"scene.segments": [20]}, steps=5, newton=3)
+        self.by_newton = timings.times(self.file, self.sims)
+
+    def test_sums_over_the_first_newton_iteration(self):
+        times = self.by_newton["first"]
+        np.testing.assert_array_equal(times.solves, 5)
+        np.testing.assert_allclose(times.cg_s[0], 5 * 20e-6 * np.array([1, 0.5, 0.25, 0.1]), rtol=1e-6)
+        np.testing.assert_allclose(times.guess_s[0], 5 * 2e-6 * np.array([0, 1, 1, 1]), rtol=1e-6)
+        np.testing.assert_allclose(times.zero_cg_s[0], 5 * 20e-6, rtol=1e-6)
+        np.testing.assert_allclose(times.direct_s[0], 5 * 8e-6, rtol=1e-6)
+
+    def test_sums_over_all_newton_iterations(self):
+        times = self.by_newton["all"]
+        np.testing.assert_array_equal(times.solves, 15)
+        np.testing.assert_allclose(times.cg_s[0, 0], 5 * 20e-6 * (1 + 0.5 + 0.5), rtol=1e-6)
+        np.testing.assert_allclose(times.rest_s[0], 5 * 3e-6, rtol=1e-6)
+
+    def test_three_speedups_over_zero_guess_cg(self):
+        found = timings.speedups(self.by_newton, "first")
+        self.assertAlmostEqual(found["cg"][0, 1], 20 / 10, places=5)
+        self.assertAlmostEqual(found["guess_cg"][0, 1], 20 / (10 + 2), places=5)
+        zero_step, guess_step = 3 * 2 + 20 * 2 + 3, 3 * 2 + 3 * 2 + 10 * 2 + 3  # us per step: assemble, guess, CG, rest
+        self.assertAlmostEqual(found["step"][0, 1], zero_step / guess_step, places=5)
+        for values in found.values():
+            np.testing.assert_allclose(values[:, 0], 1, rtol=1e-6)
+
+    def test_three_speedups_over_the_direct_solve(self):
+        found = timings.speedups(self.by_newton, "first", "direct")
+        self.assertAlmostEqual(found["cg"][0, 3], 8 / 2, places=5)
+        self.assertAlmostEqual(found["guess_cg"][0, 3], 8 / (2 + 2), places=5)
+        self.assertAlmostEqual(found["step"][0, 3], (3 * 2 + 3 * 8 + 3) / (3 * 2 + 3 * 2 + 2 * 2 + 3), places=5)
+        direct = timings.direct_speedups(self.by_newton, "first", 0)
+        self.assertAlmostEqual(direct["cg"][0], 20 / 8, places=5)
+
+    def test_the_whole_step_has_all_newton_iterations_in_either_choice(self):
+        first, every = (timings.speedups(self.by_newton, newton) for newton in ("first", "all"))
+        np.testing.assert_array_equal(first["step"], every["step"])
+        self.assertFalse(np.allclose(first["guess_cg"][:, 1], every["guess_cg"][:, 1]))
+
+
+class Holes(Tables):
+    def test_rows_that_were_not_run_count_for_nobody(self):
+        """Newton converged early: NaN in the row of every guess."""
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
+        with_hole = self.punched(file, rows=slice(2, 15, 3), guesses=slice(None))
+        times = timings.times(with_hole, sims)["all"]
+        np.testing.assert_array_equal(times.solves[0], 10)
+        np.testing.assert_allclose(timings.speedups(timings.times(with_hole, sims), "all")["cg"][0, 1], 2, rtol=1e-5)
+
+    def test_a_row_without_one_guess_is_no_row_of_zero_for_it(self):
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
+        times = timings.times(self.punched(file, rows=slice(0, 6, 3), guesses=1), sims)["first"]
+        np.testing.assert_array_equal(times.solves[0], [5, 3, 5, 5])
+        np.testing.assert_allclose(times.zero_cg_s[0], 20e-6 * np.array([5, 3, 5, 5]), rtol=1e-6)
+
+    def punched(self, file, rows, guesses):
+        def change(h5):
+            for name in ("guess_s", "cg_s"):
+                values = h5[f"timing/solves/{name}"][:]
+                values[rows, guesses] = np.nan
+                h5[f"timing/solves/{name}"][:] = values
+        return self.changed(file, change)
+
+
+class Interruptions(Tables):
+    def test_a_solve_that_the_system_interrupted_is_left_out_and_counted(self):
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
+        before = timings.times(file, sims)
+
+        def interrupt(h5):
+            h5["timing/solves/cg_s"][3, 1] = 4e-3       # task 0
+            h5["timing/solves/assemble_s"][20] = 2e-3   # task 1
+            h5["timing/steps/rest_s"][7] = 3e-3         # task 1
+
+        after = timings.times(self.changed(file, interrupt), sims)
+        for newton in ("first", "all"):
+            for against in ("zero", "direct"):
+                pairs = zip(timings.speedups(before, newton, against).values(),
+                            timings.speedups(after, newton, against).values())
+                for one, other in pairs:
+                    np.testing.assert_allclose(other, one, rtol=0.05)  # another mixture of first and later solves
+        np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
+        np.testing.assert_allclose(after["all"].rest_s, before["all"].rest_s, rtol=1e-6)
+        np.testing.assert_array_equal(after["all"].interrupted[:, 0], [1, 1, 0, 0])
+        self.assertEqual(timings.interruptions(before["all"], sims), "")
+        self.assertIn("2 of 60 solves", timings.interruptions(after["all"], sims))
+
+    def test_a_solve_that_needed_many_iterations_is_not_one(self):
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
+
+        def lengthen(h5):
+            h5["timing/solves/cg_s"][0, 0] = 14 * 20e-6
+            h5["solves/iterations"][0, 0] = 14 * (10 + timings.FIXED) - timings.FIXED
+
+        times = timings.times(self.changed(file, lengthen), sims)["first"]
+        self.assertEqual(times.interrupted.sum(), 0)
+        np.testing.assert_allclose(times.cg_s[0, 0], (4 + 14) * 20e-6, rtol=1e-5)
+
+    def test_in_a_closed_loop_every_guess_loses_its_own_rows(self):
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3, closed_loop=True)
+        before = timings.speedups(timings.times(file, sims), "first")["guess_cg"]
+
+        def interrupt(h5):
+            h5["timing/solves/cg_s"][15, 1] = 4e-3  # first solve of the second guess's task
+
+        after = timings.times(self.changed(file, interrupt), sims)
+        np.testing.assert_allclose(timings.speedups(after, "first")["guess_cg"], before, rtol=1e-5)
+        self.assertIn("1 of 240 solves", timings.interruptions(after["all"], sims))
+
+
+class Steps(Tables):
+    def test_largest_drift_and_gap_and_mean_newton_iterations(self):
+        file, sims, _ = self.open(pending=(3,))
+        figures = measures.step_figures(file, sims)
+        np.testing.assert_allclose(figures.length_drift, 1e-3)  # planted negative: magnitudes count
+        np.testing.assert_allclose(figures.joint_gap, 2e-3)
+        np.testing.assert_allclose(figures.newton_iterations, 3)
+
+    def test_a_direct_simulation_has_steps_and_nothing_to_compare(self):
+        file, sims, _ = self.open(method="direct")
+        self.assertEqual(len(sims), 24)
+        self.assertFalse(measures.has_guesses(file).any())
+        np.testing.assert_allclose(measures.step_figures(file, sims).joint_gap, 2e-3)
+        self.assertTrue(np.isnan(timings.direct_times(file, sims)["direct_us"]).all())
+
+
+if __name__ == "__main__":
+    unittest.main()

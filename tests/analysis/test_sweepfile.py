@@ -1,0 +1,188 @@
+"""The reader: what it refuses and with which words, masking by state, parameters, selection, rows in bounded blocks."""
+
+import os
+import tempfile
+import unittest
+
+import synthetic
+import h5py
+import numpy as np
+from sweepfile import KeyNotFound, SweepFile, SweepFileError
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = os.path.join(folder.name, "sweep.h5")
+
+    def open(self, **settings):
+        synthetic.Sweep(**settings).write(self.path)
+        file = SweepFile(self.path)
+        self.addCleanup(file.h5.close)
+        return file
+
+
+class Refusals(Folder):
+    def refused(self, *parts):
+        with self.assertRaises(SweepFileError) as caught:
+            SweepFile(self.path)
+        for part in (self.path, *parts):
+            self.assertIn(part, str(caught.exception))
+
+    def test_a_missing_file(self):
+        self.refused("there is no such file")
+
+    def test_a_folder(self):
+        os.mkdir(self.path)
+        self.refused("is a folder")
+
+    def test_a_file_that_is_not_hdf5(self):
+        with open(self.path, "w") as text:
+            text.write("step,ratio\n")
+        self.refused("not an HDF5 file", "rodsweep run")
+
+    def test_a_truncated_file(self):
+        synthetic.Sweep().write(self.path)
+        with open(self.path, "r+b") as file:
+            file.truncate(os.path.getsize(self.path) // 2)
+        self.refused("is damaged")
+
+    def test_an_hdf5_file_of_nobody(self):
+        h5py.File(self.path, "w").close()
+        self.refused("not one of rodsweep", "no root attribute `program`")
+
+    def test_an_hdf5_file_of_another_program(self):
+        synthetic.Sweep(attributes={"program": "lammps", "schema_version": 1}).write(self.path)
+        self.refused("not one of rodsweep", "'lammps'")
+
+    def test_another_schema_version(self):
+        synthetic.Sweep(attributes={"program": "rodsweep", "schema_version": 2}).write(self.path)
+        self.refused("schema version 2", "read 1")
+
+    def test_a_file_without_tasks(self):
+        with h5py.File(self.path, "w") as h5:
+            h5.attrs.update({"program": "rodsweep", "schema_version": 1})
+        self.refused("/tasks/state", "not the results of a sweep")
+
+    def test_a_file_that_lost_a_column(self):
+        synthetic.Sweep().write(self.path)
+        with h5py.File(self.path, "r+") as h5:
+            del h5["tasks/first_solve"]
+        self.refused("/tasks/first_solve is missing")
+
+    def test_the_file_is_closed_after_a_refusal(self):
+        h5py.File(self.path, "w").close()
+        self.refused()
+        h5py.File(self.path, "w").close()  # fails while somebody has it open
+
+
+class Masking(Folder):
+    def test_pending_tasks_have_no_outcome_and_no_results(self):
+        file = self.open(pending=(1, 5), failed={2: "diverged"})
+        self.assertEqual(list(file.outcome[:3]), ["ok", "pending", "diverged"])
+        self.assertEqual(list(np.flatnonzero(~file.complete)), [1, 5])
+        self.assertEqual(list(np.flatnonzero(file.complete & ~file.ok)), [2])
+        with self.assertRaises(ValueError):
+            file.results("iterations_sum", [0, 1])
+        with self.assertRaises(ValueError):
+            next(file.solve_blocks([5], ["/solves/newton"]))
+
+    def test_absent_and_empty_columns_are_none(self):
+        file = self.open(method="direct")
+        self.assertEqual((file.guesses, len(file.tolerances), file.zero), ([], 0, None))
+        self.assertIsNone(file.results("iterations_sum", [0]))
+        self.assertIsNone(file.results("no_such_column", [0]))
+        self.assertFalse(file.has("/solves/newton"))
+
+
+class Parameters(Folder):
+    def test_units_meanings_and_which_are_swept(self):
+        file = self.open()
+        self.assertEqual(file.parameter("scene.youngs_modulus_pa").unit, "Pa")
+        self.assertEqual(file.parameter("scene.segments").meaning, "the scene.segments")
+        self.assertEqual(set(file.swept()),
+                         {"scene.type", "scene.segments", "scene.youngs_modulus_pa", "scene.length_m"})
+
+    def test_a_key_applies_only_to_its_scenes(self):
+        file = self.open(samples=1)
+        np.testing.assert_array_equal(file.parameter("scene.length_m").applies(), file.scene_types() == "bending_rod")
+
+    def test_an_unknown_name_is_answered_with_the_nearest(self):
+        file = self.open()
+        for asked, answer in (("scene.segment", "scene.segments"), ("segments", "scene.segments"),
+                              ("scene.young_modulus", "scene.youngs_modulus_pa")):
+            with self.assertRaises(KeyNotFound) as caught:
+                file.parameter(asked)
+            self.assertIn(f"{asked!r} is not in the file; did you mean {answer}?", caught.exception.args[0])
+
+    def test_unknown_guesses_and_tolerances(self):
+        file = self.open()
+        with self.assertRaisesRegex(KeyNotFound, "guess 'quadratc'.*did you mean quadratic"):
+            file.guess_index("quadratc")
+        with self.assertRaisesRegex(KeyNotFound, "tolerance '0.03' is not in the file"):
+            file.tolerance_index(0.03)
+        self.assertEqual(file.tolerance_index(1e-3), 2)
+
+    def test_selection_by_value_list_range_and_text(self):
+        file = self.open(samples=1)
+        segments = file.parameter("scene.segments").values
+        for condition, wanted in (("scene.segments=20", segments == 20), ("scene.segments=10,40", segments != 20),
+                                  ("scene.segments=15:", segments > 15), ("scene.segments=10:20", segments < 40),
+                                  ("scene.type=helix", file.scene_types() == "helix")):
+            np.testing.assert_array_equal(file.select([condition]), wanted, condition)
+        both = file.select(["scene.type=helix", "scene.segments=20"])
+        self.assertEqual(both.sum(), 1)
+
+    def test_selections_that_cannot_be_met(self):
+        file = self.open()
+        for conditions, words in ((["scene.segments"], "KEY=VALUE"), (["scene.segments=x"], "'x' is not a number"),
+                                  (["scene.segments=11"], "Known: 10, 20, 40"), (["scene.typ=helix"], "scene.type"),
+                                  (["scene.segments=10", "scene.segments=20"], "no task meets all")):
+            with self.assertRaisesRegex(KeyNotFound, words):
+                file.select(conditions)
+
+
+class Rows(Folder):
+    def test_blocks_cover_every_row_once_whatever_their_size(self):
+        file = self.open(samples=2, pending=(3,))
+        tasks = np.flatnonzero(file.complete)[::-1]
+        whole = {int(t): file.h5["/timing/solves/cg_s"][file.first_solve[t]:file.first_solve[t] + file.solves[t], 0].sum()
+                 for t in tasks}
+        for limit in (1, 4, 15, 16, 40, 10 ** 6):
+            found, rows_seen = dict.fromkeys(whole, 0.0), 0
+            for owners, starts, rows in file.solve_blocks(tasks, ["/timing/solves/cg_s"], limit):
+                values = rows["/timing/solves/cg_s"][:, 0].astype(float)
+                self.assertLessEqual(len(values), limit)
+                rows_seen += len(values)
+                for owner, total in zip(owners, np.add.reduceat(values, starts)):
+                    found[owner] += total
+            self.assertEqual(rows_seen, file.solves[tasks].sum())
+            for task, total in whole.items():
+                self.assertAlmostEqual(found[task], total, places=9, msg=f"task {task}, limit {limit}")
+
+    def test_no_rows_no_blocks(self):
+        file = self.open(solves=False)
+        self.assertEqual(list(file.solve_blocks([0, 1], ["/solves/newton"])), [])
+
+
+class Provenance(Folder):
+    def test_runs_and_job(self):
+        file = self.open()
+        self.assertEqual([run["revision"] for run in file.runs()], ["abc123"])
+        self.assertEqual(file.job()["name"], "synthetic")
+
+    def test_oversubscribed_runs_are_known_by_the_tasks_they_timed(self):
+        file = self.open(oversubscribed=True)
+        self.assertTrue(file.oversubscribed(np.array([0])))
+        file.h5.close()
+        with h5py.File(self.path, "r+") as h5:
+            h5["runs/begin"][1] = b"2025-11-21T11:00:00Z"
+            h5["timing/tasks/attempt"][2:] = 1
+        with SweepFile(self.path) as file:
+            self.assertTrue(file.oversubscribed(np.array([0, 5])))
+            self.assertFalse(file.oversubscribed(np.array([2, 5])))
+
+
+if __name__ == "__main__":
+    unittest.main()

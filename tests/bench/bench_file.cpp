@@ -1,0 +1,97 @@
+// What the results file costs: creating it, writing a task, and writing beside running real tasks (target: at most 2 %
+// of a sweep's time). bench_file [folder]; the files are removed again.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <numeric>
+
+#include "runner/evaluation.hpp"
+#include "runner/hdf5.hpp"
+#include "runner/mpi_session.hpp"
+#include "runner/results_file.hpp"
+#include "runner/text.hpp"
+#include "solver/petsc_session.hpp"
+
+namespace {
+
+using namespace rodsweep;
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+Plan plan_of(int segments, int steps, int newton_iterations, int samples, bool trajectory) {
+  return Plan(parse_job(fmt::format(R"({{"name": "bench", "kind": "sweep", "samples": {},
+      "scene": {{"type": "bending_rod", "segments": {}, "length_m": {{"uniform": [1, 5]}}, "radius_m": 0.05,
+        "density_kg_m3": 1000, "youngs_modulus_pa": {{"log_uniform": [1e4, 1e6]}}, "torsion_modulus_pa": 1e6}},
+      "time": {{"step_s": 0.02, "steps": {}, "newton_iterations": {}}},
+      "guesses": ["zero", "previous", "linear", "quadratic"], "record": {{"trajectory_every": {}}} }})",
+                                    samples, segments, steps, newton_iterations, trajectory ? 1 : 0),
+                        "bench.json"));
+}
+
+ResultsFile create(const fs::path& path, const Plan& plan) {
+  fs::remove(path);
+  return ResultsFile::create(path, plan, provenance_of_this_process("bench_file"), MPI_COMM_SELF);
+}
+
+void bench_creation(const fs::path& path) {
+  const Plan plan = plan_of(10, 10, 1, 100000, false);
+  const auto begin = Clock::now();
+  ResultsFile file = create(path, plan);
+  fmt::print("file: {} tasks, {}, created and opened in {:.2f} s (target 5)\n", plan.size(),
+             bytes_text(static_cast<std::int64_t>(fs::file_size(path))), seconds_since(begin));
+}
+
+/// Records with nothing but sentinels: the bytes are what counts.
+void bench_writing(const fs::path& path, const char* name, const Plan& plan) {
+  ResultsFile file = create(path, plan);
+  const auto size = static_cast<double>(fs::file_size(path)) / static_cast<double>(plan.size());
+  TaskRecord record;
+  double seconds = 0;
+  for (const Task& task : plan.tasks()) {
+    record.prepare(task, axis_sizes(plan));
+    const auto begin = Clock::now();
+    file.write(task, record);
+    seconds += seconds_since(begin);
+  }
+  fmt::print("file: writing {}, {} each: {:.0f} us\n", name, bytes_text(static_cast<std::int64_t>(size)),
+             seconds / static_cast<double>(plan.size()) * 1e6);
+}
+
+void bench_share(const fs::path& path, const char* name, const Plan& plan) {
+  {
+    ResultsFile file = create(path, plan);
+    TaskRecord record;
+    for (const Task& task : plan.tasks()) {
+      record.prepare(task, axis_sizes(plan));
+      evaluate(task, plan.spec(task.index), record, [] { return false; });
+      file.write(task, record);
+    }
+  }
+  const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDONLY);
+  const auto mean = [&](const char* dataset) {
+    const auto values = hdf5::read_all<double>(file.id(), dataset);
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  const double work = mean("/timing/tasks/elapsed_s"), write = mean("/timing/tasks/write_s");
+  fmt::print("file: {}: {:.1f} ms of work and {:.3f} ms of writing a task: {:.2f} % (target 2 %)\n", name, work * 1e3,
+             write * 1e3, 100 * write / work);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const MpiSession mpi;
+  const PetscSession petsc;
+  const fs::path path = fs::path(argc > 1 ? argv[1] : ".") / "bench_file.h5";
+  bench_creation(path);
+  bench_writing(path, "a small task (N 10, 10 steps of 1 Newton iteration)", plan_of(10, 10, 1, 1000, false));
+  bench_writing(path, "a task (N 30, 100 steps of 6)", plan_of(30, 100, 6, 200, false));
+  bench_writing(path, "a task with trajectory (N 100, 500 steps of 6)", plan_of(100, 500, 6, 20, true));
+  bench_share(path, "N 10, 10 steps of 6 Newton iterations", plan_of(10, 10, 6, 200, false));
+  bench_share(path, "N 30, 100 steps of 6 Newton iterations", plan_of(30, 100, 6, 10, false));
+  fs::remove(path);
+  return 0;
+}

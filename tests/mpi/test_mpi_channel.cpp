@@ -1,0 +1,76 @@
+// Dispatch over MPI: the same master and workers as in memory. Run on several numbers of ranks.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "runner/master.hpp"
+#include "runner/mpi_channel.hpp"
+#include "runner/mpi_session.hpp"
+#include "runner/worker.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+struct World {
+  World() {
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+  }
+  int rank = 0, size = 1;
+};
+
+/// Runs `tasks` tasks; on rank 0 how they ended, on every rank how often each was run anywhere.
+std::pair<Dispatch, std::vector<int>> run(int tasks, const std::function<int()>& signal) {
+  const World world;
+  MpiChannel channel(MPI_COMM_WORLD);
+  std::vector<int> here(tasks, 0), everywhere(tasks, 0);
+  Dispatch dispatch;
+  if (world.rank > 0) {
+    const TaskBody body = [&](std::int64_t task, const StopRequested& stop) -> TaskResult {
+      if (stop()) return {};
+      ++here[task];
+      if (task % 7 == 3) return {TaskOutcome::diverged, "as told"};
+      return {TaskOutcome::ok, ""};
+    };
+    Worker(channel, body, signal).run();
+  } else {
+    std::vector<PendingTask> pending;
+    for (int i = 0; i < tasks; ++i) pending.push_back({i, 1.0 + i % 5});
+    Console console(false);
+    Progress progress(console, {tasks, 0, 0, 3.0 * tasks, std::max(1, world.size - 1)}, Progress::Clock::now());
+    Master master(channel, std::move(pending), progress, [] { return 0; });
+    master.run();
+    dispatch = master.dispatch();
+  }
+  MPI_Allreduce(here.data(), everywhere.data(), tasks, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  return {dispatch, everywhere};
+}
+
+}  // namespace
+
+TEST_CASE("over MPI every task is run exactly once and every outcome arrives") {
+  const World world;
+  if (world.size == 1) return;
+  const auto [dispatch, runs] = run(2000, [] { return 0; });
+  CHECK(std::all_of(runs.begin(), runs.end(), [](int n) { return n == 1; }));
+  if (world.rank == 0) {
+    CHECK(dispatch.left == 0);
+    CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::ok)] == 1714);
+    CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::diverged)] == 286);
+  }
+}
+
+TEST_CASE("over MPI a signal to one worker stops all, and no task is lost or counted twice") {
+  const World world;
+  if (world.size == 1) return;
+  int asked = 0;
+  const auto [dispatch, runs] = run(2000, [&] { return world.rank == 1 && ++asked > 100 ? 15 : 0; });
+  const int finished = std::accumulate(runs.begin(), runs.end(), 0);
+  CHECK(std::all_of(runs.begin(), runs.end(), [](int n) { return n <= 1; }));
+  if (world.rank == 0) {
+    CHECK(dispatch.signal == 15);
+    CHECK(dispatch.left == 2000 - finished);
+    CHECK(dispatch.left > 0);
+  }
+}

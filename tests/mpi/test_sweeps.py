@@ -1,0 +1,308 @@
+#!/usr/bin/python3
+"""The program under mpirun, from outside: the same results on any number of ranks and after any interruption, refusals, exit codes.
+
+Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
+"""
+
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+RODSWEEP = os.environ["RODSWEEP"]
+MPIRUN = os.environ.get("MPIRUN", "mpirun")
+ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED = 0, 2, 3, 4
+
+
+def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):
+    """Writes NAME.json, a sweep of samples x segments tasks, and returns its path."""
+    values = {
+        "name": name, "kind": "sweep", "seed": 5, "samples": samples, "evaluation": "paired",
+        "scene": {"type": "bending_rod", "segments": {"grid": list(segments)}, "length_m": {"uniform": [1, 5]},
+                  "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]},
+                  "torsion_modulus_pa": 1e6, "initial_angle_deg": {"uniform": [0, 45]}},
+        "time": {"step_s": 0.02, "steps": steps},
+        "solve": {"method": "cg", "preconditioner": "jacobi", "tolerance": 1e-2},
+        "guesses": ["zero", "previous", "quadratic", {"oracle": {"error": 0.1}}],
+        "record": {"solves": "all", "trajectory_every": 2},
+    }
+    values.update(changes)
+    path = name + ".json"
+    with open(path, "w") as file:
+        json.dump(values, file, indent=2)
+    return path
+
+
+def long_job():
+    """A few seconds of work in many tasks: long enough to be hit in the middle."""
+    return job("long", samples=30, segments=(15, 30), steps=40)
+
+
+def command(ranks, *words):
+    return ([MPIRUN, "-n", str(ranks)] if ranks else []) + [RODSWEEP, *words]
+
+
+def rodsweep(ranks, *words):
+    """Runs to the end: the completed process with its texts. ranks 0: without mpirun."""
+    return subprocess.run(command(ranks, *words), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
+
+
+def start(ranks, *words):
+    # As in any interactive or batch shell, the program gets signals at their defaults.
+    return subprocess.Popen(command(ranks, *words), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True)
+
+
+def status(path):
+    return json.loads(rodsweep(0, "status", path, "--json").stdout)
+
+
+def wait_for_tasks(process, path, count):
+    """Until `count` tasks are in the file; the sweep must still be running then."""
+    for _ in range(600):
+        if os.path.exists(path):
+            now = status(path)
+            if now["done"] >= count:
+                assert now["pending"] > count and process.poll() is None, "the sweep is too short to be interrupted"
+                return
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.02)
+    raise AssertionError(f"{path} never got {count} tasks")
+
+
+def ranks_of(mpirun):
+    """Process numbers of mpirun's ranks, by rank."""
+    ranks = {}
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{entry}/stat") as file:
+                parent = int(file.read().rsplit(")", 1)[1].split()[1])
+            if parent != mpirun.pid:
+                continue
+            with open(f"/proc/{entry}/environ") as file:
+                for variable in file.read().split("\0"):
+                    if variable.startswith("OMPI_COMM_WORLD_RANK="):
+                        ranks[int(variable.split("=")[1])] = int(entry)
+        except (FileNotFoundError, ProcessLookupError, PermissionError):
+            continue
+    return ranks
+
+
+def checksum(path):
+    with open(path, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()
+
+
+class SweepCase(unittest.TestCase):
+    def assert_exit(self, process, code):
+        self.assertEqual(process.returncode, code, f"{process.stdout}\n{process.stderr}")
+
+    def assert_same_results(self, one, other):
+        diff = subprocess.run(["h5diff", "--exclude-path", "/timing", "--exclude-path", "/runs", one, other],
+                              capture_output=True, text=True)
+        self.assertEqual((diff.returncode, diff.stdout), (0, ""))
+
+    def assert_whole(self, path):
+        info = json.loads(rodsweep(0, "info", path, "--verify", "--json").stdout)
+        self.assertEqual(info["pending"], 0)
+        self.assertEqual(info["verified"], {"checked": info["tasks"], "damaged": []})
+
+
+class RankCounts(SweepCase):
+    def test_results_are_the_same_on_1_2_3_and_5_ranks(self):
+        path = job()
+        self.assert_exit(rodsweep(0, "run", path, "-o", "alone.h5"), ALL_DONE)
+        self.assert_whole("alone.h5")
+        for ranks in (1, 2, 3, 5):
+            with self.subTest(ranks=ranks):
+                self.assert_exit(rodsweep(ranks, "run", path, "-o", f"{ranks}.h5"), ALL_DONE)
+                self.assert_same_results("alone.h5", f"{ranks}.h5")
+
+    def test_results_are_the_same_in_a_closed_loop(self):
+        path = job("closed", evaluation="closed_loop")
+        for ranks in (1, 3):
+            self.assert_exit(rodsweep(ranks, "run", path, "-o", f"closed{ranks}.h5"), ALL_DONE)
+        self.assert_same_results("closed1.h5", "closed3.h5")
+
+
+class Interrupted(SweepCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.job = long_job()
+        whole = rodsweep(3, "run", cls.job, "-o", "whole.h5")
+        assert whole.returncode == ALL_DONE, whole.stderr
+
+    def interrupt(self, path, ranks, hit):
+        """Starts the sweep, calls hit(process) in the middle of it, and returns exit code and texts."""
+        process = start(ranks, "run", self.job, "-o", path)
+        wait_for_tasks(process, path, 4)
+        begin = time.monotonic()
+        hit(process)
+        stdout, stderr = process.communicate(timeout=30)
+        self.assertLess(time.monotonic() - begin, 10)
+        return process.returncode, stdout, stderr
+
+    def resume(self, path, ranks):
+        before = status(path)
+        self.assertGreater(before["done"], 0)
+        self.assertGreater(before["pending"], 0)
+        self.assert_exit(rodsweep(ranks, "run", self.job, "-o", path, "--resume"), ALL_DONE)
+        self.assert_same_results("whole.h5", path)
+        self.assert_whole(path)
+        starts = status(path)["starts"]
+        self.assertEqual([s["tasks"] for s in starts], [before["done"], before["pending"]])
+        return starts
+
+    def test_after_a_worker_is_killed(self):
+        code, _, _ = self.interrupt("worker.h5", 3, lambda p: os.kill(ranks_of(p)[2], signal.SIGKILL))
+        self.assertNotEqual(code, 0)
+        self.assertIsNone(self.resume("worker.h5", 2)[0]["end"])
+
+    def test_after_all_ranks_are_killed(self):
+        def kill_all(process):
+            for pid in [process.pid, *ranks_of(process).values()]:
+                os.kill(pid, signal.SIGKILL)
+
+        self.interrupt("all.h5", 3, kill_all)
+        self.assertIsNone(self.resume("all.h5", 3)[0]["end"])
+
+    def assert_stopped(self, code, stdout, stderr, path):
+        self.assertEqual(code, STOPPED, stderr)
+        self.assertIn("left to do", stdout)
+        self.assertIn("nothing is lost. To continue:", stderr)
+        self.assertEqual(self.resume(path, 3)[0]["exit_code"], STOPPED)
+
+    def test_after_a_signal_to_one_rank(self):
+        for rank, number in ((0, signal.SIGTERM), (1, signal.SIGUSR1)):
+            with self.subTest(rank=rank):
+                path = f"rank{rank}.h5"
+                result = self.interrupt(path, 3, lambda p: os.kill(ranks_of(p)[rank], number))
+                self.assert_stopped(*result, path)
+
+    def test_after_a_signal_that_mpirun_forwards(self):
+        result = self.interrupt("forwarded.h5", 3, lambda p: p.send_signal(signal.SIGUSR1))
+        self.assert_stopped(*result, "forwarded.h5")
+
+    def test_after_sigterm_to_mpirun_which_kills_soon_after(self):
+        self.interrupt("term.h5", 3, lambda p: p.send_signal(signal.SIGTERM))
+        self.assertEqual(self.resume("term.h5", 3)[0]["exit_code"], STOPPED)
+
+    def test_without_mpirun_and_with_a_second_signal_during_the_stop(self):
+        def twice(process):
+            process.send_signal(signal.SIGINT)
+            process.send_signal(signal.SIGTERM)
+
+        result = self.interrupt("alone.h5", 0, twice)
+        self.assert_stopped(*result, "alone.h5")
+
+
+class Refusals(SweepCase):
+    def assert_refused_once(self, process, text):
+        self.assert_exit(process, USER_ERROR)
+        self.assertEqual(process.stderr.count(text), 1, process.stderr)
+        self.assertEqual(process.stderr.count("rodsweep: error:"), 1, process.stderr)
+        self.assertEqual(process.stdout, "")
+
+    def test_an_existing_file_stays_as_it_is(self):
+        path = job()
+        self.assert_exit(rodsweep(2, "run", path, "-o", "mine.h5"), ALL_DONE)
+        before = checksum("mine.h5")
+        self.assert_refused_once(rodsweep(3, "run", path, "-o", "mine.h5"), "mine.h5 exists already")
+        self.assertEqual(checksum("mine.h5"), before)
+
+    def test_a_file_of_another_job_is_not_continued(self):
+        self.assert_exit(rodsweep(2, "run", job("first"), "-o", "first.h5"), ALL_DONE)
+        before = checksum("first.h5")
+        self.assert_refused_once(rodsweep(3, "run", job("second", steps=7), "-o", "first.h5", "--resume"),
+                                 "first.h5 holds the results of another job")
+        self.assertEqual(checksum("first.h5"), before)
+
+    def test_a_foreign_file_is_not_continued(self):
+        with open("notes.h5", "w") as file:
+            file.write("not HDF5 at all")
+        before = checksum("notes.h5")
+        self.assert_refused_once(rodsweep(3, "run", job(), "-o", "notes.h5", "--resume"), "notes.h5")
+        self.assertEqual(checksum("notes.h5"), before)
+
+    def test_a_bad_job_is_refused_once_and_nothing_is_created(self):
+        path = job("bad", time={"step_s": 0.02, "steps": -4})
+        self.assert_refused_once(rodsweep(3, "run", path, "-o", "bad.h5"), "time.steps")
+        self.assertFalse(os.path.exists("bad.h5"))
+
+    def test_a_missing_job_is_refused_once(self):
+        self.assert_refused_once(rodsweep(3, "run", "nowhere.json"), "nowhere.json")
+        self.assertFalse(os.path.exists("results"))
+
+    def test_a_place_where_no_file_can_be_is_refused_once(self):
+        path = job()
+        self.assert_refused_once(rodsweep(3, "run", path, "-o", path + "/out.h5"), path + "/out.h5 cannot be created")
+
+
+class Outcomes(SweepCase):
+    def test_failed_tasks_are_data_and_make_exit_code_3_also_when_resumed(self):
+        path = job("hard", evaluation="closed_loop",
+                   solve={"method": "cg", "preconditioner": "none", "tolerance": 1e-8, "max_iterations": 2})
+        first = rodsweep(3, "run", path)
+        self.assert_exit(first, TASKS_FAILED)
+        self.assertIn("iteration_limit", first.stdout)
+        self.assertIn("and 19 more", first.stdout)
+        self.assert_exit(rodsweep(3, "run", path, "--resume"), TASKS_FAILED)
+        now = status("results/hard.h5")
+        self.assertEqual((now["failed"], now["pending"]), (24, 0))
+        self.assertEqual([s["exit_code"] for s in now["starts"]], [TASKS_FAILED, TASKS_FAILED])
+
+    def test_resume_starts_a_sweep_that_has_no_file_and_does_nothing_to_a_finished_one(self):
+        path = job("fresh")
+        self.assert_exit(rodsweep(2, "run", path, "--resume"), ALL_DONE)
+        self.assert_exit(rodsweep(3, "run", path, "--resume"), ALL_DONE)
+        self.assertEqual([s["tasks"] for s in status("results/fresh.h5")["starts"]], [6, 0])
+
+    def test_more_workers_than_cores_are_warned_of_and_marked(self):
+        ranks = len(os.sched_getaffinity(0)) + 2
+        crowded = rodsweep(ranks, "run", job("crowded"))
+        self.assert_exit(crowded, ALL_DONE)
+        self.assertEqual(crowded.stderr.count("warning"), 1, crowded.stderr)
+        self.assertTrue(status("results/crowded.h5")["starts"][0]["oversubscribed"])
+        self.assert_exit(rodsweep(2, "run", job("roomy")), ALL_DONE)
+        self.assertFalse(status("results/roomy.h5")["starts"][0]["oversubscribed"])
+
+
+class Speaking(SweepCase):
+    def test_commands_that_need_no_ranks_speak_once_under_mpirun(self):
+        path = job()
+        for words, text in ((("validate", path), "sound, 6 tasks"), (("--version",), "Open MPI"),
+                            (("plan", path), "core-hours"), (("plan", path, "--no-probe"), "tasks    6"),
+                            (("run", "--help"), "Exit codes:")):
+            with self.subTest(words=words):
+                said = rodsweep(3, *words)
+                self.assert_exit(said, 0)
+                self.assertEqual(said.stdout.count(text), 1, said.stdout)
+
+    def test_results_go_to_stdout_and_progress_to_stderr_without_colours(self):
+        ran = rodsweep(2, "run", job("said"))
+        self.assert_exit(ran, ALL_DONE)
+        self.assertIn("6 tasks: 6 ok", ran.stdout)
+        self.assertIn("next: ", ran.stdout)
+        self.assertNotIn("\x1b", ran.stdout + ran.stderr)
+        self.assertNotIn("\r", ran.stderr)
+
+    def test_the_job_comes_back_byte_for_byte(self):
+        path = job("kept")
+        self.assert_exit(rodsweep(0, "run", path), ALL_DONE)
+        with open(path) as file:
+            self.assertEqual(rodsweep(0, "info", "results/kept.h5", "--job").stdout, file.read())
+
+    def test_a_plan_tells_programs_what_it_tells_people(self):
+        plan = json.loads(rodsweep(0, "plan", job("planned"), "--json").stdout)
+        self.assertEqual((plan["tasks"], plan["steps"]), (6, 36))
+        self.assertGreater(plan["core_hours"], 0)
+        self.assert_exit(rodsweep(0, "run", "planned.json"), ALL_DONE)
+        size = os.path.getsize("results/planned.h5")
+        self.assertLess(abs(plan["file_bytes"] - size), 0.2 * size)
+
+
+if __name__ == "__main__":
+    unittest.main()

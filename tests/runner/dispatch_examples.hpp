@@ -1,0 +1,54 @@
+// A sweep in one process: master, workers and a network that tests can play by hand.
+#pragma once
+
+#include <vector>
+
+#include "runner/master.hpp"
+#include "runner/worker.hpp"
+
+namespace rodsweep::examples {
+
+/// Master over `workers` workers (ranks 1 ...), silent.
+struct Sweep {
+  Sweep(int workers, std::vector<PendingTask> tasks)
+      : network(workers + 1),
+        console(false),
+        progress(console, {static_cast<std::int64_t>(tasks.size()), 0, 0, 1, workers}, Progress::Clock::now()),
+        master(network[0], std::move(tasks), progress, [this] { return signal; }) {}
+
+  MemoryNetwork network;
+  Console console;
+  Progress progress;
+  int signal = 0;  ///< that the master's rank received
+  Master master;
+};
+
+inline std::vector<PendingTask> tasks_of_cost(const std::vector<double>& costs) {
+  std::vector<PendingTask> tasks;
+  for (const double cost : costs) tasks.push_back({static_cast<std::int64_t>(tasks.size()), cost});
+  return tasks;
+}
+
+/// The tasks that have been assigned to this rank since the last call; other messages are counted.
+struct Inbox {
+  explicit Inbox(Channel& of) : channel(&of) {}
+
+  std::vector<std::int64_t> assigned() {
+    std::vector<std::int64_t> tasks;
+    while (const auto envelope = channel->probe()) {
+      if (envelope->tag == Tag::assign) tasks.push_back(channel->receive<Assign>(*envelope).task);
+      if (envelope->tag == Tag::stop) channel->receive<Stop>(*envelope), ++stops;
+      if (envelope->tag == Tag::finish) channel->receive<Finish>(*envelope), ++finishes;
+    }
+    return tasks;
+  }
+
+  void report(std::int64_t task, TaskOutcome outcome = TaskOutcome::ok, std::string_view message = "") {
+    channel->send(0, Report(task, outcome, 1, message));
+  }
+
+  Channel* channel;
+  int stops = 0, finishes = 0;
+};
+
+}  // namespace rodsweep::examples

@@ -1,0 +1,73 @@
+// What the user types, and what the program makes of it.
+#include <catch2/catch.hpp>
+
+#include "runner/command_line.hpp"
+
+using namespace rodsweep;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Command parse(std::vector<const char*> words) {
+  words.insert(words.begin(), "build/rodsweep");
+  return parse_command_line(static_cast<int>(words.size()), words.data());
+}
+
+Answer answer(const std::vector<const char*>& words) { return std::get<Answer>(parse(words)); }
+
+}  // namespace
+
+TEST_CASE("run takes a job, a file and --resume, and remembers the line for the file") {
+  const auto run = std::get<RunOptions>(parse({"run", "my job.json", "-o", "out.h5", "--resume"}));
+  CHECK(run.job == "my job.json");
+  CHECK(run.output.value() == "out.h5");
+  CHECK(run.resume);
+  CHECK(run.program == "build/rodsweep");
+  CHECK(run.command == "build/rodsweep run 'my job.json' -o out.h5 --resume");
+}
+
+TEST_CASE("without -o a job named demo is written to results/demo.h5") {
+  CHECK_FALSE(std::get<RunOptions>(parse({"run", "job.json"})).output);
+  CHECK(default_output("demo") == "results/demo.h5");
+}
+
+TEST_CASE("the command that continues a sweep can be typed as it stands") {
+  auto run = std::get<RunOptions>(parse({"run", "my job.json"}));
+  CHECK(run_command(run, 1) == "build/rodsweep run 'my job.json'");
+  run.resume = true;
+  run.output = "out.h5";
+  CHECK(run_command(run, 4) == "mpirun --oversubscribe -n 5 build/rodsweep run 'my job.json' -o out.h5 --resume");
+}
+
+TEST_CASE("the other commands take their options") {
+  CHECK(std::get<PlanOptions>(parse({"plan", "a.json"})).probe);
+  CHECK_FALSE(std::get<PlanOptions>(parse({"plan", "a.json", "--no-probe"})).probe);
+  CHECK(std::get<PlanOptions>(parse({"plan", "a.json", "--json"})).json);
+  CHECK(std::get<ValidateOptions>(parse({"validate", "a.json", "b.json"})).jobs.size() == 2);
+  CHECK(std::get<StatusOptions>(parse({"status", "a.h5", "--json"})).json);
+  CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--verify"})).verify);
+  CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--job"})).job);
+  CHECK(std::holds_alternative<VersionOptions>(parse({"--version"})));
+}
+
+TEST_CASE("mistakes on the command line are answered with exit code 2 and what is wrong") {
+  CHECK(answer({}).code == ExitCode::user_error);
+  CHECK_THAT(answer({}).text, Contains("Examples:"));
+  CHECK(answer({"run"}).code == ExitCode::user_error);
+  CHECK_THAT(answer({"run"}).text, Contains("JOB is required"));
+  CHECK(answer({"run", "a.json", "--resumee"}).code == ExitCode::user_error);
+  CHECK_THAT(answer({"run", "a.json", "--resumee"}).text, Contains("--resumee"));
+  CHECK(answer({"walk", "a.json"}).code == ExitCode::user_error);
+  CHECK(answer({"info", "a.h5", "--job", "--json"}).code == ExitCode::user_error);
+}
+
+TEST_CASE("every command's help shows an example and the exit codes") {
+  for (const char* command : {"run", "plan", "validate", "status", "info"}) {
+    CAPTURE(command);
+    const Answer help = answer({command, "--help"});
+    CHECK(help.code == ExitCode::ok);
+    CHECK_THAT(help.text, Contains(std::string("rodsweep ") + command));
+    CHECK_THAT(help.text, Contains("4  stopped early; --resume continues"));
+  }
+  CHECK_THAT(answer({"--help"}).text, Contains("mpirun"));
+}

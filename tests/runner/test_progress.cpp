@@ -1,0 +1,88 @@
+// Progress, summaries and the words they are put in.
+#include <catch2/catch.hpp>
+
+#include "runner/progress.hpp"
+#include "runner/sweep_summary.hpp"
+#include "runner/text.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+using std::chrono::seconds;
+const Progress::Clock::time_point start{};
+
+Dispatch dispatch_of(std::int64_t ok, std::int64_t diverged, std::int64_t left) {
+  Dispatch dispatch;
+  dispatch.finished[static_cast<std::size_t>(TaskOutcome::ok)] = ok;
+  dispatch.finished[static_cast<std::size_t>(TaskOutcome::diverged)] = diverged;
+  dispatch.left = left;
+  dispatch.wall_s = 10;
+  dispatch.busy_s = 15;
+  return dispatch;
+}
+
+}  // namespace
+
+TEST_CASE("the time left is weighted by the cost of tasks") {
+  Console silent(false);
+  Progress progress(silent, {3, 0, 0, 100, 2}, start);
+  CHECK_FALSE(progress.seconds_left(start + seconds(1)));
+  progress.finished(TaskOutcome::ok, 80, 160);  // 2 s a unit: 200 s of work, 100 s for two workers
+  CHECK(progress.seconds_left(start + seconds(90)).value() == Approx(10));
+  CHECK_FALSE(progress.seconds_left(start + seconds(101)));
+}
+
+TEST_CASE("progress counts earlier starts, but judges the rate by this one") {
+  Console silent(false);
+  Progress progress(silent, {400, 100, 1, 300, 1}, start);
+  for (int i = 0; i < 20; ++i) progress.finished(i == 0 ? TaskOutcome::error : TaskOutcome::ok, 1, 0.5);
+  CHECK(progress.text(start + seconds(10)) == "120 of 400 tasks (30 %), 2 failed, 2/s, 2 min 20 s left");
+}
+
+TEST_CASE("a finished sweep exits 0, with failures 3, with tasks left 4") {
+  CHECK(exit_code({5, {}, dispatch_of(5, 0, 0), 1, "x.h5"}) == ExitCode::ok);
+  CHECK(exit_code({5, {}, dispatch_of(4, 1, 0), 1, "x.h5"}) == ExitCode::tasks_failed);
+  CHECK(exit_code({5, {}, dispatch_of(3, 1, 1), 1, "x.h5"}) == ExitCode::stopped);
+  CHECK(exit_code({5, {{"ok", 1}, {"error", 1}}, dispatch_of(3, 0, 0), 1, "x.h5"}) == ExitCode::tasks_failed);
+}
+
+TEST_CASE("the summary names outcomes, first failures, use of workers, file and next command") {
+  Dispatch dispatch = dispatch_of(6, 7, 0);
+  for (const std::int64_t task : {9, 4}) dispatch.failures.push_back({task, TaskOutcome::diverged, "joint gap 12"});
+  CHECK(summary_text({15, {{"ok", 2}}, dispatch, 2, "results/a b.h5"}) ==
+        "15 tasks: 8 ok, 7 diverged\n"
+        "  task 4 diverged: joint gap 12\n"
+        "  task 9 diverged: joint gap 12\n"
+        "  and 5 more\n"
+        "10.0 s for 13 tasks, 1.3 tasks/s, 2 workers busy 75 % of the time\n"
+        "results: results/a b.h5\n"
+        "next: /usr/bin/python3 analysis/summary.py 'results/a b.h5'");
+}
+
+TEST_CASE("the summary of a sweep stopped early says what is left") {
+  CHECK(summary_text({15, {}, dispatch_of(6, 0, 9), 2, "x.h5"}) ==
+        "15 tasks: 6 ok, 9 left to do\n"
+        "10.0 s for 6 tasks, 0.6 tasks/s, 2 workers busy 75 % of the time\n"
+        "results: x.h5");
+}
+
+TEST_CASE("durations and sizes are short and never rounded to a unit too large") {
+  CHECK(duration_text(0.0123) == "12 ms");
+  CHECK(duration_text(0.9999) == "1.0 s");
+  CHECK(duration_text(59.99) == "1 min 00 s");
+  CHECK(duration_text(245) == "4 min 05 s");
+  CHECK(duration_text(3599.7) == "1 h 00 min");
+  CHECK(duration_text(7380) == "2 h 03 min");
+  CHECK(duration_text(270000) == "3 d 03 h");
+  CHECK(bytes_text(999) == "999 B");
+  CHECK(bytes_text(4200000) == "4.2 MB");
+  CHECK(bytes_text(999999) == "1 MB");
+}
+
+TEST_CASE("words are quoted for the shell only where they must be") {
+  CHECK(shell_quoted("results/demo.h5") == "results/demo.h5");
+  CHECK(shell_quoted("my job.json") == "'my job.json'");
+  CHECK(shell_quoted("it's") == "'it'\\''s'");
+  CHECK(shell_quoted("") == "''");
+}

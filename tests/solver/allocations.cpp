@@ -1,0 +1,69 @@
+#include "allocations.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+
+namespace {
+
+std::atomic<long> count{0};
+
+}  // namespace
+
+namespace rodsweep::test {
+
+long allocations() { return count.load(); }
+
+}  // namespace rodsweep::test
+
+#ifdef __SANITIZE_ADDRESS__
+
+#include <sanitizer/allocator_interface.h>
+
+namespace {
+
+const int installed = __sanitizer_install_malloc_and_free_hooks([](const volatile void*, std::size_t) { ++count; },
+                                                                [](const volatile void*) {});
+
+}  // namespace
+
+#else
+
+extern "C" {
+
+// The C library's own, under the names that it keeps for this purpose.
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t items, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) noexcept {
+  ++count;
+  return __libc_malloc(size);
+}
+
+void* calloc(std::size_t items, std::size_t size) noexcept {
+  ++count;
+  return __libc_calloc(items, size);
+}
+
+void* realloc(void* old, std::size_t size) noexcept {
+  ++count;
+  return __libc_realloc(old, size);
+}
+
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept { return memalign(alignment, size); }
+
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) noexcept {
+  *out = memalign(alignment, size);
+  return *out || size == 0 ? 0 : ENOMEM;
+}
+
+}  // extern "C"
+
+#endif

@@ -1,0 +1,73 @@
+// What the validation tests share: a scene advanced by direct solves, and how it is brought to rest.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "solver/rotation.hpp"
+#include "solver/scenes.hpp"
+#include "solver/time_step.hpp"
+
+namespace rodsweep {
+
+/// Where a chain of segments ends.
+inline Vector3 tip(const Rod& rod) {
+  return rod.position.back() + rod.segments.back().length_m / 2 * director(rod.orientation.back());
+}
+
+class Simulation {
+ public:
+  /// Newton runs to its floor: the tolerance is that of rounding.
+  Simulation(Scene initial, double dt, int newton_iterations = 12)
+      : scene(std::move(initial)),
+        dt_(dt),
+        direct_(scene),
+        projection_(scene, direct_),
+        stepper_(scene, {dt, newton_iterations, 1e-14}) {}
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  void step() {
+    const SolveOutcome outcome = stepper_.step(projection_).outcome;
+    if (outcome != SolveOutcome::converged)
+      throw std::runtime_error(std::string("a step ended: ") + to_string(outcome));
+  }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i) step();
+  }
+
+  /// Dynamic relaxation: a step after which velocities are zeroed, so that it is an implicit one of M x' = dt F. Steps
+  /// of seconds are stable, and what they leave alone is the static equilibrium. Returns the largest motion of the step
+  /// (m, rad).
+  double relax_once() {
+    step();
+    double moved = 0;
+    for (Rod& r : scene.rods)
+      for (std::size_t s = 0; s < r.segments.size(); ++s) {
+        moved = std::max({moved, dt_ * r.velocity[s].norm(), dt_ * r.angular_velocity[s].norm()});
+        r.velocity[s].setZero();
+        r.angular_velocity[s].setZero();
+      }
+    return moved;
+  }
+  /// Relaxes until no segment moves or turns by more than `motion` (m, rad) in a step.
+  void relax(double motion = 1e-9) {
+    for (int i = 0; i < 2000; ++i)
+      if (relax_once() < motion) return;
+    throw std::runtime_error("not at rest after 2000 steps of relaxation");
+  }
+
+  Rod& rod() { return scene.rods.front(); }
+
+  Scene scene;
+
+ private:
+  double dt_;
+  DirectSolve direct_;
+  LinearProjection projection_;
+  TimeStepper stepper_;
+};
+
+}  // namespace rodsweep

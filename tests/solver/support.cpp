@@ -1,0 +1,217 @@
+#include "support.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "solver/projection.hpp"
+#include "solver/rotation.hpp"
+#include "solver/time_step.hpp"
+
+namespace rodsweep::test {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// The rod with degree of freedom `dof` of one segment moved as a Newton update would.
+Rod nudged(Rod rod, int segment, int dof, double by) {
+  if (dof < 3)
+    rod.position[segment][dof] += by;
+  else
+    rod.orientation[segment] = rotated(rod.orientation[segment], by * Vector3::Unit(dof - 3));
+  return rod;
+}
+
+}  // namespace
+
+VectorX Random::entries(int count) {
+  VectorX out(count);
+  for (double& entry : out) entry = uniform(-1, 1);
+  return out;
+}
+
+Quaternion Random::quaternion() {
+  std::normal_distribution<double> normal;
+  const double w = normal(engine_), x = normal(engine_), y = normal(engine_), z = normal(engine_);
+  return Quaternion(w, x, y, z).normalized();
+}
+
+Edges chain(int segments) {
+  Edges out;
+  for (int i = 1; i < segments; ++i) out.emplace_back(i - 1, i);
+  return out;
+}
+
+Edges tree(int depth, int branching) {
+  Edges out;
+  int first = 0, last = 0;  // of the level above
+  for (int level = 0; level < depth; ++level) {
+    int next = last + 1;
+    for (int parent = first; parent <= last; ++parent)
+      for (int child = 0; child < branching; ++child) out.emplace_back(parent, next++);
+    first = last + 1;
+    last = next - 1;
+  }
+  return out;
+}
+
+Edges ring(int segments) {
+  Edges out = chain(segments);
+  out.emplace_back(segments - 1, 0);
+  return out;
+}
+
+Edges net(int rows, int columns) {
+  Edges out;
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      if (c + 1 < columns) out.emplace_back(r * columns + c, r * columns + c + 1);
+      if (r + 1 < rows) out.emplace_back(r * columns + c, (r + 1) * columns + c);
+    }
+  return out;
+}
+
+int segments_of(const Edges& edges) {
+  int most = 0;
+  for (const auto& [a, b] : edges) most = std::max({most, a, b});
+  return most + 1;
+}
+
+Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsigned seed) {
+  Random random(seed);
+  std::vector<SegmentSpec> segments;
+  for (int i = 0; i < segments_of(edges); ++i) {
+    SegmentSpec s;
+    s.position_m = random.vector(1);
+    s.orientation = random.quaternion();
+    s.length_m = random.uniform(0.05, 0.2);
+    s.radius_m = random.uniform(0.02, 0.06);
+    s.density_kg_m3 = random.uniform(500, 2000);
+    segments.push_back(s);
+  }
+  for (const int i : static_segments) segments[i].is_static = true;
+  std::vector<JointSpec> joints;
+  for (const auto& [a, b] : edges) {
+    JointSpec j;
+    j.a = a;
+    j.b = b;
+    j.arm_a_m = random.vector(0.1);
+    j.arm_b_m = random.vector(0.1);
+    for (double& row : j.compliance_per_j) row = std::pow(10, random.uniform(-6, -3));
+    // Not near the boundary between the hemispheres, where finite differences would jump.
+    const Quaternion d = segments[a].orientation.conjugate() * segments[b].orientation;
+    do j.rest = random.quaternion();
+    while (std::abs(d.dot(*j.rest)) < 0.1);
+    joints.push_back(j);
+  }
+  Rod rod(segments, joints);
+  rod.lambda = 1e-3 * random.entries(6 * rod.joint_count());
+  return rod;
+}
+
+BendingRod bending_rod(int segments, Clamp clamp) {
+  BendingRod rod;
+  rod.segments = segments;
+  rod.clamp = clamp;
+  rod.initial_angle_deg = 20;
+  rod.youngs_modulus_pa = 1e6;
+  return rod;
+}
+
+Scene moving_scene(int segments, int steps) {
+  Scene scene = build_scene(bending_rod(segments));
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 6, 1e-9});
+  for (int i = 0; i < steps; ++i) stepper.step(projection);
+  return scene;
+}
+
+VectorX constraint(const Rod& rod) {
+  VectorX out(6 * rod.joint_count());
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& j = rod.joints[k];
+    const double length = (rod.segments[j.a].length_m + rod.segments[j.b].length_m) / 2;
+    const Matrix3 ra = rod.orientation[j.a].toRotationMatrix(), rb = rod.orientation[j.b].toRotationMatrix();
+    out.segment<3>(6 * k) = (rod.position[j.a] + ra * j.arm_a - rod.position[j.b] - rb * j.arm_b) / length;
+    Quaternion d = rod.orientation[j.a].conjugate() * rod.orientation[j.b];
+    if (d.dot(j.rest) < 0) d = Quaternion(-d.w(), -d.x(), -d.y(), -d.z());
+    out.segment<3>(6 * k + 3) = 2 * d.vec() - 2 * j.rest.vec();
+  }
+  return out;
+}
+
+DenseSystem dense_system(const Rod& rod, double dt) {
+  const int m = 6 * rod.joint_count(), n = 6 * rod.segment_count();
+  DenseSystem out{MatrixX::Zero(m, n), MatrixX::Zero(n, n), {}, {}};
+  for (int s = 0; s < rod.segment_count(); ++s) {
+    for (int dof = 0; dof < 6; ++dof) {
+      const double h = dof < 3 ? 1e-3 : 3e-3;
+      const auto at = [&](double steps) { return constraint(nudged(rod, s, dof, steps * h)); };
+      out.jacobian.col(6 * s + dof) = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
+    }
+    const Segment& segment = rod.segments[s];
+    if (segment.is_static) continue;
+    const double r2 = segment.radius_m * segment.radius_m, l = segment.length_m;
+    const double mass = segment.density_kg_m3 * pi * r2 * l;
+    const Vector3 principal(mass * (3 * r2 + l * l) / 12, mass * (3 * r2 + l * l) / 12, mass * r2 / 2);
+    const Matrix3 r = rod.orientation[s].toRotationMatrix();
+    out.inverse_mass.block<3, 3>(6 * s, 6 * s) = Matrix3::Identity() / mass;
+    out.inverse_mass.block<3, 3>(6 * s + 3, 6 * s + 3) = r * principal.cwiseInverse().asDiagonal() * r.transpose();
+  }
+  out.a = out.jacobian * out.inverse_mass * out.jacobian.transpose();
+  out.b = -constraint(rod);
+  for (int k = 0; k < rod.joint_count(); ++k)
+    for (int row = 0; row < 6; ++row) {
+      const double alpha = rod.joints[k].compliance[row] / (dt * dt);
+      out.a(6 * k + row, 6 * k + row) += alpha;
+      out.b[6 * k + row] -= alpha * rod.lambda[6 * k + row];
+    }
+  return out;
+}
+
+VectorX dense_solve(const MatrixX& a, const VectorX& b) {
+  const Eigen::LLT<MatrixX> factor(a);
+  if (factor.info() != Eigen::Success) throw std::runtime_error("the reference matrix is not positive definite");
+  return factor.solve(b);
+}
+
+double smallest_scaled_eigenvalue(const MatrixX& a) {
+  const VectorX scale = a.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixX scaled = scale.asDiagonal() * a * scale.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<MatrixX>(scaled, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
+}
+
+double scaled_difference(const MatrixX& a, const MatrixX& b) {
+  const VectorX scale = a.diagonal().cwiseSqrt().cwiseInverse();
+  return (scale.asDiagonal() * (a - b) * scale.asDiagonal()).cwiseAbs().maxCoeff();
+}
+
+double energy_error(const MatrixX& a, const VectorX& x, const VectorX& y) {
+  return std::sqrt((x - y).dot(a * (x - y)) / y.dot(a * y));
+}
+
+BlockMatrix random_matrix(const Edges& joints_coupled, int block_rows, unsigned seed) {
+  Random random(seed);
+  BlockMatrix a(block_rows, joints_coupled);
+  for (int row = 0; row < block_rows; ++row)
+    for (int k = a.row_begin(row); k < a.row_end(row); ++k) {
+      const int column = a.column(k);
+      if (column < row) continue;
+      const MatrixX block = 0.5 * random.entries(36).reshaped(6, 6);
+      const MatrixX here =
+          column == row
+              ? MatrixX(block + block.transpose() + 6.0 * (a.row_end(row) - a.row_begin(row)) * MatrixX::Identity(6, 6))
+              : block;
+      for (int c = 0; c < 6; ++c)
+        for (int r = 0; r < 6; ++r) {
+          a.blocks[k].column[c][r] = here(r, c);
+          a.blocks[a.find(column, row)].column[r][c] = here(r, c);
+        }
+    }
+  return a;
+}
+
+}  // namespace rodsweep::test

@@ -1,0 +1,71 @@
+// Sample rods and dense references for the solver's tests.
+//
+// The references share no formula with the solver: constraints through rotation matrices, Jacobians by fourth-order
+// central differences of them (good to about 1e-11), masses from the segments' radius, length and density.
+#pragma once
+
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "solver/block_matrix.hpp"
+#include "solver/rod.hpp"
+#include "solver/scenes.hpp"
+
+namespace rodsweep::test {
+
+using MatrixX = Eigen::MatrixXd;
+
+/// Numbers that are the same in every run.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  Vector3 vector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+  VectorX entries(int count);
+  Quaternion quaternion();  ///< uniform over all unit quaternions, so in both hemispheres
+
+ private:
+  std::mt19937 engine_;
+};
+
+// Graphs: pairs of segments that a joint joins.
+using Edges = std::vector<std::pair<int, int>>;
+Edges chain(int segments);
+Edges tree(int depth, int branching);  ///< segment 0 the root, children numbered after their parents
+Edges ring(int segments);
+Edges net(int rows, int columns);
+int segments_of(const Edges& edges);
+
+/// Random everything: poses, arms, rest rotations, sizes, compliances, multipliers. Its constraints are far from zero.
+Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsigned seed);
+
+/// A straight or bent rod whose constraints are zero, as the scenes build it.
+BendingRod bending_rod(int segments, Clamp clamp = Clamp::segment);
+/// The same, in the middle of its motion after some direct steps.
+Scene moving_scene(int segments, int steps = 8);
+
+/// C of all joints, independently of linearize().
+VectorX constraint(const Rod& rod);
+
+struct DenseSystem {
+  MatrixX jacobian;      ///< 6 per joint x 6 per segment (x, theta)
+  MatrixX inverse_mass;  ///< world frame; zero for static segments
+  MatrixX a;
+  VectorX b;
+};
+DenseSystem dense_system(const Rod& rod, double dt);
+
+/// Solution of the symmetric positive definite system by Eigen; throws std::runtime_error where A is not.
+VectorX dense_solve(const MatrixX& a, const VectorX& b);
+/// Of D^-1/2 A D^-1/2, D the diagonal of A.
+double smallest_scaled_eigenvalue(const MatrixX& a);
+/// max |A_ij - B_ij| / sqrt(A_ii A_jj).
+double scaled_difference(const MatrixX& a, const MatrixX& b);
+/// sqrt((x - y)^T A (x - y) / y^T A y).
+double energy_error(const MatrixX& a, const VectorX& x, const VectorX& y);
+
+/// The pattern of a graph's system, with random well-conditioned symmetric positive definite entries.
+BlockMatrix random_matrix(const Edges& joints_coupled, int block_rows, unsigned seed);
+
+}  // namespace rodsweep::test

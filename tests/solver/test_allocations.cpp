@@ -1,0 +1,149 @@
+// After its first steps, a time step asks for no memory: not in our code, not in Eigen, not in PETSc.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "allocations.hpp"
+#include "solver/conjugate_gradient.hpp"
+#include "solver/initial_guess.hpp"
+#include "solver/time_step.hpp"
+#include "support.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// CG from a guess, with its history recorded, as the paired evaluation and closed loops use it.
+class CgSolve : public LinearSolve {
+ public:
+  CgSolve(const CgSettings& settings, std::unique_ptr<InitialGuess> guess)
+      : settings_(settings), guess_(std::move(guess)) {}
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda) override {
+    if (!cg_) {
+      cg_ = std::make_unique<ConjugateGradient>(system.matrix(), settings_);
+      cg_->record_history(true);
+    }
+    cg_->matrix_changed();
+    ++calls;
+    const bool nonzero = guess_->propose(system, at, delta_lambda);
+    const CgReport report = cg_->solve(system.rhs(), delta_lambda, nonzero, 1e-6, cg_->norm_of(system.rhs()));
+    guess_->accept(at, delta_lambda);
+    return report.outcome;
+  }
+  int calls = 0;
+
+ private:
+  CgSettings settings_;
+  std::unique_ptr<InitialGuess> guess_;
+  std::unique_ptr<ConjugateGradient> cg_;
+};
+
+/// Allocations of ten steps after five.
+long allocations_of(Scene& scene, LinearSolve& solve) {
+  LinearProjection projection(scene, solve);
+  TimeStepper stepper(scene, {0.02, 4, 1e-9});
+  long before = 0;
+  for (int step = 0; step < 15; ++step) {
+    if (step == 5) before = test::allocations();
+    const StepReport report = stepper.step(projection);
+    if (report.outcome != SolveOutcome::converged) return -1;
+  }
+  return test::allocations() - before;
+}
+
+Scene loaded_scene() {
+  BendingRod spec = test::bending_rod(12);
+  spec.tip_force_n = {0, 1, 1};
+  spec.damping_per_s = 0.1;
+  Scene scene = build_scene(spec);
+  const Pose start{scene.rods[0].position[0], scene.rods[0].orientation[0]};
+  scene.clamps.push_back({0, 0, [start](double t) {
+                            return Pose{start.position + Vector3(0, 0, 0.1 * t), start.orientation};
+                          }});
+  return scene;
+}
+
+TEST_CASE("the count sees new, malloc, calloc, realloc and aligned memory") {
+  long before = test::allocations();
+  const auto counted = [&before] {
+    const long now = test::allocations(), since = now - before;
+    before = now;
+    return since;
+  };
+  void* volatile p = std::malloc(100);
+  CHECK(counted() >= 1);
+  p = std::realloc(p, 100000);
+  CHECK(counted() >= 1);
+  std::free(p);
+  p = std::calloc(3, 100);
+  std::free(p);
+  CHECK(counted() >= 1);
+  p = std::aligned_alloc(64, 128);
+  std::free(p);
+  CHECK(counted() >= 1);
+  { const std::vector<double> v(100); }
+  CHECK(counted() >= 1);
+  { const VectorX v = VectorX::Zero(100); }
+  CHECK(counted() >= 1);
+}
+
+TEST_CASE("the count sees PETSc") {
+  const Scene scene = loaded_scene();
+  LinearSystem system(scene.rods[0]);
+  const long before = test::allocations();
+  const ConjugateGradient cg(system.matrix(), {});
+  CHECK(test::allocations() - before > 10);  // only one of them is ours
+}
+
+TEST_CASE("a step with the direct solve allocates nothing") {
+  Scene scene = loaded_scene();
+  DirectSolve direct(scene);
+  CHECK(allocations_of(scene, direct) == 0);
+}
+
+TEST_CASE("a step with CG allocates nothing, whatever the guess") {
+  const auto make = [](const std::string& name, const Scene& scene) -> std::unique_ptr<InitialGuess> {
+    if (name == "previous") return std::make_unique<ExtrapolationGuess>(scene, 4, 1);
+    if (name == "linear") return std::make_unique<ExtrapolationGuess>(scene, 4, 2);
+    if (name == "quadratic") return std::make_unique<ExtrapolationGuess>(scene, 4, 3);
+    if (name == "oracle") return std::make_unique<OracleGuess>(scene, 0.1, 7);
+    if (name == "guarded")
+      return std::make_unique<GuardedGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 3), 0.5);
+    return std::make_unique<ZeroGuess>();
+  };
+  for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded"}) {
+    INFO(guess);
+    Scene scene = loaded_scene();
+    CgSolve solve({}, make(guess, scene));
+    CHECK(allocations_of(scene, solve) == 0);
+  }
+}
+
+TEST_CASE("a step with CG allocates nothing, whatever the norm and the preconditioner that does not factorise") {
+  for (const Norm norm : {Norm::true_residual, Norm::natural})
+    for (const Preconditioner p : {Preconditioner::none, Preconditioner::jacobi, Preconditioner::point_block_jacobi}) {
+      INFO("preconditioner " << static_cast<int>(p) << ", norm " << static_cast<int>(norm));
+      Scene scene = loaded_scene();
+      CgSolve solve({p, norm, 0}, std::make_unique<ZeroGuess>());
+      CHECK(allocations_of(scene, solve) == 0);
+    }
+}
+
+TEST_CASE("icc and cholesky cost PETSc's three work arrays per factorisation, and nothing of ours") {
+  for (const Preconditioner p : {Preconditioner::icc, Preconditioner::cholesky}) {
+    Scene scene = loaded_scene();
+    CgSolve solve({p, Norm::true_residual, 0}, std::make_unique<ZeroGuess>());
+    LinearProjection projection(scene, solve);
+    TimeStepper stepper(scene, {0.02, 4, 1e-9});
+    for (int step = 0; step < 5; ++step) stepper.step(projection);
+    const long before = test::allocations();
+    solve.calls = 0;
+    for (int step = 0; step < 10; ++step) stepper.step(projection);
+    REQUIRE(solve.calls > 10);
+    CHECK(test::allocations() - before <= 3 * solve.calls);
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep
