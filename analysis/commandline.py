@@ -99,8 +99,8 @@ def conditions(file, tasks):
             return "not recorded"
         return " / ".join(dict.fromkeys(text(parameter.text(task)) for task in tasks))
 
-    closed = (file.own_guess[tasks] >= 0).any()
-    return {"evaluation": "closed-loop" if closed else "paired",
+    ways = np.where(file.own_guess[tasks] >= 0, "closed-loop", "paired")[measures.has_guesses(file)[tasks]]
+    return {"evaluation": " / ".join(dict.fromkeys(ways.tolist())),
             "norm": values("solve.norm", lambda n: NORMS.get(n, n)),
             "preconditioner": values("solve.preconditioner"), "tolerance": values("solve.tolerance"),
             "step_s": values("time.step_s")}

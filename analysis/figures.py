@@ -152,7 +152,8 @@ def _line(axes, x, estimates, guess_style, categorical, hollow=None, size=None):
     hollow = np.zeros(len(value), dtype=bool) if hollow is None else np.array(hollow)
     if hollow.any():
         axes.plot(np.asarray(x)[hollow], value[hollow], linestyle="", marker=guess_style.marker,
-                  color=guess_style.colour, markerfacecolor="white", markeredgewidth=0.8, zorder=container[0].get_zorder() + 0.1)
+                  color=guess_style.colour, markerfacecolor="white", markeredgewidth=0.8,
+                  zorder=container[0].get_zorder() + 0.1)
 
 
 def _stack(axes, x, estimates):

@@ -4,7 +4,7 @@ What is resampled is the *draw*: simulations that share a draw of the random par
 and a solve is never a unit of its own. One draw gives no interval. The percentile interval is too narrow for few draws,
 so its level is raised as Hesterberg (2015, "What teachers should know about the bootstrap", expanded percentile) says:
 alpha'/2 = Phi(-sqrt(n/(n-1)) t_{alpha/2, n-1}). No such interval leaves the range of the data: of normal values "95 %"
-covers 76, 88, 90, 95 % of the time for n = 3, 4, 5, 8 draws. The generator is seeded, so a figure made twice is the same figure.
+covers 76, 88, 90, 95 % of the time for n = 3, 4, 5, 8 draws. The generator is seeded: a figure made twice is the same.
 """
 
 from dataclasses import dataclass

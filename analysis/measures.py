@@ -38,7 +38,7 @@ class Simulations:
         return np.unique(self.task[self.task >= 0])
 
     def gather(self, per_task, zero=None):
-        """[task, guess, ...] as [simulation, guess, ...], NaN where there is no task; of guess `zero` in every column."""
+        """[task, guess, ...] as [simulation, guess, ...], NaN where no task; zero: that guess in each column."""
         guesses = np.arange(self.task.shape[1]) if zero is None else np.full(self.task.shape[1], zero)
         task = self.task[:, guesses]
         out = np.asarray(per_task, dtype=float)[np.maximum(task, 0), guesses[None, :]]

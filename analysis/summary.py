@@ -28,6 +28,7 @@ EXAMPLES = """examples:
   analysis/summary.py results/demo.h5 --by scene.segments --scene helix --newton all
   analysis/summary.py results/demo.h5 --csv > demo.csv"""
 FAILURES_SHOWN = 5
+TITLE_WIDTH = 24
 
 
 def arguments():
@@ -81,9 +82,9 @@ def heading(file, sims, chosen, census):
     if not len(sims):
         return lines + ["No simulation is complete yet."]
     said = commandline.conditions(file, sims.tasks())
-    solver = (f"preconditioner {said['preconditioner']}; residual test: {said['norm']}"
-              if measures.has_guesses(file)[sims.tasks()].any() else "advanced by the direct solve, no guesses")
-    return lines + [f"{said['evaluation']} evaluation; {solver}; time step {said['step_s']} s"]
+    solver = (f"{said['evaluation']} evaluation; preconditioner {said['preconditioner']}; residual test: {said['norm']}"
+              if said["evaluation"] else "advanced by the direct solve, no guesses")
+    return lines + [f"{solver}; time step {said['step_s']} s"]
 
 
 def ratio_lines(file, found, guesses, tolerances, newton):
@@ -95,15 +96,15 @@ def ratio_lines(file, found, guesses, tolerances, newton):
                  "mean over simulations [95 % interval]"]
     missed_any = False
     for block in shown:
-        rows = [[f"{block.title}, n = {_count(block.ratio.count[guesses])}"] +
-                [commandline.tolerance_label(file.tolerances[t]) for t in tolerances]]
+        title, first = _titled(block, block.ratio.count[guesses])
+        rows = [[first] + [commandline.tolerance_label(file.tolerances[t]) for t in tolerances]]
         for g in [g for g in guesses if g != file.zero]:
             marks = ["*" if block.unreached[g, t] or block.unreached[file.zero, t] else "" for t in tolerances]
             rows.append(["  " + file.guesses[g]] +
                         [_interval(block.ratio[g, t]) + mark for t, mark in zip(tolerances, marks)])
         if block.zero_iterations is not None:
             rows.append(["  zero, iterations/solve"] + [f"{block.zero_iterations[t]:.1f}" for t in tolerances])
-        lines += [""] + aligned(rows)
+        lines += [""] + title + aligned(rows)
         lines += _missed(file, block, guesses, tolerances)
     return lines
 
@@ -132,8 +133,8 @@ def speedup_lines(file, sims, found, guesses, newton):
         lines.append("WARNING: " + warning)
     names = list(timings.SPEEDUPS)
     for block in shown:
-        rows = [[f"{block.title}, n = {_count(block.times['cg_us'].count[guesses])}", "guess µs", "solve µs"] +
-                [timings.SPEEDUPS[name] for name in names]]
+        title, first = _titled(block, block.times["cg_us"].count[guesses])
+        rows = [[first, "guess µs", "solve µs"] + [timings.SPEEDUPS[name] for name in names]]
         for g in guesses:
             over_zero = ["1" if g == file.zero else _interval(block.speedup[name][g]) if block.speedup else "-"
                          for name in names]
@@ -142,7 +143,7 @@ def speedup_lines(file, sims, found, guesses, newton):
         if block.direct_speedup and math.isfinite(block.times["direct_us"].value[file.zero]):
             rows.append(["  direct", "-", _fixed(block.times["direct_us"].value[file.zero], 1)] +
                         [_interval(block.direct_speedup[name]) for name in names])
-        lines += [""] + aligned(rows) + ([f"  {block.interruptions}"] if block.interruptions else [])
+        lines += [""] + title + aligned(rows) + ([f"  {block.interruptions}"] if block.interruptions else [])
     return lines
 
 
@@ -153,7 +154,7 @@ def direct_lines(file, sims, found):
         return []
     rows = [["Direct solve: median over simulations [95 % interval]", "assembly µs", "solve µs"]]
     for block in shown:
-        rows.append([f"  {block.title}, n = {_count(block.direct_times['direct_us'].count)}"] +
+        rows.append([f"  {block.title}, n = {commandline.range_text(block.direct_times['direct_us'].count)}"] +
                     [_interval(block.direct_times[name]) for name in ("assemble_us", "direct_us")])
     warning = commandline.timing_warning(file, sims.tasks())
     return [""] + ([f"WARNING: {warning}"] if warning else []) + aligned(rows)
@@ -202,8 +203,10 @@ def _fixed(value, digits):
     return f"{value:.{digits}f}" if math.isfinite(value) else "-"
 
 
-def _count(counts):
-    return commandline.range_text(counts)
+def _titled(block, counts):
+    """A block's title: in the first cell of its table, or on a line before it if it is long."""
+    title = f"{block.title}, n = {commandline.range_text(counts)}"
+    return ([], title) if len(title) <= TITLE_WIDTH else ([title], "")
 
 
 COLUMNS = ("scene", "settings", "newton", "quantity", "guess", "tolerance", "value", "low", "high", "simulations",

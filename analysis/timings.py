@@ -1,6 +1,6 @@
 """Times and speedups per simulation, from the rows of /timing: sums over a simulation, as CG ratios are.
 
-A row holds the times of the parts of one solve: assembly, each guess and its CG to the job's tolerance, the direct solve.
+A row holds the times of the parts of a solve: assembly, each guess and its CG to the job's tolerance, the direct solve.
 They last microseconds, and the operating system's interruptions milliseconds: one would outweigh a whole simulation.
 A row is left out, for all guesses, where a part took over INTERRUPTED times its median in the simulation and FLOOR_S
 longer (CG: its median per iteration, with FIXED iterations for what every solve costs); sums are scaled up to all rows.
@@ -10,8 +10,6 @@ Times.interrupted counts the rows left out.
 from dataclasses import dataclass
 
 import numpy as np
-
-import measures
 
 COLUMNS = ("/timing/solves/assemble_s", "/timing/solves/direct_s", "/timing/solves/guess_s", "/timing/solves/cg_s")
 ROWS = ("/solves/newton", "/solves/iterations")
@@ -49,7 +47,7 @@ def times(file, sims):
     """{"first": Times, "all": Times} from one pass over the rows."""
     tasks, guesses, zero = sims.tasks(), len(file.guesses), file.zero
     names = ("solves", "kept", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept", "zero_guess_s", "zero_cg_s")
-    sums = {newton: {name: np.zeros((file.task_count, guesses)) for name in names} for newton in measures.NEWTON}
+    sums = {which: {name: np.zeros((file.task_count, guesses)) for name in names} for which in ("first", "later")}
     rung = _timed_rung(file)
     for owners, starts, rows in file.solve_blocks(tasks, COLUMNS + ROWS):
         assemble, direct, guess, cg = (rows[path].astype(float) for path in COLUMNS)
@@ -63,7 +61,8 @@ def times(file, sims):
         work = np.ones(parts.shape)
         work[:, -guesses:] = np.where(iterations >= 0, iterations + FIXED, np.nan)
         smooth = ~_interrupted(starts, parts, work)[:, None]
-        for newton, counted in (("first", valid & (rows["/solves/newton"] == 0)[:, None]), ("all", valid)):
+        first = (rows["/solves/newton"] == 0)[:, None]
+        for which, counted in (("first", valid & first), ("later", valid & ~first)):
             kept = counted & smooth
             with_direct = kept & np.isfinite(direct)
             parts = {"solves": counted, "kept": kept, "assemble_s": np.where(kept, assemble, 0),
@@ -73,9 +72,11 @@ def times(file, sims):
                 parts["zero_guess_s"] = np.where(kept, guess[:, [zero]], 0)
                 parts["zero_cg_s"] = np.where(kept, cg[:, [zero]], 0)
             for name, values in parts.items():
-                np.add.at(sums[newton][name], owners, np.add.reduceat(values.astype(float), starts, axis=0))
+                np.add.at(sums[which][name], owners, np.add.reduceat(values.astype(float), starts, axis=0))
     rest = np.broadcast_to(_rest_s(file, tasks)[:, None], (file.task_count, guesses))
-    return {newton: _gathered(sims, zero, part, rest) for newton, part in sums.items()}
+    first, later = _scaled(sums["first"]), _scaled(sums["later"])
+    every = {name: first[name] + later[name] for name in first}
+    return {"first": _gathered(sims, zero, first, rest), "all": _gathered(sims, zero, every, rest)}
 
 
 def _timed_rung(file):
@@ -99,15 +100,22 @@ def _interrupted(starts, parts, work):
     return found
 
 
+def _scaled(sums):
+    """Sums over the rows kept as sums over all rows; direct_s is NaN unless all rows kept have it."""
+    none = np.where(sums["solves"] > 0, np.nan, 1.0)
+    scale = np.divide(sums["solves"], sums["kept"], out=none, where=sums["kept"] > 0)
+    scaled = {name: values if name in ("solves", "kept") else values * scale for name, values in sums.items()}
+    scaled["direct_s"] = np.where(sums["direct_kept"] == sums["kept"], scaled["direct_s"], np.nan)
+    return scaled
+
+
 def _gathered(sims, zero, sums, rest):
-    """Sums of tasks as Times: by simulation, and scaled from the rows kept to all rows."""
-    scale = np.divide(sums["solves"], sums["kept"], out=np.full(sums["kept"].shape, np.nan), where=sums["kept"] > 0)
+    """Sums of tasks by simulation and guess; NaN where there were no solves."""
+    solves = sims.gather(sums["solves"])
 
     def of(name, guess=None):
-        return sims.gather(sums[name] * scale, guess)
+        return np.where(sims.gather(sums["solves"], guess) > 0, sims.gather(sums[name], guess), np.nan)
 
-    direct = np.where(sims.gather(sums["direct_kept"]) == sims.gather(sums["kept"]), of("direct_s"), np.nan)
-    solves = sims.gather(sums["solves"])
     if zero is None:
         zero_assemble = zero_guess = zero_cg = zero_rest = np.full(sims.task.shape, np.nan)
     else:
@@ -116,12 +124,12 @@ def _gathered(sims, zero, sums, rest):
         zero_guess = np.where(own, of("guess_s", zero), of("zero_guess_s"))
         zero_cg = np.where(own, of("cg_s", zero), of("zero_cg_s"))
         zero_rest = np.where(own, sims.gather(rest, zero), sims.gather(rest))
-    return Times(solves, solves - sims.gather(sums["kept"]), of("assemble_s"), of("guess_s"), of("cg_s"), direct,
-                 sims.gather(rest), zero_assemble, zero_guess, zero_cg, zero_rest)
+    return Times(solves, solves - sims.gather(sums["kept"]), of("assemble_s"), of("guess_s"), of("cg_s"),
+                 of("direct_s"), sims.gather(rest), zero_assemble, zero_guess, zero_cg, zero_rest)
 
 
 def _rest_s(file, tasks):
-    """Seconds of the steps outside assembly and solves per task, interruptions left out; NaN where none was recorded."""
+    """Seconds of the steps outside assembly and solves per task, interruptions left out; NaN if not recorded."""
     total, kept, taken = (np.zeros(file.task_count) for _ in range(3))
     if file.has("/timing/steps/rest_s"):
         for owners, starts, rows in file.step_blocks(tasks, ["/timing/steps/rest_s"]):

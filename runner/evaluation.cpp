@@ -27,14 +27,14 @@ TaskOutcome outcome_of(SolveOutcome solve) {
 std::string number(double value) { return std::to_string(value); }
 
 /// Writes the observables of one finished step into row `step` of /steps.
-void record_step(TaskRecord& record, std::size_t step, const Scene& scene, const StepReport& report, double dt,
-                 double initial_length) {
+void record_step(TaskRecord& record, std::size_t step, const Scene& scene, const StepReport& report,
+                 double constraint_dt, double initial_length) {
   double length = 0, gap = 0, residual = 0, kinetic = 0, potential = 0, elastic = 0;
   Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
   for (const Rod& rod : scene.rods) {
     length += rod_length(rod);
     gap = std::max(gap, joint_gap(rod));
-    residual = std::max(residual, newton_residual(rod, dt));
+    residual = std::max(residual, newton_residual(rod, constraint_dt));
     kinetic += kinetic_energy(rod);
     potential += gravitational_energy(rod, scene.gravity_m_s2);
     elastic += elastic_energy(rod);
@@ -109,7 +109,7 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
       fail(outcome_of(report.outcome), where + "the linear solve ended as " + to_string(report.outcome));
       break;
     }
-    record_step(record, static_cast<std::size_t>(step), scene, report, spec.time.step_s, initial_length);
+    record_step(record, static_cast<std::size_t>(step), scene, report, stepper.constraint_dt(), initial_length);
     record.steps_done[0] = step + 1;
     if (every > 0 && (step + 1) % every == 0)
       record_frame(record, task, static_cast<std::size_t>((step + 1) / every), scene);

@@ -41,8 +41,7 @@ class Plan {
   const std::vector<std::string>& guess_labels() const { return guess_labels_; }  ///< /axes/guess; empty without cg
 
   /// Built on demand, in the order of the job: every key of scene, time, solve and evaluation that applies anywhere
-  /// (`steps` always, from `duration_s` if need be), parameters of guesses that vary, and in a closed loop the task's
-  /// own guess.
+  /// (`steps` always, from `duration_s` if need be), and parameters of guesses that vary.
   std::vector<ParameterColumn> parameters() const;
 
   std::int64_t step_rows() const { return step_rows_; }

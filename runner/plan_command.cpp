@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -30,7 +31,7 @@ Extent extent(const Plan& plan, Member member) {
 std::int64_t most_systems(const Plan& plan) {
   double systems = 0;
   for (const Task& task : plan.tasks()) systems += task.cost / task.segments;
-  return static_cast<std::int64_t>(systems + 0.5);
+  return std::llround(systems);
 }
 
 std::int64_t all_steps(const Plan& plan) {

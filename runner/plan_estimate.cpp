@@ -14,7 +14,7 @@ void truncate(Task& task, TaskSpec& spec, int steps) {
   if (task.solves > 0) task.solves = task.solves / task.steps * steps;
   if (task.frames > 0) task.frames = 1 + steps / spec.record.trajectory_every;
   task.steps = spec.time.steps = steps;
-  spec.time_limit_s = too_long_s;
+  spec.time_limit_s = spec.time_limit_s > 0 ? std::min(spec.time_limit_s, too_long_s) : too_long_s;
 }
 
 Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate) {

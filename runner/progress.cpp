@@ -53,7 +53,10 @@ std::string Progress::text(Clock::time_point now) const {
       fmt::format("{} of {} tasks ({} %)", done, work_.total, 100 * done / std::max<std::int64_t>(work_.total, 1));
   if (failed > 0) text += fmt::format(", {} failed", failed);
   const double elapsed = seconds(now - begin_);
-  if (done_ > 0 && elapsed > 0) text += fmt::format(", {:.3g}/s", static_cast<double>(done_) / elapsed);
+  if (done_ > 0 && elapsed > 0) {
+    const double rate = static_cast<double>(done_) / elapsed;
+    text += rate >= 1 ? fmt::format(", {:.3g}/s", rate) : fmt::format(", {:.3g}/min", 60 * rate);
+  }
   if (const auto left = seconds_left(now)) text += fmt::format(", {} left", duration_text(*left));
   return text;
 }

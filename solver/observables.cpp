@@ -61,13 +61,14 @@ double joint_gap(const Rod& rod) {
   return worst;
 }
 
-double newton_residual(const Rod& rod, double dt) {
+double newton_residual(const Rod& rod, double constraint_dt) {
   Linearization at(rod);
   linearize(rod, at);
   double worst = 0;
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
-    const Vector6 force = rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row)) / (dt * dt);
+    const Vector6 force =
+        rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row)) / (constraint_dt * constraint_dt);
     const Vector6 residual = at.constraint.segment<6>(row) + force;
     if (!residual.allFinite()) return std::numeric_limits<double>::quiet_NaN();
     worst = std::max(worst, residual.lpNorm<Eigen::Infinity>());

@@ -13,8 +13,8 @@ double rod_length(const Rod& rod);
 /// max over joints of |x_a + rho_a - x_b - rho_b| / l.
 double joint_gap(const Rod& rod);
 
-/// max |C + alpha~ lambda|: what is left for Newton at the end of a step.
-double newton_residual(const Rod& rod, double dt);
+/// max |C + alpha~ lambda|, alpha~ = alpha / constraint_dt^2 (TimeStepper::constraint_dt): what is left for Newton.
+double newton_residual(const Rod& rod, double constraint_dt);
 
 /// Sum over joints of C^T alpha^-1 C / 2 [J]; rows of zero compliance store nothing.
 double elastic_energy(const Rod& rod);

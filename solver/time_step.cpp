@@ -27,8 +27,7 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
 
 StepReport TimeStepper::step(Projection& projection) {
   predict();
-  // Drag slows the constraints' forces like the loads', so that it cancels at rest and cannot shift an equilibrium.
-  const double dt_c = settings_.dt / std::sqrt(1 + scene_.damping_per_s * settings_.dt);
+  const double dt_c = constraint_dt();
   StepReport report;
   bool converged = false;
   for (int newton = 0; newton < settings_.newton_iterations && !converged; ++newton) {
@@ -48,6 +47,11 @@ StepReport TimeStepper::step(Projection& projection) {
   ++steps_;
   scene_.time_s = start_time_s_ + steps_ * settings_.dt;
   return report;
+}
+
+double TimeStepper::constraint_dt() const {
+  // Drag slows the constraints' forces like the loads', so that it cancels at rest and cannot shift an equilibrium.
+  return settings_.dt / std::sqrt(1 + scene_.damping_per_s * settings_.dt);
 }
 
 void TimeStepper::predict() {

@@ -35,6 +35,9 @@ class TimeStepper {
 
   int steps_taken() const { return steps_; }
 
+  /// dt_c, which turns compliances into alpha~ and multipliers into forces.
+  double constraint_dt() const;
+
  private:
   void predict();
   void update_velocities();

@@ -1,4 +1,4 @@
-"""The figures: the planted numbers are drawn, no text overlaps another or leaves the page, styles tell guesses apart."""
+"""The figures: planted numbers are drawn, no text overlaps another or leaves the page, styles tell guesses apart."""
 
 import argparse
 import itertools
@@ -24,7 +24,8 @@ class Drawn(unittest.TestCase):
         settings.setdefault("steps", 2)
         file = SweepFile(synthetic.Sweep(**settings).write(os.path.join(folder.name, "sweep.h5")))
         self.addCleanup(file.h5.close)
-        return spatial.make_study(file, argparse.Namespace(select=[], scene=None, guess=None, x=x, newton=newton, width=width))
+        options = argparse.Namespace(select=[], scene=None, guess=None, x=x, newton=newton, width=width)
+        return spatial.make_study(file, options)
 
     def page_texts(self, page):
         return " ".join(text.get_text() for text in page.figure.findobj(match=pyplot.Text))
@@ -110,7 +111,8 @@ class Values(Drawn):
         page = figures.time_figure(study, timings.times(study.file, study.sims))
         bars = [(patch.get_y(), patch.get_height()) for patch in page.axes[0][1].patches]
         tops = sorted(y + height for y, height in bars)[-3:]
-        self.assertAlmostEqual(max(tops), 2 + 40 * 0.1 + 40 * 0.5, places=3)  # assembly, guess, CG of "previous", N = 40
+        assembly, guess, cg = 2, 40 * 0.1, 40 * 0.5  # of "previous" at N = 40
+        self.assertAlmostEqual(max(tops), assembly + guess + cg, places=3)
         self.assertEqual(len(bars), 9)
 
 
@@ -147,7 +149,12 @@ class Legibility(Drawn):
         for page in (figures.ratio_figure(study, [0]), figures.speedup_figure(study, by_newton),
                      figures.time_figure(study, by_newton)):
             self.legible(page)
-            self.assertIn("1 simulation per point; a single draw has no intervals", " ".join(self.page_texts(page).split()))
+            said = " ".join(self.page_texts(page).split())
+            self.assertIn("1 simulation per point; a single draw has no intervals", said)
+
+
+def linear_light(colour):
+    return np.array([c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colors.to_rgb(colour)])
 
 
 def seen_by(colour, deficiency):
@@ -156,13 +163,13 @@ def seen_by(colour, deficiency):
                                  [-0.011820, 0.042940, 0.968881]],
                 "protanopia": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216],
                                [-0.003882, -0.048116, 1.051998]]}
-    linear = np.array([c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colors.to_rgb(colour)])
-    return np.clip(np.array(matrices[deficiency]) @ linear, 0, 1)
+    return np.clip(np.array(matrices[deficiency]) @ linear_light(colour), 0, 1)
 
 
 class Styles(unittest.TestCase):
     def test_a_guess_looks_the_same_whatever_else_is_in_the_file(self):
-        some, others = style.guess_styles(["zero", "quadratic"]), style.guess_styles(["previous", "copingnet", "quadratic"])
+        some = style.guess_styles(["zero", "quadratic"])
+        others = style.guess_styles(["previous", "copingnet", "quadratic"])
         self.assertEqual(some["quadratic"], others["quadratic"])
 
     def test_marker_and_dash_tell_all_kinds_apart_without_colour(self):
@@ -181,12 +188,12 @@ class Styles(unittest.TestCase):
 
     def test_lines_stand_out_from_white_paper(self):
         for label, guess_style in style.guess_styles(list(style.KINDS)).items():
-            linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colors.to_rgb(guess_style.colour)]
-            luminance = np.dot(linear, [0.2126, 0.7152, 0.0722])
+            luminance = np.dot(linear_light(guess_style.colour), [0.2126, 0.7152, 0.0722])
             self.assertGreater(1.05 / (luminance + 0.05), 2.8, label)
 
     def test_names_of_parameters_with_their_units(self):
-        for name, unit, label in (("scene.youngs_modulus_pa", "Pa", "youngs modulus (Pa)"), ("time.step_s", "s", "step (s)"),
+        for name, unit, label in (("scene.youngs_modulus_pa", "Pa", "youngs modulus (Pa)"),
+                                  ("time.step_s", "s", "step (s)"),
                                   ("scene.density_kg_m3", "kg/m^3", "density (kg/m^3)"),
                                   ("scene.damping_per_s", "1/s", "damping (1/s)"), ("scene.windings", "", "windings"),
                                   ("scene.segments", "", "number of segments N")):

@@ -35,7 +35,8 @@ class Groups(unittest.TestCase):
         file, sims = self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01, 0.02]}, scenes=("helix",))
         self.assertEqual(groups.gridded_keys(file, sims.any_task, "scene.segments"), ["time.step_s"])
         panels = groups.panels(file, sims, "scene.segments")
-        self.assertEqual([panel.title() for panel in panels], ["Helix, time.step_s = 0.01", "Helix, time.step_s = 0.02"])
+        self.assertEqual([panel.title() for panel in panels],
+                         ["Helix, time.step_s = 0.01", "Helix, time.step_s = 0.02"])
         self.assertEqual([len(panel.index) for panel in panels], [8, 8])
 
     def test_a_table_pools_the_keys_of_the_scene_alone(self):

@@ -49,7 +49,7 @@ class Intervals(unittest.TestCase):
         self.assertEqual(intervals.mean(values).low, intervals.mean(values).low)
 
     def test_intervals_of_means_cover_the_truth_as_often_as_they_say(self):
-        """For very few simulations no interval within the data can: plain percentiles of five reach 83 %, these 90 %."""
+        """Nearly so for five simulations, where plain percentiles reach 83 % and these 90 %."""
         generator = np.random.default_rng(5)
         for n, least in ((5, 0.88), (20, 0.925)):
             values = 0.4 + 0.1 * generator.normal(size=(n, 600))

@@ -71,8 +71,8 @@ class Spatial(Scripts):
 
     def test_choices_are_part_of_the_name(self):
         self.write(samples=2, solves=False)
-        done = self.run_script("spatial.py", "sweep.h5", "--scene", "helix", "--newton", "all", "--width", "84", "-o", "out",
-                               "--x", "scene.youngs_modulus_pa", "--select", "scene.segments=10")
+        done = self.run_script("spatial.py", "sweep.h5", "--scene", "helix", "--newton", "all", "--width", "84",
+                               "-o", "out", "--x", "scene.youngs_modulus_pa", "--select", "scene.segments=10")
         self.assertEqual(done.stdout.split()[0],
                          "out/sweep-helix-cg-ratio-by-youngs_modulus_pa-all-newton-84mm.pdf")
         self.assertIn("CG ratios only", done.stderr)
@@ -92,7 +92,8 @@ class Spatial(Scripts):
         self.write(method="direct")
         self.refused("spatial.py", "sweep.h5", words="no guesses to compare")
         self.write(pending=range(24))
-        self.refused("spatial.py", "sweep.h5", words="no simulation to show yet: 0 of 24 tasks ok, none failed, 24 pending")
+        self.refused("spatial.py", "sweep.h5",
+                     words="no simulation to show yet: 0 of 24 tasks ok, none failed, 24 pending")
 
     def test_help_shows_examples(self):
         command = [os.path.join(synthetic.ANALYSIS, "spatial.py"), "--help"]

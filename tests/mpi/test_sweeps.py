@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The program under mpirun, from outside: the same results on any number of ranks and after any interruption, refusals, exit codes.
 
-Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
+Run by CTest in an empty folder, with RODSWEEP, MPIRUN and FAILING_DISK in the environment.
 """
 
 import hashlib
@@ -189,6 +189,19 @@ class Interrupted(SweepCase):
     def test_after_sigterm_to_mpirun_which_kills_soon_after(self):
         self.interrupt("term.h5", 3, lambda p: p.send_signal(signal.SIGTERM))
         self.assertEqual(self.resume("term.h5", 3)[0]["exit_code"], STOPPED)
+
+    def test_after_a_worker_finds_the_disk_full(self):
+        preload = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_RANK": "2", "FAIL_FILE": os.path.abspath("full")}
+        os.environ.update(preload)
+        try:
+            code, _, stderr = self.interrupt("full.h5", 3, lambda p: open("full", "w").close())
+        finally:
+            for name in preload:
+                del os.environ[name]
+        self.assertEqual(code, USER_ERROR, stderr)
+        self.assertEqual(stderr.count("cannot go on: H5Dwrite failed"), 1, stderr)
+        self.assertIn("error: rank 2 on", stderr)
+        self.resume("full.h5", 3)
 
     def test_without_mpirun_and_with_a_second_signal_during_the_stop(self):
         def twice(process):

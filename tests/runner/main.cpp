@@ -1,2 +1,4 @@
-#define CATCH_CONFIG_MAIN
-#include <catch2/catch.hpp>
+// For what needs neither MPI nor PETSc.
+#include "tests/run_cases.hpp"
+
+int main(int argc, char** argv) { return run_cases(argc, argv); }

@@ -73,6 +73,13 @@ TEST_CASE("a stretched rod is longer by its gaps, and the largest counts as the 
   CHECK(joint_gap(bent(5, 0.4)) < 1e-15);
 }
 
+TEST_CASE("a joint opened sideways counts by its midpoint, the same from either end") {
+  Rod rod = straight(3, Clamp::free);  // along x
+  const double l = 2.0 / 3, gap = 0.3;
+  rod.position[1].y() += gap;
+  CHECK(rod_length(rod) == Approx(l + 2 * std::hypot(l, gap / 2)).epsilon(1e-13));
+}
+
 TEST_CASE("elastic energy of a uniformly bent rod is EI kappa^2 / 2 times the length that bends") {
   const int segments = 40;
   const double angle = 1e-3, l = 2.0 / segments, kappa = angle / l;

@@ -1,0 +1,154 @@
+"""The scripts on files of the program itself: RODSWEEP names it. Derived numbers against the rows they come from."""
+
+import contextlib
+import io
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+import unittest.mock
+
+import synthetic  # noqa: F401  (makes analysis/ importable)
+import commandline
+import h5py
+import measures
+import numpy as np
+import spatial
+import summary
+import timings
+from sweepfile import SweepFile
+
+ROD = {"type": "bending_rod", "segments": {"grid": [6, 9]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
+       "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}
+HELIX = {"type": "helix", "segments": 12, "helix_radius_m": 0.5, "helix_height_m": {"uniform": [0.4, 0.6]},
+         "windings": 2, "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e5}
+JOB = {"name": "analysis", "kind": "sweep", "seed": 3, "samples": 2, "scene": {"grid": [ROD, HELIX]},
+       "time": {"step_s": 0.02, "steps": 4, "newton_iterations": 3}, "solve": {"method": "cg", "tolerance": 1e-2},
+       "guesses": ["zero", "previous", "quadratic", {"oracle": {"error": 0.1}}]}
+
+
+class Program(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+
+    def run_job(self, name, **changes):
+        """Path of the results of JOB with changes."""
+        job, results = (os.path.join(self.folder.name, name + ending) for ending in (".json", ".h5"))
+        if not os.path.exists(results):
+            with open(job, "w", encoding="utf-8") as text:
+                json.dump({**JOB, "name": name, **changes}, text)
+            subprocess.run([os.environ["RODSWEEP"], "run", job, "-o", results], check=True, capture_output=True,
+                           stdin=subprocess.DEVNULL)
+        return results
+
+    def script(self, module, *arguments):
+        out, name = io.StringIO(), module.__name__ + ".py"
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()), \
+                unittest.mock.patch.object(sys, "argv", [name, *arguments]):
+            with self.assertRaises(SystemExit) as left:
+                commandline.run(name, module.main)
+        self.assertIn(left.exception.code, (None, 0))
+        return out.getvalue()
+
+    def test_tasks_parameters_and_axes_are_understood(self):
+        with SweepFile(self.run_job("paired")) as file:
+            self.assertEqual(file.task_count, 6)
+            self.assertTrue(file.ok.all(), file.outcome)
+            self.assertEqual(len(file.guesses), 4)
+            self.assertEqual(file.zero, 0)
+            self.assertEqual(file.job()["name"], "paired")
+            self.assertEqual(file.parameter("scene.youngs_modulus_pa").unit, "Pa")
+            self.assertLessEqual({"scene.type", "scene.segments", "scene.length_m"}, set(file.swept()))
+            np.testing.assert_array_equal(file.parameter("scene.length_m").applies(),
+                                          file.scene_types() == "bending_rod")
+            self.assertEqual(len(file.runs()), 1)
+
+    def test_ratios_are_those_of_the_rows_and_of_the_file(self):
+        with SweepFile(self.run_job("paired")) as file:
+            sims = measures.simulations(file, np.ones(file.task_count, dtype=bool))
+            found = {newton: measures.cg_ratios(file, sims, newton).ratio for newton in ("first", "all")}
+            iterations, newton = file.h5["solves/iterations"][:].astype(float), file.h5["solves/newton"][:]
+            for task in range(file.task_count):
+                rows = slice(file.first_solve[task], file.first_solve[task] + file.solves[task])
+                for which, run in (("first", newton[rows] == 0), ("all", newton[rows] >= 0)):
+                    counted = iterations[rows][run]
+                    reached = (counted >= 0).all(axis=(0, 1)) & (counted[:, 0].sum(axis=0) > 0)
+                    expected = counted.sum(axis=0)[:, reached] / counted[:, 0].sum(axis=0)[reached]
+                    self.assertTrue(reached[:4].all())
+                    np.testing.assert_allclose(found[which][task][:, reached], expected)
+            stored = file.h5["tasks/cg_ratio"][:]
+            both = np.isfinite(found["first"]) & np.isfinite(stored)
+            self.assertTrue(both[..., :4].all())
+            np.testing.assert_allclose(found["first"][both], stored[both])
+
+    def test_times_are_sums_of_the_rows(self):
+        with SweepFile(self.run_job("paired")) as file, unittest.mock.patch.object(timings, "INTERRUPTED", np.inf):
+            sims = measures.simulations(file, np.ones(file.task_count, dtype=bool))
+            times = timings.times(file, sims)["all"]
+            rows = slice(file.first_solve[2], file.first_solve[2] + file.solves[2])
+            for name in ("cg_s", "guess_s"):
+                expected = np.nansum(file.h5[f"timing/solves/{name}"][rows].astype(float), axis=0)
+                np.testing.assert_allclose(getattr(times, name)[2], expected, rtol=1e-6)
+            self.assertTrue(np.isfinite(times.direct_s).all() and np.isfinite(times.rest_s).all())
+            for values in timings.speedups({"first": times, "all": times}, "first").values():
+                self.assertTrue((values > 0).all())
+                np.testing.assert_allclose(values[:, 0], 1, rtol=1e-6)
+
+    def test_a_paired_sweep_has_its_figures_and_table(self):
+        path = self.run_job("paired")
+        figures = self.script(spatial, path).split()
+        self.assertEqual(len(figures), 6)
+        self.assertTrue(all(os.path.getsize(figure) > 5000 for figure in figures))
+        said = self.script(summary, path)
+        for words in ("6 of 6 tasks ok, none failed", "Bending rod, n = 4", "Helix, n = 2", "oracle",
+                      "preconditioner jacobi", "Solved to tolerance 1e-2", "joint gap/length"):
+            self.assertIn(words, said)
+
+    def test_a_closed_loop_pairs_every_guess_with_zero(self):
+        path = self.run_job("closed", evaluation="closed_loop")
+        with SweepFile(path) as file:
+            self.assertEqual(file.task_count, 24)
+            sims = measures.simulations(file, np.ones(file.task_count, dtype=bool))
+            self.assertTrue(sims.closed_loop)
+            self.assertEqual(sims.task.shape, (6, 4))
+            ratio = measures.cg_ratios(file, sims, "first").ratio
+            self.assertTrue(np.isfinite(ratio[..., :4]).all())
+            np.testing.assert_array_equal(ratio[:, 0, :4], 1)
+        self.assertEqual(len(self.script(spatial, path).split()), 6)
+        self.assertIn("closed-loop evaluation", self.script(summary, path))
+
+    def test_a_direct_only_job_has_times_and_steps(self):
+        path = self.run_job("direct", solve={"method": "direct"}, guesses=[])
+        with SweepFile(path) as file:
+            self.assertEqual((file.guesses, file.zero), ([], None))
+        said = self.script(summary, path)
+        self.assertIn("advanced by the direct solve, no guesses", said)
+        self.assertIn("Newton its/step", said)
+        self.assertNotIn("CG ratio", said)
+
+    def test_a_summary_has_the_ratios_of_the_full_record(self):
+        with SweepFile(self.run_job("paired")) as full, \
+                SweepFile(self.run_job("short", record={"solves": "summary"})) as short:
+            ratios = [measures.cg_ratios(file, measures.simulations(file, file.ok), "first").ratio
+                      for file in (full, short)]
+            np.testing.assert_array_equal(*ratios)
+            self.assertFalse(timings.timed(short))
+        self.assertEqual(len(self.script(spatial, short.path).split()), 2)
+        self.assertIn("No times", self.script(summary, short.path))
+
+    def test_tasks_that_are_not_complete_are_not_read(self):
+        path = self.run_job("partial")
+        with h5py.File(path, "r+") as h5:
+            h5["tasks/state"][:2] = 0
+        with SweepFile(path) as file:
+            census = measures.census(file, np.ones(file.task_count, dtype=bool))
+            self.assertEqual((census.ok, census.pending), (4, 2))
+        self.assertIn("4 of 6 tasks ok, none failed, 2 pending", self.script(summary, path))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,26 @@
+// Preloaded into the program: once the file named by FAIL_FILE exists, writes at an offset (MPI-IO's) of rank FAIL_RANK fail as
+// on a full disk.
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static int disk_is_full(void) {
+  const char* rank = getenv("OMPI_COMM_WORLD_RANK");
+  const char* failing = getenv("FAIL_RANK");
+  const char* file = getenv("FAIL_FILE");
+  return rank && failing && file && strcmp(rank, failing) == 0 && access(file, F_OK) == 0;
+}
+
+ssize_t pwrite(int descriptor, const void* data, size_t bytes, off_t offset) {
+  ssize_t (*real)(int, const void*, size_t, off_t) = dlsym(RTLD_NEXT, "pwrite");
+  if (!disk_is_full()) return real(descriptor, data, bytes, offset);
+  errno = ENOSPC;
+  return -1;
+}
+
+ssize_t pwrite64(int descriptor, const void* data, size_t bytes, off_t offset) {
+  return pwrite(descriptor, data, bytes, offset);
+}

@@ -1,0 +1,6 @@
+#define CATCH_CONFIG_RUNNER
+#include "run_cases.hpp"
+
+#include <catch2/catch.hpp>
+
+int run_cases(int argc, char** argv) { return Catch::Session().run(argc, argv); }
