@@ -33,7 +33,7 @@ def ratio_figure(study, tolerances):
     notes = [f"Iterations with a guess ÷ from zero, summed over a simulation: mean over {_sample(shown)}. "
              f"Counted: {measures.NEWTON[study.newton]}."]
     if any_open:
-        notes.append("Open markers: some of these solves missed the tolerance within the iteration limit and count "
+        notes.append("Open markers: some of these solves missed the tolerance (iteration limit or divergence) and count "
                      "what they used.")
     width = study.width_mm
     page = layout.Page(width, [p.title() for p in study.panels], len(tolerances), 4 if width > 100 else 2,

@@ -14,7 +14,7 @@
 namespace rodsweep {
 namespace {
 
-constexpr double divergence_limit = 1e8;
+constexpr double divergence_limit = 1e30;
 
 /// What the convergence test compares with.
 struct Target {

@@ -117,21 +117,37 @@ TEST_CASE("a scene at rest needs no solve") {
 }
 
 TEST_CASE("multipliers start from zero in every step and end as the forces that hold the joints") {
-  // A rod at rest under gravity: the first joint carries the weight of all that is free, J^T lambda / dt^2.
+  // A rod at rest under gravity: the first joint carries the weight of all that is free, J^T lambda / dt_c^2.
   BendingRod spec = test::bending_rod(6);
   spec.damping_per_s = 40;
   spec.youngs_modulus_pa = 1e8;
   Scene scene = build_scene(spec);
   DirectSolve direct(scene);
   LinearProjection projection(scene, direct);
-  const double dt = 0.02, dt2 = dt * dt / (1 + spec.damping_per_s * dt);
-  TimeStepper stepper(scene, {dt, 8, 1e-12});
+  TimeStepper stepper(scene, {0.02, 8, 1e-12});
+  const double dt_c = stepper.constraint_dt();
   for (int i = 0; i < 1000; ++i) stepper.step(projection);
   const Rod& rod = scene.rods[0];
   REQUIRE(kinetic_energy(rod) < 1e-18);
-  const Vector3 force = rod.lambda.head<3>() / rod.joints[0].length / dt2;  // on segment a
+  const Vector3 force = rod.lambda.head<3>() / rod.joints[0].length / (dt_c * dt_c);  // on segment a
   const Vector3 weight = 5 * rod.segments[1].mass * scene.gravity_m_s2;
   CHECK((force - weight).norm() < 1e-6 * weight.norm());
+}
+
+TEST_CASE("a step leaves less than Newton's tolerance, with drag and without") {
+  for (const double damping : {0.0, 30.0}) {
+    BendingRod spec = test::bending_rod(6);
+    spec.damping_per_s = damping;
+    Scene scene = build_scene(spec);
+    DirectSolve direct(scene);
+    LinearProjection projection(scene, direct);
+    TimeStepper stepper(scene, {0.02, 20, 1e-10});
+    for (int i = 0; i < 5; ++i) {
+      stepper.step(projection);
+      CHECK(newton_residual(scene.rods[0], stepper.constraint_dt()) < 1e-10);
+    }
+    if (damping > 0) CHECK(newton_residual(scene.rods[0], 0.02) > 1e-4);
+  }
 }
 
 TEST_CASE("a failed solve ends the step and is reported") {
