@@ -238,9 +238,9 @@ TEST_CASE("the test stays relative to b with a guess, even one whose residual st
   }
 }
 
-TEST_CASE("a residual past 1e8 times b is called diverged") {
+TEST_CASE("a residual past 1e30 times b is called diverged") {
   const Case c = moving_chain();
-  const VectorX absurd = 1e12 * c.exact;
+  const VectorX absurd = 1e36 * c.exact;
   ConjugateGradient cg(c.a(), {});
   CHECK(run(cg, c.b(), 1e-6, &absurd).report.outcome == SolveOutcome::diverged);
 }
