@@ -131,17 +131,17 @@ TEST_CASE("Newton's residual falls quadratically to the floor of rounding") {
   TimeStepper stepper(scene, {0.02, 9, 0});
   const double floor = 2 * std::numeric_limits<double>::epsilon() * p.segments;  // of the order of eps L / l
   int quadratic = 0;
-  for (int step = 0; step < 30; ++step) {
+  for (int step = 0; step < 25; ++step) {
     listening.residuals.clear();
     stepper.step(listening);
     const std::vector<double>& r = listening.residuals;
     REQUIRE(r.size() == 9);
     for (std::size_t k = 1; k + 1 < r.size(); ++k) {
-      if (r[k] > 0.01) continue;  // not yet where the quadratic term rules
-      CHECK(r[k + 1] < 50 * r[k] * r[k] + floor);
+      if (r[k] > 3e-3) continue;  // not yet where the quadratic term rules
+      CHECK(r[k + 1] < 30 * r[k] * r[k] + floor);
       if (r[k + 1] > floor) ++quadratic;
     }
     CHECK(r.back() < floor);
   }
-  CHECK(quadratic > 60);  // iterations that showed it, above the floor
+  CHECK(quadratic > 30);  // iterations that showed it, above the floor
 }

@@ -1,0 +1,68 @@
+// Systems to solve by CG, and a solve with everything that it reports.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "solver/block_factor.hpp"
+#include "solver/conjugate_gradient.hpp"
+#include "solver/linear_system.hpp"
+#include "support.hpp"
+
+namespace rodsweep::test {
+
+inline constexpr Preconditioner preconditioners[] = {Preconditioner::none, Preconditioner::jacobi,
+                                                     Preconditioner::point_block_jacobi, Preconditioner::icc,
+                                                     Preconditioner::cholesky};
+inline constexpr Norm norms[] = {Norm::true_residual, Norm::natural};
+
+inline const char* name(Preconditioner p) {
+  static const char* const names[] = {"none", "jacobi", "point_block_jacobi", "icc", "cholesky"};
+  return names[static_cast<std::size_t>(p)];
+}
+
+/// A Newton system of a rod in motion, and its solution.
+struct Case {
+  Rod rod;
+  LinearSystem system;
+  VectorX exact;
+
+  explicit Case(const Rod& r, double dt = 0.02) : rod(r), system(rod), exact(VectorX::Zero(6 * rod.joint_count())) {
+    system.assemble(rod, dt);
+    BlockFactor factor(system.matrix(), root_to_leaf_order(rod));
+    REQUIRE(factor.solve(system.matrix(), system.rhs(), exact) == SolveOutcome::converged);
+  }
+  const BlockMatrix& a() const { return system.matrix(); }
+  const VectorX& b() const { return system.rhs(); }
+};
+
+/// A chain in motion whose next prediction violates its constraints.
+inline Case moving_chain(int segments = 12) {
+  Rod rod = moving_scene(segments).rods.front();
+  for (int s = 0; s < rod.segment_count(); ++s)
+    if (!rod.segments[s].is_static) rod.position[s] += 0.02 * rod.velocity[s];
+  rod.lambda.setZero();
+  return Case(rod);
+}
+
+struct Run {
+  CgReport report;
+  VectorX x;
+  std::vector<double> history;
+};
+
+inline Run run(ConjugateGradient& cg, const VectorX& b, double tolerance, const VectorX* guess = nullptr) {
+  Run out;
+  out.x = guess ? *guess : VectorX(VectorX::Zero(b.size()));
+  cg.record_history(true);
+  out.report = cg.solve(b, out.x, guess != nullptr, tolerance, cg.norm_of(b));
+  out.history = cg.history();
+  return out;
+}
+
+inline Run run(const BlockMatrix& a, const CgSettings& settings, const VectorX& b, double tolerance) {
+  ConjugateGradient cg(a, settings);
+  return run(cg, b, tolerance);
+}
+
+}  // namespace rodsweep::test
