@@ -4,10 +4,10 @@
 
 #include <cstdlib>
 
-#include "runner/master.hpp"
-#include "runner/mpi_channel.hpp"
-#include "runner/mpi_session.hpp"
-#include "runner/worker.hpp"
+#include "runner/dispatch/master.hpp"
+#include "runner/dispatch/mpi_channel.hpp"
+#include "runner/dispatch/mpi_session.hpp"
+#include "runner/dispatch/worker.hpp"
 
 int main(int argc, char** argv) {
   using namespace rodsweep;

@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <numeric>
 
-#include "runner/evaluation.hpp"
-#include "runner/hdf5.hpp"
-#include "runner/mpi_session.hpp"
-#include "runner/results_file.hpp"
-#include "runner/text.hpp"
+#include "runner/dispatch/mpi_session.hpp"
+#include "runner/experiment/evaluation.hpp"
+#include "runner/file/hdf5.hpp"
+#include "runner/file/results_file.hpp"
+#include "runner/terminal/text.hpp"
 #include "solver/petsc_session.hpp"
 
 namespace {

@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "runner/master.hpp"
-#include "runner/mpi_channel.hpp"
-#include "runner/mpi_session.hpp"
-#include "runner/worker.hpp"
+#include "runner/dispatch/master.hpp"
+#include "runner/dispatch/mpi_channel.hpp"
+#include "runner/dispatch/mpi_session.hpp"
+#include "runner/dispatch/worker.hpp"
 
 using namespace rodsweep;
 

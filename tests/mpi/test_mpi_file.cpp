@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "file_examples.hpp"
-#include "runner/inspect.hpp"
-#include "runner/mpi_session.hpp"
+#include "runner/dispatch/mpi_session.hpp"
+#include "runner/file/inspect.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "runner/master.hpp"
-#include "runner/worker.hpp"
+#include "runner/dispatch/master.hpp"
+#include "runner/dispatch/worker.hpp"
 
 namespace rodsweep::examples {
 

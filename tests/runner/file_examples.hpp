@@ -12,9 +12,9 @@
 #include <string>
 
 #include "job_examples.hpp"
-#include "runner/layout.hpp"
-#include "runner/record.hpp"
-#include "runner/results_file.hpp"
+#include "runner/file/layout.hpp"
+#include "runner/file/record.hpp"
+#include "runner/file/results_file.hpp"
 
 namespace rodsweep {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "runner/plan.hpp"
+#include "runner/job/plan.hpp"
 
 namespace rodsweep {
 

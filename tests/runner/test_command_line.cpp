@@ -1,7 +1,7 @@
 // What the user types, and what the program makes of it.
 #include <catch2/catch.hpp>
 
-#include "runner/command_line.hpp"
+#include "runner/command/command_line.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;

@@ -3,7 +3,7 @@
 #include <csignal>
 
 #include "dispatch_examples.hpp"
-#include "runner/stop_signal.hpp"
+#include "runner/dispatch/stop_signal.hpp"
 
 using namespace rodsweep;
 using namespace rodsweep::examples;

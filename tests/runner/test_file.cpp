@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "file_examples.hpp"
-#include "runner/hdf5.hpp"
-#include "runner/layout.hpp"
+#include "runner/file/hdf5.hpp"
+#include "runner/file/layout.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "file_examples.hpp"
-#include "runner/hdf5.hpp"
-#include "runner/inspect.hpp"
-#include "runner/layout.hpp"
+#include "runner/file/hdf5.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/layout.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;

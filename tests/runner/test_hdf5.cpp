@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "file_examples.hpp"
-#include "runner/hdf5.hpp"
+#include "runner/file/hdf5.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "runner/plan.hpp"
+#include "runner/job/plan.hpp"
 
 using namespace rodsweep;
 

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runner/counter_random.hpp"
-#include "runner/job_keys.hpp"
-#include "runner/nearest.hpp"
+#include "runner/job/counter_random.hpp"
+#include "runner/job/job_keys.hpp"
+#include "runner/job/nearest.hpp"
 
 using namespace rodsweep;
 

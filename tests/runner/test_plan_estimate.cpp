@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "job_examples.hpp"
-#include "runner/plan_estimate.hpp"
+#include "runner/command/plan_estimate.hpp"
 
 using namespace rodsweep;
 

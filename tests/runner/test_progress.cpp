@@ -1,9 +1,9 @@
 // Progress, summaries and the words they are put in.
 #include <catch2/catch.hpp>
 
-#include "runner/progress.hpp"
-#include "runner/sweep_summary.hpp"
-#include "runner/text.hpp"
+#include "runner/command/sweep_summary.hpp"
+#include "runner/terminal/progress.hpp"
+#include "runner/terminal/text.hpp"
 
 using namespace rodsweep;
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "job_examples.hpp"
-#include "runner/task_body.hpp"
+#include "runner/experiment/task_body.hpp"
 
 using namespace rodsweep;
 

@@ -1,0 +1,124 @@
+#include "runner/command/plan_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "runner/command/plan_estimate.hpp"
+#include "runner/file/file_creation.hpp"
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+
+namespace {
+
+struct Extent {
+  std::int64_t least, most;
+  std::string text() const { return least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most); }
+};
+
+template <class Member>
+Extent extent(const Plan& plan, Member member) {
+  const auto [least, most] = std::minmax_element(plan.tasks().begin(), plan.tasks().end(),
+                                                 [&](const Task& a, const Task& b) { return a.*member < b.*member; });
+  return {(*least).*member, (*most).*member};
+}
+
+/// Linear systems at most, were no Newton iteration to end early: Task::cost is segments x steps x newton_iterations.
+std::int64_t most_systems(const Plan& plan) {
+  double systems = 0;
+  for (const Task& task : plan.tasks()) systems += task.cost / task.segments;
+  return std::llround(systems);
+}
+
+std::int64_t all_steps(const Plan& plan) {
+  std::int64_t steps = 0;
+  for (const Task& task : plan.tasks()) steps += task.steps;
+  return steps;
+}
+
+nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probes) {
+  nlohmann::ordered_json json{{"job", plan.job().path.native()},
+                              {"name", plan.job().name},
+                              {"tasks", plan.size()},
+                              {"steps", all_steps(plan)},
+                              {"most_systems", most_systems(plan)},
+                              {"guesses", plan.guess_labels()},
+                              {"file_bytes", file_bytes(plan)}};
+  json["swept"] = nlohmann::ordered_json::array();
+  for (const ParameterColumn& parameter : plan.parameters())
+    if (parameter.swept) json["swept"].push_back(parameter.path);
+  if (probes.empty()) return json;
+  json["core_hours"] = core_seconds(plan, probes) / 3600;
+  json["probes"] = nlohmann::ordered_json::array();
+  for (const Probe& p : probes)
+    json["probes"].push_back({{"task", p.task},
+                              {"steps_run", p.steps},
+                              {"steps", p.of_steps},
+                              {"task_seconds", p.seconds},
+                              {"outcome", to_string(p.outcome)},
+                              {"message", p.message}});
+  return json;
+}
+
+std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const PlanOptions& options) {
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  RunOptions run;
+  run.job = options.job;
+  run.program = options.program;
+
+  std::string text = fmt::format("job      {} ({})\n", plan.job().name, plan.job().path.native());
+  text += fmt::format("tasks    {}, each {} segments, {} steps\n", plan.size(), extent(plan, &Task::segments).text(),
+                      extent(plan, &Task::steps).text());
+  std::string swept;
+  for (const ParameterColumn& parameter : plan.parameters())
+    if (parameter.swept) swept += (swept.empty() ? "" : ", ") + parameter.path;
+  if (!swept.empty()) text += fmt::format("swept    {}\n", swept);
+  text += fmt::format("steps    {}\n", all_steps(plan));
+  const auto guesses = plan.guess_labels().size();
+  text += fmt::format("systems  {} at most{}\n", most_systems(plan),
+                      guesses > 0 ? fmt::format(", guesses: {}", fmt::join(plan.guess_labels(), ", ")) : "");
+  text += fmt::format("file     {}\n", bytes_text(file_bytes(plan)));
+  if (!probes.empty()) {
+    const double seconds = core_seconds(plan, probes);
+    double longest = 0;
+    for (const Probe& p : probes) longest = std::max(longest, p.seconds);
+    text += fmt::format(
+        "time     about {:.2g} core-hours: {} on the {} core{} here (from {} task{} tried, {} to {} each)\n",
+        seconds / 3600, duration_text(std::max(longest, seconds / cores)), cores, cores == 1 ? "" : "s", probes.size(),
+        probes.size() == 1 ? "" : "s", duration_text(probes.front().seconds), duration_text(probes.back().seconds));
+    for (const Probe& p : probes)
+      if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
+        text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);
+  }
+  text += "next     " + run_command(run, cores);
+  return text;
+}
+
+}  // namespace
+
+ExitCode show_plan(const PlanOptions& options, Console& console) {
+  const Plan plan(read_job(options.job));
+  const std::vector<Probe> probes = options.probe ? probe(plan, evaluate) : std::vector<Probe>();
+  console.result(options.json ? to_json(plan, probes).dump(2) : to_text(plan, probes, options));
+  return ExitCode::ok;
+}
+
+ExitCode validate_jobs(const ValidateOptions& options, Console& console) {
+  ExitCode code = ExitCode::ok;
+  for (const auto& path : options.jobs) {
+    try {
+      const Plan plan(read_job(path));
+      console.result(fmt::format("{}: sound, {} task{}", path.native(), plan.size(), plan.size() == 1 ? "" : "s"));
+    } catch (const JobError& error) {
+      console.error(error.what());
+      code = ExitCode::user_error;
+    }
+  }
+  return code;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,75 @@
+#include "runner/command/plan_estimate.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace rodsweep {
+
+namespace {
+
+constexpr double enough_s = 0.5, too_long_s = 5;
+
+/// The first `steps` steps of a task.
+void truncate(Task& task, TaskSpec& spec, int steps) {
+  if (task.solves > 0) task.solves = task.solves / task.steps * steps;
+  if (task.frames > 0) task.frames = 1 + steps / spec.record.trajectory_every;
+  task.steps = spec.time.steps = steps;
+  spec.time_limit_s = spec.time_limit_s > 0 ? std::min(spec.time_limit_s, too_long_s) : too_long_s;
+}
+
+Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate) {
+  const Task& whole = plan.task(index);
+  const TaskSpec whole_spec = plan.spec(index);
+  TaskRecord record;
+  for (std::int64_t steps = std::min<std::int64_t>(whole.steps, 4);; steps = std::min(2 * steps, whole.steps)) {
+    Task task = whole;
+    TaskSpec spec = whole_spec;
+    truncate(task, spec, static_cast<int>(steps));
+    record.prepare(task, axis_sizes(plan));
+    evaluate(task, spec, record, [] { return false; });
+    const double seconds = record.elapsed_s.front();
+    if (seconds < enough_s && steps < whole.steps && record.outcome == TaskOutcome::ok) continue;
+
+    const auto done = std::max<std::int64_t>(record.steps_done.front(), 1);
+    return {index,
+            whole.cost,
+            done,
+            whole.steps,
+            seconds / static_cast<double>(done) * static_cast<double>(whole.steps),
+            record.outcome,
+            record.message};
+  }
+}
+
+/// Seconds per unit of cost at `cost`; probes are in ascending order of cost.
+double rate(const std::vector<Probe>& probes, double cost) {
+  const auto of = [](const Probe& p) { return p.seconds / p.cost; };
+  const auto above = std::find_if(probes.begin(), probes.end(), [&](const Probe& p) { return p.cost >= cost; });
+  if (above == probes.begin()) return of(probes.front());
+  if (above == probes.end()) return of(probes.back());
+  const Probe& below = *(above - 1);
+  const double way = (cost - below.cost) / (above->cost - below.cost);
+  return (1 - way) * of(below) + way * of(*above);
+}
+
+}  // namespace
+
+std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate) {
+  std::vector<std::int64_t> by_cost(static_cast<std::size_t>(plan.size()));
+  std::iota(by_cost.begin(), by_cost.end(), 0);
+  std::stable_sort(by_cost.begin(), by_cost.end(),
+                   [&](std::int64_t a, std::int64_t b) { return plan.task(a).cost < plan.task(b).cost; });
+  std::vector<std::size_t> places{0, by_cost.size() / 2, by_cost.size() - 1};
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  std::vector<Probe> probes;
+  for (const std::size_t place : places) probes.push_back(probe_task(plan, by_cost[place], evaluate));
+  return probes;
+}
+
+double core_seconds(const Plan& plan, const std::vector<Probe>& probes) {
+  double sum = 0;
+  for (const Task& task : plan.tasks()) sum += task.cost * rate(probes, task.cost);
+  return sum;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,147 @@
+#include "runner/command/sweep_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "runner/command/sweep_summary.hpp"
+#include "runner/dispatch/master.hpp"
+#include "runner/dispatch/mpi_channel.hpp"
+#include "runner/dispatch/stop_signal.hpp"
+#include "runner/experiment/task_body.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/results_file.hpp"
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Plan plan_everywhere(const fs::path& path, const MpiSession& mpi) {
+  std::optional<Job> job;
+  collectively(mpi.world(), [&] {
+    if (mpi.rank() == 0) job = read_job(path);
+  });
+  const std::string text = broadcast(job ? job->text : std::string(), mpi.world());
+  std::optional<Plan> plan;
+  collectively(mpi.world(), [&] { plan.emplace(job ? std::move(*job) : parse_job(text, path)); });
+  return std::move(*plan);
+}
+
+/// Creates the file, or opens it to go on; `before` (rank 0): what earlier starts did.
+ResultsFile open_results(const RunOptions& options, const fs::path& path, const Plan& plan, const MpiSession& mpi,
+                         const Placement& where, FileSummary& before) {
+  bool continues = false;
+  collectively(mpi.world(), [&] {
+    if (mpi.rank() != 0) return;
+    continues = options.resume && fs::exists(path);
+    if (continues) before = inspect(path);
+  });
+  continues = broadcast(continues ? 1 : 0, mpi.world()) != 0;
+
+  Provenance provenance = provenance_of_this_process(options.command);
+  provenance.ranks = mpi.size();
+  provenance.oversubscribed = where.oversubscribed;
+  std::optional<ResultsFile> file;
+  collectively(mpi.world(), [&] {
+    file = continues ? ResultsFile::resume(path, plan, provenance, mpi.world())
+                     : ResultsFile::create(path, plan, provenance, mpi.world());
+  });
+  return std::move(*file);
+}
+
+std::vector<PendingTask> pending_tasks(const Plan& plan, const std::vector<std::uint8_t>& done) {
+  std::vector<PendingTask> pending;
+  for (const Task& task : plan.tasks())
+    if (!done[static_cast<std::size_t>(task.index)]) pending.push_back({task.index, task.cost});
+  return pending;
+}
+
+void advise(Console& console, const RunOptions& options, const Placement& where, std::size_t pending) {
+  if (where.oversubscribed)
+    console.warn(
+        fmt::format("{} workers share {} cores: the times measured are worthless, and the file is marked so "
+                    "(/runs/oversubscribed)",
+                    where.workers, where.cores));
+  else if (where.workers < where.cores && static_cast<std::size_t>(where.workers) < pending)
+    console.note(fmt::format("{} of {} cores will work; for all of them: {}", where.workers, where.cores,
+                             run_command(options, where.cores)));
+}
+
+/// Master and worker take turns in one process.
+Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, TaskBody body) {
+  const auto received = [&] { return signal.received(); };
+  MemoryNetwork network(2);
+  Master master(network[0], std::move(pending), progress, received);
+  Worker worker(network[1], std::move(body), received, [&] { master.step(); });
+  while (master.step() != Master::Step::finished) worker.step();
+  return master.dispatch();
+}
+
+Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pending, Progress& progress,
+                             const StopSignal& signal, TaskBody body) {
+  const auto received = [&] { return signal.received(); };
+  MpiChannel channel(mpi.world());
+  if (mpi.rank() > 0) {
+    Worker(channel, std::move(body), received).run();
+    return {};
+  }
+  Master master(channel, std::move(pending), progress, received);
+  master.run();
+  return master.dispatch();
+}
+
+}  // namespace
+
+fs::path default_output(const std::string& job_name) { return fs::path("results") / (job_name + ".h5"); }
+
+std::string run_command(const RunOptions& options, int workers) {
+  std::string line = workers > 1 ? fmt::format("mpirun --oversubscribe -n {} ", workers + 1) : "";
+  line += fmt::format("{} run {}", shell_quoted(options.program), shell_quoted(options.job.native()));
+  if (options.output) line += " -o " + shell_quoted(options.output->native());
+  if (options.resume) line += " --resume";
+  return line;
+}
+
+ExitCode run_sweep(const RunOptions& options, const MpiSession& mpi, Console& console) {
+  const StopSignal signal;  // from here on a signal is a request, until the file is closed
+  const Plan plan = plan_everywhere(options.job, mpi);
+  const fs::path path = options.output.value_or(default_output(plan.job().name));
+  const Placement where = placement(mpi.world());
+  FileSummary before;
+  ResultsFile file = open_results(options, path, plan, mpi, where, before);
+  if (!file.note().empty()) console.warn(file.note());
+
+  std::vector<PendingTask> pending = pending_tasks(plan, file.done());
+  advise(console, options, where, pending.size());
+  const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
+  console.note(to_do == total ? fmt::format("{} tasks for {}, results in {}", total, plan.job().name, path.native())
+                              : fmt::format("{} of {} tasks of {} are left to do in {}", to_do, total, plan.job().name,
+                                            path.native()));
+  double cost = 0;
+  for (const PendingTask& task : pending) cost += task.cost;
+  Progress progress(console, {total, total - to_do, before.failed, cost, where.workers}, Progress::Clock::now());
+  TaskBody body =
+      task_body(plan, evaluate, [&](const Task& task, const TaskRecord& record) { file.write(task, record); });
+  const Dispatch dispatch = mpi.size() == 1
+                                ? dispatch_alone(std::move(pending), progress, signal, std::move(body))
+                                : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body));
+
+  const SweepSummary summary{total, before.done_by_outcome, dispatch, where.workers, path};
+  const auto code = static_cast<ExitCode>(broadcast(static_cast<int>(exit_code(summary)), mpi.world()));
+  if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
+  file.close();
+
+  console.result(summary_text(summary));
+  RunOptions again = options;
+  again.resume = true;
+  if (code == ExitCode::stopped)
+    console.note(fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_name(dispatch.signal),
+                             run_command(again, mpi.size() > 1 ? mpi.size() - 1 : 1)));
+  return code;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,66 @@
+#include "runner/command/sweep_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+
+namespace {
+
+const std::string ok_name = to_string(TaskOutcome::ok);
+
+/// All tasks finished so far, by outcome.
+std::map<std::string, std::int64_t> finished(const SweepSummary& summary) {
+  auto counts = summary.before;
+  for (std::size_t i = 0; i < summary.dispatch.finished.size(); ++i)
+    if (const auto count = summary.dispatch.finished[i]; count > 0)
+      counts[to_string(static_cast<TaskOutcome>(i))] += count;
+  return counts;
+}
+
+std::int64_t finished_now(const Dispatch& dispatch) {
+  std::int64_t count = 0;
+  for (const std::int64_t of_outcome : dispatch.finished) count += of_outcome;
+  return count;
+}
+
+}  // namespace
+
+ExitCode exit_code(const SweepSummary& summary) {
+  if (summary.dispatch.left > 0) return ExitCode::stopped;
+  const auto counts = finished(summary);
+  const bool failures = std::any_of(counts.begin(), counts.end(), [](const auto& c) { return c.first != ok_name; });
+  return failures ? ExitCode::tasks_failed : ExitCode::ok;
+}
+
+std::string summary_text(const SweepSummary& summary) {
+  const Dispatch& dispatch = summary.dispatch;
+  auto counts = finished(summary);
+  std::string text = fmt::format("{} tasks: {} ok", summary.tasks, counts[ok_name]);
+  counts.erase(ok_name);
+  for (const auto& [outcome, count] : counts) text += fmt::format(", {} {}", count, outcome);
+  if (dispatch.left > 0) text += fmt::format(", {} left to do", dispatch.left);
+  text += '\n';
+
+  auto failures = dispatch.failures;
+  std::sort(failures.begin(), failures.end(), [](const auto& a, const auto& b) { return a.task < b.task; });
+  for (const auto& failure : failures)
+    text += fmt::format("  task {} {}: {}\n", failure.task, to_string(failure.outcome), failure.message);
+  const auto failed_now = finished_now(dispatch) - dispatch.finished[static_cast<std::size_t>(TaskOutcome::ok)];
+  if (failed_now > static_cast<std::int64_t>(failures.size()))
+    text += fmt::format("  and {} more\n", failed_now - static_cast<std::int64_t>(failures.size()));
+
+  if (const auto now = finished_now(dispatch); now > 0 && dispatch.wall_s > 0)
+    text +=
+        fmt::format("{} for {} tasks, {:.3g} tasks/s, {} worker{} busy {:.0f} % of the time\n",
+                    duration_text(dispatch.wall_s), now, static_cast<double>(now) / dispatch.wall_s, summary.workers,
+                    summary.workers == 1 ? "" : "s", 100 * dispatch.busy_s / (summary.workers * dispatch.wall_s));
+  text += "results: " + summary.path.native();
+  if (dispatch.left == 0) text += "\nnext: /usr/bin/python3 analysis/summary.py " + shell_quoted(summary.path.native());
+  return text;
+}
+
+}  // namespace rodsweep

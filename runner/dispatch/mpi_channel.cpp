@@ -1,0 +1,34 @@
+#include "runner/dispatch/mpi_channel.hpp"
+
+#include "runner/dispatch/mpi_session.hpp"
+
+namespace rodsweep {
+
+MpiChannel::MpiChannel(MPI_Comm comm) {
+  check_mpi(MPI_Comm_dup(comm, &comm_), "MPI_Comm_dup");
+  check_mpi(MPI_Comm_rank(comm_, &rank_), "MPI_Comm_rank");
+  check_mpi(MPI_Comm_size(comm_, &size_), "MPI_Comm_size");
+}
+
+MpiChannel::~MpiChannel() { MPI_Comm_free(&comm_); }
+
+std::optional<Envelope> MpiChannel::probe() {
+  int arrived = 0, bytes = 0;
+  MPI_Status status;
+  check_mpi(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &arrived, &status), "MPI_Iprobe");
+  if (!arrived) return std::nullopt;
+  check_mpi(MPI_Get_count(&status, MPI_BYTE, &bytes), "MPI_Get_count");
+  return Envelope{status.MPI_SOURCE, static_cast<Tag>(status.MPI_TAG), static_cast<std::size_t>(bytes)};
+}
+
+void MpiChannel::send_bytes(int destination, Tag tag, const void* data, std::size_t bytes) {
+  check_mpi(MPI_Send(data, static_cast<int>(bytes), MPI_BYTE, destination, static_cast<int>(tag), comm_), "MPI_Send");
+}
+
+void MpiChannel::receive_bytes(const Envelope& envelope, void* data) {
+  check_mpi(MPI_Recv(data, static_cast<int>(envelope.bytes), MPI_BYTE, envelope.source, static_cast<int>(envelope.tag),
+                     comm_, MPI_STATUS_IGNORE),
+            "MPI_Recv");
+}
+
+}  // namespace rodsweep

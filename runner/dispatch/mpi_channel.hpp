@@ -1,0 +1,28 @@
+// The channel between ranks of an MPI communicator; messages travel on a duplicate of it. Throws MpiError.
+#pragma once
+
+#include <mpi.h>
+
+#include "runner/dispatch/channel.hpp"
+
+namespace rodsweep {
+
+class MpiChannel : public Channel {
+ public:
+  explicit MpiChannel(MPI_Comm comm);  ///< collective
+  ~MpiChannel() override;
+  MpiChannel(const MpiChannel&) = delete;
+  MpiChannel& operator=(const MpiChannel&) = delete;
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+  std::optional<Envelope> probe() override;
+  void send_bytes(int destination, Tag tag, const void* data, std::size_t bytes) override;
+  void receive_bytes(const Envelope& envelope, void* data) override;
+
+ private:
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+};
+
+}  // namespace rodsweep

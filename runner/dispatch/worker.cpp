@@ -1,0 +1,91 @@
+#include "runner/dispatch/worker.hpp"
+
+#include <utility>
+
+#include "runner/dispatch/backoff.hpp"
+
+namespace rodsweep {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int master = 0;
+constexpr std::chrono::milliseconds look_pause{5};
+
+}  // namespace
+
+Worker::Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running)
+    : channel_(&channel),
+      body_(std::move(body)),
+      signal_(std::move(signal)),
+      while_running_(std::move(while_running)) {}
+
+void Worker::run() {
+  Backoff backoff;
+  for (;;) {
+    switch (step()) {
+      case Step::worked: backoff.reset(); break;
+      case Step::waited: backoff.wait(); break;
+      case Step::finished: return;
+    }
+  }
+}
+
+Worker::Step Worker::step() {
+  const bool traffic = receive();
+  heed_signal();
+  if (stopping_) {
+    for (const std::int64_t task : std::exchange(hand_, {}))
+      channel_->send(master, Report(task, TaskOutcome::pending, 0, ""));
+  }
+  if (!hand_.empty()) {
+    const std::int64_t task = hand_.front();
+    hand_.pop_front();
+    run_task(task);
+    return Step::worked;
+  }
+  if (dismissed_) return Step::finished;
+  return traffic ? Step::worked : Step::waited;
+}
+
+bool Worker::receive() {
+  bool any = false;
+  while (const auto envelope = channel_->probe()) {
+    any = true;
+    switch (envelope->tag) {
+      case Tag::assign: hand_.push_back(channel_->receive<Assign>(*envelope).task); break;
+      case Tag::stop: channel_->receive<Stop>(*envelope), stopping_ = true; break;
+      case Tag::finish: channel_->receive<Finish>(*envelope), dismissed_ = true; break;
+      default: channel_->unexpected(*envelope);
+    }
+  }
+  return any;
+}
+
+void Worker::heed_signal() {
+  const int signal = signal_();
+  if (signal == 0 || told_) return;
+  channel_->send(master, Interrupted{signal});
+  told_ = stopping_ = true;
+}
+
+void Worker::run_task(std::int64_t task) {
+  const auto begin = Clock::now();
+  looked_ = begin;
+  const TaskResult result = body_(task, [this] { return stop_requested(); });
+  const std::chrono::duration<double> busy = Clock::now() - begin;
+  channel_->send(master, Report(task, result.outcome, busy.count(), result.message));
+}
+
+bool Worker::stop_requested() {
+  if (stopping_) return true;
+  heed_signal();
+  if (const auto now = Clock::now(); now - looked_ >= look_pause) {
+    looked_ = now;
+    if (while_running_) while_running_();
+    receive();
+  }
+  return stopping_;
+}
+
+}  // namespace rodsweep

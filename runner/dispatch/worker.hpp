@@ -1,0 +1,54 @@
+// Runs the tasks that the master assigns, one at a time, and reports each.
+//
+// While a task runs it asks between time steps whether to stop; every few milliseconds that question also looks at the
+// messages. An exception from the task's body is the end of this rank (say, a results file that cannot be written):
+// what is wrong with a task is an outcome, and the body's affair (runner/experiment/task_body.hpp).
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+
+#include "runner/dispatch/channel.hpp"
+#include "runner/experiment/evaluation.hpp"
+
+namespace rodsweep {
+
+struct TaskResult {
+  TaskOutcome outcome = TaskOutcome::pending;  ///< pending: abandoned on request
+  std::string message;
+};
+
+using TaskBody = std::function<TaskResult(std::int64_t task, const StopRequested& stop)>;
+
+class Worker {
+ public:
+  /// `signal` tells the signal that this rank received, 0 for none. `while_running` is called now and then between two
+  /// time steps (a lone rank keeps its master alive there).
+  Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running = {});
+
+  /// Deals with all messages that have arrived, then runs at most one task.
+  enum class Step { worked, waited, finished };
+  Step step();
+
+  /// Steps until dismissed, asleep while there is nothing to do.
+  void run();
+
+ private:
+  bool receive();
+  void heed_signal();
+  void run_task(std::int64_t task);
+  bool stop_requested();
+
+  Channel* channel_;
+  TaskBody body_;
+  std::function<int()> signal_;
+  std::function<void()> while_running_;
+  std::deque<std::int64_t> hand_;
+  bool stopping_ = false, dismissed_ = false, told_ = false;
+  std::chrono::steady_clock::time_point looked_{};
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,19 @@
+// Runs one task: simulates its rods, counts CG iterations for every guess, times the parts, and returns the record.
+// Physics, iteration counts and everything outside /timing depend on the spec alone.
+#pragma once
+
+#include <functional>
+
+#include "runner/file/record.hpp"
+#include "runner/job/task.hpp"
+
+namespace rodsweep {
+
+/// Asked between time steps; true abandons the task (its record must then be thrown away).
+using StopRequested = std::function<bool()>;
+
+/// Fills `record` (already prepared). Returns false if it was abandoned on request. A task that fails is a record with
+/// that outcome and whatever rows it reached; exceptions of the scene or the solver become TaskOutcome::error.
+bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop);
+
+}  // namespace rodsweep

@@ -1,0 +1,24 @@
+#include "runner/experiment/guesses.hpp"
+
+#include <stdexcept>
+
+namespace rodsweep {
+
+std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec& task, const Scene& scene) {
+  using Kind = GuessSpec::Kind;
+  const auto extrapolation = [&](int terms) {
+    return std::make_unique<ExtrapolationGuess>(scene, task.time.newton_iterations, terms);
+  };
+  switch (guess.kind) {
+    case Kind::zero: return std::make_unique<ZeroGuess>();
+    case Kind::previous: return extrapolation(1);
+    case Kind::linear: return extrapolation(2);
+    case Kind::quadratic: return extrapolation(3);
+    case Kind::oracle: return std::make_unique<OracleGuess>(scene, guess.error, task.seed);
+    case Kind::guarded:
+      return std::make_unique<GuardedGuess>(scene, make_guess(guess.inner.front(), task, scene), guess.threshold);
+  }
+  throw std::logic_error("make_guess: unknown kind of guess \"" + guess.label + "\"");
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,13 @@
+// Makes the initial guess that a job names.
+#pragma once
+
+#include <memory>
+
+#include "runner/job/task.hpp"
+#include "solver/initial_guess.hpp"
+
+namespace rodsweep {
+
+std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec& task, const Scene& scene);
+
+}  // namespace rodsweep

@@ -1,0 +1,49 @@
+// The linear solve of an experiment: solves each system directly and with CG from every guess under test, counts,
+// times, and lets one of the solutions advance the trajectory.
+//
+// Per system and guess: one untimed solve to the tightest tolerance of the ladder, whose residual history gives the
+// iterations to every tolerance; one timed solve to the job's tolerance, without history, the guesses in rotated order,
+// the preconditioner's set-up included. Guesses hear of the solution that advanced the trajectory.
+// Right-hand sides at rounding level (max |b| <= 1e-13) count as solved: zero iterations for every guess.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "runner/file/record.hpp"
+#include "runner/job/task.hpp"
+#include "solver/initial_guess.hpp"
+#include "solver/projection.hpp"
+
+namespace rodsweep {
+
+class MeasuredSolve : public LinearSolve {
+ public:
+  /// Fills the rows of /solves, their timings and the per-task sums of `record`. All arguments must outlive this.
+  MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecord& record);
+  ~MeasuredSolve() override;
+
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override;
+
+  /// Wall time spent in assembly and in here since the last call [s].
+  double take_elapsed_s();
+
+  /// cg_ratio from the sums: to be called once, at the end of the task.
+  void finish();
+
+ private:
+  struct Guess;       // one guess under test
+  struct RodSolvers;  // the solvers of one rod
+  RodSolvers& solvers_for(const LinearSystem& system, int rod);
+  void count(std::size_t guess, const SolvePosition& at, const std::int16_t* iterations, int used);
+
+  const TaskSpec& spec_;
+  TaskRecord& record_;
+  DirectSolve direct_;
+  std::vector<Guess> guesses_;
+  std::vector<std::unique_ptr<RodSolvers>> solvers_;  // made at a rod's first solve
+  double elapsed_s_ = 0;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,174 @@
+#include "runner/file/file_creation.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdio.h>  // renameat2
+#include <unistd.h>
+
+#include <cerrno>
+#include <random>
+#include <system_error>
+
+#include "runner/file/hdf5.hpp"
+#include "runner/file/layout.hpp"
+#include "runner/file/provenance.hpp"
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Measured with HDF5 1.10: object headers with two attributes, and the symbol tables of groups.
+constexpr std::int64_t metadata_bytes_per_dataset = 480;
+constexpr std::int64_t metadata_bytes_of_file = 6000;
+
+std::string system_text(int code) { return std::system_category().message(code); }
+
+FileError exists_error(const fs::path& path) {
+  return FileError(
+      fmt::format("{} exists already and is never overwritten: continue it with --resume, or name another "
+                  "file with -o FILE",
+                  path.native()));
+}
+
+FileError space_error(const fs::path& path, std::int64_t bytes, const std::string& found) {
+  return FileError(
+      fmt::format("{} needs {}, but {}: free some space, name a file on another disk with -o FILE, or record "
+                  "less (record.solves: \"summary\", a larger record.trajectory_every)",
+                  path.native(), bytes_text(bytes), found));
+}
+
+FileError creation_error(const fs::path& path, const std::string& reason) {
+  return FileError(fmt::format("{} cannot be created: {}", path.native(), reason));
+}
+
+std::int64_t file_bytes(const std::vector<Field>& fields) {
+  std::int64_t bytes = metadata_bytes_of_file;
+  for (const Field& field : fields) bytes += data_bytes(field) + metadata_bytes_per_dataset;
+  return bytes;
+}
+
+void create_datasets(hid_t file, const std::vector<Field>& fields) {
+  for (const Field& field : fields) {
+    const std::vector<hsize_t> extent(field.extent.begin(), field.extent.end());
+    const hdf5::Dataset dataset = hdf5::create_dataset(file, field.path, type_of(field).id(), extent);
+    hdf5::write_attribute(dataset.id(), "unit", field.unit);
+    hdf5::write_attribute(dataset.id(), "meaning", field.meaning);
+  }
+}
+
+void write_parameters(hid_t file, const std::vector<ParameterColumn>& parameters) {
+  for (const ParameterColumn& parameter : parameters) {
+    const std::string path = "/tasks/parameters/" + parameter.path;
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&parameter.values)) {
+      hdf5::write_texts(file, path, *texts);
+    } else if (const auto* integers = std::get_if<std::vector<std::int64_t>>(&parameter.values)) {
+      hdf5::write_all(file, path, *integers);
+    } else {
+      hdf5::write_all(file, path, std::get<std::vector<double>>(parameter.values));
+    }
+    hdf5::write_attribute(hdf5::open_dataset(file, path).id(), "swept", parameter.swept ? 1 : 0);
+  }
+}
+
+/// All that the plan knows already.
+void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterColumn>& parameters) {
+  hdf5::write_attribute(file, "program", "rodsweep");
+  hdf5::write_attribute(file, "schema_version", schema_version);
+  hdf5::write_attribute(file, "title", "rodsweep results: " + plan.job().name);
+  hdf5::write_texts(file, "/job/text", {plan.job().text});
+  const hdf5::Object job(hdf5::check(H5Oopen(file, "/job", H5P_DEFAULT), "H5Oopen", "/job"));
+  hdf5::write_attribute(job.id(), "name", plan.job().name);
+  hdf5::write_attribute(job.id(), "plan_hash", plan_hash(plan, parameters));
+
+  if (!plan.guess_labels().empty()) hdf5::write_texts(file, "/axes/guess", plan.guess_labels());
+  hdf5::write_all(file, "/axes/tolerance", tolerance_ladder());
+  write_parameters(file, parameters);
+  visit_task_columns([&](const char* path, const char*, const char*, auto value) {
+    std::vector<decltype(value(Task{}))> values;
+    for (const Task& task : plan.tasks()) values.push_back(value(task));
+    hdf5::write_all(file, path, values);
+  });
+  const auto tasks = static_cast<std::size_t>(plan.size());
+  hdf5::write_all(file, "/tasks/state", std::vector<std::uint8_t>(tasks, 0));
+  hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
+}
+
+/// Takes real blocks for the sparse file. File systems that cannot are left alone; the free-space check has to do
+/// there.
+void reserve_blocks(const fs::path& file, const fs::path& path) {
+  const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
+  const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) throw creation_error(path, system_text(errno));
+  const int error = fallocate(descriptor, 0, 0, bytes) == 0 ? 0 : errno;
+  ::close(descriptor);
+  if (error == ENOSPC || error == EDQUOT) throw space_error(path, bytes, "the disk says: " + system_text(error));
+  if (error == EFBIG) throw space_error(path, bytes, "a file cannot be that large there");
+}
+
+/// Gives the finished file its name unless another file took it meanwhile.
+void publish(const fs::path& file, const fs::path& path) {
+  if (link(file.c_str(), path.c_str()) == 0) return;
+  if (errno == EEXIST) throw exists_error(path);
+  // A file system without hard links.
+  if (renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return;
+  if (errno == EEXIST) throw exists_error(path);
+  throw creation_error(path, system_text(errno));
+}
+
+/// The temporary name; whatever bears it at the end is removed.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(const fs::path& path)
+      : path_(fmt::format("{}.unfinished-{}-{}-{:08x}", path.native(), host_name(), getpid(), std::random_device()())) {
+  }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  ~UnfinishedFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+}  // namespace
+
+std::uintmax_t free_bytes(const fs::path& folder) { return fs::space(folder).available; }
+
+std::int64_t file_bytes(const Plan& plan) { return file_bytes(layout(plan, plan.parameters())); }
+
+void create_results_file(const fs::path& path, const Plan& plan, const FreeSpace& free_space) {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  fs::create_directories(folder, error);
+  if (error) throw creation_error(path, "its folder cannot be made: " + error.message());
+
+  const std::vector<ParameterColumn> parameters = plan.parameters();
+  const std::vector<Field> fields = layout(plan, parameters);
+  const std::int64_t bytes = file_bytes(fields);
+  if (const std::uintmax_t available = free_space(folder); available < static_cast<std::uintmax_t>(bytes)) {
+    throw space_error(
+        path, bytes,
+        fmt::format("only {} are free in {}", bytes_text(static_cast<std::int64_t>(available)), folder.native()));
+  }
+
+  const UnfinishedFile unfinished(path);
+  hdf5::File file;
+  try {
+    file = hdf5::create_file(unfinished.path());
+  } catch (const Hdf5Error& failure) {
+    throw creation_error(path, failure.what());
+  }
+  create_datasets(file.id(), fields);
+  write_constants(file.id(), plan, parameters);
+  hdf5::close(file, "H5Fclose", unfinished.path().native());
+  reserve_blocks(unfinished.path(), path);
+  publish(unfinished.path(), path);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,75 @@
+#include "runner/file/file_reading.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "runner/file/layout.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_hdf5_signature(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(8, '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return start == "\x89HDF\r\n\x1a\n";
+}
+
+}  // namespace
+
+FileError damaged_error(const fs::path& path, const std::string& reason) {
+  return FileError(fmt::format("{} is damaged or incomplete: {}", path.native(), reason));
+}
+
+hdf5::File open_results(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw FileError(fmt::format("{}: there is no such file", path.native()));
+  if (!fs::is_regular_file(status)) throw FileError(fmt::format("{} is not a file", path.native()));
+  if (!std::ifstream(path)) throw FileError(fmt::format("{} cannot be read: no permission", path.native()));
+  if (!has_hdf5_signature(path)) throw FileError(fmt::format("{} is not an HDF5 file", path.native()));
+
+  hdf5::File file;
+  try {
+    file = hdf5::open_file(path, H5F_ACC_RDONLY);
+  } catch (const Hdf5Error& failure) {
+    throw damaged_error(path, failure.what());
+  }
+  try {
+    if (!hdf5::has_attribute(file.id(), "/", "program") ||
+        hdf5::read_text_attribute(file.id(), "/", "program") != "rodsweep") {
+      throw FileError(fmt::format("{} is an HDF5 file, but not one of rodsweep's results", path.native()));
+    }
+    const int version = hdf5::read_int_attribute(file.id(), "/", "schema_version");
+    if (version != schema_version) {
+      throw FileError(
+          fmt::format("{} has schema version {}, and this rodsweep knows version {} only: use the rodsweep that "
+                      "wrote it (/runs/revision in the file)",
+                      path.native(), version, schema_version));
+    }
+  } catch (const Hdf5Error& failure) {
+    throw damaged_error(path, failure.what());
+  }
+  return file;
+}
+
+std::vector<std::uint8_t> read_states(const hdf5::File& file, const fs::path& path) {
+  std::vector<std::uint8_t> states = hdf5::read_all<std::uint8_t>(file.id(), "/tasks/state");
+  const auto odd = std::find_if(states.begin(), states.end(), [](std::uint8_t state) { return state > 1; });
+  if (odd != states.end()) {
+    throw damaged_error(path,
+                        fmt::format("/tasks/state of task {} is {}, neither 0 nor 1", odd - states.begin(), *odd));
+  }
+  return states;
+}
+
+int runs_used(const hdf5::File& file) {
+  const std::vector<std::string> begins = hdf5::read_texts(file.id(), "/runs/begin");
+  return static_cast<int>(std::find(begins.begin(), begins.end(), "") - begins.begin());
+}
+
+}  // namespace rodsweep

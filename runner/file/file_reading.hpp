@@ -1,0 +1,25 @@
+// Opens a results file read-only, with one process and without MPI, after checking that it is one.
+// Throws FileError for what is missing, foreign, damaged or of another schema version.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "runner/file/file_error.hpp"
+#include "runner/file/hdf5.hpp"
+
+namespace rodsweep {
+
+hdf5::File open_results(const std::filesystem::path& path);
+
+/// A file that passed open_results() but does not hold what it should; `reason` says what.
+FileError damaged_error(const std::filesystem::path& path, const std::string& reason);
+
+/// State bytes, 0 or 1 each.
+std::vector<std::uint8_t> read_states(const hdf5::File& file, const std::filesystem::path& path);
+
+/// How many rows of /runs are in use.
+int runs_used(const hdf5::File& file);
+
+}  // namespace rodsweep

@@ -1,0 +1,171 @@
+// Owners of HDF5 handles, one check for every call, and the few shapes of access that rodsweep needs (HDF5 1.10 C API).
+//
+// Datasets are contiguous with early allocation and no fill values, without time stamps: their place in the file is
+// fixed at creation, unwritten bytes read as zero, and two files of the same data hold the same metadata. Text has a
+// fixed length, padded with zeros. No file is locked: readers may look while a sweep writes, and some network file
+// systems refuse locks. Throws Hdf5Error: the failing call, the object, HDF5's own error text.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "runner/file/file_error.hpp"
+
+namespace rodsweep::hdf5 {
+
+/// Owns one handle; empty after a move.
+template <herr_t (*Close)(hid_t)>
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(hid_t id) noexcept : id_(id) {}
+  Handle(Handle&& other) noexcept : id_(other.release()) {}
+  Handle& operator=(Handle&& other) noexcept {
+    Handle taken(std::move(other));
+    std::swap(id_, taken.id_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) Close(id_);
+  }
+
+  hid_t id() const noexcept { return id_; }
+  explicit operator bool() const noexcept { return id_ >= 0; }
+  /// Gives the handle away without closing it.
+  hid_t release() noexcept { return std::exchange(id_, H5I_INVALID_HID); }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+};
+
+using File = Handle<H5Fclose>;
+using Object = Handle<H5Oclose>;
+using Dataset = Handle<H5Dclose>;
+using Dataspace = Handle<H5Sclose>;
+using Datatype = Handle<H5Tclose>;
+using Attribute = Handle<H5Aclose>;
+using PropertyList = Handle<H5Pclose>;
+
+static_assert(std::is_nothrow_move_constructible_v<File> && std::is_nothrow_move_assignable_v<File>);
+static_assert(!std::is_copy_constructible_v<File> && !std::is_copy_assignable_v<File>);
+
+/// Throws Hdf5Error about `call` on `object`, with the text of HDF5's error stack.
+[[noreturn]] void fail(const char* call, std::string_view object);
+
+/// Passes the result of an HDF5 call on; a negative one is a failure.
+template <class Result>
+Result check(Result result, const char* call, std::string_view object = {}) {
+  if (result < 0) fail(call, object);
+  return result;
+}
+
+/// Closes now and reports failure, which a destructor cannot.
+template <herr_t (*Close)(hid_t)>
+void close(Handle<Close>& handle, const char* call, std::string_view object) {
+  if (handle) check(Close(handle.release()), call, object);
+}
+
+/// HDF5's type for a C++ number in memory.
+template <class T>
+hid_t type_of() {
+  if constexpr (std::is_same_v<T, std::int8_t>)
+    return H5T_NATIVE_INT8;
+  else if constexpr (std::is_same_v<T, std::uint8_t>)
+    return H5T_NATIVE_UINT8;
+  else if constexpr (std::is_same_v<T, std::int16_t>)
+    return H5T_NATIVE_INT16;
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return H5T_NATIVE_INT32;
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return H5T_NATIVE_INT64;
+  else if constexpr (std::is_same_v<T, std::uint64_t>)
+    return H5T_NATIVE_UINT64;
+  else if constexpr (std::is_same_v<T, float>)
+    return H5T_NATIVE_FLOAT;
+  else {
+    static_assert(std::is_same_v<T, double>, "no HDF5 type for this");
+    return H5T_NATIVE_DOUBLE;
+  }
+}
+
+/// UTF-8 text of exactly `bytes` bytes, padded with zeros.
+Datatype text_type(std::size_t bytes);
+
+/// `text` cut (between characters) or zero-padded to `bytes` bytes.
+std::string fixed_text(std::string_view text, std::size_t bytes);
+
+File create_file(const std::filesystem::path& path);  ///< fails if the path exists
+File open_file(const std::filesystem::path& path, unsigned flags, hid_t access = H5P_DEFAULT);  ///< access: e.g. MPI-IO
+PropertyList unlocked_access();  ///< file access by the ordinary driver, no locks
+
+/// Creates missing groups on the way. An empty `extent` is a scalar.
+Dataset create_dataset(hid_t file, const std::string& path, hid_t type, const std::vector<hsize_t>& extent);
+Dataset open_dataset(hid_t file, const std::string& path);
+bool exists(hid_t file, const std::string& path);  ///< also false where a group on the way is missing
+std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path);
+
+/// A dataset kept open for access to whole rows, which `first` and `count` name; empty where there is none at `path`.
+class RowDataset {
+ public:
+  RowDataset() = default;
+  RowDataset(hid_t file, std::string path);
+
+  explicit operator bool() const noexcept { return static_cast<bool>(dataset_); }
+  hsize_t rows() const { return extent_.at(0); }
+  hsize_t row_values() const { return row_values_; }
+  Datatype type() const;  ///< as in the file
+
+  void write(hid_t type, hsize_t first, hsize_t count, const void* values) const;
+  void read(hid_t type, hsize_t first, hsize_t count, void* values) const;
+
+ private:
+  Dataspace select(hsize_t first, hsize_t count) const;
+
+  std::string path_;
+  Dataset dataset_;
+  Dataspace space_;
+  std::vector<hsize_t> extent_;
+  hsize_t row_values_ = 0;
+};
+
+template <class T>
+std::vector<T> read_all(hid_t file, const std::string& path) {
+  const Dataset dataset = open_dataset(file, path);
+  hsize_t size = 1;
+  for (const hsize_t n : extent(dataset, path)) size *= n;
+  std::vector<T> values(size);
+  check(H5Dread(dataset.id(), type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dread", path);
+  return values;
+}
+
+template <class T>
+void write_all(hid_t file, const std::string& path, const std::vector<T>& values) {
+  const Dataset dataset = open_dataset(file, path);
+  check(H5Dwrite(dataset.id(), type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite", path);
+}
+
+/// Fixed-length text, without its padding.
+std::vector<std::string> read_texts(hid_t file, const std::string& path);
+void write_texts(hid_t file, const std::string& path, const std::vector<std::string>& values);
+std::string read_text_row(hid_t file, const std::string& path, hsize_t row);
+void write_text_row(hid_t file, const std::string& path, hsize_t row, std::string_view value);
+
+template <class T>
+void write_row(hid_t file, const std::string& path, hsize_t row, T value) {
+  RowDataset(file, path).write(type_of<T>(), row, 1, &value);
+}
+
+void write_attribute(hid_t object, const char* name, std::string_view value);
+void write_attribute(hid_t object, const char* name, std::int32_t value);
+bool has_attribute(hid_t file, const std::string& object, const char* name);
+std::string read_text_attribute(hid_t file, const std::string& object, const char* name);
+std::int32_t read_int_attribute(hid_t file, const std::string& object, const char* name);
+
+}  // namespace rodsweep::hdf5

@@ -1,0 +1,59 @@
+// A results file as seen from outside, for `rodsweep status` and `rodsweep info`: read-only, without MPI, without a
+// plan. Works while a sweep writes to the file (no lock is taken; the state byte of a task is set after its data).
+// Throws FileError for what is missing, foreign, damaged or of another schema version.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runner/file/file_error.hpp"
+#include "runner/file/provenance.hpp"
+
+namespace rodsweep {
+
+/// One start of the sweep.
+struct RunRow {
+  Provenance provenance;
+  std::string end_utc;      ///< empty: still running, or killed
+  int exit_code = -1;       ///< -1: still running, or killed
+  std::int64_t tasks = 0;   ///< tasks that this start completed
+  double task_seconds = 0;  ///< their wall time, summed
+};
+
+struct FailedTask {
+  std::int64_t index = 0;
+  std::string outcome;  ///< to_string(TaskOutcome)
+  std::string message;
+};
+
+struct FileSummary {
+  std::filesystem::path path;
+  std::uintmax_t bytes = 0;
+  int schema_version = 0;
+  std::string job_name, job_text, plan_hash;
+  std::vector<std::string> guesses;  ///< labels of /axes/guess; empty without cg
+  std::vector<double> tolerances;    ///< /axes/tolerance
+
+  std::int64_t tasks = 0;    ///< size of the plan
+  std::int64_t done = 0;     ///< ok + failed
+  std::int64_t failed = 0;   ///< done with an outcome other than "ok"
+  std::int64_t pending = 0;  ///< tasks - done
+  std::map<std::string, std::int64_t> done_by_outcome;
+  std::vector<FailedTask> failures;  ///< in order of their index
+  std::vector<RunRow> runs;
+};
+
+FileSummary inspect(const std::filesystem::path& path);
+
+struct Verification {
+  std::int64_t checked = 0;           ///< finished tasks
+  std::vector<std::int64_t> damaged;  ///< those whose data do not have the checksum they were written with
+};
+
+/// Reads everything that finished tasks wrote (outside /timing) and compares it with /tasks/checksum.
+Verification verify(const std::filesystem::path& path);
+
+}  // namespace rodsweep

@@ -1,0 +1,198 @@
+#include "runner/file/results_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "runner/dispatch/mpi_session.hpp"
+#include "runner/file/hdf5.hpp"
+#include "runner/file/layout.hpp"
+#include "runner/file/resume_check.hpp"
+#include "runner/file/task_checksum.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// Runs `work` on rank 0 alone; when it throws there, every rank throws an error of the same text.
+template <class Work>
+void on_first_rank(MPI_Comm comm, Work&& work) {
+  int rank = 0;
+  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
+  enum { fine, file_error, other_error };
+  int outcome = fine;
+  std::string text;
+  if (rank == 0) {
+    try {
+      work();
+    } catch (const FileError& error) {
+      outcome = file_error, text = error.what();
+    } catch (const std::exception& error) {
+      outcome = other_error, text = error.what();
+    }
+  }
+  outcome = broadcast(outcome, comm);
+  if (outcome == fine) return;
+  text = broadcast(std::move(text), comm);
+  if (outcome == file_error) throw FileError(text);
+  throw Hdf5Error(text);
+}
+
+/// The hosts of all ranks, each named once, in the order of their ranks. Collective.
+std::string host_names(MPI_Comm comm) {
+  constexpr int bytes = 256;
+  int size = 1;
+  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+  const std::string mine = hdf5::fixed_text(host_name(), bytes);
+  std::string all(static_cast<std::size_t>(size) * bytes, '\0');
+  check_mpi(MPI_Allgather(mine.data(), bytes, MPI_CHAR, all.data(), bytes, MPI_CHAR, comm), "MPI_Allgather");
+  std::vector<std::string> names;
+  for (int rank = 0; rank < size; ++rank) {
+    std::string name = all.c_str() + static_cast<std::size_t>(rank) * bytes;
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+  }
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+}  // namespace
+
+/// Handles of the file. They die in reverse order: datasets before their file.
+struct ResultsFile::Open {
+  ~Open() {
+    if (std::uncaught_exceptions() > 0) file.release();
+  }
+
+  hdf5::File file;
+  fs::path path;
+  int own_rank = 0;
+  AxisSizes sizes;
+  std::vector<hdf5::RowDataset> columns;  // in the order of visit_columns(); empty: the file leaves it out
+  hdf5::RowDataset state, outcome, message, checksum, rank, host, attempt, write_s;
+  hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
+  hdf5::Datatype host_type = hdf5::text_type(host_bytes);
+  std::string own_host = hdf5::fixed_text(host_name(), host_bytes);
+};
+
+ResultsFile::ResultsFile(ResultsFile&&) noexcept = default;
+ResultsFile& ResultsFile::operator=(ResultsFile&&) noexcept = default;
+ResultsFile::~ResultsFile() = default;
+
+ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
+                                const FreeSpace& free_space) {
+  on_first_rank(comm, [&] { create_results_file(path, plan, free_space); });
+  return ResultsFile(path, plan, std::vector<std::uint8_t>(static_cast<std::size_t>(plan.size()), 0), 0, provenance,
+                     comm);
+}
+
+ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm) {
+  ResumePoint point;
+  on_first_rank(comm, [&] { point = check_resumable(path, plan); });
+  point.done.resize(static_cast<std::size_t>(plan.size()));
+  check_mpi(MPI_Bcast(point.done.data(), static_cast<int>(point.done.size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
+  point.runs = broadcast(point.runs, comm);
+  return ResultsFile(path, plan, std::move(point.done), point.runs, provenance, comm);
+}
+
+ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
+                         const Provenance& provenance, MPI_Comm comm)
+    : open_(std::make_unique<Open>()), done_(std::move(done)), attempt_(std::min(runs, run_rows - 1)) {
+  if (runs >= run_rows) {
+    note_ = fmt::format(
+        "{} was started {} times before and remembers no more: this start takes the place of the last one in /runs",
+        path.native(), run_rows);
+  }
+  collectively(comm, [&] {
+    const hdf5::PropertyList access(hdf5::check(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"));
+    hdf5::check(H5Pset_fapl_mpio(access.id(), comm, MPI_INFO_NULL), "H5Pset_fapl_mpio", path.native());
+    open_->file = hdf5::open_file(path, H5F_ACC_RDWR, access.id());
+    open_->path = path;
+    open_->sizes = axis_sizes(plan);
+    check_mpi(MPI_Comm_rank(comm, &open_->own_rank), "MPI_Comm_rank");
+    const auto open_rows = [&](const char* dataset) { return hdf5::RowDataset(open_->file.id(), dataset); };
+    open_->state = open_rows("/tasks/state");
+    open_->outcome = open_rows("/tasks/outcome");
+    open_->message = open_rows("/tasks/message");
+    open_->checksum = open_rows("/tasks/checksum");
+    open_->rank = open_rows("/timing/tasks/rank");
+    open_->host = open_rows("/timing/tasks/host");
+    open_->attempt = open_rows("/timing/tasks/attempt");
+    open_->write_s = open_rows("/timing/tasks/write_s");
+    const TaskRecord record;
+    visit_columns(record, [&](const Column& column, const auto&) { open_->columns.push_back(open_rows(column.path)); });
+  });
+  Provenance everywhere = provenance;
+  everywhere.host = host_names(comm);
+  on_first_rank(comm, [&] { begin_run(everywhere); });
+}
+
+void ResultsFile::begin_run(const Provenance& provenance) {
+  const hid_t file = open_->file.id();
+  const auto row = static_cast<hsize_t>(attempt_);
+  hdf5::write_text_row(file, "/runs/end", row, "");
+  hdf5::write_text_row(file, "/runs/host", row, provenance.host);
+  hdf5::write_text_row(file, "/runs/command", row, provenance.user_command);
+  hdf5::write_text_row(file, "/runs/revision", row, provenance.revision);
+  hdf5::write_text_row(file, "/runs/versions", row, provenance.versions);
+  hdf5::write_text_row(file, "/runs/petsc_options", row, provenance.petsc_options);
+  hdf5::write_row<std::int32_t>(file, "/runs/ranks", row, provenance.ranks);
+  hdf5::write_row<std::int32_t>(file, "/runs/exit_code", row, -1);
+  hdf5::write_row<std::uint8_t>(file, "/runs/oversubscribed", row, provenance.oversubscribed ? 1 : 0);
+  hdf5::write_text_row(file, "/runs/begin", row, provenance.begin_utc);  // last: it marks the row as used
+}
+
+void ResultsFile::write(const Task& task, const TaskRecord& record) {
+  const auto begin = Clock::now();
+  Open& open = *open_;
+  if (done_.at(static_cast<std::size_t>(task.index)) != 0) {
+    throw std::logic_error(
+        fmt::format("task {} is complete in {} and must not be written again", task.index, open.path.native()));
+  }
+  TaskChecksum sum(task.index, to_string(record.outcome), record.message);
+  std::size_t next = 0;
+  visit_columns(record, [&](const Column& column, const auto& values) {
+    using T = typename std::decay_t<decltype(values)>::value_type;
+    const hdf5::RowDataset& dataset = open.columns[next++];
+    const RowRange rows = rows_of(task, column.rows);
+    const std::int64_t expected = rows.count * row_width(column, open.sizes);
+    if (static_cast<std::int64_t>(values.size()) != expected) {
+      throw std::logic_error(fmt::format("the record of task {} holds {} values for {}, not {}", task.index,
+                                         values.size(), column.path, expected));
+    }
+    sum.add(column, values.data(), values.size() * sizeof(T));
+    if (expected > 0) dataset.write(hdf5::type_of<T>(), rows.first, rows.count, values.data());
+  });
+  const auto write_one = [&](const hdf5::RowDataset& dataset, auto value) {
+    dataset.write(hdf5::type_of<decltype(value)>(), task.index, 1, &value);
+  };
+  open.outcome.write(open.outcome_type.id(), task.index, 1, sum.outcome().data());
+  open.message.write(open.message_type.id(), task.index, 1, sum.message().data());
+  write_one(open.checksum, sum.value());
+  write_one(open.rank, static_cast<std::int32_t>(open.own_rank));
+  open.host.write(open.host_type.id(), task.index, 1, open.own_host.data());
+  write_one(open.attempt, static_cast<std::int32_t>(attempt_));
+  write_one(open.write_s, std::chrono::duration<double>(Clock::now() - begin).count());
+  write_one(open.state, std::uint8_t{1});
+}
+
+void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
+  const auto row = static_cast<hsize_t>(attempt_);
+  hdf5::write_row<std::int32_t>(open_->file.id(), "/runs/exit_code", row, exit_code);
+  hdf5::write_text_row(open_->file.id(), "/runs/end", row, end_utc);
+}
+
+void ResultsFile::close() {
+  if (!open_) return;
+  hdf5::File file = std::move(open_->file);
+  const std::string path = open_->path.native();
+  open_.reset();
+  hdf5::close(file, "H5Fclose", path);
+}
+
+}  // namespace rodsweep

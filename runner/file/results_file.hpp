@@ -1,0 +1,73 @@
+// The one HDF5 file of a sweep, written by many ranks at once (MPI-IO, independent transfers).
+//
+// Created whole before the sweep, by rank 0 (runner/file/file_creation.hpp): every dataset is contiguous with early
+// allocation, so that no rank creates an object at run time; unwritten bytes are zero and `/tasks/state` is zero,
+// "pending". A worker writes all rows of a task, sentinels included, and the state byte last: a task whose state is 1
+// is complete, whatever happened to any process since. Metadata never change while the sweep runs, so a killed sweep
+// leaves a sound file. The layout is that of visit_columns() (runner/file/record.hpp) plus /job, /runs, /axes and the
+// plan's columns in /tasks: see runner/file/layout.hpp.
+//
+// Errors: FileError (the user's: exists already, not ours, another job, no space), Hdf5Error (a failing call, with its
+// name).
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runner/file/file_creation.hpp"
+#include "runner/file/file_error.hpp"
+#include "runner/file/provenance.hpp"
+#include "runner/file/record.hpp"
+#include "runner/job/plan.hpp"
+
+namespace rodsweep {
+
+class ResultsFile {
+ public:
+  /// Collective over `comm`. Refuses a path that exists and a disk that is too full (before creating anything). All
+  /// ranks throw the same error.
+  static ResultsFile create(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
+                            MPI_Comm comm, const FreeSpace& free_space = free_bytes);
+  /// Collective. Refuses a file of another program, schema version, plan or job text. Appends a row to /runs.
+  static ResultsFile resume(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
+                            MPI_Comm comm);
+
+  ResultsFile(ResultsFile&&) noexcept;
+  ResultsFile& operator=(ResultsFile&&) noexcept;
+  /// Closes, which is collective, unless an exception unwinds this rank: the others need not be on their way here, and
+  /// nothing is lost, since writes are not buffered.
+  ~ResultsFile();
+
+  /// Which tasks are complete, by task index (from the state bytes as they were when the file was opened).
+  const std::vector<std::uint8_t>& done() const { return done_; }
+  int attempt() const { return attempt_; }  ///< this start's row of /runs
+  /// What the user should hear about this file though it is no error; empty: nothing.
+  const std::string& note() const { return note_; }
+
+  /// Independent: any rank, any task that is not done() yet, once. The state byte goes last.
+  void write(const Task& task, const TaskRecord& record);
+
+  /// Independent, one rank: how this start ended (row of /runs).
+  void end_run(const std::string& end_utc, int exit_code);
+
+  /// Collective: closes the file and reports failure, which the destructor cannot.
+  void close();
+
+ private:
+  struct Open;
+  ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
+              const Provenance& provenance, MPI_Comm comm);
+  void begin_run(const Provenance& provenance);
+
+  std::unique_ptr<Open> open_;
+  std::vector<std::uint8_t> done_;
+  int attempt_ = 0;
+  std::string note_;
+};
+
+}  // namespace rodsweep

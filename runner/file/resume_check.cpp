@@ -1,0 +1,113 @@
+#include "runner/file/resume_check.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <sstream>
+#include <system_error>
+
+#include "runner/file/file_reading.hpp"
+#include "runner/file/layout.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Libraries of mathematical functions differ in the last digits, from machine to machine too.
+constexpr double rounding = 1e-9;
+
+struct Line {
+  int number = 1;
+  std::string here, in_file;
+};
+
+/// The first line in which two texts differ.
+Line first_difference(const std::string& here, const std::string& in_file) {
+  std::istringstream a(here), b(in_file);
+  for (Line line;; ++line.number) {
+    const bool more_a = static_cast<bool>(std::getline(a, line.here)),
+               more_b = static_cast<bool>(std::getline(b, line.in_file));
+    if (!more_a) line.here = "(end)";
+    if (!more_b) line.in_file = "(end)";
+    if (line.here != line.in_file || (!more_a && !more_b)) return line;
+  }
+}
+
+void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
+  const std::string text = hdf5::read_texts(file.id(), "/job/text").at(0);
+  if (text == plan.job().text) return;
+  const Line line = first_difference(plan.job().text, text);
+  throw FileError(
+      fmt::format("{} holds the results of another job than {}; they differ first in line {}:\n  {}: {}\n  {}: {}\n"
+                  "Resume with the job that the file was made from (it is in /job/text), or run this one into "
+                  "another file with -o FILE",
+                  path.native(), plan.job().path.native(), line.number, plan.job().path.native(), line.here,
+                  path.native(), line.in_file));
+}
+
+FileError other_program(const hdf5::File& file, const fs::path& path, const std::string& difference) {
+  return FileError(
+      fmt::format("{} was made from this job by a rodsweep that expands it differently (revision {}): {}. Resume "
+                  "with that revision, or run into another file with -o FILE",
+                  path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference));
+}
+
+void check_layout(const hdf5::File& file, const fs::path& path, const std::vector<Field>& fields) {
+  for (const Field& field : fields) {
+    if (!hdf5::exists(file.id(), field.path)) throw other_program(file, path, "it has no " + field.path);
+    const hdf5::Dataset dataset = hdf5::open_dataset(file.id(), field.path);
+    const std::vector<hsize_t> extent = hdf5::extent(dataset, field.path);
+    const hdf5::Datatype type(hdf5::check(H5Dget_type(dataset.id()), "H5Dget_type", field.path));
+    if (!std::equal(extent.begin(), extent.end(), field.extent.begin(), field.extent.end(),
+                    [](hsize_t a, std::int64_t b) { return a == static_cast<hsize_t>(b); }) ||
+        H5Tequal(type.id(), type_of(field).id()) <= 0) {
+      throw other_program(file, path, field.path + " has another shape or type");
+    }
+  }
+}
+
+bool same(double a, double b) {
+  return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= rounding * std::max(std::abs(a), std::abs(b));
+}
+
+void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& plan,
+                      const std::vector<ParameterColumn>& parameters) {
+  if (hdf5::read_text_attribute(file.id(), "/job", "plan_hash") != plan_hash(plan, parameters)) {
+    throw other_program(file, path, "its list of tasks is another (/job, plan_hash)");
+  }
+  for (const ParameterColumn& parameter : parameters) {
+    const auto* here = std::get_if<std::vector<double>>(&parameter.values);
+    if (here == nullptr) continue;
+    const std::vector<double> there = hdf5::read_all<double>(file.id(), "/tasks/parameters/" + parameter.path);
+    const auto [a, b] = std::mismatch(here->begin(), here->end(), there.begin(), there.end(), same);
+    if (a != here->end()) {
+      throw other_program(file, path,
+                          fmt::format("{} of task {} is {} here and {} in the file", parameter.path,
+                                      (a - here->begin()) / parameter.width, *a, *b));
+    }
+  }
+}
+
+}  // namespace
+
+ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
+  const hdf5::File file = open_results(path);
+  if (access(path.c_str(), W_OK) != 0) {
+    throw FileError(fmt::format("{} cannot be written: {}", path.native(), std::system_category().message(errno)));
+  }
+  try {
+    check_job(file, path, plan);
+    const std::vector<ParameterColumn> parameters = plan.parameters();
+    check_layout(file, path, layout(plan, parameters));
+    check_parameters(file, path, plan, parameters);
+    return {read_states(file, path), runs_used(file)};
+  } catch (const Hdf5Error& failure) {
+    throw damaged_error(path, failure.what());
+  }
+}
+
+}  // namespace rodsweep

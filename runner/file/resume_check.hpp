@@ -1,0 +1,20 @@
+// May a sweep be continued in this file? One process, read-only. Throws FileError that says what differs and what to
+// do.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "runner/job/plan.hpp"
+
+namespace rodsweep {
+
+struct ResumePoint {
+  std::vector<std::uint8_t> done;  ///< state bytes, by task index
+  int runs = 0;                    ///< rows of /runs in use
+};
+
+ResumePoint check_resumable(const std::filesystem::path& path, const Plan& plan);
+
+}  // namespace rodsweep

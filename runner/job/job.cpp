@@ -1,0 +1,75 @@
+#include "runner/job/job.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "runner/job/job_keys.hpp"
+#include "runner/job/job_reader.hpp"
+#include "runner/job/strict_json.hpp"
+#include "runner/job/sweep_space.hpp"
+
+namespace rodsweep {
+namespace {
+
+void check_guesses(const Job& job, const SweepSpace& space) {
+  const auto& guesses = job.values["guesses"];
+  if (!space.can_be("solve.method", "cg")) {
+    if (guesses.empty()) return;
+    throw job_error(job.path, "guesses", "solve.method \"direct\" uses no initial guess; remove this key");
+  }
+  for (const auto& guess : guesses) {
+    if (guess.contains("zero")) return;
+  }
+  throw job_error(
+      job.path, "guesses",
+      "solve.method \"cg\" needs \"zero\" in this list, the denominator of every ratio; for example [\"zero\", "
+      "\"previous\", \"quadratic\"]");
+}
+
+void check_samples(const Job& job, const SweepSpace& space) {
+  if (job.samples == 1 || space.every_point_is_random()) return;
+  throw job_error(
+      job.path, "samples",
+      fmt::format("{} is not allowed, since there are grid points at which nothing is random and all samples "
+                  "would be equal; make a value random there, such as {{\"uniform\": [a, b]}}, or use 1",
+                  job.samples));
+}
+
+}  // namespace
+
+JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text) {
+  return JobError(file.string() + ": " + (key_path.empty() ? "" : key_path + ": ") + text);
+}
+
+Job parse_job(std::string text, const std::filesystem::path& path) {
+  JobReader reader(path);
+  Job job;
+  job.values = reader.read(job_key(), parse_strict_json(text, path), "");
+  reader.throw_mistakes();
+  job.path = path;
+  job.text = std::move(text);
+  job.name = job.values["name"];
+  job.seed = job.values["seed"];
+  job.samples = job.values["samples"];
+  const SweepSpace space(job.values, path);
+  check_guesses(job, space);
+  check_samples(job, space);
+  return job;
+}
+
+Job read_job(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw job_error(path, "", "is a folder, not a job file");
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  if (in) text << in.rdbuf();
+  if (!in) throw job_error(path, "", fmt::format("cannot be read: {}", std::strerror(errno ? errno : EIO)));
+  return parse_job(std::move(text).str(), path);
+}
+
+}  // namespace rodsweep

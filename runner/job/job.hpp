@@ -1,0 +1,41 @@
+// A job file, read strictly: unknown, missing, duplicate, mistyped, non-finite and out-of-range keys are refused before
+// anything runs, with a message that names file, key path, value, what is allowed and the nearest known key.
+//
+// A sweep stands in place of a value: {"grid": [values]}, {"zip": [values]}, {"uniform": [a, b]}, {"log_uniform": [a,
+// b]},
+// {"integer": [a, b]}; see runner/job/sweep_space.hpp for what they expand to.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace rodsweep {
+
+/// Something in a job file that its author must change. what() is the whole message for the user, ready to print: one
+/// line per mistake, each beginning with the file.
+class JobError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// "FILE: KEY.PATH: TEXT"; without a path "FILE: TEXT".
+JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text);
+
+struct Job {
+  std::filesystem::path path;  ///< as given by the user; relative paths in the job are relative to its folder
+  std::string text;            ///< the file as it was read, byte for byte: stored in /job/text
+  std::string name;
+  std::uint64_t seed = 0;
+  std::int64_t samples = 1;
+  nlohmann::ordered_json values;  ///< validated, every default filled in, sweeps still in place
+};
+
+/// Reads and validates every key and every value that a sweep can take; throws JobError. What depends on several values
+/// at one parameter point (such as a duration of a whole number of steps) is checked by Plan (runner/job/plan.hpp).
+Job read_job(const std::filesystem::path& path);
+Job parse_job(std::string text, const std::filesystem::path& path);
+
+}  // namespace rodsweep

@@ -1,0 +1,212 @@
+#include "runner/job/job_keys.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Key scene() {
+  return object_key(
+      "scene", "the rod that is simulated",
+      {
+          choice_key("type", "which scene", {"bending_rod", "helix"})
+              .unswept(
+                  "to sweep over scenes, list whole ones: \"scene\": {\"grid\": [{\"type\": \"bending_rod\", ...}, "
+                  "{\"type\": \"helix\", ...}]}"),
+          choice_key("clamp", "how the first end is held: its segment, an exact wall, or not at all",
+                     {"segment", "wall", "free"})
+              .defaults_to("segment"),
+          integer_key("segments", "number of segments of the rod, without a wall's static one")
+              .at_least(1)
+              .at_most(1000000)
+              .also_called({"n", "number_of_segments", "elements"}),
+          number_key("length_m", "length of the rod").in("m").above(0).at_most(1e6).only("bending_rod"),
+          number_key("helix_radius_m", "radius of the helix").in("m").above(0).at_most(1e6).only("helix"),
+          number_key("helix_height_m", "height of the helix").in("m").above(0).at_most(1e6).only("helix"),
+          number_key("windings", "turns of the helix").above(0).at_most(1e6).only("helix").also_called({"turns"}),
+          number_key("radius_m", "radius of the rod's cross-section").in("m").above(0).at_most(1e3),
+          number_key("density_kg_m3", "density").in("kg/m^3").above(0).at_most(1e6).also_called({"rho"}),
+          number_key("youngs_modulus_pa", "Young's modulus, for bending")
+              .in("Pa")
+              .above(0)
+              .at_most(1e15)
+              .also_called({"bending_modulus_pa", "elastic_modulus_pa", "e", "y"}),
+          number_key("torsion_modulus_pa", "torsion modulus, for twisting and shear")
+              .in("Pa")
+              .above(0)
+              .at_most(1e15)
+              .also_called({"shear_modulus_pa", "g", "t"}),
+          number_key("initial_angle_deg", "angle from the horizontal at the start")
+              .in("deg")
+              .at_least(-360)
+              .at_most(360)
+              .defaults_to(0)
+              .only("bending_rod"),
+          vector_key("gravity_m_s2", "acceleration of gravity")
+              .in("m/s^2")
+              .at_least(-1e6)
+              .at_most(1e6)
+              .defaults_to(Json::array({0, -9.81, 0})),
+          number_key("damping_per_s", "viscous damping: velocities decay at this rate")
+              .in("1/s")
+              .at_least(0)
+              .at_most(1e6)
+              .defaults_to(0),
+          vector_key("tip_force_n", "constant force at the free end")
+              .in("N")
+              .at_least(-1e12)
+              .at_most(1e12)
+              .defaults_to(Json::array({0, 0, 0})),
+          number_key("stretch_compliance_per_j",
+                     "compliance of the stretch and shear constraints, or one chosen from the expected forces")
+              .in("1/J")
+              .at_least(0)
+              .at_most(1e6)
+              .or_word("inextensible")
+              .defaults_to("inextensible"),
+      },
+      "type");
+}
+
+Key time() {
+  return object_key(
+      "time", "time stepping",
+      {
+          number_key("step_s", "time step").in("s").above(0).at_most(1000).also_called({"dt", "dt_s", "time_step_s"}),
+          integer_key("steps", "number of time steps").at_least(1).at_most(10000000).one_of_group("length of the run"),
+          number_key("duration_s", "simulated time, a whole number of steps")
+              .in("s")
+              .above(0)
+              .at_most(1e9)
+              .one_of_group("length of the run"),
+          integer_key("newton_iterations", "most Newton iterations in a step").at_least(1).at_most(1000).defaults_to(6),
+          number_key("newton_tolerance", "Newton ends when max |C + alpha~ lambda| is below it")
+              .at_least(0)
+              .at_most(1)
+              .defaults_to(1e-9),
+      });
+}
+
+Key solve() {
+  return object_key("solve", "the linear solves",
+                    {
+                        choice_key("method", "conjugate gradients with counted iterations, or the direct solve alone",
+                                   {"cg", "direct"})
+                            .defaults_to("cg"),
+                        choice_key("preconditioner", "preconditioner of cg",
+                                   {"none", "jacobi", "point_block_jacobi", "icc", "cholesky"})
+                            .defaults_to("jacobi"),
+                        choice_key("norm", "residual norm of the stopping test of cg", {"true_residual", "natural"})
+                            .defaults_to("true_residual"),
+                        number_key("tolerance",
+                                   "tolerance of the timed solves, relative to ||b||; in a closed loop also of "
+                                   "those that advance the rod")
+                            .above(0)
+                            .at_most(1)
+                            .defaults_to(1e-2),
+                        integer_key("max_iterations", "limit on cg iterations; 0: ten times the number of unknowns")
+                            .at_least(0)
+                            .at_most(32767)
+                            .defaults_to(0),
+                    })
+      .defaults_to(Json::object());
+}
+
+Key record() {
+  return object_key("record", "what is written",
+                    {
+                        choice_key("solves", "a row for every solve, or only sums for every task", {"all", "summary"})
+                            .defaults_to("all")
+                            .setting(),
+                        integer_key("trajectory_every", "a frame of all segments every so many steps; 0: none")
+                            .at_least(0)
+                            .at_most(10000000)
+                            .defaults_to(0)
+                            .setting(),
+                    })
+      .defaults_to(Json::object())
+      .setting();
+}
+
+Key job() {
+  return object_key(
+             "job", "a job",
+             {
+                 text_key("name", "name of the job and of its results file")
+                     .at_most(100)
+                     .of_form(Key::Text::file_name)
+                     .setting(),
+                 text_key("description", "a remark for the reader")
+                     .defaults_to("")
+                     .also_called({"comment", "//", "_comment", "note", "#"})
+                     .setting(),
+                 choice_key("kind", "kind of job", {"sweep"}).not_yet({"dataset", "train"}).setting(),
+                 integer_key("seed", "seed of all random values")
+                     .at_least(0)
+                     .at_most(9007199254740991)
+                     .defaults_to(0)
+                     .setting(),
+                 integer_key("samples", "draws of the random values at every grid point")
+                     .at_least(1)
+                     .at_most(1000000)
+                     .defaults_to(1)
+                     .setting(),
+                 choice_key("evaluation",
+                            "all guesses on the systems of one trajectory, or each on a trajectory of its own",
+                            {"paired", "closed_loop"})
+                     .defaults_to("paired"),
+                 scene(),
+                 time(),
+                 solve(),
+                 guesses_key("guesses", "initial guesses of cg")
+                     .defaults_to(Json::array())
+                     .unswept("all tasks share one list of guesses; put every guess in it"),
+                 record(),
+                 number_key("task_time_limit_s", "a task that takes longer is recorded as timed out; 0: no limit")
+                     .in("s")
+                     .at_least(0)
+                     .at_most(1e9)
+                     .defaults_to(0)
+                     .setting(),
+             },
+             "kind")
+      .unswept("put the sweep in place of a value");
+}
+
+}  // namespace
+
+const Key& job_key() {
+  static const Key key = job();
+  return key;
+}
+
+const std::vector<Key>& guess_keys() {
+  static const std::vector<Key> keys{
+      object_key("zero", "no guess: the denominator of every ratio", {}),
+      object_key("previous", "the solution of the same Newton iteration of the last step", {}),
+      object_key("linear", "linear extrapolation in time", {}),
+      object_key("quadratic", "quadratic extrapolation in time", {}),
+      object_key("oracle", "the exact solution plus a random error",
+                 {number_key("error", "A-norm of the error relative to the solution's")
+                      .at_least(0)
+                      .at_most(1e6)
+                      .defaults_to(0.1)}),
+      object_key(
+          "guarded", "another guess, used only where its residual is small",
+          {guess_key("guess", "the guess that is guarded"),
+           number_key("threshold", "the guess is used where the natural norm of b - A x0 is below this times b's")
+               .above(0)
+               .at_most(1e6)}),
+  };
+  return keys;
+}
+
+const Key& guess_label_key() {
+  static const Key key = text_key("label", "name of the guess in files and figures")
+                             .at_most(60)
+                             .of_form(Key::Text::line)
+                             .unswept("a label names the same guess in all tasks");
+  return key;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,182 @@
+#include "runner/job/job_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/job/job.hpp"
+#include "runner/job/key_path.hpp"
+#include "runner/job/nearest.hpp"
+#include "runner/job/sweep.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A value as the user wrote it, shortened.
+std::string written(const Json& value) {
+  constexpr std::size_t longest = 60;
+  std::string text = value.dump();
+  if (text.size() <= longest) return text;
+  std::size_t end = longest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not within a character
+  return text.substr(0, end) + "...";
+}
+
+bool within(const Key& key, double value) {
+  return std::isfinite(value) && value <= key.high && (key.above_low ? value > key.low : value >= key.low);
+}
+
+bool has_form(const std::string& text, Key::Text form) {
+  if (form == Key::Text::any) return true;
+  if (text.empty()) return false;
+  if (form == Key::Text::line) {
+    return std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  }
+  const std::string allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+  return text.find_first_not_of(allowed) == std::string::npos && text[0] != '-' && text[0] != '.';
+}
+
+}  // namespace
+
+void JobReader::mistake(const std::string& path, const std::string& text) {
+  mistakes_.emplace_back(job_error(file_, path, text).what());
+}
+
+void JobReader::refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark) {
+  mistake(path, fmt::format("{} is not allowed; must be {}{}", written(value), allowed(key), remark));
+}
+
+void JobReader::throw_mistakes() const {
+  if (mistakes_.empty()) return;
+  constexpr std::size_t most = 20;
+  std::string text;
+  for (std::size_t i = 0; i < mistakes_.size() && i < most; ++i) text += (i == 0 ? "" : "\n") + mistakes_[i];
+  if (mistakes_.size() > most) text += fmt::format("\n{}: and {} more", file_.string(), mistakes_.size() - most);
+  throw JobError(text);
+}
+
+Json JobReader::read(const Key& key, const Json& value, const std::string& path) {
+  if (!sweep_word(value).empty()) return read_sweep(key, value, path);
+  switch (key.kind) {
+    case Key::Kind::object: return read_object(key, value, path);
+    case Key::Kind::integer:
+    case Key::Kind::number: return read_number(key, value, path);
+    case Key::Kind::text:
+    case Key::Kind::choice: return read_text(key, value, path);
+    case Key::Kind::guess: return read_guess(key, value, path, false);
+    case Key::Kind::guesses: return read_guesses(value, path);
+    case Key::Kind::vector: {
+      if (!value.is_array() || value.size() != 3) {
+        refuse(key, value, path);
+        return value;
+      }
+      Json result = Json::array();
+      for (std::size_t i = 0; i < 3; ++i) result.push_back(read(component_key(key), value[i], element(path, i)));
+      return result;
+    }
+  }
+  throw std::logic_error("a kind of key that is not read");
+}
+
+Json JobReader::read_sweep(const Key& key, const Json& value, const std::string& path) {
+  const std::string word = sweep_word(value);
+  const Json& content = value[word];
+  if (!key.sweepable) {
+    mistake(path, "this key cannot be swept" + (key.no_sweep_advice.empty() ? "" : "; " + key.no_sweep_advice));
+    return value;
+  }
+  if (value.size() != 1) {
+    mistake(path, fmt::format("{} is not allowed; a sweep has no other key beside \"{}\"", written(value), word));
+    return value;
+  }
+  if (!is_listed(word)) return Json{{word, read_range(key, word, content, member(path, word))}};
+  if (!content.is_array() || content.empty()) {
+    mistake(member(path, word),
+            fmt::format("{} is not allowed; must be a list of at least one value", written(content)));
+    return value;
+  }
+  Json values = Json::array();
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    values.push_back(read(key, content[i], element(member(path, word), i)));
+  }
+  return Json{{word, std::move(values)}};
+}
+
+Json JobReader::read_range(const Key& key, const std::string& word, const Json& ends, const std::string& path) {
+  const bool whole = word == "integer";
+  if (key.kind == Key::Kind::integer && !whole) {
+    mistake(path, fmt::format("{} draws numbers that are not whole; use {{\"integer\": [a, b]}} here", word));
+    return ends;
+  }
+  if (key.kind != Key::Kind::integer && key.kind != Key::Kind::number) {
+    mistake(path, fmt::format("{} draws a number, which is not allowed here; must be {}", word, allowed(key)));
+    return ends;
+  }
+  if (!ends.is_array() || ends.size() != 2) {
+    mistake(path, fmt::format("{} is not allowed; must be the two ends of a range [a, b]", written(ends)));
+    return ends;
+  }
+  Key end_key = key;
+  if (whole) end_key.kind = Key::Kind::integer;
+  end_key.choices.clear();  // a word is no end of a range
+  const std::size_t before = mistakes_.size();
+  Json result = Json::array();
+  for (std::size_t i = 0; i < 2; ++i) result.push_back(read_number(end_key, ends[i], element(path, i)));
+  if (mistakes_.size() != before) return ends;
+  const double low = result[0].get<double>(), high = result[1].get<double>();
+  if (low > high) {
+    mistake(path, fmt::format("{} is not allowed; the first end must not be above the second", written(ends)));
+  } else if (word == "log_uniform" && low <= 0) {
+    mistake(path, fmt::format("{} is not allowed; a log_uniform range must lie above 0", written(ends)));
+  }
+  return result;
+}
+
+Json JobReader::read_number(const Key& key, const Json& value, const std::string& path) {
+  if (value.is_string()) {
+    for (const std::string& word : key.choices) {
+      if (value == word) return value;
+    }
+    refuse(key, value, path, key.choices.size() > 1 ? did_you_mean(value.get<std::string>(), key.choices) : "");
+    return value;
+  }
+  if (value.is_object() && value.size() == 1) {
+    refuse(key, value, path, did_you_mean(value.begin().key(), sweep_words()));
+    return value;
+  }
+  const bool whole = key.kind == Key::Kind::integer;
+  if (!value.is_number() || !within(key, value.get<double>()) ||
+      (whole && std::trunc(value.get<double>()) != value.get<double>())) {
+    refuse(key, value, path);
+    return value;
+  }
+  return whole ? Json(static_cast<std::int64_t>(value.get<double>())) : value;
+}
+
+Json JobReader::read_text(const Key& key, const Json& value, const std::string& path) {
+  if (!value.is_string()) {
+    refuse(key, value, path);
+    return value;
+  }
+  const auto& text = value.get_ref<const std::string&>();
+  if (key.kind == Key::Kind::text) {
+    if (static_cast<double>(text.size()) > key.high || !has_form(text, key.text)) refuse(key, value, path);
+    return value;
+  }
+  for (const std::string& choice : key.choices) {
+    if (text == choice) return value;
+  }
+  for (const std::string& planned : key.planned) {
+    if (text == planned) {
+      mistake(path, fmt::format("\"{}\" is not in this version of rodsweep; must be {}", text, allowed(key)));
+      return value;
+    }
+  }
+  refuse(key, value, path, key.choices.size() > 1 ? did_you_mean(text, key.choices) : "");
+  return value;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,43 @@
+// Checks a job's JSON against the table of keys (runner/job/job_keys.hpp) and fills in the defaults. Every value that a
+// sweep can take is checked like a plain one, a range at both ends. All mistakes are collected, not just the first.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runner/job/key.hpp"
+
+namespace rodsweep {
+
+class JobReader {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  explicit JobReader(std::filesystem::path file) : file_(std::move(file)) {}
+
+  /// The value as it is to be used: defaults in place, guesses all in the form {"name": {parameters, "label"}}.
+  Json read(const Key& key, const Json& value, const std::string& path);
+
+  /// Throws JobError with one line per mistake, if there was any.
+  void throw_mistakes() const;
+
+ private:
+  Json read_sweep(const Key& key, const Json& value, const std::string& path);
+  Json read_range(const Key& key, const std::string& word, const Json& ends, const std::string& path);
+  Json read_object(const Key& key, const Json& value, const std::string& path);
+  Json read_number(const Key& key, const Json& value, const std::string& path);
+  Json read_text(const Key& key, const Json& value, const std::string& path);
+  Json read_guess(const Key& key, const Json& value, const std::string& path, bool labelled);
+  Json read_guesses(const Json& value, const std::string& path);
+  void refuse_unknown(const Key& key, const std::string& name, const std::string& tag_value, const std::string& path);
+  void fill_absent(const Key& key, const std::string& tag_value, const std::string& path, Json& result);
+  void refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark = "");
+  void mistake(const std::string& path, const std::string& text);
+
+  std::filesystem::path file_;
+  std::vector<std::string> mistakes_;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,180 @@
+// The part of JobReader that reads objects of keys and lists of guesses.
+#include <fmt/format.h>
+
+#include <map>
+
+#include "runner/job/job_keys.hpp"
+#include "runner/job/job_reader.hpp"
+#include "runner/job/key_path.hpp"
+#include "runner/job/nearest.hpp"
+#include "runner/job/sweep.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> names(const std::vector<Key>& keys) {
+  std::vector<std::string> result;
+  for (const Key& key : keys) result.push_back(key.name);
+  return result;
+}
+
+bool applies(const Key& key, const std::string& tag_value) {
+  return key.only_for.empty() || tag_value.empty() || key.only_for == tag_value;
+}
+
+/// "oracle 0.1": the name and those parameters that are not swept.
+std::string default_label(const std::string& name, const Json& parameters) {
+  std::string label = name;
+  for (const auto& [key, value] : parameters.items()) {
+    if (key == guess_label_key().name || !sweep_word(value).empty()) continue;
+    if (value.is_object() && !value.empty()) {
+      label += " " + default_label(value.begin().key(), value.begin().value());
+    } else {
+      label += " " + (value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+  return label;
+}
+
+}  // namespace
+
+Json JobReader::read_object(const Key& key, const Json& value, const std::string& path) {
+  if (!value.is_object()) {
+    refuse(key, value, path);
+    return value;
+  }
+  std::string tag_value;  // stays empty where it is missing or wrong: then any type's keys pass
+  if (!key.tag.empty() && value.contains(key.tag) && value[key.tag].is_string()) {
+    const std::string given = value[key.tag];
+    for (const std::string& choice : find_key(key.keys, key.tag)->choices) {
+      if (given == choice) tag_value = given;
+    }
+  }
+  Json result = Json::object();
+  for (const auto& [name, child] : value.items()) {
+    const Key* child_key = find_key(key.keys, name);
+    if (child_key && applies(*child_key, tag_value)) {
+      result[name] = read(*child_key, child, member(path, name));
+    } else {
+      refuse_unknown(key, name, tag_value, path);
+    }
+  }
+  fill_absent(key, tag_value, path, result);
+  return result;
+}
+
+void JobReader::refuse_unknown(const Key& key, const std::string& name, const std::string& tag_value,
+                               const std::string& path) {
+  if (const Key* other = find_key(key.keys, name)) {
+    mistake(member(path, name), fmt::format("this key belongs to {} \"{}\", not to \"{}\"", member(path, key.tag),
+                                            other->only_for, tag_value));
+    return;
+  }
+  std::vector<std::string> known, words;
+  std::map<std::string, std::string> meant;
+  for (const Key& child : key.keys) {
+    if (!applies(child, tag_value)) continue;
+    known.push_back(child.name);
+    words.push_back(child.name);
+    meant[child.name] = child.name;
+    for (const std::string& synonym : child.synonyms) {
+      words.push_back(synonym);
+      meant[synonym] = child.name;
+    }
+  }
+  const std::string near = nearest(name, words);
+  const std::string hint = near.empty()
+                               ? (known.empty() ? "no keys are allowed here" : "allowed here: " + quoted_list(known))
+                               : "did you mean \"" + meant[near] + "\"?";
+  mistake(member(path, name), "unknown key; " + hint);
+}
+
+void JobReader::fill_absent(const Key& key, const std::string& tag_value, const std::string& path, Json& result) {
+  std::map<std::string, std::vector<const Key*>> groups;
+  for (const Key& child : key.keys) {
+    if (!child.only_for.empty() && child.only_for != tag_value) continue;
+    if (!child.alternative_group.empty()) {
+      groups[child.alternative_group].push_back(&child);
+    } else if (result.contains(child.name)) {
+      continue;
+    } else if (child.preset) {
+      result[child.name] = read(child, *child.preset, member(path, child.name));
+    } else {
+      mistake(member(path, child.name), "missing: " + describe(child));
+    }
+  }
+  for (const auto& [group, members] : groups) {
+    std::vector<std::string> given, all;
+    for (const Key* child : members) {
+      all.push_back(child->name);
+      if (result.contains(child->name)) given.push_back(child->name);
+    }
+    if (given.empty()) {
+      mistake(path, fmt::format("missing: the {}, exactly one of {}", group, quoted_list(all)));
+    } else if (given.size() > 1) {
+      mistake(path, fmt::format("{} exclude each other; give exactly one", quoted_list(given)));
+    }
+  }
+}
+
+Json JobReader::read_guess(const Key& key, const Json& value, const std::string& path, bool labelled) {
+  std::string name;
+  Json given = Json::object();
+  if (value.is_string()) {
+    name = value;
+  } else if (value.is_object() && value.size() == 1) {
+    name = value.begin().key();
+    given = value.begin().value();
+  } else {
+    const bool label_outside = value.is_object() && value.contains("label");
+    refuse(key, value, path, label_outside ? "; the label stands within: {\"previous\": {\"label\": \"...\"}}" : "");
+    return value;
+  }
+  const Key* guess = find_key(guess_keys(), name);
+  if (!guess) {
+    refuse(key, value, path, did_you_mean(name, names(guess_keys())));
+    return value;
+  }
+  Key keys = *guess;
+  if (labelled) keys.keys.push_back(Key(guess_label_key()).defaults_to(name));
+  if (!given.is_object()) {
+    refuse(keys, given, member(path, name));
+    return value;
+  }
+  Json parameters = read_object(keys, given, member(path, name));
+  if (labelled && !given.contains("label")) parameters["label"] = default_label(name, parameters);
+  return Json{{name, std::move(parameters)}};
+}
+
+Json JobReader::read_guesses(const Json& value, const std::string& path) {
+  const Key guess = guess_key("guess", "initial guess of cg");
+  if (!value.is_array()) {
+    refuse(guesses_key("guesses", ""), value, path);
+    return value;
+  }
+  Json result = Json::array();
+  std::map<std::string, std::size_t> labels;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!sweep_word(value[i]).empty()) {
+      mistake(element(path, i),
+              "a guess cannot be swept, since all tasks share one list of guesses; list every guess "
+              "beside the others (a guess's parameters may be swept)");
+      continue;
+    }
+    const std::size_t before = mistakes_.size();
+    result.push_back(read_guess(guess, value[i], element(path, i), true));
+    if (mistakes_.size() != before) continue;
+    const std::string label = result.back().begin().value()["label"];
+    const auto [first, is_new] = labels.emplace(label, i);
+    if (!is_new) {
+      mistake(element(path, i),
+              fmt::format("its label \"{}\" is also that of {}; give one of them a \"label\" of its own", label,
+                          element(path, first->second)));
+    }
+  }
+  return result;
+}
+
+}  // namespace rodsweep

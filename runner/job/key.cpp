@@ -1,0 +1,153 @@
+#include "runner/job/key.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runner/job/job_keys.hpp"
+
+namespace rodsweep {
+namespace {
+
+Key make(Key::Kind kind, const char* name, const char* help) {
+  Key key;
+  key.kind = kind;
+  key.name = name;
+  key.help = help;
+  return key;
+}
+
+std::string bounds(const Key& key) {
+  const bool low = std::isfinite(key.low), high = std::isfinite(key.high);
+  if (!low && !high) return "";
+  if (low && high && !key.above_low) return fmt::format(" from {} to {}", key.low, key.high);
+  std::string text;
+  if (low) text += fmt::format(key.above_low ? " above {}" : " of at least {}", key.low);
+  if (high) text += fmt::format("{} at most {}", low ? " and" : " of", key.high);
+  return text;
+}
+
+}  // namespace
+
+Key& Key::in(const char* si_unit) {
+  unit = si_unit;
+  return *this;
+}
+Key& Key::above(double bound) {
+  low = bound;
+  above_low = true;
+  return *this;
+}
+Key& Key::at_least(double bound) {
+  low = bound;
+  above_low = false;
+  return *this;
+}
+Key& Key::at_most(double bound) {
+  high = bound;
+  return *this;
+}
+Key& Key::or_word(const char* word) {
+  choices.emplace_back(word);
+  return *this;
+}
+Key& Key::defaults_to(nlohmann::ordered_json value) {
+  preset = std::move(value);
+  return *this;
+}
+Key& Key::only(const char* tag_value) {
+  only_for = tag_value;
+  return *this;
+}
+Key& Key::one_of_group(const char* group) {
+  alternative_group = group;
+  return *this;
+}
+Key& Key::of_form(Text form) {
+  text = form;
+  return *this;
+}
+Key& Key::not_yet(std::vector<std::string> words) {
+  planned = std::move(words);
+  return *this;
+}
+Key& Key::also_called(std::vector<std::string> words) {
+  synonyms = std::move(words);
+  return *this;
+}
+Key& Key::unswept(const char* advice) {
+  sweepable = false;
+  no_sweep_advice = advice;
+  return *this;
+}
+Key& Key::setting() {
+  sweepable = false;
+  parameter = false;
+  return *this;
+}
+
+Key object_key(const char* name, const char* help, std::vector<Key> keys, const char* tag) {
+  Key key = make(Key::Kind::object, name, help);
+  key.keys = std::move(keys);
+  key.tag = tag;
+  return key;
+}
+Key integer_key(const char* name, const char* help) { return make(Key::Kind::integer, name, help); }
+Key number_key(const char* name, const char* help) { return make(Key::Kind::number, name, help); }
+Key vector_key(const char* name, const char* help) { return make(Key::Kind::vector, name, help); }
+Key text_key(const char* name, const char* help) { return make(Key::Kind::text, name, help); }
+Key choice_key(const char* name, const char* help, std::vector<std::string> choices) {
+  Key key = make(Key::Kind::choice, name, help);
+  key.choices = std::move(choices);
+  return key;
+}
+Key guess_key(const char* name, const char* help) { return make(Key::Kind::guess, name, help); }
+Key guesses_key(const char* name, const char* help) { return make(Key::Kind::guesses, name, help); }
+
+Key component_key(const Key& vector) {
+  Key key = vector;
+  key.kind = Key::Kind::number;
+  return key;
+}
+
+std::string quoted_list(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", word);
+  return text;
+}
+
+std::string allowed(const Key& key) {
+  switch (key.kind) {
+    case Key::Kind::object: return "an object {...}";
+    case Key::Kind::integer: return "an integer" + bounds(key);
+    case Key::Kind::number:
+      return "a number" + bounds(key) + (key.choices.empty() ? "" : ", or " + quoted_list(key.choices));
+    case Key::Kind::vector: return "three numbers [x, y, z], each" + (bounds(key).empty() ? " finite" : bounds(key));
+    case Key::Kind::text:
+      if (key.text == Key::Text::any) return "a text";
+      if (key.text == Key::Text::line) return fmt::format("a text of 1 to {} characters on one line", key.high);
+      return fmt::format(
+          "a file name of 1 to {} letters, digits, \"_\", \"-\" or \".\", not beginning with \"-\" or \".\"", key.high);
+    case Key::Kind::choice: return (key.choices.size() > 1 ? "one of " : "") + quoted_list(key.choices);
+    case Key::Kind::guess: {
+      std::vector<std::string> names;
+      for (const Key& guess : guess_keys()) names.push_back(guess.name);
+      return "one of " + quoted_list(names) + ", or an object such as {\"oracle\": {\"error\": 0.1}}";
+    }
+    case Key::Kind::guesses: return "a list of guesses [...]";
+  }
+  throw std::logic_error("a kind of key without a description");
+}
+
+std::string describe(const Key& key) {
+  return key.help + (key.unit.empty() ? "" : " [" + key.unit + "]") + ", " + allowed(key);
+}
+
+const Key* find_key(const std::vector<Key>& keys, const std::string& name) {
+  for (const Key& key : keys) {
+    if (key.name == name) return &key;
+  }
+  return nullptr;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,92 @@
+// One key of a job file, described once. Reading, defaults, refusals, the columns of the results file and help texts
+// all follow from these rows; the rows themselves are in runner/job/job_keys.cpp.
+#pragma once
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rodsweep {
+
+struct Key {
+  enum class Kind {
+    object,   ///< `keys` are its members
+    integer,  ///< within [low, high]
+    number,   ///< finite, within the bounds; or one of `choices`, a word that stands for a number
+    vector,   ///< three numbers, each within the bounds
+    text,     ///< 1 to `high` bytes of the form `text`
+    choice,   ///< one of `choices`
+    guess,    ///< a name of guess_keys(), or an object with that name as its one key and the guess's parameters within
+    guesses   ///< a list of guesses, each with a label of its own
+  };
+
+  enum class Text {
+    any,       ///< may be empty
+    line,      ///< no control characters
+    file_name  ///< letters, digits, "_", "-" and ".", beginning with none of the latter two
+  };
+
+  std::string name;
+  Kind kind = Kind::object;
+  std::string unit;  ///< SI, "" where there is none
+  std::string help;  ///< one line
+
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool above_low = false;  ///< `low` itself is excluded
+  std::vector<std::string> choices;
+  std::vector<std::string> planned;  ///< choices that a later version will have: refused with that remark
+  Text text = Text::any;
+  std::optional<nlohmann::ordered_json> preset;  ///< value if the key is absent; none: the key is required
+  bool sweepable = true;                         ///< may its value be a sweep?
+  bool parameter = true;                         ///< part of a task's parameters, not a setting of the whole job?
+  std::string no_sweep_advice;                   ///< what to do instead of sweeping it
+  std::vector<std::string> synonyms;             ///< other words for it: suggested, never accepted
+  std::string only_for;           ///< for members of an object with a `tag`: the tag's value that has this key
+  std::string alternative_group;  ///< exactly one of the keys with the same group must be given
+
+  std::string tag;        ///< object: the member whose value decides which `only_for` members apply
+  std::vector<Key> keys;  ///< object: its members
+
+  Key& in(const char* si_unit);
+  Key& above(double bound);
+  Key& at_least(double bound);
+  Key& at_most(double bound);
+  Key& or_word(const char* word);
+  Key& defaults_to(nlohmann::ordered_json value);
+  Key& only(const char* tag_value);
+  Key& one_of_group(const char* group);
+  Key& of_form(Text form);
+  Key& not_yet(std::vector<std::string> words);
+  Key& also_called(std::vector<std::string> words);
+  Key& unswept(const char* advice = "");
+  Key& setting();  ///< concerns the whole job: neither swept nor a parameter of its tasks
+};
+
+Key object_key(const char* name, const char* help, std::vector<Key> keys, const char* tag = "");
+Key integer_key(const char* name, const char* help);
+Key number_key(const char* name, const char* help);
+Key vector_key(const char* name, const char* help);
+Key text_key(const char* name, const char* help);
+Key choice_key(const char* name, const char* help, std::vector<std::string> choices);
+Key guess_key(const char* name, const char* help);
+Key guesses_key(const char* name, const char* help);
+
+/// The key of one component of a vector.
+Key component_key(const Key& vector);
+
+/// What a key takes, to follow "must be": "an integer from 1 to 1000000", "one of "none", "jacobi"".
+std::string allowed(const Key& key);
+
+/// "clamped length [m], a number above 0".
+std::string describe(const Key& key);
+
+/// Member by name, nullptr if there is none.
+const Key* find_key(const std::vector<Key>& keys, const std::string& name);
+
+/// "a", "b", "c"
+std::string quoted_list(const std::vector<std::string>& words);
+
+}  // namespace rodsweep

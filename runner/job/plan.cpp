@@ -1,0 +1,93 @@
+#include "runner/job/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runner/job/counter_random.hpp"
+#include "runner/job/task_spec.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr std::int64_t most_tasks = 1000000;
+constexpr double most_rows = 1e15;  // of a dataset: far beyond any disk, far below overflow
+
+}  // namespace
+
+const std::vector<double>& tolerance_ladder() {
+  static const std::vector<double> ladder{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+  return ladder;
+}
+
+Plan::Plan(Job job)
+    : job_(std::move(job)), space_(job_.values, job_.path), guess_labels_(rodsweep::guess_labels(job_)) {
+  const std::int64_t points = space_.grid_points();
+  if (static_cast<double>(points) * static_cast<double>(job_.samples) > most_tasks) {
+    throw job_error(job_.path, "",
+                    fmt::format("{} grid points with {} samples each are too many tasks; the most is {}", points,
+                                job_.samples, most_tasks));
+  }
+  const RecordSpec record = record_spec(job_);
+  Point values;
+  for (std::int64_t point = 0; point < points * job_.samples; ++point) {
+    fill(values, point);
+    const SceneSpec scene = scene_spec(values);
+    check_scene(scene, job_);
+    const TimeSpec time = time_spec(values, job_);
+
+    Task task;
+    task.point = point;
+    task.sample = point % job_.samples;
+    task.segments = segment_count(scene);
+    task.joints = task.segments - 1;
+    task.steps = time.steps;
+    task.solves = record.solves ? task.steps * time.newton_iterations : 0;
+    task.frames = record.trajectory_every > 0 ? 1 + task.steps / record.trajectory_every : 0;
+    task.cost = static_cast<double>(task.segments) * time.steps * time.newton_iterations;
+
+    const bool own_trajectories =
+        evaluation(values) == Evaluation::closed_loop && solve_spec(values).method == Method::cg;
+    const int copies = own_trajectories ? static_cast<int>(guess_labels_.size()) : 1;
+    for (int copy = 0; copy < copies; ++copy) {
+      task.index = size();
+      task.own_guess = own_trajectories ? copy : -1;
+      task.first_step = step_rows_;
+      task.first_solve = solve_rows_;
+      task.first_frame_row = frame_rows_;
+      const double frame_rows = static_cast<double>(task.frames) * task.segments + static_cast<double>(frame_rows_);
+      if (size() == most_tasks || frame_rows > most_rows || static_cast<double>(solve_rows_) > most_rows) {
+        throw job_error(job_.path, "",
+                        fmt::format("this job is too large: more than {} tasks or {} rows", most_tasks, most_rows));
+      }
+      step_rows_ += task.steps;
+      solve_rows_ += task.solves;
+      frame_rows_ += task.frames * task.segments;
+      max_frames_ = std::max(max_frames_, task.frames);
+      tasks_.push_back(task);
+    }
+  }
+}
+
+void Plan::fill(Point& point, std::int64_t index) const {
+  space_.fill(point, index / job_.samples, job_.seed, index % job_.samples);
+}
+
+TaskSpec Plan::spec(std::int64_t index) const {
+  const Task& task = tasks_.at(static_cast<std::size_t>(index));
+  Point point;
+  fill(point, task.point);
+  TaskSpec spec;
+  spec.scene = scene_spec(point);
+  spec.time = time_spec(point, job_);
+  spec.solve = solve_spec(point);
+  spec.evaluation = evaluation(point);
+  if (spec.solve.method == Method::cg) spec.guesses = guess_specs(point, job_);
+  spec.own_guess = task.own_guess;
+  spec.record = record_spec(job_);
+  spec.seed = random_bits(job_.seed, static_cast<std::uint64_t>(task.point), random_stream("guesses"));
+  spec.time_limit_s = job_.values["task_time_limit_s"];
+  return spec;
+}
+
+}  // namespace rodsweep

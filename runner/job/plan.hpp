@@ -1,0 +1,65 @@
+// A job expanded into its tasks: the same list on every rank, so that the master needs to send task numbers only.
+//
+// Order of tasks: the grid (cross product of all `grid` axes and of the joint axis of the `zip`s, in the order in which
+// they stand in the job, the last varying fastest), within a grid point the samples, within a sample (closed loop with
+// cg) the guesses. Random values depend on (seed, sample, key path) only, so grid points share draws. Values that do
+// not fit together at some point are refused here, before anything runs. Throws JobError (runner/job/job.hpp).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runner/job/job.hpp"
+#include "runner/job/sweep_space.hpp"
+#include "runner/job/task.hpp"
+
+namespace rodsweep {
+
+/// One column of /tasks: the value of a key (number, 3-vector or string) for every task, defaults included. Where a key
+/// does not apply (a helix's at a bending rod) it is NaN, -1 or "".
+struct ParameterColumn {
+  std::string path;     ///< key path in the job, e.g. "scene.segments"
+  std::string unit;     ///< "m", "Pa", "" ...
+  std::string meaning;  ///< one line, from the key's description
+  bool swept = false;   ///< does it vary over the tasks to which it applies?
+  int width = 1;        ///< 3 for vectors
+  std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>> values;  ///< tasks x width
+};
+
+class Plan {
+ public:
+  explicit Plan(Job job);
+
+  const Job& job() const { return job_; }
+  std::int64_t size() const { return static_cast<std::int64_t>(tasks_.size()); }
+  const Task& task(std::int64_t index) const { return tasks_[static_cast<std::size_t>(index)]; }
+  const std::vector<Task>& tasks() const { return tasks_; }
+  TaskSpec spec(std::int64_t index) const;  ///< built on demand: a plan of 100,000 tasks stays small
+
+  const std::vector<std::string>& guess_labels() const { return guess_labels_; }  ///< /axes/guess; empty without cg
+
+  /// Built on demand, in the order of the job: every key of scene, time, solve and evaluation that applies anywhere
+  /// (`steps` always, from `duration_s` if need be), and parameters of guesses that vary.
+  std::vector<ParameterColumn> parameters() const;
+
+  std::int64_t step_rows() const { return step_rows_; }
+  std::int64_t solve_rows() const { return solve_rows_; }
+  std::int64_t frame_rows() const { return frame_rows_; }
+  std::int64_t max_frames() const { return max_frames_; }
+
+ private:
+  void fill(Point& point, std::int64_t index) const;
+
+  Job job_;
+  SweepSpace space_;
+  std::vector<Task> tasks_;
+  std::vector<std::string> guess_labels_;
+  std::int64_t step_rows_ = 0, solve_rows_ = 0, frame_rows_ = 0, max_frames_ = 0;
+};
+
+/// The tolerances at which iterations are counted (/axes/tolerance), relative to ||b||.
+const std::vector<double>& tolerance_ladder();  // 1e-1 ... 1e-8
+
+}  // namespace rodsweep

@@ -1,0 +1,86 @@
+// The columns of /tasks that say what each task was run with.
+#include <algorithm>
+#include <limits>
+
+#include "runner/job/job_keys.hpp"
+#include "runner/job/plan.hpp"
+
+namespace rodsweep {
+namespace {
+
+using State = Point::Value::State;
+
+const Key& steps_key() { return *find_key(find_key(job_key().keys, "time")->keys, "steps"); }
+
+ParameterColumn empty_column(const std::string& path, const Key& key, std::size_t tasks) {
+  ParameterColumn column;
+  column.path = path;
+  column.unit = key.unit;
+  column.meaning = key.help;
+  if (key.kind == Key::Kind::number && !key.choices.empty()) column.meaning += "; NaN: " + quoted_list(key.choices);
+  column.width = key.kind == Key::Kind::vector ? 3 : 1;
+  if (key.kind == Key::Kind::integer) {
+    column.values = std::vector<std::int64_t>(tasks, -1);
+  } else if (key.kind == Key::Kind::number || key.kind == Key::Kind::vector) {
+    const auto width = static_cast<std::size_t>(column.width);
+    column.values = std::vector<double>(tasks * width, std::numeric_limits<double>::quiet_NaN());
+  } else {
+    column.values = std::vector<std::string>(tasks);
+  }
+  return column;
+}
+
+bool equal(const Point::Value& a, const Point::Value& b) {
+  if (a.state != b.state) return false;
+  return a.state == State::text ? *a.text == *b.text : std::equal(a.number, a.number + 3, b.number);
+}
+
+void put(ParameterColumn& column, std::size_t task, const Point::Value& value) {
+  if (auto* integers = std::get_if<std::vector<std::int64_t>>(&column.values)) {
+    (*integers)[task] = static_cast<std::int64_t>(value.number[0]);
+  } else if (auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
+    (*texts)[task] = *value.text;
+  } else if (value.state == State::number) {  // a word in a column of numbers stays NaN
+    const auto width = static_cast<std::size_t>(column.width);
+    auto& numbers = std::get<std::vector<double>>(column.values);
+    std::copy_n(value.number, width, numbers.begin() + static_cast<std::ptrdiff_t>(task * width));
+  }
+}
+
+}  // namespace
+
+std::vector<ParameterColumn> Plan::parameters() const {
+  const std::vector<Parameter>& parameters = space_.parameters();
+  std::vector<ParameterColumn> columns;
+  for (const Parameter& parameter : parameters) {
+    columns.push_back(empty_column(parameter.path, parameter.key, tasks_.size()));
+  }
+  std::vector<Point::Value> first(parameters.size());
+  Point point;
+  for (std::size_t task = 0; task < tasks_.size(); ++task) {
+    if (task == 0 || tasks_[task].point != tasks_[task - 1].point) fill(point, tasks_[task].point);
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const Point::Value& value = point[i];
+      if (value.state == State::absent) continue;
+      put(columns[i], task, value);
+      if (first[i].state == State::absent) first[i] = value;
+      columns[i].swept = columns[i].swept || !equal(first[i], value);
+    }
+  }
+
+  // `steps` in every job, whichever of its two forms was given.
+  auto steps = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.path == "time.steps"; });
+  if (steps == columns.end())
+    steps = columns.insert(columns.end(), empty_column("time.steps", steps_key(), tasks_.size()));
+  for (std::size_t task = 0; task < tasks_.size(); ++task) {
+    std::get<std::vector<std::int64_t>>(steps->values)[task] = tasks_[task].steps;
+    steps->swept = steps->swept || tasks_[task].steps != tasks_[0].steps;
+  }
+
+  // Constant parameters of guesses are in their labels already.
+  const auto is_settled_guess = [](const ParameterColumn& c) { return c.path.rfind("guesses[", 0) == 0 && !c.swept; };
+  columns.erase(std::remove_if(columns.begin(), columns.end(), is_settled_guess), columns.end());
+  return columns;
+}
+
+}  // namespace rodsweep

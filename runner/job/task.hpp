@@ -1,0 +1,82 @@
+// One task of a sweep: a concrete simulation with all its settings, and where its results live in the file.
+// Plain values; made by Plan (runner/job/plan.hpp), run by evaluate() (runner/experiment/evaluation.hpp).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "solver/conjugate_gradient.hpp"
+#include "solver/scenes.hpp"
+
+namespace rodsweep {
+
+enum class Evaluation {
+  paired,      ///< one trajectory advanced by the direct solve; every guess is tried on every system
+  closed_loop  ///< the task's own guess (or the direct solve) advances its own trajectory
+};
+
+enum class Method { direct, cg };
+
+struct TimeSpec {
+  double step_s = 0.02;
+  int steps = 100;
+  int newton_iterations = 6;       ///< at most this many per step
+  double newton_tolerance = 1e-9;  ///< Newton ends when max |C + alpha~ lambda| falls below it
+};
+
+struct SolveSpec {
+  Method method = Method::cg;
+  Preconditioner preconditioner = Preconditioner::jacobi;
+  Norm norm = Norm::true_residual;
+  double tolerance =
+      1e-2;  ///< of the timed solves and, in a closed loop, of the solves that advance the rod; relative to ||b||
+  int max_iterations = 0;  ///< 0: ten times the number of unknowns
+};
+
+/// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.
+struct GuessSpec {
+  enum class Kind { zero, previous, linear, quadratic, oracle, guarded };
+  Kind kind = Kind::zero;
+  std::string label;
+  double error = 0.1;  ///< oracle: relative A-norm of the error added to the exact solution
+  double threshold =
+      1;  ///< guarded: use `inner` only where the natural norm of b - A x0 is below threshold times that of b
+  std::vector<GuessSpec> inner;  ///< guarded: exactly one
+};
+
+struct RecordSpec {
+  bool solves = true;        ///< false: "summary", no /solves rows
+  int trajectory_every = 0;  ///< a frame every so many steps, frame 0 the initial state; 0: no trajectory
+};
+
+/// Everything that evaluate() needs to know.
+struct TaskSpec {
+  SceneSpec scene;
+  TimeSpec time;
+  SolveSpec solve;
+  Evaluation evaluation = Evaluation::paired;
+  std::vector<GuessSpec> guesses;  ///< the file's whole guess axis, in order; empty for a plain direct simulation
+  int own_guess = -1;  ///< closed loop with cg: index into `guesses` of the guess that this task runs; else -1
+  RecordSpec record;
+  std::uint64_t seed = 0;   ///< for guesses that draw random numbers; a function of the job's seed and the point only
+  double time_limit_s = 0;  ///< 0: none
+};
+
+/// A task's identity and its rows in the file. Sizes are upper bounds known at planning time.
+struct Task {
+  std::int64_t index = 0;  ///< row of /tasks
+  std::int64_t point =
+      0;  ///< parameter point (grid point and sample); closed-loop tasks that differ in their guess alone share it
+  std::int64_t sample = 0;  ///< which draw of the random parameters, 0 .. samples-1
+  int own_guess = -1;
+  int segments = 0;  ///< dynamic and static ones (graph nodes)
+  int joints = 0;
+  std::int64_t first_step = 0, steps = 0;  ///< rows of /steps
+  std::int64_t first_solve = 0,
+               solves = 0;  ///< rows of /solves: steps x newton_iterations x rods, step-major; 0 for summaries
+  std::int64_t first_frame_row = 0, frames = 0;  ///< rows of /trajectories: frames x segments
+  double cost = 0;  ///< relative; tasks are dispatched in descending order of it (segments x steps x newton_iterations)
+};
+
+}  // namespace rodsweep

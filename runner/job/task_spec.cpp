@@ -1,0 +1,173 @@
+#include "runner/job/task_spec.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "runner/job/key_path.hpp"
+
+namespace rodsweep {
+namespace {
+
+template <class Value>
+Value choice(const std::map<std::string, Value>& words, const std::string& word) {
+  const auto found = words.find(word);
+  if (found == words.end()) throw std::logic_error("no value for the choice " + word);
+  return found->second;
+}
+
+Vector3 vector(const Point& point, const char* path) {
+  const Point::Value& value = point.at(path);
+  return {value.number[0], value.number[1], value.number[2]};
+}
+
+void read_rod(const Point& point, RodParameters& rod) {
+  static const std::map<std::string, Clamp> clamps{
+      {"segment", Clamp::segment}, {"wall", Clamp::wall}, {"free", Clamp::free}};
+  rod.segments = static_cast<int>(point.integer("scene.segments"));
+  rod.radius_m = point.number("scene.radius_m");
+  rod.density_kg_m3 = point.number("scene.density_kg_m3");
+  rod.youngs_modulus_pa = point.number("scene.youngs_modulus_pa");
+  rod.torsion_modulus_pa = point.number("scene.torsion_modulus_pa");
+  rod.clamp = choice(clamps, point.text("scene.clamp"));
+  rod.gravity_m_s2 = vector(point, "scene.gravity_m_s2");
+  rod.damping_per_s = point.number("scene.damping_per_s");
+  rod.tip_force_n = vector(point, "scene.tip_force_n");
+  if (!point.is_text("scene.stretch_compliance_per_j")) {
+    rod.stretch_compliance_per_j = point.number("scene.stretch_compliance_per_j");
+  }
+}
+
+BendingRod bending_rod(const Point& point) {
+  BendingRod rod;
+  read_rod(point, rod);
+  rod.length_m = point.number("scene.length_m");
+  rod.initial_angle_deg = point.number("scene.initial_angle_deg");
+  return rod;
+}
+
+Helix helix(const Point& point) {
+  Helix rod;
+  read_rod(point, rod);
+  rod.helix_radius_m = point.number("scene.helix_radius_m");
+  rod.helix_height_m = point.number("scene.helix_height_m");
+  rod.windings = point.number("scene.windings");
+  return rod;
+}
+
+int whole_steps(double duration_s, double step_s, const Job& job) {
+  constexpr double tolerance = 1e-6;
+  constexpr double most = 10000000;
+  const double ratio = duration_s / step_s, steps = std::round(ratio);
+  if (steps < 1 || std::abs(ratio - steps) > tolerance * steps) {
+    const double below = std::max(1.0, std::floor(ratio));
+    throw job_error(
+        job.path, "time.duration_s",
+        fmt::format("{} is not allowed with step_s {}: it is {:.8g} steps; must be a whole number of them, such "
+                    "as {:.8g}, or give \"steps\" instead",
+                    duration_s, step_s, ratio, below * step_s));
+  }
+  if (steps > most) {
+    throw job_error(job.path, "time.duration_s",
+                    fmt::format("{} is not allowed with step_s {}: it is {:.8g} steps, and {} is the most", duration_s,
+                                step_s, ratio, most));
+  }
+  return static_cast<int>(steps);
+}
+
+GuessSpec guess_spec(const Point& point, const std::string& path) {
+  using Kind = GuessSpec::Kind;
+  static const std::map<std::string, Kind> kinds{{"zero", Kind::zero},     {"previous", Kind::previous},
+                                                 {"linear", Kind::linear}, {"quadratic", Kind::quadratic},
+                                                 {"oracle", Kind::oracle}, {"guarded", Kind::guarded}};
+  GuessSpec guess;
+  const std::string& name = point.text(path);
+  guess.kind = choice(kinds, name);
+  const std::string parameters = path + "." + name + ".";
+  if (guess.kind == Kind::oracle) guess.error = point.number(parameters + "error");
+  if (guess.kind == Kind::guarded) {
+    guess.threshold = point.number(parameters + "threshold");
+    guess.inner.push_back(guess_spec(point, parameters + "guess"));
+    guess.inner.back().label = guess.inner.back().kind == Kind::guarded ? "guarded" : point.text(parameters + "guess");
+  }
+  return guess;
+}
+
+}  // namespace
+
+SceneSpec scene_spec(const Point& point) {
+  using Make = SceneSpec (*)(const Point&);
+  static const std::map<std::string, Make> scenes{
+      {"bending_rod", [](const Point& p) -> SceneSpec { return bending_rod(p); }},
+      {"helix", [](const Point& p) -> SceneSpec { return helix(p); }}};
+  return choice(scenes, point.text("scene.type"))(point);
+}
+
+TimeSpec time_spec(const Point& point, const Job& job) {
+  TimeSpec time;
+  time.step_s = point.number("time.step_s");
+  time.steps = point.has("time.steps") ? static_cast<int>(point.integer("time.steps"))
+                                       : whole_steps(point.number("time.duration_s"), time.step_s, job);
+  time.newton_iterations = static_cast<int>(point.integer("time.newton_iterations"));
+  time.newton_tolerance = point.number("time.newton_tolerance");
+  return time;
+}
+
+SolveSpec solve_spec(const Point& point) {
+  static const std::map<std::string, Method> methods{{"cg", Method::cg}, {"direct", Method::direct}};
+  static const std::map<std::string, Norm> norms{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}};
+  static const std::map<std::string, Preconditioner> preconditioners{
+      {"none", Preconditioner::none},
+      {"jacobi", Preconditioner::jacobi},
+      {"point_block_jacobi", Preconditioner::point_block_jacobi},
+      {"icc", Preconditioner::icc},
+      {"cholesky", Preconditioner::cholesky}};
+  SolveSpec solve;
+  solve.method = choice(methods, point.text("solve.method"));
+  solve.preconditioner = choice(preconditioners, point.text("solve.preconditioner"));
+  solve.norm = choice(norms, point.text("solve.norm"));
+  solve.tolerance = point.number("solve.tolerance");
+  solve.max_iterations = static_cast<int>(point.integer("solve.max_iterations"));
+  return solve;
+}
+
+Evaluation evaluation(const Point& point) {
+  static const std::map<std::string, Evaluation> evaluations{{"paired", Evaluation::paired},
+                                                             {"closed_loop", Evaluation::closed_loop}};
+  return choice(evaluations, point.text("evaluation"));
+}
+
+RecordSpec record_spec(const Job& job) {
+  const auto& record = job.values["record"];
+  return {record["solves"] == "all", record["trajectory_every"].get<int>()};
+}
+
+std::vector<GuessSpec> guess_specs(const Point& point, const Job& job) {
+  std::vector<GuessSpec> guesses;
+  const std::vector<std::string> labels = guess_labels(job);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    guesses.push_back(guess_spec(point, element("guesses", i)));
+    guesses.back().label = labels[i];
+  }
+  return guesses;
+}
+
+std::vector<std::string> guess_labels(const Job& job) {
+  std::vector<std::string> labels;
+  for (const auto& guess : job.values["guesses"]) labels.push_back(guess.begin().value()["label"]);
+  return labels;
+}
+
+void check_scene(const SceneSpec& scene, const Job& job) {
+  const RodParameters& rod = std::visit([](const auto& s) -> const RodParameters& { return s; }, scene);
+  if (segment_count(scene) >= 2) return;
+  throw job_error(
+      job.path, "scene.segments",
+      fmt::format("{} is not allowed with clamp \"{}\", since nothing is jointed; must be at least 2, or 1 with "
+                  "clamp \"wall\"",
+                  rod.segments, rod.clamp == Clamp::free ? "free" : "segment"));
+}
+
+}  // namespace rodsweep

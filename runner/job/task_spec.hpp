@@ -1,0 +1,28 @@
+// From the values of a job at one parameter point to the solver's types. Values have been checked; what depends on
+// several of them together is checked here. Throws JobError.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runner/job/job.hpp"
+#include "runner/job/sweep_space.hpp"
+#include "runner/job/task.hpp"
+
+namespace rodsweep {
+
+SceneSpec scene_spec(const Point& point);
+TimeSpec time_spec(const Point& point, const Job& job);
+SolveSpec solve_spec(const Point& point);
+Evaluation evaluation(const Point& point);
+RecordSpec record_spec(const Job& job);
+std::vector<GuessSpec> guess_specs(const Point& point, const Job& job);
+
+/// Labels of the job's guesses, in order.
+std::vector<std::string> guess_labels(const Job& job);
+
+/// Refuses a scene in which nothing can be solved for.
+void check_scene(const SceneSpec& scene, const Job& job);
+
+}  // namespace rodsweep

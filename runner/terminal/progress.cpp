@@ -1,0 +1,78 @@
+#include "runner/terminal/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto bar_pause = 100ms;
+constexpr auto first_log_pause = 5s;  // then ever rarer: a log of hours stays readable
+constexpr auto longest_log_pause = 300s;
+
+double seconds(Progress::Clock::duration span) { return std::chrono::duration<double>(span).count(); }
+
+std::string bar(double fraction) {
+  constexpr int width = 24;
+  const int filled = std::clamp(static_cast<int>(fraction * width), 0, width);
+  return fmt::format("[{}{}]", std::string(filled, '#'), std::string(width - filled, '.'));
+}
+
+}  // namespace
+
+Progress::Progress(Console& console, const Work& work, Clock::time_point now)
+    : console_(&console), work_(work), begin_(now), pause_(first_log_pause) {
+  if (console.live()) pause_ = bar_pause;
+  next_ = now + pause_;
+}
+
+void Progress::finished(TaskOutcome outcome, double cost, double busy_s) {
+  ++done_;
+  if (outcome != TaskOutcome::ok) ++failed_;
+  done_cost_ += cost;
+  busy_s_ += busy_s;
+}
+
+std::optional<double> Progress::seconds_left(Clock::time_point now) const {
+  if (done_ == 0 || done_cost_ <= 0) return std::nullopt;
+  const double whole = busy_s_ / done_cost_ * work_.cost / work_.workers;
+  const double left = whole - seconds(now - begin_);
+  if (left <= 0) return std::nullopt;  // the last tasks take longer than their cost said
+  return left;
+}
+
+std::string Progress::text(Clock::time_point now) const {
+  const std::int64_t done = work_.done_before + done_, failed = work_.failed_before + failed_;
+  std::string text =
+      fmt::format("{} of {} tasks ({} %)", done, work_.total, 100 * done / std::max<std::int64_t>(work_.total, 1));
+  if (failed > 0) text += fmt::format(", {} failed", failed);
+  const double elapsed = seconds(now - begin_);
+  if (done_ > 0 && elapsed > 0) {
+    const double rate = static_cast<double>(done_) / elapsed;
+    text += rate >= 1 ? fmt::format(", {:.3g}/s", rate) : fmt::format(", {:.3g}/min", 60 * rate);
+  }
+  if (const auto left = seconds_left(now)) text += fmt::format(", {} left", duration_text(*left));
+  return text;
+}
+
+void Progress::show(Clock::time_point now) {
+  if (now < next_) return;
+  if (console_->live()) {
+    const auto done = static_cast<double>(work_.done_before + done_);
+    console_->status(bar(done / static_cast<double>(std::max<std::int64_t>(work_.total, 1))) + " " + text(now));
+  } else {
+    console_->note(text(now));
+    pause_ = std::min<Clock::duration>(pause_ + pause_ / 2, longest_log_pause);
+  }
+  next_ = now + pause_;
+}
+
+void Progress::clear() { console_->status(""); }
+
+}  // namespace rodsweep

@@ -1,0 +1,49 @@
+// How far a sweep is: done, failed, total, rate, time left. A bar on a terminal, a line now and then in a log.
+//
+// Tasks are dispatched longest first, so the time left is judged by cost, not by number: with s seconds of work per
+// unit of cost seen so far and W busy workers, the whole takes s * cost / W.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "runner/terminal/console.hpp"
+#include "solver/outcome.hpp"
+
+namespace rodsweep {
+
+class Progress {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  struct Work {
+    std::int64_t total = 0;        ///< tasks of the plan
+    std::int64_t done_before = 0;  ///< of these, in earlier starts
+    std::int64_t failed_before = 0;
+    double cost = 0;  ///< of the tasks still to do
+    int workers = 1;
+  };
+
+  Progress(Console& console, const Work& work, Clock::time_point now);
+
+  void finished(TaskOutcome outcome, double cost, double busy_s);
+  void show(Clock::time_point now);  ///< speaks if it is time to; cheap
+  void clear();                      ///< takes the bar away
+
+  /// "120 of 400 tasks (30 %), 2 failed, 31.0/s, 1 min 20 s left"
+  std::string text(Clock::time_point now) const;
+  std::optional<double> seconds_left(
+      Clock::time_point now) const;  ///< empty until a task has finished, or when overdue
+
+ private:
+  Console* console_;
+  Work work_;
+  std::int64_t done_ = 0, failed_ = 0;  ///< in this start
+  double done_cost_ = 0, busy_s_ = 0;
+  Clock::time_point begin_, next_;
+  Clock::duration pause_;
+};
+
+}  // namespace rodsweep
