@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
   bench_writing(path, "a small task (N 10, 10 steps of 1 Newton iteration)", plan_of(10, 10, 1, 1000, false));
   bench_writing(path, "a task (N 30, 100 steps of 6)", plan_of(30, 100, 6, 200, false));
   bench_writing(path, "a task with trajectory (N 100, 500 steps of 6)", plan_of(100, 500, 6, 20, true));
-  bench_share(path, "N 10, 10 steps of 6 Newton iterations", plan_of(10, 10, 6, 200, false));
+  bench_share(path, "N 10, 10 steps of 6 Newton iterations (hardly work at all)", plan_of(10, 10, 6, 200, false));
   bench_share(path, "N 30, 100 steps of 6 Newton iterations", plan_of(30, 100, 6, 10, false));
   fs::remove(path);
   return 0;

@@ -105,15 +105,16 @@ void petsc_cg(benchmark::State& state) {
   }
 }
 
-/// Prints as usual and keeps the medians [s].
+/// Prints and keeps [s] the medians only.
 class Medians : public benchmark::ConsoleReporter {
  public:
   Medians() : ConsoleReporter(OO_None) {}
   void ReportRuns(const std::vector<Run>& runs) override {
-    ConsoleReporter::ReportRuns(runs);
-    for (const Run& run : runs)
-      if (run.aggregate_name == "median")
-        seconds_[run.run_name.function_name + "/" + run.run_name.args] = run.GetAdjustedRealTime() * 1e-9;
+    for (const Run& run : runs) {
+      if (run.aggregate_name != "median") continue;
+      ConsoleReporter::ReportRuns({run});
+      seconds_[run.run_name.function_name + "/" + run.run_name.args] = run.GetAdjustedRealTime() * 1e-9;
+    }
   }
   double operator()(const std::string& function, int n) const {
     const auto at = seconds_.find(function + "/" + std::to_string(n));
