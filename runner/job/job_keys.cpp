@@ -151,6 +151,12 @@ Key job() {
                      .at_most(1000000)
                      .defaults_to(1)
                      .setting(),
+                 choice_key("sampling",
+                            "how random values are drawn: independently, or by Sobol's sequence, which covers their "
+                            "ranges more evenly (best for a power of two of samples)",
+                            {"random", "sobol"})
+                     .defaults_to("random")
+                     .setting(),
                  choice_key("evaluation",
                             "all guesses on the systems of one trajectory, or each on a trajectory of its own",
                             {"paired", "closed_loop"})

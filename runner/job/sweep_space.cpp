@@ -56,6 +56,15 @@ void Point::set(std::size_t parameter, double value) {
 SweepSpace::SweepSpace(const Json& values, const std::filesystem::path& file) : file_(file) {
   read(job_key(), values, "", 0, root_);
   count(root_);
+  if (values["sampling"] != "sobol") return;
+  if (dimensions_.size() > SobolSequence::most_dimensions()) {
+    throw job_error(
+        file_, "sampling",
+        fmt::format("\"sobol\" is not allowed, since this job draws {} values a sample and Sobol's sequence "
+                    "has {} dimensions; use \"random\"",
+                    dimensions_.size(), SobolSequence::most_dimensions()));
+  }
+  sobol_.emplace(dimensions_.size());
 }
 
 int SweepSpace::find(std::string_view path) const {
@@ -116,10 +125,13 @@ void SweepSpace::read_sweep(const Key& key, const Json& value, const std::string
   const std::string word = value.begin().key();
   const Json& content = value.begin().value();
   if (!is_listed(word)) {
-    Draw draw{parameter(path, key), component, Range::uniform, content[0].get<double>(), content[1].get<double>(), 0};
+    const std::string drawn = component == 0 ? path : element(path, static_cast<std::size_t>(component));
+    Draw draw{
+        parameter(path, key), component, Range::uniform, content[0].get<double>(), content[1].get<double>(), 0, 0};
     if (word == "log_uniform") draw.range = Range::log_uniform;
     if (word == "integer") draw.range = Range::integer;
-    draw.stream = random_stream(component == 0 ? path : element(path, static_cast<std::size_t>(component)));
+    draw.stream = random_stream(drawn);
+    draw.dimension = dimensions_.emplace(drawn, dimensions_.size()).first->second;
     scope.draws.push_back(draw);
     return;
   }
@@ -183,10 +195,15 @@ bool SweepSpace::can_be(const Scope& scope, int parameter, const std::string& wo
 void SweepSpace::fill(Point& point, std::int64_t grid_point, std::uint64_t seed, std::int64_t sample) const {
   point.space_ = this;
   point.values_.assign(parameters_.size(), Point::Value{});
-  fill(root_, point, grid_point, seed, sample);
+  fill(root_, point, grid_point, {seed, static_cast<std::uint64_t>(sample)});
 }
 
-void SweepSpace::fill(const Scope& scope, Point& point, std::int64_t index, std::uint64_t seed, std::int64_t sample) {
+double SweepSpace::unit(const Draw& draw, const Sample& sample) const {
+  if (!sobol_) return random_unit(sample.seed, sample.number, draw.stream);
+  return sobol_->unit(draw.dimension, sample.number, random_bits(sample.seed, 0, draw.stream));
+}
+
+void SweepSpace::fill(const Scope& scope, Point& point, std::int64_t index, const Sample& sample) const {
   for (const Fixed& fixed : scope.fixed) {
     Point::Value& value = point.values_[static_cast<std::size_t>(fixed.parameter)];
     if (const auto* text = std::get_if<std::string>(&fixed.value)) {
@@ -199,7 +216,7 @@ void SweepSpace::fill(const Scope& scope, Point& point, std::int64_t index, std:
   }
   for (const Draw& draw : scope.draws) {
     Point::Value& value = point.values_[static_cast<std::size_t>(draw.parameter)];
-    const double u = random_unit(seed, static_cast<std::uint64_t>(sample), draw.stream);
+    const double u = unit(draw, sample);
     double drawn = draw.low + u * (draw.high - draw.low);
     if (draw.range == Range::log_uniform) {
       drawn = std::exp(std::log(draw.low) + u * (std::log(draw.high) - std::log(draw.low)));
@@ -213,7 +230,7 @@ void SweepSpace::fill(const Scope& scope, Point& point, std::int64_t index, std:
     index /= axis->points();
     const auto option = std::upper_bound(axis->first.begin(), axis->first.end(), within) - axis->first.begin() - 1;
     const auto o = static_cast<std::size_t>(option);
-    fill(axis->options[o], point, within - axis->first[o], seed, sample);
+    fill(axis->options[o], point, within - axis->first[o], sample);
   }
 }
 

@@ -5,24 +5,26 @@
 //          which belong to that value: the axis is the union of its values' spaces
 //   zip    all zips of the job (or of one grid value) form one joint axis, so they are equally long
 //   uniform, log_uniform, integer   no axis: drawn for every sample from (seed, sample, key path) alone, so that all
-//   grid
-//          points share draws
+//          grid points share draws; with sampling "sobol" from Sobol's sequence, a dimension for every key path in the
+//          order of the job, shifted at random by (seed, key path)
 // Axes are crossed in the order in which they stand in the job, the last varying fastest; the joint axis of the zips
 // stands where the first of them does.
 //
-// Throws JobError for zips of different lengths.
+// Throws JobError for zips of different lengths and for more random keys than Sobol's sequence has dimensions.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "runner/job/key.hpp"
+#include "runner/job/sobol.hpp"
 
 namespace rodsweep {
 
@@ -85,6 +87,10 @@ class SweepSpace {
     Range range;
     double low, high;
     std::uint64_t stream;
+    std::size_t dimension;  ///< of the random keys, in the order of the job
+  };
+  struct Sample {
+    std::uint64_t seed, number;
   };
   struct Axis;
   /// What stands outside any grid or zip, or within one value of it.
@@ -110,11 +116,14 @@ class SweepSpace {
   int parameter(const std::string& path, const Key& key);
   static void count(Scope& scope);
   static bool can_be(const Scope& scope, int parameter, const std::string& word);
-  static void fill(const Scope& scope, Point& point, std::int64_t index, std::uint64_t seed, std::int64_t sample);
+  void fill(const Scope& scope, Point& point, std::int64_t index, const Sample& sample) const;
+  double unit(const Draw& draw, const Sample& sample) const;
 
   std::filesystem::path file_;
   std::vector<Parameter> parameters_;
   std::map<std::string, int, std::less<>> index_;
+  std::map<std::string, std::size_t> dimensions_;  ///< of the random keys, by path
+  std::optional<SobolSequence> sobol_;
   Scope root_;
 };
 
