@@ -65,12 +65,17 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
         scenes = np.full(len(tasks), "all scenes")
     members = {}
     for row, task in enumerate(tasks):
-        settings = {key: file.parameters[key].text(task) for key in keys}
+        settings = {key: file.parameters[key].text(task) for key in keys if _says_something(file, key, task)}
         members.setdefault((scenes[row], tuple(settings.items())), []).append(row)
     if most is not None and len(members) > most:
         raise KeyNotFound(f"{len(members)} panels are too many for a page (at most {most}): the job has a grid "
                           f"over {', '.join(keys) or 'scene.type'} too; choose with --scene TYPE or --select KEY=VALUE")
     return [Panel(scene, dict(settings), np.array(rows)) for (scene, settings), rows in members.items()]
+
+
+def _says_something(file, key, task):
+    """False for a parameter of a guess ("guesses[1].oracle.error") in a task where that guess is another one."""
+    return not key.startswith("guesses[") or file.parameters[key].applies()[task]
 
 
 def applicable(file, sims, x):

@@ -77,8 +77,10 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(text_field("/job/text", std::max<std::int64_t>(1, static_cast<std::int64_t>(plan.job().text.size())),
                               {}, "the job file, byte for byte"));
   append_runs(fields);
-  fields.push_back(text_field("/axes/guess", longest(plan.guess_labels()), {sizes.guesses},
-                              "initial guesses, in the order of the guess axes"));
+  fields.push_back(
+      text_field("/axes/guess", longest(plan.guess_labels()), {sizes.guesses},
+                 "initial guesses, in the order of the guess axes; what varies of guess i over the tasks is in "
+                 "/tasks/parameters/guesses[i]..."));
   fields.push_back(number_field<double>("/axes/tolerance", {sizes.tolerances}, "1",
                                         "tolerances at which iterations are counted, relative to ||b||"));
   append_parameters(fields, plan, parameters);

@@ -166,7 +166,8 @@ Key job() {
                  solve(),
                  guesses_key("guesses", "initial guesses of cg")
                      .defaults_to(Json::array())
-                     .unswept("all tasks share one list of guesses; put every guess in it"),
+                     .unswept(
+                         "all tasks share one list of guesses; put every guess in it, or a sweep in place of a guess"),
                  record(),
                  number_key("task_time_limit_s", "a task that takes longer is recorded as timed out; 0: no limit")
                      .in("s")

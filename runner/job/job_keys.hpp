@@ -14,7 +14,7 @@ const Key& job_key();
 /// Initial guesses by name, each an object of its parameters.
 const std::vector<Key>& guess_keys();
 
-/// `label`, which any entry of the list of guesses may have beside its parameters.
+/// `label`, which any entry of the list of guesses may have beside its parameters or its sweep.
 const Key& guess_label_key();
 
 }  // namespace rodsweep

@@ -17,7 +17,8 @@ class JobReader {
 
   explicit JobReader(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// The value as it is to be used: defaults in place, guesses all in the form {"name": {parameters, "label"}}.
+  /// The value as it is to be used: defaults in place, guesses all in the form {"name": {parameters, "label"}} or
+  /// {"grid": [...], "label"}.
   Json read(const Key& key, const Json& value, const std::string& path);
 
   /// Throws JobError with one line per mistake, if there was any.
@@ -30,6 +31,7 @@ class JobReader {
   Json read_number(const Key& key, const Json& value, const std::string& path);
   Json read_text(const Key& key, const Json& value, const std::string& path);
   Json read_guess(const Key& key, const Json& value, const std::string& path, bool labelled);
+  Json read_varying_guess(const Key& key, Json sweep, std::size_t index, const std::string& path);
   Json read_guesses(const Json& value, const std::string& path);
   void refuse_unknown(const Key& key, const std::string& name, const std::string& tag_value, const std::string& path);
   void fill_absent(const Key& key, const std::string& tag_value, const std::string& path, Json& result);

@@ -38,6 +38,15 @@ std::string default_label(const std::string& name, const Json& parameters) {
   return label;
 }
 
+/// "previous | oracle 0.1": everything that a guess which varies over the tasks can be.
+std::string varying_label(const Json& guess) {
+  const std::string word = sweep_word(guess);
+  if (word.empty()) return default_label(guess.begin().key(), guess.begin().value());
+  std::string label;
+  for (const Json& option : guess[word]) label += (label.empty() ? "" : " | ") + varying_label(option);
+  return label;
+}
+
 }  // namespace
 
 Json JobReader::read_object(const Key& key, const Json& value, const std::string& path) {
@@ -148,6 +157,26 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
   return Json{{name, std::move(parameters)}};
 }
 
+Json JobReader::read_varying_guess(const Key& key, Json sweep, std::size_t index, const std::string& path) {
+  const Key& label_key = guess_label_key();
+  Json label;
+  if (sweep.contains(label_key.name)) {
+    label = read(label_key, sweep[label_key.name], member(path, label_key.name));
+    sweep.erase(label_key.name);
+  }
+  const std::size_t before = mistakes_.size();
+  Json result = read_sweep(key, sweep, path);
+  if (mistakes_.size() != before) return result;
+  if (label.is_null()) {
+    label = varying_label(result);
+    if (static_cast<double>(label.get_ref<const std::string&>().size()) > label_key.high) {
+      label = fmt::format("varying guess {}", index);
+    }
+  }
+  result[label_key.name] = std::move(label);
+  return result;
+}
+
 Json JobReader::read_guesses(const Json& value, const std::string& path) {
   const Key guess = guess_key("guess", "initial guess of cg");
   if (!value.is_array()) {
@@ -157,16 +186,11 @@ Json JobReader::read_guesses(const Json& value, const std::string& path) {
   Json result = Json::array();
   std::map<std::string, std::size_t> labels;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    if (!sweep_word(value[i]).empty()) {
-      mistake(element(path, i),
-              "a guess cannot be swept, since all tasks share one list of guesses; list every guess "
-              "beside the others (a guess's parameters may be swept)");
-      continue;
-    }
     const std::size_t before = mistakes_.size();
-    result.push_back(read_guess(guess, value[i], element(path, i), true));
+    result.push_back(sweep_word(value[i]).empty() ? read_guess(guess, value[i], element(path, i), true)
+                                                  : read_varying_guess(guess, value[i], i, element(path, i)));
     if (mistakes_.size() != before) continue;
-    const std::string label = result.back().begin().value()["label"];
+    const std::string label = guess_label(result.back());
     const auto [first, is_new] = labels.emplace(label, i);
     if (!is_new) {
       mistake(element(path, i),

@@ -41,7 +41,8 @@ class Plan {
   const std::vector<std::string>& guess_labels() const { return guess_labels_; }  ///< /axes/guess; empty without cg
 
   /// Built on demand, in the order of the job: every key of scene, time, solve and evaluation that applies anywhere
-  /// (`steps` always, from `duration_s` if need be), and parameters of guesses that vary.
+  /// (`steps` always, from `duration_s` if need be), and of the guesses what varies over the tasks: "guesses[2]" is
+  /// the name of the guess itself, "guesses[2].oracle.error" a parameter of it.
   std::vector<ParameterColumn> parameters() const;
 
   std::int64_t step_rows() const { return step_rows_; }

@@ -35,6 +35,8 @@ bool equal(const Point::Value& a, const Point::Value& b) {
   return a.state == State::text ? *a.text == *b.text : std::equal(a.number, a.number + 3, b.number);
 }
 
+bool is_of_guess(const ParameterColumn& column) { return column.path.rfind("guesses[", 0) == 0; }
+
 void put(ParameterColumn& column, std::size_t task, const Point::Value& value) {
   if (auto* integers = std::get_if<std::vector<std::int64_t>>(&column.values)) {
     (*integers)[task] = static_cast<std::int64_t>(value.number[0]);
@@ -77,8 +79,17 @@ std::vector<ParameterColumn> Plan::parameters() const {
     steps->swept = steps->swept || tasks_[task].steps != tasks_[0].steps;
   }
 
-  // Constant parameters of guesses are in their labels already.
-  const auto is_settled_guess = [](const ParameterColumn& c) { return c.path.rfind("guesses[", 0) == 0 && !c.swept; };
+  // A guess that is the same in all tasks is in its label already. Of one that varies all parameters stay, also those
+  // that do not vary themselves: they say what the guess was where they apply.
+  std::vector<std::string> varying;
+  for (const ParameterColumn& c : columns)
+    if (is_of_guess(c) && c.swept && std::holds_alternative<std::vector<std::string>>(c.values))
+      varying.push_back(c.path + ".");
+  const auto is_settled_guess = [&](const ParameterColumn& c) {
+    return is_of_guess(c) && !c.swept && std::none_of(varying.begin(), varying.end(), [&](const std::string& guess) {
+             return c.path.rfind(guess, 0) == 0;
+           });
+  };
   columns.erase(std::remove_if(columns.begin(), columns.end(), is_settled_guess), columns.end());
   return columns;
 }

@@ -16,6 +16,10 @@ std::string sweep_word(const nlohmann::ordered_json& value) {
   return {};
 }
 
+std::string guess_label(const nlohmann::ordered_json& guess) {
+  return (sweep_word(guess).empty() ? guess.begin().value() : guess)["label"];
+}
+
 bool is_listed(const std::string& sweep_word) { return sweep_word == "grid" || sweep_word == "zip"; }
 
 }  // namespace rodsweep

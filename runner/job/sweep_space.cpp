@@ -93,7 +93,7 @@ void SweepSpace::read(const Key& key, const Json& value, const std::string& path
       return;
     case Key::Kind::guesses:
       for (std::size_t i = 0; i < value.size(); ++i) {
-        read_guess(value[i], element(path, i), guess_key("guess", "initial guess of cg"), scope);
+        read(guess_key("guess", "initial guess of cg"), value[i], element(path, i), 0, scope);
       }
       return;
     case Key::Kind::guess: return read_guess(value, path, key, scope);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "runner/job/key_path.hpp"
+#include "runner/job/sweep.hpp"
 
 namespace rodsweep {
 namespace {
@@ -156,7 +157,7 @@ std::vector<GuessSpec> guess_specs(const Point& point, const Job& job) {
 
 std::vector<std::string> guess_labels(const Job& job) {
   std::vector<std::string> labels;
-  for (const auto& guess : job.values["guesses"]) labels.push_back(guess.begin().value()["label"]);
+  for (const auto& guess : job.values["guesses"]) labels.push_back(guess_label(guess));
   return labels;
 }
 

@@ -44,6 +44,19 @@ class Groups(unittest.TestCase):
         panels = groups.panels(file, sims, None, pooled="scene.")
         self.assertEqual([panel.settings for panel in panels], [{"time.step_s": "0.01"}, {"time.step_s": "0.02"}])
 
+    def test_guesses_that_vary_are_never_averaged(self):
+        file, sims = self.open(grid={"scene.segments": [10], "guesses[1]": ["previous", "oracle"],
+                                     "guesses[1].oracle.error": [np.nan, 0.1, 0.2]}, scenes=("helix",), samples=2)
+        tasks = file.parameter("guesses[1]").values == "previous"
+        keep = tasks == np.isnan(file.parameter("guesses[1].oracle.error").values)  # a previous guess has no error
+        sims = sims.subset(np.flatnonzero(keep[sims.any_task]))
+        for panels in (groups.panels(file, sims, "scene.segments"), groups.panels(file, sims, None, pooled="scene.")):
+            self.assertEqual([panel.settings for panel in panels],
+                             [{"guesses[1]": "previous"}, {"guesses[1]": "oracle", "guesses[1].oracle.error": "0.1"},
+                              {"guesses[1]": "oracle", "guesses[1].oracle.error": "0.2"}])
+        rows = groups.applicable(file, sims, "guesses[1].oracle.error")
+        self.assertEqual(set(file.parameter("guesses[1]").values[sims.any_task[rows]]), {"oracle"})
+
     def test_keys_in_step_with_x_make_no_panels(self):
         file, sims = self.open(grid={"scene.segments": [10, 20]}, scenes=("helix",), samples=2)
         self.assertEqual(groups.gridded_keys(file, sims.any_task, "scene.segments"), [])

@@ -121,6 +121,39 @@ class Program(unittest.TestCase):
         self.assertEqual(len(self.script(spatial, path).split()), 6)
         self.assertIn("closed-loop evaluation", self.script(summary, path))
 
+    def test_a_guess_that_varies_is_told_apart_by_its_parameters(self):
+        varying = {"grid": ["previous", {"oracle": {"error": 0.5}}, {"oracle": {"error": 0.001}}]}
+        path = self.run_job("varying", scene=ROD, guesses=["zero", varying, {"oracle": {"error": 0.5}}],
+                            record={"solves": "summary"})
+        with SweepFile(path) as file:
+            self.assertEqual(file.guesses, ["zero", "previous | oracle 0.5 | oracle 0.001", "oracle 0.5"])
+            self.assertEqual(file.parameter("guesses[1]").values.tolist()[::2], 2 * ["previous", "oracle", "oracle"])
+            ratios = file.results("cg_ratio", np.arange(file.task_count))[:, :, 1].reshape(2, 3, 2, 3)
+            np.testing.assert_array_equal(ratios[:, 1, :, 1], ratios[:, 1, :, 2])  # the same guess in both columns
+            self.assertTrue((ratios[:, 2, :, 1] < ratios[:, 1, :, 1]).all())
+        said = self.script(summary, path)
+        for words in ("Bending rod, guesses[1] = previous, n = 4",
+                      "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.5, n = 4",
+                      "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.001, n = 4"):
+            self.assertIn(words, said)
+        self.assertEqual(len(self.script(spatial, path).split()), 2)
+        by_error = self.script(summary, path, "--by", "guesses[1].oracle.error", "--select", "guesses[1]=oracle")
+        self.assertIn("guesses[1].oracle.error = 0.001", by_error)
+        self.assertNotIn("previous, n", by_error)
+
+    def test_text_settings_are_swept_and_told_apart(self):
+        solve = {"preconditioner": {"grid": ["none", "icc"]}, "norm": {"zip": ["natural", "true_residual"]}}
+        path = self.run_job("texts", scene={**ROD, "clamp": {"zip": ["wall", "segment"]}}, solve=solve)
+        with SweepFile(path) as file:
+            self.assertTrue(file.ok.all())
+            self.assertEqual(set(file.swept()) - set(ROD), {"scene.segments", "scene.length_m", "scene.clamp",
+                             "scene.youngs_modulus_pa", "solve.preconditioner", "solve.norm"})
+            sums = file.results("iterations_sum", np.arange(file.task_count))[:, 0, 1]
+            icc = file.parameter("solve.preconditioner").values == "icc"
+            self.assertLess(sums[icc].max(), sums[~icc].min())
+        said = self.script(summary, path)
+        self.assertIn("solve.norm = natural, solve.preconditioner = icc", said)
+
     def test_a_direct_only_job_has_times_and_steps(self):
         path = self.run_job("direct", solve={"method": "direct"}, guesses=[])
         with SweepFile(path) as file:

@@ -152,7 +152,8 @@ TEST_CASE("a sweep that its key does not take is refused") {
   CHECK(refusal(grid({small_job(), small_job()})) ==
         "job.json: this key cannot be swept; put the sweep in place of a value");
   CHECK(refusal(with("/guesses", R"({"grid": [["zero"], ["zero", "previous"]]})")) ==
-        "job.json: guesses: this key cannot be swept; all tasks share one list of guesses; put every guess in it");
+        "job.json: guesses: this key cannot be swept; all tasks share one list of guesses; put every guess in it, "
+        "or a sweep in place of a guess");
   CHECK(refusal(with("/scene/type", R"({"grid": ["bending_rod", "helix"]})")) ==
         "job.json: scene.type: this key cannot be swept; to sweep over scenes, list whole ones: \"scene\": {\"grid\": "
         "[{\"type\": \"bending_rod\", ...}, {\"type\": \"helix\", ...}]}");
@@ -195,9 +196,18 @@ TEST_CASE("guesses that make no guess axis are refused") {
   CHECK(
       refusal(with("/guesses", R"(["zero", {"guarded": {"guess": {"previous": {"label": "x"}}, "threshold": 1}}])")) ==
       "job.json: guesses[1].guarded.guess.previous.label: unknown key; no keys are allowed here");
-  CHECK(refusal(with("/guesses", R"(["zero", {"grid": ["previous", "linear"]}])")) ==
-        "job.json: guesses[1]: a guess cannot be swept, since all tasks share one list of guesses; list every guess "
-        "beside the others (a guess's parameters may be swept)");
+  CHECK(refusal(with("/guesses", R"([{"grid": ["zero", "previous"]}, "linear"])")) == needs_zero);
+  CHECK(refusal(with("/guesses", R"(["zero", {"uniform": [0, 1]}])")).substr(0, 76) ==
+        "job.json: guesses[1].uniform: uniform draws a number, which is not allowed h");
+  CHECK(refusal(with("/guesses", R"(["zero", {"grid": ["previous", {"oracle": {"errr": 1}}]}])")) ==
+        "job.json: guesses[1].grid[1].oracle.errr: unknown key; did you mean \"error\"?");
+  CHECK(refusal(with("/guesses", R"(["zero", {"grid": ["linear"], "label": "zero"}])")) ==
+        "job.json: guesses[1]: its label \"zero\" is also that of guesses[0]; give one of them a \"label\" of its own");
+  CHECK(refusal(with("/guesses", R"(["zero", {"grid": ["linear"], "label": 3}])")) ==
+        "job.json: guesses[1].label: 3 is not allowed; must be a text of 1 to 60 characters on one line");
+  CHECK(refusal(with("/guesses", R"(["zero", {"grid": ["linear"], "error": 3}])")) ==
+        "job.json: guesses[1]: {\"grid\":[\"linear\"],\"error\":3} is not allowed; a sweep has no other key beside "
+        "\"grid\"");
   const std::string names =
       " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"oracle\", \"guarded\", or "
       "an "

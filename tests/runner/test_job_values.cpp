@@ -89,6 +89,17 @@ TEST_CASE("a default label is the guess's name and those of its parameters that 
                                                         "guarded quadratic 1", "guarded oracle 2"});
 }
 
+TEST_CASE("the default label of a guess that varies names all that it can be, if they are few") {
+  const Plan plan = plan_of(with("/guesses", R"(["zero", {"grid": ["previous", {"oracle": {"error": 0.5}}]},
+      {"zip": [{"guarded": {"guess": "linear", "threshold": {"grid": [1, 2]}}}, {"grid": ["linear", "quadratic"]}]},
+      {"grid": ["previous", "linear"], "label": "history"},
+      {"grid": [{"oracle": {"error": 0.1}}, {"oracle": {"error": 0.2}}, {"oracle": {"error": 0.3}},
+                {"oracle": {"error": 0.4}}, {"oracle": {"error": 0.5}}]}])"));
+  CHECK(plan.guess_labels() == std::vector<std::string>{"zero", "previous | oracle 0.5",
+                                                        "guarded linear | linear | quadratic", "history",
+                                                        "varying guess 4"});
+}
+
 TEST_CASE("a whole number may be written as a decimal") {
   const Plan plan = plan_of(with("/scene/segments", "2e1", with("/time/steps", "5.0")));
   CHECK(plan.task(0).segments == 20);

@@ -242,6 +242,36 @@ TEST_CASE("parameters of guesses are swept like any other, and guarded guesses t
   CHECK_FALSE(has_column(plan, "guesses[3].oracle.error"));
 }
 
+TEST_CASE("a whole guess is swept, and columns say which one each task had, with its parameters") {
+  const Plan plan = plan_of(with("/guesses", R"(["zero", {"oracle": {"error": 0.7}},
+      {"grid": ["previous", {"oracle": {"error": 0.1}},
+                {"guarded": {"guess": "linear", "threshold": {"grid": [1, 2]}}}]}])"));
+  REQUIRE(plan.size() == 4);
+  using Kind = GuessSpec::Kind;
+  const std::vector<Kind> kinds{Kind::previous, Kind::oracle, Kind::guarded, Kind::guarded};
+  for (std::int64_t i = 0; i < 4; ++i) {
+    const auto guesses = plan.spec(i).guesses;
+    REQUIRE(guesses.size() == 3);
+    CHECK(guesses[2].kind == kinds[static_cast<std::size_t>(i)]);
+    CHECK(guesses[1].error == 0.7);
+  }
+  CHECK(plan.spec(1).guesses[2].error == 0.1);
+  CHECK(plan.spec(3).guesses[2].threshold == 2);
+  CHECK(plan.spec(3).guesses[2].inner[0].kind == Kind::linear);
+  CHECK(texts(plan, "guesses[2]") == std::vector<std::string>{"previous", "oracle", "guarded", "guarded"});
+  CHECK(column(plan, "guesses[2]").swept);
+  const auto errors = numbers(plan, "guesses[2].oracle.error"),
+             thresholds = numbers(plan, "guesses[2].guarded.threshold");
+  CHECK(std::isnan(errors[0]));
+  CHECK(errors[1] == 0.1);
+  CHECK(std::isnan(errors[2]));
+  CHECK(std::isnan(thresholds[1]));
+  CHECK(thresholds[2] == 1);
+  CHECK(thresholds[3] == 2);
+  CHECK(texts(plan, "guesses[2].guarded.guess") == std::vector<std::string>{"", "", "linear", "linear"});
+  CHECK_FALSE(has_column(plan, "guesses[1].oracle.error"));  // 0.7 in all tasks: in its label
+}
+
 TEST_CASE("rows of the file follow one another without gaps") {
   Json job = with("/scene/segments", R"({"grid": [4, 6]})", with("/scene/clamp", "\"wall\""));
   job["time"] = {{"step_s", 0.02}, {"steps", grid({10, 25})}, {"newton_iterations", 3}};
