@@ -63,7 +63,10 @@ Job parse_job(std::string text, const std::filesystem::path& path) {
 
 Job read_job(const std::filesystem::path& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw job_error(path, "", "is a folder, not a job file");
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::is_directory(status)) throw job_error(path, "", "is a folder, not a job file");
+  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
+    throw job_error(path, "", "is a device, not a job file");
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;

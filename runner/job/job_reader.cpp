@@ -124,7 +124,13 @@ Json JobReader::read_range(const Key& key, const std::string& word, const Json& 
   end_key.choices.clear();  // a word is no end of a range
   const std::size_t before = mistakes_.size();
   Json result = Json::array();
-  for (std::size_t i = 0; i < 2; ++i) result.push_back(read_number(end_key, ends[i], element(path, i)));
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (sweep_word(ends[i]).empty()) {
+      result.push_back(read_number(end_key, ends[i], element(path, i)));
+    } else {
+      refuse(end_key, ends[i], element(path, i), "; a range's ends are not swept");
+    }
+  }
   if (mistakes_.size() != before) return ends;
   const double low = result[0].get<double>(), high = result[1].get<double>();
   if (low > high) {

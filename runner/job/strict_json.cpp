@@ -122,6 +122,8 @@ class StrictReader : public nlohmann::json_sax<Json> {
 }  // namespace
 
 Json parse_strict_json(const std::string& text, const std::filesystem::path& file) {
+  // The parser takes a zero byte for the end of the text and would pass over what follows.
+  if (text.find('\0') != std::string::npos) throw job_error(file, "", "holds a zero byte, so it is not JSON text");
   StrictReader reader(text, file);
   Json::sax_parse(text, &reader);
   return reader.take();

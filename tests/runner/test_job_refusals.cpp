@@ -112,11 +112,14 @@ TEST_CASE("what a lenient JSON parser lets through is refused") {
         "job.json: a[1][1].b: this key is given more than once; remove all but one");
   CHECK(refusal_of_text(R"({"time": {"step_s": 1e999}})") == "job.json: time.step_s: 1e999 is too large for a number");
   CHECK_THAT(refusal_of_text(std::string(100000, '[')), Catch::Matchers::EndsWith("nested deeper than 64 levels"));
+  CHECK(refusal_of_text(small_job().dump() + std::string(1, '\0') + "{}") ==
+        "job.json: holds a zero byte, so it is not JSON text");
 }
 
 TEST_CASE("a file that cannot be read is refused with the reason") {
   CHECK_THROWS_WITH(read_job("no-such-job.json"), "no-such-job.json: cannot be read: No such file or directory");
   CHECK_THROWS_WITH(read_job("/"), "/: is a folder, not a job file");
+  CHECK_THROWS_WITH(read_job("/dev/zero"), "/dev/zero: is a device, not a job file");
 }
 
 TEST_CASE("a sweep that its key does not take is refused") {
@@ -130,6 +133,9 @@ TEST_CASE("a sweep that its key does not take is refused") {
         "job.json: scene.length_m.uniform: [1,2,3] is not allowed; must be the two ends of a range [a, b]");
   CHECK(refusal(with("/scene/initial_angle_deg", R"({"log_uniform": [0, 2]})")) ==
         "job.json: scene.initial_angle_deg.log_uniform: [0,2] is not allowed; a log_uniform range must lie above 0");
+  CHECK(refusal(with("/scene/length_m", R"({"uniform": [{"grid": [1]}, 2]})")) ==
+        "job.json: scene.length_m.uniform[0]: {\"grid\":[1]} is not allowed; must be a number above 0 and at most "
+        "1000000; a range's ends are not swept");
   CHECK(refusal(with("/scene/segments", R"({"uniform": [1, 2]})")) ==
         "job.json: scene.segments.uniform: uniform draws numbers that are not whole; use {\"integer\": [a, b]} here");
   CHECK(refusal(with("/scene/segments", R"({"integer": [2, 3.5]})")) ==
