@@ -95,6 +95,14 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
 }
 
+/// Asks the system first: its reason reads better than HDF5's error stack.
+void check_creatable(const fs::path& file, const fs::path& path) {
+  const int descriptor = open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
+  if (descriptor < 0) throw creation_error(path, system_text(errno));
+  ::close(descriptor);
+  unlink(file.c_str());
+}
+
 /// Takes real blocks for the sparse file. File systems that cannot are left alone; the free-space check has to do
 /// there.
 void reserve_blocks(const fs::path& file, const fs::path& path) {
@@ -158,12 +166,8 @@ void create_results_file(const fs::path& path, const Plan& plan, const FreeSpace
   }
 
   const UnfinishedFile unfinished(path);
-  hdf5::File file;
-  try {
-    file = hdf5::create_file(unfinished.path());
-  } catch (const Hdf5Error& failure) {
-    throw creation_error(path, failure.what());
-  }
+  check_creatable(unfinished.path(), path);
+  hdf5::File file = hdf5::create_file(unfinished.path());
   create_datasets(file.id(), fields);
   write_constants(file.id(), plan, parameters);
   hdf5::close(file, "H5Fclose", unfinished.path().native());

@@ -45,6 +45,16 @@ void on_first_rank(MPI_Comm comm, Work&& work) {
   throw Hdf5Error(text);
 }
 
+/// Open MPI's file layer (4.1) builds names from the path in buffers of 256 bytes, and aborts where they overflow.
+void check_path(const fs::path& path) {
+  constexpr std::size_t most = 230;
+  if (path.native().size() > most)
+    throw FileError(
+        fmt::format("{}: this path has {} bytes, and {} is the most that MPI-IO takes: name a shorter one "
+                    "with -o FILE, for example from within its folder",
+                    path.native(), path.native().size(), most));
+}
+
 /// The hosts of all ranks, each named once, in the order of their ranks. Collective.
 std::string host_names(MPI_Comm comm) {
   constexpr int bytes = 256;
@@ -86,14 +96,20 @@ ResultsFile::~ResultsFile() = default;
 
 ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
                                 const FreeSpace& free_space) {
-  on_first_rank(comm, [&] { create_results_file(path, plan, free_space); });
+  on_first_rank(comm, [&] {
+    check_path(path);
+    create_results_file(path, plan, free_space);
+  });
   return ResultsFile(path, plan, std::vector<std::uint8_t>(static_cast<std::size_t>(plan.size()), 0), 0, provenance,
                      comm);
 }
 
 ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm) {
   ResumePoint point;
-  on_first_rank(comm, [&] { point = check_resumable(path, plan); });
+  on_first_rank(comm, [&] {
+    check_path(path);
+    point = check_resumable(path, plan);
+  });
   point.done.resize(static_cast<std::size_t>(plan.size()));
   check_mpi(MPI_Bcast(point.done.data(), static_cast<int>(point.done.size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
   point.runs = broadcast(point.runs, comm);

@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 
@@ -85,6 +86,23 @@ TEST_CASE("a folder that cannot be made or written is refused") {
              Contains("cannot be created: its folder cannot be made") && Contains("Not a directory"));
   CHECK(creation_refusal(folder / "new/folder/a.h5", plan_of(full_job())) == "");
   CHECK(fs::exists(folder / "new/folder/a.h5"));
+}
+
+TEST_CASE("a path that the system or MPI-IO cannot take is refused with the reason") {
+  const TemporaryFolder folder;
+  CHECK_THAT(creation_refusal(folder / (std::string(300, 'a') + ".h5"), plan_of(full_job())),
+             Contains("this path has") && Contains("and 230 is the most that MPI-IO takes") && Contains("-o FILE"));
+  const fs::path longest = folder / (std::string(200 - folder.path().native().size(), 'b') + "/" + "c/d/e/f/g/h.h5");
+  CHECK(creation_refusal(longest, plan_of(full_job())) == "");
+  CHECK(fs::exists(longest));
+  CHECK_THAT(resume_refusal(folder / std::string(231, 'a'), plan_of(full_job())), Contains("230 is the most"));
+  std::error_code error;
+  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec, error);
+  if (geteuid() != 0) {  // root may write everywhere
+    const std::string text = creation_refusal(folder / "a.h5", plan_of(full_job()));
+    CHECK(text == (folder / "a.h5").native() + " cannot be created: Permission denied");
+  }
+  fs::permissions(folder.path(), fs::perms::owner_all, error);
 }
 
 TEST_CASE("what is not a results file is refused with what it is") {
