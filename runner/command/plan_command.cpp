@@ -84,12 +84,13 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
   text += fmt::format("file     {}\n", bytes_text(file_bytes(plan)));
   if (!probes.empty()) {
     const double seconds = core_seconds(plan, probes);
-    double longest = 0;
-    for (const Probe& p : probes) longest = std::max(longest, p.seconds);
+    const auto [shortest, longest] = std::minmax_element(
+        probes.begin(), probes.end(), [](const Probe& a, const Probe& b) { return a.seconds < b.seconds; });
     text += fmt::format(
         "time     about {:.2g} core-hours: {} on the {} core{} here (from {} task{} tried, {} to {} each)\n",
-        seconds / 3600, duration_text(std::max(longest, seconds / cores)), cores, cores == 1 ? "" : "s", probes.size(),
-        probes.size() == 1 ? "" : "s", duration_text(probes.front().seconds), duration_text(probes.back().seconds));
+        seconds / 3600, duration_text(std::max(longest->seconds, seconds / cores)), cores, cores == 1 ? "" : "s",
+        probes.size(), probes.size() == 1 ? "" : "s", duration_text(shortest->seconds),
+        duration_text(longest->seconds));
     for (const Probe& p : probes)
       if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
         text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);

@@ -1,6 +1,7 @@
 #include "runner/command/sweep_run.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <utility>
@@ -99,7 +100,9 @@ Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pen
 fs::path default_output(const std::string& job_name) { return fs::path("results") / (job_name + ".h5"); }
 
 std::string run_command(const RunOptions& options, int workers) {
-  std::string line = workers > 1 ? fmt::format("mpirun --oversubscribe -n {} ", workers + 1) : "";
+  std::string line;
+  if (workers > 1)
+    line = fmt::format("mpirun --oversubscribe {}-n {} ", geteuid() == 0 ? "--allow-run-as-root " : "", workers + 1);
   line += fmt::format("{} run {}", shell_quoted(options.program), shell_quoted(options.job.native()));
   if (options.output) line += " -o " + shell_quoted(options.output->native());
   if (options.resume) line += " --resume";
@@ -107,8 +110,8 @@ std::string run_command(const RunOptions& options, int workers) {
 }
 
 ExitCode run_sweep(const RunOptions& options, const MpiSession& mpi, Console& console) {
-  const StopSignal signal;  // from here on a signal is a request, until the file is closed
   const Plan plan = plan_everywhere(options.job, mpi);
+  const StopSignal signal;  // from here on a signal is a request, until the file is closed
   const fs::path path = options.output.value_or(default_output(plan.job().name));
   const Placement where = placement(mpi.world());
   FileSummary before;
