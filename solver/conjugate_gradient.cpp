@@ -34,19 +34,27 @@ PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReaso
   return 0;
 }
 
-const BlockMatrix& matrix_of(Mat shell) {
+/// What the shell matrix stands for.
+struct Operator {
+  const BlockMatrix& a;
+  int products = 0;
+};
+
+Operator& operator_of(Mat shell) {
   void* context = nullptr;
   petsc_check(MatShellGetContext(shell, &context), "MatShellGetContext");
-  return *static_cast<const BlockMatrix*>(context);
+  return *static_cast<Operator*>(context);
 }
 
 PetscErrorCode multiply(Mat shell, Vec x, Vec y) {
-  matrix_of(shell).multiply(vector_data(x), vector_data(y));
+  Operator& op = operator_of(shell);
+  op.a.multiply(vector_data(x), vector_data(y));
+  ++op.products;
   return 0;
 }
 
 PetscErrorCode extract_diagonal(Mat shell, Vec diagonal) {
-  const BlockMatrix& a = matrix_of(shell);
+  const BlockMatrix& a = operator_of(shell).a;
   double* out = vector_data(diagonal);
   for (int row = 0; row < a.block_rows(); ++row)
     for (int i = 0; i < 6; ++i) out[6 * row + i] = a.blocks[static_cast<std::size_t>(a.diagonal(row))].column[i][i];
@@ -71,15 +79,22 @@ PCType pc_type(Preconditioner p) {
     case Preconditioner::jacobi: return PCJACOBI;
     case Preconditioner::point_block_jacobi: return PCPBJACOBI;
     case Preconditioner::icc: return PCICC;
-    case Preconditioner::cholesky: return PCCHOLESKY;
+    case Preconditioner::cholesky:
+    case Preconditioner::lagged_cholesky: return PCCHOLESKY;
   }
   return PCNONE;
+}
+
+/// Whether it works on a copy of the upper blocks.
+bool factorises(Preconditioner p) {
+  return p == Preconditioner::icc || p == Preconditioner::cholesky || p == Preconditioner::lagged_cholesky;
 }
 
 }  // namespace
 
 struct ConjugateGradient::Impl {
   const BlockMatrix& a;
+  Operator op;
   CgSettings settings;
   Mat shell = nullptr;
   Mat entries = nullptr;  ///< copy of the blocks for preconditioners that factorise; else null
@@ -100,12 +115,12 @@ struct ConjugateGradient::Impl {
   void refresh();
 };
 
-ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : a(matrix), settings(s) {
+ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : a(matrix), op{matrix}, settings(s) {
   const PetscInt n = a.unknowns();
   if (settings.max_iterations <= 0)
     settings.max_iterations = std::min(10 * n, int{std::numeric_limits<std::int16_t>::max()});
 
-  petsc_check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, const_cast<BlockMatrix*>(&a), &shell), "MatCreateShell");
+  petsc_check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &op, &shell), "MatCreateShell");
   petsc_check(MatShellSetManageScalingShifts(shell), "MatShellSetManageScalingShifts");
   petsc_check(MatShellSetOperation(shell, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)), "MatShellSetOperation");
   petsc_check(MatShellSetOperation(shell, MATOP_GET_DIAGONAL, reinterpret_cast<void (*)()>(extract_diagonal)),
@@ -116,8 +131,7 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : 
   scratch = create_vector(n);
 
   if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
-  if (settings.preconditioner == Preconditioner::icc || settings.preconditioner == Preconditioner::cholesky)
-    create_entries(true);
+  if (factorises(settings.preconditioner)) create_entries(true);
 
   PC pc = nullptr;
   petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
@@ -172,7 +186,7 @@ void ConjugateGradient::Impl::refresh() {
 
 void ConjugateGradient::Impl::copy_entries() {
   // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper ones.
-  const bool symmetric = settings.preconditioner != Preconditioner::point_block_jacobi;
+  const bool symmetric = factorises(settings.preconditioner);
   PetscScalar* out = nullptr;
   petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out), "MatSeqBAIJGetArray");
   PetscScalar* at = out;
@@ -199,6 +213,7 @@ CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, bool nonzero, do
   s.refresh();
   s.target = {tolerance, reference};
   const VectorView rhs(s.b, const_cast<double*>(b.data())), solution(s.x, x.data());
+  s.op.products = 0;
   petsc_check(KSPSetInitialGuessNonzero(s.ksp, nonzero ? PETSC_TRUE : PETSC_FALSE), "KSPSetInitialGuessNonzero");
   petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
 
@@ -212,7 +227,7 @@ CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, bool nonzero, do
     petsc_check(KSPGetResidualHistory(s.ksp, &norms, &count), "KSPGetResidualHistory");
     s.history.assign(norms, norms + count);
   }
-  return {outcome_of(reason), static_cast<int>(iterations)};
+  return {outcome_of(reason), static_cast<int>(iterations), s.op.products};
 }
 
 double ConjugateGradient::norm_of(const VectorX& b) {

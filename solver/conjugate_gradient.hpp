@@ -16,8 +16,9 @@
 namespace rodsweep {
 
 /// none; jacobi: the diagonal; point_block_jacobi: the 6x6 diagonal blocks; icc: incomplete Cholesky without fill,
-/// joints in the rod's order (exact on an unbranched chain); cholesky: complete.
-enum class Preconditioner { none, jacobi, point_block_jacobi, icc, cholesky };
+/// joints in the rod's order (exact on an unbranched chain); cholesky: complete; lagged_cholesky: the same of an
+/// earlier matrix, that of the last matrix_changed().
+enum class Preconditioner { none, jacobi, point_block_jacobi, icc, cholesky, lagged_cholesky };
 
 /// The norm of r = b - A x that decides convergence: its 2-norm, or (r^T P^-1 r)^1/2 with the preconditioner P.
 enum class Norm { true_residual, natural };
@@ -31,6 +32,7 @@ struct CgSettings {
 struct CgReport {
   SolveOutcome outcome = SolveOutcome::not_run;
   int iterations = 0;
+  int products = 0;  ///< with A: one for each iteration, one more for the residual of a nonzero guess
 };
 
 class ConjugateGradient {
@@ -41,7 +43,8 @@ class ConjugateGradient {
   ConjugateGradient(ConjugateGradient&&) noexcept;
   ConjugateGradient& operator=(ConjugateGradient&&) noexcept;
 
-  /// The preconditioner is rebuilt in the next solve (and its time counted there).
+  /// The preconditioner is rebuilt in the next solve (and its time counted there). Without it the old one is kept;
+  /// products always take the entries as they are.
   void matrix_changed();
 
   /// From x (or from zero, if !nonzero) until the norm is below tolerance * reference. x receives the solution.

@@ -48,18 +48,19 @@ ExtrapolationGuess::History& ExtrapolationGuess::history(const SolvePosition& at
   return histories_[static_cast<std::size_t>(at.rod * newton_iterations_ + at.newton)];
 }
 
-bool ExtrapolationGuess::propose(const LinearSystem&, const SolvePosition& at, VectorX& x0) {
+Proposal ExtrapolationGuess::propose(const LinearSystem&, const SolvePosition& at, VectorX& x0) {
   const History& h = history(at);
   const int known = h.last_step == at.step - 1 ? std::min(h.consecutive, terms_) : 0;
   const auto back = [&](int steps) -> const VectorX& {
     return h.solutions[static_cast<std::size_t>((h.newest - steps + terms_) % terms_)];
   };
   switch (known) {
-    case 0: x0.setZero(); return false;
-    case 1: x0 = back(0); return true;
-    case 2: x0 = 2 * back(0) - back(1); return true;
-    default: x0 = 3 * back(0) - 3 * back(1) + back(2); return true;
+    case 0: x0.setZero(); break;
+    case 1: x0 = back(0); break;
+    case 2: x0 = 2 * back(0) - back(1); break;
+    default: x0 = 3 * back(0) - 3 * back(1) + back(2);
   }
+  return {known > 0, 0};
 }
 
 void ExtrapolationGuess::accept(const SolvePosition& at, const VectorX& solution) {
@@ -70,39 +71,48 @@ void ExtrapolationGuess::accept(const SolvePosition& at, const VectorX& solution
   h.solutions[static_cast<std::size_t>(h.newest)] = solution;
 }
 
-OracleGuess::OracleGuess(const Scene& scene, double error, std::uint64_t seed)
-    : direct_(scene), error_(error), seed_(seed), noise_(vectors_for(scene)), scratch_(vectors_for(scene)) {}
+OracleGuess::OracleGuess(const Scene& scene, double error, Error kind, std::uint64_t seed)
+    : error_(error), kind_(kind), seed_(seed), noise_(vectors_for(scene)), scratch_(vectors_for(scene)) {
+  for (const Rod& rod : scene.rods) factors_.emplace_back(LinearSystem(rod).matrix(), root_to_leaf_order(rod));
+}
 
-bool OracleGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
-  if (direct_.solve(system, at, 0, x0) != SolveOutcome::converged) {
-    x0.setZero();
-    return false;
-  }
+Proposal OracleGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+  const BlockMatrix& a = system.matrix();
+  BlockFactor& factor = factors_[static_cast<std::size_t>(at.rod)];
   VectorX &noise = noise_[static_cast<std::size_t>(at.rod)], &scratch = scratch_[static_cast<std::size_t>(at.rod)];
+  if (factor.solve(a, system.rhs(), x0) != SolveOutcome::converged) {
+    x0.setZero();
+    return {};
+  }
+  const double solution = std::sqrt(energy_norm_squared(a, x0, scratch));
   // One stream per solve, so that the draw does not depend on what was solved before.
   std::uint64_t stream = mixed(seed_);
   for (const int part : {at.step, at.newton, at.rod}) stream = mixed(stream + static_cast<std::uint64_t>(part));
   std::mt19937_64 engine(stream);
   std::normal_distribution<double> normal;
   for (double& entry : noise) entry = normal(engine);
-  const double size = std::sqrt(energy_norm_squared(system.matrix(), noise, scratch));
-  const double solution = std::sqrt(energy_norm_squared(system.matrix(), x0, scratch));
+  if (kind_ == Error::smooth) {
+    scratch = noise;
+    factor.solve(a, scratch, noise);
+  }
+  const double size = std::sqrt(energy_norm_squared(a, noise, scratch));
   x0 += error_ * solution / size * noise;
-  return true;
+  return {true, 0};
 }
 
 GuardedGuess::GuardedGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, double threshold)
     : inner_(std::move(inner)), threshold_(threshold), scratch_(vectors_for(scene)) {}
 
-bool GuardedGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
-  if (!inner_->propose(system, at, x0)) return false;
+Proposal GuardedGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+  const Proposal inner = inner_->propose(system, at, x0);
+  if (!inner.nonzero) return inner;
   VectorX& residual = scratch_[static_cast<std::size_t>(at.rod)];
   system.matrix().multiply(x0.data(), residual.data());
   residual = system.rhs() - residual;
   const double limit = threshold_ * threshold_ * jacobi_norm_squared(system.matrix(), system.rhs());
-  if (jacobi_norm_squared(system.matrix(), residual) < limit) return true;
+  if (jacobi_norm_squared(system.matrix(), residual) < limit) return {true, inner.products + 1};
   x0.setZero();
-  return false;
+  return {false, inner.products + 1};
 }
 
 }  // namespace rodsweep

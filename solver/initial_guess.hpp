@@ -17,11 +17,16 @@
 
 namespace rodsweep {
 
+struct Proposal {
+  bool nonzero = false;  ///< false: x0 is zero
+  int products = 0;      ///< products with A that the guess itself took
+};
+
 class InitialGuess {
  public:
   virtual ~InitialGuess() = default;
-  /// Writes x0, or returns false: the guess is zero (x0 is then zero too).
-  virtual bool propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) = 0;
+  /// Writes x0. Calling it again for the same system gives the same x0.
+  virtual Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) = 0;
   /// The solution of the system last proposed for.
   virtual void accept(const SolvePosition& at, const VectorX& solution) = 0;
 };
@@ -29,9 +34,9 @@ class InitialGuess {
 /// Always zero: the denominator of every ratio.
 class ZeroGuess : public InitialGuess {
  public:
-  bool propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
+  Proposal propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
     x0.setZero();
-    return false;
+    return {};
   }
   void accept(const SolvePosition&, const VectorX&) override {}
 };
@@ -40,7 +45,7 @@ class ZeroGuess : public InitialGuess {
 class ExtrapolationGuess : public InitialGuess {
  public:
   ExtrapolationGuess(const Scene& scene, int newton_iterations, int terms);
-  bool propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition& at, const VectorX& solution) override;
 
  private:
@@ -56,17 +61,21 @@ class ExtrapolationGuess : public InitialGuess {
   std::vector<History> histories_;
 };
 
-/// The exact solution plus an error e of given relative A-norm, ||e||_A = error ||x||_A, with independent normal
-/// entries: what a guess of known quality would save. It solves the system itself, so its time means nothing.
+/// The exact solution plus a random error e of given relative A-norm, ||e||_A = error ||x||_A: what a guess of known
+/// quality would save. It solves the system itself, so its time means nothing.
 class OracleGuess : public InitialGuess {
  public:
-  OracleGuess(const Scene& scene, double error, std::uint64_t seed);
-  bool propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  /// With w of independent standard normal entries: white, e ~ w; smooth, e ~ A^-1 w, dominated by the modes of the
+  /// smallest eigenvalues, which vary slowly along the rod and which CG finds last.
+  enum class Error { white, smooth };
+  OracleGuess(const Scene& scene, double error, Error kind, std::uint64_t seed);
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition&, const VectorX&) override {}
 
  private:
-  DirectSolve direct_;
+  std::vector<BlockFactor> factors_;  ///< per rod
   double error_;
+  Error kind_;
   std::uint64_t seed_;
   std::vector<VectorX> noise_, scratch_;  ///< per rod
 };
@@ -76,7 +85,7 @@ class OracleGuess : public InitialGuess {
 class GuardedGuess : public InitialGuess {
  public:
   GuardedGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, double threshold);
-  bool propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition& at, const VectorX& solution) override { inner_->accept(at, solution); }
 
  private:

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "solver/subspace_guess.hpp"
+
 namespace rodsweep {
 
 std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec& task, const Scene& scene) {
@@ -9,12 +11,17 @@ std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec&
   const auto extrapolation = [&](int terms) {
     return std::make_unique<ExtrapolationGuess>(scene, task.time.newton_iterations, terms);
   };
+  const auto subspace = [&](SubspaceGuess::Window window) {
+    return std::make_unique<SubspaceGuess>(scene, task.time.newton_iterations, guess.size, window);
+  };
   switch (guess.kind) {
     case Kind::zero: return std::make_unique<ZeroGuess>();
     case Kind::previous: return extrapolation(1);
     case Kind::linear: return extrapolation(2);
     case Kind::quadratic: return extrapolation(3);
-    case Kind::oracle: return std::make_unique<OracleGuess>(scene, guess.error, task.seed);
+    case Kind::fischer: return subspace(SubspaceGuess::Window::restarted);
+    case Kind::pod: return subspace(SubspaceGuess::Window::sliding);
+    case Kind::oracle: return std::make_unique<OracleGuess>(scene, guess.error, guess.error_kind, task.seed);
     case Kind::guarded:
       return std::make_unique<GuardedGuess>(scene, make_guess(guess.inner.front(), task, scene), guess.threshold);
   }

@@ -1,18 +1,25 @@
 #include "runner/experiment/measured_solve.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "runner/experiment/guesses.hpp"
 #include "runner/job/plan.hpp"
+#include "solver/observables.hpp"
 #include "solver/stopwatch.hpp"
 
 namespace rodsweep {
 namespace {
 
 constexpr double rounding_level = 1e-13;  // of b, whose entries are dimensionless and of order one
+
+/// Of an even count the upper one, so that it is a time that was measured. Reorders.
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 }  // namespace
 
@@ -26,54 +33,83 @@ struct MeasuredSolve::RodSolvers {
   struct PerGuess {
     ConjugateGradient timed;
     VectorX x0;
-    bool nonzero = false;
-    double guess_s = 0, cg_s = 0;
-    std::vector<std::int16_t> iterations;
-    CgReport tight, advanced;
+    Proposal proposal;
+    std::vector<double> guess_s, cg_s;  ///< [repeat]
+    CgReport advanced;
   };
   ConjugateGradient tight;
+  std::optional<ConjugateGradient> tight_other;  ///< in the other norm
   std::vector<PerGuess> guesses;
+  std::vector<double> direct_s;  ///< [repeat]
+  std::vector<std::int16_t> iterations, iterations_other;
+  double reference = 0;  ///< norm of b
+  bool renewed = false;  ///< the preconditioners are of this system
   VectorX exact, x, residual;
 
-  RodSolvers(const BlockMatrix& a, const CgSettings& settings, std::size_t guess_count)
-      : tight(a, settings), exact(VectorX::Zero(a.unknowns())), x(exact), residual(exact) {
+  RodSolvers(const BlockMatrix& a, const TaskSpec& spec, std::size_t guess_count)
+      : tight(a, settings(spec, spec.solve.norm)),
+        direct_s(static_cast<std::size_t>(spec.solve.timing_repeats)),
+        iterations(tolerance_ladder().size()),
+        iterations_other(iterations),
+        exact(VectorX::Zero(a.unknowns())),
+        x(exact),
+        residual(exact) {
     tight.record_history(true);
+    if (spec.record.other_norm) {
+      const Norm other = spec.solve.norm == Norm::natural ? Norm::true_residual : Norm::natural;
+      tight_other.emplace(a, settings(spec, other));
+      tight_other->record_history(true);
+    }
     for (std::size_t g = 0; g < guess_count; ++g)
-      guesses.push_back({ConjugateGradient(a, settings),
-                         exact,
-                         false,
-                         0,
-                         0,
-                         std::vector<std::int16_t>(tolerance_ladder().size(), 0),
-                         {},
-                         {}});
+      guesses.push_back({ConjugateGradient(a, settings(spec, spec.solve.norm)), exact, {}, direct_s, direct_s, {}});
+  }
+
+  static CgSettings settings(const TaskSpec& spec, Norm norm) {
+    return {spec.solve.preconditioner, norm, spec.solve.max_iterations};
+  }
+
+  void renew_preconditioners() {
+    tight.matrix_changed();
+    if (tight_other) tight_other->matrix_changed();
+    for (PerGuess& guess : guesses) guess.timed.matrix_changed();
   }
 };
 
 MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecord& record)
-    : spec_(spec), record_(record), direct_(scene), solvers_(scene.rods.size()) {
+    : scene_(scene), spec_(spec), record_(record), direct_(scene), solvers_(scene.rods.size()) {
   const bool one = spec.own_guess >= 0;
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
     if (!one || static_cast<int>(g) == spec.own_guess)
       guesses_.push_back({g, make_guess(spec.guesses[g], spec, scene)});
   const std::size_t tolerances = tolerance_ladder().size();
-  for (const Guess& guess : guesses_)
-    for (std::size_t t = 0; t < tolerances; ++t) {
-      const std::size_t at = guess.column * tolerances + t;
-      record_.iterations_sum[at] = record_.iterations_sum_all[at] = 0;
-      record_.unreached[at] = record_.unreached_all[at] = 0;
+  for (const Guess& guess : guesses_) {
+    const auto reset = [&](auto& sums) {
+      std::fill_n(sums.begin() + static_cast<std::ptrdiff_t>(guess.column * tolerances), tolerances, 0);
+    };
+    for (CountSums* sums : {&record_.counted, &record_.counted_all}) {
+      reset(sums->iterations);
+      reset(sums->matvecs);
+      reset(sums->unreached);
     }
+    if (!spec.record.other_norm) continue;
+    reset(record_.counted_other_norm.iterations);
+    reset(record_.counted_other_norm.unreached);
+  }
 }
 
 MeasuredSolve::~MeasuredSolve() = default;
 
 MeasuredSolve::RodSolvers& MeasuredSolve::solvers_for(const LinearSystem& system, int rod) {
   std::unique_ptr<RodSolvers>& solvers = solvers_[static_cast<std::size_t>(rod)];
-  if (!solvers) {
-    const CgSettings settings{spec_.solve.preconditioner, spec_.solve.norm, spec_.solve.max_iterations};
-    solvers = std::make_unique<RodSolvers>(system.matrix(), settings, guesses_.size());
-  }
+  if (!solvers) solvers = std::make_unique<RodSolvers>(system.matrix(), spec_, guesses_.size());
   return *solvers;
+}
+
+std::size_t MeasuredSolve::row_of(const SolvePosition& at) const {
+  const auto newton_iterations = static_cast<std::size_t>(spec_.time.newton_iterations);
+  const std::size_t iteration =
+      static_cast<std::size_t>(at.step) * newton_iterations + static_cast<std::size_t>(at.newton);
+  return iteration * solvers_.size() + static_cast<std::size_t>(at.rod);
 }
 
 SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
@@ -81,121 +117,145 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
   const Stopwatch whole;
   elapsed_s_ += assemble_s;
   RodSolvers& solvers = solvers_for(system, at.rod);
-  const BlockMatrix& a = system.matrix();
-  const VectorX& b = system.rhs();
-  const std::size_t columns = spec_.guesses.size(), tolerances = tolerance_ladder().size();
-  const std::size_t row = (static_cast<std::size_t>(at.step) * static_cast<std::size_t>(spec_.time.newton_iterations) +
-                           static_cast<std::size_t>(at.newton)) *
-                              solvers_.size() +
-                          static_cast<std::size_t>(at.rod);
-  const bool rounding = system.newton_residual() <= rounding_level;
+  const std::size_t row = row_of(at);
 
-  const Stopwatch direct_watch;
-  const SolveOutcome direct = direct_.solve(system, at, 0, solvers.exact);
-  const double direct_s = direct_watch.seconds();
+  SolveOutcome outcome = SolveOutcome::not_run;
+  for (double& seconds : solvers.direct_s) {
+    const Stopwatch watch;
+    outcome = direct_.solve(system, at, 0, solvers.exact);
+    seconds = watch.seconds();
+  }
   if (spec_.record.solves) {
     record_.step[row] = at.step;
     record_.newton[row] = static_cast<std::int16_t>(at.newton);
     record_.rod[row] = static_cast<std::int16_t>(at.rod);
     record_.newton_residual[row] = system.newton_residual();
-    record_.rhs_norm[row] = b.norm();
+    record_.solve_joint_gap[row] = joint_gap(scene_.rods[static_cast<std::size_t>(at.rod)]);
+    record_.rhs_norm[row] = system.rhs().norm();
     record_.assemble_s[row] = static_cast<float>(assemble_s);
-    record_.direct_s[row] = static_cast<float>(direct_s);
+    record_.direct_s[row] = static_cast<float>(median(solvers.direct_s));
   }
   delta_lambda = solvers.exact;
-  if (direct != SolveOutcome::converged || guesses_.empty()) {
-    elapsed_s_ += whole.seconds();
-    return direct;
-  }
-
-  // Counted: one tight solve for each guess.
-  solvers.tight.matrix_changed();
-  const double reference = solvers.tight.norm_of(b);
-  for (std::size_t g = 0; g < guesses_.size(); ++g) {
-    RodSolvers::PerGuess& own = solvers.guesses[g];
-    const Stopwatch watch;
-    own.nonzero = guesses_[g].guess->propose(system, at, own.x0);
-    own.guess_s = watch.seconds();
-    const std::size_t entry = row * columns + guesses_[g].column;
-    if (rounding) {
-      own.tight = {SolveOutcome::zero_rhs, 0};
-      std::fill(own.iterations.begin(), own.iterations.end(), std::int16_t{0});
-    } else {
-      solvers.x = own.x0;
-      own.tight = solvers.tight.solve(b, solvers.x, own.nonzero, tolerance_ladder().back(), reference);
-      iterations_to(solvers.tight.history(), reference, tolerance_ladder(), own.iterations.data());
+  if (outcome == SolveOutcome::converged && !guesses_.empty()) {
+    const bool lagged = spec_.solve.preconditioner == Preconditioner::lagged_cholesky;
+    solvers.renewed = !lagged || (at.newton == 0 && at.step % spec_.solve.lag_steps == 0);
+    if (solvers.renewed) solvers.renew_preconditioners();
+    count(system, at, row, solvers);
+    time(system, at, row, solvers);
+    if (spec_.own_guess >= 0 && system.newton_residual() > rounding_level) {
+      delta_lambda = solvers.x;
+      outcome = solvers.guesses.front().advanced.outcome;
     }
-    count(g, at, own.iterations.data(), own.tight.iterations);
-    if (!spec_.record.solves) continue;
-    record_.reason[entry] = static_cast<std::int8_t>(own.tight.outcome);
-    std::copy(own.iterations.begin(), own.iterations.end(),
-              record_.iterations.begin() + static_cast<std::ptrdiff_t>(entry * tolerances));
-    if (rounding) continue;
-    a.multiply(solvers.x.data(), solvers.residual.data());
-    record_.initial_residual[entry] = solvers.tight.history().front() / reference;
-    record_.final_residual[entry] = (b - solvers.residual).norm() / b.norm();
-  }
-
-  // Timed: one solve each to the job's tolerance, in an order that rotates from system to system.
-  for (std::size_t k = 0; k < guesses_.size(); ++k) {
-    RodSolvers::PerGuess& own = solvers.guesses[(k + row) % guesses_.size()];
-    solvers.x = own.x0;
-    own.timed.matrix_changed();
-    const Stopwatch watch;
-    own.advanced = rounding ? CgReport{SolveOutcome::converged, 0}
-                            : own.timed.solve(b, solvers.x, own.nonzero, spec_.solve.tolerance, reference);
-    own.cg_s = watch.seconds();
-  }
-
-  SolveOutcome outcome = direct;
-  if (spec_.own_guess >= 0 && !rounding) {
-    delta_lambda = solvers.x;
-    outcome = solvers.guesses.front().advanced.outcome;
-  }
-  for (std::size_t g = 0; g < guesses_.size(); ++g) {
-    const Stopwatch watch;
-    guesses_[g].guess->accept(at, delta_lambda);
-    if (!spec_.record.solves) continue;
-    const std::size_t entry = row * columns + guesses_[g].column;
-    record_.guess_s[entry] = static_cast<float>(solvers.guesses[g].guess_s + watch.seconds());
-    record_.cg_s[entry] = static_cast<float>(solvers.guesses[g].cg_s);
+    accept(at, row, solvers, delta_lambda);
   }
   elapsed_s_ += whole.seconds();
   return outcome;
 }
 
-void MeasuredSolve::count(std::size_t guess, const SolvePosition& at, const std::int16_t* iterations, int used) {
-  const std::size_t tolerances = tolerance_ladder().size();
-  for (std::size_t t = 0; t < tolerances; ++t) {
-    const std::size_t to = guesses_[guess].column * tolerances + t;
+/// One tight solve for each guess and norm, untimed.
+void MeasuredSolve::count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers) {
+  const VectorX& b = system.rhs();
+  const std::vector<double>& ladder = tolerance_ladder();
+  const bool rounding = system.newton_residual() <= rounding_level;
+  solvers.reference = solvers.tight.norm_of(b);
+  const double reference_other = solvers.tight_other ? solvers.tight_other->norm_of(b) : 0;
+  for (std::size_t g = 0; g < guesses_.size(); ++g) {
+    RodSolvers::PerGuess& own = solvers.guesses[g];
+    own.proposal = guesses_[g].guess->propose(system, at, own.x0);
+    const int start = own.proposal.products + (own.proposal.nonzero ? 1 : 0);
+    const auto tight_solve = [&](ConjugateGradient& cg, double reference, std::vector<std::int16_t>& iterations) {
+      if (rounding) {
+        std::fill(iterations.begin(), iterations.end(), std::int16_t{0});
+        return CgReport{SolveOutcome::zero_rhs};
+      }
+      solvers.x = own.x0;
+      const CgReport report = cg.solve(b, solvers.x, own.proposal.nonzero, ladder.back(), reference);
+      iterations_to(cg.history(), reference, ladder, iterations.data());
+      return report;
+    };
+    const std::size_t column = guesses_[g].column;
+    if (solvers.tight_other) {
+      const CgReport other = tight_solve(*solvers.tight_other, reference_other, solvers.iterations_other);
+      if (at.newton == 0) add(record_.counted_other_norm, column, solvers.iterations_other, other.iterations, start);
+    }
+    const CgReport report = tight_solve(solvers.tight, solvers.reference, solvers.iterations);
+    add(record_.counted_all, column, solvers.iterations, report.iterations, start);
+    if (at.newton == 0) add(record_.counted, column, solvers.iterations, report.iterations, start);
+
+    if (!spec_.record.solves) continue;
+    const std::size_t entry = row * spec_.guesses.size() + column;
+    record_.reason[entry] = static_cast<std::int8_t>(report.outcome);
+    record_.start_matvecs[entry] = static_cast<std::int16_t>(start);
+    std::copy(solvers.iterations.begin(), solvers.iterations.end(),
+              record_.iterations.begin() + static_cast<std::ptrdiff_t>(entry * ladder.size()));
+    if (rounding) continue;
+    system.matrix().multiply(solvers.x.data(), solvers.residual.data());
+    record_.initial_residual[entry] = solvers.tight.history().front() / solvers.reference;
+    record_.final_residual[entry] = (b - solvers.residual).norm() / b.norm();
+  }
+}
+
+/// One solve each to the job's tolerance, in an order that rotates from system to system and repeat to repeat.
+void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers) {
+  const bool rounding = system.newton_residual() <= rounding_level;
+  for (std::size_t repeat = 0; repeat < solvers.direct_s.size(); ++repeat)
+    for (std::size_t k = 0; k < guesses_.size(); ++k) {
+      const std::size_t g = (k + row + repeat) % guesses_.size();
+      RodSolvers::PerGuess& own = solvers.guesses[g];
+      const Stopwatch guess_watch;
+      guesses_[g].guess->propose(system, at, own.x0);
+      own.guess_s[repeat] = guess_watch.seconds();
+      solvers.x = own.x0;
+      if (repeat > 0 && solvers.renewed) own.timed.matrix_changed();
+      const Stopwatch watch;
+      own.advanced = rounding ? CgReport{SolveOutcome::converged}
+                              : own.timed.solve(system.rhs(), solvers.x, own.proposal.nonzero, spec_.solve.tolerance,
+                                                solvers.reference);
+      own.cg_s[repeat] = watch.seconds();
+    }
+}
+
+/// Guesses learn the solution that advances the rod; what they make of it belongs to their time.
+void MeasuredSolve::accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution) {
+  for (std::size_t g = 0; g < guesses_.size(); ++g) {
+    const Stopwatch watch;
+    guesses_[g].guess->accept(at, solution);
+    const double accept_s = watch.seconds();
+    if (!spec_.record.solves) continue;
+    const std::size_t entry = row * spec_.guesses.size() + guesses_[g].column;
+    record_.guess_s[entry] = static_cast<float>(median(solvers.guesses[g].guess_s) + accept_s);
+    record_.cg_s[entry] = static_cast<float>(median(solvers.guesses[g].cg_s));
+  }
+}
+
+void MeasuredSolve::add(CountSums& sums, std::size_t column, const std::vector<std::int16_t>& iterations, int used,
+                        int start_matvecs) const {
+  for (std::size_t t = 0; t < iterations.size(); ++t) {
+    const std::size_t to = column * iterations.size() + t;
     const bool reached = iterations[t] >= 0;
     const int spent = reached ? iterations[t] : used;
-    record_.iterations_sum_all[to] += spent;
-    record_.unreached_all[to] += !reached;
-    if (at.newton > 0) continue;
-    record_.iterations_sum[to] += spent;
-    record_.unreached[to] += !reached;
+    sums.iterations[to] += spent;
+    sums.unreached[to] += !reached;
+    if (!sums.matvecs.empty()) sums.matvecs[to] += spent + start_matvecs;
   }
 }
 
 double MeasuredSolve::take_elapsed_s() { return std::exchange(elapsed_s_, 0); }
 
 void MeasuredSolve::finish() {
-  const std::size_t tolerances = tolerance_ladder().size();
   const auto zero = std::find_if(guesses_.begin(), guesses_.end(), [this](const Guess& g) {
     return spec_.guesses[g.column].kind == GuessSpec::Kind::zero;
   });
   if (zero == guesses_.end()) return;
-  const auto ratio = [](std::int64_t sum, std::int64_t of_zero) {
-    return of_zero > 0 ? static_cast<double>(sum) / static_cast<double>(of_zero)
-                       : std::numeric_limits<double>::quiet_NaN();
-  };
-  for (const Guess& guess : guesses_)
-    for (std::size_t t = 0; t < tolerances; ++t) {
-      const std::size_t to = guess.column * tolerances + t, of = zero->column * tolerances + t;
-      record_.cg_ratio[to] = ratio(record_.iterations_sum[to], record_.iterations_sum[of]);
-      record_.cg_ratio_all[to] = ratio(record_.iterations_sum_all[to], record_.iterations_sum_all[of]);
-    }
+  const std::size_t tolerances = tolerance_ladder().size();
+  for (CountSums* sums : {&record_.counted, &record_.counted_all, &record_.counted_other_norm})
+    for (const Guess& guess : guesses_)
+      for (std::size_t t = 0; t < tolerances; ++t) {
+        const std::int64_t own = sums->iterations[guess.column * tolerances + t];
+        const std::int64_t of_zero = sums->iterations[zero->column * tolerances + t];
+        if (of_zero > 0)
+          sums->cg_ratio[guess.column * tolerances + t] = static_cast<double>(own) / static_cast<double>(of_zero);
+      }
 }
 
 }  // namespace rodsweep

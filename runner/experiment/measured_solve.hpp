@@ -1,10 +1,12 @@
 // The linear solve of an experiment: solves each system directly and with CG from every guess under test, counts,
 // times, and lets one of the solutions advance the trajectory.
 //
-// Per system and guess: one untimed solve to the tightest tolerance of the ladder, whose residual history gives the
-// iterations to every tolerance; one timed solve to the job's tolerance, without history, the guesses in rotated order,
-// the preconditioner's set-up included. Guesses hear of the solution that advanced the trajectory.
-// Right-hand sides at rounding level (max |b| <= 1e-13) count as solved: zero iterations for every guess.
+// Per system and guess: one untimed solve to the tightest tolerance of the ladder, in each norm, whose residual history
+// gives the iterations to every tolerance; `timing_repeats` timed solves to the job's tolerance, without history, the
+// guesses in rotated order, the preconditioner's set-up included; the median counts. A lagged preconditioner is set up
+// at the first Newton iteration of every `lag_steps`-th step, and costs nothing in between. Guesses hear of the
+// solution that advanced the trajectory. Right-hand sides at rounding level (max |b| <= 1e-13) count as solved: zero
+// iterations for every guess.
 #pragma once
 
 #include <memory>
@@ -36,8 +38,14 @@ class MeasuredSolve : public LinearSolve {
   struct Guess;       // one guess under test
   struct RodSolvers;  // the solvers of one rod
   RodSolvers& solvers_for(const LinearSystem& system, int rod);
-  void count(std::size_t guess, const SolvePosition& at, const std::int16_t* iterations, int used);
+  std::size_t row_of(const SolvePosition& at) const;
+  void count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
+  void time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
+  void accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution);
+  void add(CountSums& sums, std::size_t column, const std::vector<std::int16_t>& iterations, int used,
+           int start_matvecs) const;
 
+  const Scene& scene_;
   const TaskSpec& spec_;
   TaskRecord& record_;
   DirectSolve direct_;

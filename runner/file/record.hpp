@@ -51,22 +51,29 @@ struct Column {
 /// Values in one row of a column.
 std::int64_t row_width(const Column& column, const AxisSizes& sizes);
 
+/// Counts of a task, summed over its solves: [guess, tolerance]. Solves that missed the tolerance count what they used.
+struct CountSums {
+  std::vector<std::int64_t> iterations, matvecs;
+  std::vector<std::int32_t> unreached;  ///< solves that missed the tolerance
+  std::vector<double> cg_ratio;         ///< iterations over the zero guess's; NaN without one
+};
+
 struct TaskRecord {
   // ---- /tasks [task ...]; state and checksum are ResultsFile's
   TaskOutcome outcome = TaskOutcome::pending;
   std::string message;  ///< for outcomes other than ok: what happened, at which step
 
-  std::vector<std::int32_t> steps_done;                          ///< [1]
-  std::vector<std::int64_t> iterations_sum, iterations_sum_all;  ///< [guess, tolerance] first Newton iterations, all
-  std::vector<std::int32_t> unreached, unreached_all;  ///< [guess, tolerance] solves that missed the tolerance
-  std::vector<double> cg_ratio, cg_ratio_all;          ///< [guess, tolerance] sums over the zero guess's sums
+  std::vector<std::int32_t> steps_done;  ///< [1]
+  CountSums counted, counted_all;        ///< of first Newton iterations; of all
+  CountSums counted_other_norm;          ///< of first ones, without matvecs
 
   // ---- /solves [row ...]
   std::vector<std::int32_t> step;
   std::vector<std::int16_t> newton, rod;
-  std::vector<double> newton_residual, rhs_norm;
+  std::vector<double> newton_residual, solve_joint_gap, rhs_norm;
   std::vector<double> initial_residual, final_residual;  ///< [row, guess] relative to ||b||, in the job's norm
   std::vector<std::int8_t> reason;                       ///< [row, guess] SolveOutcome
+  std::vector<std::int16_t> start_matvecs;               ///< [row, guess]
   std::vector<std::int16_t> iterations;                  ///< [row, guess, tolerance]
 
   // ---- /steps [row ...]
@@ -101,24 +108,42 @@ void visit_columns(Record& r, Visit&& visit) {
   visit(Column{"/tasks/iterations_sum", R::task, gt, "1",
                "CG iterations summed over the first Newton iteration of every step; solves that missed the tolerance "
                "count what they used"},
-        r.iterations_sum);
+        r.counted.iterations);
   visit(Column{"/tasks/iterations_sum_all", R::task, gt, "1", "CG iterations summed over all Newton iterations"},
-        r.iterations_sum_all);
+        r.counted_all.iterations);
+  visit(Column{"/tasks/iterations_sum_other_norm", R::task, gt, "1",
+               "iterations_sum with the residual test in the norm that the job doesn't use: natural for true_residual, "
+               "and the other way round; -1 where record.norms is \"one\""},
+        r.counted_other_norm.iterations);
+  visit(Column{"/tasks/matvecs_sum", R::task, gt, "1",
+               "products with A in the solves of iterations_sum: iterations, residuals of nonzero guesses, and those "
+               "that guesses take themselves"},
+        r.counted.matvecs);
+  visit(Column{"/tasks/matvecs_sum_all", R::task, gt, "1", "matvecs_sum over all Newton iterations"},
+        r.counted_all.matvecs);
   visit(Column{"/tasks/unreached", R::task, gt, "1", "solves in iterations_sum that missed the tolerance"},
-        r.unreached);
+        r.counted.unreached);
   visit(Column{"/tasks/unreached_all", R::task, gt, "1", "solves in iterations_sum_all that missed the tolerance"},
-        r.unreached_all);
+        r.counted_all.unreached);
+  visit(Column{"/tasks/unreached_other_norm", R::task, gt, "1",
+               "solves in iterations_sum_other_norm that missed the tolerance"},
+        r.counted_other_norm.unreached);
   visit(Column{"/tasks/cg_ratio", R::task, gt, "1",
                "iterations_sum over that of the zero guess; NaN where there is no zero guess in the task"},
-        r.cg_ratio);
+        r.counted.cg_ratio);
   visit(Column{"/tasks/cg_ratio_all", R::task, gt, "1", "iterations_sum_all over that of the zero guess"},
-        r.cg_ratio_all);
+        r.counted_all.cg_ratio);
+  visit(Column{"/tasks/cg_ratio_other_norm", R::task, gt, "1", "iterations_sum_other_norm over that of the zero guess"},
+        r.counted_other_norm.cg_ratio);
 
   visit(Column{"/solves/step", R::solve, none, "1", "time step, from 0"}, r.step);
   visit(Column{"/solves/newton", R::solve, none, "1", "Newton iteration within the step, from 0"}, r.newton);
   visit(Column{"/solves/rod", R::solve, none, "1", "rod within the scene, from 0"}, r.rod);
   visit(Column{"/solves/newton_residual", R::solve, none, "1", "max |C + alpha~ lambda| before the solve"},
         r.newton_residual);
+  visit(Column{"/solves/joint_gap", R::solve, none, "1",
+               "largest distance between the two sides of a joint over the joint length, before the solve"},
+        r.solve_joint_gap);
   visit(Column{"/solves/rhs_norm", R::solve, none, "1", "2-norm of b"}, r.rhs_norm);
   visit(Column{"/solves/initial_residual", R::solve, g, "1",
                "residual of the initial guess relative to the zero guess's, in the job's norm"},
@@ -129,6 +154,10 @@ void visit_columns(Record& r, Visit&& visit) {
                "outcome of the tight solve: 0 not run, 1 converged, 2 zero right-hand side, 3 iteration limit, 4 "
                "diverged, 5 indefinite, 6 not a number"},
         r.reason);
+  visit(Column{"/solves/start_matvecs", R::solve, g, "1",
+               "products with A before the first iteration: those of the guess itself, and one for the residual if it "
+               "is nonzero; -1 not run"},
+        r.start_matvecs);
   visit(Column{"/solves/iterations", R::solve, gt, "1", "CG iterations to each tolerance; -1 not reached or not run"},
         r.iterations);
 
@@ -168,8 +197,11 @@ void visit_columns(Record& r, Visit&& visit) {
   visit(
       Column{"/timing/solves/direct_s", R::solve, none, "s", "block LDL^T factorisation and solve of the same system"},
       r.direct_s);
-  visit(Column{"/timing/solves/guess_s", R::solve, g, "s", "making the initial guess"}, r.guess_s);
-  visit(Column{"/timing/solves/cg_s", R::solve, g, "s", "preconditioner set-up and CG to the job's tolerance"}, r.cg_s);
+  visit(Column{"/timing/solves/guess_s", R::solve, g, "s", "making the initial guess; median of solve.timing_repeats"},
+        r.guess_s);
+  visit(Column{"/timing/solves/cg_s", R::solve, g, "s",
+               "preconditioner set-up and CG to the job's tolerance; median of solve.timing_repeats"},
+        r.cg_s);
   visit(Column{"/timing/steps/rest_s", R::step, none, "s", "the step without assembly, guesses and solves"}, r.rest_s);
   visit(Column{"/timing/tasks/elapsed_s", R::task, none, "s", "wall time of the task, without writing"}, r.elapsed_s);
 }

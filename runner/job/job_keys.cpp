@@ -94,8 +94,14 @@ Key solve() {
                                    {"cg", "direct"})
                             .defaults_to("cg"),
                         choice_key("preconditioner", "preconditioner of cg",
-                                   {"none", "jacobi", "point_block_jacobi", "icc", "cholesky"})
+                                   {"none", "jacobi", "point_block_jacobi", "icc", "cholesky", "lagged_cholesky"})
                             .defaults_to("jacobi"),
+                        integer_key("lag_steps",
+                                    "lagged_cholesky: time steps from one factorisation, of the first Newton "
+                                    "iteration's matrix, to the next")
+                            .at_least(1)
+                            .at_most(1000000)
+                            .defaults_to(10),
                         choice_key("norm", "residual norm of the stopping test of cg", {"true_residual", "natural"})
                             .defaults_to("true_residual"),
                         number_key("tolerance",
@@ -108,24 +114,40 @@ Key solve() {
                             .at_least(0)
                             .at_most(32767)
                             .defaults_to(0),
+                        integer_key("timing_repeats", "times are medians over so many repeats of guess and solve")
+                            .at_least(1)
+                            .at_most(1000)
+                            .defaults_to(1),
                     })
       .defaults_to(Json::object());
 }
 
 Key record() {
-  return object_key("record", "what is written",
-                    {
-                        choice_key("solves", "a row for every solve, or only sums for every task", {"all", "summary"})
-                            .defaults_to("all")
-                            .setting(),
-                        integer_key("trajectory_every", "a frame of all segments every so many steps; 0: none")
-                            .at_least(0)
-                            .at_most(10000000)
-                            .defaults_to(0)
-                            .setting(),
-                    })
+  return object_key(
+             "record", "what is written",
+             {
+                 choice_key("solves", "a row for every solve, or only sums for every task", {"all", "summary"})
+                     .defaults_to("all")
+                     .setting(),
+                 choice_key("norms", "count iterations in both norms, or only in the one that the job tests (faster)",
+                            {"both", "one"})
+                     .defaults_to("both")
+                     .setting(),
+                 integer_key("trajectory_every", "a frame of all segments every so many steps; 0: none")
+                     .at_least(0)
+                     .at_most(10000000)
+                     .defaults_to(0)
+                     .setting(),
+             })
       .defaults_to(Json::object())
       .setting();
+}
+
+Key subspace_size() {
+  return integer_key("size", "most solutions that span the subspace; each costs a product with A")
+      .at_least(1)
+      .at_most(200)
+      .defaults_to(10);
 }
 
 Key job() {
@@ -193,11 +215,18 @@ const std::vector<Key>& guess_keys() {
       object_key("previous", "the solution of the same Newton iteration of the last step", {}),
       object_key("linear", "linear extrapolation in time", {}),
       object_key("quadratic", "quadratic extrapolation in time", {}),
+      object_key("fischer",
+                 "best approximation within the last solutions, collected until there are `size`, then from one again",
+                 {subspace_size()}),
+      object_key("pod", "best approximation within the last `size` solutions", {subspace_size()}),
       object_key("oracle", "the exact solution plus a random error",
                  {number_key("error", "A-norm of the error relative to the solution's")
                       .at_least(0)
                       .at_most(1e6)
-                      .defaults_to(0.1)}),
+                      .defaults_to(0.1),
+                  choice_key("errors", "white: independent in every entry; smooth: of the modes that CG finds last",
+                             {"white", "smooth"})
+                      .defaults_to("white")}),
       object_key(
           "guarded", "another guess, used only where its residual is small",
           {guess_key("guess", "the guess that is guarded"),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/conjugate_gradient.hpp"
+#include "solver/initial_guess.hpp"
 #include "solver/scenes.hpp"
 
 namespace rodsweep {
@@ -32,14 +33,18 @@ struct SolveSpec {
   double tolerance =
       1e-2;  ///< of the timed solves and, in a closed loop, of the solves that advance the rod; relative to ||b||
   int max_iterations = 0;  ///< 0: ten times the number of unknowns
+  int lag_steps = 10;      ///< lagged_cholesky: time steps from one factorisation to the next
+  int timing_repeats = 1;  ///< times are medians over so many repeats of guess, solve and direct solve
 };
 
 /// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.
 struct GuessSpec {
-  enum class Kind { zero, previous, linear, quadratic, oracle, guarded };
+  enum class Kind { zero, previous, linear, quadratic, fischer, pod, oracle, guarded };
   Kind kind = Kind::zero;
   std::string label;
+  int size = 10;       ///< fischer, pod: how many solutions span the subspace
   double error = 0.1;  ///< oracle: relative A-norm of the error added to the exact solution
+  OracleGuess::Error error_kind = OracleGuess::Error::white;  ///< oracle
   double threshold =
       1;  ///< guarded: use `inner` only where the natural norm of b - A x0 is below threshold times that of b
   std::vector<GuessSpec> inner;  ///< guarded: exactly one
@@ -47,6 +52,7 @@ struct GuessSpec {
 
 struct RecordSpec {
   bool solves = true;        ///< false: "summary", no /solves rows
+  bool other_norm = true;    ///< iterations also in the norm that the job doesn't test
   int trajectory_every = 0;  ///< a frame every so many steps, frame 0 the initial state; 0: no trajectory
 };
 

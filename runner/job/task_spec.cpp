@@ -80,14 +80,22 @@ int whole_steps(double duration_s, double step_s, const Job& job) {
 
 GuessSpec guess_spec(const Point& point, const std::string& path) {
   using Kind = GuessSpec::Kind;
-  static const std::map<std::string, Kind> kinds{{"zero", Kind::zero},     {"previous", Kind::previous},
-                                                 {"linear", Kind::linear}, {"quadratic", Kind::quadratic},
-                                                 {"oracle", Kind::oracle}, {"guarded", Kind::guarded}};
+  static const std::map<std::string, Kind> kinds{{"zero", Kind::zero},       {"previous", Kind::previous},
+                                                 {"linear", Kind::linear},   {"quadratic", Kind::quadratic},
+                                                 {"fischer", Kind::fischer}, {"pod", Kind::pod},
+                                                 {"oracle", Kind::oracle},   {"guarded", Kind::guarded}};
+  static const std::map<std::string, OracleGuess::Error> error_kinds{{"white", OracleGuess::Error::white},
+                                                                     {"smooth", OracleGuess::Error::smooth}};
   GuessSpec guess;
   const std::string& name = point.text(path);
   guess.kind = choice(kinds, name);
   const std::string parameters = path + "." + name + ".";
-  if (guess.kind == Kind::oracle) guess.error = point.number(parameters + "error");
+  if (guess.kind == Kind::fischer || guess.kind == Kind::pod)
+    guess.size = static_cast<int>(point.integer(parameters + "size"));
+  if (guess.kind == Kind::oracle) {
+    guess.error = point.number(parameters + "error");
+    guess.error_kind = choice(error_kinds, point.text(parameters + "errors"));
+  }
   if (guess.kind == Kind::guarded) {
     guess.threshold = point.number(parameters + "threshold");
     guess.inner.push_back(guess_spec(point, parameters + "guess"));
@@ -124,13 +132,16 @@ SolveSpec solve_spec(const Point& point) {
       {"jacobi", Preconditioner::jacobi},
       {"point_block_jacobi", Preconditioner::point_block_jacobi},
       {"icc", Preconditioner::icc},
-      {"cholesky", Preconditioner::cholesky}};
+      {"cholesky", Preconditioner::cholesky},
+      {"lagged_cholesky", Preconditioner::lagged_cholesky}};
   SolveSpec solve;
   solve.method = choice(methods, point.text("solve.method"));
   solve.preconditioner = choice(preconditioners, point.text("solve.preconditioner"));
   solve.norm = choice(norms, point.text("solve.norm"));
   solve.tolerance = point.number("solve.tolerance");
   solve.max_iterations = static_cast<int>(point.integer("solve.max_iterations"));
+  solve.lag_steps = static_cast<int>(point.integer("solve.lag_steps"));
+  solve.timing_repeats = static_cast<int>(point.integer("solve.timing_repeats"));
   return solve;
 }
 
@@ -142,7 +153,7 @@ Evaluation evaluation(const Point& point) {
 
 RecordSpec record_spec(const Job& job) {
   const auto& record = job.values["record"];
-  return {record["solves"] == "all", record["trajectory_every"].get<int>()};
+  return {record["solves"] == "all", record["norms"] == "both", record["trajectory_every"].get<int>()};
 }
 
 std::vector<GuessSpec> guess_specs(const Point& point, const Job& job) {

@@ -36,7 +36,7 @@ TEST_CASE("a value that its key does not take is refused with what is allowed") 
 TEST_CASE("a mistyped choice is refused with the nearest one") {
   CHECK(refusal(with("/solve", R"({"preconditioner": "jacoby"})")) ==
         "job.json: solve.preconditioner: \"jacoby\" is not allowed; must be one of \"none\", \"jacobi\", "
-        "\"point_block_jacobi\", \"icc\", \"cholesky\"; did you mean \"jacobi\"?");
+        "\"point_block_jacobi\", \"icc\", \"cholesky\", \"lagged_cholesky\"; did you mean \"jacobi\"?");
   CHECK(refusal(with("/evaluation", "\"pared\"")) ==
         "job.json: evaluation: \"pared\" is not allowed; must be one of \"paired\", \"closed_loop\"; did you mean "
         "\"paired\"?");
@@ -53,7 +53,7 @@ TEST_CASE("an unknown key is refused with the nearest known one, or with all of 
   CHECK(refusal(with("/time_limit", "1")) == "job.json: time_limit: unknown key; did you mean \"task_time_limit_s\"?");
   CHECK(refusal(with("/comment", "\"hello\"")) == "job.json: comment: unknown key; did you mean \"description\"?");
   CHECK(refusal(with("/record", R"({"xyzzy": 1})")) ==
-        "job.json: record.xyzzy: unknown key; allowed here: \"solves\", \"trajectory_every\"");
+        "job.json: record.xyzzy: unknown key; allowed here: \"solves\", \"norms\", \"trajectory_every\"");
   CHECK(refusal(with("/scene/windings", "1")) ==
         "job.json: scene.windings: this key belongs to scene.type \"helix\", not to \"bending_rod\"");
 }
@@ -215,7 +215,8 @@ TEST_CASE("guesses that make no guess axis are refused") {
         "job.json: guesses[1]: {\"grid\":[\"linear\"],\"error\":3} is not allowed; a sweep has no other key beside "
         "\"grid\"");
   const std::string names =
-      " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"oracle\", \"guarded\", or "
+      " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"pod\", "
+      "\"oracle\", \"guarded\", or "
       "an "
       "object such as {\"oracle\": {\"error\": 0.1}}";
   CHECK(refusal(with("/guesses", R"(["zero", "orcale"])")) ==

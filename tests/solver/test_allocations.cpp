@@ -8,6 +8,7 @@
 #include "allocations.hpp"
 #include "solver/conjugate_gradient.hpp"
 #include "solver/initial_guess.hpp"
+#include "solver/subspace_guess.hpp"
 #include "solver/time_step.hpp"
 #include "support.hpp"
 
@@ -26,7 +27,7 @@ class CgSolve : public LinearSolve {
     }
     cg_->matrix_changed();
     ++calls;
-    const bool nonzero = guess_->propose(system, at, delta_lambda);
+    const bool nonzero = guess_->propose(system, at, delta_lambda).nonzero;
     const CgReport report = cg_->solve(system.rhs(), delta_lambda, nonzero, 1e-6, cg_->norm_of(system.rhs()));
     guess_->accept(at, delta_lambda);
     return report.outcome;
@@ -107,12 +108,14 @@ TEST_CASE("a step with CG allocates nothing, whatever the guess") {
     if (name == "previous") return std::make_unique<ExtrapolationGuess>(scene, 4, 1);
     if (name == "linear") return std::make_unique<ExtrapolationGuess>(scene, 4, 2);
     if (name == "quadratic") return std::make_unique<ExtrapolationGuess>(scene, 4, 3);
-    if (name == "oracle") return std::make_unique<OracleGuess>(scene, 0.1, 7);
+    if (name == "oracle") return std::make_unique<OracleGuess>(scene, 0.1, OracleGuess::Error::smooth, 7);
+    if (name == "fischer") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::restarted);
+    if (name == "pod") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding);
     if (name == "guarded")
       return std::make_unique<GuardedGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 3), 0.5);
     return std::make_unique<ZeroGuess>();
   };
-  for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded"}) {
+  for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod"}) {
     INFO(guess);
     Scene scene = loaded_scene();
     CgSolve solve({}, make(guess, scene));

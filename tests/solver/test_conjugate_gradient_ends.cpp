@@ -23,6 +23,39 @@ TEST_CASE("the iteration limit is an outcome, and leaves the best iterate") {
   CHECK(energy_error(c.a().dense(), stopped.x, c.exact) < 1);
 }
 
+TEST_CASE("products with the matrix are counted: one for each iteration, one for the residual of a nonzero guess") {
+  const Case c = moving_chain();
+  ConjugateGradient cg(c.a(), {});
+  const Run from_zero = run(cg, c.b(), 1e-4);
+  CHECK(from_zero.report.products == from_zero.report.iterations);
+  const VectorX guess = 0.5 * c.exact;
+  const Run from_guess = run(cg, c.b(), 1e-4, &guess);
+  CHECK(from_guess.report.products == from_guess.report.iterations + 1);
+}
+
+TEST_CASE("a lagged factor solves the next matrix in fewer iterations than jacobi, and its own in one") {
+  const Rod rod = moving_scene(12).rods.front();
+  LinearSystem system(rod);
+  Rod moved = rod;
+  system.assemble(moved, 0.02);
+  ConjugateGradient lagged(system.matrix(), {Preconditioner::lagged_cholesky, Norm::true_residual, 0});
+  ConjugateGradient jacobi(system.matrix(), {});
+  CHECK(run(lagged, system.rhs(), 1e-8).report.iterations == 1);
+  for (int s = 0; s < moved.segment_count(); ++s)
+    if (!moved.segments[s].is_static) moved.position[s] += 0.02 * moved.velocity[s];
+  Random random(2);
+  for (Quaternion& q : moved.orientation) q = (q.coeffs() + 0.02 * random.entries(4)).normalized().eval();
+  system.assemble(moved, 0.02);
+  jacobi.matrix_changed();
+  const Run kept = run(lagged, system.rhs(), 1e-8);
+  CHECK(kept.report.outcome == SolveOutcome::converged);
+  CHECK(kept.report.iterations > 1);
+  CHECK(kept.report.iterations < run(jacobi, system.rhs(), 1e-8).report.iterations / 2);
+  CHECK((system.rhs() - system.matrix().dense() * kept.x).norm() < 1e-7 * system.rhs().norm());
+  lagged.matrix_changed();
+  CHECK(run(lagged, system.rhs(), 1e-8).report.iterations == 1);
+}
+
 TEST_CASE("a right-hand side of zero takes no iteration") {
   const Case c = moving_chain();
   const VectorX zero = VectorX::Zero(c.a().unknowns());

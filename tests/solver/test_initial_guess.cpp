@@ -1,4 +1,5 @@
 // The guesses: what each proposes, when it falls back to zero, and that none remembers what it should not.
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -12,6 +13,8 @@ namespace rodsweep {
 namespace {
 
 using test::MatrixX;
+
+constexpr auto white = OracleGuess::Error::white, smooth = OracleGuess::Error::smooth;
 
 /// Two rods of different size, and the assembled systems of both.
 struct TwoRods {
@@ -34,15 +37,14 @@ struct TwoRods {
   }
 };
 
-struct Proposed {
-  bool nonzero;
+struct Proposed : Proposal {
   VectorX x0;
 };
 
 Proposed propose(InitialGuess& guess, TwoRods& rods, const SolvePosition& at) {
-  Proposed out{false, VectorX::Constant(rods.size(at.rod), 123)};  // what x0 held must not matter
-  out.nonzero = guess.propose(rods.systems[at.rod], at, out.x0);
-  return out;
+  VectorX x0 = VectorX::Constant(rods.size(at.rod), 123);  // what x0 held must not matter
+  const Proposal proposal = guess.propose(rods.systems[at.rod], at, x0);
+  return {proposal, x0};
 }
 
 /// A solution that is a polynomial in the step, in numbers that floating point holds exactly.
@@ -136,20 +138,20 @@ TEST_CASE("the oracle's error has the requested size in the energy norm") {
   TwoRods rods;
   for (const double error : {1e-6, 0.1, 1.0, 10.0})
     for (const int rod : {0, 1}) {
-      OracleGuess guess(rods.scene, error, 7);
+      OracleGuess guess(rods.scene, error, white, 7);
       const Proposed proposed = propose(guess, rods, {3, 1, rod});
       CHECK(proposed.nonzero);
       const double measured = test::energy_error(rods.systems[rod].matrix().dense(), proposed.x0, rods.exact(rod));
       CHECK(measured == Approx(error).epsilon(error < 1e-3 ? 1e-7 : 1e-10));  // x itself is known to about 1e-13
     }
-  OracleGuess perfect(rods.scene, 0, 7);
+  OracleGuess perfect(rods.scene, 0, white, 7);
   CHECK(propose(perfect, rods, {0, 0, 0}).x0 == rods.exact(0));
 }
 
 TEST_CASE("the oracle's error depends on the seed and the position, and on nothing else") {
   TwoRods rods;
-  OracleGuess guess(rods.scene, 0.1, 7), late(rods.scene, 0.1, 7), other_seed(rods.scene, 0.1, 8);
-  OracleGuess high_seed(rods.scene, 0.1, 7 + (std::uint64_t{1} << 32));
+  OracleGuess guess(rods.scene, 0.1, white, 7), late(rods.scene, 0.1, white, 7), other_seed(rods.scene, 0.1, white, 8);
+  OracleGuess high_seed(rods.scene, 0.1, white, 7 + (std::uint64_t{1} << 32));
   const SolvePosition at{4, 1, 0};
   const VectorX expected = propose(guess, rods, at).x0;
   for (int step = 0; step < 4; ++step) {
@@ -167,7 +169,7 @@ TEST_CASE("the oracle's error depends on the seed and the position, and on nothi
 
 TEST_CASE("the oracle's error is white: as likely up as down in every entry") {
   TwoRods rods;
-  OracleGuess guess(rods.scene, 0.5, 1);
+  OracleGuess guess(rods.scene, 0.5, white, 1);
   const VectorX exact = rods.exact(0);
   VectorX mean = VectorX::Zero(exact.size()), square = mean;
   const int draws = 400;
@@ -181,12 +183,27 @@ TEST_CASE("the oracle's error is white: as likely up as down in every entry") {
   CHECK(square.maxCoeff() < 2 * square.minCoeff());
 }
 
+TEST_CASE("the oracle's smooth error has the requested size too, and is that of the modes that CG finds last") {
+  TwoRods rods;
+  const MatrixX a = rods.systems[0].matrix().dense();
+  const VectorX exact = rods.exact(0);
+  const auto rayleigh = [&](OracleGuess::Error kind) {
+    OracleGuess guess(rods.scene, 0.1, kind, 7);
+    const VectorX e = propose(guess, rods, {3, 1, 0}).x0 - exact;
+    CHECK(test::energy_error(a, exact + e, exact) == Approx(0.1).epsilon(1e-9));
+    return e.dot(a * e) / e.squaredNorm();
+  };
+  const double lowest = Eigen::SelfAdjointEigenSolver<MatrixX>(a).eigenvalues().minCoeff();
+  CHECK(rayleigh(smooth) < 10 * lowest);
+  CHECK(rayleigh(white) > 100 * lowest);
+}
+
 TEST_CASE("the oracle proposes zero where the system cannot be solved") {
   TwoRods rods;
   Rod& broken = rods.scene.rods[0];
   broken.position[2].x() = std::numeric_limits<double>::quiet_NaN();
   rods.systems[0].assemble(broken, 0.02);
-  OracleGuess guess(rods.scene, 0.1, 7);
+  OracleGuess guess(rods.scene, 0.1, white, 7);
   const Proposed proposed = propose(guess, rods, {0, 0, 0});
   CHECK_FALSE(proposed.nonzero);
   CHECK(proposed.x0.isZero(0));
@@ -196,9 +213,9 @@ TEST_CASE("the oracle proposes zero where the system cannot be solved") {
 class Fixed : public InitialGuess {
  public:
   explicit Fixed(VectorX x, VectorX* told = nullptr) : x_(std::move(x)), told_(told) {}
-  bool propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
+  Proposal propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
     x0 = x_;
-    return !x_.isZero(0);
+    return {!x_.isZero(0), 3};
   }
   void accept(const SolvePosition&, const VectorX& solution) override { *told_ = solution; }
 
@@ -220,6 +237,7 @@ TEST_CASE("guarded passes a guess on just below its threshold and replaces it by
   GuardedGuess above(rods.scene, std::make_unique<Fixed>(x0), ratio * (1 + 1e-9));
   const Proposed kept = propose(above, rods, {0, 0, 0});
   CHECK(kept.nonzero);
+  CHECK(kept.products == 4);  // the inner guess's, and one for the residual
   CHECK(kept.x0 == x0);
   GuardedGuess below(rods.scene, std::make_unique<Fixed>(x0), ratio * (1 - 1e-9));
   const Proposed rejected = propose(below, rods, {0, 0, 0});

@@ -1,4 +1,4 @@
-// The solver's test programs: MPI and PETSc start once, around all cases.
+// Test programs that solve: MPI and PETSc start once, around all cases.
 #include "solver/petsc_session.hpp"
 #include "tests/run_cases.hpp"
 
