@@ -24,11 +24,14 @@ bool applies(const Key& key, const std::string& tag_value) {
   return key.only_for.empty() || tag_value.empty() || key.only_for == tag_value;
 }
 
-/// "oracle 0.1": the name and those parameters that are not swept.
+/// "oracle 0.1", "oracle 0.1 smooth": the name and those parameters that are not swept, words only if not the default.
 std::string default_label(const std::string& name, const Json& parameters) {
   std::string label = name;
+  const std::vector<Key>& keys = find_key(guess_keys(), name)->keys;
   for (const auto& [key, value] : parameters.items()) {
     if (key == guess_label_key().name || !sweep_word(value).empty()) continue;
+    const Key* described = find_key(keys, key);
+    if (value.is_string() && described->preset == value) continue;
     if (value.is_object() && !value.empty()) {
       label += " " + default_label(value.begin().key(), value.begin().value());
     } else {

@@ -68,8 +68,7 @@ TEST_CASE("every value of a job arrives in the task") {
   REQUIRE(spec.guesses[5].inner.size() == 1);
   CHECK(spec.guesses[5].inner[0].kind == GuessSpec::Kind::oracle);
   CHECK(spec.guesses[5].inner[0].error == 0.2);
-  CHECK(plan.guess_labels() ==
-        std::vector<std::string>{"zero", "previous", "linear", "q", "oracle 0.3 white", "careful"});
+  CHECK(plan.guess_labels() == std::vector<std::string>{"zero", "previous", "linear", "q", "oracle 0.3", "careful"});
 }
 
 TEST_CASE("a helix's values arrive in the task") {
@@ -83,11 +82,12 @@ TEST_CASE("a helix's values arrive in the task") {
 }
 
 TEST_CASE("a default label is the guess's name and those of its parameters that are not swept") {
-  const Plan plan = plan_of(with("/guesses", R"(["zero", "oracle", {"oracle": {"error": 0.5}}, {"oracle": {"error":
+  const Plan plan = plan_of(
+      with("/guesses", R"(["zero", "oracle", {"oracle": {"error": 0.5, "errors": "smooth"}}, {"oracle": {"error":
       {"grid": [0.1, 0.2]}}}, {"guarded": {"guess": "quadratic", "threshold": 1}}, {"guarded": {"guess": {"oracle": {"error": 2}},
       "threshold": {"grid": [1, 2]}}}])"));
-  CHECK(plan.guess_labels() == std::vector<std::string>{"zero", "oracle 0.1 white", "oracle 0.5 white", "oracle white",
-                                                        "guarded quadratic 1", "guarded oracle 2 white"});
+  CHECK(plan.guess_labels() == std::vector<std::string>{"zero", "oracle 0.1", "oracle 0.5", "oracle",
+                                                        "guarded quadratic 1", "guarded oracle 2"});
 }
 
 TEST_CASE("the default label of a guess that varies names all that it can be, if they are few") {
