@@ -86,7 +86,7 @@ TEST_CASE("a default label is the guess's name and those of its parameters that 
       with("/guesses", R"(["zero", "oracle", {"oracle": {"error": 0.5, "errors": "smooth"}}, {"oracle": {"error":
       {"grid": [0.1, 0.2]}}}, {"guarded": {"guess": "quadratic", "threshold": 1}}, {"guarded": {"guess": {"oracle": {"error": 2}},
       "threshold": {"grid": [1, 2]}}}])"));
-  CHECK(plan.guess_labels() == std::vector<std::string>{"zero", "oracle 0.1", "oracle 0.5", "oracle",
+  CHECK(plan.guess_labels() == std::vector<std::string>{"zero", "oracle 0.1", "oracle 0.5 smooth", "oracle",
                                                         "guarded quadratic 1", "guarded oracle 2"});
 }
 
