@@ -22,7 +22,7 @@ configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G N
   || { echo "$$log"; exit 1; }
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo test test-long bench sanitize format format-check tidy install clean
+.PHONY: help configure build demo test test-long bench sanitize schema format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
@@ -32,6 +32,7 @@ help:
 	@echo 'make install       PREFIX=$(PREFIX): program, jobs and analysis scripts'
 	@echo 'make build         build only, into $(BUILD)/'
 	@echo 'make sanitize      unit tests under the address and undefined-behaviour sanitizers, in $(BUILD)-sanitize/'
+	@echo 'make schema        refresh jobs/schema.json after a change of the keys of jobs'
 	@echo 'make format        clang-format the tree; make format-check only looks'
 	@echo 'make tidy          clang-tidy'
 	@echo 'make clean         remove $(BUILD)/ and $(BUILD)-sanitize/; results stay'
@@ -74,6 +75,9 @@ sanitize:
 	@$(call configure,$(BUILD)-sanitize,-DRODSWEEP_SANITIZE=ON -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1')
 	@cmake --build $(BUILD)-sanitize -j $(CORES) --target unit_tests
 	@ctest --test-dir $(BUILD)-sanitize -j $(CORES) -L unit --output-on-failure --no-tests=error
+
+schema: build
+	@$(BUILD)/rodsweep schema >$(BUILD)/schema.json && mv $(BUILD)/schema.json jobs/schema.json
 
 format:
 	@$(call packages,develop)

@@ -4,6 +4,7 @@
 #include <memory>
 #include <sstream>
 
+#include "runner/command/file_command_line.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -27,6 +28,7 @@ constexpr const char* main_footer =
     "  rodsweep plan jobs/demo.json             how many tasks, bytes, core-hours?\n"
     "  mpirun -n 9 rodsweep run jobs/demo.json  8 workers and a master, which sleeps\n"
     "  rodsweep status results/demo.h5          how far is it? (also while it runs)\n"
+    "  rodsweep query results/demo.h5           its tasks as a table, CSV or JSON\n"
     "'rodsweep COMMAND --help' tells more.";
 
 constexpr const char* run_footer =
@@ -116,6 +118,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   auto* job = info_command->add_flag("--job", info.job, "Print the job alone, byte for byte");
   auto* json = info_command->add_flag("--json", info.json, "For programs");
   job->excludes(verify)->excludes(json);
+  const FileCommandLine file_commands(app);
 
   try {
     app.parse(argc, argv);
@@ -139,6 +142,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (validate_command->parsed()) return validate;
   if (status_command->parsed()) return status;
   if (info_command->parsed()) return info;
+  if (auto chosen = file_commands.chosen(typed(argc, argv))) return *std::move(chosen);
   return Answer{app.help(), ExitCode::user_error};
 }
 

@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "runner/command/exit_codes.hpp"
+#include "runner/command/pack_command.hpp"
+#include "runner/command/query_command.hpp"
+#include "runner/command/rerun_command.hpp"
 #include "runner/command/sweep_run.hpp"
 
 namespace rodsweep {
@@ -43,8 +46,8 @@ struct Answer {
   ExitCode code = ExitCode::ok;
 };
 
-using Command =
-    std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, VersionOptions, Answer>;
+using Command = std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, QueryOptions,
+                             RerunOptions, PackOptions, VersionOptions, Answer>;
 
 Command parse_command_line(int argc, const char* const* argv);
 

@@ -42,6 +42,19 @@ ExitCode execute(const ValidateOptions& options, Console& console) { return vali
 ExitCode execute(const StatusOptions& options, Console& console) { return show_status(options, console); }
 ExitCode execute(const InfoOptions& options, Console& console) { return show_info(options, console); }
 
+ExitCode execute(const QueryOptions& options, Console& console) { return query_tasks(options, console); }
+
+ExitCode execute(const PackOptions& options, Console& console) {
+  return is_first_rank() ? pack_file(options, console) : ExitCode::ok;  // one should write
+}
+
+ExitCode execute(const RerunOptions& options, Console& console) {
+  const MpiSession mpi;
+  const PetscSession petsc;
+  if (mpi.rank() > 0) return ExitCode::ok;
+  return rerun_task(options, console);
+}
+
 ExitCode execute(const PlanOptions& options, Console& console) {
   if (!options.probe) return show_plan(options, console);
   const MpiSession mpi;

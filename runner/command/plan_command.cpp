@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -99,6 +100,15 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
   return text;
 }
 
+/// jobs/schema.json stands among the jobs, and `validate jobs/*.json` should pass.
+bool is_json_schema(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  const auto json = nlohmann::json::parse(in, nullptr, false);
+  const auto found = json.is_object() ? json.find("$schema") : json.end();
+  return json.is_object() && found != json.end() && found->is_string() &&
+         found->get<std::string>().find("json-schema.org/") != std::string::npos;
+}
+
 }  // namespace
 
 ExitCode show_plan(const PlanOptions& options, Console& console) {
@@ -111,6 +121,10 @@ ExitCode show_plan(const PlanOptions& options, Console& console) {
 ExitCode validate_jobs(const ValidateOptions& options, Console& console) {
   ExitCode code = ExitCode::ok;
   for (const auto& path : options.jobs) {
+    if (is_json_schema(path)) {
+      console.result(fmt::format("{}: a JSON Schema for editors, not a job", path.native()));
+      continue;
+    }
     try {
       const Plan plan(read_job(path));
       console.result(fmt::format("{}: sound, {} task{}", path.native(), plan.size(), plan.size() == 1 ? "" : "s"));

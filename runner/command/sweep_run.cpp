@@ -44,6 +44,7 @@ ResultsFile open_results(const RunOptions& options, const fs::path& path, const 
   continues = broadcast(continues ? 1 : 0, mpi.world()) != 0;
 
   Provenance provenance = provenance_of_this_process(options.command);
+  provenance.job = fs::absolute(options.job).lexically_normal().native();
   provenance.ranks = mpi.size();
   provenance.oversubscribed = where.oversubscribed;
   std::optional<ResultsFile> file;

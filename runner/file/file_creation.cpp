@@ -2,16 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <stdio.h>  // renameat2
 #include <unistd.h>
 
 #include <cerrno>
-#include <random>
 #include <system_error>
 
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"
-#include "runner/file/provenance.hpp"
+#include "runner/file/unfinished_file.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -37,10 +35,6 @@ FileError space_error(const fs::path& path, std::int64_t bytes, const std::strin
       fmt::format("{} needs {}, but {}: free some space, name a file on another disk with -o FILE, or record "
                   "less (record.solves: \"summary\", a larger record.trajectory_every)",
                   path.native(), bytes_text(bytes), found));
-}
-
-FileError creation_error(const fs::path& path, const std::string& reason) {
-  return FileError(fmt::format("{} cannot be created: {}", path.native(), reason));
 }
 
 std::int64_t file_bytes(const std::vector<Field>& fields) {
@@ -81,6 +75,8 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   const hdf5::Object job(hdf5::check(H5Oopen(file, "/job", H5P_DEFAULT), "H5Oopen", "/job"));
   hdf5::write_attribute(job.id(), "name", plan.job().name);
   hdf5::write_attribute(job.id(), "plan_hash", plan_hash(plan, parameters));
+  if (plan.task_alone())
+    hdf5::write_attribute(job.id(), "rerun_of_task", static_cast<std::int32_t>(*plan.task_alone()));
 
   if (!plan.guess_labels().empty()) hdf5::write_texts(file, "/axes/guess", plan.guess_labels());
   hdf5::write_all(file, "/axes/tolerance", tolerance_ladder());
@@ -115,34 +111,6 @@ void reserve_blocks(const fs::path& file, const fs::path& path) {
   if (error == EFBIG) throw space_error(path, bytes, "a file cannot be that large there");
 }
 
-/// Gives the finished file its name unless another file took it meanwhile.
-void publish(const fs::path& file, const fs::path& path) {
-  if (link(file.c_str(), path.c_str()) == 0) return;
-  if (errno == EEXIST) throw exists_error(path);
-  // A file system without hard links.
-  if (renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return;
-  if (errno == EEXIST) throw exists_error(path);
-  throw creation_error(path, system_text(errno));
-}
-
-/// The temporary name; whatever bears it at the end is removed.
-class UnfinishedFile {
- public:
-  explicit UnfinishedFile(const fs::path& path)
-      : path_(fmt::format("{}.unfinished-{}-{}-{:08x}", path.native(), host_name(), getpid(), std::random_device()())) {
-  }
-  UnfinishedFile(const UnfinishedFile&) = delete;
-  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
-  ~UnfinishedFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 }  // namespace
 
 std::uintmax_t free_bytes(const fs::path& folder) { return fs::space(folder).available; }
@@ -153,8 +121,7 @@ void create_results_file(const fs::path& path, const Plan& plan, const FreeSpace
   std::error_code error;
   if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  fs::create_directories(folder, error);
-  if (error) throw creation_error(path, "its folder cannot be made: " + error.message());
+  make_folder_of(path);
 
   const std::vector<ParameterColumn> parameters = plan.parameters();
   const std::vector<Field> fields = layout(plan, parameters);
@@ -172,7 +139,7 @@ void create_results_file(const fs::path& path, const Plan& plan, const FreeSpace
   write_constants(file.id(), plan, parameters);
   hdf5::close(file, "H5Fclose", unfinished.path().native());
   reserve_blocks(unfinished.path(), path);
-  publish(unfinished.path(), path);
+  unfinished.publish();
 }
 
 }  // namespace rodsweep

@@ -1,6 +1,5 @@
-// Creates the file of a sweep, complete but for its results, by one process with HDF5's ordinary driver. It is made
-// under a temporary name beside `path` and gets its own name when it is whole, in one step that never replaces another
-// file: two programs cannot create the same file, and one that is killed meanwhile leaves `path` free. Its blocks are
+// Creates the file of a sweep, complete but for its results, by one process with HDF5's ordinary driver, under a
+// temporary name until it is whole (runner/file/unfinished_file.hpp). Its blocks are
 // reserved where the file system can, so that the disk does not fill up halfway. Throws FileError (exists, no space, no
 // permission) and Hdf5Error.
 #pragma once

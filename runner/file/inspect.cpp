@@ -5,6 +5,7 @@
 #include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/task_checksum.hpp"
+#include "runner/file/task_rows.hpp"
 
 namespace rodsweep {
 namespace {
@@ -33,6 +34,7 @@ std::vector<RunRow> read_runs(const hdf5::File& file) {
   texts("/runs/begin", [](RunRow& run) -> std::string& { return run.provenance.begin_utc; });
   texts("/runs/end", [](RunRow& run) -> std::string& { return run.end_utc; });
   texts("/runs/host", [](RunRow& run) -> std::string& { return run.provenance.host; });
+  if (hdf5::exists(id, "/runs/job")) texts("/runs/job", [](RunRow& run) -> std::string& { return run.provenance.job; });
   texts("/runs/command", [](RunRow& run) -> std::string& { return run.provenance.user_command; });
   texts("/runs/revision", [](RunRow& run) -> std::string& { return run.provenance.revision; });
   texts("/runs/versions", [](RunRow& run) -> std::string& { return run.provenance.versions; });
@@ -69,48 +71,6 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
   summary.pending = summary.tasks - summary.done;
 }
 
-/// A column and its dataset; without one where the file leaves it out.
-struct StoredColumn {
-  Column column;
-  hid_t type;  ///< in memory
-  hdf5::RowDataset dataset;
-};
-
-/// The task's rows, as bytes.
-void read_rows(const StoredColumn& stored, const Task& task, std::vector<char>& bytes) {
-  bytes.clear();
-  const RowRange rows = rows_of(task, stored.column.rows);
-  if (!stored.dataset || rows.count == 0) return;
-  const auto most = static_cast<std::int64_t>(stored.dataset.rows());
-  if (rows.first < 0 || rows.count < 0 || rows.count > most || rows.first > most - rows.count) {
-    throw std::out_of_range(std::string("a task has rows outside ") + stored.column.path);
-  }
-  bytes.resize(static_cast<std::size_t>(rows.count) * stored.dataset.row_values() * H5Tget_size(stored.type));
-  stored.dataset.read(stored.type, rows.first, rows.count, bytes.data());
-}
-
-/// The rows of every task, as the file tells them.
-std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
-  const auto numbers = [&](const char* path) {
-    auto values = hdf5::read_all<std::int64_t>(file.id(), path);
-    if (values.size() != count) throw std::length_error(std::string(path) + " has another length than /tasks/state");
-    return values;
-  };
-  const auto segments = numbers("/tasks/segments"), first_step = numbers("/tasks/first_step"),
-             steps = numbers("/tasks/steps"), first_solve = numbers("/tasks/first_solve"),
-             solves = numbers("/tasks/solves"), first_frame_row = numbers("/tasks/first_frame_row"),
-             frames = numbers("/tasks/frames");
-  std::vector<Task> tasks(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    tasks[i].index = static_cast<std::int64_t>(i);
-    tasks[i].segments = static_cast<int>(segments[i]);
-    tasks[i].first_step = first_step[i], tasks[i].steps = steps[i];
-    tasks[i].first_solve = first_solve[i], tasks[i].solves = solves[i];
-    tasks[i].first_frame_row = first_frame_row[i], tasks[i].frames = frames[i];
-  }
-  return tasks;
-}
-
 }  // namespace
 
 FileSummary inspect(const fs::path& path) {
@@ -122,6 +82,8 @@ FileSummary inspect(const fs::path& path) {
     summary.schema_version = schema_version;
     summary.job_name = hdf5::read_text_attribute(file.id(), "/job", "name");
     summary.plan_hash = hdf5::read_text_attribute(file.id(), "/job", "plan_hash");
+    if (hdf5::has_attribute(file.id(), "/job", "rerun_of_task"))
+      summary.rerun_of_task = hdf5::read_int_attribute(file.id(), "/job", "rerun_of_task");
     summary.job_text = hdf5::read_texts(file.id(), "/job/text").at(0);
     if (hdf5::exists(file.id(), "/axes/guess")) summary.guesses = hdf5::read_texts(file.id(), "/axes/guess");
     summary.tolerances = hdf5::read_all<double>(file.id(), "/axes/tolerance");
@@ -140,14 +102,7 @@ Verification verify(const fs::path& path) {
     const std::vector<Task> tasks = read_tasks(file, states.size());
     const auto checksums = hdf5::read_all<std::uint64_t>(file.id(), "/tasks/checksum");
     const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
-    std::vector<StoredColumn> columns;
-    const TaskRecord record;
-    visit_columns(record, [&](const Column& column, const auto& values) {
-      using T = typename std::decay_t<decltype(values)>::value_type;
-      if (!TaskChecksum::covers(column)) return;
-      columns.push_back({column, hdf5::type_of<T>(), hdf5::RowDataset(file.id(), column.path)});
-    });
-
+    const std::vector<StoredColumn> columns = stored_columns(file);
     Verification result;
     std::vector<char> bytes;
     for (const Task& task : tasks) {
@@ -155,7 +110,7 @@ Verification verify(const fs::path& path) {
       if (states[index] == 0) continue;
       TaskChecksum sum(task.index, outcomes.at(index), hdf5::read_text_row(file.id(), "/tasks/message", index));
       for (const StoredColumn& stored : columns) {
-        read_rows(stored, task, bytes);
+        read_rows(stored, rows_of(task, stored.column.rows), bytes);
         sum.add(stored.column, bytes.data(), bytes.size());
       }
       ++result.checked;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ struct FileSummary {
   std::uintmax_t bytes = 0;
   int schema_version = 0;
   std::string job_name, job_text, plan_hash;
-  std::vector<std::string> guesses;  ///< labels of /axes/guess; empty without cg
-  std::vector<double> tolerances;    ///< /axes/tolerance
+  std::optional<std::int64_t> rerun_of_task;  ///< the file holds that task of the job alone, run again
+  std::vector<std::string> guesses;           ///< labels of /axes/guess; empty without cg
+  std::vector<double> tolerances;             ///< /axes/tolerance
 
   std::int64_t tasks = 0;    ///< size of the plan
   std::int64_t done = 0;     ///< ok + failed

@@ -33,6 +33,7 @@ void append_runs(std::vector<Field>& fields) {
   text("end", 24, "when it ended (UTC); empty: it still runs, or was killed");
   text("host", 512, "hosts of its ranks");
   text("command", 1024, "command line");
+  text("job", 1024, "path of the job file; relative paths in the job begin in its folder");
   text("revision", 64, "git revision of the program");
   text("versions", 256, "program, libraries and compiler");
   text("petsc_options", 1024, "PETSC_OPTIONS of the environment");

@@ -8,6 +8,7 @@ namespace rodsweep {
 struct Provenance {
   /// `host`: in a file the hosts of all ranks, which ResultsFile finds out.
   std::string begin_utc, host, user_command, revision, versions, petsc_options;
+  std::string job;  ///< absolute path of the job file: relative paths in the job begin in its folder
   int ranks = 1;
   bool oversubscribed = false;  ///< more ranks than cores: timings are worthless
 };

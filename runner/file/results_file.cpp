@@ -154,6 +154,7 @@ void ResultsFile::begin_run(const Provenance& provenance) {
   hdf5::write_text_row(file, "/runs/end", row, "");
   hdf5::write_text_row(file, "/runs/host", row, provenance.host);
   hdf5::write_text_row(file, "/runs/command", row, provenance.user_command);
+  hdf5::write_text_row(file, "/runs/job", row, provenance.job);
   hdf5::write_text_row(file, "/runs/revision", row, provenance.revision);
   hdf5::write_text_row(file, "/runs/versions", row, provenance.versions);
   hdf5::write_text_row(file, "/runs/petsc_options", row, provenance.petsc_options);

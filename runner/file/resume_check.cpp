@@ -11,6 +11,7 @@
 
 #include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
+#include "runner/file/pack.hpp"
 
 namespace rodsweep {
 namespace {
@@ -51,8 +52,8 @@ void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
 
 FileError other_program(const hdf5::File& file, const fs::path& path, const std::string& difference) {
   return FileError(
-      fmt::format("{} was made from this job by a rodsweep that expands it differently (revision {}): {}. Resume "
-                  "with that revision, or run into another file with -o FILE",
+      fmt::format("{} was made from this job by a rodsweep that expands it differently (revision {}): {}. Use "
+                  "that revision, or run into another file with -o FILE",
                   path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference));
 }
 
@@ -92,7 +93,31 @@ void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& 
   }
 }
 
+void refuse_copies(const hdf5::File& file, const fs::path& path) {
+  if (is_packed(file)) {
+    throw FileError(
+        fmt::format("{} is a packed copy, which cannot be written: resume the file that it was made from, or run into "
+                    "another file with -o FILE",
+                    path.native()));
+  }
+  if (hdf5::has_attribute(file.id(), "/job", "rerun_of_task")) {
+    throw FileError(
+        fmt::format("{} holds one task of a sweep, made by `rodsweep rerun`, and is complete: resume the file of the "
+                    "sweep, or run into another file with -o FILE",
+                    path.native()));
+  }
+}
+
 }  // namespace
+
+void check_same_tasks(const fs::path& path, const Plan& plan) {
+  const hdf5::File file = open_results(path);
+  try {
+    check_parameters(file, path, plan, plan.parameters());
+  } catch (const Hdf5Error& failure) {
+    throw damaged_error(path, failure.what());
+  }
+}
 
 ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
   const hdf5::File file = open_results(path);
@@ -100,6 +125,7 @@ ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
     throw FileError(fmt::format("{} cannot be written: {}", path.native(), std::system_category().message(errno)));
   }
   try {
+    refuse_copies(file, path);
     check_job(file, path, plan);
     const std::vector<ParameterColumn> parameters = plan.parameters();
     check_layout(file, path, layout(plan, parameters));

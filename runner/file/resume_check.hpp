@@ -15,6 +15,9 @@ struct ResumePoint {
   int runs = 0;                    ///< rows of /runs in use
 };
 
+/// Does the job expand to the tasks that the file has?
+void check_same_tasks(const std::filesystem::path& path, const Plan& plan);
+
 ResumePoint check_resumable(const std::filesystem::path& path, const Plan& plan);
 
 }  // namespace rodsweep

@@ -197,6 +197,9 @@ Key job() {
                      .at_most(1e9)
                      .defaults_to(0)
                      .setting(),
+                 text_key("$schema", "the JSON Schema by which an editor helps (jobs/schema.json); not read here")
+                     .defaults_to("")
+                     .setting(),
              },
              "kind")
       .unswept("put the sweep in place of a value");

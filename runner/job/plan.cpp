@@ -69,6 +69,22 @@ Plan::Plan(Job job)
   }
 }
 
+Plan Plan::alone(std::int64_t index, int trajectory_every) const {
+  Plan plan(*this);
+  plan.task_alone_ = index;
+  for (const ParameterColumn& column : parameters()) plan.kept_.push_back(column.path);
+  plan.job_.values["record"]["trajectory_every"] = trajectory_every;
+  Task task = tasks_.at(static_cast<std::size_t>(index));
+  task.index = task.first_step = task.first_solve = task.first_frame_row = 0;
+  task.frames = trajectory_every > 0 ? 1 + task.steps / trajectory_every : 0;
+  plan.step_rows_ = task.steps;
+  plan.solve_rows_ = task.solves;
+  plan.frame_rows_ = task.frames * task.segments;
+  plan.max_frames_ = task.frames;
+  plan.tasks_ = {task};
+  return plan;
+}
+
 void Plan::fill(Point& point, std::int64_t index) const {
   space_.fill(point, index / job_.samples, job_.seed, index % job_.samples);
 }

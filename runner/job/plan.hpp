@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -31,6 +32,11 @@ struct ParameterColumn {
 class Plan {
  public:
   explicit Plan(Job job);
+
+  /// One of this plan's tasks as a plan of its own, with a frame of the trajectory every so many steps. The task keeps
+  /// its point, sample and guess, and so its values and its results; its rows begin at 0.
+  Plan alone(std::int64_t index, int trajectory_every) const;
+  const std::optional<std::int64_t>& task_alone() const { return task_alone_; }  ///< its number in the whole plan
 
   const Job& job() const { return job_; }
   std::int64_t size() const { return static_cast<std::int64_t>(tasks_.size()); }
@@ -57,6 +63,8 @@ class Plan {
   SweepSpace space_;
   std::vector<Task> tasks_;
   std::vector<std::string> guess_labels_;
+  std::optional<std::int64_t> task_alone_;
+  std::vector<std::string> kept_;  ///< of a task alone: parameters that the whole plan has columns of
   std::int64_t step_rows_ = 0, solve_rows_ = 0, frame_rows_ = 0, max_frames_ = 0;
 };
 

@@ -86,9 +86,9 @@ std::vector<ParameterColumn> Plan::parameters() const {
     if (is_of_guess(c) && c.swept && std::holds_alternative<std::vector<std::string>>(c.values))
       varying.push_back(c.path + ".");
   const auto is_settled_guess = [&](const ParameterColumn& c) {
-    return is_of_guess(c) && !c.swept && std::none_of(varying.begin(), varying.end(), [&](const std::string& guess) {
-             return c.path.rfind(guess, 0) == 0;
-           });
+    return is_of_guess(c) && !c.swept && std::find(kept_.begin(), kept_.end(), c.path) == kept_.end() &&
+           std::none_of(varying.begin(), varying.end(),
+                        [&](const std::string& guess) { return c.path.rfind(guess, 0) == 0; });
   };
   columns.erase(std::remove_if(columns.begin(), columns.end(), is_settled_guess), columns.end());
   return columns;

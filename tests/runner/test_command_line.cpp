@@ -54,6 +54,44 @@ TEST_CASE("the other commands take their options") {
   CHECK(std::holds_alternative<VersionOptions>(parse({"--version"})));
 }
 
+TEST_CASE("the commands on results files take their options") {
+  const auto query = std::get<QueryOptions>(parse({"query", "a.h5", "x>1", "y=2", "--where", "z=3", "--columns", "x,y",
+                                                   "--sort", "x", "--descending", "--limit", "5", "--csv"}));
+  CHECK(query.file == "a.h5");
+  CHECK(query.conditions == std::vector<std::string>{"x>1", "y=2", "z=3"});
+  CHECK(query.columns == std::vector<std::string>{"x,y"});
+  CHECK((query.sort == "x" && query.descending && query.limit == 5));
+  CHECK(query.format == QueryOptions::Format::csv);
+  const auto late = std::get<QueryOptions>(parse({"query", "--where", "z=3", "--columns", "x", "a.h5", "y=2"}));
+  CHECK(late.file == "a.h5");
+  CHECK(late.conditions == std::vector<std::string>{"y=2", "z=3"});
+  CHECK(late.format == QueryOptions::Format::table);
+  const auto rerun = std::get<RerunOptions>(parse({"rerun", "a.h5", "12", "--trajectory-every", "4"}));
+  CHECK((rerun.file == "a.h5" && rerun.task == 12 && rerun.trajectory_every == 4 && !rerun.output));
+  CHECK(rerun.command == "build/rodsweep rerun a.h5 12 --trajectory-every 4");
+  CHECK(std::get<PackOptions>(parse({"pack", "a.h5", "-o", "b.h5"})).output == "b.h5");
+}
+
+TEST_CASE("mistakes on the command line of results files are answered with exit code 2") {
+  CHECK(answer({"query"}).code == ExitCode::user_error);
+  CHECK(answer({"query", "a.h5", "--csv", "--json"}).code == ExitCode::user_error);
+  CHECK(answer({"query", "a.h5", "--descending"}).code == ExitCode::user_error);
+  CHECK(answer({"query", "a.h5", "--limit", "-1"}).code == ExitCode::user_error);
+  CHECK_THAT(answer({"rerun", "a.h5"}).text, Contains("TASK is required"));
+  CHECK(answer({"rerun", "a.h5", "first"}).code == ExitCode::user_error);
+  CHECK(answer({"rerun", "a.h5", "1", "--trajectory-every", "0"}).code == ExitCode::user_error);
+  CHECK(answer({"completion", "fish"}).code == ExitCode::user_error);
+}
+
+TEST_CASE("completion knows every command and its options") {
+  const Answer script = answer({"completion", "bash"});
+  CHECK(script.code == ExitCode::ok);
+  for (const char* word : {"run", "plan", "validate", "status", "info", "query", "rerun", "pack", "schema"}) {
+    CAPTURE(word);
+    CHECK_THAT(script.text, Contains(std::string("    ") + word + ") words=\"--help"));
+  }
+}
+
 TEST_CASE("mistakes on the command line are answered with exit code 2 and what is wrong") {
   CHECK(answer({}).code == ExitCode::user_error);
   CHECK_THAT(answer({}).text, Contains("Examples:"));
@@ -66,12 +104,13 @@ TEST_CASE("mistakes on the command line are answered with exit code 2 and what i
 }
 
 TEST_CASE("every command's help shows an example and the exit codes") {
-  for (const char* command : {"run", "plan", "validate", "status", "info"}) {
+  for (const char* command : {"run", "plan", "validate", "status", "info", "query", "rerun", "pack"}) {
     CAPTURE(command);
     const Answer help = answer({command, "--help"});
     CHECK(help.code == ExitCode::ok);
     CHECK_THAT(help.text, Contains(std::string("rodsweep ") + command));
-    CHECK_THAT(help.text, Contains("4  stopped early; --resume continues"));
+    CHECK_THAT(help.text, Contains("Exit codes:\n  0  "));
   }
+  CHECK_THAT(answer({"run", "--help"}).text, Contains("4  stopped early; --resume continues"));
   CHECK_THAT(answer({"--help"}).text, Contains("mpirun"));
 }

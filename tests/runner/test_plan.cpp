@@ -316,3 +316,41 @@ TEST_CASE("a hundred thousand tasks expand") {
 TEST_CASE("iterations are counted at eight tolerances") {
   CHECK(tolerance_ladder() == std::vector<double>{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8});
 }
+
+TEST_CASE("a task alone keeps its point, sample, guess, values and seed, and has its rows to itself") {
+  Json job = small_job();
+  job["samples"] = 3;
+  job["seed"] = 5;
+  job["evaluation"] = "closed_loop";
+  job["scene"]["length_m"] = uniform(1, 5);
+  job["scene"]["segments"] = grid({4, 6});
+  job["guesses"] = Json::parse(R"(["zero", {"oracle": {"error": {"grid": [0.1, 0.2]}}}])");
+  const Plan whole = plan_of(job);
+  const Plan one = whole.alone(11, 4);
+  REQUIRE(one.size() == 1);
+  CHECK(one.task_alone() == 11);
+  const Task &there = whole.task(11), &here = one.task(0);
+  CHECK((here.index == 0 && here.first_step == 0 && here.first_solve == 0 && here.first_frame_row == 0));
+  CHECK((here.point == there.point && here.sample == there.sample && here.own_guess == there.own_guess));
+  CHECK((here.steps == there.steps && here.solves == there.solves && here.segments == there.segments));
+  CHECK(here.frames == 1 + 10 / 4);
+  CHECK((one.step_rows() == 10 && one.frame_rows() == here.frames * here.segments));
+  const TaskSpec a = whole.spec(11), b = one.spec(0);
+  CHECK(b.seed == a.seed);
+  CHECK(b.record.trajectory_every == 4);
+  CHECK(std::get<BendingRod>(b.scene).length_m == std::get<BendingRod>(a.scene).length_m);
+  CHECK(b.guesses[1].error == a.guesses[1].error);
+  CHECK(one.job().text == whole.job().text);
+}
+
+TEST_CASE("a task alone has the columns of the whole plan, also of guesses that vary there") {
+  Json job = small_job();
+  job["guesses"] = Json::parse(R"(["zero", {"oracle": {"error": {"grid": [0.1, 0.2]}}}])");
+  const Plan whole = plan_of(job);
+  const auto paths = [](const Plan& plan) {
+    std::vector<std::string> names;
+    for (const ParameterColumn& column : plan.parameters()) names.push_back(column.path);
+    return names;
+  };
+  CHECK(paths(whole.alone(1, 1)) == paths(whole));
+}

@@ -1,0 +1,28 @@
+#include "runner/command/pack_command.hpp"
+
+#include <fmt/format.h>
+
+#include "runner/file/pack.hpp"
+#include "runner/file/unfinished_file.hpp"
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+
+ExitCode pack_file(const PackOptions& options, Console& console) {
+  const std::filesystem::path output = options.output.value_or(file_beside(options.file, "-packed"));
+  const Packing packing = pack_results(options.file, output);
+  if (packing.verified < packing.tasks)
+    console.warn(
+        fmt::format("{} of {} tasks are pending, and a packed file cannot be continued: keep {} until the sweep is "
+                    "complete, then pack it again",
+                    packing.tasks - packing.verified, packing.tasks, options.file.native()));
+  const auto before = static_cast<std::int64_t>(packing.bytes_before);
+  const auto after = static_cast<std::int64_t>(packing.bytes_after);
+  console.result(fmt::format("{}: {}, from {} ({:.0f} %); {} finished task{} verified", output.native(),
+                             bytes_text(after), bytes_text(before),
+                             100 * static_cast<double>(after) / static_cast<double>(before), packing.verified,
+                             packing.verified == 1 ? "" : "s"));
+  return ExitCode::ok;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,101 @@
+#include "runner/command/rerun_command.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include "runner/dispatch/stop_signal.hpp"
+#include "runner/experiment/task_body.hpp"
+#include "runner/file/file_reading.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/results_file.hpp"
+#include "runner/file/resume_check.hpp"
+#include "runner/file/task_comparison.hpp"
+#include "runner/file/unfinished_file.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where relative paths in the job begin: the job file as the last start found it.
+fs::path job_path(const FileSummary& file) {
+  for (auto run = file.runs.rbegin(); run != file.runs.rend(); ++run)
+    if (!run->provenance.job.empty()) return run->provenance.job;
+  return file.path;
+}
+
+Plan plan_of(const FileSummary& file) {
+  try {
+    return Plan(parse_job(file.job_text, job_path(file)));
+  } catch (const JobError& error) {
+    const std::string revision = file.runs.empty() ? "unknown" : file.runs.front().provenance.revision;
+    throw FileError(
+        fmt::format("{} holds a job that this rodsweep does not accept; use the one that wrote it (revision {}), or "
+                    "put the job's files back where they were:\n{}",
+                    file.path.native(), revision, error.what()));
+  }
+}
+
+/// The task in the file, refused with what can be had instead.
+void check_task(const RerunOptions& options, const FileSummary& file) {
+  if (file.rerun_of_task)
+    throw FileError(fmt::format("{} holds task {} of a sweep, made by `rodsweep rerun`: rerun it from the sweep's file",
+                                file.path.native(), *file.rerun_of_task));
+  if (options.task < 0 || options.task >= file.tasks)
+    throw FileError(
+        fmt::format("{} has no task {}: they are numbered 0 to {}", file.path.native(), options.task, file.tasks - 1));
+}
+
+ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan& whole, Console& console) {
+  const std::int64_t every = whole.job().values["record"]["trajectory_every"];
+  const TaskComparison found = compare_task(options.file, options.task, every, output, options.trajectory_every);
+  if (found.differing.empty()) {
+    console.result(fmt::format("identical to task {} of {}, in all {} datasets outside /timing", options.task,
+                               options.file.native(), found.compared));
+    return ExitCode::ok;
+  }
+  console.result(fmt::format("{} of {} datasets differ from task {} of {}:\n  {}", found.differing.size(),
+                             found.compared, options.task, options.file.native(), fmt::join(found.differing, "\n  ")));
+  return ExitCode::tasks_failed;
+}
+
+}  // namespace
+
+ExitCode rerun_task(const RerunOptions& options, Console& console) {
+  const StopSignal signal;
+  const FileSummary before = inspect(options.file);
+  check_task(options, before);
+  const fs::path output = options.output.value_or(file_beside(options.file, fmt::format("-task-{}", options.task)));
+  refuse_existing(output);
+  const Plan whole = plan_of(before);
+  check_same_tasks(options.file, whole);
+  const Plan plan = whole.alone(options.task, options.trajectory_every);
+  Provenance provenance = provenance_of_this_process(options.command);
+  provenance.job = whole.job().path.native();
+
+  const Task& task = plan.task(0);
+  console.note(
+      fmt::format("task {}: {} segments, {} steps, {} frames", options.task, task.segments, task.steps, task.frames));
+  const TaskBody body = task_body(plan, evaluate, [&](const Task& done, const TaskRecord& record) {
+    ResultsFile file = ResultsFile::create(output, plan, provenance, MPI_COMM_SELF);
+    file.write(done, record);
+    const ExitCode code = record.outcome == TaskOutcome::ok ? ExitCode::ok : ExitCode::tasks_failed;
+    file.end_run(utc_now(), static_cast<int>(code));
+    file.close();
+  });
+  const TaskResult result = body(0, [&] { return signal.received() != 0; });
+  if (result.outcome == TaskOutcome::pending) {
+    console.note(fmt::format("stopped early by {}; nothing was written", signal_name(signal.received())));
+    return ExitCode::stopped;
+  }
+  console.result(fmt::format("task {}: {}{}\nresults: {}", options.task, to_string(result.outcome),
+                             result.message.empty() ? "" : ": " + result.message, output.native()));
+  const hdf5::File file = open_results(options.file);
+  if (read_states(file, options.file).at(static_cast<std::size_t>(options.task)) == 1)
+    return compare(options, output, whole, console);
+  console.result(fmt::format("task {} is pending in {}: there is nothing to compare it with", options.task,
+                             options.file.native()));
+  return result.outcome == TaskOutcome::ok ? ExitCode::ok : ExitCode::tasks_failed;
+}
+
+}  // namespace rodsweep

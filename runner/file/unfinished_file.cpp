@@ -1,0 +1,65 @@
+#include "runner/file/unfinished_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdio.h>  // renameat2
+#include <unistd.h>
+
+#include <cerrno>
+#include <random>
+#include <system_error>
+
+#include "runner/file/provenance.hpp"
+
+namespace rodsweep {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+FileError exists_error(const fs::path& path) {
+  return FileError(
+      fmt::format("{} exists already and is never overwritten: name another file with -o FILE", path.native()));
+}
+
+}  // namespace
+
+FileError creation_error(const fs::path& path, const std::string& reason) {
+  return FileError(fmt::format("{} cannot be created: {}", path.native(), reason));
+}
+
+void refuse_existing(const fs::path& path) {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path);
+}
+
+fs::path file_beside(const fs::path& file, const std::string& ending) {
+  return file.parent_path() / (file.stem().native() + ending + ".h5");
+}
+
+void make_folder_of(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path.has_parent_path() ? path.parent_path() : fs::path("."), error);
+  if (error) throw creation_error(path, "its folder cannot be made: " + error.message());
+}
+
+UnfinishedFile::UnfinishedFile(const fs::path& path)
+    : path_(path),
+      temporary_(
+          fmt::format("{}.unfinished-{}-{}-{:08x}", path.native(), host_name(), getpid(), std::random_device()())) {}
+
+UnfinishedFile::~UnfinishedFile() {
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void UnfinishedFile::publish() const {
+  if (link(temporary_.c_str(), path_.c_str()) == 0) return;
+  if (errno == EEXIST) throw exists_error(path_);
+  // A file system without hard links.
+  if (renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) == 0) return;
+  if (errno == EEXIST) throw exists_error(path_);
+  throw creation_error(path_, std::system_category().message(errno));
+}
+
+}  // namespace rodsweep

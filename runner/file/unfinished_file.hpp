@@ -1,0 +1,41 @@
+// A file in the making: it has a temporary name beside its own, and gets its own name when it is whole, in one step
+// that never replaces another file. Whatever bears the temporary name when this dies is removed: two programs cannot
+// make the same file, and one that is killed meanwhile leaves its name free. Throws FileError.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runner/file/file_error.hpp"
+
+namespace rodsweep {
+
+FileError creation_error(const std::filesystem::path& path, const std::string& reason);
+
+class UnfinishedFile {
+ public:
+  /// `path` is the name that it will get. Creates nothing.
+  explicit UnfinishedFile(const std::filesystem::path& path);
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  ~UnfinishedFile();
+
+  const std::filesystem::path& path() const { return temporary_; }
+
+  /// Gives the file its name unless another file took it meanwhile.
+  void publish() const;
+
+ private:
+  std::filesystem::path path_, temporary_;
+};
+
+/// Refuses a path that exists, be it as a dangling link.
+void refuse_existing(const std::filesystem::path& path);
+
+/// results/demo.h5, "-task-12": results/demo-task-12.h5
+std::filesystem::path file_beside(const std::filesystem::path& file, const std::string& ending);
+
+/// Makes the folders on the way to `path`.
+void make_folder_of(const std::filesystem::path& path);
+
+}  // namespace rodsweep

@@ -1,0 +1,214 @@
+#include "runner/job/job_schema.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "runner/job/job_keys.hpp"
+#include "runner/job/key_path.hpp"
+#include "runner/job/sweep.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json reference(const std::string& definition) { return {{"$ref", "#/definitions/" + definition}}; }
+
+std::string description(const Key& key) { return key.help + (key.unit.empty() ? "" : " [" + key.unit + "]"); }
+
+/// 1 rather than 1.0.
+Json number(double value) {
+  if (std::trunc(value) == value && std::abs(value) <= 9007199254740991) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+Json bounded(const char* type, const Key& key) {
+  Json schema{{"type", type}};
+  if (std::isfinite(key.low)) schema[key.above_low ? "exclusiveMinimum" : "minimum"] = number(key.low);
+  if (std::isfinite(key.high)) schema["maximum"] = number(key.high);
+  return schema;
+}
+
+Json object_of(const std::string& word, Json value) {
+  return {{"type", "object"},
+          {"properties", {{word, std::move(value)}}},
+          {"required", Json::array({word})},
+          {"additionalProperties", false}};
+}
+
+class SchemaWriter {
+ public:
+  Json write() {
+    Json job = object(job_key(), "");
+    Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
+                {"title", "rodsweep job"},
+                {"$comment", "made by `rodsweep schema` from the table that the program reads jobs with"}};
+    schema.update(job);
+    schema["definitions"] = Json::object();
+    for (auto& [name, definition] : definitions_) schema["definitions"][name] = definition;
+    return schema;
+  }
+
+ private:
+  /// What may stand at a key: its value or, where it can be swept, a sweep of what may stand there.
+  Json place(const Key& key, const std::string& path) {
+    Json schema;
+    if (key.kind == Key::Kind::guess) {
+      schema = guess(false);
+    } else if (!key.sweepable) {
+      schema = value(key, path);
+    } else {
+      define(path, key, path);
+      schema = reference(path);
+    }
+    // Beside a $ref draft-07 reads nothing.
+    if (schema.contains("$ref")) schema = Json{{"allOf", Json::array({schema})}};
+    if (!schema.contains("description")) schema["description"] = description(key);
+    if (key.preset && !key.preset->is_object()) schema["default"] = *key.preset;
+    return schema;
+  }
+
+  void define(const std::string& name, const Key& key, const std::string& path) {
+    if (!definitions_.emplace(name, Json()).second) return;
+    Json alternatives = Json::array({value(key, path)});
+    append_sweeps(key, reference(name), alternatives);
+    definitions_[name] = {{"anyOf", alternatives}};
+  }
+
+  static void append_sweeps(const Key& key, const Json& item, Json& alternatives) {
+    const bool numeric = key.kind == Key::Kind::integer || key.kind == Key::Kind::number;
+    for (const std::string& word : sweep_words()) {
+      if (is_listed(word)) {
+        alternatives.push_back(object_of(word, {{"type", "array"}, {"items", item}, {"minItems", 1}}));
+      } else if (word == "integer" ? numeric : key.kind == Key::Kind::number) {
+        Json end = bounded(word == "integer" ? "integer" : "number", key);
+        if (word == "log_uniform" && !(key.low > 0)) {
+          end.erase("minimum");
+          end["exclusiveMinimum"] = 0;
+        }
+        alternatives.push_back(object_of(word, {{"type", "array"}, {"items", end}, {"minItems", 2}, {"maxItems", 2}}));
+      }
+    }
+  }
+
+  /// A value itself, not a sweep.
+  Json value(const Key& key, const std::string& path) {
+    switch (key.kind) {
+      case Key::Kind::object: return object(key, path);
+      case Key::Kind::integer: return bounded("integer", key);
+      case Key::Kind::number: {
+        const Json plain = bounded("number", key);
+        return key.choices.empty() ? plain : Json{{"anyOf", Json::array({plain, Json{{"enum", key.choices}}})}};
+      }
+      case Key::Kind::vector: {
+        const std::string name = path + ".component";
+        define(name, component_key(key), path);
+        return {{"type", "array"}, {"items", reference(name)}, {"minItems", 3}, {"maxItems", 3}};
+      }
+      case Key::Kind::text: return text(key);
+      case Key::Kind::choice: return {{"enum", key.choices}};
+      case Key::Kind::guess: return guess(false);
+      case Key::Kind::guesses: return {{"type", "array"}, {"items", guess(true)}};
+    }
+    throw std::logic_error("a kind of key without a schema");
+  }
+
+  static Json text(const Key& key) {
+    Json schema{{"type", "string"}};
+    if (std::isfinite(key.high)) schema["maxLength"] = number(key.high);
+    if (key.text == Key::Text::line) schema["pattern"] = "^[^\\u0000-\\u001f\\u007f]+$";
+    if (key.text == Key::Text::file_name) schema["pattern"] = "^[A-Za-z0-9_][A-Za-z0-9_.-]*$";
+    return schema;
+  }
+
+  /// Properties, what is required, and for every value of the tag the keys that belong to it and those that do not.
+  Json object(const Key& key, const std::string& path) {
+    Json properties = Json::object(), required = Json::array();
+    std::map<std::string, Json> groups;
+    for (const Key& child : key.keys) {
+      properties[child.name] = place(child, member(path, child.name));
+      if (!child.alternative_group.empty()) {
+        groups[child.alternative_group].push_back(Json{{"required", Json::array({child.name})}});
+      } else if (!child.preset && child.only_for.empty()) {
+        required.push_back(child.name);
+      }
+    }
+    Json schema{{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+    if (!required.empty()) schema["required"] = required;
+    Json rules = Json::array();
+    for (const auto& [name, alternatives] : groups) rules.push_back(Json{{"oneOf", alternatives}});
+    if (!key.tag.empty())
+      for (const std::string& tag_value : find_key(key.keys, key.tag)->choices) append_rule(key, tag_value, rules);
+    if (!rules.empty()) schema["allOf"] = rules;
+    return schema;
+  }
+
+  static void append_rule(const Key& key, const std::string& tag_value, Json& rules) {
+    Json required = Json::array(), refused = Json::object();
+    for (const Key& child : key.keys) {
+      if (child.only_for.empty()) continue;
+      if (child.only_for != tag_value) {
+        refused[child.name] = false;
+      } else if (!child.preset && child.alternative_group.empty()) {
+        required.push_back(child.name);
+      }
+    }
+    if (required.empty() && refused.empty()) return;
+    const Json condition{{"properties", {{key.tag, {{"const", tag_value}}}}}, {"required", Json::array({key.tag})}};
+    rules.push_back({{"if", condition}, {"then", {{"required", required}, {"properties", refused}}}});
+  }
+
+  /// A name alone where no parameter is required, or an object with that one key. Those in the list of guesses may have
+  /// a label; the ones within another guess may be swept.
+  Json guess(bool labelled) {
+    const std::string name = labelled ? "guess" : "inner_guess";
+    if (!definitions_.emplace(name, Json()).second) return reference(name);
+    Json words = Json::array(), properties = Json::object();
+    for (const Key& key : guess_keys()) {
+      Key keys = key;
+      if (labelled) keys.keys.push_back(Key(guess_label_key()).defaults_to(key.name));
+      properties[key.name] = object(keys, "guess." + key.name);
+      properties[key.name]["description"] = description(key);
+      if (labelled) properties[key.name]["properties"]["label"].erase("default");  // it is made from the parameters
+      bool complete = true;
+      for (const Key& parameter : key.keys) complete = complete && parameter.preset;
+      if (complete) words.push_back(key.name);
+    }
+    const Json object{{"type", "object"},
+                      {"properties", properties},
+                      {"minProperties", 1},
+                      {"maxProperties", 1},
+                      {"additionalProperties", false}};
+    Json alternatives = Json::array({Json{{"enum", words}}, object});
+    if (!labelled) append_sweeps(guess_key("guess", ""), reference(name), alternatives);
+    definitions_[name] = {{"description", "initial guess of cg"}, {"anyOf", alternatives}};
+    return reference(name);
+  }
+
+  std::map<std::string, Json> definitions_;
+};
+
+}  // namespace
+
+Json job_schema() { return SchemaWriter().write(); }
+
+std::string job_schema_text() {
+  const Json schema = job_schema();
+  std::string text = "{";
+  const auto entry = [&](const char* before, const std::string& name, const Json& value) {
+    text += fmt::format("{}{}: {}", before, Json(name).dump(), value.dump());
+  };
+  for (const auto& [name, value] : schema.items()) {
+    const bool parts = name == "properties" || name == "definitions";
+    entry(text.size() > 1 ? ",\n" : "\n", name, parts ? Json::object() : value);
+    if (!parts) continue;
+    text.pop_back();
+    for (const auto& [part, content] : value.items()) entry(text.back() == '{' ? "\n  " : ",\n  ", part, content);
+    text += "\n}";
+  }
+  return text + "\n}\n";
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,33 @@
+"""Running the program from tests: RODSWEEP names it. Files are made in the current, empty folder."""
+
+import json
+import os
+import subprocess
+
+RODSWEEP = os.environ["RODSWEEP"]
+ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED = 0, 2, 3, 4
+
+ROD = {"type": "bending_rod", "segments": {"grid": [5, 8]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
+       "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}
+JOB = {"name": "small", "kind": "sweep", "seed": 3, "samples": 2, "scene": ROD,
+       "time": {"step_s": 0.02, "steps": 6, "newton_iterations": 3}, "solve": {"method": "cg", "tolerance": 1e-2},
+       "guesses": ["zero", "previous", {"oracle": {"error": 0.1}}]}
+
+
+def rodsweep(*words, **options):
+    """Runs to the end: the completed process with its texts."""
+    return subprocess.run([RODSWEEP, *map(str, words)], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=60, **options)
+
+
+def sweep(name="small", **changes):
+    """Path of the results of JOB with changes; made once."""
+    results = os.path.join("results", name + ".h5")
+    if not os.path.exists(results):
+        os.makedirs("jobs", exist_ok=True)
+        job = os.path.join("jobs", name + ".json")
+        with open(job, "w", encoding="utf-8") as file:
+            json.dump({**JOB, "name": name, **changes}, file)
+        ran = rodsweep("run", job)
+        assert ran.returncode in (ALL_DONE, TASKS_FAILED), ran.stderr
+    return results

@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""jobs/schema.json: up to date, and of one mind with the reader about good and bad jobs."""
+
+import copy
+import glob
+import json
+import os
+import unittest
+
+import jsonschema
+from program import rodsweep
+
+JOBS = os.path.join(os.environ["SOURCE_DIR"], "jobs")
+
+ROD = {"type": "bending_rod", "segments": 10, "length_m": 2, "radius_m": 0.05, "density_kg_m3": 1000,
+       "youngs_modulus_pa": 1e5, "torsion_modulus_pa": 1e6}
+HELIX = {"type": "helix", "segments": 45, "helix_radius_m": 0.5, "helix_height_m": 0.4, "windings": 2, "radius_m": 0.05,
+         "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e5}
+JOB = {"name": "small", "kind": "sweep", "scene": ROD, "time": {"step_s": 0.02, "steps": 10},
+       "guesses": ["zero", "previous"]}
+
+# Each with changes of JOB: a path of keys and the value there, or None to take it away.
+GOOD = {
+    "nothing changed": {},
+    "its schema named": {"$schema": "schema.json"},
+    "a helix": {"scene": HELIX},
+    "a grid": {"scene.segments": {"grid": [5, 10]}},
+    "a zip": {"scene.segments": {"zip": [5, 10]}, "scene.length_m": {"zip": [1, 2]}},
+    "ranges": {"scene.length_m": {"uniform": [1, 5]}, "scene.segments": {"integer": [5, 9]},
+               "scene.youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "scene.damping_per_s": {"integer": [0, 3]}},
+    "a sweep within a sweep": {"scene.length_m": {"grid": [1, {"uniform": [2, 3]}]}},
+    "whole scenes swept": {"scene": {"grid": [ROD, HELIX]}},
+    "a swept component": {"scene.gravity_m_s2": [0, {"grid": [-9.81, -1.6]}, 0]},
+    "a swept vector": {"scene.gravity_m_s2": {"grid": [[0, -9.81, 0], [0, 0, 0]]}},
+    "a word for a number": {"scene.stretch_compliance_per_j": {"grid": ["inextensible", 1e-9]}},
+    "a duration": {"time.steps": None, "time.duration_s": 2},
+    "words swept": {"solve": {"preconditioner": {"grid": ["none", "icc"]}}},
+    "guesses as objects": {"guesses": [{"zero": {}}, {"oracle": {"error": {"grid": [0.1, 0.2]}, "label": "o"}}]},
+    "a guarded guess": {"guesses": ["zero", {"guarded": {"guess": {"oracle": {"error": 0.2}}, "threshold": 1}}]},
+    "swept guarded guesses": {"guesses": ["zero", {"guarded": {"guess": {"grid": ["linear", "quadratic"]},
+                                                               "threshold": 1, "label": "g"}}]},
+    "a whole number with a point": {"scene.segments": 10.0},
+}
+BAD = {
+    "an unknown key": {"scene.lenght_m": 2},
+    "an unknown key of the job": {"comment": "no"},
+    "a missing key": {"scene.radius_m": None},
+    "a missing scene": {"scene": None},
+    "a key of another scene": {"scene.windings": 2},
+    "a helix without its keys": {"scene": {**HELIX, "windings": None}},
+    "a bound that is not allowed itself": {"scene.length_m": 0},
+    "a value below": {"scene.segments": 0},
+    "a value above": {"solve": {"tolerance": 2}},
+    "a fraction": {"scene.segments": 10.5},
+    "a text for a number": {"scene.length_m": "2"},
+    "an unknown word": {"solve": {"preconditioner": "jacoby"}},
+    "an unknown word for a number": {"scene.stretch_compliance_per_j": "stiff"},
+    "a name that is no file name": {"name": "a/b"},
+    "a name that begins with a point": {"name": ".a"},
+    "a kind of a later version": {"kind": "train"},
+    "two components": {"scene.gravity_m_s2": [0, -9.81]},
+    "steps and duration": {"time.duration_s": 0.2},
+    "neither steps nor duration": {"time.steps": None},
+    "a sweep of what cannot be swept": {"seed": {"grid": [1, 2]}},
+    "a sweep of the type": {"scene.type": {"grid": ["bending_rod", "helix"]}},
+    "a sweep of the list of guesses": {"guesses": {"grid": [["zero"], ["zero", "linear"]]}},
+    "an empty grid": {"scene.segments": {"grid": []}},
+    "a bad value in a grid": {"scene.segments": {"grid": [5, 0]}},
+    "a key beside a grid": {"scene.segments": {"grid": [5], "note": 1}},
+    "a range of one end": {"scene.length_m": {"uniform": [1]}},
+    "a range out of bounds": {"scene.length_m": {"uniform": [0, 5]}},
+    "a log_uniform range from zero": {"scene.damping_per_s": {"log_uniform": [0, 5]}},
+    "a fractional range of integers": {"scene.segments": {"uniform": [5, 9]}},
+    "a range of words": {"scene.clamp": {"uniform": [1, 2]}},
+    "an unknown guess": {"guesses": ["zero", "previus"]},
+    "an unknown parameter of a guess": {"guesses": ["zero", {"oracle": {"eror": 0.1}}]},
+    "a guess that needs parameters alone": {"guesses": ["zero", "guarded"]},
+    "a label within a guarded guess": {"guesses": ["zero", {"guarded": {"guess": {"linear": {"label": "x"}},
+                                                                        "threshold": 1}}]},
+    "two guesses in one": {"guesses": [{"zero": {}, "linear": {}}]},
+    "an empty label": {"guesses": ["zero", {"linear": {"label": ""}}]},
+}
+
+
+def changed(changes):
+    job = copy.deepcopy(JOB)
+    for path, value in changes.items():
+        *parents, last = [path] if path.startswith("$") else path.split(".")
+        place = job
+        for key in parents:
+            place = place[key]
+        place[last] = value
+        if value is None:
+            del place[last]
+    return json.loads(json.dumps(job), object_hook=lambda o: {k: v for k, v in o.items() if v is not None})
+
+
+class Schema(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with open(os.path.join(JOBS, "schema.json"), encoding="utf-8") as file:
+            cls.text = file.read()
+        cls.schema = json.loads(cls.text)
+        cls.validator = jsonschema.Draft7Validator(cls.schema)
+
+    def assert_reader(self, job, accepts):
+        with open("job.json", "w", encoding="utf-8") as file:
+            json.dump(job, file)
+        said = rodsweep("validate", "job.json")
+        self.assertEqual(said.returncode, 0 if accepts else 2, said.stdout + said.stderr)
+
+    def test_it_is_a_schema_and_up_to_date(self):
+        jsonschema.Draft7Validator.check_schema(self.schema)
+        said = rodsweep("schema")
+        self.assertEqual(said.returncode, 0)
+        self.assertTrue(said.stdout == self.text, "jobs/schema.json is not what the program prints: run `make schema`")
+
+    def test_every_job_of_the_project_validates(self):
+        jobs = [path for path in glob.glob(os.path.join(JOBS, "*.json")) if not path.endswith("schema.json")]
+        self.assertGreaterEqual(len(jobs), 4)
+        for path in jobs:
+            with self.subTest(path=path), open(path, encoding="utf-8") as file:
+                self.validator.validate(json.load(file))
+
+    def test_good_jobs_validate_and_are_read(self):
+        for name, changes in GOOD.items():
+            with self.subTest(name):
+                job = changed(changes)
+                self.assertEqual([error.message for error in self.validator.iter_errors(job)], [])
+                self.assert_reader(job, accepts=True)
+
+    def test_bad_jobs_are_refused_by_both(self):
+        for name, changes in BAD.items():
+            with self.subTest(name):
+                job = changed(changes)
+                self.assertFalse(self.validator.is_valid(job))
+                self.assert_reader(job, accepts=False)
+
+    def test_validate_passes_over_the_schema_among_the_jobs(self):
+        said = rodsweep("validate", os.path.join(JOBS, "schema.json"))
+        self.assertEqual(said.returncode, 0)
+        self.assertIn("a JSON Schema for editors, not a job", said.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
