@@ -185,9 +185,12 @@ void write_texts(hid_t file, const std::string& path, const std::vector<std::str
 }
 
 std::string read_text_row(hid_t file, const std::string& path, hsize_t row) {
-  const RowDataset rows(file, path);
+  return read_text_row(RowDataset(file, path), row);
+}
+
+std::string read_text_row(const RowDataset& rows, hsize_t row) {
   const Datatype type = rows.type();
-  std::string buffer(text_bytes(type.id(), path) * rows.row_values(), '\0');
+  std::string buffer(text_bytes(type.id(), rows.path()) * rows.row_values(), '\0');
   rows.read(type.id(), row, 1, buffer.data());
   return without_padding(buffer.data(), buffer.size());
 }

@@ -118,6 +118,7 @@ class RowDataset {
   RowDataset(hid_t file, std::string path);
 
   explicit operator bool() const noexcept { return static_cast<bool>(dataset_); }
+  const std::string& path() const { return path_; }
   hsize_t rows() const { return extent_.at(0); }
   hsize_t row_values() const { return row_values_; }
   Datatype type() const;  ///< as in the file
@@ -155,6 +156,7 @@ void write_all(hid_t file, const std::string& path, const std::vector<T>& values
 std::vector<std::string> read_texts(hid_t file, const std::string& path);
 void write_texts(hid_t file, const std::string& path, const std::vector<std::string>& values);
 std::string read_text_row(hid_t file, const std::string& path, hsize_t row);
+std::string read_text_row(const RowDataset& rows, hsize_t row);
 void write_text_row(hid_t file, const std::string& path, hsize_t row, std::string_view value);
 
 template <class T>

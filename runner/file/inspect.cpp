@@ -54,6 +54,7 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
   const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
   const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/attempt");
   const auto seconds = hdf5::read_all<double>(file.id(), "/timing/tasks/elapsed_s");
+  const hdf5::RowDataset messages(file.id(), "/tasks/message");  // kept open: its chunks may be compressed
   summary.tasks = static_cast<std::int64_t>(states.size());
   for (std::size_t task = 0; task < states.size(); ++task) {
     if (states[task] == 0) continue;
@@ -65,8 +66,7 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
     }
     if (outcomes[task] == to_string(TaskOutcome::ok)) continue;
     ++summary.failed;
-    summary.failures.push_back(
-        {static_cast<std::int64_t>(task), outcomes[task], hdf5::read_text_row(file.id(), "/tasks/message", task)});
+    summary.failures.push_back({static_cast<std::int64_t>(task), outcomes[task], hdf5::read_text_row(messages, task)});
   }
   summary.pending = summary.tasks - summary.done;
 }
@@ -103,12 +103,13 @@ Verification verify(const fs::path& path) {
     const auto checksums = hdf5::read_all<std::uint64_t>(file.id(), "/tasks/checksum");
     const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
     const std::vector<StoredColumn> columns = stored_columns(file);
+    const hdf5::RowDataset messages(file.id(), "/tasks/message");
     Verification result;
     std::vector<char> bytes;
     for (const Task& task : tasks) {
       const auto index = static_cast<std::size_t>(task.index);
       if (states[index] == 0) continue;
-      TaskChecksum sum(task.index, outcomes.at(index), hdf5::read_text_row(file.id(), "/tasks/message", index));
+      TaskChecksum sum(task.index, outcomes.at(index), hdf5::read_text_row(messages, index));
       for (const StoredColumn& stored : columns) {
         read_rows(stored, rows_of(task, stored.column.rows), bytes);
         sum.add(stored.column, bytes.data(), bytes.size());

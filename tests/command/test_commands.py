@@ -137,6 +137,7 @@ class Rerun(Case):
             np.testing.assert_allclose(one.h5["trajectories/time_s"][0], 0.02 * np.arange(7))
         info = json.loads(rodsweep("info", "results/small-task-2.h5", "--verify", "--json").stdout)
         self.assertEqual(info["verified"], {"checked": 1, "damaged": []})
+        self.assertEqual((info["tasks"], info["rerun_of_task"]), (1, 2))
         script = os.path.join(os.environ["SOURCE_DIR"], "analysis", "summary.py")
         table = subprocess.run(["/usr/bin/python3", script, "results/small-task-2.h5"], capture_output=True, text=True)
         self.assertIn("1 of 1 tasks ok", self.assert_exit(table, 0))

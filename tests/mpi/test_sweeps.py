@@ -298,6 +298,18 @@ class Speaking(SweepCase):
                 self.assert_exit(said, 0)
                 self.assertEqual(said.stdout.count(text), 1, said.stdout)
 
+    def test_commands_on_files_work_and_speak_once_under_mpirun(self):
+        self.assert_exit(rodsweep(2, "run", job("files")), ALL_DONE)
+        path = "results/files.h5"
+        for words, text in ((("query", path), "cg_ratio.previous"), (("schema",), '"rodsweep job"'),
+                            (("pack", path), "6 finished tasks verified"), (("rerun", path, "3"), "identical to task 3")):
+            with self.subTest(words=words):
+                said = rodsweep(3, *words)
+                self.assert_exit(said, ALL_DONE)
+                self.assertEqual(said.stdout.count(text), 1, said.stdout)
+        made = sorted(name for name in os.listdir("results") if name.startswith("files"))
+        self.assertEqual(made, ["files-packed.h5", "files-task-3.h5", "files.h5"])
+
     def test_results_go_to_stdout_and_progress_to_stderr_without_colours(self):
         ran = rodsweep(2, "run", job("said"))
         self.assert_exit(ran, ALL_DONE)
