@@ -91,14 +91,6 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
 }
 
-/// Asks the system first: its reason reads better than HDF5's error stack.
-void check_creatable(const fs::path& file, const fs::path& path) {
-  const int descriptor = open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
-  if (descriptor < 0) throw creation_error(path, system_text(errno));
-  ::close(descriptor);
-  unlink(file.c_str());
-}
-
 /// Takes real blocks for the sparse file. File systems that cannot are left alone; the free-space check has to do
 /// there.
 void reserve_blocks(const fs::path& file, const fs::path& path) {
@@ -133,7 +125,7 @@ void create_results_file(const fs::path& path, const Plan& plan, const FreeSpace
   }
 
   const UnfinishedFile unfinished(path);
-  check_creatable(unfinished.path(), path);
+  unfinished.check_creatable();
   hdf5::File file = hdf5::create_file(unfinished.path());
   create_datasets(file.id(), fields);
   write_constants(file.id(), plan, parameters);

@@ -142,13 +142,14 @@ bool is_packed(const hdf5::File& file) {
 
 Packing pack_results(const fs::path& source_path, const fs::path& target_path) {
   refuse_existing(target_path);
-  make_folder_of(target_path);
   const hdf5::File source = open_results(source_path);
   // The states first: of a task that is complete now, everything else is there to be copied.
   const std::vector<std::uint8_t> states = read_states(source, source_path);
   refuse_damaged(source_path, verify(source_path), "nothing was packed");
 
+  make_folder_of(target_path);
   const UnfinishedFile unfinished(target_path);
+  unfinished.check_creatable();
   Packing packing;
   try {
     hdf5::File target = hdf5::create_file(unfinished.path());

@@ -53,6 +53,13 @@ UnfinishedFile::~UnfinishedFile() {
   fs::remove(temporary_, ignored);
 }
 
+void UnfinishedFile::check_creatable() const {
+  const int descriptor = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
+  if (descriptor < 0) throw creation_error(path_, std::system_category().message(errno));
+  ::close(descriptor);
+  unlink(temporary_.c_str());
+}
+
 void UnfinishedFile::publish() const {
   if (link(temporary_.c_str(), path_.c_str()) == 0) return;
   if (errno == EEXIST) throw exists_error(path_);

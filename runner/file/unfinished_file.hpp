@@ -22,6 +22,9 @@ class UnfinishedFile {
 
   const std::filesystem::path& path() const { return temporary_; }
 
+  /// Asks the system whether it can be made: its reason reads better than HDF5's error stack.
+  void check_creatable() const;
+
   /// Gives the file its name unless another file took it meanwhile.
   void publish() const;
 

@@ -160,18 +160,22 @@ class SchemaWriter {
     rules.push_back({{"if", condition}, {"then", {{"required", required}, {"properties", refused}}}});
   }
 
-  /// A name alone where no parameter is required, or an object with that one key. Those in the list of guesses may have
-  /// a label; the ones within another guess may be swept.
+  static Json label() {
+    Json schema = text(guess_label_key());
+    schema["description"] = description(guess_label_key());
+    return schema;
+  }
+
+  /// A name alone where no parameter is required, an object with that one key, or a sweep of those. Entries of the list
+  /// of guesses may have a label, a sweep beside its word; what is swept, and a guess within another, has none.
   Json guess(bool labelled) {
     const std::string name = labelled ? "guess" : "inner_guess";
     if (!definitions_.emplace(name, Json()).second) return reference(name);
     Json words = Json::array(), properties = Json::object();
     for (const Key& key : guess_keys()) {
-      Key keys = key;
-      if (labelled) keys.keys.push_back(Key(guess_label_key()).defaults_to(key.name));
-      properties[key.name] = object(keys, "guess." + key.name);
+      properties[key.name] = object(key, "guess." + key.name);
       properties[key.name]["description"] = description(key);
-      if (labelled) properties[key.name]["properties"]["label"].erase("default");  // it is made from the parameters
+      if (labelled) properties[key.name]["properties"][guess_label_key().name] = label();
       bool complete = true;
       for (const Key& parameter : key.keys) complete = complete && parameter.preset;
       if (complete) words.push_back(key.name);
@@ -182,7 +186,10 @@ class SchemaWriter {
                       {"maxProperties", 1},
                       {"additionalProperties", false}};
     Json alternatives = Json::array({Json{{"enum", words}}, object});
-    if (!labelled) append_sweeps(guess_key("guess", ""), reference(name), alternatives);
+    const std::size_t plain = alternatives.size();
+    append_sweeps(guess_key("guess", ""), labelled ? guess(false) : reference(name), alternatives);
+    for (std::size_t i = plain; labelled && i < alternatives.size(); ++i)
+      alternatives[i]["properties"][guess_label_key().name] = label();
     definitions_[name] = {{"description", "initial guess of cg"}, {"anyOf", alternatives}};
     return reference(name);
   }

@@ -11,7 +11,7 @@ ROD = {"type": "bending_rod", "segments": {"grid": [5, 8]}, "length_m": {"unifor
        "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}
 JOB = {"name": "small", "kind": "sweep", "seed": 3, "samples": 2, "scene": ROD,
        "time": {"step_s": 0.02, "steps": 6, "newton_iterations": 3}, "solve": {"method": "cg", "tolerance": 1e-2},
-       "guesses": ["zero", "previous", {"oracle": {"error": 0.1}}]}
+       "guesses": ["zero", "previous", {"oracle": {"error": 0.1, "label": "oracle 0.1"}}]}
 
 
 def rodsweep(*words, **options):

@@ -109,7 +109,7 @@ class Query(Case):
     def test_it_reads_while_a_sweep_writes(self):
         path, job = "live.h5", "live.json"
         with open(job, "w", encoding="utf-8") as file:
-            json.dump({**program.JOB, "name": "live", "samples": 200, "time": {"step_s": 0.02, "steps": 60}}, file)
+            json.dump({**program.JOB, "name": "live", "samples": 100, "time": {"step_s": 0.02, "steps": 40}}, file)
         writer = subprocess.Popen([program.RODSWEEP, "run", job, "-o", path], stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         seen = 0

@@ -39,6 +39,8 @@ GOOD = {
     "a guarded guess": {"guesses": ["zero", {"guarded": {"guess": {"oracle": {"error": 0.2}}, "threshold": 1}}]},
     "swept guarded guesses": {"guesses": ["zero", {"guarded": {"guess": {"grid": ["linear", "quadratic"]},
                                                                "threshold": 1, "label": "g"}}]},
+    "a swept guess": {"guesses": ["zero", {"grid": ["linear", {"oracle": {"error": {"grid": [0.1, 0.2]}}}]}]},
+    "a swept guess with a label": {"guesses": ["zero", {"grid": ["linear", "quadratic"], "label": "history"}]},
     "a whole number with a point": {"scene.segments": 10.0},
 }
 BAD = {
@@ -77,6 +79,8 @@ BAD = {
     "a guess that needs parameters alone": {"guesses": ["zero", "guarded"]},
     "a label within a guarded guess": {"guesses": ["zero", {"guarded": {"guess": {"linear": {"label": "x"}},
                                                                         "threshold": 1}}]},
+    "a label within a swept guess": {"guesses": ["zero", {"grid": [{"linear": {"label": "x"}}, "quadratic"]}]},
+    "a range of guesses": {"guesses": ["zero", {"uniform": [1, 2]}]},
     "two guesses in one": {"guesses": [{"zero": {}, "linear": {}}]},
     "an empty label": {"guesses": ["zero", {"linear": {"label": ""}}]},
 }
