@@ -1,0 +1,53 @@
+// What makes two tasks of two plans the same.
+#include <fmt/format.h>
+
+#include "runner/job/plan.hpp"
+#include "runner/job/task_spec.hpp"
+
+namespace rodsweep {
+namespace {
+
+using State = Point::Value::State;
+
+constexpr std::string_view guesses = "guesses[";
+
+/// A parameter and its value, numbers to the last bit: -0 is another one than 0.
+void append(std::string& text, std::string_view path, const Point::Value& value) {
+  text += path;
+  text += " = ";
+  if (value.state == State::text) {
+    text += *value.text;
+  } else {
+    text.append(reinterpret_cast<const char*>(value.number), sizeof value.number);
+  }
+  text += '\n';
+}
+
+}  // namespace
+
+TaskIdentity Plan::identity(std::int64_t index) const {
+  const Task& task = tasks_.at(static_cast<std::size_t>(index));
+  Point point;
+  fill(point, task.point);
+  TaskIdentity identity;
+  const bool tries_guesses = solve_spec(point).method == Method::cg;
+  if (tries_guesses) identity.guesses.resize(guess_labels_.size());
+  for (const auto& [path, parameter] : space_.by_path()) {
+    const Point::Value& value = point[static_cast<std::size_t>(parameter)];
+    if (value.state == State::absent) continue;
+    if (path.rfind(guesses, 0) != 0) {
+      append(identity.trajectory, path, value);
+    } else if (tries_guesses) {
+      const std::size_t end = path.find(']');
+      const auto guess = std::stoul(path.substr(guesses.size(), end - guesses.size()));
+      append(identity.guesses.at(guess), std::string_view(path).substr(end + 1), value);
+    }
+  }
+  const auto own = static_cast<std::size_t>(task.own_guess);
+  identity.trajectory += fmt::format(
+      "seed {} sample {} limit {} record {}\n{}", job_.seed, task.sample, job_.values["task_time_limit_s"].dump(),
+      nlohmann::json(job_.values["record"]).dump(), task.own_guess < 0 ? "" : identity.guesses[own]);
+  return identity;
+}
+
+}  // namespace rodsweep
