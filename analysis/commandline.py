@@ -7,6 +7,7 @@ import sys
 import numpy as np
 
 import measures
+import style
 from sweepfile import KeyNotFound, SweepFileError, not_found
 
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
@@ -118,6 +119,13 @@ def range_text(counts):
     if not counts:
         return "0"
     return str(min(counts)) if min(counts) == max(counts) else f"{min(counts)}–{max(counts)}"
+
+
+def oracle_note(file, guesses):
+    """A sentence for whatever shows times of guesses, and a blank; empty without an oracle."""
+    if not any(style.kind_of(file.guesses[g]).startswith("oracle") for g in guesses):
+        return ""
+    return "The oracle solves the system itself: its guess time is no method's cost. "
 
 
 def timing_warning(file, tasks):

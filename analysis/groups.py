@@ -21,6 +21,7 @@ class Panel:
     scene: str
     settings: dict        # gridded keys other than x: text of their value
     index: np.ndarray     # rows of Simulations
+
     def title(self):
         name = self.scene.replace("_", " ").capitalize()
         return ", ".join([name] + [f"{key} = {value}" for key, value in self.settings.items()])
@@ -37,16 +38,20 @@ class Points:
 
 
 def gridded_keys(file, tasks, x, pooled=""):
-    """Keys that vary within (scene type, x, draw) over these tasks; those that begin with `pooled` are left out."""
+    """Keys that vary within (scene type, x, draw) over these tasks; those that begin with `pooled` are left out.
+
+    x is one key, several in a tuple, or None.
+    """
+    axes = _keys(x)
     fixed = [file.sample[tasks]]
-    fixed += [file.parameters[key].codes()[tasks] for key in ("scene.type", x) if key in file.parameters]
+    fixed += [file.parameters[key].codes()[tasks] for key in ("scene.type", *axes) if key in file.parameters]
     order = np.lexsort(fixed)
     same = np.ones(max(0, len(tasks) - 1), dtype=bool)
     for codes in fixed:
         same &= codes[order][1:] == codes[order][:-1]
     found = []
     for parameter in file.parameters.values():
-        if not parameter.swept or parameter.name in ("scene.type", "guess", x):
+        if not parameter.swept or parameter.name in ("scene.type", "guess", *axes):
             continue
         if pooled and parameter.name.startswith(pooled):
             continue
@@ -61,7 +66,7 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
     tasks = sims.any_task
     keys = gridded_keys(file, tasks, x, pooled)
     scenes = file.scene_types()[tasks]
-    if x == "scene.type":
+    if "scene.type" in _keys(x):
         scenes = np.full(len(tasks), "all scenes")
     members = {}
     for row, task in enumerate(tasks):
@@ -76,6 +81,10 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
 def _says_something(file, key, task):
     """False for a parameter of a guess ("guesses[1].oracle.error") in a task where that guess is another one."""
     return not key.startswith("guesses[") or file.parameters[key].applies()[task]
+
+
+def _keys(x):
+    return () if x is None else (x,) if isinstance(x, str) else tuple(x)
 
 
 def applicable(file, sims, x):

@@ -74,8 +74,12 @@ class Page:
                 return legend, box.height / self.figure.dpi / style.MM + 1.5
             legend.remove()
 
-    def is_left(self, panel):
-        return panel % self.columns == 0
+    def label_y(self, axes, panel, text):
+        """On the first panel of a line; the others have neither label nor numbers."""
+        if panel % self.columns == 0:
+            axes.set_ylabel(text, labelpad=2)
+        else:
+            axes.tick_params(labelleft=False)
 
     def label_x(self, row, text):
         """One label in the middle under a row of panels."""
@@ -97,6 +101,11 @@ class Page:
         self.figure.savefig(paths[1], metadata={"Software": "rodsweep"})
         plt.close(self.figure)
         return paths
+
+
+def even_columns(count, most):
+    """Columns of a row of `count` panels: as even as `most` allows."""
+    return -(-count // -(-count // most))
 
 
 class XAxis:

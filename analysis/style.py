@@ -2,7 +2,7 @@
 
 Colours are Okabe and Ito's (2008) with darker relatives for the additional kinds. Guesses are told apart by marker and
 line style as well, so that neither a colour-blind reader nor a black-and-white print needs the colour. A guess is
-recognised by the first word of its label; several of one kind (oracle(0.1), oracle(0.01)) share a hue and differ in
+recognised by the first word of its label; several of one kind (oracle 0.1, oracle 0.01) share a hue and differ in
 lightness, marker and dash. Widths: 84 mm is one column of a page of two, 174 mm the whole page.
 """
 
@@ -23,6 +23,7 @@ KINDS = {  # colour, marker, dash
     "linear": ("#2f9fd8", "v", (0, (1.2, 1.2))),
     "quadratic": ("#D55E00", "s", (0, (1, 0))),
     "oracle": ("#a8478c", ">", (0, (4, 1.2, 1, 1.2))),
+    "oracle white": ("#c774b0", "8", (0, (2, 1, 1, 1))),
     "guarded": ("#7a5a00", "P", (0, (7, 1.5, 1, 1.5, 1, 1.5))),
     "fischer": ("#b8860b", "^", (0, (2.5, 1.2))),
     "pod": ("#6b7f00", "<", (0, (6, 2))),
@@ -32,7 +33,7 @@ KINDS = {  # colour, marker, dash
 }
 SPARE = [("#882255", "H", (0, (2, 2))), ("#117733", "h", (0, (8, 2))), ("#555555", "p", (0, (3, 3))),
          ("#aa4499", "d", (0, (1, 2)))]
-VARIANT_MARKERS = "dpH8h"
+VARIANT_MARKERS = "dpHh"
 VARIANT_DASHES = [(0, (2, 1)), (0, (3, 1, 1, 1)), (0, (8, 1.5)), (0, (1, 1.6)), (0, (5, 1, 1, 1, 1, 1))]
 
 PARTS = {  # parts of a solve's time: colour, hatch
@@ -58,7 +59,9 @@ DIRECT = GuessStyle(*KINDS["direct"])
 
 
 def kind_of(label):
-    return re.split(r"[^a-z]+", label.lower().lstrip(), maxsplit=1)[0]
+    """The label's first word; an oracle with white errors is a kind of its own."""
+    words = re.findall(r"[a-z]+", label.lower()) or [""]
+    return "oracle white" if words[0] == "oracle" and "white" in words else words[0]
 
 
 def guess_styles(labels):

@@ -131,6 +131,8 @@ def speedup_lines(file, sims, found, guesses, newton):
     warning = commandline.timing_warning(file, sims.tasks())
     if warning:
         lines.append("WARNING: " + warning)
+    oracle = commandline.oracle_note(file, guesses)
+    lines += [oracle.strip()] if oracle else []
     names = list(timings.SPEEDUPS)
     for block in shown:
         title, first = _titled(block, block.times["cg_us"].count[guesses])
