@@ -18,7 +18,6 @@ import timings
 from study import sample_text
 
 TIME_PARTS = ("assembly", "guess", "CG")
-SPEEDUP_TICKS = [[1], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 8]]   # of every decade, from coarse to fine
 
 
 def ratio_figure(study, tolerances):
@@ -94,7 +93,7 @@ def speedup_figure(study, by_newton):
                 _line(axes, x.dodged(len(lines), len(lines) + 1), [d for _, d in row[name]],
                       style.DIRECT, points.categorical)
             axes.set_ylim(low, high)
-            axes.yaxis.set_major_locator(FixedLocator(_ticks(low, high)))
+            axes.yaxis.set_major_locator(FixedLocator(layout.log_ticks(low, high)))
             axes.yaxis.set_minor_locator(NullLocator())
             axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}×"))
             axes.set_title(title)
@@ -193,12 +192,3 @@ def _x_labels(page, study):
 def _unreached(ratios, rows):
     """[guess, tolerance]: did any solve of these simulations, of the guess or of zero, miss the tolerance?"""
     return (np.nansum(ratios.unreached[rows], axis=0) + np.nansum(ratios.unreached_zero[rows], axis=0)) > 0
-
-
-def _ticks(low, high):
-    """The coarsest set with at least three ticks between the bounds, else the finest."""
-    for leading in SPEEDUP_TICKS:
-        ticks = [a * 10.0 ** k for k in range(-6, 7) for a in leading if low <= a * 10.0 ** k <= high]
-        if len(ticks) >= 3:
-            break
-    return ticks

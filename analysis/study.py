@@ -88,12 +88,14 @@ def of_tasks(file, chosen, guesses, options):
 
 
 def sample_text(estimates, of="", mark="whiskers", point="point"):
-    """How many simulations the points stand for, and what the whiskers are."""
+    """How many simulations the points stand for, and what their intervals look like (`mark`, "" if not drawn)."""
     counts = commandline.range_text([int(n) for e in estimates for n in np.ravel(e.count)])
     simulations = "simulation" if counts == "1" else "simulations"
     has_intervals = any(np.isfinite(e.low).any() for e in estimates)
-    return (f"{counts} {simulations} per {point}; " +
-            (f"{mark}: 95 % bootstrap intervals{of}" if has_intervals else "a single draw has no intervals"))
+    text = f"{counts} {simulations} per {point}"
+    if not mark:
+        return text
+    return text + (f"; {mark}: 95 % bootstrap intervals{of}" if has_intervals else "; a single draw has no intervals")
 
 
 def add_figure_arguments(made):

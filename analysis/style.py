@@ -42,6 +42,11 @@ PARTS = {  # parts of a solve's time: colour, hatch
     "CG": ("#4b93c3", ""),
     "direct": ("#5b5b5b", "...."),
 }
+DIVERGING = colors.LinearSegmentedColormap.from_list("blue to orange", [
+    "#0b4f8a", "#4b93c3", "#a9cfe4", "#f7f7f5", "#f5c79a", "#e08a3c", "#a34a00"])
+SEQUENTIAL = matplotlib.colormaps["cividis_r"]
+NAMES = {"scene.segments": "number of segments N", "time.step_s": "time step (s)",
+         "scene.youngs_modulus_pa": "Young's modulus (Pa)"}
 WARNING_COLOUR = "#b00020"
 
 
@@ -86,6 +91,12 @@ def lighter(colour, share):
     return colors.to_hex([c + (1 - c) * share for c in colors.to_rgb(colour)])
 
 
+def luminance(colour):
+    """Relative luminance (WCAG): 0 black, 1 white."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colors.to_rgb(colour)]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
 def use():
     plt.rcParams.update({
         "font.family": "DejaVu Sans", "font.size": 7, "axes.titlesize": 7.5, "axes.labelsize": 7, "legend.fontsize": 7,
@@ -99,8 +110,8 @@ def use():
 
 def parameter_label(name, unit):
     """scene.youngs_modulus_pa, Pa -> "youngs modulus (Pa)"; the number of segments is N."""
-    if name == "scene.segments":
-        return "number of segments N"
+    if name in NAMES:
+        return NAMES[name]
     words = name.rsplit(".", 1)[-1].split("_")
     letters = re.sub(r"[^a-z0-9]", "", unit.lower())
     for k in range(1, len(words)):
@@ -115,3 +126,11 @@ def tolerance_text(value):
     mantissa, exponent = f"{value:.2e}".split("e")
     power = f"10^{{{int(exponent)}}}"
     return f"${power}$" if float(mantissa) == 1 else f"${float(mantissa):g}\\times{power}$"
+
+
+def number_text(value):
+    """Short: 0.005, 20, 1e6, 3.7e-4."""
+    if value == 0 or 1e-3 <= abs(value) < 1e4:
+        return f"{value:.4g}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{float(mantissa):g}e{int(exponent)}"
