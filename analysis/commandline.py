@@ -121,6 +121,13 @@ def range_text(counts):
     return str(min(counts)) if min(counts) == max(counts) else f"{min(counts)}–{max(counts)}"
 
 
+def aligned(rows):
+    """Columns of equal width, the first to the left, the others to the right."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return ["  ".join([row[0].ljust(widths[0])] + [cell.rjust(w) for cell, w in zip(row[1:], widths[1:])]).rstrip()
+            for row in rows]
+
+
 def oracle_note(file, guesses):
     """A sentence for whatever shows times of guesses, and a blank; empty without an oracle."""
     if not any(style.kind_of(file.guesses[g]).startswith("oracle") for g in guesses):

@@ -201,7 +201,7 @@ def draw(axes, plane, file, measure, norm, colormap, with_names, cell_mm):
                                  hatch=None if known else "////"))
         if not known:
             continue
-        ink = "white" if style.luminance(face) < 0.3 else "black"
+        ink = "white" if style.luminance(face) < 0.2 else "black"
         sure = bool(measure.better) and np.isfinite(low) and (low > 1 or high < 1)
         name = file.guesses[plane.guess[y, x]] if with_names else ""
         size = min(7, 7 * cell_mm / 8)

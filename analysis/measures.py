@@ -149,3 +149,11 @@ def step_figures(file, sims):
         return sims.gather(np.broadcast_to(values[:, None], (file.task_count, sims.task.shape[1])))
 
     return StepFigures(spread(newton), **{name: spread(values) for name, values in largest.items()})
+
+
+def median_of_finite(values):
+    """Median over the first axis of what is finite; NaN where nothing is."""
+    found = np.full(values.shape[1:], np.nan)
+    there = np.isfinite(values).any(axis=0)
+    found[there] = np.nanmedian(np.where(np.isfinite(values), values, np.nan)[:, there], axis=0)
+    return found
