@@ -87,6 +87,12 @@ def guess_styles(labels):
     return styles
 
 
+def series_styles(count):
+    """Styles of lines that are of no guess, in their order."""
+    looks = [KINDS[kind] for kind in ("previous", "quadratic", "oracle", "copingnet", "linear", "guarded", "knn")] + SPARE
+    return [GuessStyle(*looks[k % len(looks)]) for k in range(count)]
+
+
 def lighter(colour, share):
     return colors.to_hex([c + (1 - c) * share for c in colors.to_rgb(colour)])
 
