@@ -10,6 +10,7 @@ that failed are in it with their outcome. What was not measured or not reached i
 by block: a file of any size needs little memory.
 """
 
+import contextlib
 import csv
 import gzip
 import io
@@ -68,17 +69,26 @@ def main():
     return 0
 
 
+@contextlib.contextmanager
 def opened(options):
-    """The output as text. Raises SweepFileError rather than replace a file."""
+    """The output as text; the file appears under its name when it is whole. SweepFileError rather than replace one."""
     path = options.output
     if path is None:
-        return io.TextIOWrapper(os.fdopen(os.dup(sys.stdout.fileno()), "wb"), encoding="utf-8", newline="")
+        yield sys.stdout
+        return
     if os.path.exists(path) and (not options.force or os.path.samefile(path, options.file)):
         raise SweepFileError(f"{path} is there already; give another name with -o" +
                              ("" if os.path.samefile(path, options.file) else ", or --force to replace it"))
-    if path.endswith(".gz"):
-        return io.TextIOWrapper(gzip.GzipFile(path, "wb", compresslevel=6, mtime=0), encoding="utf-8", newline="")
-    return open(path, "w", encoding="utf-8", newline="")
+    part = f"{path}.part"
+    try:
+        with open(part, "wb") as raw, \
+                gzip.GzipFile("", "wb", 6, raw, 0) if path.endswith(".gz") else contextlib.nullcontext(raw) as packed, \
+                io.TextIOWrapper(packed, encoding="utf-8", newline="") as text:
+            yield text
+        os.replace(part, path)
+    finally:
+        if os.path.exists(part):
+            os.remove(part)
 
 
 def write(out, table, names, tests):
