@@ -14,6 +14,8 @@ from scipy import special
 
 LEVEL = 0.95
 RESAMPLES = 4000
+FEWEST_RESAMPLES = 1000
+MOST_DRAWN = 400_000   # draws in all resamples: with more than a hundred, fewer resamples do
 BLOCK_BYTES = 16 << 20
 
 
@@ -58,45 +60,57 @@ def _estimate(values, draws, level, resamples, statistic, parts=1):
     values = values.reshape(len(values), -1, parts)
     draws = np.arange(len(values)) if draws is None else np.unique(np.asarray(draws), return_inverse=True)[1]
     groups, columns = int(draws.max()) + 1, values.shape[1]
+    resamples = min(resamples, max(FEWEST_RESAMPLES, MOST_DRAWN // groups))
     finite = np.isfinite(values).all(axis=2)
-    count = finite.sum(axis=0)
-    drawn = np.array([len(np.unique(draws[finite[:, k]])) for k in range(columns)])
-    value = np.concatenate([np.empty(0), *(statistic(values[:, k], finite[:, k], np.ones((1, len(values))))
-                                           for k in range(columns))])
+    drawn = _distinct(draws, finite, groups)
+    value = statistic(values, finite, np.ones((1, len(values))))[0]
     low, high = np.full(columns, np.nan), np.full(columns, np.nan)
     uncertain = np.flatnonzero(drawn > 1)
     for block in np.array_split(uncertain, max(1, -(-len(uncertain) * resamples * 8 // BLOCK_BYTES))):
-        resampled = np.empty((resamples, len(block)))
-        generator = np.random.Generator(np.random.PCG64(20210))
-        at_once = max(1, BLOCK_BYTES // (16 * len(values)))
-        for begin in range(0, resamples if len(block) else 0, at_once):
-            size = min(at_once, resamples - begin)
-            weights = generator.multinomial(groups, np.full(groups, 1 / groups), size=size)[:, draws].astype(float)
-            for to, k in enumerate(block):
-                resampled[begin:begin + size, to] = statistic(values[:, k], finite[:, k], weights)
-        for to, k in enumerate(block):
-            n = drawn[k]
+        resampled = _resampled(values[:, block], finite[:, block], draws, groups, resamples, statistic)
+        for n in np.unique(drawn[block]):
+            same = drawn[block] == n
             tail = special.ndtr(-np.sqrt(n / (n - 1)) * special.stdtrit(n - 1, (1 + level) / 2))
-            low[k], high[k] = np.nanquantile(resampled[:, to], [tail, 1 - tail])
-    return Estimate(*(part.reshape(shape) for part in (value, low, high, count)))
+            quantile = np.nanquantile if np.isnan(resampled[:, same]).any() else np.quantile
+            low[block[same]], high[block[same]] = quantile(resampled[:, same], [tail, 1 - tail], axis=0)
+    return Estimate(*(part.reshape(shape) for part in (value, low, high, finite.sum(axis=0))))
+
+
+def _distinct(draws, finite, groups):
+    """Draws with a finite value, per column."""
+    found = np.zeros((groups, finite.shape[1]), dtype=bool)
+    np.logical_or.at(found, draws, finite)
+    return found.sum(axis=0)
+
+
+def _resampled(values, finite, draws, groups, resamples, statistic):
+    """The statistic of every resample, [resample, column]."""
+    generator = np.random.Generator(np.random.PCG64(20210))
+    found, at_once = np.empty((resamples, values.shape[1])), max(1, BLOCK_BYTES // (16 * len(values)))
+    for begin in range(0, resamples if values.shape[1] else 0, at_once):
+        size = min(at_once, resamples - begin)
+        weights = generator.multinomial(groups, np.full(groups, 1 / groups), size=size)[:, draws].astype(float)
+        found[begin:begin + size] = statistic(values, finite, weights)
+    return found
 
 
 def _weighted_means(values, finite, weights):
-    return _weighted_ratios(np.stack([values[:, 0], np.ones(len(values))], axis=1), finite, weights)
+    return _weighted_ratios(np.concatenate([values, np.ones(values.shape)], axis=2), finite, weights)
 
 
 def _weighted_ratios(values, finite, weights):
-    sums = weights @ np.where(finite[:, None], values, 0)
-    return np.divide(sums[:, 0], sums[:, 1], out=np.full(len(weights), np.nan), where=sums[:, 1] > 0)
+    above, below = (weights @ np.where(finite, values[..., k], 0) for k in (0, 1))
+    return np.divide(above, below, out=np.full(below.shape, np.nan), where=below > 0)
 
 
 def _weighted_medians(values, finite, weights):
     """Median of each resample: the mean of the lower and the upper one, as for an even count."""
-    column, weights = values[finite, 0], weights[:, finite]
-    if not len(column):
-        return np.full(len(weights), np.nan)
-    order = np.argsort(column, kind="stable")
-    column, cumulative = column[order], np.cumsum(weights[:, order], axis=1)
-    half = cumulative[:, -1:] / 2
-    lower, upper = np.argmax(cumulative >= half, axis=1), np.argmax(cumulative > half, axis=1)
-    return np.where(half[:, 0] > 0, (column[lower] + column[upper]) / 2, np.nan)
+    found = np.full((len(weights), values.shape[1]), np.nan)
+    for k in np.flatnonzero(finite.any(axis=0)):
+        column, of_column = values[finite[:, k], k, 0], weights[:, finite[:, k]]
+        order = np.argsort(column, kind="stable")
+        column, cumulative = column[order], np.cumsum(of_column[:, order], axis=1)
+        half = cumulative[:, -1:] / 2
+        lower, upper = np.argmax(cumulative >= half, axis=1), np.argmax(cumulative > half, axis=1)
+        found[:, k] = np.where(half[:, 0] > 0, (column[lower] + column[upper]) / 2, np.nan)
+    return found

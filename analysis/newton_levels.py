@@ -33,26 +33,45 @@ def quantities(file):
 
 
 def levels(file, tasks):
-    """Of tasks that are complete, one after the other: the rows of one fit in memory."""
+    """Of tasks that are complete, one after the other: the rows of one have to fit in memory."""
     tasks = np.unique(tasks)
     names = quantities(file)
     most = int(file.parameter("time.newton_iterations").values[tasks].max()) + 1
     values = {name: np.full((len(tasks), most, 4), np.nan) for name in names}
     share = np.zeros((len(tasks), most))
-    for row, task in enumerate(tasks):
-        solves = slice(file.first_solve[task], file.first_solve[task] + file.solves[task])
-        steps = slice(file.first_step[task], file.first_step[task] + file.steps[task])
-        level = np.concatenate([file.h5["/solves/newton"][solves], file.h5["/steps/newton_iterations"][steps]])
-        ends = np.arange(len(level)) >= file.solves[task]
-        count = max(1, int(ends.sum()))
+    there = tasks[(file.solves[tasks] > 0) & (file.steps[tasks] > 0)]
+    solves, steps = (_by_task(blocks(there, list(paths)), count) for blocks, paths, count in (
+        (file.solve_blocks, ["/solves/newton", *(SOLVES[name] for name in names)], file.solves),
+        (file.step_blocks, ["/steps/newton_iterations", *(STEPS[name] for name in names)], file.steps)))
+    for (task, before), (other, after) in zip(solves, steps, strict=True):
+        if task != other:
+            raise ValueError(f"rows of tasks {task} and {other} come in different orders")
+        row = np.searchsorted(tasks, task)
+        level = np.concatenate([before["/solves/newton"], after["/steps/newton_iterations"]])
+        order = np.argsort(level, kind="stable")
+        starts = np.searchsorted(level[order], np.arange(most + 1))
         for name in names:
-            both = np.concatenate([file.h5[SOLVES[name]][solves], file.h5[STEPS[name]][steps]])
+            both = np.concatenate([before[SOLVES[name]], after[STEPS[name]]])[order]
             for k in range(most):
-                reached = both[(level == k) & np.isfinite(both)]
+                reached = both[starts[k]:starts[k + 1]]
+                reached = reached[np.isfinite(reached)]
                 if len(reached):
                     values[name][row, k] = [*np.quantile(reached, QUARTILES), reached.max()]
-                    share[row, k] = len(reached) / count
+                    share[row, k] = len(reached) / max(1, len(after["/steps/newton_iterations"]))
     return Levels(tasks, values, share)
+
+
+def _by_task(blocks, count):
+    """(task, {column: rows}) with all rows of a task, put together where a task comes in several blocks."""
+    waiting = {}
+    for owners, starts, rows in blocks:
+        ends = np.append(starts[1:], len(next(iter(rows.values()))))
+        for task, start, end in zip(owners, starts, ends):
+            pieces = waiting.setdefault(int(task), [])
+            pieces.append({path: values[start:end] for path, values in rows.items()})
+            if sum(len(next(iter(piece.values()))) for piece in pieces) == count[task]:
+                del waiting[int(task)]
+                yield int(task), {path: np.concatenate([piece[path] for piece in pieces]) for path in rows}
 
 
 def orders(medians, floor):
