@@ -57,7 +57,7 @@ def _between(values, begin, end):
 
 
 def _binned(file, sims, newton, guesses, tolerances, edges):
-    """Iterations of the solves that reached the tolerance, [simulation, bin, guess, tolerance], and how many did not."""
+    """Iterations of solves that reached the tolerance [simulation, bin, guess, tolerance], and how many did not."""
     shape = (len(sims), len(edges) - 1, len(guesses))
     iterations, missed = np.zeros(shape + (len(tolerances),)), np.zeros(shape + (len(tolerances),))
     solves = np.zeros(shape)

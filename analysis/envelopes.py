@@ -1,15 +1,15 @@
 """What long runs did, step by step, in bounded memory: envelopes of a few quantities and fits to the length drift.
 
 Steps go into buckets of equal width (or equal ratio of times); of each bucket the smallest and the largest value are
-kept, so that no spike is lost, whatever the length of the run. Drift per 1000 steps is the slope of a least-squares line
-through all steps from `begin` on. A *history* is one task: of a guess in a closed loop, or of the direct solve.
+kept, so that no spike is lost, whatever the length of the run. Drift per 1000 steps is the slope of a least-squares
+line through all steps from `begin` on. A *history* is one task: of a guess in a closed loop, or of the direct solve.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-MOST_BUCKETS = 400
+MOST_BUCKETS = 240
 FEWEST_BUCKETS = 10
 BUDGET_BYTES = 96 << 20
 QUANTITIES = ("length_drift", "joint_gap", "energy_j", "momentum_kg_m_s", "angular_momentum_kg_m2_s")

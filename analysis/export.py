@@ -5,9 +5,9 @@
   solves  a row per linear solve and guess: iterations to every tolerance, residuals, times
   steps   a row per time step: length drift, joint gap, energies, momenta
 
-The first columns say which task, with the parameters that the job sweeps. Tasks that are not complete are left out; those
-that failed are in it with their outcome. What was not measured or not reached is an empty field. Rows are written block
-by block: a file of any size needs little memory.
+The first columns say which task, with the parameters that the job sweeps. Tasks that are not complete are left out;
+those that failed are in it with their outcome. What was not measured or not reached is an empty field. Rows are written
+block by block: a file of any size needs little memory.
 """
 
 import contextlib

@@ -33,8 +33,8 @@ def ratio_figure(study, tolerances):
     notes = [f"Iterations with a guess ÷ from zero, summed over a simulation: mean over {sample_text(shown)}. "
              f"Counted: {measures.NEWTON[study.newton]}."]
     if any_open:
-        notes.append("Open markers: some of these solves missed the tolerance (iteration limit or divergence) and count "
-                     "what they used.")
+        notes.append("Open markers: some of these solves missed the tolerance (iteration limit or divergence) and "
+                     "count what they used.")
     width = study.width_mm
     page = layout.Page(width, [p.title() for p in study.panels], len(tolerances), 4 if study.wide else 2,
                       40 if study.wide else 30, study.handles(lines, "zero guess (= 1)"), notes + [study.about()],
@@ -120,7 +120,8 @@ def time_figure(study, by_newton):
     if with_direct:
         handles.append(_direct_handle("assembly + direct solve"))
     width, count = study.width_mm, len(study.guesses)
-    page = layout.Page(width, [p.title() for p in study.panels], count, layout.even_columns(count, 6 if study.wide else 3),
+    columns = layout.even_columns(count, 6 if study.wide else 3)
+    page = layout.Page(width, [p.title() for p in study.panels], count, columns,
                       34 if study.wide else 22, handles, notes + [study.about()], study.timing_warning(), gap_mm=3,
                       ticks_mm=_ticks_mm(study))
     for axes_row, points, row in zip(page.axes, study.points, rows):

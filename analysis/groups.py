@@ -78,6 +78,36 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
     return [Panel(scene, dict(settings), np.array(rows)) for (scene, settings), rows in members.items()]
 
 
+def with_direct(sims, panels):
+    """Panels of a closed loop, each with the tasks of the direct solve that differ from it in keys of `solve` alone."""
+    own = [panel.index[sims.own[panel.index]] for panel in panels]
+    if not any(map(len, own)):
+        return panels
+
+    def other_settings(panel):
+        return panel.scene, {key: value for key, value in panel.settings.items() if not key.startswith("solve.")}
+
+    found, taken = [], set()
+    for panel, rows in zip(panels, own):
+        if not len(rows):
+            continue
+        beside = [k for k, other in enumerate(panels) if other_settings(other) == other_settings(panel)]
+        direct = [panels[k].index[~sims.own[panels[k].index]] for k in beside]
+        taken.update(beside)
+        found.append(Panel(panel.scene, panel.settings, np.concatenate([rows, *direct])))
+    return found + [panel for k, panel in enumerate(panels) if k not in taken]
+
+
+def short_titles(panels):
+    """Titles that say in few words in what the panels differ; empty for a single one."""
+    if len(panels) == 1:
+        return [""]
+    scenes = {panel.scene for panel in panels}
+    return [", ".join(([panel.scene.replace("_", " ")] if len(scenes) > 1 else []) +
+                      [f"{key.rsplit('.', 1)[-1].replace('_', ' ')} {value}" for key, value in panel.settings.items()])
+            for panel in panels]
+
+
 def _says_something(file, key, task):
     """False for a parameter of a guess ("guesses[1].oracle.error") in a task where that guess is another one."""
     return not key.startswith("guesses[") or file.parameters[key].applies()[task]

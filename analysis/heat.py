@@ -33,8 +33,12 @@ class Measure:
 
 MEASURES = {
     "ratio": Measure("CG ratio", "Iterations with a guess ÷ from zero, summed over a simulation", -1, "mean", True),
-    "iterations": Measure("CG iterations from zero", "Iterations of a solve from the zero guess, mean over a simulation",
-                          0, "mean", True, False),
+    "matvec-ratio": Measure("ratio of products with A", "Products with A (of CG and of the guess) with a guess ÷ from "
+                            "zero, summed over a simulation", -1, "mean", True),
+    "other-norm-ratio": Measure("CG ratio in the other norm", "Iterations with a guess ÷ from zero, summed over a "
+                                "simulation, to the residual in the norm that the job doesn't use", -1, "mean", True),
+    "iterations": Measure("CG iterations from zero", "Iterations of a solve from zero, mean over a simulation", 0,
+                          "mean", True, False),
     **{f"speedup-{name}".replace("_", "-"):
        Measure(f"speedup, {text}", f"Time of zero-guess CG ÷ time of the method ({text}), sums over a simulation", 1,
                "median", timed=True) for name, text in timings.SPEEDUPS.items()},
@@ -60,10 +64,16 @@ def per_simulation(shown, name, tolerances):
     """[simulation, guess, tolerance] values and solves that missed the tolerance; one guess, one tolerance if alike."""
     file, sims, newton = shown.file, shown.sims, shown.newton
     none = np.zeros((len(sims), 1, 1))
-    if name in ("ratio", "iterations"):
-        ratios = measures.cg_ratios(file, sims, newton)
+    if MEASURES[name].ladder:
+        counted, norm = {"matvec-ratio": ("matvecs", ""), "other-norm-ratio": ("iterations", "other_norm")}.get(
+            name, ("iterations", ""))
+        if norm and newton != "first":
+            raise KeyNotFound(f"--measure {name} is of the first Newton iterations: leave --newton all out")
+        ratios = measures.cg_ratios(file, sims, newton, counted, norm)
+        if not np.isfinite(ratios.ratio).any():
+            raise KeyNotFound(f"{file.path} has no counts for --measure {name}")
         missed = np.nan_to_num(ratios.unreached) + np.nan_to_num(ratios.unreached_zero)
-        if name == "ratio":
+        if name != "iterations":
             return ratios.ratio[:, :, tolerances], missed[:, :, tolerances]
         if newton != "first":
             raise KeyNotFound("--measure iterations is of the first Newton iterations: leave --newton all out")
@@ -83,11 +93,11 @@ def tolerance_points(file, tolerances):
     """The ladder as points along an axis; every tolerance is of all simulations."""
     order = np.argsort(file.tolerances[tolerances])
     values = file.tolerances[tolerances][order]
-    return groups.Points(values, [commandline.tolerance_label(value) for value in values], list(order), False, False)
+    return groups.Points(values, [commandline.tolerance_label(value) for value in values], list(order), True, False)
 
 
 def planes(shown, name, x, y, guesses, tolerances):
-    """One per scene type and value of any other grid; in each cell the best of `guesses`, or the measure of no guess."""
+    """One per scene type and value of any other grid; in a cell the best of `guesses`, or the measure of no guess."""
     file, measure = shown.file, MEASURES[name]
     keys = tuple(key for key in (x, y) if key != LADDER)
     panels = groups.panels(file, shown.sims, keys, most=None)

@@ -2,6 +2,8 @@
 """Heat maps of a sweep over two parameters: a CG ratio, speedup, iterations or residual in every cell.
 
   --measure ratio            CG iterations relative to the zero guess (default)
+            matvec-ratio     products with A instead, those of the guess included
+            other-norm-ratio CG ratio with the residual test in the norm that the job doesn't use
             speedup-cg, speedup-guess-cg, speedup-step
                              time of zero-guess CG over the time with a guess
             iterations       CG iterations of a solve from zero
@@ -10,7 +12,8 @@
 
 --x and --y name keys of the job, or `tolerance`: the ladder of tolerances that iterations are counted to. A cell shows
 the best of the guesses, and its name; the oracle, which knows the solution, only takes part when --guess names it.
---each draws a panel per guess instead. A panel per value of any other grid. Written as PDF and PNG; the paths are printed.
+--each draws a panel per guess instead. A panel per value of any other grid. Written as PDF and PNG; the paths are
+printed.
 """
 
 from dataclasses import dataclass
@@ -33,7 +36,7 @@ EXAMPLES = """examples:
   analysis/heatmap.py results/step_size.h5 --x time.step_s --y tolerance
   analysis/heatmap.py results/stiffness.h5 --x scene.youngs_modulus_pa --y scene.segments --measure speedup-step
   analysis/heatmap.py results/stiffness.h5 --x scene.segments --y tolerance --guess quadratic
-  analysis/heatmap.py results/step_size.h5 --x time.step_s --y solve.preconditioner --measure iterations --tolerance 1e-2"""
+  analysis/heatmap.py results/step_size.h5 --x time.step_s --y solve.preconditioner --measure iterations"""
 MOST_PANELS = 12
 
 
@@ -67,7 +70,7 @@ def main():
                               "--scene TYPE, --select KEY=VALUE or --guess LABEL")
         page = figure(shown, options, planes, guesses, tolerances)
         names = [key.rsplit(".", 1)[-1] for key in (options.x, options.y)]
-        alone = len(tolerances) == 1 and heat.LADDER not in (options.x, options.y) and heat.MEASURES[options.measure].ladder
+        alone = heat.MEASURES[options.measure].ladder and heat.LADDER not in (options.x, options.y)
         study.save(file, options, {f"heatmap-{options.measure}": page},
                    ["-".join(names), "each" if options.each else "",
                     commandline.tolerance_label(file.tolerances[tolerances[0]]) if alone else ""])

@@ -3,8 +3,8 @@
 
 Made for closed loops, where every guess advances a trajectory of its own, with tasks of `solve.method` "direct" beside
 them; in a paired sweep there is one trajectory, that of the direct solve. A line is the median over simulations of the
-largest magnitude in each of a few hundred stretches of the run (energy: of the middle of its range); its band goes from
-the smallest to the largest value that any simulation took there. The table has the largest and the final drift, its
+largest value in each of a few hundred stretches of the run (energy: of the middle of its range); its band goes from the
+smallest to the largest that any simulation had there. The table has the largest and the final drift, its
 slope per 1000 steps with a 95 % bootstrap interval over simulations, and what failed. The figure is written as PDF and
 PNG; the paths are printed after the table.
 """
@@ -29,9 +29,9 @@ EXAMPLES = """examples:
   analysis/long_term.py results/long_term.h5 --guess zero,previous,quadratic --log-time
   analysis/long_term.py results/long_term.h5 --after 2000 --csv > drift.csv"""
 PANELS = {  # quantity: title, vertical scale
-    "length_drift": ("length drift", "symlog"),
+    "length_drift": ("size of the length drift", "log"),
     "joint_gap": ("largest joint gap / joint length", "log"),
-    "energy_j": ("change of the total energy ÷ largest kinetic energy", "linear"),
+    "energy_j": ("change of the total energy ÷ largest kinetic energy", "energy"),
     "momentum_kg_m_s": ("linear momentum (kg m/s)", "log"),
     "angular_momentum_kg_m2_s": ("angular momentum about the origin (kg m²/s)", "log"),
 }
@@ -52,7 +52,10 @@ def main():
     options = arguments()
     with SweepFile(options.file) as file:
         shown = make_study(file, options)
-        panels = groups.panels(file, shown.sims, ("solve.method",))
+        panels = groups.with_direct(shown.sims, groups.panels(file, shown.sims, ("solve.method",), most=None))
+        if len(panels) > groups.MOST_PANELS:
+            raise KeyNotFound(f"{len(panels)} groups of simulations are too many for a page (at most "
+                              f"{groups.MOST_PANELS}): choose with --scene TYPE or --select KEY=VALUE")
         begin = options.after if options.after is not None else int(file.steps[shown.sims.tasks()].max()) // 10
         found = envelopes.histories(file, shown.sims.tasks(), begin, options.log_time)
         series = [methods(shown, panel) for panel in panels]
@@ -109,24 +112,30 @@ def figure(shown, panels, series, found, options):
     counts = commandline.range_text([len(rows) for methods_of in series for _, _, rows in methods_of.values()])
     buckets = len(found.edges) - 1
     steps = int(found.edges[-1])
-    notes = [f"{steps} steps in {buckets} stretches. Lines: median over {counts} simulations of the largest magnitude in "
-             "a stretch (energy: of the middle of its range). Bands: smallest to largest of all simulations. The energy "
-             "is relative to the first step."]
-    cut = [PANELS[name][0] for name in names if PANELS[name][1] == "log" and _cut(found, name)]
-    if cut:
-        notes.append(f"Axes of {' and '.join(cut)} end {DECADES} decades below their top.")
-    page = layout.Page(shown.width_mm, [panel.title() for panel in panels], len(names), 2 if shown.wide else 1, 32,
-                       handles, notes + [shown.about()], left_mm=13, gap_mm=13, ticks_mm=6)
-    for row, (panel, methods_of) in enumerate(zip(panels, series)):
-        x, label = _time(shown.file, shown.sims.any_task[panel.index], found.edges)
-        for axes, name in zip(page.axes[row], names):
-            _draw(axes, x, name, methods_of, found, _scales(found, methods_of, shown))
-            axes.set_title(PANELS[name][0])
+    times = [_time(shown.file, shown.sims.any_task[panel.index], found.edges) for panel in panels]
+    notes = [f"{steps} steps in {buckets} stretches. Lines: median over {counts} simulations of the largest value in a "
+             "stretch (energy: of the middle of its range, relative to the first step). Bands: smallest to largest of "
+             "all simulations, for length drift of these largest values. Logarithmic axes have at most "
+             f"{DECADES} decades."]
+    titles = groups.short_titles(panels)
+    columns = layout.even_columns(len(panels), 4 if shown.wide else 1)
+    if max(map(len, titles)) > (shown.width_mm - 13) / columns / 1.2:    # a character has about 1.2 mm
+        titles = [title.replace(", ", "\n") for title in titles]
+    page = layout.Page(shown.width_mm, [PANELS[name][0] for name in names], len(panels), columns,
+                       26, handles, notes + [shown.about()], left_mm=13,
+                       panel_titles_mm=1 + 2.6 * max(title.count("\n") + bool(title) for title in titles))
+    scales = [_scales(found, methods_of, shown) for methods_of in series]
+    for name, row in zip(names, page.axes):
+        values = [_draw(axes, x, name, methods_of, found, scale)
+                  for axes, (x, _), methods_of, scale in zip(row, times, series, scales)]
+        for k, (axes, (x, _)) in enumerate(zip(row, times)):
+            _scale_y(axes, PANELS[name][1], np.concatenate([part.ravel() for part in values]))
             if options.log_time:
                 axes.set_xscale("log")
             axes.set_xlim(x[0] if options.log_time else 0, x[-1])
-        for axes in page.axes[row][-page.columns:]:
-            axes.set_xlabel(label, labelpad=1.5)
+            axes.set_title(titles[k], fontsize=6, pad=2)
+            page.label_y(axes, k, "")
+    page.label_x(len(names) - 1, times[0][1])
     return page
 
 
@@ -156,9 +165,9 @@ def _envelope(found, name, method, tasks, scales):
     if name == "energy_j":
         first, scale = found.first[name][at][:, None], scales[method][:, None]
         low, high = (low - first) / scale, (high - first) / scale
-        line = (low + high) / 2
-    else:
-        line = np.where(np.abs(low) > np.abs(high), low, high)
+    if name == "length_drift":
+        low = high = np.maximum(np.abs(low), np.abs(high))
+    line = (low + high) / 2 if name == "energy_j" else high
     return np.fmin.reduce(low), np.fmax.reduce(high), measures.median_of_finite(line)
 
 
@@ -170,37 +179,39 @@ def _draw(axes, x, name, methods_of, found, scales):
         axes.fill_between(x, low, high, color=look.colour, alpha=0.10, linewidth=0)
         axes.plot(x, line, color=look.colour, linestyle=look.dash, marker=look.marker,
                   markevery=((rank * every) // len(drawn), every), linewidth=0.9, markersize=2.8)
-    _scale_y(axes, PANELS[name][1], np.array([part for parts in drawn.values() for part in parts]))
+    return np.array([part for parts in drawn.values() for part in parts])
 
 
 def _scale_y(axes, scale, values):
-    sizes = np.abs(values[np.isfinite(values) & (values != 0)])
-    if scale == "linear" or not len(sizes):
+    """The same for all panels of a row, whose values these are."""
+    values = values[np.isfinite(values)]
+    sizes = np.abs(values[values != 0])
+    if not len(sizes):
         return
-    top = sizes.max()
-    if scale == "symlog" and (values < 0).any():
-        # Linear about zero up to the size of a typical line, at most four decades below the largest.
-        linear = 10.0 ** np.clip(np.floor(np.log10(np.median(sizes))), np.log10(top) - 4, np.log10(top) - 1)
-        axes.set_yscale("symlog", linthresh=linear, linscale=0.6)
-        axes.axhline(0, color="#888888", linewidth=0.5, zorder=1)
-        axes.set_yticks(_symlog_ticks(linear, np.nanmin(values), np.nanmax(values)))
-        axes.yaxis.set_minor_locator(layout.NullLocator())
-    else:
+    top, low, high = sizes.max(), values.min(), values.max()
+    if scale == "log":
         axes.set_yscale("log")
         axes.set_ylim(max(0.7 * sizes.min(), top * 10.0 ** -DECADES), 1.4 * top)
+    elif top < 20 * np.median(sizes):
+        axes.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
+    else:
+        # Linear about zero up to the size of a typical value, at most four decades below the largest.
+        linear = 10.0 ** np.clip(np.floor(np.log10(np.median(sizes))), np.ceil(np.log10(top)) - 4,
+                                 np.ceil(np.log10(top)) - 1)
+        axes.set_yscale("symlog", linthresh=linear, linscale=0.6)
+        axes.axhline(0, color="#888888", linewidth=0.5, zorder=1)
+        axes.set_ylim(1.4 * low if low < 0 else -0.1 * linear, 1.4 * high if high > 0 else 0.1 * linear)
+        ticks = _symlog_ticks(linear, low, high)
+        axes.set_yticks(ticks, [style.number_text(t) for t in ticks])
+        axes.yaxis.set_minor_locator(layout.NullLocator())
 
 
 def _symlog_ticks(linear, low, high):
-    """Zero and powers of ten beyond the linear part."""
+    """Zero and powers of ten, the first where the linear part ends."""
     def decades(reach):
         count = int(np.floor(np.log10(reach / linear) + 1e-9)) if reach >= linear else -1
         return [linear * 10.0 ** k for k in range(0, count + 1, max(1, -(-count // 3)))]
-    return [-t for t in decades(-low)] + [0] + decades(high)
-
-
-def _cut(found, name):
-    sizes = found.low[name][np.isfinite(found.low[name])]
-    return len(sizes) and sizes.min() < np.nanmax(found.high[name]) * 10.0 ** -DECADES
+    return [-t for t in decades(-low)[::-1]] + [0] + decades(high)
 
 
 if __name__ == "__main__":

@@ -4,9 +4,9 @@
 A line per way of solving the linear systems: the direct solve (which also advances every paired sweep), and in closed
 loops CG to each `solve.tolerance`, per guess. It is the median over simulations of each simulation's median over its
 steps; whiskers are 95 % bootstrap intervals over simulations, bands the median quartiles over steps, thin dots the
-largest value of all. The last panel shows the residual after an iteration against that before: lines of slope 1 (a fixed
-factor per iteration) and 2 (quadratic) are drawn for the eye, and the table has the observed orders. A row of panels per
-scene type and per value of any other grid. Needs /solves in the file (record.solves "all").
+largest value of all. The last panel shows the residual after an iteration against that before: lines of slope 1 (a
+fixed factor per iteration) and 2 (quadratic) are drawn for the eye, and the table has the observed orders. A row of
+panels per scene type and per value of any other grid. Needs /solves in the file (record.solves "all").
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ from sweepfile import KeyNotFound, SweepFile
 
 EXAMPLES = """examples:
   analysis/newton.py results/newton.h5
-  analysis/newton.py results/newton.h5 --scene helix --guess zero --floor 1e-11"""
+  analysis/newton.py results/newton.h5 --scene helix --guess zero --floor 1e-12"""
 TITLES = {"newton_residual": "Newton residual", "joint_gap": "joint gap / joint length"}
 AXES = ("solve.method", "solve.tolerance", "guess")
 DECADES = 14
@@ -33,8 +33,8 @@ DECADES = 14
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES)
     study.add_figure_arguments(made)
-    made.add_argument("--floor", type=float, default=1e-10, metavar="R",
-                      help="residuals up to this are rounding and have no order (default: 1e-10)")
+    made.add_argument("--floor", type=float, default=1e-13, metavar="R",
+                      help="residuals up to this are rounding and have no order (default: 1e-13)")
     return made.parse_args()
 
 
@@ -46,7 +46,7 @@ def main():
                               "known of single Newton iterations")
         chosen = commandline.chosen_tasks(file, options)
         shown = study.of_tasks(file, chosen, commandline.chosen_guesses(file, options), options)
-        panels = groups.panels(file, shown.sims, AXES)
+        panels = groups.with_direct(shown.sims, groups.panels(file, shown.sims, AXES, most=None))
         found = newton_levels.levels(file, shown.sims.tasks())
         series = [methods(shown, panel) for panel in panels]
         medians = [{method: estimates(found, shown.sims, tasks, rows) for method, (_, tasks, rows) in ways.items()}
@@ -92,7 +92,8 @@ def table(panels, medians, floor):
         for method, e in ways.items():
             values = e["newton_residual"].value[:, 1]
             order = newton_levels.orders(values, floor)
-            rows.append([f"  {method}"] + [style.number_text(float(f"{v:.1e}")) if np.isfinite(v) else "-" for v in values])
+            rows.append([f"  {method}"] +
+                        [style.number_text(float(f"{v:.1e}")) if np.isfinite(v) else "-" for v in values])
             rows.append(["    order"] + [f"{o:.2f}" if np.isfinite(o) else "-" for o in order])
         lines += [""] + commandline.aligned(rows)
     return lines
@@ -107,8 +108,8 @@ def figure(shown, panels, series, medians, found, floor):
     shares = [found.share[found.rows(tasks)] for ways in series for _, tasks, _ in ways.values()]
     left_early = any(((share > 0) & (share < 1)).any() for share in shares)
     shown_counts = [e["newton_residual"] for ways in medians for e in ways.values()]
-    notes = [f"Before Newton iteration j, and after the last. Lines: median over {study.sample_text(shown_counts)} of the "
-             "medians over steps; bands: quartiles over steps; dots: largest of all."]
+    notes = ["Before Newton iteration j, and after the last. Lines: median over simulations of their medians over steps; "
+             f"{study.sample_text(shown_counts)}; bands: quartiles over steps; dots: largest of all."]
     if left_early:
         notes.append("Steps whose residual was below the job's newton_tolerance ended early and are in no later level.")
     page = layout.Page(shown.width_mm, [panel.title() for panel in panels], len(names) + 1,

@@ -1,8 +1,8 @@
 """Residual and joint gap before every Newton iteration and at the end of a step: the numbers of newton.py.
 
 Level j is the state before Newton iteration j (rows of /solves); a step that used k iterations ends in level k (rows of
-/steps). Per simulation and level: the quartiles over the steps that reached it, and the largest. A step that Newton left
-early, since it was below the job's tolerance, is in no later level.
+/steps). Per simulation and level: the quartiles over the steps that reached it, and the largest. A step that Newton
+left early, since it was below the job's tolerance, is in no later level.
 """
 
 from dataclasses import dataclass

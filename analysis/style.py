@@ -89,7 +89,8 @@ def guess_styles(labels):
 
 def series_styles(count):
     """Styles of lines that are of no guess, in their order."""
-    looks = [KINDS[kind] for kind in ("previous", "quadratic", "oracle", "copingnet", "linear", "guarded", "knn")] + SPARE
+    kinds = ("previous", "quadratic", "oracle", "copingnet", "linear", "guarded", "knn")
+    looks = [KINDS[kind] for kind in kinds] + SPARE
     return [GuessStyle(*looks[k % len(looks)]) for k in range(count)]
 
 

@@ -145,7 +145,8 @@ def speedup_lines(file, sims, found, guesses, newton):
         if block.direct_speedup and math.isfinite(block.times["direct_us"].value[file.zero]):
             rows.append(["  direct", "-", _fixed(block.times["direct_us"].value[file.zero], 1)] +
                         [_interval(block.direct_speedup[name]) for name in names])
-        lines += [""] + title + commandline.aligned(rows) + ([f"  {block.interruptions}"] if block.interruptions else [])
+        lines += [""] + title + commandline.aligned(rows)
+        lines += [f"  {block.interruptions}"] if block.interruptions else []
     return lines
 
 

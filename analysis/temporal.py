@@ -87,8 +87,8 @@ def figure(shown, panels, found, columns, tolerances, relative):
                        layout.even_columns(len(tolerances), 2 if shown.wide else 1), 38 if shown.wide else 32,
                        shown.handles(lines, "zero guess (= 1)" if relative else ""), notes + [shown.about()])
     for row, (panel, windows, e) in enumerate(zip(panels, found, estimates)):
-        tops = np.fmax(e.value, e.high)[:, [columns.index(g) for g in lines]]
-        top = 1.06 * max(1.0, float(np.nanmax(tops)) if np.isfinite(tops).any() else 1.0)
+        at = [columns.index(g) for g in lines]
+        tops = [_top(e[:, at, k]) for k in range(len(tolerances))]
         x, label = _time(file, shown.sims.any_task[panel.index], windows.centre)
         for k, axes in enumerate(page.axes[row]):
             if relative:
@@ -96,13 +96,20 @@ def figure(shown, panels, found, columns, tolerances, relative):
             for rank, g in enumerate(lines):
                 at = columns.index(g)
                 draw(axes, x, e[:, at, k], shown.style(g), windows.unreached[:, at, k] > 0, rank, len(lines))
-            axes.set_ylim(0, top)
+            line = k - k % page.columns
+            axes.set_ylim(0, max(tops[line:line + page.columns]))
             axes.set_xlim(0, 1.01 * x[-1])
             axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
             axes.set_title("tolerance " + style.tolerance_text(file.tolerances[tolerances[k]]))
             page.label_y(axes, k, "CG ratio" if relative else "CG iterations")
         page.label_x(row, label)
     return page
+
+
+def _top(e):
+    """Upper end of an axis: all lines are in it, and bands up to half as high again."""
+    value, high = (float(np.nanmax(part)) if np.isfinite(part).any() else 1.0 for part in (e.value, e.high))
+    return 1.06 * max(1.0, value, min(high, 1.5 * value))
 
 
 def _time(file, tasks, steps):

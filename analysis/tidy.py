@@ -1,7 +1,7 @@
 """The rows of export.py: blocks of a results file as flat columns, one array per column, all of one length.
 
-A row of the level `tasks` is one task x guess x tolerance, of `solves` one solve x guess (a column per tolerance of what
-has that axis), of `steps` one step. Every dataset of the level is a column by its name, with those of /timing after
+A row of the level `tasks` is one task x guess x tolerance, of `solves` one solve x guess (a column per tolerance of
+what has that axis), of `steps` one step. Every dataset of the level is a column by its name, with those of /timing after
 them, so that columns of later versions come along. Sentinels of whole numbers (-1: not reached, not run) and NaN are
 empty fields. Blocks have at most BLOCK_ROWS rows of the file, whatever its size.
 """

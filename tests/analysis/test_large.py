@@ -24,7 +24,8 @@ class Large(unittest.TestCase):
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
         megabytes = usage.ru_maxrss / 1024
-        print(f"{' '.join(command[:1] + command[2:4])}: {megabytes:.0f} MB, {time.monotonic() - begin:.0f} s", flush=True)
+        seconds = time.monotonic() - begin
+        print(f"{' '.join(command[:1] + command[2:4])}: {megabytes:.0f} MB, {seconds:.0f} s", flush=True)
         self.assertEqual(process.returncode, 0, command)
         self.assertLess(megabytes, LIMIT_MB, command)
 
@@ -39,7 +40,8 @@ class Large(unittest.TestCase):
         self.check([("summary.py",), ("spatial.py",), ("temporal.py",), ("heatmap.py", *BY_SIZE),
                     ("heatmap.py", *BY_SIZE[:2], "--y", "time.step_s", "--measure", "speedup-step"),
                     ("long_term.py",), ("newton.py",), ("export.py", "--where", "tolerance=1e-2"),
-                    ("export.py", "--level", "solves", "--columns", "task,guess,iterations_1e-2", "--where", "newton=0"),
+                    ("export.py", "--level", "solves", "--columns", "task,guess,iterations_1e-2", "--where",
+                     "newton=0"),
                     ("export.py", "--level", "steps", "--columns", "task,length_drift")],
                    tasks=ROWS // 600, steps=100, newton=6)
 

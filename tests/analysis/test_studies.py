@@ -95,7 +95,8 @@ class Temporal(Studies):
     def test_failed_and_pending_tasks_are_in_no_curve(self):
         class OneBad(Fading):
             def ratio(self, guess, tolerance, newton, segments, draw):
-                return 50.0 if draw == 1 and guess != "zero" else super().ratio(guess, tolerance, newton, segments, draw)
+                wrong = draw == 1 and guess != "zero"
+                return 50.0 if wrong else super().ratio(guess, tolerance, newton, segments, draw)
 
         file, sims = self.open(plant=OneBad(), failed={1: "diverged"}, pending=(3,), **self.TEMPORAL)
         found = along_time.windows(file, sims, "first", [0, 1], [0], width=1)
