@@ -14,7 +14,8 @@ DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 NORMS = {"true_residual": "‖b − Ax‖₂ relative to ‖b‖₂", "natural": "natural norm of b − Ax relative to that of b"}
 
 
-def parser(description, epilog=None):
+def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True):
+    """`tolerances`: what is shown by default, None for a script without that choice; newton: is there a choice?"""
     made = argparse.ArgumentParser(description=description, epilog=epilog,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("file", help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
@@ -23,10 +24,13 @@ def parser(description, epilog=None):
                       help="only tasks with these values of a parameter: KEY=VALUE, KEY=A,B or KEY=LOW:HIGH; "
                            "may be repeated")
     made.add_argument("--guess", metavar="LABEL,…", help="only these guesses (default: all)")
-    made.add_argument("--tolerance", metavar="T,…",
-                      help="tolerances of the CG ratio, or `all` (default: 1e-1,1e-2,1e-3,1e-4)")
-    made.add_argument("--newton", choices=list(measures.NEWTON), default="first",
-                      help="Newton iterations that count: the first of every step (j = 0, the default) or all")
+    if tolerances:
+        made.add_argument("--tolerance", metavar="T,…",
+                          help=f"tolerances that iterations are counted to, or `all` (default: {tolerances})")
+    made.set_defaults(newton="first")
+    if newton:
+        made.add_argument("--newton", choices=list(measures.NEWTON), default="first",
+                          help="Newton iterations that count: the first of every step (j = 0, the default) or all")
     return made
 
 

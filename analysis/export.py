@@ -31,7 +31,7 @@ EXAMPLES = """examples:
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
+    made = commandline.parser(__doc__, EXAMPLES, tolerances="all", newton=False)
     made.add_argument("-o", "--output", metavar="FILE", help="file to write, compressed if its name ends in .gz "
                                                              "(default: standard output)")
     made.add_argument("--level", choices=tidy.LEVELS, default="tasks", help="what a row stands for (default: tasks)")

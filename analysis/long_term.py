@@ -39,7 +39,7 @@ DECADES = 8   # of a logarithmic axis, counted from its top
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
+    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     study.add_figure_arguments(made)
     made.add_argument("--after", metavar="STEP", type=int,
                       help="first step of the fit of drift per 1000 steps (default: a tenth of the run)")

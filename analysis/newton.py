@@ -31,7 +31,7 @@ DECADES = 14
 
 
 def arguments():
-    made = commandline.parser(__doc__, EXAMPLES)
+    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     study.add_figure_arguments(made)
     made.add_argument("--floor", type=float, default=1e-13, metavar="R",
                       help="residuals up to this are rounding and have no order (default: 1e-13)")

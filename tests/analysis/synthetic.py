@@ -216,7 +216,8 @@ def write_large(path, tasks, steps, newton, closed_loop=False, guesses=GUESSES, 
     """A packed file of tasks x steps x newton rows of /solves, all planted alike: a guess takes its quality's share of
     100 iterations, the drift is -1e-6 per step."""
     samples = tasks // (len(guesses) if closed_loop else 1)
-    sweep = Sweep(scenes=("helix",), grid={"scene.segments": [10]}, samples=samples, guesses=guesses, steps=1, newton=newton, closed_loop=closed_loop, solves=False,
+    sweep = Sweep(scenes=("helix",), grid={"scene.segments": [10]}, samples=samples, guesses=guesses, steps=1,
+                  newton=newton, closed_loop=closed_loop, solves=False,
                   random={"scene.youngs_modulus_pa": ("Pa", lambda draw: 1e4 + draw)})
     sweep.write(path)
     tasks, rows_per_task = len(sweep.tasks()), steps * newton
