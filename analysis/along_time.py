@@ -13,7 +13,7 @@ import numpy as np
 MOST_BINS = 400
 FEWEST_BINS = 10
 MOST_WINDOWS = 160
-BUDGET_BYTES = 96 << 20
+BUDGET_BYTES = 64 << 20
 COLUMNS = ("/solves/newton", "/solves/step", "/solves/iterations")
 
 

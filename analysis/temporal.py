@@ -65,8 +65,13 @@ def main():
 
 def estimate(sims, windows, zero, relative):
     """[window, guess, tolerance]: iterations over those from zero, or per solve; sums over simulations."""
-    per = windows.iterations[:, :, [zero]] if relative else windows.solves[..., None]
-    return intervals.ratio_of_sums(windows.iterations, np.broadcast_to(per, windows.iterations.shape), sims.sample)
+    found = []
+    for k in range(windows.iterations.shape[-1]):   # one tolerance at a time: the bootstrap copies what it gets
+        counts = windows.iterations[..., k]
+        per = counts[:, :, [zero]] if relative else windows.solves
+        found.append(intervals.ratio_of_sums(counts, np.broadcast_to(per, counts.shape), sims.sample))
+    return intervals.Estimate(*(np.stack([getattr(e, name) for e in found], axis=-1)
+                                for name in ("value", "low", "high", "count")))
 
 
 def figure(shown, panels, found, columns, tolerances, relative):
