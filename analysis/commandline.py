@@ -13,7 +13,8 @@ DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 NORMS = {"true_residual": "‖b − Ax‖₂ relative to ‖b‖₂", "natural": "natural norm of b − Ax relative to that of b"}
 
 
-def parser(description, epilog=None):
+def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True):
+    """`tolerances`: what is shown by default, None for a script without that choice; newton: is there a choice?"""
     made = argparse.ArgumentParser(description=description, epilog=epilog,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("file", help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
@@ -22,10 +23,13 @@ def parser(description, epilog=None):
                       help="only tasks with these values of a parameter: KEY=VALUE, KEY=A,B or KEY=LOW:HIGH; "
                            "may be repeated")
     made.add_argument("--guess", metavar="LABEL,…", help="only these guesses (default: all)")
-    made.add_argument("--tolerance", metavar="T,…",
-                      help="tolerances of the CG ratio, or `all` (default: 1e-1,1e-2,1e-3,1e-4)")
-    made.add_argument("--newton", choices=list(measures.NEWTON), default="first",
-                      help="Newton iterations that count: the first of every step (j = 0, the default) or all")
+    if tolerances:
+        made.add_argument("--tolerance", metavar="T,…",
+                          help=f"tolerances that iterations are counted to, or `all` (default: {tolerances})")
+    made.set_defaults(newton="first")
+    if newton:
+        made.add_argument("--newton", choices=list(measures.NEWTON), default="first",
+                          help="Newton iterations that count: the first of every step (j = 0, the default) or all")
     return made
 
 
@@ -125,6 +129,20 @@ def timing_note(file, tasks):
     apart = int(file.timed_apart(tasks).sum()) if len(tasks) else 0
     return (f"Of {apart} tasks some guesses were timed in another run than the others (run --extend): speedups between "
             "them compare two runs.") if apart else ""
+
+
+def aligned(rows):
+    """Columns of equal width, the first to the left, the others to the right."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return ["  ".join([row[0].ljust(widths[0])] + [cell.rjust(w) for cell, w in zip(row[1:], widths[1:])]).rstrip()
+            for row in rows]
+
+
+def oracle_note(file, guesses):
+    """A sentence for whatever shows times of guesses, and a blank; empty without an oracle."""
+    if not any("oracle" in file.guesses[g] for g in guesses):
+        return ""
+    return "The oracle solves the system itself: its guess time is no method's cost. "
 
 
 def timing_warning(file, tasks):

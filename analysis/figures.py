@@ -15,9 +15,9 @@ import layout
 import measures
 import style
 import timings
+from study import sample_text
 
 TIME_PARTS = ("assembly", "guess", "CG")
-SPEEDUP_TICKS = [[1], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 8]]   # of every decade, from coarse to fine
 
 
 def ratio_figure(study, tolerances):
@@ -30,14 +30,14 @@ def ratio_figure(study, tolerances):
     shown = [e[g, t] for row in estimates for e in row for g, t in chosen]
     open_points = [[_unreached(ratios, rows) for rows in points.index] for points in study.points]
     any_open = any(o[g, t] for row in open_points for o in row for g, t in chosen)
-    notes = [f"Iterations with a guess ÷ from zero, summed over a simulation: mean over {_sample(shown)}. "
+    notes = [f"Iterations with a guess ÷ from zero, summed over a simulation: mean over {sample_text(shown)}. "
              f"Counted: {measures.NEWTON[study.newton]}."]
     if any_open:
-        notes.append("Open markers: some of these solves missed the tolerance (iteration limit or divergence) and count "
-                     "what they used.")
+        notes.append("Open markers: some of these solves missed the tolerance (iteration limit or divergence) and "
+                     "count what they used.")
     width = study.width_mm
-    page = layout.Page(width, [p.title() for p in study.panels], len(tolerances), 4 if width > 100 else 2,
-                      40 if width > 100 else 30, _handles(study, lines, "zero guess (= 1)"), notes + [study.about()],
+    page = layout.Page(width, [p.title() for p in study.panels], len(tolerances), 4 if study.wide else 2,
+                      40 if study.wide else 30, study.handles(lines, "zero guess (= 1)"), notes + [study.about()],
                       ticks_mm=_ticks_mm(study))
     top = 1.06 * max([1.0] + [float(np.nanmax([e.value, e.high])) for e in shown if np.isfinite(e.value)])
     for axes_row, points, row, marks in zip(page.axes, study.points, estimates, open_points):
@@ -50,7 +50,7 @@ def ratio_figure(study, tolerances):
             axes.set_ylim(0, top)
             axes.set_title("tolerance " + style.tolerance_text(study.file.tolerances[t]))
             x.apply(axes)
-            _y_axis(axes, page, k, "CG ratio")
+            page.label_y(axes, k, "CG ratio")
     _x_labels(page, study)
     return page
 
@@ -68,14 +68,15 @@ def speedup_figure(study, by_newton):
     shown = [e[g] for row in rows for pairs in row.values() for e, _ in pairs for g in lines]
     with_direct = any(np.isfinite(d.value) for row in rows for pairs in row.values() for _, d in pairs)
     whole = "" if study.newton == "all" else "; the whole step has all Newton iterations"
-    notes = [f"Time of zero-guess CG ÷ time of the method, sums over a simulation: median over {_sample(shown)}. "
+    notes = [f"Time of zero-guess CG ÷ time of the method, sums over a simulation: median over {sample_text(shown)}. "
              f"Counted: {measures.NEWTON[study.newton]}{whole}. "
-             f"Solved to tolerance {study.solve_tolerance()}. {timings.interruptions(by_newton['all'], study.sims)}"]
-    handles = _handles(study, lines, "zero-guess CG (= 1)")
+             f"Solved to tolerance {study.solve_tolerance()}. {commandline.oracle_note(study.file, lines)}"
+             f"{timings.interruptions(by_newton['all'], study.sims)}"]
+    handles = study.handles(lines, "zero-guess CG (= 1)")
     if with_direct:
         handles.append(_direct_handle("direct solve"))
     width = study.width_mm
-    page = layout.Page(width, [p.title() for p in study.panels], 3, 3, 40 if width > 100 else 34, handles,
+    page = layout.Page(width, [p.title() for p in study.panels], 3, 3, 40 if study.wide else 34, handles,
                       notes + [study.about()], study.timing_warning(), ticks_mm=_ticks_mm(study))
     bounds = [v for row in rows for pairs in row.values() for e, d in pairs for part in (*(e[g] for g in lines), d)
               for v in (part.value, part.low, part.high) if np.isfinite(v) and v > 0]
@@ -92,12 +93,12 @@ def speedup_figure(study, by_newton):
                 _line(axes, x.dodged(len(lines), len(lines) + 1), [d for _, d in row[name]],
                       style.DIRECT, points.categorical)
             axes.set_ylim(low, high)
-            axes.yaxis.set_major_locator(FixedLocator(_ticks(low, high)))
+            axes.yaxis.set_major_locator(FixedLocator(layout.log_ticks(low, high)))
             axes.yaxis.set_minor_locator(NullLocator())
             axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}×"))
             axes.set_title(title)
             x.apply(axes)
-            _y_axis(axes, page, k, "speedup over zero-guess CG")
+            page.label_y(axes, k, "speedup over zero-guess CG")
     _x_labels(page, study)
     return page
 
@@ -110,17 +111,18 @@ def time_figure(study, by_newton):
     rows = [[intervals.median(values[i], study.sims.sample[i]) for i in points.index] for points in study.points]
     shown = [e[g, 4] for row in rows for e in row for g in study.guesses]
     with_direct = any(np.isfinite(e.value[g, 3]) for row in rows for e in row for g in study.guesses)
-    notes = [f"Mean time of a solve in a simulation, median over {_sample(shown, ' of the total')}; parts in their "
+    notes = [f"Mean time of a solve in a simulation, median over {sample_text(shown, ' of the total')}; parts in their "
              f"median proportions. Counted: {measures.NEWTON[study.newton]}. "
              f"Solved to tolerance {study.solve_tolerance()}. CG includes the preconditioner's set-up. "
-             f"{timings.interruptions(part, study.sims)}"]
+             f"{commandline.oracle_note(study.file, study.guesses)}{timings.interruptions(part, study.sims)}"]
     handles = [Patch(facecolor=style.PARTS[name][0], hatch=style.PARTS[name][1], edgecolor="white", label=name)
                for name in TIME_PARTS]
     if with_direct:
         handles.append(_direct_handle("assembly + direct solve"))
     width, count = study.width_mm, len(study.guesses)
-    page = layout.Page(width, [p.title() for p in study.panels], count, _columns(count, 6 if width > 100 else 3),
-                      34 if width > 100 else 22, handles, notes + [study.about()], study.timing_warning(), gap_mm=3,
+    columns = layout.even_columns(count, 6 if study.wide else 3)
+    page = layout.Page(width, [p.title() for p in study.panels], count, columns,
+                      34 if study.wide else 22, handles, notes + [study.about()], study.timing_warning(), gap_mm=3,
                       ticks_mm=_ticks_mm(study))
     for axes_row, points, row in zip(page.axes, study.points, rows):
         top = 1.06 * np.nanmax([np.nanmax([e.value[study.guesses, 3:], e.high[study.guesses, 3:]]) for e in row])
@@ -133,7 +135,7 @@ def time_figure(study, by_newton):
             page.title(axes, study.file.guesses[g], color=study.style(g).colour, weight="bold")
             axes.grid(axis="x", visible=False)
             x.apply(axes)
-            _y_axis(axes, page, k, "µs per solve")
+            page.label_y(axes, k, "µs per solve")
     _x_labels(page, study)
     return page
 
@@ -173,11 +175,6 @@ def _stack(axes, x, estimates):
                   ecolor="#222222", elinewidth=0.7, capsize=1.2, capthick=0.7)
 
 
-def _handles(study, lines, zero_text):
-    guesses = [Line2D([], [], label=study.file.guesses[g], **study.style(g).line()) for g in lines]
-    return guesses + [Line2D([], [], color=style.KINDS["zero"][0], linewidth=0.9, label=zero_text)]
-
-
 def _direct_handle(label):
     return Line2D([], [], label=label, **style.DIRECT.line())
 
@@ -193,36 +190,6 @@ def _x_labels(page, study):
         page.label_x(row, study.x_label() + (f" (median of each of {len(points.index)} bins)" if points.binned else ""))
 
 
-def _y_axis(axes, page, panel, label):
-    if page.is_left(panel):
-        axes.set_ylabel(label, labelpad=2)
-    else:
-        axes.tick_params(labelleft=False)
-
-
 def _unreached(ratios, rows):
     """[guess, tolerance]: did any solve of these simulations, of the guess or of zero, miss the tolerance?"""
     return (np.nansum(ratios.unreached[rows], axis=0) + np.nansum(ratios.unreached_zero[rows], axis=0)) > 0
-
-
-def _sample(estimates, of=""):
-    """How many simulations the points stand for, and what the whiskers are."""
-    counts = commandline.range_text([int(e.count) for e in estimates])
-    simulations = "simulation" if counts == "1" else "simulations"
-    has_intervals = any(np.isfinite(e.low) for e in estimates)
-    return (f"{counts} {simulations} per point; " +
-            (f"whiskers: 95 % bootstrap intervals{of}" if has_intervals else "a single draw has no intervals"))
-
-
-def _columns(count, most):
-    """Columns of a row of `count` panels: as even as `most` allows."""
-    return -(-count // -(-count // most))
-
-
-def _ticks(low, high):
-    """The coarsest set with at least three ticks between the bounds, else the finest."""
-    for leading in SPEEDUP_TICKS:
-        ticks = [a * 10.0 ** k for k in range(-6, 7) for a in leading if low <= a * 10.0 ** k <= high]
-        if len(ticks) >= 3:
-            break
-    return ticks

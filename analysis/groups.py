@@ -21,6 +21,7 @@ class Panel:
     scene: str
     settings: dict        # gridded keys other than x: text of their value
     index: np.ndarray     # rows of Simulations
+
     def title(self):
         name = self.scene.replace("_", " ").capitalize()
         return ", ".join([name] + [f"{key} = {value}" for key, value in self.settings.items()])
@@ -37,16 +38,20 @@ class Points:
 
 
 def gridded_keys(file, tasks, x, pooled=""):
-    """Keys that vary within (scene type, x, draw) over these tasks; those that begin with `pooled` are left out."""
+    """Keys that vary within (scene type, x, draw) over these tasks; those that begin with `pooled` are left out.
+
+    x is one key, several in a tuple, or None.
+    """
+    axes = _keys(x)
     fixed = [file.sample[tasks]]
-    fixed += [file.parameters[key].codes()[tasks] for key in ("scene.type", x) if key in file.parameters]
+    fixed += [file.parameters[key].codes()[tasks] for key in ("scene.type", *axes) if key in file.parameters]
     order = np.lexsort(fixed)
     same = np.ones(max(0, len(tasks) - 1), dtype=bool)
     for codes in fixed:
         same &= codes[order][1:] == codes[order][:-1]
     found = []
     for parameter in file.parameters.values():
-        if not parameter.swept or parameter.name in ("scene.type", "guess", x):
+        if not parameter.swept or parameter.name in ("scene.type", "guess", *axes):
             continue
         if pooled and parameter.name.startswith(pooled):
             continue
@@ -61,7 +66,7 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
     tasks = sims.any_task
     keys = gridded_keys(file, tasks, x, pooled)
     scenes = file.scene_types()[tasks]
-    if x == "scene.type":
+    if "scene.type" in _keys(x):
         scenes = np.full(len(tasks), "all scenes")
     members = {}
     for row, task in enumerate(tasks):
@@ -73,9 +78,43 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
     return [Panel(scene, dict(settings), np.array(rows)) for (scene, settings), rows in members.items()]
 
 
+def with_direct(sims, panels):
+    """Panels of a closed loop, each with the tasks of the direct solve that differ from it in keys of `solve` alone."""
+    own = [panel.index[sims.own[panel.index]] for panel in panels]
+    if not any(map(len, own)):
+        return panels
+
+    def other_settings(panel):
+        return panel.scene, {key: value for key, value in panel.settings.items() if not key.startswith("solve.")}
+
+    found, taken = [], set()
+    for panel, rows in zip(panels, own):
+        if not len(rows):
+            continue
+        beside = [k for k, other in enumerate(panels) if other_settings(other) == other_settings(panel)]
+        direct = [panels[k].index[~sims.own[panels[k].index]] for k in beside]
+        taken.update(beside)
+        found.append(Panel(panel.scene, panel.settings, np.concatenate([rows, *direct])))
+    return found + [panel for k, panel in enumerate(panels) if k not in taken]
+
+
+def short_titles(panels):
+    """Titles that say in few words in what the panels differ; empty for a single one."""
+    if len(panels) == 1:
+        return [""]
+    scenes = {panel.scene for panel in panels}
+    return [", ".join(([panel.scene.replace("_", " ")] if len(scenes) > 1 else []) +
+                      [f"{key.rsplit('.', 1)[-1].replace('_', ' ')} {value}" for key, value in panel.settings.items()])
+            for panel in panels]
+
+
 def _says_something(file, key, task):
     """False for a parameter of a guess ("guesses[1].oracle.error") in a task where that guess is another one."""
     return not key.startswith("guesses[") or file.parameters[key].applies()[task]
+
+
+def _keys(x):
+    return () if x is None else (x,) if isinstance(x, str) else tuple(x)
 
 
 def applicable(file, sims, x):

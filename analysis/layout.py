@@ -5,6 +5,7 @@ import textwrap
 
 import numpy as np
 from matplotlib import pyplot as plt
+from matplotlib.colors import LogNorm
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 import style
@@ -20,7 +21,7 @@ class Page:
     """
 
     def __init__(self, width_mm, row_titles, panels_per_row, columns, panel_height_mm, handles, notes, warning="",
-                 left_mm=11, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5):
+                 left_mm=11, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5, bar_mm=0):
         style.use()
         self.figure = plt.figure(figsize=(width_mm * style.MM, 100 * style.MM))
         legend, legend_mm = self._legend(handles, width_mm)
@@ -31,7 +32,7 @@ class Page:
         columns = min(columns, panels_per_row)
         lines = -(-panels_per_row // columns)
         row_mm = title_mm + lines * (panel_titles_mm + panel_height_mm + ticks_mm) + 3.2
-        height = warning_mm + legend_mm + len(row_titles) * row_mm + notes_mm + 1
+        height = warning_mm + legend_mm + bar_mm + len(row_titles) * row_mm + notes_mm + 1
         self.figure.set_size_inches(width_mm * style.MM, height * style.MM)
         panel_width = (width_mm - left_mm - 2 - (columns - 1) * gap_mm) / columns
         top = height - 1
@@ -41,6 +42,8 @@ class Page:
         if legend is not None:
             legend.set_bbox_to_anchor((0, 0, 1, top / height), transform=self.figure.transFigure)
         top -= legend_mm
+        self.bar_box = [(width_mm - 62) / width_mm, (top - 4.5) / height, 60 / width_mm, 2.6 / height]
+        top -= bar_mm
         self.axes = []
         for title in row_titles:
             self._text(2, top - 0.5, title, width_mm, height, size=8, weight="bold")
@@ -74,8 +77,25 @@ class Page:
                 return legend, box.height / self.figure.dpi / style.MM + 1.5
             legend.remove()
 
-    def is_left(self, panel):
-        return panel % self.columns == 0
+    def label_y(self, axes, panel, text):
+        """On the first panel of a line; the others have neither label nor numbers."""
+        if panel % self.columns == 0:
+            axes.set_ylabel(text, labelpad=2)
+        else:
+            axes.tick_params(labelleft=False)
+
+    def colour_bar(self, mappable, text):
+        """In the strip of `bar_mm` over the panels, at the right."""
+        axes = self.figure.add_axes(self.bar_box)
+        bar = self.figure.colorbar(mappable, cax=axes, orientation="horizontal")
+        bar.outline.set_linewidth(0.4)
+        low, high = mappable.norm.vmin, mappable.norm.vmax
+        if isinstance(mappable.norm, LogNorm):
+            ticks = log_ticks(low, high)
+            bar.set_ticks(ticks, labels=[style.number_text(t) for t in ticks])
+            bar.ax.xaxis.set_minor_locator(NullLocator())
+        bar.ax.tick_params(pad=1.5)
+        axes.text(-0.02, 0.5, text, transform=axes.transAxes, ha="right", va="center")
 
     def label_x(self, row, text):
         """One label in the middle under a row of panels."""
@@ -97,6 +117,20 @@ class Page:
         self.figure.savefig(paths[1], metadata={"Software": "rodsweep"})
         plt.close(self.figure)
         return paths
+
+
+def even_columns(count, most):
+    """Columns of a row of `count` panels: as even as `most` allows."""
+    return -(-count // -(-count // most))
+
+
+def log_ticks(low, high):
+    """Few round numbers between the bounds: the coarsest set with at least three of them, else the finest."""
+    for leading in ([1], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 8]):
+        ticks = [a * 10.0 ** k for k in range(-30, 31) for a in leading if low <= a * 10.0 ** k <= high]
+        if len(ticks) >= 3:
+            break
+    return ticks[::max(1, len(ticks) // 6)]
 
 
 class XAxis:

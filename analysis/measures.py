@@ -97,8 +97,9 @@ class Ratios:
     solves: np.ndarray     # [simulation, guess] first Newton iterations; NaN for `all`, which is not stored per task
 
 
-def cg_ratios(file, sims, newton):
-    suffix = "" if newton == "first" else "_all"
+def cg_ratios(file, sims, newton, counted="iterations", norm=""):
+    """Of `matvecs` instead of iterations, or of iterations in the `other_norm`; NaN where the file has none of them."""
+    suffix = f"_{norm}" if norm else "" if newton == "first" else "_all"
     shape = (file.task_count, len(file.guesses), len(file.tolerances))
     tasks = sims.tasks()
 
@@ -109,7 +110,7 @@ def cg_ratios(file, sims, newton):
             full[tasks] = np.where(values < 0, np.nan, values)
         return full
 
-    iterations, unreached = spread(f"iterations_sum{suffix}"), spread(f"unreached{suffix}")
+    iterations, unreached = spread(f"{counted}_sum{suffix}"), spread(f"unreached{suffix}")
     steps = np.full(shape[:2], np.nan)
     done = file.results("steps_done", tasks)
     if newton == "first" and done is not None:
@@ -149,3 +150,11 @@ def step_figures(file, sims):
         return sims.gather(np.broadcast_to(values[:, None], (file.task_count, sims.task.shape[1])))
 
     return StepFigures(spread(newton), **{name: spread(values) for name, values in largest.items()})
+
+
+def median_of_finite(values):
+    """Median over the first axis of what is finite; NaN where nothing is."""
+    found = np.full(values.shape[1:], np.nan)
+    there = np.isfinite(values).any(axis=0)
+    found[there] = np.nanmedian(np.where(np.isfinite(values), values, np.nan)[:, there], axis=0)
+    return found

@@ -2,7 +2,7 @@
 
 Colours are Okabe and Ito's (2008) with darker relatives for the additional kinds. Guesses are told apart by marker and
 line style as well, so that neither a colour-blind reader nor a black-and-white print needs the colour. A guess is
-recognised by the first word of its label; several of one kind (oracle(0.1), oracle(0.01)) share a hue and differ in
+recognised by the first word of its label; several of one kind (oracle 0.1, oracle 0.01) share a hue and differ in
 lightness, marker and dash. Widths: 84 mm is one column of a page of two, 174 mm the whole page.
 """
 
@@ -23,6 +23,7 @@ KINDS = {  # colour, marker, dash
     "linear": ("#2f9fd8", "v", (0, (1.2, 1.2))),
     "quadratic": ("#D55E00", "s", (0, (1, 0))),
     "oracle": ("#a8478c", ">", (0, (4, 1.2, 1, 1.2))),
+    "oracle white": ("#c774b0", "8", (0, (2, 1, 1, 1))),
     "guarded": ("#7a5a00", "P", (0, (7, 1.5, 1, 1.5, 1, 1.5))),
     "fischer": ("#b8860b", "^", (0, (2.5, 1.2))),
     "pod": ("#6b7f00", "<", (0, (6, 2))),
@@ -32,7 +33,7 @@ KINDS = {  # colour, marker, dash
 }
 SPARE = [("#882255", "H", (0, (2, 2))), ("#117733", "h", (0, (8, 2))), ("#555555", "p", (0, (3, 3))),
          ("#aa4499", "d", (0, (1, 2)))]
-VARIANT_MARKERS = "dpH8h"
+VARIANT_MARKERS = "dpHh"
 VARIANT_DASHES = [(0, (2, 1)), (0, (3, 1, 1, 1)), (0, (8, 1.5)), (0, (1, 1.6)), (0, (5, 1, 1, 1, 1, 1))]
 
 PARTS = {  # parts of a solve's time: colour, hatch
@@ -41,6 +42,11 @@ PARTS = {  # parts of a solve's time: colour, hatch
     "CG": ("#4b93c3", ""),
     "direct": ("#5b5b5b", "...."),
 }
+DIVERGING = colors.LinearSegmentedColormap.from_list("blue to orange", [
+    "#0b4f8a", "#4b93c3", "#a9cfe4", "#f7f7f5", "#f5c79a", "#e08a3c", "#a34a00"])
+SEQUENTIAL = matplotlib.colormaps["cividis_r"]
+NAMES = {"scene.segments": "number of segments N", "time.step_s": "time step (s)",
+         "scene.youngs_modulus_pa": "Young's modulus (Pa)"}
 WARNING_COLOUR = "#b00020"
 
 
@@ -58,7 +64,9 @@ DIRECT = GuessStyle(*KINDS["direct"])
 
 
 def kind_of(label):
-    return re.split(r"[^a-z]+", label.lower().lstrip(), maxsplit=1)[0]
+    """The label's first word; an oracle with white errors is a kind of its own."""
+    words = re.findall(r"[a-z]+", label.lower()) or [""]
+    return "oracle white" if words[0] == "oracle" and "white" in words else words[0]
 
 
 def guess_styles(labels):
@@ -79,8 +87,21 @@ def guess_styles(labels):
     return styles
 
 
+def series_styles(count):
+    """Styles of lines that are of no guess, in their order."""
+    kinds = ("previous", "quadratic", "oracle", "copingnet", "linear", "guarded", "knn")
+    looks = [KINDS[kind] for kind in kinds] + SPARE
+    return [GuessStyle(*looks[k % len(looks)]) for k in range(count)]
+
+
 def lighter(colour, share):
     return colors.to_hex([c + (1 - c) * share for c in colors.to_rgb(colour)])
+
+
+def luminance(colour):
+    """Relative luminance (WCAG): 0 black, 1 white."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colors.to_rgb(colour)]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
 def use():
@@ -96,8 +117,8 @@ def use():
 
 def parameter_label(name, unit):
     """scene.youngs_modulus_pa, Pa -> "youngs modulus (Pa)"; the number of segments is N."""
-    if name == "scene.segments":
-        return "number of segments N"
+    if name in NAMES:
+        return NAMES[name]
     words = name.rsplit(".", 1)[-1].split("_")
     letters = re.sub(r"[^a-z0-9]", "", unit.lower())
     for k in range(1, len(words)):
@@ -112,3 +133,11 @@ def tolerance_text(value):
     mantissa, exponent = f"{value:.2e}".split("e")
     power = f"10^{{{int(exponent)}}}"
     return f"${power}$" if float(mantissa) == 1 else f"${float(mantissa):g}\\times{power}$"
+
+
+def number_text(value):
+    """Short: 0.005, 20, 1e6, 3.7e-4."""
+    if value == 0 or 1e-3 <= abs(value) < 1e4:
+        return f"{value:.4g}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{float(mantissa):g}e{int(exponent)}"

@@ -104,7 +104,7 @@ def ratio_lines(file, found, guesses, tolerances, newton):
                         [_interval(block.ratio[g, t]) + mark for t, mark in zip(tolerances, marks)])
         if block.zero_iterations is not None:
             rows.append(["  zero, iterations/solve"] + [f"{block.zero_iterations[t]:.1f}" for t in tolerances])
-        lines += [""] + title + aligned(rows)
+        lines += [""] + title + commandline.aligned(rows)
         lines += _missed(file, block, guesses, tolerances)
     return lines
 
@@ -134,6 +134,8 @@ def speedup_lines(file, sims, found, guesses, newton):
     note = commandline.timing_note(file, sims.tasks())
     if note:
         lines.append(note)
+    oracle = commandline.oracle_note(file, guesses)
+    lines += [oracle.strip()] if oracle else []
     names = list(timings.SPEEDUPS)
     for block in shown:
         title, first = _titled(block, block.times["cg_us"].count[guesses])
@@ -146,7 +148,8 @@ def speedup_lines(file, sims, found, guesses, newton):
         if block.direct_speedup and math.isfinite(block.times["direct_us"].value[file.zero]):
             rows.append(["  direct", "-", _fixed(block.times["direct_us"].value[file.zero], 1)] +
                         [_interval(block.direct_speedup[name]) for name in names])
-        lines += [""] + title + aligned(rows) + ([f"  {block.interruptions}"] if block.interruptions else [])
+        lines += [""] + title + commandline.aligned(rows)
+        lines += [f"  {block.interruptions}"] if block.interruptions else []
     return lines
 
 
@@ -160,7 +163,7 @@ def direct_lines(file, sims, found):
         rows.append([f"  {block.title}, n = {commandline.range_text(block.direct_times['direct_us'].count)}"] +
                     [_interval(block.direct_times[name]) for name in ("assemble_us", "direct_us")])
     warning = commandline.timing_warning(file, sims.tasks())
-    return [""] + ([f"WARNING: {warning}"] if warning else []) + aligned(rows)
+    return [""] + ([f"WARNING: {warning}"] if warning else []) + commandline.aligned(rows)
 
 
 STEP_COLUMNS = {"newton_iterations": "Newton its/step", "newton_residual": "Newton residual",
@@ -180,14 +183,7 @@ def step_lines(file, found, guesses):
                 estimate, largest = block.steps.get(name, (None, None))
                 cells.append("-" if estimate is None else f"{_number(estimate.value[g], 2)} ({_number(largest[g], 2)})")
             rows.append([f"  {title}"] + cells)
-    return [""] + aligned(rows)
-
-
-def aligned(rows):
-    """Columns of equal width, the first to the left, the others to the right."""
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    return ["  ".join([row[0].ljust(widths[0])] + [cell.rjust(w) for cell, w in zip(row[1:], widths[1:])]).rstrip()
-            for row in rows]
+    return [""] + commandline.aligned(rows)
 
 
 def _interval(estimate):

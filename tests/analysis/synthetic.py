@@ -16,6 +16,8 @@ sys.path.insert(0, ANALYSIS)
 import h5py  # noqa: E402
 
 GUESSES = ("zero", "previous", "quadratic", "oracle(0.1)")
+LEVELS = ("newton_residual", "joint_gap")   # before every solve, and at the end of a step
+ALONG = ("length_drift", "kinetic_energy_j", "potential_energy_j", "elastic_energy_j")
 TOLERANCES = tuple(10.0 ** -k for k in range(1, 9))
 
 
@@ -35,6 +37,26 @@ class Plant:
 
     def guess_s(self, guess, newton, segments, draw):
         return 0.0 if guess == "zero" else 1e-7 * segments
+
+    def at_step(self, guess, step):
+        """A factor of the iterations, by step."""
+        return np.ones(len(step))
+
+    def length_drift(self, step, steps, draw, guess):
+        return -self.drift * step / max(1, steps - 1)
+
+    def kinetic_energy_j(self, step, steps, draw, guess):
+        return np.full(len(step), 2.0)
+
+    def potential_energy_j(self, step, steps, draw, guess):
+        return -0.5 * np.arange(len(step)) / max(1, steps - 1)
+
+    def elastic_energy_j(self, step, steps, draw, guess):
+        return np.full(len(step), 1.0)
+
+    def level(self, name, newton, draw, guess):
+        """Newton residual or joint gap before Newton iteration `newton`."""
+        return 1e-10 * np.ones(len(newton))
 
     assemble_s = 2e-6
     direct_s = 8e-6
@@ -61,6 +83,7 @@ class Sweep:
     pending: tuple = ()
     failed: dict = field(default_factory=dict)       # task: outcome
     oversubscribed: bool = False
+    counts_in_rows: bool = False   # planted counts in rows of /solves; else 10 in all, as the planted times would have
     attributes: dict = field(default_factory=lambda: {"program": "rodsweep", "schema_version": 1})
 
     def tasks(self):
@@ -114,6 +137,7 @@ class Sweep:
         columns = {"scene.type": ("", [t[0] for t in tasks])}
         columns.update({key: ("", [value] * len(tasks)) for key, value in text.items()})
         columns.update({"solve.tolerance": ("", [1e-2] * len(tasks)), "time.step_s": ("s", [0.02] * len(tasks))})
+        columns["time.newton_iterations"] = ("", [self.newton] * len(tasks))
         columns.update({key: ("", [t[1][key] for t in tasks]) for key in self.grid})
         columns.update({key: (unit, [value(t[2]) for t in tasks]) for key, (unit, value) in self.random.items()})
         columns["scene.length_m"] = ("m", [1.0 + t[2] if t[0] == "bending_rod" else np.nan for t in tasks])
@@ -126,50 +150,115 @@ class Sweep:
 
     def _results(self, tasks, guesses, done, rows_per_task):
         """All datasets of results; rows of pending tasks stay zero, as the file's unwritten bytes do."""
-        count, plant = len(tasks), self.plant
-        shape = (count, len(guesses), len(TOLERANCES))
-        sums = {name: np.zeros(shape, dtype=np.int64) for name in ("iterations_sum", "iterations_sum_all")}
-        missed = {name: np.zeros(shape, dtype=np.int32) for name in ("unreached", "unreached_all")}
-        rows = count * rows_per_task
-        guess_s, cg_s = (np.zeros((rows, len(guesses)), dtype=np.float32) for _ in range(2))
-        iterations = np.zeros((rows, len(guesses), len(TOLERANCES)), dtype=np.int16)
-        one = {name: np.zeros(rows, dtype=np.float32) for name in ("assemble_s", "direct_s")}
-        newton = np.zeros(rows, dtype=np.int16)
-        steps = {name: np.zeros(count * self.steps) for name in ("length_drift", "joint_gap", "newton_residual")}
-        used, rest = np.zeros(count * self.steps, dtype=np.int16), np.zeros(count * self.steps, dtype=np.float32)
+        count, plant, steps, newton = len(tasks), self.plant, self.steps, self.newton
+        shape, rows = (count, len(guesses), len(TOLERANCES)), count * rows_per_task
+        found = {f"tasks/{name}{which}": np.zeros(shape, dtype=np.int64)
+                 for name in ("iterations_sum", "unreached") for which in ("", "_all")}
+        found.update({f"timing/solves/{name}": np.zeros((rows, len(guesses)), dtype=np.float32)
+                      for name in ("guess_s", "cg_s")})
+        found.update({f"timing/solves/{name}": np.zeros(rows, dtype=np.float32) for name in ("assemble_s", "direct_s")})
+        found["solves/iterations"] = np.zeros((rows,) + shape[1:], dtype=np.int16)
+        found.update({f"solves/{name}": np.zeros(rows, dtype=np.int32) for name in ("step", "newton")})
+        found.update({f"solves/{name}": np.zeros(rows) for name in LEVELS})
+        found.update({f"steps/{name}": np.zeros(count * steps) for name in (*LEVELS, *ALONG, "time_s")})
+        found["steps/momentum_kg_m_s"] = np.zeros((count * steps, 3))
+        found["steps/newton_iterations"] = np.zeros(count * steps, dtype=np.int16)
+        found["timing/steps/rest_s"] = np.zeros(count * steps, dtype=np.float32)
         for t in np.flatnonzero(done):
             _, values, draw, own, _ = tasks[t]
-            n = values.get("scene.segments", 10)
+            n, guess_of_task = values.get("scene.segments", 10), guesses[own] if own >= 0 else ""
             mine = range(len(guesses)) if own < 0 else [own]
-            for array in (*sums.values(), *missed.values()):
-                array[t] = -1
+            span, step = slice(t * steps, (t + 1) * steps), np.arange(steps)
+            self._task_steps(found, span, plant, step, draw, guess_of_task)
+            for name in ("iterations_sum", "iterations_sum_all", "unreached", "unreached_all"):
+                found[f"tasks/{name}"][t] = -1
+            j, at = np.tile(np.arange(newton), steps), np.repeat(step, newton)
+            counts = np.full((len(j),) + shape[1:], -1)
             for g, (k, tolerance) in itertools.product(mine, enumerate(TOLERANCES)):
-                by_newton = [round(plant.zero_iterations(n, tolerance) * plant.ratio(guesses[g], tolerance, j, n, draw))
-                             for j in range(self.newton)]
-                reached = [plant.reached(guesses[g], tolerance, j, n, draw) for j in range(self.newton)]
-                sums["iterations_sum"][t, g, k] = self.steps * by_newton[0]
-                sums["iterations_sum_all"][t, g, k] = self.steps * sum(by_newton)
-                missed["unreached"][t, g, k] = self.steps * (not reached[0])
-                missed["unreached_all"][t, g, k] = self.steps * (self.newton - sum(reached))
-            for r in range(t * rows_per_task, (t + 1) * rows_per_task):
-                newton[r] = (r - t * rows_per_task) % self.newton
-                one["assemble_s"][r], one["direct_s"][r] = plant.assemble_s, plant.direct_s
-                guess_s[r] = cg_s[r] = np.nan
-                iterations[r] = -1
+                by_newton = np.array([plant.zero_iterations(n, tolerance) *
+                                      plant.ratio(guesses[g], tolerance, i, n, draw) for i in range(newton)])
+                used = np.rint(by_newton[j] * plant.at_step(guesses[g], at)).astype(int)
+                reached = np.array([plant.reached(guesses[g], tolerance, i, n, draw) for i in range(newton)])[j]
+                for which, counted in (("", j == 0), ("_all", j >= 0)):
+                    found[f"tasks/iterations_sum{which}"][t, g, k] = used[counted].sum()
+                    found[f"tasks/unreached{which}"][t, g, k] = (counted & ~reached).sum()
+                counts[:, g, k] = np.where(reached, used, -1) if self.counts_in_rows else 10
+            if not rows_per_task:
+                continue
+            block = slice(t * rows_per_task, (t + 1) * rows_per_task)
+            found["solves/iterations"][block], found["solves/step"][block] = counts, at
+            found["solves/newton"][block] = j
+            for name in LEVELS:
+                found[f"solves/{name}"][block] = plant.level(name, j, draw, guess_of_task)
+            for name in ("assemble_s", "direct_s"):
+                found[f"timing/solves/{name}"][block] = getattr(plant, name)
+            for name in ("guess_s", "cg_s"):
+                times = np.full((newton, len(guesses)), np.nan)
                 for g in mine:
-                    iterations[r, g] = 10
-                    guess_s[r, g] = plant.guess_s(guesses[g], newton[r], n, draw)
-                    cg_s[r, g] = plant.cg_s(guesses[g], newton[r], n, draw)
-            span = slice(t * self.steps, (t + 1) * self.steps)
-            steps["length_drift"][span] = -plant.drift * np.linspace(0, 1, self.steps)
-            steps["joint_gap"][span], steps["newton_residual"][span] = plant.gap, 1e-10
-            used[span], rest[span] = self.newton, plant.rest_s
-        found = {f"tasks/{name}": array for name, array in {**sums, **missed}.items()}
-        found["tasks/steps_done"] = np.where(done, self.steps, 0).astype(np.int32)
-        found.update({f"steps/{name}": array for name, array in steps.items()})
-        found.update({"steps/newton_iterations": used, "timing/steps/rest_s": rest, "solves/newton": newton,
-                      "solves/iterations": iterations,
-                      "timing/solves/guess_s": guess_s, "timing/solves/cg_s": cg_s,
-                      "timing/tasks/attempt": np.where(done, 0, 0).astype(np.int32)})
-        found.update({f"timing/solves/{name}": array for name, array in one.items()})
+                    times[:, g] = [getattr(plant, name)(guesses[g], i, n, draw) for i in range(newton)]
+                found[f"timing/solves/{name}"][block] = times[j]
+        found["tasks/steps_done"] = np.where(done, steps, 0).astype(np.int32)
+        found["timing/tasks/attempt"] = np.zeros(count, dtype=np.int32)
         return found
+
+    def _task_steps(self, found, span, plant, step, draw, guess):
+        found["steps/time_s"][span] = 0.02 * (step + 1)
+        for name in ALONG:
+            found[f"steps/{name}"][span] = getattr(plant, name)(step, self.steps, draw, guess)
+        found["steps/joint_gap"][span] = plant.gap
+        found["steps/newton_residual"][span] = plant.level("newton_residual", np.array([self.newton]), draw, guess)
+        found["steps/momentum_kg_m_s"][span] = [3, 0, 4]
+        found["steps/newton_iterations"][span] = self.newton
+        found["timing/steps/rest_s"][span] = plant.rest_s
+
+
+def write_large(path, tasks, steps, newton, closed_loop=False, guesses=GUESSES, blocks_of=1 << 16):
+    """A packed file of tasks x steps x newton rows of /solves, all planted alike: a guess takes its quality's share of
+    100 iterations, the drift is -1e-6 per step."""
+    samples = tasks // (len(guesses) if closed_loop else 1)
+    sweep = Sweep(scenes=("helix",), grid={"scene.segments": [10]}, samples=samples, guesses=guesses, steps=1,
+                  newton=newton, closed_loop=closed_loop, solves=False,
+                  random={"scene.youngs_modulus_pa": ("Pa", lambda draw: 1e4 + draw)})
+    sweep.write(path)
+    tasks, rows_per_task = len(sweep.tasks()), steps * newton
+    counts = np.rint(100 * np.array([Plant.quality[g] for g in guesses]))[:, None] * np.ones(len(TOLERANCES))
+    with h5py.File(path, "r+") as h5:
+        for name, each in (("steps", steps), ("solves", rows_per_task)):
+            h5[f"tasks/{name}"][:] = each
+            h5[f"tasks/first_{name[:-1]}"][:] = np.arange(tasks) * each
+        mine = np.ones((tasks, len(guesses)), dtype=bool)
+        if closed_loop:
+            mine = h5["tasks/own_guess"][:][:, None] == np.arange(len(guesses))
+        for name, solves in (("iterations_sum", steps), ("iterations_sum_all", rows_per_task)):
+            h5[f"tasks/{name}"][:] = np.where(mine[..., None], counts * solves, -1)
+        h5["tasks/steps_done"][:] = steps
+        step = np.arange(steps)
+        along = {f"steps/{name}": getattr(Plant(), name)(step, steps, 0, "") for name in ALONG[1:]}
+        along.update({"steps/length_drift": -1e-6 * step, "steps/time_s": 0.02 * (step + 1),
+                      "steps/joint_gap": np.full(steps, 1e-3), "steps/newton_residual": np.full(steps, 1e-9),
+                      "steps/momentum_kg_m_s": np.tile([3.0, 0, 4], (steps, 1)),
+                      "steps/newton_iterations": np.full(steps, newton, dtype=np.int16),
+                      "timing/steps/rest_s": np.full(steps, 3e-6, dtype=np.float32)})
+        j, at = np.tile(np.arange(newton, dtype=np.int16), steps), np.repeat(step.astype(np.int32), newton)
+        solved = {"solves/newton": j, "solves/step": at, "solves/newton_residual": 0.1 ** (1.0 + j),
+                  "solves/joint_gap": 0.1 ** (1.0 + j), "timing/solves/assemble_s": np.full(len(j), 2e-6, np.float32),
+                  "timing/solves/direct_s": np.full(len(j), 8e-6, np.float32)}
+        of_guess = {"timing/solves/guess_s": np.full((len(j), len(guesses)), 1e-6, np.float32),
+                    "timing/solves/cg_s": np.tile((1e-6 * (counts[:, 0] + 4)).astype(np.float32), (len(j), 1)),
+                    "solves/iterations": np.tile(counts.astype(np.int16), (len(j), 1, 1))}
+        for name, values in {**along, **solved, **of_guess}.items():
+            if name in h5:
+                del h5[name]
+            item = h5.create_dataset(name, (tasks * len(values),) + values.shape[1:], values.dtype, compression="gzip",
+                                     compression_opts=1, shuffle=True, chunks=(4096,) + values.shape[1:])
+            at_once = max(1, blocks_of // len(values))
+            for first in range(0, tasks, at_once):
+                some = range(first, min(tasks, first + at_once))
+                if name in of_guess and closed_loop:
+                    blank = -1 if values.dtype.kind == "i" else np.nan
+                    shape = (1, len(guesses)) + (1,) * (values.ndim - 2)
+                    block = [np.where(mine[t].reshape(shape), values, blank).astype(values.dtype) for t in some]
+                else:
+                    block = [values] * len(some)
+                item[some[0] * len(values):(some[-1] + 1) * len(values)] = np.concatenate(block)
+    return path

@@ -192,8 +192,9 @@ class Styles(unittest.TestCase):
             self.assertGreater(1.05 / (luminance + 0.05), 2.8, label)
 
     def test_names_of_parameters_with_their_units(self):
-        for name, unit, label in (("scene.youngs_modulus_pa", "Pa", "youngs modulus (Pa)"),
-                                  ("time.step_s", "s", "step (s)"),
+        for name, unit, label in (("scene.youngs_modulus_pa", "Pa", "Young's modulus (Pa)"),
+                                  ("scene.torsion_modulus_pa", "Pa", "torsion modulus (Pa)"),
+                                  ("time.step_s", "s", "time step (s)"),
                                   ("scene.density_kg_m3", "kg/m^3", "density (kg/m^3)"),
                                   ("scene.damping_per_s", "1/s", "damping (1/s)"), ("scene.windings", "", "windings"),
                                   ("scene.segments", "", "number of segments N")):

@@ -57,6 +57,19 @@ class Groups(unittest.TestCase):
         rows = groups.applicable(file, sims, "guesses[1].oracle.error")
         self.assertEqual(set(file.parameter("guesses[1]").values[sims.any_task[rows]]), {"oracle"})
 
+    def test_direct_tasks_stand_beside_every_setting_of_the_solver_and_no_other_grid(self):
+        grid = {"scene.segments": [10], "solve.tolerance": [0.1, 0.01], "time.step_s": [0.01, 0.02]}
+        file, sims = self.open(grid=grid, scenes=("helix",), samples=2)
+        direct = file.parameter("solve.tolerance").values[sims.any_task] == 0.01
+        sims = measures.Simulations(sims.task, sims.any_task, sims.sample, ~direct)
+        panels = groups.with_direct(sims, groups.panels(file, sims))
+        self.assertEqual([panel.settings for panel in panels], [{"solve.tolerance": "0.1", "time.step_s": "0.01"},
+                                                                {"solve.tolerance": "0.1", "time.step_s": "0.02"}])
+        for panel in panels:
+            self.assertEqual(sorted(direct[panel.index].tolist()), [False, False, True, True])
+            self.assertEqual(len(set(file.parameter("time.step_s").values[sims.any_task[panel.index]])), 1)
+        self.assertEqual(groups.short_titles(panels), ["tolerance 0.1, step s 0.01", "tolerance 0.1, step s 0.02"])
+
     def test_keys_in_step_with_x_make_no_panels(self):
         file, sims = self.open(grid={"scene.segments": [10, 20]}, scenes=("helix",), samples=2)
         self.assertEqual(groups.gridded_keys(file, sims.any_task, "scene.segments"), [])

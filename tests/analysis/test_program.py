@@ -11,12 +11,19 @@ import unittest
 import unittest.mock
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
+import along_time
 import commandline
+import export
 import h5py
+import heatmap
+import long_term
 import measures
+import newton
+import newton_levels
 import numpy as np
 import spatial
 import summary
+import temporal
 import timings
 from sweepfile import SweepFile
 
@@ -185,6 +192,56 @@ class Program(unittest.TestCase):
             os.remove(path)
             self.assertEqual("Of 4 tasks some guesses were timed in another run" in said, apart > 0)
             self.assertNotIn("WARNING", said)
+
+    def test_the_curve_along_the_time_is_that_of_the_rows(self):
+        path = self.run_job("paired")
+        with SweepFile(path) as file:
+            tasks = np.flatnonzero(file.scene_types() == "helix")
+            sims = measures.simulations(file, np.isin(np.arange(file.task_count), tasks))
+            found = along_time.windows(file, sims, "first", [0, 1], [1], width=1)
+            curve = temporal.estimate(sims, found, 0, relative=True).value[:, 1, 0]
+            rows = np.concatenate([np.arange(file.first_solve[t], file.first_solve[t] + file.solves[t]) for t in tasks])
+            first = rows[file.h5["solves/newton"][:][rows] == 0]
+            counts, step = file.h5["solves/iterations"][:][first][..., 1], file.h5["solves/step"][:][first]
+            self.assertTrue((counts >= 0).all())
+            for k in range(4):
+                sums = counts[step == k].sum(axis=0)
+                self.assertAlmostEqual(curve[k], sums[1] / sums[0])
+        self.assertEqual(len(self.script(temporal, path, "--scene", "helix").split()), 4)
+
+    def test_heat_maps_of_counts_times_and_steps(self):
+        path = self.run_job("paired")
+        for measure in ("ratio", "matvec-ratio", "speedup-step", "joint-gap"):
+            x = ("--x", "scene.segments", "--y", "scene.length_m", "--measure", measure, "--scene", "bending_rod")
+            self.assertEqual(len(self.script(heatmap, path, *x).split()), 2)
+
+    def test_levels_of_newton_end_where_the_steps_end(self):
+        path = self.run_job("paired")
+        with SweepFile(path) as file:
+            found = newton_levels.levels(file, [0]).values
+            rows = slice(file.first_solve[0], file.first_solve[0] + file.solves[0])
+            j = file.h5["solves/newton"][rows]
+            for name in ("newton_residual", "joint_gap"):
+                values = file.h5[f"solves/{name}"][rows]
+                np.testing.assert_allclose(found[name][0, 0, 1], np.median(values[j == 0]))
+                self.assertLess(found[name][0, 2, 3], found[name][0, 0, 3])
+        self.assertIn("  direct", self.script(newton, path))
+
+    def test_a_long_run_of_cg_and_direct_side_by_side(self):
+        path = self.run_job("long", evaluation="closed_loop", scene=HELIX, guesses=["zero", "previous"],
+                            solve={"method": {"grid": ["cg", "direct"]}, "tolerance": 1e-2})
+        said = self.script(long_term, path)
+        for method in ("zero", "previous", "direct"):
+            self.assertIn(f"\n  {method}", said)
+
+    def test_an_export_has_the_sums_of_the_file(self):
+        path = self.run_job("paired")
+        rows = [line.split(",") for line in self.script(export, path, "--columns", "task,iterations_sum").split()]
+        with SweepFile(path) as file:
+            self.assertEqual(sum(int(row[1]) for row in rows[1:]), file.h5["tasks/iterations_sum"][:].sum())
+        solves = self.script(export, path, "--level", "solves", "--columns", "newton", "--guess", "zero").split()
+        with SweepFile(path) as file:
+            self.assertEqual(len(solves) - 1, (file.h5["solves/newton"][:] >= 0).sum())
 
     def test_tasks_that_are_not_complete_are_not_read(self):
         path = self.run_job("partial")

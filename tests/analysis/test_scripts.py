@@ -1,53 +1,14 @@
 """spatial.py and summary.py as a user runs them: files made, numbers printed, plain errors with exit code 2."""
 
-import contextlib
 import csv
 import io
 import json
 import os
 import subprocess
-import sys
-import tempfile
-import types
 import unittest
-import unittest.mock
 
 import synthetic
-import commandline
-import spatial
-import summary
-
-
-class Scripts(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder, self.path = folder.name, os.path.join(folder.name, "sweep.h5")
-
-    def write(self, **settings):
-        settings.setdefault("steps", 2)
-        synthetic.Sweep(**settings).write(self.path)
-
-    def run_script(self, name, *arguments, code=0):
-        """In this process, as `name` would: a start of Python with its libraries takes a second."""
-        script = {"spatial.py": spatial, "summary.py": summary}[name]
-        out, error, here = io.StringIO(), io.StringIO(), os.getcwd()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error), \
-                unittest.mock.patch.object(sys, "argv", [name, *arguments]):
-            os.chdir(self.folder)
-            try:
-                with self.assertRaises(SystemExit) as left:
-                    commandline.run(name, script.main)
-            finally:
-                os.chdir(here)
-        self.assertEqual(left.exception.code or 0, code, error.getvalue())
-        return types.SimpleNamespace(stdout=out.getvalue(), stderr=error.getvalue())
-
-    def refused(self, name, *arguments, words):
-        error = self.run_script(name, *arguments, code=2).stderr
-        self.assertEqual(error.count("\n"), 1, error)
-        self.assertTrue(error.startswith(f"{name}: "), error)
-        self.assertIn(words, error)
+from running import Scripts
 
 
 class Spatial(Scripts):

@@ -1,0 +1,142 @@
+"""The numbers of heatmap.py: one measure of every guess in every cell of a plane of two parameters.
+
+A plane is a panel of simulations (groups.py) whose cells are the combinations of the values along x and y. The name
+`tolerance` as an axis is the file's ladder of tolerances, for the measures that know iterations to all of them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+import commandline
+import groups
+import intervals
+import measures
+import style
+import timings
+from sweepfile import KeyNotFound
+
+LADDER = "tolerance"
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What a cell can show. `better` is -1 where less is better, 1 where more is, about 1; 0 is no comparison."""
+    label: str
+    explained: str
+    better: int
+    statistic: str           # of simulations: mean or median
+    ladder: bool = False     # has it a value for every tolerance of the ladder?
+    of_guess: bool = True    # or is it the same whatever the guess (of a paired trajectory, or of zero)?
+    timed: bool = False
+
+
+MEASURES = {
+    "ratio": Measure("CG ratio", "Iterations with a guess ÷ from zero, summed over a simulation", -1, "mean", True),
+    "matvec-ratio": Measure("ratio of products with A", "Products with A (of CG and of the guess) with a guess ÷ from "
+                            "zero, summed over a simulation", -1, "mean", True),
+    "other-norm-ratio": Measure("CG ratio in the other norm", "Iterations with a guess ÷ from zero, summed over a "
+                                "simulation, to the residual in the norm that the job doesn't use", -1, "mean", True),
+    "iterations": Measure("CG iterations from zero", "Iterations of a solve from zero, mean over a simulation", 0,
+                          "mean", True, False),
+    **{f"speedup-{name}".replace("_", "-"):
+       Measure(f"speedup, {text}", f"Time of zero-guess CG ÷ time of the method ({text}), sums over a simulation", 1,
+               "median", timed=True) for name, text in timings.SPEEDUPS.items()},
+    "newton-residual": Measure("Newton residual", "Largest Newton residual at the end of a step of a simulation", 0,
+                               "median", of_guess=False),
+    "joint-gap": Measure("joint gap / length", "Largest joint gap at the end of a step of a simulation", 0, "median",
+                         of_guess=False),
+}
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Cells [y, x]; guess is -1 where a cell is empty or the measure is of no guess."""
+    panel: groups.Panel
+    x: groups.Points
+    y: groups.Points
+    cells: intervals.Estimate
+    guess: np.ndarray
+    unreached: np.ndarray    # solves of the cell's guess or of zero that missed the tolerance
+
+
+def per_simulation(shown, name, tolerances):
+    """[simulation, guess, tolerance] values and solves that missed the tolerance; one guess, one tolerance if alike."""
+    file, sims, newton = shown.file, shown.sims, shown.newton
+    none = np.zeros((len(sims), 1, 1))
+    if MEASURES[name].ladder:
+        counted, norm = {"matvec-ratio": ("matvecs", ""), "other-norm-ratio": ("iterations", "other_norm")}.get(
+            name, ("iterations", ""))
+        if norm and newton != "first":
+            raise KeyNotFound(f"--measure {name} is of the first Newton iterations: leave --newton all out")
+        ratios = measures.cg_ratios(file, sims, newton, counted, norm)
+        if not np.isfinite(ratios.ratio).any():
+            raise KeyNotFound(f"{file.path} has no counts for --measure {name}")
+        missed = np.nan_to_num(ratios.unreached) + np.nan_to_num(ratios.unreached_zero)
+        if name != "iterations":
+            return ratios.ratio[:, :, tolerances], missed[:, :, tolerances]
+        if newton != "first":
+            raise KeyNotFound("--measure iterations is of the first Newton iterations: leave --newton all out")
+        return (part[:, [file.zero]][:, :, tolerances] for part in (ratios.iterations_per_solve, ratios.unreached))
+    if MEASURES[name].timed:
+        if not timings.timed(file):
+            raise KeyNotFound(f"{file.path} has no times of single solves (record.solves is \"summary\")")
+        found = timings.speedups(timings.times(file, sims), newton)[name.split("-", 1)[1].replace("-", "_")]
+        return found[..., None], np.zeros(found.shape + (1,))
+    steps = measures.step_figures(file, sims)
+    values = {"newton-residual": steps.newton_residual, "joint-gap": steps.joint_gap}[name]
+    column = shown.guesses[0] if sims.closed_loop else 0
+    return values[:, [column], None], none
+
+
+def tolerance_points(file, tolerances):
+    """The ladder as points along an axis; every tolerance is of all simulations."""
+    order = np.argsort(file.tolerances[tolerances])
+    values = file.tolerances[tolerances][order]
+    return groups.Points(values, [commandline.tolerance_label(value) for value in values], list(order), True, False)
+
+
+def planes(shown, name, x, y, guesses, tolerances):
+    """One per scene type and value of any other grid; in a cell the best of `guesses`, or the measure of no guess."""
+    file, measure = shown.file, MEASURES[name]
+    keys = tuple(key for key in (x, y) if key != LADDER)
+    panels = groups.panels(file, shown.sims, keys, most=None)
+    values, missed = per_simulation(shown, name, tolerances)
+    columns = [0] if values.shape[1] == 1 else guesses
+    found = []
+    for panel in panels:
+        along = {key: tolerance_points(file, tolerances) if key == LADDER else
+                 groups.points(file, shown.sims, panel, key) for key in (x, y)}
+        shape = (len(along[y].index), len(along[x].index))
+        parts, best, unreached = np.full(shape + (4,), np.nan), np.full(shape, -1), np.zeros(shape)
+        for cell in np.ndindex(shape):
+            rows, t = _members(panel, along, {y: cell[0], x: cell[1]})
+            if not len(rows):
+                continue
+            of = intervals.mean if measure.statistic == "mean" else intervals.median
+            e = of(values[rows][:, columns, t], shown.sims.sample[rows])
+            if not np.isfinite(e.value).any():
+                continue
+            k = int(np.nanargmax(e.value) if measure.better > 0 else np.nanargmin(e.value))
+            parts[cell] = e.value[k], e.low[k], e.high[k], e.count[k]
+            unreached[cell] = missed[rows][:, columns[k], t].sum()
+            best[cell] = columns[k] if measure.of_guess else -1
+        cells = intervals.Estimate(*parts[..., :3].transpose(2, 0, 1), np.nan_to_num(parts[..., 3]).astype(int))
+        found.append(Plane(panel, along[x], along[y], cells, best, unreached))
+    return found
+
+
+def _members(panel, along, at):
+    """Simulations of a cell and its place on the ladder of tolerances."""
+    rows, t = panel.index, 0
+    for key, k in at.items():
+        if key == LADDER:
+            t = along[key].index[k]
+        else:
+            rows = np.intersect1d(rows, along[key].index[k])
+    return rows, t
+
+
+def comparable(file, guesses):
+    """The guesses among which a best is sought: neither zero nor an oracle, which knows the solution."""
+    return [g for g in guesses if g != file.zero and not style.kind_of(file.guesses[g]).startswith("oracle")]

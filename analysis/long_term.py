@@ -1,0 +1,218 @@
+#!/usr/bin/python3
+"""Figure and table of long runs: length drift, joint gap, total energy and momenta over time for every method.
+
+Made for closed loops, where every guess advances a trajectory of its own, with tasks of `solve.method` "direct" beside
+them; in a paired sweep there is one trajectory, that of the direct solve. A line is the median over simulations of the
+largest value in each of a few hundred stretches of the run (energy: of the middle of its range); its band goes from the
+smallest to the largest that any simulation had there. The table has the largest and the final drift, its
+slope per 1000 steps with a 95 % bootstrap interval over simulations, and what failed. The figure is written as PDF and
+PNG; the paths are printed after the table.
+"""
+
+import sys
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+import commandline
+import envelopes
+import groups
+import history_table
+import layout
+import measures
+import study
+import style
+from sweepfile import KeyNotFound, SweepFile
+
+EXAMPLES = """examples:
+  analysis/long_term.py results/long_term.h5
+  analysis/long_term.py results/long_term.h5 --guess zero,previous,quadratic --log-time
+  analysis/long_term.py results/long_term.h5 --after 2000 --csv > drift.csv"""
+PANELS = {  # quantity: title, vertical scale
+    "length_drift": ("size of the length drift", "log"),
+    "joint_gap": ("largest joint gap / joint length", "log"),
+    "energy_j": ("change of the total energy ÷ largest kinetic energy", "energy"),
+    "momentum_kg_m_s": ("linear momentum (kg m/s)", "log"),
+    "angular_momentum_kg_m2_s": ("angular momentum about the origin (kg m²/s)", "log"),
+}
+DECADES = 8   # of a logarithmic axis, counted from its top
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
+    study.add_figure_arguments(made)
+    made.add_argument("--after", metavar="STEP", type=int,
+                      help="first step of the fit of drift per 1000 steps (default: a tenth of the run)")
+    made.add_argument("--log-time", action="store_true", help="logarithmic time axis")
+    made.add_argument("--csv", action="store_true", help="the table as comma-separated values, and no figure")
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        shown = make_study(file, options)
+        panels = groups.with_direct(shown.sims, groups.panels(file, shown.sims, ("solve.method",), most=None))
+        if len(panels) > groups.MOST_PANELS:
+            raise KeyNotFound(f"{len(panels)} groups of simulations are too many for a page (at most "
+                              f"{groups.MOST_PANELS}): choose with --scene TYPE or --select KEY=VALUE")
+        begin = options.after if options.after is not None else int(file.steps[shown.sims.tasks()].max()) // 10
+        found = envelopes.histories(file, shown.sims.tasks(), begin, options.log_time)
+        series = [methods(shown, panel) for panel in panels]
+        failed = failures(file, options, shown)
+        if options.csv:
+            history_table.write_csv(sys.stdout, panels, series, found, shown.sims, failed)
+            return 0
+        print("\n".join(history_table.lines(panels, series, found, shown.sims, failed, begin)) + "\n")
+        study.save(file, options, {"long-term": figure(shown, panels, series, found, options)},
+                   ["log-time" if options.log_time else ""])
+    return 0
+
+
+def make_study(file, options):
+    """All tasks that were chosen, with and without guesses."""
+    if not envelopes.recorded(file):
+        raise KeyNotFound(f"{file.path} has no rows of steps (/steps): nothing is known of the runs")
+    chosen = commandline.chosen_tasks(file, options)
+    return study.of_tasks(file, chosen, commandline.chosen_guesses(file, options), options)
+
+
+def methods(shown, panel):
+    """{method: (style, tasks, rows of Simulations)} of a panel, guesses in the file's order and `direct` last."""
+    file, sims = shown.file, shown.sims
+    found = {}
+    for g in shown.guesses:
+        rows = panel.index[sims.own[panel.index] & (sims.task[panel.index, g] >= 0)]
+        if len(rows):
+            found[file.guesses[g]] = (shown.style(g), sims.task[rows, g], rows)
+    rows = panel.index[~sims.own[panel.index]]
+    if len(rows):
+        found["direct"] = (style.DIRECT, sims.any_task[rows], rows)
+    return found
+
+
+def failures(file, options, shown):
+    """{(scene, method): (failed, all that are complete)}; a failed task is in no line and no number."""
+    chosen = commandline.chosen_tasks(file, options) & file.complete
+    scenes, counts = file.scene_types(), {}
+    for task in np.flatnonzero(chosen):
+        own = file.own_guess[task]
+        if own >= 0 and own not in shown.guesses:
+            continue
+        key = (scenes[task], file.guesses[own] if own >= 0 else "direct")
+        bad, every = counts.get(key, (0, 0))
+        counts[key] = (bad + (not file.ok[task]), every + 1)
+    return counts
+
+
+def figure(shown, panels, series, found, options):
+    names = [name for name in PANELS if name in found.low]
+    labels = {label: s for methods_of in series for label, (s, _, _) in methods_of.items()}
+    handles = [Line2D([], [], label=label, **s.line()) for label, s in labels.items()]
+    counts = commandline.range_text([len(rows) for methods_of in series for _, _, rows in methods_of.values()])
+    buckets = len(found.edges) - 1
+    steps = int(found.edges[-1])
+    times = [_time(shown.file, shown.sims.any_task[panel.index], found.edges) for panel in panels]
+    notes = [f"{steps} steps in {buckets} stretches. Lines: median over {counts} simulations of the largest value in a "
+             "stretch (energy: of the middle of its range, relative to the first step). Bands: smallest to largest of "
+             "all simulations, for length drift of these largest values. Logarithmic axes have at most "
+             f"{DECADES} decades."]
+    titles = groups.short_titles(panels)
+    columns = layout.even_columns(len(panels), 4 if shown.wide else 1)
+    if max(map(len, titles)) > (shown.width_mm - 13) / columns / 1.2:    # a character has about 1.2 mm
+        titles = [title.replace(", ", "\n") for title in titles]
+    page = layout.Page(shown.width_mm, [PANELS[name][0] for name in names], len(panels), columns,
+                       26, handles, notes + [shown.about()], left_mm=13,
+                       panel_titles_mm=1 + 2.6 * max(title.count("\n") + bool(title) for title in titles))
+    scales = [_scales(found, methods_of, shown) for methods_of in series]
+    for name, row in zip(names, page.axes):
+        values = [_draw(axes, x, name, methods_of, found, scale)
+                  for axes, (x, _), methods_of, scale in zip(row, times, series, scales)]
+        for k, (axes, (x, _)) in enumerate(zip(row, times)):
+            _scale_y(axes, PANELS[name][1], np.concatenate([part.ravel() for part in values]))
+            if options.log_time:
+                axes.set_xscale("log")
+            axes.set_xlim(x[0] if options.log_time else 0, x[-1])
+            axes.set_title(titles[k], fontsize=6, pad=2)
+            page.label_y(axes, k, "")
+    page.label_x(len(names) - 1, times[0][1])
+    return page
+
+
+def _time(file, tasks, edges):
+    """Middle of every bucket, in seconds where the simulations share one step size."""
+    middle = (edges[:-1] + edges[1:] + 1) / 2
+    sizes = set(file.parameters["time.step_s"].values[tasks]) if "time.step_s" in file.parameters else set()
+    return (middle * sizes.pop(), "simulated time (s)") if len(sizes) == 1 else (middle, "time step")
+
+
+def _scales(found, methods_of, shown):
+    """{draw: J}: a simulation's largest kinetic energy, the smallest over its methods (one may have blown up)."""
+    scales = {}
+    for _, tasks, rows in methods_of.values():
+        for task, draw in zip(tasks, shown.sims.sample[rows]):
+            kinetic = found.largest_kinetic[found.rows(task)]
+            if kinetic > 0:
+                scales[draw] = min(scales.get(draw, np.inf), kinetic)
+    return {method: np.array([scales.get(draw, np.nan) for draw in shown.sims.sample[rows]])
+            for method, (_, _, rows) in methods_of.items()}
+
+
+def _envelope(found, name, method, tasks, scales):
+    """(lower, upper, line) over buckets."""
+    at = found.rows(tasks)
+    low, high = found.low[name][at].astype(float), found.high[name][at].astype(float)
+    if name == "energy_j":
+        first, scale = found.first[name][at][:, None], scales[method][:, None]
+        low, high = (low - first) / scale, (high - first) / scale
+    if name == "length_drift":
+        low = high = np.maximum(np.abs(low), np.abs(high))
+    line = (low + high) / 2 if name == "energy_j" else high
+    return np.fmin.reduce(low), np.fmax.reduce(high), measures.median_of_finite(line)
+
+
+def _draw(axes, x, name, methods_of, found, scales):
+    drawn = {method: _envelope(found, name, method, tasks, scales) for method, (_, tasks, _) in methods_of.items()}
+    every = max(1, len(x) // 7)
+    for rank, (method, (low, high, line)) in enumerate(drawn.items()):
+        look = methods_of[method][0]
+        axes.fill_between(x, low, high, color=look.colour, alpha=0.10, linewidth=0)
+        axes.plot(x, line, color=look.colour, linestyle=look.dash, marker=look.marker,
+                  markevery=((rank * every) // len(drawn), every), linewidth=0.9, markersize=2.8)
+    return np.array([part for parts in drawn.values() for part in parts])
+
+
+def _scale_y(axes, scale, values):
+    """The same for all panels of a row, whose values these are."""
+    values = values[np.isfinite(values)]
+    sizes = np.abs(values[values != 0])
+    if not len(sizes):
+        return
+    top, low, high = sizes.max(), values.min(), values.max()
+    if scale == "log":
+        axes.set_yscale("log")
+        axes.set_ylim(max(0.7 * sizes.min(), top * 10.0 ** -DECADES), 1.4 * top)
+    elif top < 20 * np.median(sizes):
+        axes.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
+    else:
+        # Linear about zero up to the size of a typical value, at most four decades below the largest.
+        linear = 10.0 ** np.clip(np.floor(np.log10(np.median(sizes))), np.ceil(np.log10(top)) - 4,
+                                 np.ceil(np.log10(top)) - 1)
+        axes.set_yscale("symlog", linthresh=linear, linscale=0.6)
+        axes.axhline(0, color="#888888", linewidth=0.5, zorder=1)
+        axes.set_ylim(1.4 * low if low < 0 else -0.1 * linear, 1.4 * high if high > 0 else 0.1 * linear)
+        ticks = _symlog_ticks(linear, low, high)
+        axes.set_yticks(ticks, [style.number_text(t) for t in ticks])
+        axes.yaxis.set_minor_locator(layout.NullLocator())
+
+
+def _symlog_ticks(linear, low, high):
+    """Zero and powers of ten, the first where the linear part ends."""
+    def decades(reach):
+        count = int(np.floor(np.log10(reach / linear) + 1e-9)) if reach >= linear else -1
+        return [linear * 10.0 ** k for k in range(0, count + 1, max(1, -(-count // 3)))]
+    return [-t for t in decades(-low)[::-1]] + [0] + decades(high)
+
+
+if __name__ == "__main__":
+    commandline.run("long_term.py", main)

@@ -1,0 +1,87 @@
+"""Residual and joint gap before every Newton iteration and at the end of a step: the numbers of newton.py.
+
+Level j is the state before Newton iteration j (rows of /solves); a step that used k iterations ends in level k (rows of
+/steps). Per simulation and level: the quartiles over the steps that reached it, and the largest. A step that Newton
+left early, since it was below the job's tolerance, is in no later level.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SOLVES = {"newton_residual": "/solves/newton_residual", "joint_gap": "/solves/joint_gap"}
+STEPS = {"newton_residual": "/steps/newton_residual", "joint_gap": "/steps/joint_gap"}
+QUARTILES = (0.25, 0.5, 0.75)
+
+
+@dataclass(frozen=True)
+class Levels:
+    """[task, level, 4]: lower quartile, median, upper quartile, largest; `share` of the steps that reached a level."""
+    tasks: np.ndarray
+    values: dict
+    share: np.ndarray    # [task, level]
+
+    def rows(self, tasks):
+        return np.searchsorted(self.tasks, tasks)
+
+
+def quantities(file):
+    """The quantities that the file has, both before the iterations and at the ends of the steps."""
+    if not all(file.has(path) for path in ("/solves/newton", "/steps/newton_iterations")):
+        return []
+    return [name for name in SOLVES if file.has(SOLVES[name]) and file.has(STEPS[name])]
+
+
+def levels(file, tasks):
+    """Of tasks that are complete, one after the other: the rows of one have to fit in memory."""
+    tasks = np.unique(tasks)
+    names = quantities(file)
+    most = int(file.parameter("time.newton_iterations").values[tasks].max()) + 1
+    values = {name: np.full((len(tasks), most, 4), np.nan) for name in names}
+    share = np.zeros((len(tasks), most))
+    there = tasks[(file.solves[tasks] > 0) & (file.steps[tasks] > 0)]
+    solves, steps = (_by_task(blocks(there, list(paths)), count) for blocks, paths, count in (
+        (file.solve_blocks, ["/solves/newton", *(SOLVES[name] for name in names)], file.solves),
+        (file.step_blocks, ["/steps/newton_iterations", *(STEPS[name] for name in names)], file.steps)))
+    for (task, before), (other, after) in zip(solves, steps, strict=True):
+        if task != other:
+            raise ValueError(f"rows of tasks {task} and {other} come in different orders")
+        row = np.searchsorted(tasks, task)
+        level = np.concatenate([before["/solves/newton"], after["/steps/newton_iterations"]])
+        order = np.argsort(level, kind="stable")
+        starts = np.searchsorted(level[order], np.arange(most + 1))
+        for name in names:
+            both = np.concatenate([before[SOLVES[name]], after[STEPS[name]]])[order]
+            for k in range(most):
+                reached = both[starts[k]:starts[k + 1]]
+                reached = reached[np.isfinite(reached)]
+                if len(reached):
+                    values[name][row, k] = [*np.quantile(reached, QUARTILES), reached.max()]
+                    share[row, k] = len(reached) / max(1, len(after["/steps/newton_iterations"]))
+    return Levels(tasks, values, share)
+
+
+def _by_task(blocks, count):
+    """(task, {column: rows}) with all rows of a task, put together where a task comes in several blocks."""
+    waiting = {}
+    for owners, starts, rows in blocks:
+        ends = np.append(starts[1:], len(next(iter(rows.values()))))
+        for task, start, end in zip(owners, starts, ends):
+            pieces = waiting.setdefault(int(task), [])
+            pieces.append({path: values[start:end] for path, values in rows.items()})
+            if sum(len(next(iter(piece.values()))) for piece in pieces) == count[task]:
+                del waiting[int(task)]
+                yield int(task), {path: np.concatenate([piece[path] for piece in pieces]) for path in rows}
+
+
+def orders(medians, floor):
+    """Observed order of convergence at every level from three successive medians; NaN at or below the floor.
+
+    log(r[j+1] / r[j]) / log(r[j] / r[j-1]): 1 for a fixed factor, 2 where the residual is squared.
+    """
+    found = np.full(len(medians), np.nan)
+    for j in range(1, len(medians) - 1):
+        before, now, after = medians[j - 1:j + 2]
+        if min(before, now, after) > floor and after < now < before:
+            found[j] = np.log(after / now) / np.log(now / before)
+    return found

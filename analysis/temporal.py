@@ -1,0 +1,142 @@
+#!/usr/bin/python3
+"""Figures of a sweep along the simulated time: does a guess help as much late in a simulation as early?
+
+  cg-ratio-in-time    CG iterations relative to the zero guess, a panel per tolerance
+  iterations-in-time  CG iterations of a solve, zero guess included
+
+Made for simulations that share their fixed parameters (the deck's temporal study: one scene, many samples). Iterations
+are summed over a window of steps around each point (--window, by default a twentieth of the run) and over simulations;
+the ratio is that of the sums. Bands are 95 % bootstrap intervals over simulations. A row of panels per scene type and
+per value of any grid of the job. Needs /solves in the file (record.solves "all"). Written as PDF and PNG; the paths are
+printed.
+"""
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+import along_time
+import commandline
+import groups
+import intervals
+import layout
+import measures
+import study
+import style
+from sweepfile import KeyNotFound, SweepFile
+
+EXAMPLES = """examples:
+  analysis/temporal.py results/temporal_bending.h5
+  analysis/temporal.py results/temporal_helix.h5 --tolerance 1e-2 --guess zero,previous,quadratic --newton all
+  analysis/temporal.py results/spatial_bending.h5 --select scene.segments=30 --window 1"""
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES)
+    study.add_figure_arguments(made)
+    made.add_argument("--window", metavar="STEPS", type=_steps,
+                      help="steps summed for a point, 1 for no smoothing (default: a twentieth of the run)")
+    return made.parse_args()
+
+
+def _steps(text):
+    steps = int(text)
+    if steps < 1:
+        raise ValueError
+    return steps
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        shown = study.of_guesses(file, options)
+        if not along_time.recorded(file):
+            raise KeyNotFound(f"{file.path} has no rows of single solves (record.solves is \"summary\"): "
+                              "nothing is known along the time")
+        tolerances = commandline.chosen_tolerances(file, options)
+        panels = groups.panels(file, shown.sims)
+        columns = sorted({*shown.guesses, file.zero})
+        found = [along_time.windows(file, shown.sims.subset(panel.index), options.newton, columns, tolerances,
+                                    options.window) for panel in panels]
+        made = {"cg-ratio-in-time": figure(shown, panels, found, columns, tolerances, relative=True),
+                "iterations-in-time": figure(shown, panels, found, columns, tolerances, relative=False)}
+        study.save(file, options, made, [f"window{options.window}" if options.window else ""])
+    return 0
+
+
+def estimate(sims, windows, zero, relative):
+    """[window, guess, tolerance]: iterations over those from zero, or per solve; sums over simulations."""
+    found = []
+    for k in range(windows.iterations.shape[-1]):   # one tolerance at a time: the bootstrap copies what it gets
+        counts = windows.iterations[..., k]
+        per = counts[:, :, [zero]] if relative else windows.solves
+        found.append(intervals.ratio_of_sums(counts, np.broadcast_to(per, counts.shape), sims.sample))
+    return intervals.Estimate(*(np.stack([getattr(e, name) for e in found], axis=-1)
+                                for name in ("value", "low", "high", "count")))
+
+
+def figure(shown, panels, found, columns, tolerances, relative):
+    file = shown.file
+    zero = columns.index(file.zero)
+    lines = [g for g in shown.guesses if not (relative and g == file.zero)]
+    estimates = [estimate(shown.sims.subset(panel.index), windows, zero, relative)
+                 for panel, windows in zip(panels, found)]
+    widths = " / ".join(dict.fromkeys(str(windows.width) for windows in found))
+    what = "Iterations with a guess ÷ from zero, sums" if relative else "Iterations of a solve, mean"
+    steps = "step" if widths == "1" else "steps"
+    notes = [f"{what} over a window of {widths} {steps} (shorter at the ends) and over "
+             f"{study.sample_text(estimates, mark='bands')}. Counted: {measures.NEWTON[shown.newton]}."]
+    if any(windows.unreached[:, columns.index(g)].any() for windows in found for g in lines):
+        notes.append("Open markers: some solves of the window missed the tolerance (iteration limit or divergence) and "
+                     "count the mean of what such solves used in their simulation.")
+    page = layout.Page(shown.width_mm, [panel.title() for panel in panels], len(tolerances),
+                       layout.even_columns(len(tolerances), 2 if shown.wide else 1), 38 if shown.wide else 32,
+                       shown.handles(lines, "zero guess (= 1)" if relative else ""), notes + [shown.about()])
+    for row, (panel, windows, e) in enumerate(zip(panels, found, estimates)):
+        at = [columns.index(g) for g in lines]
+        tops = [_top(e[:, at, k]) for k in range(len(tolerances))]
+        x, label = _time(file, shown.sims.any_task[panel.index], windows.centre)
+        for k, axes in enumerate(page.axes[row]):
+            if relative:
+                axes.axhline(1, color=style.KINDS["zero"][0], linewidth=0.9, zorder=1.5)
+            for rank, g in enumerate(lines):
+                at = columns.index(g)
+                draw(axes, x, e[:, at, k], shown.style(g), windows.unreached[:, at, k] > 0, rank, len(lines))
+            line = k - k % page.columns
+            axes.set_ylim(0, max(tops[line:line + page.columns]))
+            axes.set_xlim(0, 1.01 * x[-1])
+            axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+            axes.set_title("tolerance " + style.tolerance_text(file.tolerances[tolerances[k]]))
+            page.label_y(axes, k, "CG ratio" if relative else "CG iterations")
+        page.label_x(row, label)
+    return page
+
+
+def _top(e):
+    """Upper end of an axis: all lines are in it, and bands up to half as high again."""
+    value, high = (float(np.nanmax(part)) if np.isfinite(part).any() else 1.0 for part in (e.value, e.high))
+    return 1.06 * max(1.0, value, min(high, 1.5 * value))
+
+
+def _time(file, tasks, steps):
+    """Times of steps where the simulations share one step size, else the steps themselves."""
+    sizes = set(file.parameters["time.step_s"].values[tasks]) if "time.step_s" in file.parameters else set()
+    if len(sizes) == 1:
+        return steps * sizes.pop(), "simulated time (s)"
+    return steps, "time step"
+
+
+def draw(axes, x, e, guess_style, hollow, rank, count):
+    """A line with a marker now and then and its band. Points whose solves missed the tolerance have open markers."""
+    every = max(1, len(x) // 8)
+    colour = guess_style.colour
+    axes.fill_between(x, e.low, e.high, color=colour, alpha=0.15, linewidth=0)
+    axes.plot(x, e.value, color=colour, linestyle=guess_style.dash)
+    marked = np.zeros(len(x), dtype=bool)
+    marked[(rank * every) // max(1, count)::every] = True
+    for some, face in ((marked & ~hollow, colour), (marked & hollow, "white")):
+        axes.plot(x[some], e.value[some], linestyle="", marker=guess_style.marker, color=colour, markerfacecolor=face,
+                  markeredgewidth=0.8)
+
+
+if __name__ == "__main__":
+    commandline.run("temporal.py", main)

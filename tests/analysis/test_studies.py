@@ -1,0 +1,359 @@
+"""Every number of temporal, heatmap, long_term and newton against planted qualities; what is missing is left out."""
+
+import argparse
+import csv
+import io
+import os
+import unittest
+
+import synthetic
+import along_time
+import envelopes
+import groups
+import heat
+import heatmap
+import intervals
+import long_term
+import measures
+import newton_levels
+import numpy as np
+import temporal
+from running import Scripts
+from sweepfile import SweepFile
+
+EVERYTHING = {"select": [], "scene": None, "guess": None, "tolerance": None, "newton": "first", "width": "174"}
+
+
+class Studies(Scripts):
+    def open(self, **settings):
+        self.write(**settings)
+        file = SweepFile(self.path)
+        self.addCleanup(file.h5.close)
+        return file, measures.simulations(file, np.ones(file.task_count, dtype=bool))
+
+    def options(self, **settings):
+        return argparse.Namespace(**{**EVERYTHING, **settings})
+
+
+class Fading(synthetic.Plant):
+    """A guess that is good in the first half of the run and useless in the second; draws differ in size and quality."""
+
+    def zero_iterations(self, segments, tolerance):
+        return 100
+
+    def ratio(self, guess, tolerance, newton, segments, draw):
+        return 1.0 if guess == "zero" else 0.2 + 0.1 * draw if newton == 0 else 0.9
+
+    def at_step(self, guess, step):
+        return np.ones(len(step)) if guess == "zero" else np.where(step < 10, 1, 2)
+
+
+class Temporal(Studies):
+    TEMPORAL = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 20, "newton": 2, "samples": 4,
+                "counts_in_rows": True}
+
+    def test_the_curve_is_the_planted_ratio_of_sums_before_and_after_the_change(self):
+        for closed_loop in (False, True):
+            file, sims = self.open(plant=Fading(), closed_loop=closed_loop, **self.TEMPORAL)
+            found = along_time.windows(file, sims, "first", [0, 1], [0, 1], width=1)
+            e = temporal.estimate(sims, found, 0, relative=True)
+            self.assertEqual((found.width, e.value.shape), (1, (20, 2, 2)))
+            np.testing.assert_allclose(found.centre, np.arange(1, 21))
+            np.testing.assert_allclose(e.value[:, 0], 1)
+            np.testing.assert_allclose(e.value[:10, 1], 0.35)
+            np.testing.assert_allclose(e.value[10:, 1], 0.70)
+            self.assertTrue((e.low[:, 1] < e.value[:, 1]).all() and (e.value[:, 1] < e.high[:, 1]).all())
+            self.assertGreaterEqual(e.low[0, 1].min(), 0.2 - 1e-9)   # no draw is better or worse than this
+            self.assertLessEqual(e.high[0, 1].max(), 0.5 + 1e-9)
+            file.h5.close()
+
+    def test_all_newton_iterations_and_iterations_per_solve(self):
+        file, sims = self.open(plant=Fading(), **self.TEMPORAL)
+        found = along_time.windows(file, sims, "all", [0, 1], [0], width=1)
+        np.testing.assert_allclose(temporal.estimate(sims, found, 0, True).value[:10, 1, 0], (0.35 + 0.9) / 2)
+        np.testing.assert_allclose(temporal.estimate(sims, found, 0, False).value[:, 0, 0], 100)
+        np.testing.assert_array_equal(found.solves[:, :, 0], 2)
+
+    def test_a_window_is_a_sum_over_its_steps(self):
+        file, sims = self.open(plant=Fading(), **self.TEMPORAL)
+        found = along_time.windows(file, sims, "first", [0, 1], [0], width=5)
+        ratio = temporal.estimate(sims, found, 0, True).value[:, 1, 0]
+        self.assertEqual(found.width, 5)
+        np.testing.assert_allclose(ratio[10], 0.35 * (2 * 1 + 3 * 2) / 5)    # steps 8 … 12
+        np.testing.assert_array_equal(found.solves[0, [0, 1, 2, 19], 0], [3, 4, 5, 3])
+
+    def test_solves_that_missed_the_tolerance_count_what_they_used(self):
+        plant = Fading()
+        plant.reached = lambda guess, tolerance, newton, segments, draw: guess == "zero" or draw > 0
+        file, sims = self.open(plant=plant, **self.TEMPORAL)
+        found = along_time.windows(file, sims, "first", [0, 1], [0], width=1)
+        sums = file.results("iterations_sum", sims.any_task)[:, 1, 0]
+        np.testing.assert_allclose(found.iterations[:, :, 1, 0].sum(axis=1), sums)
+        np.testing.assert_allclose(found.iterations[0, :, 1, 0], 0.2 * 100 * 1.5)  # the mean of 20 and 40
+        np.testing.assert_array_equal(found.unreached[:, 1, 0], 1)
+
+    def test_failed_and_pending_tasks_are_in_no_curve(self):
+        class OneBad(Fading):
+            def ratio(self, guess, tolerance, newton, segments, draw):
+                wrong = draw == 1 and guess != "zero"
+                return 50.0 if wrong else super().ratio(guess, tolerance, newton, segments, draw)
+
+        file, sims = self.open(plant=OneBad(), failed={1: "diverged"}, pending=(3,), **self.TEMPORAL)
+        found = along_time.windows(file, sims, "first", [0, 1], [0], width=1)
+        e = temporal.estimate(sims, found, 0, True)
+        np.testing.assert_allclose(e.value[0, 1, 0], (0.2 + 0.4) / 2)
+        np.testing.assert_array_equal(e.count, 2)
+
+    def test_long_runs_are_binned_and_keep_their_sums(self):
+        file, sims = self.open(plant=Fading(), **{**self.TEMPORAL, "steps": 1000, "samples": 2})
+        found = along_time.windows(file, sims, "first", [0, 1], [0], width=1)
+        self.assertLessEqual(len(found.centre), along_time.MOST_WINDOWS)
+        whole = along_time.windows(file, sims, "first", [0, 1], [0], width=2000)
+        np.testing.assert_allclose(whole.iterations[:, :, 0, 0], 100 * 1000)
+
+    def test_figures_with_a_window_in_their_name_and_caption(self):
+        self.write(plant=Fading(), **self.TEMPORAL)
+        printed = self.run_script("temporal.py", "sweep.h5", "--window", "4").stdout.split()
+        self.assertEqual(printed[0], "figures/sweep-cg-ratio-in-time-window4.pdf")
+        self.assertEqual(len(printed), 4)
+        self.write(solves=False, **{**self.TEMPORAL, "counts_in_rows": False})
+        self.refused("temporal.py", "sweep.h5", words="nothing is known along the time")
+
+
+class Cells(synthetic.Plant):
+    """previous wins at 10 segments, quadratic at 40; the oracle beats both; the draw shifts all a little."""
+
+    def zero_iterations(self, segments, tolerance):
+        return 1000 if tolerance > 0.05 else 2000
+
+    def ratio(self, guess, tolerance, newton, segments, draw):
+        quality = {"zero": 1, "previous": 0.3 if segments < 20 else 0.6, "quadratic": 0.5, "oracle(0.1)": 0.1}[guess]
+        return quality + (0.01 * (draw - 1.5) if guess != "zero" else 0)
+
+
+class Heatmap(Studies):
+    HEAT = {"scenes": ("helix",), "samples": 4,
+            "grid": {"scene.segments": [10, 40], "time.step_s": [0.01, 0.02, 0.04]}}
+
+    def planes(self, file, measure, x, y, **settings):
+        options = self.options(measure=measure, x=x, y=y, each=False, **settings)
+        shown, tolerances, guesses = heatmap.chosen(file, options)
+        return shown, heat.planes(shown, measure, x, y, guesses, tolerances)
+
+    def test_a_cell_has_the_best_guess_its_ratio_and_an_interval_that_covers_it(self):
+        file, _ = self.open(plant=Cells(), **self.HEAT)
+        _, (plane,) = self.planes(file, "ratio", "time.step_s", "scene.segments")
+        np.testing.assert_allclose(plane.cells.value, [[0.3] * 3, [0.5] * 3])
+        self.assertEqual(plane.guess.tolist(), [[1] * 3, [2] * 3])   # the oracle takes no part
+        self.assertTrue(((plane.cells.low <= plane.cells.value) & (plane.cells.value <= plane.cells.high)).all())
+        self.assertTrue((plane.cells.high - plane.cells.low < 0.04).all())
+        np.testing.assert_array_equal(plane.cells.count, 4)
+
+    def test_a_guess_that_is_named_is_the_one_shown(self):
+        file, _ = self.open(plant=Cells(), **self.HEAT)
+        _, (plane,) = self.planes(file, "ratio", "time.step_s", "scene.segments", guess="oracle(0.1)")
+        np.testing.assert_allclose(plane.cells.value, 0.1)
+
+    def test_the_ladder_of_tolerances_is_an_axis(self):
+        file, _ = self.open(plant=Cells(), **{**self.HEAT, "grid": {"scene.segments": [10, 40]}})
+        shown, (plane,) = self.planes(file, "iterations", "scene.segments", "tolerance")
+        self.assertEqual(plane.y.text, ["1e-4", "1e-3", "1e-2", "1e-1"])
+        np.testing.assert_allclose(plane.cells.value[:, 0], [2000, 2000, 2000, 1000])
+        _, (ratio,) = self.planes(file, "ratio", "scene.segments", "tolerance")
+        np.testing.assert_allclose(ratio.cells.value, [[0.3, 0.5]] * 4)
+
+    def test_every_other_grid_is_a_panel(self):
+        file, _ = self.open(plant=Cells(), **self.HEAT)
+        _, planes = self.planes(file, "ratio", "scene.segments", "tolerance")
+        self.assertEqual([plane.panel.settings for plane in planes],
+                         [{"time.step_s": text} for text in ("0.01", "0.02", "0.04")])
+
+    def test_speedups_of_three_kinds_and_residuals(self):
+        file, _ = self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01, 0.02]}, scenes=("helix",))
+        # us, j = 0 of N = 20: CG 20 from zero, 5 with quadratic; guess 2; step: 3 assemblies of 2, rest 3
+        for measure, value in (("speedup-cg", 4), ("speedup-guess-cg", 20 / 7),
+                               ("speedup-step", (6 + 40 + 3) / (6 + 6 + 10 + 3))):
+            _, (plane,) = self.planes(file, measure, "time.step_s", "scene.segments")
+            np.testing.assert_allclose(plane.cells.value[1], value, rtol=1e-5)
+            self.assertEqual(plane.guess[1].tolist(), [2, 2])
+        _, (plane,) = self.planes(file, "newton-residual", "time.step_s", "scene.segments")
+        np.testing.assert_allclose(plane.cells.value, 1e-10)
+
+    def test_cells_without_a_simulation_are_empty_and_missed_tolerances_counted(self):
+        plant = Cells()
+        plant.reached = lambda guess, tolerance, newton, segments, draw: segments < 20 or guess != "quadratic"
+        failed = {task: "diverged" for task in range(4)}    # all draws of the first cell
+        file, _ = self.open(plant=plant, failed=failed, pending=(4,), **self.HEAT)
+        _, (plane,) = self.planes(file, "ratio", "time.step_s", "scene.segments")
+        self.assertTrue(np.isnan(plane.cells.value[0, 0]))
+        self.assertEqual(plane.cells.count.tolist(), [[0, 3, 4], [4, 4, 4]])
+        self.assertEqual(plane.unreached.tolist(), [[0, 0, 0], [20 // 10 * 4] * 3])   # 2 steps x 4 draws
+
+    def test_figures_and_refusals(self):
+        self.write(plant=Cells(), **self.HEAT)
+        where = ("--x", "time.step_s", "--y", "scene.segments")
+        printed = self.run_script("heatmap.py", "sweep.h5", *where).stdout.split()
+        self.assertEqual(printed[1], "figures/sweep-heatmap-ratio-step_s-segments-1e-2.png")
+        self.run_script("heatmap.py", "sweep.h5", *where, "--measure", "speedup-step", "--each", "--width", "84")
+        self.refused("heatmap.py", "sweep.h5", "--x", "tolerance", "--y", "tolerance", words="two parameters")
+        self.refused("heatmap.py", "sweep.h5", *where[:2], "--y", "tolerance", "--measure", "speedup-cg",
+                     words="sweep solve.tolerance in the job")
+        self.refused("heatmap.py", "sweep.h5", *where[:2], "--y", "scene.segmnts", words="did you mean scene.segments?")
+        self.refused("heatmap.py", "sweep.h5", *where, "--tolerance", "1e-1,1e-2", words="a cell shows one tolerance")
+
+
+class Drifting(synthetic.Plant):
+    """Drift grows by a known amount per step, more for quadratic; one spike in the middle of one step."""
+    per_step = {"zero": 1e-6, "previous": 1e-6, "quadratic": 3e-6, "oracle(0.1)": 1e-6, "": 5e-7}
+
+    def length_drift(self, step, steps, draw, guess):
+        drift = -self.per_step[guess] * (1 + 0.1 * draw) * step
+        drift[len(step) // 2] = 0.25 if draw == 2 and guess == "quadratic" else drift[len(step) // 2]
+        return drift
+
+
+class LongTerm(Studies):
+    LONG = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 1200, "newton": 1, "samples": 3,
+            "solves": False, "closed_loop": True}
+
+    def test_slopes_largest_and_final_values_are_the_planted_ones(self):
+        file, sims = self.open(plant=Drifting(), **self.LONG)
+        found = envelopes.histories(file, sims.tasks())
+        at = found.rows(sims.task[:, 0])
+        np.testing.assert_allclose(found.slope[at], -1e-3 * (1 + 0.1 * sims.sample), rtol=1e-9)
+        np.testing.assert_allclose(found.largest["length_drift"][at], 1199e-6 * (1 + 0.1 * sims.sample))
+        spiked = found.rows(sims.task[2, 2])
+        self.assertEqual(found.largest["length_drift"][spiked], 0.25)
+        self.assertEqual((found.high["length_drift"][spiked] == 0.25).sum(), 1)   # no envelope loses a spike
+        self.assertAlmostEqual(found.final["length_drift"][spiked], -3e-6 * 1.2 * 1199)
+        np.testing.assert_allclose(found.low["momentum_kg_m_s"][at], 5)
+        np.testing.assert_allclose(found.first["energy_j"], 3)
+        np.testing.assert_allclose(found.final["energy_j"], 2.5)
+
+    def test_the_fit_begins_where_it_is_told_to(self):
+        class Transient(Drifting):
+            def length_drift(self, step, steps, draw, guess):
+                return np.where(step < 100, 1.0, 1e-6 * step)
+
+        file, sims = self.open(plant=Transient(), **self.LONG)
+        np.testing.assert_allclose(envelopes.histories(file, sims.tasks(), begin=100).slope, 1e-3, rtol=1e-6)
+
+    def test_tasks_of_several_blocks_of_rows_come_out_the_same(self):
+        file, sims = self.open(plant=Drifting(), **self.LONG)
+        whole = envelopes.histories(file, sims.tasks())
+        blocks = file.step_blocks
+        file.step_blocks = lambda tasks, columns: blocks(tasks, columns, 500)
+        parts = envelopes.histories(file, sims.tasks())
+        np.testing.assert_allclose(parts.slope, whole.slope)
+        for name in envelopes.recorded(file):
+            np.testing.assert_array_equal(parts.low[name], whole.low[name])
+            np.testing.assert_array_equal(parts.final[name], whole.final[name])
+
+    def test_the_table_has_every_method_its_interval_and_its_failures(self):
+        self.write(plant=Drifting(), failed={1: "diverged"}, pending=(3,), **self.LONG)
+        rows = {row["method"]: row for row in csv.DictReader(
+            io.StringIO(self.run_script("long_term.py", "sweep.h5", "--csv", "--after", "0").stdout))}
+        self.assertEqual(list(rows), list(synthetic.GUESSES))
+        self.assertEqual([int(row["simulations"]) for row in rows.values()], [3, 2, 3, 2])
+        self.assertEqual([int(row["failed"]) for row in rows.values()], [0, 1, 0, 0])
+        zero = {key: float(value) for key, value in rows["zero"].items() if key.startswith("drift")}
+        self.assertAlmostEqual(zero["drift_per_1000_steps"], -1.1e-3)
+        self.assertLessEqual(zero["drift_per_1000_steps_low"], -1.1e-3)
+        self.assertGreaterEqual(zero["drift_per_1000_steps_high"], -1.1e-3)
+        self.assertEqual(float(rows["quadratic"]["length_drift_largest"]), 0.25)
+        self.assertAlmostEqual(float(rows["zero"]["length_drift_final"]), -1199e-6 * 1.2)
+
+    def test_figure_with_either_time_axis_and_of_a_paired_sweep(self):
+        self.write(plant=Drifting(), **self.LONG)
+        said = self.run_script("long_term.py", "sweep.h5").stdout
+        self.assertIn("drift per 1000 steps", said)
+        self.assertTrue(said.rstrip().endswith("figures/sweep-long-term.png"))
+        self.assertIn("sweep-long-term-log-time.png", self.run_script("long_term.py", "sweep.h5", "--log-time").stdout)
+        self.write(**{**self.LONG, "closed_loop": False, "steps": 50})
+        self.assertIn("  direct", self.run_script("long_term.py", "sweep.h5").stdout)
+
+    def test_energies_are_relative_to_the_first_step_and_the_largest_kinetic_energy(self):
+        file, sims = self.open(plant=Drifting(), **self.LONG)
+        options = self.options()
+        shown = long_term.make_study(file, options)
+        panel, = groups.panels(file, shown.sims, ("solve.method",))
+        methods = long_term.methods(shown, panel)
+        found = envelopes.histories(file, sims.tasks())
+        scales = long_term._scales(found, methods, shown)
+        low, high, line = long_term._envelope(found, "energy_j", "zero", methods["zero"][1], scales)
+        self.assertAlmostEqual(float(low[-1]), -0.5 / 2, places=6)
+        self.assertAlmostEqual(float(high[0]), 0, places=6)
+
+
+class Converging(synthetic.Plant):
+    """The residual is squared by every iteration and differs between draws; gaps fall by a factor of ten."""
+
+    def level(self, name, newton, draw, guess):
+        if name == "joint_gap":
+            return 0.1 * 10.0 ** -newton
+        return (0.1 / (1 + draw)) ** (2.0 ** newton)
+
+
+class Newton(Studies):
+    NEWTON = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "newton": 3, "samples": 3, "steps": 4}
+
+    def test_levels_are_the_planted_ones_and_the_last_is_the_end_of_the_step(self):
+        file, sims = self.open(plant=Converging(), failed={1: "diverged"}, **self.NEWTON)
+        found = newton_levels.levels(file, sims.tasks())
+        self.assertEqual(found.tasks.tolist(), [0, 2])
+        for row, draw in enumerate((0, 2)):
+            expected = (0.1 / (1 + draw)) ** (2.0 ** np.arange(4))
+            for k in range(4):   # quartiles, median and largest agree: all steps are alike
+                np.testing.assert_allclose(found.values["newton_residual"][row, :, k], expected)
+        np.testing.assert_allclose(found.values["joint_gap"][0, :3, 1], [0.1, 0.01, 0.001])
+        np.testing.assert_allclose(found.share, 1)
+
+    def test_quartiles_and_the_largest_over_steps(self):
+        file, sims = self.open(plant=Converging(), **self.NEWTON)
+        path = file.path
+        file.h5.close()
+        with synthetic.h5py.File(path, "r+") as h5:
+            h5["solves/newton_residual"][:12:3] = [1, 2, 3, 4]   # j = 0 of task 0
+            h5["solves/newton"][3 * 3 + 2], h5["solves/newton_residual"][3 * 3 + 2] = -1, np.nan  # never reached
+            h5["steps/newton_iterations"][3] = 2
+        with SweepFile(path) as file:
+            found = newton_levels.levels(file, [0])
+        np.testing.assert_allclose(found.values["newton_residual"][0, 0], [1.75, 2.5, 3.25, 4])
+        np.testing.assert_allclose(found.share[0], [1, 1, 1, 0.75])
+
+    def test_observed_orders(self):
+        np.testing.assert_allclose(newton_levels.orders([1e-1, 1e-2, 1e-4, 1e-8, 1e-16], 1e-10)[1:3], 2)
+        np.testing.assert_allclose(newton_levels.orders([1, 0.1, 0.01, 0.001], 0)[1:3], 1)
+        self.assertTrue(np.isnan(newton_levels.orders([1e-1, 1e-9, 1e-11, 1e-11], 1e-10)).all())
+
+    def test_the_table_has_medians_and_orders_of_every_way_to_solve(self):
+        self.write(plant=Converging(), **self.NEWTON)
+        said = self.run_script("newton.py", "sweep.h5", "--floor", "1e-12").stdout
+        self.assertIn("  direct", said)
+        order = next(line for line in said.splitlines() if line.startswith("    order"))
+        self.assertEqual(order.split(), ["order", "-", "2.00", "2.00", "-"])
+        self.assertTrue(said.rstrip().endswith("figures/sweep-newton.png"))
+        self.write(plant=Converging(), closed_loop=True, **self.NEWTON)
+        self.assertIn("CG to 1e-2, quadratic", self.run_script("newton.py", "sweep.h5").stdout)
+        self.write(plant=Converging(), solves=False, **self.NEWTON)
+        self.refused("newton.py", "sweep.h5", words="nothing is known of single Newton iterations")
+
+
+class RatiosOfSums(unittest.TestCase):
+    def test_simulations_without_either_number_are_left_out(self):
+        e = intervals.ratio_of_sums([[1.0], [3], [np.nan], [5]], [[2.0], [4], [9], [np.nan]])
+        self.assertAlmostEqual(float(e.value[0]), 4 / 6)
+        self.assertEqual(int(e.count[0]), 2)
+
+    def test_the_interval_covers_the_truth_as_often_as_it_says(self):
+        generator, inside = np.random.Generator(np.random.PCG64(1)), 0
+        for _ in range(100):
+            below = generator.uniform(50, 150, size=20)
+            above = below * generator.uniform(0.3, 0.7, size=20)
+            e = intervals.ratio_of_sums(above[:, None], below[:, None], resamples=400)
+            inside += bool(e.low[0] <= 0.5 <= e.high[0])
+        self.assertGreaterEqual(inside, 88)
+
+
+if __name__ == "__main__":
+    unittest.main()
