@@ -94,7 +94,6 @@ def ratio_lines(file, found, guesses, tolerances, newton):
         return ["", "No CG ratios: the job has no zero guess."] if missing else []
     lines = ["", f"CG ratio, {measures.NEWTON[newton]}: iterations over those from zero; "
                  "mean over simulations [95 % interval]"]
-    missed_any = False
     for block in shown:
         title, first = _titled(block, block.ratio.count[guesses])
         rows = [[first] + [commandline.tolerance_label(file.tolerances[t]) for t in tolerances]]
