@@ -42,7 +42,11 @@ constexpr const char* run_footer =
     "  rodsweep run jobs/smoke.json                        one core, results/smoke.h5\n"
     "  mpirun --oversubscribe -n 5 rodsweep run job.json   4 cores\n"
     "  mpirun -n 5 rodsweep run job.json -o out.h5 --resume\n"
-    "                                                      continues out.h5, or starts it: for batch scripts";
+    "                                                      continues out.h5, or starts it: for batch scripts\n"
+    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more values in a\n"
+    "                                                      grid, or more guesses. Copies what out.h5 holds, tries\n"
+    "                                                      new guesses alone on its trajectories, runs the rest.\n"
+    "                                                      out.h5 is read only; more.h5 is as if run from scratch.";
 
 constexpr const char* plan_footer =
     "Up to three tasks (cheapest, median, dearest) are really run for a moment, unless --no-probe is given.\n\n"
@@ -90,6 +94,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   run_command->add_option("-o,--output", run.output, "Results file; never overwritten [results/NAME.h5]")
       ->type_name("FILE");
   run_command->add_flag("--resume", run.resume, "Continue the results file if it exists");
+  run_command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")
+      ->type_name("OLD");
 
   PlanOptions plan;
   bool no_probe = false;

@@ -34,7 +34,8 @@ std::string ending(const RunRow& run) {
 
 std::string run_line(std::size_t index, const RunRow& run) {
   const Provenance& p = run.provenance;
-  return fmt::format("start {}: {} to {} on {}, {} rank{}{}: {} tasks in {} of work; {}\n", index, p.begin_utc,
+  return fmt::format("start {}{}: {} to {} on {}, {} rank{}{}: {} tasks in {} of work; {}\n", index,
+                     run.source.empty() ? "" : fmt::format(" (of {}, extended here)", run.source), p.begin_utc,
                      run.end_utc.empty() ? "?" : run.end_utc, p.host, p.ranks, p.ranks == 1 ? "" : "s",
                      p.oversubscribed ? " (more than cores: times are worthless)" : "", run.tasks,
                      duration_text(run.task_seconds), ending(run));
@@ -63,6 +64,7 @@ Json to_json(const FileSummary& file) {
                               {"ranks", p.ranks},
                               {"oversubscribed", p.oversubscribed},
                               {"command", p.user_command},
+                              {"source", run.source},
                               {"revision", p.revision},
                               {"versions", p.versions},
                               {"petsc_options", p.petsc_options}});

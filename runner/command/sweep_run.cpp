@@ -10,7 +10,9 @@
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/stop_signal.hpp"
+#include "runner/experiment/extending_body.hpp"
 #include "runner/experiment/task_body.hpp"
+#include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
 #include "runner/terminal/text.hpp"
@@ -32,14 +34,38 @@ Plan plan_everywhere(const fs::path& path, const MpiSession& mpi) {
   return std::move(*plan);
 }
 
+/// Every rank looks for itself into the file to extend.
+std::optional<Extension> open_extension(const RunOptions& options, const fs::path& path, const Plan& plan,
+                                        const MpiSession& mpi) {
+  std::optional<Extension> extension;
+  if (!options.extend) return extension;
+  collectively(mpi.world(), [&] {
+    std::error_code error;
+    if (fs::equivalent(*options.extend, path, error)) {
+      throw FileError(fmt::format("{} is to be extended and cannot be the output too: name another file with -o FILE",
+                                  path.native()));
+    }
+    extension.emplace(*options.extend, plan);
+  });
+  return extension;
+}
+
+std::string extension_text(const Extension& extension, std::int64_t total) {
+  using Use = Extension::Use;
+  return fmt::format("of {} tasks {} are copied from {}, {} get their new guesses, {} are run", total,
+                     extension.count(Use::copy), extension.path().native(), extension.count(Use::complete),
+                     extension.count(Use::run));
+}
+
 /// Creates the file, or opens it to go on; `before` (rank 0): what earlier starts did.
 ResultsFile open_results(const RunOptions& options, const fs::path& path, const Plan& plan, const MpiSession& mpi,
-                         const Placement& where, FileSummary& before) {
+                         const Placement& where, const std::optional<Extension>& extension, FileSummary& before) {
   bool continues = false;
   collectively(mpi.world(), [&] {
     if (mpi.rank() != 0) return;
     continues = options.resume && fs::exists(path);
     if (continues) before = inspect(path);
+    if (continues && extension) extension->check_started(path);
   });
   continues = broadcast(continues ? 1 : 0, mpi.world()) != 0;
 
@@ -50,15 +76,18 @@ ResultsFile open_results(const RunOptions& options, const fs::path& path, const 
   std::optional<ResultsFile> file;
   collectively(mpi.world(), [&] {
     file = continues ? ResultsFile::resume(path, plan, provenance, mpi.world())
-                     : ResultsFile::create(path, plan, provenance, mpi.world());
+                     : ResultsFile::create(path, plan, provenance, mpi.world(), free_bytes,
+                                           options.extend.value_or(fs::path()));
   });
   return std::move(*file);
 }
 
-std::vector<PendingTask> pending_tasks(const Plan& plan, const std::vector<std::uint8_t>& done) {
+std::vector<PendingTask> pending_tasks(const Plan& plan, const std::vector<std::uint8_t>& done,
+                                       const std::optional<Extension>& extension) {
   std::vector<PendingTask> pending;
   for (const Task& task : plan.tasks())
-    if (!done[static_cast<std::size_t>(task.index)]) pending.push_back({task.index, task.cost});
+    if (!done[static_cast<std::size_t>(task.index)])
+      pending.push_back({task.index, task.cost * (extension ? extension->cost(task.index) : 1)});
   return pending;
 }
 
@@ -106,6 +135,7 @@ std::string run_command(const RunOptions& options, int workers) {
     line = fmt::format("mpirun --oversubscribe {}-n {} ", geteuid() == 0 ? "--allow-run-as-root " : "", workers + 1);
   line += fmt::format("{} run {}", shell_quoted(options.program), shell_quoted(options.job.native()));
   if (options.output) line += " -o " + shell_quoted(options.output->native());
+  if (options.extend) line += " --extend " + shell_quoted(options.extend->native());
   if (options.resume) line += " --resume";
   return line;
 }
@@ -115,21 +145,28 @@ ExitCode run_sweep(const RunOptions& options, const MpiSession& mpi, Console& co
   const StopSignal signal;  // from here on a signal is a request, until the file is closed
   const fs::path path = options.output.value_or(default_output(plan.job().name));
   const Placement where = placement(mpi.world());
+  const std::optional<Extension> extension = open_extension(options, path, plan, mpi);
   FileSummary before;
-  ResultsFile file = open_results(options, path, plan, mpi, where, before);
+  ResultsFile file = open_results(options, path, plan, mpi, where, extension, before);
   if (!file.note().empty()) console.warn(file.note());
 
-  std::vector<PendingTask> pending = pending_tasks(plan, file.done());
+  std::vector<PendingTask> pending = pending_tasks(plan, file.done(), extension);
   advise(console, options, where, pending.size());
   const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
   console.note(to_do == total ? fmt::format("{} tasks for {}, results in {}", total, plan.job().name, path.native())
                               : fmt::format("{} of {} tasks of {} are left to do in {}", to_do, total, plan.job().name,
                                             path.native()));
+  if (extension) console.note(extension_text(*extension, total));
+  if (extension && !extension->note().empty()) console.warn(extension->note());
   double cost = 0;
   for (const PendingTask& task : pending) cost += task.cost;
   Progress progress(console, {total, total - to_do, before.failed, cost, where.workers}, Progress::Clock::now());
-  TaskBody body =
-      task_body(plan, evaluate, [&](const Task& task, const TaskRecord& record) { file.write(task, record); });
+  const auto write = [&](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
+    file.write(task, record, origin);
+  };
+  const auto warn = [](const std::string& text) { Console(true).warn(text); };  // whichever rank finds the damage
+  TaskBody body = extension ? extending_body(plan, *extension, evaluate, write, warn)
+                            : task_body(plan, evaluate, [&](const Task& t, const TaskRecord& r) { file.write(t, r); });
   const Dispatch dispatch = mpi.size() == 1
                                 ? dispatch_alone(std::move(pending), progress, signal, std::move(body))
                                 : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body));

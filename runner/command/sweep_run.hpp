@@ -18,6 +18,7 @@ struct RunOptions {
   std::filesystem::path job;
   std::optional<std::filesystem::path> output;  ///< default: results/NAME.h5 in the current folder
   bool resume = false;                          ///< continue the output if it exists
+  std::optional<std::filesystem::path> extend;  ///< results of a smaller job, which need not be computed again
   std::string program = "rodsweep";             ///< as the user typed it
   std::string command;                          ///< the whole line, for /runs
 };

@@ -79,7 +79,7 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
     : scene_(scene), spec_(spec), record_(record), direct_(scene), solvers_(scene.rods.size()) {
   const bool one = spec.own_guess >= 0;
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
-    if (!one || static_cast<int>(g) == spec.own_guess)
+    if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
       guesses_.push_back({g, make_guess(spec.guesses[g], spec, scene)});
   const std::size_t tolerances = tolerance_ladder().size();
   for (const Guess& guess : guesses_) {
@@ -242,19 +242,22 @@ void MeasuredSolve::add(CountSums& sums, std::size_t column, const std::vector<s
 
 double MeasuredSolve::take_elapsed_s() { return std::exchange(elapsed_s_, 0); }
 
-void MeasuredSolve::finish() {
-  const auto zero = std::find_if(guesses_.begin(), guesses_.end(), [this](const Guess& g) {
-    return spec_.guesses[g.column].kind == GuessSpec::Kind::zero;
-  });
-  if (zero == guesses_.end()) return;
+void MeasuredSolve::finish() { set_cg_ratios(spec_, record_); }
+
+void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {
+  const auto zero = static_cast<std::size_t>(
+      std::find_if(spec.guesses.begin(), spec.guesses.end(),
+                   [](const GuessSpec& guess) { return guess.kind == GuessSpec::Kind::zero; }) -
+      spec.guesses.begin());
+  if (zero == spec.guesses.size()) return;
   const std::size_t tolerances = tolerance_ladder().size();
-  for (CountSums* sums : {&record_.counted, &record_.counted_all, &record_.counted_other_norm})
-    for (const Guess& guess : guesses_)
+  for (CountSums* sums : {&record.counted, &record.counted_all, &record.counted_other_norm})
+    for (std::size_t g = 0; g < spec.guesses.size(); ++g)
       for (std::size_t t = 0; t < tolerances; ++t) {
-        const std::int64_t own = sums->iterations[guess.column * tolerances + t];
-        const std::int64_t of_zero = sums->iterations[zero->column * tolerances + t];
-        if (of_zero > 0)
-          sums->cg_ratio[guess.column * tolerances + t] = static_cast<double>(own) / static_cast<double>(of_zero);
+        const std::int64_t own = sums->iterations[g * tolerances + t];
+        const std::int64_t of_zero = sums->iterations[zero * tolerances + t];
+        if (own >= 0 && of_zero > 0)  // below 0: not tried in this task
+          sums->cg_ratio[g * tolerances + t] = static_cast<double>(own) / static_cast<double>(of_zero);
       }
 }
 

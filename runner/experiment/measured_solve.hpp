@@ -19,6 +19,9 @@
 
 namespace rodsweep {
 
+/// cg_ratio from the sums, of all guesses that have any.
+void set_cg_ratios(const TaskSpec& spec, TaskRecord& record);
+
 class MeasuredSolve : public LinearSolve {
  public:
   /// Fills the rows of /solves, their timings and the per-task sums of `record`. All arguments must outlive this.
@@ -31,7 +34,7 @@ class MeasuredSolve : public LinearSolve {
   /// Wall time spent in assembly and in here since the last call [s].
   double take_elapsed_s();
 
-  /// cg_ratio from the sums: to be called once, at the end of the task.
+  /// To be called once, at the end of the task.
   void finish();
 
  private:

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/unfinished_file.hpp"
@@ -91,6 +92,25 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
 }
 
+/// The rows of /runs of an earlier file, byte for byte, marked with its name unless they were copied there already.
+int copy_runs(hid_t file, const std::vector<Field>& fields, const fs::path& earlier) {
+  const hdf5::File from = open_results(earlier);
+  for (const Field& field : fields) {
+    if (field.path.rfind("/runs/", 0) != 0) continue;
+    std::vector<char> bytes(static_cast<std::size_t>(data_bytes(field)));
+    const hdf5::Datatype type = type_of(field);
+    const auto rows = static_cast<hsize_t>(run_rows);
+    hdf5::RowDataset(from.id(), field.path).read(type.id(), 0, rows, bytes.data());
+    hdf5::RowDataset(file, field.path).write(type.id(), 0, rows, bytes.data());
+  }
+  const int used = runs_used(from);
+  std::vector<std::string> sources = hdf5::read_texts(file, "/runs/source");
+  for (int row = 0; row < used; ++row)
+    if (auto& source = sources[static_cast<std::size_t>(row)]; source.empty()) source = earlier.native();
+  hdf5::write_texts(file, "/runs/source", sources);
+  return used;
+}
+
 /// Takes real blocks for the sparse file. File systems that cannot are left alone; the free-space check has to do
 /// there.
 void reserve_blocks(const fs::path& file, const fs::path& path) {
@@ -109,7 +129,7 @@ std::uintmax_t free_bytes(const fs::path& folder) { return fs::space(folder).ava
 
 std::int64_t file_bytes(const Plan& plan) { return file_bytes(layout(plan, plan.parameters())); }
 
-void create_results_file(const fs::path& path, const Plan& plan, const FreeSpace& free_space) {
+int create_results_file(const fs::path& path, const Plan& plan, const FreeSpace& free_space, const fs::path& earlier) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -129,9 +149,11 @@ void create_results_file(const fs::path& path, const Plan& plan, const FreeSpace
   hdf5::File file = hdf5::create_file(unfinished.path());
   create_datasets(file.id(), fields);
   write_constants(file.id(), plan, parameters);
+  const int runs = earlier.empty() ? 0 : copy_runs(file.id(), fields, earlier);
   hdf5::close(file, "H5Fclose", unfinished.path().native());
   reserve_blocks(unfinished.path(), path);
   unfinished.publish();
+  return runs;
 }
 
 }  // namespace rodsweep

@@ -37,6 +37,8 @@ void append_runs(std::vector<Field>& fields) {
   text("revision", 64, "git revision of the program");
   text("versions", 256, "program, libraries and compiler");
   text("petsc_options", 1024, "PETSC_OPTIONS of the environment");
+  text("source", 512,
+       "the file that this sweep extends and that this row was copied from; empty: a start of this sweep");
   fields.push_back(number_field<std::int32_t>("/runs/ranks", {run_rows}, "1", "MPI ranks"));
   fields.push_back(number_field<std::int32_t>("/runs/exit_code", {run_rows}, "1",
                                               "exit code of the program; -1: it still runs, or was killed"));

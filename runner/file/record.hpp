@@ -92,6 +92,8 @@ struct TaskRecord {
   std::vector<float> guess_s, cg_s;         ///< [row, guess]; cg_s includes the preconditioner's set-up
   std::vector<float> rest_s;                ///< [step row] the step without assembly and solves
   std::vector<double> elapsed_s;            ///< [1]
+  std::vector<std::int64_t> source_task;    ///< [1] \ of an extended sweep
+  std::vector<std::int8_t> copied_guess;    ///< [guess] /
 
   /// Sizes everything for this task and sets it to its sentinel. Memory of an earlier task is used again.
   void prepare(const Task& task, const AxisSizes& sizes);
@@ -203,6 +205,12 @@ void visit_columns(Record& r, Visit&& visit) {
                "preconditioner set-up and CG to the job's tolerance; median of solve.timing_repeats"},
         r.cg_s);
   visit(Column{"/timing/steps/rest_s", R::step, none, "s", "the step without assembly, guesses and solves"}, r.rest_s);
+  visit(Column{"/timing/tasks/source_task", R::task, none, "1",
+               "task of the extended file that its rows, or some guesses' rows, were copied from; -1: none"},
+        r.source_task);
+  visit(Column{"/timing/tasks/copied_guess", R::task, g, "1",
+               "1: the guess's rows and times were copied from source_task; -1: they were not"},
+        r.copied_guess);
   visit(Column{"/timing/tasks/elapsed_s", R::task, none, "s", "wall time of the task, without writing"}, r.elapsed_s);
 }
 

@@ -95,12 +95,14 @@ ResultsFile& ResultsFile::operator=(ResultsFile&&) noexcept = default;
 ResultsFile::~ResultsFile() = default;
 
 ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
-                                const FreeSpace& free_space) {
+                                const FreeSpace& free_space, const fs::path& earlier) {
+  int runs = 0;
   on_first_rank(comm, [&] {
     check_path(path);
-    create_results_file(path, plan, free_space);
+    runs = create_results_file(path, plan, free_space, earlier);
   });
-  return ResultsFile(path, plan, std::vector<std::uint8_t>(static_cast<std::size_t>(plan.size()), 0), 0, provenance,
+  runs = broadcast(runs, comm);
+  return ResultsFile(path, plan, std::vector<std::uint8_t>(static_cast<std::size_t>(plan.size()), 0), runs, provenance,
                      comm);
 }
 
@@ -152,6 +154,7 @@ void ResultsFile::begin_run(const Provenance& provenance) {
   const hid_t file = open_->file.id();
   const auto row = static_cast<hsize_t>(attempt_);
   hdf5::write_text_row(file, "/runs/end", row, "");
+  hdf5::write_text_row(file, "/runs/source", row, "");
   hdf5::write_text_row(file, "/runs/host", row, provenance.host);
   hdf5::write_text_row(file, "/runs/command", row, provenance.user_command);
   hdf5::write_text_row(file, "/runs/job", row, provenance.job);
@@ -164,7 +167,7 @@ void ResultsFile::begin_run(const Provenance& provenance) {
   hdf5::write_text_row(file, "/runs/begin", row, provenance.begin_utc);  // last: it marks the row as used
 }
 
-void ResultsFile::write(const Task& task, const TaskRecord& record) {
+void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
   const auto begin = Clock::now();
   Open& open = *open_;
   if (done_.at(static_cast<std::size_t>(task.index)) != 0) {
@@ -191,10 +194,12 @@ void ResultsFile::write(const Task& task, const TaskRecord& record) {
   open.outcome.write(open.outcome_type.id(), task.index, 1, sum.outcome().data());
   open.message.write(open.message_type.id(), task.index, 1, sum.message().data());
   write_one(open.checksum, sum.value());
-  write_one(open.rank, static_cast<std::int32_t>(open.own_rank));
-  open.host.write(open.host_type.id(), task.index, 1, open.own_host.data());
-  write_one(open.attempt, static_cast<std::int32_t>(attempt_));
-  write_one(open.write_s, std::chrono::duration<double>(Clock::now() - begin).count());
+  const std::string host = origin != nullptr ? hdf5::fixed_text(origin->host, host_bytes) : open.own_host;
+  write_one(open.rank, origin != nullptr ? origin->rank : static_cast<std::int32_t>(open.own_rank));
+  open.host.write(open.host_type.id(), task.index, 1, host.data());
+  write_one(open.attempt, origin != nullptr ? origin->attempt : static_cast<std::int32_t>(attempt_));
+  write_one(open.write_s,
+            origin != nullptr ? origin->write_s : std::chrono::duration<double>(Clock::now() - begin).count());
   write_one(open.state, std::uint8_t{1});
 }
 

@@ -23,6 +23,7 @@
 #include "runner/file/file_error.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
+#include "runner/file/task_origin.hpp"
 #include "runner/job/plan.hpp"
 
 namespace rodsweep {
@@ -30,9 +31,10 @@ namespace rodsweep {
 class ResultsFile {
  public:
   /// Collective over `comm`. Refuses a path that exists and a disk that is too full (before creating anything). All
-  /// ranks throw the same error.
+  /// ranks throw the same error. `earlier`: a file that this one extends; its rows of /runs come first here.
   static ResultsFile create(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
-                            MPI_Comm comm, const FreeSpace& free_space = free_bytes);
+                            MPI_Comm comm, const FreeSpace& free_space = free_bytes,
+                            const std::filesystem::path& earlier = {});
   /// Collective. Refuses a file of another program, schema version, plan or job text. Appends a row to /runs.
   static ResultsFile resume(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
                             MPI_Comm comm);
@@ -49,8 +51,9 @@ class ResultsFile {
   /// What the user should hear about this file though it is no error; empty: nothing.
   const std::string& note() const { return note_; }
 
-  /// Independent: any rank, any task that is not done() yet, once. The state byte goes last.
-  void write(const Task& task, const TaskRecord& record);
+  /// Independent: any rank, any task that is not done() yet, once. The state byte goes last. `origin`: who ran it,
+  /// where that was not this start of this sweep.
+  void write(const Task& task, const TaskRecord& record, const TaskOrigin* origin = nullptr);
 
   /// Independent, one rank: how this start ended (row of /runs).
   void end_run(const std::string& end_utc, int exit_code);

@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 /// Libraries of mathematical functions differ in the last digits, from machine to machine too.
 constexpr double rounding = 1e-9;
 
+constexpr const char* other_revision = "Use that revision, or run into another file with -o FILE";
+
 struct Line {
   int number = 1;
   std::string here, in_file;
@@ -50,23 +52,23 @@ void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
                   path.native(), line.in_file));
 }
 
-FileError other_program(const hdf5::File& file, const fs::path& path, const std::string& difference) {
+FileError other_program(const hdf5::File& file, const fs::path& path, const std::string& difference,
+                        const char* advice) {
   return FileError(
-      fmt::format("{} was made from this job by a rodsweep that expands it differently (revision {}): {}. Use "
-                  "that revision, or run into another file with -o FILE",
-                  path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference));
+      fmt::format("{} was made from its job by a rodsweep that expands it differently (revision {}): {}. {}",
+                  path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference, advice));
 }
 
-void check_layout(const hdf5::File& file, const fs::path& path, const std::vector<Field>& fields) {
+void check_layout(const hdf5::File& file, const fs::path& path, const std::vector<Field>& fields, const char* advice) {
   for (const Field& field : fields) {
-    if (!hdf5::exists(file.id(), field.path)) throw other_program(file, path, "it has no " + field.path);
+    if (!hdf5::exists(file.id(), field.path)) throw other_program(file, path, "it has no " + field.path, advice);
     const hdf5::Dataset dataset = hdf5::open_dataset(file.id(), field.path);
     const std::vector<hsize_t> extent = hdf5::extent(dataset, field.path);
     const hdf5::Datatype type(hdf5::check(H5Dget_type(dataset.id()), "H5Dget_type", field.path));
     if (!std::equal(extent.begin(), extent.end(), field.extent.begin(), field.extent.end(),
                     [](hsize_t a, std::int64_t b) { return a == static_cast<hsize_t>(b); }) ||
         H5Tequal(type.id(), type_of(field).id()) <= 0) {
-      throw other_program(file, path, field.path + " has another shape or type");
+      throw other_program(file, path, field.path + " has another shape or type", advice);
     }
   }
 }
@@ -76,9 +78,9 @@ bool same(double a, double b) {
 }
 
 void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& plan,
-                      const std::vector<ParameterColumn>& parameters) {
+                      const std::vector<ParameterColumn>& parameters, const char* advice) {
   if (hdf5::read_text_attribute(file.id(), "/job", "plan_hash") != plan_hash(plan, parameters)) {
-    throw other_program(file, path, "its list of tasks is another (/job, plan_hash)");
+    throw other_program(file, path, "its list of tasks is another (/job, plan_hash)", advice);
   }
   for (const ParameterColumn& parameter : parameters) {
     const auto* here = std::get_if<std::vector<double>>(&parameter.values);
@@ -88,7 +90,8 @@ void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& 
     if (a != here->end()) {
       throw other_program(file, path,
                           fmt::format("{} of task {} is {} here and {} in the file", parameter.path,
-                                      (a - here->begin()) / parameter.width, *a, *b));
+                                      (a - here->begin()) / parameter.width, *a, *b),
+                          advice);
     }
   }
 }
@@ -113,10 +116,16 @@ void refuse_copies(const hdf5::File& file, const fs::path& path) {
 void check_same_tasks(const fs::path& path, const Plan& plan) {
   const hdf5::File file = open_results(path);
   try {
-    check_parameters(file, path, plan, plan.parameters());
+    check_parameters(file, path, plan, plan.parameters(), other_revision);
   } catch (const Hdf5Error& failure) {
     throw damaged_error(path, failure.what());
   }
+}
+
+void check_same_plan(const hdf5::File& file, const fs::path& path, const Plan& plan, const char* advice) {
+  const std::vector<ParameterColumn> parameters = plan.parameters();
+  check_layout(file, path, layout(plan, parameters), advice);
+  check_parameters(file, path, plan, parameters, advice);
 }
 
 ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
@@ -127,9 +136,7 @@ ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
   try {
     refuse_copies(file, path);
     check_job(file, path, plan);
-    const std::vector<ParameterColumn> parameters = plan.parameters();
-    check_layout(file, path, layout(plan, parameters));
-    check_parameters(file, path, plan, parameters);
+    check_same_plan(file, path, plan, other_revision);
     return {read_states(file, path), runs_used(file)};
   } catch (const Hdf5Error& failure) {
     throw damaged_error(path, failure.what());

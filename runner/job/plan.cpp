@@ -101,7 +101,7 @@ TaskSpec Plan::spec(std::int64_t index) const {
   if (spec.solve.method == Method::cg) spec.guesses = guess_specs(point, job_);
   spec.own_guess = task.own_guess;
   spec.record = record_spec(job_);
-  spec.seed = random_bits(job_.seed, static_cast<std::uint64_t>(task.point), random_stream("guesses"));
+  spec.seed = random_bits(job_.seed, static_cast<std::uint64_t>(task.sample), random_stream("guesses"));
   spec.time_limit_s = job_.values["task_time_limit_s"];
   return spec;
 }

@@ -29,6 +29,12 @@ struct ParameterColumn {
   std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>> values;  ///< tasks x width
 };
 
+/// All that a task's results depend on, as bytes that are the same in every plan that holds the task.
+struct TaskIdentity {
+  std::string trajectory;            ///< in a closed loop with the guess that advances it
+  std::vector<std::string> guesses;  ///< by place on the guess axis: name and parameters, not the label; empty without
+};
+
 class Plan {
  public:
   explicit Plan(Job job);
@@ -43,6 +49,8 @@ class Plan {
   const Task& task(std::int64_t index) const { return tasks_[static_cast<std::size_t>(index)]; }
   const std::vector<Task>& tasks() const { return tasks_; }
   TaskSpec spec(std::int64_t index) const;  ///< built on demand: a plan of 100,000 tasks stays small
+
+  TaskIdentity identity(std::int64_t index) const;  ///< built on demand
 
   const std::vector<std::string>& guess_labels() const { return guess_labels_; }  ///< /axes/guess; empty without cg
 

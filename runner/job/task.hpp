@@ -62,10 +62,12 @@ struct TaskSpec {
   TimeSpec time;
   SolveSpec solve;
   Evaluation evaluation = Evaluation::paired;
-  std::vector<GuessSpec> guesses;  ///< the file's whole guess axis, in order; empty for a plain direct simulation
+  std::vector<GuessSpec> guesses;     ///< the file's whole guess axis, in order; empty for a plain direct simulation
+  std::vector<std::uint8_t> settled;  ///< 1: a guess whose results are known, which is not tried; empty: all are
   int own_guess = -1;  ///< closed loop with cg: index into `guesses` of the guess that this task runs; else -1
   RecordSpec record;
-  std::uint64_t seed = 0;   ///< for guesses that draw random numbers; a function of the job's seed and the point only
+  std::uint64_t seed =
+      0;  ///< for guesses that draw random numbers; from the job's seed and the sample, shared by grid points
   double time_limit_s = 0;  ///< 0: none
 };
 

@@ -1,0 +1,99 @@
+#include "runner/job/job_extension.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "runner/job/job_keys.hpp"
+#include "runner/job/key_path.hpp"
+#include "runner/job/sweep.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Where two jobs differ; a null value is a key that is not there.
+struct Difference {
+  std::string path;
+  Json now, before;
+};
+
+std::optional<Difference> difference(const Json& now, const Json& before, const std::string& path);
+
+bool extends(const Json& now, const Json& before) { return !difference(now, before, ""); }
+
+bool any_extends(const Json& values, const Json& before) {
+  return std::any_of(values.begin(), values.end(), [&](const Json& value) { return extends(value, before); });
+}
+
+std::optional<Difference> of_objects(const Json& now, const Json& before, const std::string& path) {
+  for (const auto& [name, value] : before.items()) {
+    if (name == guess_label_key().name) continue;
+    if (!now.contains(name)) return Difference{member(path, name), Json(), value};
+    if (auto found = difference(now[name], value, member(path, name))) return found;
+  }
+  for (const auto& [name, value] : now.items()) {
+    if (name != guess_label_key().name && !before.contains(name)) return Difference{member(path, name), value, Json()};
+  }
+  return std::nullopt;
+}
+
+std::optional<Difference> difference(const Json& now, const Json& before, const std::string& path) {
+  const std::string word = sweep_word(now), word_before = sweep_word(before);
+  if (is_listed(word) && word == word_before) {
+    for (const Json& value : before[word]) {
+      if (!any_extends(now[word], value)) return Difference{path, now, value};
+    }
+    return std::nullopt;
+  }
+  if (is_listed(word)) {
+    if (any_extends(now[word], before)) return std::nullopt;
+    return Difference{path, now, before};
+  }
+  if (now.is_object() && before.is_object() && word == word_before && word.empty()) {
+    return of_objects(now, before, path);
+  }
+  if (now.is_array() && before.is_array() && now.size() == before.size() && word_before.empty()) {
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (auto found = difference(now[i], before[i], element(path, i))) return found;
+    }
+    return std::nullopt;
+  }
+  if (now == before) return std::nullopt;
+  return Difference{path, now, before};
+}
+
+std::string written(const Json& value) {
+  if (value.is_null()) return "nothing";
+  constexpr std::size_t longest = 80;
+  const std::string text = value.dump();
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
+
+}  // namespace
+
+void check_extends(const Job& job, const Job& before) {
+  const std::string file = before.path.native();
+  const auto refuse = [&](const std::string& path, const std::string& what) {
+    throw job_error(job.path, path,
+                    fmt::format("{}. --extend takes the job of {} (rodsweep info {} --job) with more samples, more "
+                                "values in a grid or more guesses, and no other change; run this job without --extend",
+                                what, file, file));
+  };
+  if (job.samples < before.samples) {
+    refuse("samples", fmt::format("{} here are fewer than the {} in {}", job.samples, before.samples, file));
+  }
+  for (const Json& guess : before.values["guesses"]) {
+    if (any_extends(job.values["guesses"], guess)) continue;
+    refuse("guesses", fmt::format("\"{}\" of {} is not among them", guess_label(guess), file));
+  }
+  Json now = job.values, then = before.values;
+  for (const char* free : {"name", "description", "samples", "guesses"}) now.erase(free), then.erase(free);
+  if (const auto found = difference(now, then, "")) {
+    refuse(found->path, fmt::format("{} here, {} in {}", written(found->now), written(found->before), file));
+  }
+}
+
+}  // namespace rodsweep

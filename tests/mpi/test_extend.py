@@ -1,0 +1,210 @@
+#!/usr/bin/python3
+"""run --extend: the file of a larger job is what a run from scratch writes, and what the smaller one holds is not computed again.
+
+Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
+"""
+
+import os
+import signal
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+from test_sweeps import ALL_DONE, SweepCase, TASKS_FAILED, USER_ERROR, checksum, job, ranks_of, rodsweep, start, status, \
+    wait_for_tasks
+
+ROD = {"type": "bending_rod", "length_m": {"uniform": [1, 5]}, "radius_m": 0.05, "density_kg_m3": 1000,
+       "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}
+OLD_GUESSES = ["zero", "previous", {"oracle": {"error": 0.1}}]
+NEW_GUESSES = ["linear", {"previous": {"label": "last"}}, {"oracle": {"error": 0.1}}, "quadratic", "zero"]
+
+
+class ExtendCase(SweepCase):
+    def setUp(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(tempfile.mkdtemp(dir="."))
+
+    def old(self, name="old", **changes):
+        """A finished sweep of 4 tasks: its file."""
+        path = job(name, **{"samples": 2, "segments": (6, 9), "steps": 5, "guesses": OLD_GUESSES, **changes})
+        self.assert_exit(rodsweep(0, "run", path, "-o", f"{name}.h5"), ALL_DONE)
+        return f"{name}.h5"
+
+    def new(self, name="new", **changes):
+        return job(name, **{"samples": 2, "segments": (6, 9), "steps": 5, "guesses": OLD_GUESSES, **changes})
+
+    def extend(self, path, old, says, ranks=(0, 3)):
+        """Extends `old` to the job and compares with a fresh run; the last file."""
+        name = path.replace(".json", "")
+        self.assert_exit(rodsweep(0, "run", path, "-o", f"{name}-fresh.h5"), ALL_DONE)
+        before = checksum(old)
+        for count in ranks:
+            file = f"{name}-{count}.h5"
+            ran = rodsweep(count, "run", path, "-o", file, "--extend", old)
+            self.assert_exit(ran, ALL_DONE)
+            self.assertIn(says, ran.stderr)
+            self.assertNotIn("warning", ran.stderr)
+            self.assert_same_results(f"{name}-fresh.h5", file)
+            self.assert_whole(file)
+        self.assertEqual(checksum(old), before)
+        return file
+
+
+class Extending(ExtendCase):
+    def test_more_samples(self):
+        for sampling in ("random", "sobol"):
+            with self.subTest(sampling=sampling):
+                old = self.old(f"old-{sampling}", sampling=sampling)
+                self.extend(self.new(f"samples-{sampling}", samples=5, sampling=sampling), old,
+                            "of 10 tasks 4 are copied from old-" + sampling + ".h5, 0 get their new guesses, 6 are run")
+
+    def test_more_grid_values_inserted_and_a_plain_value_that_becomes_a_grid(self):
+        path = self.new("values", segments=(12, 6, 7, 9), record={"trajectory_every": 2, "solves": "all"},
+                        time={"step_s": {"grid": [0.01, 0.02]}, "steps": {"grid": [5, 11]}})
+        self.extend(path, self.old(), "of 32 tasks 4 are copied from old.h5, 0 get their new guesses, 28 are run")
+
+    def test_more_guesses_inserted_renamed_and_moved(self):
+        file = self.extend(self.new("guesses", guesses=NEW_GUESSES), self.old(),
+                           "of 4 tasks 0 are copied from old.h5, 4 get their new guesses, 0 are run")
+        with h5py.File(file) as h5:
+            self.assertEqual(h5["timing/tasks/copied_guess"][:].tolist(), 4 * [[-1, 1, 1, -1, 1]])
+            self.assertEqual(h5["timing/tasks/source_task"][:].tolist(), [0, 1, 2, 3])
+            self.assertEqual(h5["timing/tasks/attempt"][:].tolist(), [1, 1, 1, 1])
+            with h5py.File("old.h5") as old:
+                np.testing.assert_array_equal(h5["timing/solves/cg_s"][:, 2], old["timing/solves/cg_s"][:, 2])
+                np.testing.assert_array_equal(h5["timing/solves/cg_s"][:, 4], old["timing/solves/cg_s"][:, 0])
+            self.assertTrue(np.isfinite(h5["timing/solves/cg_s"][0]).all())
+
+    def test_all_at_once_without_rows_of_solves_and_again_from_the_extended_file(self):
+        record = {"solves": "summary", "trajectory_every": 1}
+        old = self.old("short", record=record)
+        more = self.new("more", record=record, samples=3, segments=(9, 6, 12), guesses=NEW_GUESSES)
+        file = self.extend(more, old, "of 9 tasks 0 are copied from short.h5, 4 get their new guesses, 5 are run")
+        most = self.new("most", record=record, samples=4, segments=(9, 6, 12), guesses=NEW_GUESSES)
+        last = self.extend(most, file, f"of 12 tasks 9 are copied from {file}, 0 get their new guesses, 3 are run")
+        starts = status(last)["starts"]
+        self.assertEqual([s["source"] for s in starts], [old, file, ""])
+        self.assertEqual([s["tasks"] for s in starts], [0, 9, 3])
+        with h5py.File(last) as h5:
+            self.assertEqual(h5["timing/tasks/source_task"][:].tolist(), [0, 1, 2, -1, 3, 4, 5, -1, 6, 7, 8, -1])
+            self.assertEqual(h5["timing/tasks/attempt"][:].tolist(), [1, 1, 1, 2] * 3)
+
+    def test_guesses_that_vary(self):
+        varying = {"grid": ["previous", {"oracle": {"error": 0.1}}]}
+        wider = {"grid": [{"oracle": {"error": 0.01}}, "previous", {"oracle": {"error": 0.1}}]}
+        old = self.old("vary", guesses=["zero", varying])
+        self.extend(self.new("wider", guesses=["zero", {**wider, "label": "other"}]), old,
+                    "of 12 tasks 8 are copied from vary.h5, 4 get their new guesses, 0 are run")
+
+    def test_a_closed_loop_and_a_direct_simulation(self):
+        method = {"method": {"grid": ["direct", "cg"]}}
+        old = self.old("loop", evaluation="closed_loop", solve=method)
+        self.extend(self.new("longer", evaluation="closed_loop", solve=method, samples=3, guesses=NEW_GUESSES), old,
+                    "of 36 tasks 16 are copied from loop.h5, 0 get their new guesses, 20 are run")
+
+    def test_an_unfinished_file_and_failures(self):
+        solve = {"method": "cg", "preconditioner": "none", "tolerance": 1e-8, "max_iterations": 2}
+        path = self.new("hard", evaluation="closed_loop", solve=solve)
+        self.assert_exit(rodsweep(0, "run", path, "-o", "hard.h5"), TASKS_FAILED)
+        with h5py.File("hard.h5", "r+") as h5:
+            h5["tasks/state"][:2] = 0
+            h5["tasks/outcome"][2] = b"timed_out"
+        ran = rodsweep(3, "run", path, "-o", "harder.h5", "--extend", "hard.h5")
+        self.assert_exit(ran, TASKS_FAILED)
+        self.assertIn("of 12 tasks 9 are copied from hard.h5, 0 get their new guesses, 3 are run", ran.stderr)
+        self.assert_exit(rodsweep(0, "run", path, "-o", "fresh.h5"), TASKS_FAILED)
+        self.assert_same_results("fresh.h5", "harder.h5")
+
+    def test_provenance_is_kept(self):
+        path = self.new("kept", samples=3)
+        self.extend(path, self.old(), "4 are copied", ranks=(0,))
+        first, second = status("kept-0.h5")["starts"]
+        original, = status("old.h5")["starts"]
+        self.assertEqual({**first, "source": ""}, original)
+        self.assertEqual((first["source"], first["tasks"], second["source"], second["tasks"]), ("old.h5", 4, "", 2))
+        self.assertIn("start 0 (of old.h5, extended here): ", rodsweep(0, "info", "kept-0.h5").stdout)
+        with h5py.File("old.h5") as old, h5py.File("kept-0.h5") as new:
+            for name in ("rank", "host", "elapsed_s", "write_s"):
+                np.testing.assert_array_equal(old[f"timing/tasks/{name}"][:], new[f"timing/tasks/{name}"][:][[0, 1, 3, 4]])
+
+
+class Damage(ExtendCase):
+    def test_a_damaged_task_is_run_again_with_a_warning(self):
+        old = self.old()
+        with h5py.File(old, "r+") as h5:
+            h5["solves/iterations"][int(h5["tasks/first_solve"][1]), 0, 0] += 1
+            h5["steps/joint_gap"][int(h5["tasks/first_step"][2])] *= 1.5
+        for name, changes in (("copied", {"samples": 3}), ("completed", {"guesses": NEW_GUESSES})):
+            path = self.new(name, **changes)
+            self.assert_exit(rodsweep(0, "run", path, "-o", f"{name}-fresh.h5"), ALL_DONE)
+            for ranks in (0, 3):
+                file = f"{name}-{ranks}.h5"
+                ran = rodsweep(ranks, "run", path, "-o", file, "--extend", old)
+                self.assert_exit(ran, ALL_DONE)
+                self.assertEqual(ran.stderr.count("warning"), 2, ran.stderr)
+                for task in (1, 2):
+                    self.assertIn(f"task {task} of old.h5 is damaged: its data are not what was written (checksum); it "
+                                  "is run again as task", ran.stderr)
+                self.assert_same_results(f"{name}-fresh.h5", file)
+                with h5py.File(file) as h5:
+                    self.assertEqual(sorted(t for t in h5["timing/tasks/source_task"][:] if t >= 0), [0, 3])
+
+    def test_killed_and_resumed(self):
+        changes = {"steps": 40, "samples": 12, "segments": (15, 30)}
+        old = self.old("base", **changes)
+        path = self.new("killed", **{**changes, "samples": 30, "guesses": NEW_GUESSES})
+        self.assert_exit(rodsweep(3, "run", path, "-o", "unkilled.h5"), ALL_DONE)
+        process = start(3, "run", path, "-o", "killed.h5", "--extend", old)
+        wait_for_tasks(process, "killed.h5", 4)
+        for pid in [process.pid, *ranks_of(process).values()]:
+            os.kill(pid, signal.SIGKILL)
+        process.communicate(timeout=30)
+        self.assertGreater(status("killed.h5")["pending"], 0)
+        self.assert_exit(rodsweep(3, "run", path, "-o", "killed.h5", "--extend", old, "--resume"), ALL_DONE)
+        self.assert_same_results("unkilled.h5", "killed.h5")
+        self.assert_whole("killed.h5")
+        self.assertEqual([s["source"] for s in status("killed.h5")["starts"]], [old, "", ""])
+
+    def test_stopped_it_says_how_to_go_on(self):
+        changes = {"steps": 40, "samples": 2, "segments": (15, 30)}
+        old = self.old("base2", **changes)
+        path = self.new("stopped", **{**changes, "samples": 40})
+        process = start(0, "run", path, "-o", "stopped.h5", "--extend", old)
+        wait_for_tasks(process, "stopped.h5", 4)
+        process.send_signal(signal.SIGTERM)
+        _, stderr = process.communicate(timeout=30)
+        self.assertIn(f"run {path} -o stopped.h5 --extend {old} --resume", stderr)
+
+
+class Refusing(ExtendCase):
+    def assert_refused(self, words, *texts):
+        ran = rodsweep(3, "run", *words)
+        self.assert_exit(ran, USER_ERROR)
+        self.assertEqual(ran.stderr.count("rodsweep: error:"), 1, ran.stderr)
+        for text in texts:
+            self.assertIn(text, ran.stderr)
+
+    def test_jobs_that_differ_otherwise_and_wrong_files(self):
+        old = self.old()
+        advice = "--extend takes the job of old.h5 (rodsweep info old.h5 --job) with more samples, more values in a grid " \
+                 "or more guesses, and no other change; run this job without --extend"
+        for changes, *texts in (  # the words of single refusals: tests/runner/test_extension.cpp
+                ({"seed": 6}, "seed: 6 here, 5 in old.h5", advice),
+                ({"segments": (6, 7)}, 'scene.segments: {"grid":[6,7]} here, 9 in old.h5', advice)):
+            with self.subTest(changes=changes):
+                path = self.new("other", **changes)
+                self.assert_refused((path, "-o", "no.h5", "--extend", old), "other.json: ", *texts)
+                self.assertFalse(os.path.exists("no.h5"))
+        path = self.new("fine", samples=3)
+        self.assert_refused((path, "-o", "no.h5", "--extend", "none.h5"), "none.h5: there is no such file")
+        self.assert_refused((path, "-o", "old.h5", "--extend", "old.h5"), "old.h5 is to be extended and cannot be the "
+                            "output too: name another file with -o FILE")
+        self.assert_exit(rodsweep(3, "run", path, "-o", "fine.h5"), ALL_DONE)
+        self.assert_refused((path, "-o", "fine.h5", "--extend", old), "fine.h5 exists already")
+        self.assert_refused((path, "-o", "fine.h5", "--extend", old, "--resume"), "fine.h5 was not begun with --extend "
+                            "old.h5, or that file was continued since; --resume it without --extend")
+
+
+if __name__ == "__main__":
+    unittest.main()
