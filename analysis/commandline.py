@@ -120,6 +120,13 @@ def range_text(counts):
     return str(min(counts)) if min(counts) == max(counts) else f"{min(counts)}–{max(counts)}"
 
 
+def timing_note(file, tasks):
+    """What to know of times beside timing_warning(); or empty."""
+    apart = int(file.timed_apart(tasks).sum()) if len(tasks) else 0
+    return (f"Of {apart} tasks some guesses were timed in another run than the others (run --extend): speedups between "
+            "them compare two runs.") if apart else ""
+
+
 def timing_warning(file, tasks):
     return ("Not valid as timings: these tasks ran with more MPI ranks than cores." if len(tasks) and
             file.oversubscribed(tasks) else "")

@@ -69,6 +69,9 @@ class Study:
                  f"{os.path.basename(self.file.path)}: {self.census.text()}"]
         if self.without_x:
             parts[-1] += f"; {self.without_x} simulations without a value of {self.x} left out"
+        note = commandline.timing_note(self.file, self.sims.tasks())
+        if note:
+            parts[-1] += f". {note.rstrip('.')}"
         if revisions:
             parts[-1] += f"; revision {', '.join(revisions)}"
         return " ".join(parts) + "."

@@ -131,6 +131,9 @@ def speedup_lines(file, sims, found, guesses, newton):
     warning = commandline.timing_warning(file, sims.tasks())
     if warning:
         lines.append("WARNING: " + warning)
+    note = commandline.timing_note(file, sims.tasks())
+    if note:
+        lines.append(note)
     names = list(timings.SPEEDUPS)
     for block in shown:
         title, first = _titled(block, block.times["cg_us"].count[guesses])

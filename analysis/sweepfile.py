@@ -227,6 +227,13 @@ class SweepFile:
             return any(marked)
         return any(0 <= a < len(marked) and marked[a] for a in set(attempts.tolist()))
 
+    def timed_apart(self, tasks):
+        """Mask of the tasks of which some guesses were timed in another run than the others (run --extend)."""
+        if not self.has("/timing/tasks/copied_guess"):
+            return np.zeros(len(tasks), dtype=bool)
+        copied = self.h5["/timing/tasks/copied_guess"][:][tasks] == 1
+        return copied.any(axis=1) & ~copied.all(axis=1) & (self.own_guess[tasks] < 0)
+
     def job(self):
         """The job as it was given, parsed; empty where it cannot be."""
         if "/job/text" not in self.h5:

@@ -1,57 +1,53 @@
 // What makes two tasks of two plans the same.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstring>
-
-#include "runner/job/key_path.hpp"
 #include "runner/job/plan.hpp"
+#include "runner/job/task_spec.hpp"
 
 namespace rodsweep {
 namespace {
 
 using State = Point::Value::State;
 
-/// Numbers to the last bit; -0 is another one than 0.
-std::string exactly(const Point::Value& value) {
-  if (value.state == State::text) return *value.text;
-  std::string bytes(sizeof value.number, '\0');
-  std::memcpy(bytes.data(), value.number, bytes.size());
-  return bytes;
+constexpr std::string_view guesses = "guesses[";
+
+/// A parameter and its value, numbers to the last bit: -0 is another one than 0.
+void append(std::string& text, std::string_view path, const Point::Value& value) {
+  text += path;
+  text += " = ";
+  if (value.state == State::text) {
+    text += *value.text;
+  } else {
+    text.append(reinterpret_cast<const char*>(value.number), sizeof value.number);
+  }
+  text += '\n';
 }
 
 }  // namespace
 
 TaskIdentity Plan::identity(std::int64_t index) const {
   const Task& task = tasks_.at(static_cast<std::size_t>(index));
-  const TaskSpec spec = this->spec(index);
   Point point;
   fill(point, task.point);
-  std::vector<std::string> lines;
-  std::vector<std::vector<std::string>> of_guesses(guess_labels_.size());
-  const std::vector<Parameter>& parameters = space_.parameters();
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (point[i].state == State::absent) continue;
-    const std::string& path = parameters[i].path;
-    if (path.rfind("guesses[", 0) != 0) {
-      lines.push_back(path + " = " + exactly(point[i]));
-      continue;
-    }
-    const std::size_t end = path.find(']');
-    of_guesses.at(std::stoul(path.substr(8, end - 8))).push_back(path.substr(end + 1) + " = " + exactly(point[i]));
-  }
-  std::sort(lines.begin(), lines.end());
-
   TaskIdentity identity;
-  for (auto& of_guess : of_guesses) {
-    std::sort(of_guess.begin(), of_guess.end());
-    identity.guesses.push_back(fmt::format("{}", fmt::join(of_guess, "\n")));
+  const bool tries_guesses = solve_spec(point).method == Method::cg;
+  if (tries_guesses) identity.guesses.resize(guess_labels_.size());
+  for (const auto& [path, parameter] : space_.by_path()) {
+    const Point::Value& value = point[static_cast<std::size_t>(parameter)];
+    if (value.state == State::absent) continue;
+    if (path.rfind(guesses, 0) != 0) {
+      append(identity.trajectory, path, value);
+    } else if (tries_guesses) {
+      const std::size_t end = path.find(']');
+      const auto guess = std::stoul(path.substr(guesses.size(), end - guesses.size()));
+      append(identity.guesses.at(guess), std::string_view(path).substr(end + 1), value);
+    }
   }
-  if (spec.guesses.empty()) identity.guesses.clear();
-  identity.trajectory =
-      fmt::format("{}\nseed = {}\nlimit = {:a}\nrecord = {} {}\n{}", fmt::join(lines, "\n"), spec.seed,
-                  spec.time_limit_s, spec.record.solves, spec.record.trajectory_every,
-                  spec.own_guess < 0 ? "" : "own guess" + identity.guesses[static_cast<std::size_t>(spec.own_guess)]);
+  const RecordSpec record = record_spec(job_);
+  const auto own = static_cast<std::size_t>(task.own_guess);
+  identity.trajectory += fmt::format("seed {} sample {} limit {} record {} {}\n{}", job_.seed, task.sample,
+                                     job_.values["task_time_limit_s"].get<double>(), record.solves,
+                                     record.trajectory_every, task.own_guess < 0 ? "" : identity.guesses[own]);
   return identity;
 }
 

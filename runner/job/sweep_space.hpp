@@ -68,6 +68,9 @@ class SweepSpace {
   bool every_point_is_random() const { return root_.random; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
 
+  /// Index of every parameter, in the order of paths.
+  const std::map<std::string, int, std::less<>>& by_path() const { return index_; }
+
   /// Index of a parameter, or -1 if the job has none of this path.
   int find(std::string_view path) const;
 

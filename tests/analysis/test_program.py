@@ -173,6 +173,19 @@ class Program(unittest.TestCase):
         self.assertEqual(len(self.script(spatial, short.path).split()), 2)
         self.assertIn("No times", self.script(summary, short.path))
 
+    def test_times_of_an_extended_sweep_say_that_they_are_of_two_runs(self):
+        old = self.run_job("base", scene=ROD, guesses=["zero", "previous"])
+        job, path = (os.path.join(self.folder.name, "extended" + ending) for ending in (".json", ".h5"))
+        for guesses, apart in ((["zero", "previous", "linear"], 4), (["previous", "zero"], 0)):
+            with open(job, "w", encoding="utf-8") as text:
+                json.dump({**JOB, "name": "extended", "scene": ROD, "guesses": guesses}, text)
+            subprocess.run([os.environ["RODSWEEP"], "run", job, "-o", path, "--extend", old], check=True,
+                           capture_output=True, stdin=subprocess.DEVNULL)
+            said = self.script(summary, path)
+            os.remove(path)
+            self.assertEqual("Of 4 tasks some guesses were timed in another run" in said, apart > 0)
+            self.assertNotIn("WARNING", said)
+
     def test_tasks_that_are_not_complete_are_not_read(self):
         path = self.run_job("partial")
         with h5py.File(path, "r+") as h5:

@@ -332,6 +332,16 @@ class Speaking(SweepCase):
         size = os.path.getsize("results/planned.h5")
         self.assertLess(abs(plan["file_bytes"] - size), 0.2 * size)
 
+    def test_a_plan_of_summaries_tells_their_smaller_size(self):
+        sizes = []
+        for solves in ("all", "summary"):
+            path = job(solves, steps=40, record={"solves": solves})
+            sizes.append(json.loads(rodsweep(0, "plan", path, "--json", "--no-probe").stdout)["file_bytes"])
+            self.assert_exit(rodsweep(0, "run", path), ALL_DONE)
+            size = os.path.getsize(f"results/{solves}.h5")
+            self.assertLess(abs(sizes[-1] - size), 0.2 * size)
+        self.assertLess(sizes[1], 0.6 * sizes[0])
+
 
 if __name__ == "__main__":
     unittest.main()
