@@ -43,11 +43,10 @@ TaskIdentity Plan::identity(std::int64_t index) const {
       append(identity.guesses.at(guess), std::string_view(path).substr(end + 1), value);
     }
   }
-  const RecordSpec record = record_spec(job_);
   const auto own = static_cast<std::size_t>(task.own_guess);
-  identity.trajectory += fmt::format("seed {} sample {} limit {} record {} {}\n{}", job_.seed, task.sample,
-                                     job_.values["task_time_limit_s"].get<double>(), record.solves,
-                                     record.trajectory_every, task.own_guess < 0 ? "" : identity.guesses[own]);
+  identity.trajectory += fmt::format(
+      "seed {} sample {} limit {} record {}\n{}", job_.seed, task.sample, job_.values["task_time_limit_s"].dump(),
+      nlohmann::json(job_.values["record"]).dump(), task.own_guess < 0 ? "" : identity.guesses[own]);
   return identity;
 }
 
