@@ -39,7 +39,7 @@ std::vector<RunRow> read_runs(const hdf5::File& file) {
   texts("/runs/revision", [](RunRow& run) -> std::string& { return run.provenance.revision; });
   texts("/runs/versions", [](RunRow& run) -> std::string& { return run.provenance.versions; });
   texts("/runs/petsc_options", [](RunRow& run) -> std::string& { return run.provenance.petsc_options; });
-  texts("/runs/source", [](RunRow& run) -> std::string& { return run.source; });
+  if (hdf5::exists(id, "/runs/source")) texts("/runs/source", [](RunRow& run) -> std::string& { return run.source; });
   const auto ranks = hdf5::read_all<std::int32_t>(id, "/runs/ranks");
   const auto exit_codes = hdf5::read_all<std::int32_t>(id, "/runs/exit_code");
   const auto oversubscribed = hdf5::read_all<std::uint8_t>(id, "/runs/oversubscribed");

@@ -1,5 +1,7 @@
 #include "runner/file/task_reader.hpp"
 
+#include <fmt/format.h>
+
 #include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/resume_check.hpp"
@@ -28,6 +30,10 @@ T value_of(const hdf5::RowDataset& dataset, std::int64_t row) {
 TaskReader::TaskReader(const fs::path& path, const Plan& plan)
     : file_(open_results(path)), plan_(&plan), sizes_(axis_sizes(plan)) {
   try {
+    if (hdf5::has_attribute(file_.id(), "/job", "rerun_of_task")) {
+      throw FileError(fmt::format(
+          "{} holds one task of a sweep, made by `rodsweep rerun`: extend the file of the sweep", path.native()));
+    }
     check_same_plan(file_, path, plan, "Extend it with that revision, or run the whole job without --extend");
     const std::vector<std::uint8_t> states = read_states(file_, path);
     const std::vector<std::string> outcomes = hdf5::read_texts(file_.id(), "/tasks/outcome");

@@ -90,7 +90,7 @@ void check_extends(const Job& job, const Job& before) {
     refuse("guesses", fmt::format("\"{}\" of {} is not among them", guess_label(guess), file));
   }
   Json now = job.values, then = before.values;
-  for (const char* free : {"name", "description", "samples", "guesses"}) now.erase(free), then.erase(free);
+  for (const char* free : {"$schema", "name", "description", "samples", "guesses"}) now.erase(free), then.erase(free);
   if (const auto found = difference(now, then, "")) {
     refuse(found->path, fmt::format("{} here, {} in {}", written(found->now), written(found->before), file));
   }
