@@ -38,7 +38,8 @@ def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):
 
 def long_job(name="long", samples=30):
     """About a second of work in many tasks: long enough to be hit in the middle."""
-    return job(name, samples=samples, segments=(15, 30), steps=40)
+    return job(name, samples=samples, segments=(15, 30), steps=40,
+               record={"solves": "all", "trajectory_every": 2, "norms": "one"})
 
 
 def command(ranks, *words):
