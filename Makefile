@@ -92,7 +92,7 @@ tidy: build
 	@run-clang-tidy -quiet -p $(BUILD) -j $(CORES) '^$(CURDIR)/(solver|network|runner)/.*\.cpp$$'
 
 install: build
-	@cmake --install $(BUILD) --prefix $(abspath $(PREFIX))
+	@cmake --install $(BUILD) --prefix "$$(realpath -m -- "$(PREFIX)")"
 
 clean:
 	@for folder in $(BUILD) $(BUILD)-sanitize; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done
