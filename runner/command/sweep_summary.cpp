@@ -27,6 +27,20 @@ std::int64_t finished_now(const Dispatch& dispatch) {
   return count;
 }
 
+/// The script that makes tables, of the source tree or installation that this program belongs to, as typed from here.
+std::string summary_script() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  for (const char* folder : {"../share/rodsweep/analysis", "../analysis"}) {
+    const fs::path script = (program.parent_path() / folder / "summary.py").lexically_normal();
+    if (!fs::exists(script, error)) continue;
+    const std::string here = fs::proximate(script, error).native();
+    return here.empty() || here.size() > script.native().size() ? script.native() : here;
+  }
+  return "analysis/summary.py";
+}
+
 }  // namespace
 
 ExitCode exit_code(const SweepSummary& summary) {
@@ -59,7 +73,9 @@ std::string summary_text(const SweepSummary& summary) {
                     duration_text(dispatch.wall_s), now, static_cast<double>(now) / dispatch.wall_s, summary.workers,
                     summary.workers == 1 ? "" : "s", 100 * dispatch.busy_s / (summary.workers * dispatch.wall_s));
   text += "results: " + summary.path.native();
-  if (dispatch.left == 0) text += "\nnext: /usr/bin/python3 analysis/summary.py " + shell_quoted(summary.path.native());
+  if (dispatch.left == 0)
+    text += fmt::format("\nnext: /usr/bin/python3 {} {}", shell_quoted(summary_script()),
+                        shell_quoted(summary.path.native()));
   return text;
 }
 
