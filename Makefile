@@ -20,12 +20,14 @@ packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt
 configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G Ninja) -DCMAKE_BUILD_TYPE=$(BUILD_TYPE) \
   -DRODSWEEP_NATIVE=$(if $(call yes,$(PORTABLE)),OFF,ON) -DRODSWEEP_WERROR=$(if $(call yes,$(WERROR)),ON,OFF) $(2) 2>&1) \
   || { echo "$$log"; exit 1; }
+studies = spatial_bending spatial_helix temporal_bending temporal_helix newton stiffness step_size long_term
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo test test-long bench sanitize schema format format-check tidy install clean
+.PHONY: help configure build demo studies test test-long bench sanitize schema format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
+	@echo 'make studies       run the studies of jobs/, draw analysis/results (half an hour; continued if it was stopped)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
 	@echo 'make bench         build and run the benchmarks'
@@ -54,6 +56,14 @@ demo: build
 	$(PYTHON) analysis/spatial.py results/demo.h5; \
 	$(PYTHON) analysis/summary.py results/demo.h5; \
 	exit $$code
+
+# Everything under analysis/results but its README: a job that is done is not run again.
+studies: build
+	@mkdir -p results; for study in $(studies); do \
+	  [ -e results/$$study.h5 ] && resume=--resume || resume=; \
+	  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$$study.json -o results/$$study.h5 $$resume </dev/null || [ $$? = 3 ]; \
+	done
+	@analysis/results/draw.sh results
 
 test: configure
 	@cmake --build $(BUILD) -j $(CORES)

@@ -45,7 +45,9 @@ def run(name, main):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
     except OSError as error:
-        print(f"{name}: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
+        # h5py raises it for rows that cannot be read, without a number
+        text = f"{error.filename or 'output'}: {error.strerror}" if error.errno else f"the file is damaged: {error}"
+        print(f"{name}: {text}", file=sys.stderr)
         code = 2
     sys.exit(code)
 

@@ -19,6 +19,7 @@ import numpy as np
 PROGRAM = "rodsweep"
 SCHEMA_VERSION = 1
 BLOCK_ROWS = 1 << 17
+UNREADABLE = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError)  # what bad bytes raise
 PLAN_COLUMNS = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")
 
 
@@ -101,9 +102,12 @@ class SweepFile:
             raise SweepFileError(f"{self.path} is {kind}; give a file written by `rodsweep run`") from error
         try:
             self._open()
-        except BaseException:
+        except SweepFileError:
             self.h5.close()
             raise
+        except UNREADABLE as error:
+            self.h5.close()
+            raise SweepFileError(f"{self.path} is damaged: {error}") from error
 
     def __enter__(self):
         return self
@@ -240,7 +244,7 @@ class SweepFile:
             return {}
         text = np.asarray(self.h5["/job/text"][()]).tobytes()  # one string, or an array of characters or of bytes
         try:
-            parsed = json.loads(text.rstrip(b"\0").decode("utf-8", "replace"))
+            parsed = json.loads(text.rstrip(b"\0").decode("utf-8-sig", "replace"))
         except ValueError:
             return {}
         return parsed if isinstance(parsed, dict) else {}

@@ -4,6 +4,7 @@ A row holds the times of the parts of a solve: assembly, each guess and its CG t
 They last microseconds, and the operating system's interruptions milliseconds: one would outweigh a whole simulation.
 A row is left out, for all guesses, where a part took over INTERRUPTED times its median in the simulation and FLOOR_S
 longer (CG: its median per iteration, with FIXED iterations for what every solve costs); sums are scaled up to all rows.
+A lagged preconditioner is factored anew in rows of their own kind: those are not judged, and stay.
 Times.interrupted counts the rows left out.
 """
 
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 COLUMNS = ("/timing/solves/assemble_s", "/timing/solves/direct_s", "/timing/solves/guess_s", "/timing/solves/cg_s")
-ROWS = ("/solves/newton", "/solves/iterations")
+ROWS = ("/solves/newton", "/solves/step", "/solves/iterations")
 SPEEDUPS = {"cg": "CG only", "guess_cg": "guess + CG", "step": "whole step"}
 INTERRUPTED = 5
 FLOOR_S = 5e-6
@@ -48,7 +49,7 @@ def times(file, sims):
     tasks, guesses, zero = sims.tasks(), len(file.guesses), file.zero
     names = ("solves", "kept", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept", "zero_guess_s", "zero_cg_s")
     sums = {which: {name: np.zeros((file.task_count, guesses)) for name in names} for which in ("first", "later")}
-    rung = _timed_rung(file)
+    rung, lag = _timed_rung(file), _lag_steps(file)
     for owners, starts, rows in file.solve_blocks(tasks, COLUMNS + ROWS):
         assemble, direct, guess, cg = (rows[path].astype(float) for path in COLUMNS)
         assemble, direct = assemble[:, None], direct[:, None]
@@ -60,8 +61,9 @@ def times(file, sims):
         parts = np.concatenate([assemble, direct, guess, cg], axis=1)
         work = np.ones(parts.shape)
         work[:, -guesses:] = np.where(iterations >= 0, iterations + FIXED, np.nan)
-        smooth = ~_interrupted(starts, parts, work)[:, None]
         first = (rows["/solves/newton"] == 0)[:, None]
+        renewed = first[:, 0] & (lag[owner] > 0) & (rows["/solves/step"] % np.maximum(lag[owner], 1) == 0)
+        smooth = ~(_interrupted(starts, parts, work) & ~renewed)[:, None]
         for which, counted in (("first", valid & first), ("later", valid & ~first)):
             kept = counted & smooth
             with_direct = kept & np.isfinite(direct)
@@ -85,6 +87,15 @@ def _timed_rung(file):
     if parameter is None:
         return np.zeros(file.task_count, dtype=int)
     return np.argmin(np.abs(np.log(parameter.values[:, None] / file.tolerances[None, :])), axis=1)
+
+
+def _lag_steps(file):
+    """Per task, steps from one factorisation of a lagged preconditioner to the next; 0 for the others."""
+    names = ("solve.preconditioner", "solve.lag_steps")
+    if any(name not in file.parameters for name in names):
+        return np.zeros(file.task_count, dtype=int)
+    preconditioner, steps = (file.parameters[name].values for name in names)
+    return np.where(preconditioner == "lagged_cholesky", steps, 0)
 
 
 def _interrupted(starts, parts, work):

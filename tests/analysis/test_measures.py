@@ -222,6 +222,20 @@ class Interruptions(Tables):
         self.assertEqual(times.interrupted.sum(), 0)
         np.testing.assert_allclose(times.cg_s[0, 0], (4 + 14) * 20e-6, rtol=1e-5)
 
+    def test_a_solve_that_renews_a_lagged_factor_is_not_one(self):
+        grid = {"scene.segments": [20], "solve.lag_steps": [2]}
+        file, sims, _ = self.open(grid=grid, scenes=("helix",), steps=5, newton=3)
+
+        def renew(h5):
+            del h5["tasks/parameters/solve.preconditioner"]
+            h5["tasks/parameters/solve.preconditioner"] = np.array([b"lagged_cholesky"] * 4)
+            for row in (0, 6, 12, 9):   # the first Newton iteration of steps 0, 2 and 4, and one of step 3
+                h5["timing/solves/cg_s"][row, 0] += 1e-3
+
+        times = timings.times(self.changed(file, renew), sims)["all"]
+        np.testing.assert_array_equal(times.interrupted[0], 1)
+        np.testing.assert_allclose(times.cg_s[0, 0], (3e-3 + 4 * 20e-6) * 5 / 4 + 10 * 10e-6, rtol=1e-5)
+
     def test_in_a_closed_loop_every_guess_loses_its_own_rows(self):
         file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3, closed_loop=True)
         before = timings.speedups(timings.times(file, sims), "first")["guess_cg"]

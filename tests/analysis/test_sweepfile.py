@@ -71,6 +71,15 @@ class Refusals(Folder):
             del h5["tasks/first_solve"]
         self.refused("/tasks/first_solve is missing")
 
+    def test_columns_that_do_not_fit_together(self):
+        wrong = (("outcome", np.array([b"ok"] * 3)), ("outcome", np.float64(1)), ("state", np.zeros((2, 2))))
+        for column, values in wrong:
+            synthetic.Sweep().write(self.path)
+            with h5py.File(self.path, "r+") as h5:
+                del h5[f"tasks/{column}"]
+                h5[f"tasks/{column}"] = values
+            self.refused("is damaged")
+
     def test_the_file_is_closed_after_a_refusal(self):
         h5py.File(self.path, "w").close()
         self.refused()
