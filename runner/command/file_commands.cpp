@@ -73,9 +73,9 @@ Json to_json(const FileSummary& file) {
 }
 
 std::string provenance_text(const FileSummary& file) {
-  std::string text = fmt::format("file     {}, {}, schema {}\njob      {}\nplan     {} tasks, hash {}\n",
+  std::string text = fmt::format("file     {}, {}, schema {}\njob      {} ({})\nplan     {} tasks, hash {}\n",
                                  file.path.native(), bytes_text(static_cast<std::int64_t>(file.bytes)),
-                                 file.schema_version, file.job_name, file.tasks, file.plan_hash);
+                                 file.schema_version, file.job_name, file.job_kind, file.tasks, file.plan_hash);
   if (file.rerun_of_task) text += fmt::format("holds    task {} of the job alone, run again\n", *file.rerun_of_task);
   if (!file.guesses.empty()) text += fmt::format("guesses  {}\n", fmt::join(file.guesses, ", "));
   text += fmt::format("done     {} of {} tasks: {}\n", file.done, file.tasks, by_outcome(file));
@@ -120,6 +120,7 @@ ExitCode show_info(const InfoOptions& options, Console& console) {
   if (options.json) {
     Json json = to_json(file);
     json["bytes"] = file.bytes;
+    json["kind"] = file.job_kind;
     json["schema_version"] = file.schema_version;
     json["plan_hash"] = file.plan_hash;
     if (file.rerun_of_task) json["rerun_of_task"] = *file.rerun_of_task;

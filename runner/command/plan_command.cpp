@@ -48,6 +48,7 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
                               {"steps", all_steps(plan)},
                               {"most_systems", most_systems(plan)},
                               {"guesses", plan.guess_labels()},
+                              {"recorded_systems", plan.system_rows()},
                               {"file_bytes", file_bytes(plan)}};
   json["swept"] = nlohmann::ordered_json::array();
   for (const ParameterColumn& parameter : plan.parameters())
@@ -80,7 +81,8 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
   if (!swept.empty()) text += fmt::format("swept    {}\n", swept);
   text += fmt::format("steps    {}\n", all_steps(plan));
   const auto guesses = plan.guess_labels().size();
-  text += fmt::format("systems  {} at most{}\n", most_systems(plan),
+  text += fmt::format("systems  {} at most{}{}\n", most_systems(plan),
+                      plan.system_rows() > 0 ? fmt::format(", of which {} recorded", plan.system_rows()) : "",
                       guesses > 0 ? fmt::format(", guesses: {}", fmt::join(plan.guess_labels(), ", ")) : "");
   text += fmt::format("file     {}\n", bytes_text(file_bytes(plan)));
   if (!probes.empty()) {

@@ -9,6 +9,7 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
 #include "runner/file/resume_check.hpp"
+#include "runner/file/stored_plan.hpp"
 #include "runner/file/task_comparison.hpp"
 #include "runner/file/unfinished_file.hpp"
 
@@ -16,25 +17,6 @@ namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Where relative paths in the job begin: the job file as the last start found it.
-fs::path job_path(const FileSummary& file) {
-  for (auto run = file.runs.rbegin(); run != file.runs.rend(); ++run)
-    if (!run->provenance.job.empty()) return run->provenance.job;
-  return file.path;
-}
-
-Plan plan_of(const FileSummary& file) {
-  try {
-    return Plan(parse_job(file.job_text, job_path(file)));
-  } catch (const JobError& error) {
-    const std::string revision = file.runs.empty() ? "unknown" : file.runs.front().provenance.revision;
-    throw FileError(
-        fmt::format("{} holds a job that this rodsweep does not accept; use the one that wrote it (revision {}), or "
-                    "put the job's files back where they were:\n{}",
-                    file.path.native(), revision, error.what()));
-  }
-}
 
 /// The task in the file, refused with what can be had instead.
 void check_task(const RerunOptions& options, const FileSummary& file) {
@@ -67,7 +49,7 @@ ExitCode rerun_task(const RerunOptions& options, Console& console) {
   check_task(options, before);
   const fs::path output = options.output.value_or(file_beside(options.file, fmt::format("-task-{}", options.task)));
   refuse_existing(output);
-  const Plan whole = plan_of(before);
+  const Plan whole = stored_plan(before);
   check_same_tasks(options.file, whole);
   const Plan plan = whole.alone(options.task, options.trajectory_every);
   Provenance provenance = provenance_of_this_process(options.command);

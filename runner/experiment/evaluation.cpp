@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <string>
 
+#include "runner/dataset/system_recording.hpp"
 #include "runner/experiment/measured_solve.hpp"
+#include "runner/file/state_rows.hpp"
 #include "solver/observables.hpp"
 #include "solver/stopwatch.hpp"
 #include "solver/time_step.hpp"
@@ -60,14 +63,11 @@ void record_frame(TaskRecord& record, const Task& task, std::size_t frame, const
   record.first_row[frame] = task.first_frame_row + static_cast<std::int64_t>(first);
   record.frame_time_s[frame] = scene.time_s;
   std::size_t row = first;
-  for (const Rod& rod : scene.rods)
-    for (std::size_t s = 0; s < rod.segments.size(); ++s, ++row) {
-      const Quaternion& q = rod.orientation[s];
-      for (std::size_t i = 0; i < 3; ++i)
-        record.position_m[3 * row + i] = rod.position[s][static_cast<Eigen::Index>(i)];
-      const double wxyz[] = {q.w(), q.x(), q.y(), q.z()};
-      std::copy(std::begin(wxyz), std::end(wxyz), record.orientation.begin() + static_cast<std::ptrdiff_t>(4 * row));
-    }
+  for (const Rod& rod : scene.rods) {
+    store(rod.position, &record.position_m[3 * row]);
+    store(rod.orientation, &record.orientation[4 * row]);
+    row += rod.segments.size();
+  }
 }
 
 /// Runs the steps; sets outcome and message. Returns false when abandoned.
@@ -78,7 +78,10 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   for (const Rod& rod : scene.rods) initial_length += rod_length(rod);
 
   MeasuredSolve solve(scene, spec, record);
-  LinearProjection projection(scene, solve);
+  std::optional<RecordingSolve> recording;
+  if (const int iterations = spec.record.recorded_iterations(spec.time.newton_iterations); iterations > 0)
+    recording.emplace(scene, iterations, solve, record);
+  LinearProjection projection(scene, recording ? static_cast<LinearSolve&>(*recording) : solve);
   TimeStepper stepper(scene, {spec.time.step_s, spec.time.newton_iterations, spec.time.newton_tolerance});
   const int every = spec.record.trajectory_every;
   if (every > 0) record_frame(record, task, 0, scene);

@@ -77,7 +77,8 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
     }
   }
   check_extends(plan.job(), before_->job());
-  reader_ = std::make_unique<TaskReader>(path, *before_);
+  reader_ = std::make_unique<TaskReader>(path, *before_,
+                                         "Extend it with that revision, or run the whole job without --extend");
 
   std::unordered_map<std::size_t, std::vector<std::int64_t>> by_trajectory;
   const std::hash<std::string> hash;

@@ -71,6 +71,7 @@ void write_parameters(hid_t file, const std::vector<ParameterColumn>& parameters
 void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterColumn>& parameters) {
   hdf5::write_attribute(file, "program", "rodsweep");
   hdf5::write_attribute(file, "schema_version", schema_version);
+  hdf5::write_attribute(file, "kind", plan.job().values["kind"].get<std::string>());
   hdf5::write_attribute(file, "title", "rodsweep results: " + plan.job().name);
   hdf5::write_texts(file, "/job/text", {plan.job().text});
   const hdf5::Object job(hdf5::check(H5Oopen(file, "/job", H5P_DEFAULT), "H5Oopen", "/job"));
@@ -82,7 +83,7 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   if (!plan.guess_labels().empty()) hdf5::write_texts(file, "/axes/guess", plan.guess_labels());
   hdf5::write_all(file, "/axes/tolerance", tolerance_ladder());
   write_parameters(file, parameters);
-  visit_task_columns([&](const char* path, const char*, const char*, auto value) {
+  visit_task_columns(plan.system_rows() > 0, [&](const char* path, const char*, const char*, auto value) {
     std::vector<decltype(value(Task{}))> values;
     for (const Task& task : plan.tasks()) values.push_back(value(task));
     hdf5::write_all(file, path, values);

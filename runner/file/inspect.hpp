@@ -35,7 +35,7 @@ struct FileSummary {
   std::filesystem::path path;
   std::uintmax_t bytes = 0;
   int schema_version = 0;
-  std::string job_name, job_text, plan_hash;
+  std::string job_name, job_kind, job_text, plan_hash;
   std::optional<std::int64_t> rerun_of_task;  ///< the file holds that task of the job alone, run again
   std::vector<std::string> guesses;           ///< labels of /axes/guess; empty without cg
   std::vector<double> tolerances;             ///< /axes/tolerance

@@ -1,6 +1,6 @@
 // Every dataset of a plan's results file: path, type, extents, unit and meaning. Creating the file, its size, opening
 // it and the checks of --resume all walk this one list. A dataset that would hold nothing is left out (/solves of a job
-// that records summaries, /trajectories, what has a guess axis where there are no guesses).
+// that records summaries, /trajectories, /systems of a sweep, what has a guess axis where there are no guesses).
 #pragma once
 
 #include <cstdint>
@@ -61,8 +61,9 @@ hdf5::Datatype type_of(const Field& field);
 std::int64_t data_bytes(const Field& field);
 
 /// What the plan says about each task, as datasets: calls visit(path, unit, meaning, value), value(task) a number.
+/// `systems`: also where the recorded linear systems of a data set are.
 template <class Visit>
-void visit_task_columns(Visit&& visit) {
+void visit_task_columns(bool systems, Visit&& visit) {
   visit("/tasks/point", "1", "parameter point; tasks of a closed loop that differ in their guess alone share it",
         [](const Task& task) { return task.point; });
   visit("/tasks/sample", "1", "which draw of the random parameters, from 0",
@@ -81,6 +82,17 @@ void visit_task_columns(Visit&& visit) {
         [](const Task& task) { return task.first_frame_row; });
   visit("/tasks/frames", "1", "frames in /trajectories, each of `segments` rows",
         [](const Task& task) { return task.frames; });
+  if (!systems) return;
+  visit("/tasks/first_system", "1", "first row in /systems", [](const Task& task) { return task.first_system; });
+  visit("/tasks/systems", "1", "rows in /systems", [](const Task& task) { return task.systems; });
+  visit("/tasks/first_system_segment", "1", "first row in /systems/segments",
+        [](const Task& task) { return task.first_system_segment; });
+  visit("/tasks/system_segments", "1", "rows in /systems/segments, system by system",
+        [](const Task& task) { return task.system_segments; });
+  visit("/tasks/first_system_joint", "1", "first row in /systems/joints",
+        [](const Task& task) { return task.first_system_joint; });
+  visit("/tasks/system_joints", "1", "rows in /systems/joints, system by system",
+        [](const Task& task) { return task.system_joints; });
 }
 
 /// Sixteen hexadecimal digits over what the plan fixes about the file (floating-point parameters are left out: another

@@ -14,6 +14,7 @@ std::int64_t AxisSizes::size(Axis axis) const {
     case Axis::tolerance: return tolerances;
     case Axis::xyz: return 3;
     case Axis::wxyz: return 4;
+    case Axis::constraint: return 6;
     case Axis::frame: return frames;
   }
   return 0;
@@ -35,6 +36,9 @@ RowRange rows_of(const Task& task, Rows rows) {
     case Rows::step: return {task.first_step, task.steps};
     case Rows::solve: return {task.first_solve, task.solves};
     case Rows::frame_segment: return {task.first_frame_row, task.frames * task.segments};
+    case Rows::system: return {task.first_system, task.systems};
+    case Rows::system_segment: return {task.first_system_segment, task.system_segments};
+    case Rows::system_joint: return {task.first_system_joint, task.system_joints};
   }
   return {};
 }

@@ -19,11 +19,11 @@ namespace rodsweep {
 class Plan;
 
 /// What one row of a dataset stands for.
-enum class Rows { task, step, solve, frame_segment };
+enum class Rows { task, step, solve, frame_segment, system, system_segment, system_joint };
 
-/// Axes after the row: none, guess, tolerance, the three components of a vector, four of a quaternion, frames of a
-/// task.
-enum class Axis { guess, tolerance, xyz, wxyz, frame };
+/// Axes after the row: none, guess, tolerance, the three components of a vector, four of a quaternion, the six of a
+/// joint's constraint (stretch-shear, then bend-twist), frames of a task.
+enum class Axis { guess, tolerance, xyz, wxyz, constraint, frame };
 
 /// Sizes of the axes that the whole file shares.
 struct AxisSizes {
@@ -86,6 +86,13 @@ struct TaskRecord {
   std::vector<double> position_m, orientation;  ///< [frame x segment, 3], [frame x segment, 4] (w, x, y, z)
   std::vector<std::int64_t> first_row;          ///< [frame] row of the frame in /trajectories
   std::vector<double> frame_time_s;             ///< [frame]
+
+  // ---- /systems: the recorded linear systems of a data set (runner/dataset/system_recording.hpp)
+  std::vector<std::int32_t> system_step;                      ///< [system]
+  std::vector<std::int16_t> system_newton, system_rod;        ///< [system]
+  std::vector<double> system_position_m, system_orientation;  ///< [system x segment, 3], [.., 4] (w, x, y, z)
+  std::vector<double> system_velocity_m_s, system_angular_velocity_rad_s;  ///< [system x segment, 3]
+  std::vector<double> system_lambda, system_solution;                      ///< [system x joint, 6]
 
   // ---- /timing: whatever may differ between two runs of the same job; ResultsFile adds rank, host, attempt, write_s
   std::vector<float> assemble_s, direct_s;  ///< [row]
@@ -194,6 +201,32 @@ void visit_columns(Record& r, Visit&& visit) {
   visit(Column{"/trajectories/first_row", R::task, {A::frame}, "1", "row of the frame's first segment; -1 none"},
         r.first_row);
   visit(Column{"/trajectories/time_s", R::task, {A::frame}, "s", "time of the frame"}, r.frame_time_s);
+
+  const std::vector<Axis> six{A::constraint};
+  visit(Column{"/systems/step", R::system, none, "1", "time step, from 0; -1: a Newton iteration that was not needed"},
+        r.system_step);
+  visit(Column{"/systems/newton", R::system, none, "1", "Newton iteration within the step, from 0"}, r.system_newton);
+  visit(Column{"/systems/rod", R::system, none, "1", "rod within the scene, from 0"}, r.system_rod);
+  visit(Column{"/systems/segments/position_m", R::system_segment, xyz, "m",
+               "segment centre where the system was assembled"},
+        r.system_position_m);
+  visit(Column{"/systems/segments/orientation",
+               R::system_segment,
+               {A::wxyz},
+               "1",
+               "segment orientation there, unit quaternion (w, x, y, z), local z along the rod"},
+        r.system_orientation);
+  visit(Column{"/systems/segments/velocity_m_s", R::system_segment, xyz, "m/s", "velocity at the start of the step"},
+        r.system_velocity_m_s);
+  visit(Column{"/systems/segments/angular_velocity_rad_s", R::system_segment, xyz, "rad/s",
+               "angular velocity at the start of the step, world frame"},
+        r.system_angular_velocity_rad_s);
+  visit(Column{"/systems/joints/lambda", R::system_joint, six, "kg m^2",
+               "Lagrange multipliers before the solve: stretch-shear (3), bend-twist (3)"},
+        r.system_lambda);
+  visit(Column{"/systems/joints/solution", R::system_joint, six, "kg m^2",
+               "their increment, which solves A dlambda = b: by the direct solve"},
+        r.system_solution);
 
   visit(Column{"/timing/solves/assemble_s", R::solve, none, "s", "assembly of A and b"}, r.assemble_s);
   visit(

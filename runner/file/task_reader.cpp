@@ -27,14 +27,14 @@ T value_of(const hdf5::RowDataset& dataset, std::int64_t row) {
 
 }  // namespace
 
-TaskReader::TaskReader(const fs::path& path, const Plan& plan)
+TaskReader::TaskReader(const fs::path& path, const Plan& plan, const char* advice)
     : file_(open_results(path)), plan_(&plan), sizes_(axis_sizes(plan)) {
   try {
     if (hdf5::has_attribute(file_.id(), "/job", "rerun_of_task")) {
       throw FileError(fmt::format(
           "{} holds one task of a sweep, made by `rodsweep rerun`: extend the file of the sweep", path.native()));
     }
-    check_same_plan(file_, path, plan, "Extend it with that revision, or run the whole job without --extend");
+    check_same_plan(file_, path, plan, advice);
     const std::vector<std::uint8_t> states = read_states(file_, path);
     const std::vector<std::string> outcomes = hdf5::read_texts(file_.id(), "/tasks/outcome");
     outcomes_.assign(states.size(), TaskOutcome::pending);

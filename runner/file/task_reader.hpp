@@ -16,8 +16,8 @@ namespace rodsweep {
 
 class TaskReader {
  public:
-  /// The plan must outlive the reader.
-  TaskReader(const std::filesystem::path& path, const Plan& plan);
+  /// The plan must outlive the reader. `advice` ends the message about a file that another revision made.
+  TaskReader(const std::filesystem::path& path, const Plan& plan, const char* advice);
 
   /// TaskOutcome::pending where a task is not complete.
   TaskOutcome outcome(std::int64_t task) const { return outcomes_[static_cast<std::size_t>(task)]; }

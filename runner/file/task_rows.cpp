@@ -47,6 +47,15 @@ std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
     tasks[i].first_solve = first_solve[i], tasks[i].solves = solves[i];
     tasks[i].first_frame_row = first_frame_row[i], tasks[i].frames = frames[i];
   }
+  if (!hdf5::exists(file.id(), "/tasks/systems")) return tasks;
+  const auto first_system = numbers("/tasks/first_system"), systems = numbers("/tasks/systems"),
+             first_segment = numbers("/tasks/first_system_segment"), segment_rows = numbers("/tasks/system_segments"),
+             first_joint = numbers("/tasks/first_system_joint"), joint_rows = numbers("/tasks/system_joints");
+  for (std::size_t i = 0; i < count; ++i) {
+    tasks[i].first_system = first_system[i], tasks[i].systems = systems[i];
+    tasks[i].first_system_segment = first_segment[i], tasks[i].system_segments = segment_rows[i];
+    tasks[i].first_system_joint = first_joint[i], tasks[i].system_joints = joint_rows[i];
+  }
   return tasks;
 }
 

@@ -16,6 +16,7 @@ namespace rodsweep {
 namespace {
 
 void check_guesses(const Job& job, const SweepSpace& space) {
+  if (!job.values.contains("guesses")) return;
   const auto& guesses = job.values["guesses"];
   if (!space.can_be("solve.method", "cg")) {
     if (guesses.empty()) return;
@@ -44,6 +45,8 @@ void check_samples(const Job& job, const SweepSpace& space) {
 JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text) {
   return JobError(file.string() + ": " + (key_path.empty() ? "" : key_path + ": ") + text);
 }
+
+nlohmann::ordered_json Job::guesses() const { return values.value("guesses", nlohmann::ordered_json::array()); }
 
 Job parse_job(std::string text, const std::filesystem::path& path) {
   JobReader reader(path);

@@ -31,6 +31,9 @@ struct Job {
   std::uint64_t seed = 0;
   std::int64_t samples = 1;
   nlohmann::ordered_json values;  ///< validated, every default filled in, sweeps still in place
+
+  /// The list of guesses; empty in a kind of job that has none.
+  nlohmann::ordered_json guesses() const;
 };
 
 /// Reads and validates every key and every value that a sweep can take; throws JobError. What depends on several values

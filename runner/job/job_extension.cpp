@@ -85,8 +85,8 @@ void check_extends(const Job& job, const Job& before) {
   if (job.samples < before.samples) {
     refuse("samples", fmt::format("{} here are fewer than the {} in {}", job.samples, before.samples, file));
   }
-  for (const Json& guess : before.values["guesses"]) {
-    if (any_extends(job.values["guesses"], guess)) continue;
+  for (const Json& guess : before.guesses()) {
+    if (any_extends(job.guesses(), guess)) continue;
     refuse("guesses", fmt::format("\"{}\" of {} is not among them", guess_label(guess), file));
   }
   Json now = job.values, then = before.values;

@@ -5,6 +5,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* no_guesses = "a data set is made with the direct solve alone: remove this key";
+
 Key scene() {
   return object_key(
       "scene", "the rod that is simulated",
@@ -132,6 +134,14 @@ Key record() {
                  choice_key("norms", "count iterations in both norms, or only in the one that the job tests (faster)",
                             {"both", "one"})
                      .defaults_to("both")
+                     .only("sweep", no_guesses)
+                     .setting(),
+                 choice_key("systems",
+                            "of which linear systems the rods, the multipliers and the solution are stored: those of "
+                            "the first Newton iteration of every step, or all",
+                            {"first", "all"})
+                     .defaults_to("first")
+                     .only("dataset", "make the simulations a job of that kind")
                      .setting(),
                  integer_key("trajectory_every", "a frame of all segments every so many steps; 0: none")
                      .at_least(0)
@@ -162,7 +172,7 @@ Key job() {
                      .defaults_to("")
                      .also_called({"comment", "//", "_comment", "note", "#"})
                      .setting(),
-                 choice_key("kind", "kind of job", {"sweep"}).not_yet({"dataset", "train"}).setting(),
+                 choice_key("kind", "kind of job", {"sweep", "dataset"}).not_yet({"train"}).setting(),
                  integer_key("seed", "seed of all random values")
                      .at_least(0)
                      .at_most(9007199254740991)
@@ -182,12 +192,14 @@ Key job() {
                  choice_key("evaluation",
                             "all guesses on the systems of one trajectory, or each on a trajectory of its own",
                             {"paired", "closed_loop"})
-                     .defaults_to("paired"),
+                     .defaults_to("paired")
+                     .only("sweep", no_guesses),
                  scene(),
                  time(),
-                 solve(),
+                 solve().only("sweep", no_guesses),
                  guesses_key("guesses", "initial guesses of cg")
                      .defaults_to(Json::array())
+                     .only("sweep", no_guesses)
                      .unswept(
                          "all tasks share one list of guesses; put every guess in it, or a sweep in place of a guess"),
                  record(),

@@ -33,12 +33,20 @@ class JobReader {
   Json read_guess(const Key& key, const Json& value, const std::string& path, bool labelled);
   Json read_varying_guess(const Key& key, Json sweep, std::size_t index, const std::string& path);
   Json read_guesses(const Json& value, const std::string& path);
-  void refuse_unknown(const Key& key, const std::string& name, const std::string& tag_value, const std::string& path);
-  void fill_absent(const Key& key, const std::string& tag_value, const std::string& path, Json& result);
+  void refuse_unknown(const Key& key, const std::string& name, const std::string& path);
+  void fill_absent(const Key& key, const std::string& path, Json& result);
+  bool applies(const Key& key) const;
   void refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark = "");
   void mistake(const std::string& path, const std::string& text);
 
+  /// What decides which keys apply. An object without a tag has that of the object around it.
+  struct Tag {
+    std::string path, value;  ///< no value where it is missing or wrong: then the keys of all values pass
+  };
+  static Tag tag_of(const Key& key, const Json& value, const std::string& path);
+
   std::filesystem::path file_;
+  Tag tag_;
   std::vector<std::string> mistakes_;
 };
 

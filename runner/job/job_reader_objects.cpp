@@ -20,10 +20,6 @@ std::vector<std::string> names(const std::vector<Key>& keys) {
   return result;
 }
 
-bool applies(const Key& key, const std::string& tag_value) {
-  return key.only_for.empty() || tag_value.empty() || key.only_for == tag_value;
-}
-
 /// "oracle 0.1", "oracle 0.1 smooth": the name and those parameters that are not swept, words only if not the default.
 std::string default_label(const std::string& name, const Json& parameters) {
   std::string label = name;
@@ -52,42 +48,52 @@ std::string varying_label(const Json& guess) {
 
 }  // namespace
 
+bool JobReader::applies(const Key& key) const {
+  return key.only_for.empty() || tag_.value.empty() || key.only_for == tag_.value;
+}
+
+JobReader::Tag JobReader::tag_of(const Key& key, const Json& value, const std::string& path) {
+  Tag tag{member(path, key.tag), ""};
+  if (!value.contains(key.tag) || !value[key.tag].is_string()) return tag;
+  const std::string given = value[key.tag];
+  for (const std::string& choice : find_key(key.keys, key.tag)->choices) {
+    if (given == choice) tag.value = given;
+  }
+  return tag;
+}
+
 Json JobReader::read_object(const Key& key, const Json& value, const std::string& path) {
   if (!value.is_object()) {
     refuse(key, value, path);
     return value;
   }
-  std::string tag_value;  // stays empty where it is missing or wrong: then any type's keys pass
-  if (!key.tag.empty() && value.contains(key.tag) && value[key.tag].is_string()) {
-    const std::string given = value[key.tag];
-    for (const std::string& choice : find_key(key.keys, key.tag)->choices) {
-      if (given == choice) tag_value = given;
-    }
-  }
+  const Tag outer = tag_;
+  if (!key.tag.empty()) tag_ = tag_of(key, value, path);
   Json result = Json::object();
   for (const auto& [name, child] : value.items()) {
     const Key* child_key = find_key(key.keys, name);
-    if (child_key && applies(*child_key, tag_value)) {
+    if (child_key && applies(*child_key)) {
       result[name] = read(*child_key, child, member(path, name));
     } else {
-      refuse_unknown(key, name, tag_value, path);
+      refuse_unknown(key, name, path);
     }
   }
-  fill_absent(key, tag_value, path, result);
+  fill_absent(key, path, result);
+  tag_ = outer;
   return result;
 }
 
-void JobReader::refuse_unknown(const Key& key, const std::string& name, const std::string& tag_value,
-                               const std::string& path) {
+void JobReader::refuse_unknown(const Key& key, const std::string& name, const std::string& path) {
   if (const Key* other = find_key(key.keys, name)) {
-    mistake(member(path, name), fmt::format("this key belongs to {} \"{}\", not to \"{}\"", member(path, key.tag),
-                                            other->only_for, tag_value));
+    mistake(member(path, name),
+            fmt::format("this key belongs to {} \"{}\", not to \"{}\"{}{}", tag_.path, other->only_for, tag_.value,
+                        other->only_advice.empty() ? "" : "; ", other->only_advice));
     return;
   }
   std::vector<std::string> known, words;
   std::map<std::string, std::string> meant;
   for (const Key& child : key.keys) {
-    if (!applies(child, tag_value)) continue;
+    if (!applies(child)) continue;
     known.push_back(child.name);
     words.push_back(child.name);
     meant[child.name] = child.name;
@@ -103,10 +109,10 @@ void JobReader::refuse_unknown(const Key& key, const std::string& name, const st
   mistake(member(path, name), "unknown key; " + hint);
 }
 
-void JobReader::fill_absent(const Key& key, const std::string& tag_value, const std::string& path, Json& result) {
+void JobReader::fill_absent(const Key& key, const std::string& path, Json& result) {
   std::map<std::string, std::vector<const Key*>> groups;
   for (const Key& child : key.keys) {
-    if (!child.only_for.empty() && child.only_for != tag_value) continue;
+    if (!child.only_for.empty() && child.only_for != tag_.value) continue;
     if (!child.alternative_group.empty()) {
       groups[child.alternative_group].push_back(&child);
     } else if (result.contains(child.name)) {

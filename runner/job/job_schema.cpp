@@ -146,18 +146,29 @@ class SchemaWriter {
   }
 
   static void append_rule(const Key& key, const std::string& tag_value, Json& rules) {
-    Json required = Json::array(), refused = Json::object();
+    Json required = Json::array();
     for (const Key& child : key.keys) {
-      if (child.only_for.empty()) continue;
-      if (child.only_for != tag_value) {
-        refused[child.name] = false;
-      } else if (!child.preset && child.alternative_group.empty()) {
+      if (child.only_for == tag_value && !child.preset && child.alternative_group.empty())
         required.push_back(child.name);
-      }
     }
+    const Json refused = refusals(key, tag_value);
     if (required.empty() && refused.empty()) return;
     const Json condition{{"properties", {{key.tag, {{"const", tag_value}}}}}, {"required", Json::array({key.tag})}};
     rules.push_back({{"if", condition}, {"then", {{"required", required}, {"properties", refused}}}});
+  }
+
+  /// The keys of other values of the tag, also those of objects within that have no tag of their own.
+  static Json refusals(const Key& key, const std::string& tag_value) {
+    Json refused = Json::object();
+    for (const Key& child : key.keys) {
+      if (!child.only_for.empty() && child.only_for != tag_value) {
+        refused[child.name] = false;
+      } else if (child.kind == Key::Kind::object && child.tag.empty()) {
+        if (Json within = refusals(child, tag_value); !within.empty())
+          refused[child.name] = {{"properties", std::move(within)}};
+      }
+    }
+    return refused;
   }
 
   static Json label() {

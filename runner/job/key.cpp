@@ -55,8 +55,9 @@ Key& Key::defaults_to(nlohmann::ordered_json value) {
   preset = std::move(value);
   return *this;
 }
-Key& Key::only(const char* tag_value) {
+Key& Key::only(const char* tag_value, const char* advice) {
   only_for = tag_value;
+  only_advice = advice;
   return *this;
 }
 Key& Key::one_of_group(const char* group) {

@@ -44,7 +44,8 @@ struct Key {
   bool parameter = true;                         ///< part of a task's parameters, not a setting of the whole job?
   std::string no_sweep_advice;                   ///< what to do instead of sweeping it
   std::vector<std::string> synonyms;             ///< other words for it: suggested, never accepted
-  std::string only_for;           ///< for members of an object with a `tag`: the tag's value that has this key
+  std::string only_for;  ///< the value of the enclosing `tag` that has this key: of its own object or one further out
+  std::string only_advice;        ///< what to do where the tag has another value
   std::string alternative_group;  ///< exactly one of the keys with the same group must be given
 
   std::string tag;        ///< object: the member whose value decides which `only_for` members apply
@@ -56,7 +57,7 @@ struct Key {
   Key& at_most(double bound);
   Key& or_word(const char* word);
   Key& defaults_to(nlohmann::ordered_json value);
-  Key& only(const char* tag_value);
+  Key& only(const char* tag_value, const char* advice = "");
   Key& one_of_group(const char* group);
   Key& of_form(Text form);
   Key& not_yet(std::vector<std::string> words);

@@ -44,6 +44,9 @@ Plan::Plan(Job job)
     task.steps = time.steps;
     task.solves = record.solves ? task.steps * time.newton_iterations : 0;
     task.frames = record.trajectory_every > 0 ? 1 + task.steps / record.trajectory_every : 0;
+    task.systems = task.steps * record.recorded_iterations(time.newton_iterations);
+    task.system_segments = task.systems * task.segments;
+    task.system_joints = task.systems * task.joints;
     task.cost = static_cast<double>(task.segments) * time.steps * time.newton_iterations;
 
     const bool own_trajectories =
@@ -55,8 +58,13 @@ Plan::Plan(Job job)
       task.first_step = step_rows_;
       task.first_solve = solve_rows_;
       task.first_frame_row = frame_rows_;
+      task.first_system = system_rows_;
+      task.first_system_segment = system_segment_rows_;
+      task.first_system_joint = system_joint_rows_;
       const double frame_rows = static_cast<double>(task.frames) * task.segments + static_cast<double>(frame_rows_);
-      if (size() == most_tasks || frame_rows > most_rows || static_cast<double>(solve_rows_) > most_rows) {
+      const double system_rows = static_cast<double>(task.system_segments) + static_cast<double>(system_segment_rows_);
+      if (size() == most_tasks || frame_rows > most_rows || system_rows > most_rows ||
+          static_cast<double>(solve_rows_) > most_rows) {
         throw job_error(job_.path, "",
                         fmt::format("this job is too large: more than {} tasks or {} rows", most_tasks, most_rows));
       }
@@ -64,6 +72,9 @@ Plan::Plan(Job job)
       solve_rows_ += task.solves;
       frame_rows_ += task.frames * task.segments;
       max_frames_ = std::max(max_frames_, task.frames);
+      system_rows_ += task.systems;
+      system_segment_rows_ += task.system_segments;
+      system_joint_rows_ += task.system_joints;
       tasks_.push_back(task);
     }
   }
@@ -76,11 +87,15 @@ Plan Plan::alone(std::int64_t index, int trajectory_every) const {
   plan.job_.values["record"]["trajectory_every"] = trajectory_every;
   Task task = tasks_.at(static_cast<std::size_t>(index));
   task.index = task.first_step = task.first_solve = task.first_frame_row = 0;
+  task.first_system = task.first_system_segment = task.first_system_joint = 0;
   task.frames = trajectory_every > 0 ? 1 + task.steps / trajectory_every : 0;
   plan.step_rows_ = task.steps;
   plan.solve_rows_ = task.solves;
   plan.frame_rows_ = task.frames * task.segments;
   plan.max_frames_ = task.frames;
+  plan.system_rows_ = task.systems;
+  plan.system_segment_rows_ = task.system_segments;
+  plan.system_joint_rows_ = task.system_joints;
   plan.tasks_ = {task};
   return plan;
 }

@@ -63,6 +63,9 @@ class Plan {
   std::int64_t solve_rows() const { return solve_rows_; }
   std::int64_t frame_rows() const { return frame_rows_; }
   std::int64_t max_frames() const { return max_frames_; }
+  std::int64_t system_rows() const { return system_rows_; }  ///< 0 unless the job is a data set
+  std::int64_t system_segment_rows() const { return system_segment_rows_; }
+  std::int64_t system_joint_rows() const { return system_joint_rows_; }
 
  private:
   void fill(Point& point, std::int64_t index) const;
@@ -74,6 +77,7 @@ class Plan {
   std::optional<std::int64_t> task_alone_;
   std::vector<std::string> kept_;  ///< of a task alone: parameters that the whole plan has columns of
   std::int64_t step_rows_ = 0, solve_rows_ = 0, frame_rows_ = 0, max_frames_ = 0;
+  std::int64_t system_rows_ = 0, system_segment_rows_ = 0, system_joint_rows_ = 0;
 };
 
 /// The tolerances at which iterations are counted (/axes/tolerance), relative to ||b||.

@@ -50,10 +50,24 @@ struct GuessSpec {
   std::vector<GuessSpec> inner;  ///< guarded: exactly one
 };
 
+/// Of which linear systems a data set holds what they were assembled from, and the solution.
+enum class RecordedSystems {
+  none,   ///< a sweep
+  first,  ///< the first Newton iteration of every step
+  all
+};
+
 struct RecordSpec {
   bool solves = true;        ///< false: "summary", no /solves rows
   bool other_norm = true;    ///< iterations also in the norm that the job doesn't test
   int trajectory_every = 0;  ///< a frame every so many steps, frame 0 the initial state; 0: no trajectory
+  RecordedSystems systems = RecordedSystems::none;
+
+  /// Newton iterations of a step, from the first, whose systems are recorded.
+  int recorded_iterations(int newton_iterations) const {
+    if (systems == RecordedSystems::none) return 0;
+    return systems == RecordedSystems::first ? 1 : newton_iterations;
+  }
 };
 
 /// Everything that evaluate() needs to know.
@@ -84,6 +98,10 @@ struct Task {
   std::int64_t first_solve = 0,
                solves = 0;  ///< rows of /solves: steps x newton_iterations x rods, step-major; 0 for summaries
   std::int64_t first_frame_row = 0, frames = 0;  ///< rows of /trajectories: frames x segments
+  std::int64_t first_system = 0,
+               systems = 0;  ///< rows of /systems: steps x recorded Newton iterations x rods, step-major
+  std::int64_t first_system_segment = 0, system_segments = 0;  ///< rows of /systems/segments: those of each system
+  std::int64_t first_system_joint = 0, system_joints = 0;      ///< rows of /systems/joints
   double cost = 0;  ///< relative; tasks are dispatched in descending order of it (segments x steps x newton_iterations)
 };
 

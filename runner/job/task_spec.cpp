@@ -135,6 +135,10 @@ SolveSpec solve_spec(const Point& point) {
       {"cholesky", Preconditioner::cholesky},
       {"lagged_cholesky", Preconditioner::lagged_cholesky}};
   SolveSpec solve;
+  if (!point.has("solve.method")) {
+    solve.method = Method::direct;
+    return solve;
+  }
   solve.method = choice(methods, point.text("solve.method"));
   solve.preconditioner = choice(preconditioners, point.text("solve.preconditioner"));
   solve.norm = choice(norms, point.text("solve.norm"));
@@ -148,12 +152,16 @@ SolveSpec solve_spec(const Point& point) {
 Evaluation evaluation(const Point& point) {
   static const std::map<std::string, Evaluation> evaluations{{"paired", Evaluation::paired},
                                                              {"closed_loop", Evaluation::closed_loop}};
-  return choice(evaluations, point.text("evaluation"));
+  return point.has("evaluation") ? choice(evaluations, point.text("evaluation")) : Evaluation::paired;
 }
 
 RecordSpec record_spec(const Job& job) {
   const auto& record = job.values["record"];
-  return {record["solves"] == "all", record["norms"] == "both", record["trajectory_every"].get<int>()};
+  RecordSpec spec{record["solves"] == "all", record.value("norms", "one") == "both",
+                  record["trajectory_every"].get<int>(), RecordedSystems::none};
+  if (record.contains("systems"))
+    spec.systems = record["systems"] == "all" ? RecordedSystems::all : RecordedSystems::first;
+  return spec;
 }
 
 std::vector<GuessSpec> guess_specs(const Point& point, const Job& job) {
@@ -168,7 +176,7 @@ std::vector<GuessSpec> guess_specs(const Point& point, const Job& job) {
 
 std::vector<std::string> guess_labels(const Job& job) {
   std::vector<std::string> labels;
-  for (const auto& guess : job.values["guesses"]) labels.push_back(guess_label(guess));
+  for (const auto& guess : job.guesses()) labels.push_back(guess_label(guess));
   return labels;
 }
 

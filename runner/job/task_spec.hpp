@@ -14,8 +14,8 @@ namespace rodsweep {
 
 SceneSpec scene_spec(const Point& point);
 TimeSpec time_spec(const Point& point, const Job& job);
-SolveSpec solve_spec(const Point& point);
-Evaluation evaluation(const Point& point);
+SolveSpec solve_spec(const Point& point);   ///< the direct solve where the job says nothing: a data set
+Evaluation evaluation(const Point& point);  ///< paired where the job says nothing
 RecordSpec record_spec(const Job& job);
 std::vector<GuessSpec> guess_specs(const Point& point, const Job& job);
 

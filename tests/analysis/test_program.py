@@ -43,11 +43,12 @@ class Program(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
 
     def run_job(self, name, **changes):
-        """Path of the results of JOB with changes."""
+        """Path of the results of JOB with changes; a change to None takes a key away."""
         job, results = (os.path.join(self.folder.name, name + ending) for ending in (".json", ".h5"))
         if not os.path.exists(results):
             with open(job, "w", encoding="utf-8") as text:
-                json.dump({**JOB, "name": name, **changes}, text)
+                values = {**JOB, "name": name, **changes}
+                json.dump({key: value for key, value in values.items() if value is not None}, text)
             subprocess.run([os.environ["RODSWEEP"], "run", job, "-o", results], check=True, capture_output=True,
                            stdin=subprocess.DEVNULL)
         return results
@@ -242,6 +243,13 @@ class Program(unittest.TestCase):
         solves = self.script(export, path, "--level", "solves", "--columns", "newton", "--guess", "zero").split()
         with SweepFile(path) as file:
             self.assertEqual(len(solves) - 1, (file.h5["solves/newton"][:] >= 0).sum())
+
+    def test_a_data_set_has_its_table_and_exports(self):
+        path = self.run_job("data", kind="dataset", solve=None, guesses=None)
+        self.assertIn("advanced by the direct solve, no guesses", self.script(summary, path))
+        self.assertEqual(len(self.script(export, path).split("\n")), 1 + 6 + 1)
+        self.assertEqual(len(self.script(export, path, "--level", "steps").split("\n")), 1 + 24 + 1)
+        self.assertNotIn("first_system", self.script(export, path, "--list"))
 
     def test_tasks_that_are_not_complete_are_not_read(self):
         path = self.run_job("partial")

@@ -13,6 +13,8 @@ JOB = {"name": "small", "kind": "sweep", "seed": 3, "samples": 2, "scene": ROD,
        "time": {"step_s": 0.02, "steps": 6, "newton_iterations": 3}, "solve": {"method": "cg", "tolerance": 1e-2},
        "guesses": ["zero", "previous", {"oracle": {"error": 0.1, "label": "oracle 0.1"}}]}
 
+DATA = {"kind": "dataset", "solve": None, "guesses": None}  # the changes that make it a data set
+
 
 def rodsweep(*words, **options):
     """Runs to the end: the completed process with its texts."""
@@ -21,13 +23,14 @@ def rodsweep(*words, **options):
 
 
 def sweep(name="small", **changes):
-    """Path of the results of JOB with changes; made once."""
+    """Path of the results of JOB with changes; made once. A change to None takes a key away."""
     results = os.path.join("results", name + ".h5")
     if not os.path.exists(results):
         os.makedirs("jobs", exist_ok=True)
         job = os.path.join("jobs", name + ".json")
         with open(job, "w", encoding="utf-8") as file:
-            json.dump({**JOB, "name": name, **changes}, file)
+            values = {**JOB, "name": name, **changes}
+            json.dump({key: value for key, value in values.items() if value is not None}, file)
         ran = rodsweep("run", job)
         assert ran.returncode in (ALL_DONE, TASKS_FAILED), ran.stderr
     return results

@@ -15,7 +15,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import h5py
 import numpy as np
 import program
-from program import ALL_DONE, STOPPED, TASKS_FAILED, USER_ERROR, rodsweep, sweep
+from program import ALL_DONE, DATA, STOPPED, TASKS_FAILED, USER_ERROR, rodsweep, sweep
 from sweepfile import SweepFile
 
 
@@ -146,6 +146,7 @@ class Rerun(Case):
         oracle = {"oracle": {"error": {"grid": [0.1, 0.3]}, "label": "oracle"}}
         for name, task, changes in (("closed", 5, {"evaluation": "closed_loop"}),
                                     ("direct", 1, {"solve": {"method": "direct"}, "guesses": []}),
+                                    ("data", 2, {**DATA, "record": {"systems": "all"}}),
                                     ("summary", 3, {"record": {"solves": "summary"}}),
                                     ("swept", 7, {"guesses": ["zero", oracle]})):
             with self.subTest(name=name):
@@ -267,6 +268,40 @@ class Pack(Case):
         self.assert_refused(rodsweep("pack", "nowhere.h5", "-o", "clean/a.h5"), "there is no such file")
         self.assert_refused(rodsweep("pack", sweep(), "-o", sweep()), "exists already and is never overwritten")
         self.assertEqual(os.listdir("clean"), [])
+
+
+class DataSets(Case):
+    def test_the_file_says_what_it_is_and_its_rows_follow_the_tasks(self):
+        path = sweep("data", **DATA)
+        info = json.loads(self.assert_exit(rodsweep("info", path, "--verify", "--json"), ALL_DONE))
+        self.assertEqual((info["kind"], info["guesses"], info["verified"]["damaged"]), ("dataset", [], []))
+        rows = json.loads(self.assert_exit(rodsweep("query", path, "--json"), ALL_DONE))
+        self.assertEqual([row["scene.segments"] for row in rows], [5, 5, 8, 8])
+        with h5py.File(path) as h5:
+            self.assertEqual(h5.attrs["kind"], b"dataset")
+            self.assertEqual(h5["tasks/first_system"][:].tolist(), [0, 6, 12, 18])
+            self.assertEqual(h5["tasks/first_system_segment"][:].tolist(), [0, 30, 60, 108])
+            self.assertEqual(h5["systems/step"][:].tolist(), 4 * [0, 1, 2, 3, 4, 5])
+            for name, shape in (("segments/position_m", (156, 3)), ("segments/orientation", (156, 4)),
+                                ("segments/velocity_m_s", (156, 3)), ("segments/angular_velocity_rad_s", (156, 3)),
+                                ("joints/lambda", (132, 6)), ("joints/solution", (132, 6))):
+                values = h5["systems"][name]
+                self.assertEqual(values.shape, shape)
+                self.assertTrue(np.isfinite(values[:]).all())
+                self.assertTrue(values.attrs["unit"] and values.attrs["meaning"])
+            np.testing.assert_allclose(np.linalg.norm(h5["systems/segments/orientation"][:], axis=1), 1)
+
+    def test_the_plan_says_how_much_is_recorded(self):
+        sweep("data", **DATA)
+        said = self.assert_exit(rodsweep("plan", "jobs/data.json", "--no-probe"), ALL_DONE)
+        self.assertIn("systems  72 at most, of which 24 recorded", said)
+        planned = json.loads(rodsweep("plan", "jobs/data.json", "--no-probe", "--json").stdout)["file_bytes"]
+        self.assertAlmostEqual(planned, os.path.getsize("results/data.h5"), delta=0.1 * planned)
+
+    def test_a_sweep_is_not_extended_by_a_data_set(self):
+        sweep("data", **DATA)
+        self.assert_refused(rodsweep("run", "jobs/data.json", "-o", "both.h5", "--extend", sweep()), "jobs/data.json: ")
+        self.assertFalse(os.path.exists("both.h5"))
 
 
 class Completion(Case):

@@ -42,6 +42,8 @@ GOOD = {
     "a swept guess": {"guesses": ["zero", {"grid": ["linear", {"oracle": {"error": {"grid": [0.1, 0.2]}}}]}]},
     "a swept guess with a label": {"guesses": ["zero", {"grid": ["linear", "quadratic"], "label": "history"}]},
     "a whole number with a point": {"scene.segments": 10.0},
+    "a data set": {"kind": "dataset", "guesses": None},
+    "a data set of all systems": {"kind": "dataset", "guesses": None, "record": {"systems": "all", "solves": "summary"}},
 }
 BAD = {
     "an unknown key": {"scene.lenght_m": 2},
@@ -82,6 +84,11 @@ BAD = {
     "a label within a swept guess": {"guesses": ["zero", {"grid": [{"linear": {"label": "x"}}, "quadratic"]}]},
     "a range of guesses": {"guesses": ["zero", {"uniform": [1, 2]}]},
     "two guesses in one": {"guesses": [{"zero": {}, "linear": {}}]},
+    "a data set with guesses": {"kind": "dataset"},
+    "a data set with solves": {"kind": "dataset", "guesses": None, "solve": {}},
+    "a data set with an evaluation": {"kind": "dataset", "guesses": None, "evaluation": "paired"},
+    "a data set with norms": {"kind": "dataset", "guesses": None, "record": {"norms": "one"}},
+    "a sweep with systems": {"record": {"systems": "first"}},
     "an empty label": {"guesses": ["zero", {"linear": {"label": ""}}]},
 }
 

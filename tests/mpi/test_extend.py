@@ -11,7 +11,7 @@ import unittest
 
 import h5py
 import numpy as np
-from test_sweeps import ALL_DONE, SweepCase, TASKS_FAILED, USER_ERROR, checksum, job, ranks_of, rodsweep, start, status, \
+from test_sweeps import ALL_DONE, SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, ranks_of, rodsweep, start, status, \
     wait_for_tasks
 
 ROD = {"type": "bending_rod", "length_m": {"uniform": [1, 5]}, "radius_m": 0.05, "density_kg_m3": 1000,
@@ -104,6 +104,13 @@ class Extending(ExtendCase):
         old = self.old("loop", evaluation="closed_loop", solve=method)
         self.extend(self.new("longer", evaluation="closed_loop", solve=method, samples=3, guesses=NEW_GUESSES), old,
                     "of 36 tasks 16 are copied from loop.h5, 0 get their new guesses, 20 are run")
+
+    def test_a_data_set_with_more_samples(self):
+        small = {"segments": (6, 9), "steps": 5}
+        path = data_job("few", samples=2, **small)
+        self.assert_exit(rodsweep(0, "run", path, "-o", "few.h5"), ALL_DONE)
+        self.extend(data_job("many", samples=4, **small), "few.h5",
+                    "of 8 tasks 4 are copied from few.h5, 0 get their new guesses, 4 are run")
 
     def test_an_unfinished_file_and_failures(self):
         solve = {"method": "cg", "preconditioner": "none", "tolerance": 1e-8, "max_iterations": 2}

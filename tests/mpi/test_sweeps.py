@@ -18,7 +18,7 @@ ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED = 0, 2, 3, 4
 
 
 def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):
-    """Writes NAME.json, a sweep of samples x segments tasks, and returns its path."""
+    """Writes NAME.json, a sweep of samples x segments tasks, and returns its path. A change to None takes a key away."""
     values = {
         "name": name, "kind": "sweep", "seed": 5, "samples": samples, "evaluation": "paired",
         "scene": {"type": "bending_rod", "segments": {"grid": list(segments)}, "length_m": {"uniform": [1, 5]},
@@ -32,8 +32,14 @@ def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):
     values.update(changes)
     path = name + ".json"
     with open(path, "w") as file:
-        json.dump(values, file, indent=2)
+        json.dump({key: value for key, value in values.items() if value is not None}, file, indent=2)
     return path
+
+
+def data_job(name="data", **changes):
+    """The same as a data set."""
+    return job(name, **{"kind": "dataset", "evaluation": None, "solve": None, "guesses": None,
+                        "record": {"solves": "all", "systems": "all"}, **changes})
 
 
 def long_job(name="long", samples=30):
@@ -92,6 +98,11 @@ def ranks_of(mpirun):
     return ranks
 
 
+def kill_all(mpirun):
+    for pid in [mpirun.pid, *ranks_of(mpirun).values()]:
+        os.kill(pid, signal.SIGKILL)
+
+
 def checksum(path):
     with open(path, "rb") as file:
         return hashlib.sha256(file.read()).hexdigest()
@@ -127,6 +138,13 @@ class RankCounts(SweepCase):
         for ranks in (1, 3):
             self.assert_exit(rodsweep(ranks, "run", path, "-o", f"closed{ranks}.h5"), ALL_DONE)
         self.assert_same_results("closed1.h5", "closed3.h5")
+
+    def test_a_data_set_is_the_same_on_1_2_and_3_ranks(self):
+        path = data_job()
+        for ranks in (1, 2, 3):
+            self.assert_exit(rodsweep(ranks, "run", path, "-o", f"data{ranks}.h5"), ALL_DONE)
+            self.assert_whole(f"data{ranks}.h5")
+            self.assert_same_results("data1.h5", f"data{ranks}.h5")
 
 
 class Interrupted(SweepCase):
@@ -166,12 +184,16 @@ class Interrupted(SweepCase):
         self.assertIsNone(self.resume("worker.h5", 2)[0]["end"])
 
     def test_after_all_ranks_are_killed(self):
-        def kill_all(process):
-            for pid in [process.pid, *ranks_of(process).values()]:
-                os.kill(pid, signal.SIGKILL)
-
         self.interrupt("all.h5", 3, kill_all)
         self.assertIsNone(self.resume("all.h5", 3)[0]["end"])
+
+    def test_a_data_set_after_all_ranks_are_killed(self):
+        # Newton iterations that only take time: the file stays small.
+        self.sweep(data_job("long_data", samples=100, segments=(20,), record={"solves": "summary"},
+                            time={"step_s": 0.02, "steps": 60, "newton_iterations": 60, "newton_tolerance": 0}))
+
+        self.interrupt("killed_data.h5", 3, kill_all)
+        self.resume("killed_data.h5", 2)
 
     def assert_stopped(self, code, stdout, stderr, path):
         self.assertEqual(code, STOPPED, stderr)

@@ -1,0 +1,37 @@
+// What a simulation leaves behind for learning: of every recorded linear system the state that it was assembled from
+// and its exact solution, so that A, b and every feature can be formed again, bit for bit.
+//
+//   restore(system, rod);  LinearSystem::assemble(rod, constraint_dt_s)   gives A and b, and A solution = b
+#pragma once
+
+#include <vector>
+
+#include "solver/projection.hpp"
+#include "solver/scene.hpp"
+
+namespace rodsweep {
+
+/// One linear system. Vectors have an entry per segment, `lambda` and `solution` six per joint.
+struct RecordedSystem {
+  SolvePosition at;
+  std::vector<Vector3> position;  ///< where the system was assembled [m]
+  std::vector<Quaternion> orientation;
+  std::vector<Vector3> velocity;          ///< at the start of the step [m/s]
+  std::vector<Vector3> angular_velocity;  ///< at the start of the step [rad/s]
+  VectorX lambda;                         ///< before the solve [kg m^2]
+  VectorX solution;                       ///< the increment of lambda [kg m^2]
+};
+
+struct RecordedSimulation {
+  Scene scene;                          ///< at its start: what is constant, the rods' masses, joints and loads
+  double step_s = 0;                    ///< time step
+  double constraint_dt_s = 0;           ///< TimeStepper::constraint_dt()
+  int newton_iterations = 0;            ///< at most, in a step
+  std::vector<RecordedSystem> systems;  ///< in the order in which they were solved
+};
+
+/// Puts the rod `system.at.rod` of the scene into the state that the system was assembled from. Throws
+/// std::invalid_argument where the rod has another number of segments or joints.
+void restore(const RecordedSystem& system, Rod& rod);
+
+}  // namespace rodsweep

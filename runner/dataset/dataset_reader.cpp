@@ -1,0 +1,97 @@
+#include "runner/dataset/dataset_reader.hpp"
+
+#include <fmt/format.h>
+
+#include "runner/dataset/system_recording.hpp"
+#include "runner/file/checksum.hpp"
+#include "runner/file/file_reading.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/stored_plan.hpp"
+#include "runner/terminal/text.hpp"
+#include "solver/time_step.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_usable(const FileSummary& file) {
+  const std::string path = file.path.native();
+  if (file.job_kind != "dataset") {
+    throw FileError(
+        fmt::format("{} holds the results of a {}, not a data set: give the file of a job of kind \"dataset\"", path,
+                    file.job_kind));
+  }
+  if (file.rerun_of_task) {
+    throw FileError(
+        fmt::format("{} holds one task of a data set, made by `rodsweep rerun`: give the file of the data set", path));
+  }
+  if (file.pending > 0) {
+    throw FileError(
+        fmt::format("{} is not complete: {} of {} simulations are missing; finish it with: rodsweep run {} "
+                    "-o {} --resume",
+                    path, file.pending, file.tasks, shell_quoted(stored_job_path(file).native()), shell_quoted(path)));
+  }
+  if (file.failed == file.tasks) {
+    throw FileError(fmt::format("{} holds no simulation that can be used: all {} failed (rodsweep status {})", path,
+                                file.tasks, shell_quoted(path)));
+  }
+}
+
+std::string hash_of(const FileSummary& file) {
+  const auto checksums = hdf5::read_all<std::uint64_t>(open_results(file.path).id(), "/tasks/checksum");
+  Checksum sum;
+  sum.add(file.job_text.data(), file.job_text.size());
+  sum.add(checksums.data(), checksums.size() * sizeof(std::uint64_t));
+  return fmt::format("{:016x}", sum.value());
+}
+
+std::string failures_text(const FileSummary& file) {
+  if (file.failed == 0) return "";
+  const FailedTask& first = file.failures.front();
+  return fmt::format("{} of {} simulations of {} failed and are left out (the first: task {}, {}: {})", file.failed,
+                     file.tasks, file.path.native(), first.index, first.outcome, first.message);
+}
+
+}  // namespace
+
+DatasetReader::DatasetReader(const fs::path& path) : path_(path) {
+  const FileSummary file = inspect(path);
+  check_usable(file);
+  plan_ = std::make_unique<Plan>(stored_plan(file));
+  reader_ = std::make_unique<TaskReader>(path, *plan_, "Use that revision, or make the data set again");
+  for (const Task& task : plan_->tasks())
+    if (reader_->outcome(task.index) == TaskOutcome::ok) tasks_.push_back(task.index);
+  hash_ = hash_of(file);
+  note_ = failures_text(file);
+}
+
+const Task& DatasetReader::task(std::int64_t simulation) const {
+  return plan_->task(tasks_.at(static_cast<std::size_t>(simulation)));
+}
+
+RecordedSimulation DatasetReader::read(std::int64_t simulation) const {
+  const std::int64_t index = task(simulation).index;
+  TaskRecord record;
+  if (!reader_->read(index, record)) {
+    throw FileError(fmt::format("{} is damaged: the data of task {} are not what was written; make the data set again",
+                                path_.native(), index));
+  }
+  const TaskSpec spec = plan_->spec(index);
+  RecordedSimulation result;
+  result.scene = build_scene(spec.scene);
+  result.step_s = spec.time.step_s;
+  result.newton_iterations = spec.time.newton_iterations;
+  const StepSettings settings{spec.time.step_s, spec.time.newton_iterations, spec.time.newton_tolerance};
+  result.constraint_dt_s = TimeStepper(result.scene, settings).constraint_dt();
+  result.systems = recorded_systems(record, result.scene, spec.record.recorded_iterations(spec.time.newton_iterations));
+  return result;
+}
+
+std::vector<RecordedSimulation> DatasetReader::read(std::int64_t first, std::int64_t count) const {
+  std::vector<RecordedSimulation> simulations;
+  for (std::int64_t i = first; i < first + count; ++i) simulations.push_back(read(i));
+  return simulations;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,44 @@
+// A finished data set, read simulation by simulation: what of it is in memory is the caller's choice.
+//
+// Simulations are numbered from 0 in the order of their tasks; those that failed are left out. Throws FileError for a
+// file that is missing, foreign, damaged, not a data set or not complete.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "network/recorded_simulation.hpp"
+#include "runner/file/task_reader.hpp"
+#include "runner/job/plan.hpp"
+
+namespace rodsweep {
+
+class DatasetReader {
+ public:
+  explicit DatasetReader(const std::filesystem::path& path);
+
+  std::int64_t size() const { return static_cast<std::int64_t>(tasks_.size()); }  ///< simulations
+  const Task& task(std::int64_t simulation) const;  ///< its sample, and its row in the plan's parameters()
+  const Plan& plan() const { return *plan_; }
+
+  /// Compared with its checksum.
+  RecordedSimulation read(std::int64_t simulation) const;
+  std::vector<RecordedSimulation> read(std::int64_t first, std::int64_t count) const;
+
+  /// Sixteen hexadecimal digits over the job's text and all checksums: the same for the same data.
+  const std::string& hash() const { return hash_; }
+  /// Which simulations failed and are left out; empty: none.
+  const std::string& note() const { return note_; }
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<Plan> plan_;  ///< at a fixed place: the reader refers to it
+  std::unique_ptr<TaskReader> reader_;
+  std::vector<std::int64_t> tasks_;
+  std::string hash_, note_;
+};
+
+}  // namespace rodsweep

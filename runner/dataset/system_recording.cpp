@@ -1,0 +1,71 @@
+#include "runner/dataset/system_recording.hpp"
+
+#include "runner/file/state_rows.hpp"
+
+namespace rodsweep {
+
+SystemRows::SystemRows(const Scene& scene, int iterations) : iterations_(iterations) {
+  for (const Rod& rod : scene.rods) {
+    rods_.push_back(iteration_);
+    ++iteration_.system;
+    iteration_.segment += rod.segments.size();
+    iteration_.joint += rod.joints.size();
+  }
+}
+
+SystemRows::Place SystemRows::place(const SolvePosition& at) const {
+  const std::size_t before =
+      static_cast<std::size_t>(at.step) * static_cast<std::size_t>(iterations_) + static_cast<std::size_t>(at.newton);
+  const Place& rod = rods_[static_cast<std::size_t>(at.rod)];
+  return {before * iteration_.system + rod.system, before * iteration_.segment + rod.segment,
+          before * iteration_.joint + rod.joint};
+}
+
+RecordingSolve::RecordingSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record)
+    : scene_(scene), rows_(scene, iterations), solve_(solve), record_(record) {}
+
+SolveOutcome RecordingSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                                   VectorX& delta_lambda) {
+  if (!rows_.holds(at)) return solve_.solve(system, at, assemble_s, delta_lambda);
+  const Rod& rod = scene_.rods[static_cast<std::size_t>(at.rod)];
+  const SystemRows::Place place = rows_.place(at);
+  record_.system_step[place.system] = at.step;
+  record_.system_newton[place.system] = static_cast<std::int16_t>(at.newton);
+  record_.system_rod[place.system] = static_cast<std::int16_t>(at.rod);
+  store(rod.position, &record_.system_position_m[3 * place.segment]);
+  store(rod.orientation, &record_.system_orientation[4 * place.segment]);
+  store(rod.velocity, &record_.system_velocity_m_s[3 * place.segment]);
+  store(rod.angular_velocity, &record_.system_angular_velocity_rad_s[3 * place.segment]);
+  VectorX::Map(&record_.system_lambda[6 * place.joint], rod.lambda.size()) = rod.lambda;
+
+  const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
+  if (outcome == SolveOutcome::converged)
+    VectorX::Map(&record_.system_solution[6 * place.joint], delta_lambda.size()) = delta_lambda;
+  return outcome;
+}
+
+std::vector<RecordedSystem> recorded_systems(const TaskRecord& record, const Scene& scene, int iterations) {
+  const SystemRows rows(scene, iterations);
+  std::vector<RecordedSystem> systems;
+  for (std::size_t row = 0; row < record.system_step.size(); ++row) {
+    if (record.system_step[row] < 0) continue;
+    RecordedSystem system;
+    system.at = {record.system_step[row], record.system_newton[row], record.system_rod[row]};
+    const Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
+    const SystemRows::Place place = rows.place(system.at);
+    system.position.resize(rod.segments.size());
+    system.orientation.resize(rod.segments.size());
+    system.velocity.resize(rod.segments.size());
+    system.angular_velocity.resize(rod.segments.size());
+    load(&record.system_position_m[3 * place.segment], system.position);
+    load(&record.system_orientation[4 * place.segment], system.orientation);
+    load(&record.system_velocity_m_s[3 * place.segment], system.velocity);
+    load(&record.system_angular_velocity_rad_s[3 * place.segment], system.angular_velocity);
+    system.lambda = VectorX::Map(&record.system_lambda[6 * place.joint], rod.lambda.size());
+    system.solution = VectorX::Map(&record.system_solution[6 * place.joint], rod.lambda.size());
+    systems.push_back(std::move(system));
+  }
+  return systems;
+}
+
+}  // namespace rodsweep

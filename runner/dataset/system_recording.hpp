@@ -1,0 +1,52 @@
+// The linear systems of a data set, written into a task's record during its simulation and read back from it.
+//
+// Rows go step by step, within a step by Newton iteration (the first, or all), then by rod; each has as many rows of
+// segments and joints as its rod. Newton iterations that a step did not need keep their sentinels.
+#pragma once
+
+#include <vector>
+
+#include "network/recorded_simulation.hpp"
+#include "runner/file/record.hpp"
+
+namespace rodsweep {
+
+/// Where a system stands in a record.
+class SystemRows {
+ public:
+  struct Place {
+    std::size_t system = 0, segment = 0, joint = 0;  ///< (first) rows
+  };
+
+  /// `iterations`: recorded Newton iterations of a step.
+  SystemRows(const Scene& scene, int iterations);
+
+  bool holds(const SolvePosition& at) const { return at.newton < iterations_; }
+  Place place(const SolvePosition& at) const;
+
+ private:
+  int iterations_;
+  std::vector<Place> rods_;  ///< of every rod within an iteration
+  Place iteration_;          ///< rows of all rods
+};
+
+/// Records what another solve is given and what it finds. Allocates nothing.
+class RecordingSolve : public LinearSolve {
+ public:
+  /// All arguments must outlive this.
+  RecordingSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record);
+
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override;
+
+ private:
+  const Scene& scene_;
+  SystemRows rows_;
+  LinearSolve& solve_;
+  TaskRecord& record_;
+};
+
+/// The systems that were solved, in order.
+std::vector<RecordedSystem> recorded_systems(const TaskRecord& record, const Scene& scene, int iterations);
+
+}  // namespace rodsweep

@@ -1,0 +1,191 @@
+// Data sets in files: what is read back, and which files are refused.
+#include <catch2/catch.hpp>
+
+#include "file_examples.hpp"
+#include "recorded_examples.hpp"
+#include "runner/dataset/dataset_reader.hpp"
+#include "runner/experiment/evaluation.hpp"
+#include "runner/file/pack.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+namespace fs = std::filesystem;
+
+/// Three rods of different sizes.
+Json ragged_job() {
+  Json job = data_job();
+  job["samples"] = 3;
+  job["seed"] = 4;
+  job["scene"]["segments"] = {{"integer", {4, 12}}};
+  job["scene"]["damping_per_s"] = 0.5;
+  return job;
+}
+
+/// The file of a job, of which tasks from `failing` on fail, or are left out where `pending`.
+Plan make(const fs::path& path, const Json& job, std::int64_t failing = 1000, bool pending = false) {
+  const Plan plan = plan_of(job);
+  ResultsFile file = ResultsFile::create(path, plan, test_provenance(), MPI_COMM_SELF);
+  for (const Task& task : plan.tasks()) {
+    if (pending && task.index >= failing) continue;
+    TaskRecord record;
+    record.prepare(task, axis_sizes(plan));
+    evaluate(task, plan.spec(task.index), record, [] { return false; });
+    if (task.index >= failing) record.outcome = TaskOutcome::diverged, record.message = "step 2: too bad";
+    file.write(task, record);
+  }
+  file.close();
+  return plan;
+}
+
+std::string refusal_of(const fs::path& path) {
+  return message_of<FileError>([&] { DatasetReader reader(path); });
+}
+
+std::vector<std::string> paths(const Plan& plan) {
+  std::vector<std::string> result;
+  for (const Field& field : layout(plan, plan.parameters())) result.push_back(field.path);
+  return result;
+}
+
+bool has(const std::vector<std::string>& all, const std::string& path) {
+  return std::find(all.begin(), all.end(), path) != all.end();
+}
+
+TEST_CASE("a data set's file has the systems and no axis of guesses, a sweep's no systems") {
+  const std::vector<std::string> data = paths(plan_of(ragged_job())), sweep = paths(plan_of(small_job()));
+  for (const char* path : {"/systems/step", "/systems/segments/position_m", "/systems/joints/solution",
+                           "/tasks/first_system", "/tasks/system_joints"}) {
+    CHECK(has(data, path));
+    CHECK_FALSE(has(sweep, path));
+  }
+  for (const char* path : {"/axes/guess", "/tasks/iterations_sum", "/solves/iterations"}) {
+    CHECK_FALSE(has(data, path));
+    CHECK(has(sweep, path));
+  }
+  CHECK(has(data, "/solves/newton_residual"));
+  CHECK(has(data, "/steps/joint_gap"));
+}
+
+TEST_CASE("every system of a file gives the A and b of the simulation again, bit for bit") {
+  const TemporaryFolder folder;
+  for (const std::string systems : {"first", "all"}) {
+    Json job = ragged_job();
+    job["record"] = {{"systems", systems}, {"solves", "summary"}};
+    const fs::path path = folder / (systems + ".h5");
+    const Plan plan = make(path, job);
+    const DatasetReader data(path);
+    REQUIRE(data.size() == 3);
+    CHECK(data.note().empty());
+    for (std::int64_t i = 0; i < data.size(); ++i) {
+      const RecordedSimulation simulation = data.read(i);
+      CHECK(data.task(i).sample == i);
+      CHECK(simulation.step_s == 0.02);
+      CHECK(simulation.newton_iterations == 3);
+      Scene scene = build_scene(plan.spec(i).scene);
+      SolveProbe probe(scene);
+      LinearProjection projection(scene, probe);
+      TimeStepper stepper(scene, {0.02, 3, plan.spec(i).time.newton_tolerance});
+      for (int step = 0; step < 4; ++step) stepper.step(projection);
+      CHECK(simulation.constraint_dt_s == stepper.constraint_dt());
+      check_same(simulation.systems, simulation.scene, simulation.constraint_dt_s,
+                 probe.first_iterations(systems == "first" ? 1 : 3));
+    }
+  }
+}
+
+TEST_CASE("simulations are of different sizes, and a range of them is read") {
+  const TemporaryFolder folder;
+  const Plan plan = make(folder / "a.h5", ragged_job());
+  const DatasetReader data(folder / "a.h5");
+  const std::vector<RecordedSimulation> last = data.read(1, 2);
+  REQUIRE(last.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Task& task = plan.task(static_cast<std::int64_t>(i) + 1);
+    CHECK(last[i].scene.rods.front().segment_count() == task.segments);
+    CHECK(last[i].systems.size() == 4);
+  }
+  CHECK(plan.task(1).segments != plan.task(2).segments);
+  CHECK(data.plan().task(1).segments == plan.task(1).segments);
+}
+
+TEST_CASE("failed simulations are left out with a note") {
+  const TemporaryFolder folder;
+  make(folder / "a.h5", ragged_job(), 2);
+  const DatasetReader data(folder / "a.h5");
+  CHECK(data.size() == 2);
+  CHECK(data.note() == "1 of 3 simulations of " + (folder / "a.h5").native() +
+                           " failed and are left out (the first: task 2, diverged: step 2: too bad)");
+  make(folder / "none.h5", ragged_job(), 0);
+  CHECK_THAT(refusal_of(folder / "none.h5"), Contains("holds no simulation that can be used: all 3 failed"));
+}
+
+TEST_CASE("the hash is that of the data: the same for the same job, another for another") {
+  const TemporaryFolder folder;
+  make(folder / "a.h5", ragged_job());
+  make(folder / "again.h5", ragged_job());
+  Json other = ragged_job();
+  other["seed"] = 5;
+  make(folder / "other.h5", other);
+  pack_results(folder / "a.h5", folder / "packed.h5");
+  const std::string hash = DatasetReader(folder / "a.h5").hash();
+  CHECK(hash.size() == 16);
+  CHECK(DatasetReader(folder / "again.h5").hash() == hash);
+  CHECK(DatasetReader(folder / "packed.h5").hash() == hash);
+  CHECK(DatasetReader(folder / "other.h5").hash() != hash);
+}
+
+TEST_CASE("a packed copy is read like the original") {
+  const TemporaryFolder folder;
+  make(folder / "a.h5", ragged_job());
+  pack_results(folder / "a.h5", folder / "packed.h5");
+  const RecordedSimulation a = DatasetReader(folder / "a.h5").read(1), b = DatasetReader(folder / "packed.h5").read(1);
+  REQUIRE(a.systems.size() == b.systems.size());
+  for (std::size_t i = 0; i < a.systems.size(); ++i) {
+    CHECK(a.systems[i].position == b.systems[i].position);
+    CHECK(a.systems[i].solution == b.systems[i].solution);
+  }
+}
+
+TEST_CASE("what is no finished data set is refused with what to do") {
+  const TemporaryFolder folder;
+  CHECK_THAT(refusal_of(folder / "none.h5"), EndsWith("none.h5: there is no such file"));
+  std::ofstream(folder / "notes.txt") << "hello";
+  CHECK_THAT(refusal_of(folder / "notes.txt"), EndsWith("is not an HDF5 file"));
+
+  Json sweep = small_job();
+  sweep["time"]["steps"] = 1;
+  make(folder / "sweep.h5", sweep);
+  CHECK_THAT(refusal_of(folder / "sweep.h5"),
+             EndsWith("holds the results of a sweep, not a data set: give the file of a job of kind \"dataset\""));
+
+  ResultsFile::create(folder / "task.h5", plan_of(ragged_job()).alone(1, 1), test_provenance(), MPI_COMM_SELF).close();
+  CHECK_THAT(refusal_of(folder / "task.h5"),
+             EndsWith("holds one task of a data set, made by `rodsweep rerun`: give the file of the data set"));
+
+  make(folder / "part.h5", ragged_job(), 1, true);
+  CHECK_THAT(refusal_of(folder / "part.h5"),
+             Contains("is not complete: 2 of 3 simulations are missing; finish it with: rodsweep run ") &&
+                 EndsWith("-o " + (folder / "part.h5").native() + " --resume"));
+}
+
+TEST_CASE("a damaged simulation is refused, the others are read") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.h5";
+  const Plan plan = make(path, ragged_job());
+  {
+    const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
+    const auto row = static_cast<hsize_t>(plan.task(1).first_system_joint);
+    const std::vector<double> wrong(6, 0.5);
+    hdf5::RowDataset(file.id(), "/systems/joints/solution").write(hdf5::type_of<double>(), row, 1, wrong.data());
+  }
+  const DatasetReader data(path);
+  CHECK(data.read(0).systems.size() == 4);
+  CHECK_THAT(message_of<FileError>([&] { data.read(1); }),
+             Contains("is damaged: the data of task 1 are not what was written"));
+}
+
+}  // namespace
+}  // namespace rodsweep
