@@ -82,11 +82,11 @@ template <class T>
 void GraphBlock<T>::forward(const Parameters<T>& p, const RodGraph& graph, const GraphState<T>& in, Updates updates,
                             Tape& tape, GraphState<T>& out) const {
   const Eigen::Index H = latent_, readers = updates == Updates::edges ? 1 : 2;
-  tape.from_nodes.resize((readers + 1) * H, graph.nodes);
-  multiply<T>(p[from_nodes_].topRows((readers + 1) * H), nullptr, in.nodes, tape.from_nodes);
+  tape.from_nodes.resize(p[from_nodes_].rows(), graph.nodes);
+  multiply<T>(p[from_nodes_].topRows((readers + 1) * H), nullptr, in.nodes, tape.from_nodes.topRows((readers + 1) * H));
   if (from_globals_ >= 0) {
-    tape.from_globals.resize(readers * H, graph.rods());
-    multiply<T>(p[from_globals_].topRows(readers * H), nullptr, in.globals, tape.from_globals);
+    tape.from_globals.resize(p[from_globals_].rows(), graph.rods());
+    multiply<T>(p[from_globals_].topRows(readers * H), nullptr, in.globals, tape.from_globals.topRows(readers * H));
   }
 
   tape.edge_before.resize(H, graph.edges());
