@@ -1,5 +1,7 @@
 #include "network/mlp.hpp"
 
+#include "network/silu.hpp"
+
 namespace rodsweep {
 
 template <class T>
@@ -12,7 +14,7 @@ template <class T>
 void Mlp<T>::forward(const Parameters<T>& p, const TensorIn<T>& x, Tape& tape, Tensor<T>& y) const {
   tape.before.resize(first_.out(), x.cols());
   first_.forward(p, x, tape.before);
-  tape.hidden = tape.before.array() * tape.before.array().logistic();
+  tape.hidden = silu(tape.before.array());
   y.resize(second_.out(), x.cols());
   second_.forward(p, tape.hidden, y);
 }
@@ -22,9 +24,7 @@ void Mlp<T>::backward(const Parameters<T>& p, const TensorIn<T>& x, const Tape& 
                       Parameters<T>& gradient, Tensor<T>* dx) const {
   Tensor<T> d = Tensor<T>::Zero(tape.hidden.rows(), tape.hidden.cols());
   second_.backward(p, tape.hidden, dy, gradient, &d);
-  // silu' = s + a s (1 - s), s the logistic function
-  const auto a = tape.before.array();
-  d.array() *= a.logistic() * (T(1) + a * (T(1) - a.logistic()));
+  d.array() *= silu_derivative(tape.before.array());
   first_.backward(p, x, d, gradient, dx);
 }
 

@@ -1,5 +1,7 @@
 #include "network/sweeps.hpp"
 
+#include "network/silu.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -26,7 +28,7 @@ void Sweeps<T>::forward(const Parameters<T>& p, const JointForest& forest, const
   const Eigen::Index n = x.cols();
   tape.before.resize(latent_, n);
   encode_.forward(p, x, tape.before);
-  tape.e = tape.before.array() * tape.before.array().logistic();
+  tape.e = silu(tape.before.array());
   tape.p_up.resize(3 * latent_, n);
   to_up_.forward(p, tape.e, tape.p_up);
   resize<T>(tape.up_gates, latent_, n);
@@ -99,8 +101,7 @@ void Sweeps<T>::backward(const Parameters<T>& p, const JointForest& forest, cons
   }
   Tensor<T> d_e = d_joined.topRows(latent_);
   to_up_.backward(p, tape.e, dp, gradient, &d_e);
-  const auto a = tape.before.array();
-  d_e.array() *= a.logistic() * (T(1) + a * (T(1) - a.logistic()));
+  d_e.array() *= silu_derivative(tape.before.array());
   encode_.backward(p, x, d_e, gradient, nullptr);
 }
 
