@@ -41,7 +41,7 @@ FeatureEncoder::FeatureEncoder(const CopingNetSettings& settings, const Rod& rod
     graph_ = std::make_unique<GraphEncoding>(settings.encoding, rod);
     by_joint_.resize(GraphEncoding::edge_features(settings.encoding), rod.joint_count());
   } else {
-    system_ = std::make_unique<SystemEncoding>(joint_forest(rod), a);
+    system_ = std::make_unique<SystemEncoding>(pattern_);
     system_unit_.resize(a.unknowns());
   }
 }

@@ -20,7 +20,7 @@ inline Matrix random_matrix(int rows, int columns, unsigned seed) {
 }
 
 /// Largest difference between `gradient` and central differences of `loss` over `values`, relative to the largest.
-template <class Values, class Gradient>
+template <class Values, class Gradient = std::vector<double>>  // braces are a vector
 double gradient_error(Values& values, const Gradient& gradient, const std::function<double()>& loss) {
   constexpr double step = 1e-5;
   double worst = 0, largest = 0;
