@@ -20,8 +20,8 @@ inline Matrix random_matrix(int rows, int columns, unsigned seed) {
 }
 
 /// Largest difference between `gradient` and central differences of `loss` over `values`, relative to the largest.
-inline double gradient_error(std::vector<double>& values, const std::vector<double>& gradient,
-                             const std::function<double()>& loss) {
+template <class Values, class Gradient>
+double gradient_error(Values& values, const Gradient& gradient, const std::function<double()>& loss) {
   constexpr double step = 1e-5;
   double worst = 0, largest = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -29,7 +29,7 @@ TEST_CASE("the gradients of an MLP are those of central differences, for weights
   Matrix dx = Matrix::Zero(4, 5);
   mlp.backward(p, x, tape, weights, gradient, &dx);
   CHECK(gradient_error(p.values(), gradient.values(), loss) < 1e-8);
-  CHECK(gradient_error(inputs, {dx.data(), dx.data() + dx.size()}, loss) < 1e-8);
+  CHECK(gradient_error(inputs, std::vector<double>(dx.data(), dx.data() + dx.size()), loss) < 1e-8);
 }
 
 /// Two trees and a chain, side by side.
