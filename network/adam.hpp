@@ -1,7 +1,9 @@
 // Adam (Kingma & Ba 2015) on a flat array, with decoupled weight decay (Loshchilov & Hutter 2019).
 #pragma once
 
-#include <vector>
+#include <cstdint>
+
+#include "network/tensor.hpp"
 
 namespace rodsweep {
 
@@ -13,12 +15,17 @@ class Adam {
   Adam(std::size_t size, const Settings& settings);
 
   /// weights -= rate * (m / (1 - beta1^t) / (sqrt(v / (1 - beta2^t)) + epsilon) + weight_decay * weights)
-  void step(double rate, const std::vector<float>& gradient, std::vector<float>& weights);
+  const AlignedVector<float>& mean() const { return mean_; }
+  const AlignedVector<float>& square() const { return square_; }
+  /// Goes on from earlier moments after so many steps.
+  void restore(std::int64_t steps, const AlignedVector<float>& mean, const AlignedVector<float>& square);
+
+  void step(double rate, const AlignedVector<float>& gradient, AlignedVector<float>& weights);
 
  private:
   Settings settings_;
-  long steps_ = 0;
-  std::vector<float> mean_, square_;
+  std::int64_t steps_ = 0;
+  AlignedVector<float> mean_, square_;
 };
 
 }  // namespace rodsweep

@@ -33,8 +33,8 @@ double EnergyLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>& d,
     const auto ds = part(d, a.first_place, s);
     const double along = dot(ds, part(a.residual, a.first_place, s));
     curvature[i] = dot(ds, part(ad_, a.first_place, s));
-    length[i] = curvature[i] > 0 ? along / curvature[i] : 0;
-    energy_[i] -= length[i] * along;
+    length[i] = !best_length_ ? 1 : curvature[i] > 0 ? along / curvature[i] : 0;
+    energy_[i] += length[i] * (length[i] * curvature[i] - 2 * along);
     part(r_, a.first_place, s) -= static_cast<T>(length[i]) * part(ad_, a.first_place, s);
   }
   iterate(a);
@@ -48,7 +48,7 @@ double EnergyLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>& d,
     if (!gradient) continue;
     // dE/dx0 = -2 v, x0 = c d:  dE/dd = -2 (c v + (d.v) dc/dd),  dc/dd = (r^ - 2 c A^ d) / d.A^ d
     const auto ds = part(d, a.first_place, s), v = part(v_, a.first_place, s);
-    const double c = length[i], slope = curvature[i] > 0 ? dot(ds, v) / curvature[i] : 0;
+    const double c = length[i], slope = best_length_ && curvature[i] > 0 ? dot(ds, v) / curvature[i] : 0;
     const double dloss = -1 / (std::sqrt(ratio) * a.solution_energy[i]);  // dL/dE * (-2)
     auto g = part(*gradient, a.first_place, s);
     g = static_cast<T>(dloss * c) * v + static_cast<T>(dloss * slope) * part(a.residual, a.first_place, s) -

@@ -18,6 +18,7 @@ class Gru {
   Gru() = default;
   Gru(Parameters<T>& parameters, const std::string& name, int size, WeightSource& source);
   int size() const { return size_; }
+  int recurrent() const { return recurrent_; }  ///< index of U among the parameters
 
   /// Columns [first, first + h.cols()) of the tape and of `out`; `p_in` the same columns of P.
   void forward(const Parameters<T>& p, const TensorIn<T>& p_in, const TensorIn<T>& h, Tape& tape, Eigen::Index first,

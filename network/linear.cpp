@@ -1,5 +1,7 @@
 #include "network/linear.hpp"
 
+#include "network/product.hpp"
+
 namespace rodsweep {
 
 template <class T>
@@ -14,8 +16,7 @@ Linear<T>::Linear(Parameters<T>& parameters, const std::string& name, int in, in
 
 template <class T>
 void Linear<T>::forward(const Parameters<T>& p, const TensorIn<T>& x, Eigen::Ref<Tensor<T>> y) const {
-  y.noalias() = p[weight_] * x;
-  y.colwise() += p[bias_].col(0);
+  multiply<T>(p[weight_], p[bias_].data(), x, y);
 }
 
 template <class T>

@@ -13,6 +13,8 @@ class Linear {
 
   int in() const { return in_; }
   int out() const { return out_; }
+  int weight() const { return weight_; }  ///< their indices among the parameters
+  int bias() const { return bias_; }
 
   /// y must be of the right size and not overlap x.
   void forward(const Parameters<T>& p, const TensorIn<T>& x, Eigen::Ref<Tensor<T>> y) const;

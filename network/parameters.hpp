@@ -1,6 +1,7 @@
 // All weights of a network in one flat array of named matrices: what Adam updates, ranks sum, and files hold.
 //
-// Layers keep the index of their matrices, so a gradient is just another Parameters of the same shapes.
+// Layers keep the index of their matrices, so a gradient is just another Parameters of the same shapes. Each matrix
+// begins at a multiple of 16 entries; the gaps stay zero.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,8 @@ class Parameters {
   /// A new matrix of zeros; its index.
   int add(const std::string& name, int rows, int cols) {
     entries_.push_back({name, rows, cols, values_.size()});
-    values_.resize(values_.size() + static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols), T(0));
+    const std::size_t size = static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
+    values_.resize(values_.size() + (size + 15) / 16 * 16, T(0));
     return static_cast<int>(entries_.size()) - 1;
   }
 
@@ -39,8 +41,8 @@ class Parameters {
   }
 
   const std::vector<Entry>& entries() const { return entries_; }
-  std::vector<T>& values() { return values_; }
-  const std::vector<T>& values() const { return values_; }
+  AlignedVector<T>& values() { return values_; }
+  const AlignedVector<T>& values() const { return values_; }
 
   /// The same matrices, all zero.
   Parameters zeros() const {
@@ -51,7 +53,7 @@ class Parameters {
 
  private:
   std::vector<Entry> entries_;
-  std::vector<T> values_;
+  AlignedVector<T> values_;
 };
 
 /// Where initial weights come from: uniform in +-sqrt(3 / fan_in) times `gain`, the same on every machine.

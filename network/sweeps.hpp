@@ -30,6 +30,15 @@ class Sweeps {
   void backward(const Parameters<T>& p, const JointForest& forest, const TensorIn<T>& x, const Tape& tape,
                 const TensorIn<T>& dy, Parameters<T>& gradient) const;
 
+  int latent() const { return latent_; }
+  /// What network/sweeps_inference.cpp works with.
+  struct Layers {
+    const Linear<T>&encode, &to_up, &to_down;
+    const Gru<T>&up, &down;
+    const Mlp<T>& decode;
+  };
+  Layers layers() const { return {encode_, to_up_, to_down_, up_, down_, decode_}; }
+
  private:
   int latent_ = 0;
   Linear<T> encode_, to_up_, to_down_;

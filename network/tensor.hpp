@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace rodsweep {
 
@@ -12,5 +13,9 @@ using Tensor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;  ///< [features
 
 template <class T>
 using TensorIn = Eigen::Ref<const Tensor<T>>;
+
+/// At an address that vector registers like, and the same remainder of it in every process: sums come out the same.
+template <class T>
+using AlignedVector = std::vector<T, Eigen::aligned_allocator<T>>;
 
 }  // namespace rodsweep

@@ -15,7 +15,7 @@ constexpr Lane8 unit[6] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0}, {
 }  // namespace
 
 LinearSystem::LinearSystem(const Rod& rod)
-    : linearization_(rod), rhs_(VectorX::Zero(6 * rod.joint_count())), impulse_(rod.segments.size()) {
+    : linearization_(rod), rhs_(VectorX::Zero(6 * rod.joint_count())), displacements_(rod.segments.size()) {
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
@@ -102,8 +102,8 @@ void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
   }
 }
 
-void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
-  std::fill(impulse_.begin(), impulse_.end(), Lane8{});
+void LinearSystem::displacements(const Rod& rod, const VectorX& delta_lambda, std::vector<Lane8>& out) const {
+  out.assign(rod.segments.size(), Lane8{});
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
     const JointJacobian& jacobian = linearization_.joints[k];
@@ -114,22 +114,32 @@ void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
     for (int c = 0; c < 3; ++c) terms[3 + c] = jacobian.rotation_b[c] * multiplier;
     const Lane8 torque = sum_lanes(terms);  // on a in lanes 0..2, on b in lanes 3..5
     const Lane8 force = multiplier * jacobian.inverse_length;
-    impulse_[static_cast<std::size_t>(joint.a)] += __builtin_shuffle(force, torque, Mask8{0, 1, 2, 8, 9, 10, 14, 14});
-    impulse_[static_cast<std::size_t>(joint.b)] +=
-        __builtin_shuffle(-force, torque, Mask8{0, 1, 2, 11, 12, 13, 14, 14});
+    out[static_cast<std::size_t>(joint.a)] += __builtin_shuffle(force, torque, Mask8{0, 1, 2, 8, 9, 10, 14, 14});
+    out[static_cast<std::size_t>(joint.b)] += __builtin_shuffle(-force, torque, Mask8{0, 1, 2, 11, 12, 13, 14, 14});
   }
-  rod.lambda += delta_lambda;
-
-  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {  // from impulses to motions
     const Segment& segment = rod.segments[s];
-    if (segment.is_static) continue;
-    const Lane8& f = impulse_[s];
     const Vector3& axis = linearization_.axis[s];
-    const Vector3 torque(f[3], f[4], f[5]);
-    const double excess = segment.inverse_inertia_axial - segment.inverse_inertia_transverse;
-    const Vector3 turn = segment.inverse_inertia_transverse * torque + (excess * axis.dot(torque)) * axis;
-    rod.position[s] += segment.inverse_mass * Vector3(f[0], f[1], f[2]);
-    rod.orientation[s] = rotated(rod.orientation[s], turn);
+    const double m = segment.inverse_mass, transverse = segment.inverse_inertia_transverse;
+    Lane8& motion = out[s];
+    const double along = axis.x() * motion[3] + axis.y() * motion[4] + axis.z() * motion[5];
+    motion *= Lane8{m, m, m, transverse, transverse, transverse, 0, 0};
+    motion += (segment.inverse_inertia_axial - transverse) * along * Lane8{0, 0, 0, axis.x(), axis.y(), axis.z(), 0, 0};
+  }
+}
+
+void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
+  displacements(rod, delta_lambda, displacements_);
+  move(rod, displacements_, delta_lambda);
+}
+
+void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda) {
+  rod.lambda += delta_lambda;
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    if (rod.segments[s].is_static) continue;
+    const Lane8& d = displacements[s];
+    rod.position[s] += Vector3(d[0], d[1], d[2]);
+    rod.orientation[s] = rotated(rod.orientation[s], Vector3(d[3], d[4], d[5]));
   }
 }
 

@@ -20,6 +20,9 @@ class LinearSystem {
   /// Evaluates A and b at the rod's positions and multipliers.
   void assemble(const Rod& rod, double dt);
 
+  /// M^-1 J^T dlambda, per segment: dx in lanes 0..2, dtheta in lanes 3..5, zero where static.
+  void displacements(const Rod& rod, const VectorX& delta_lambda, std::vector<Lane8>& out) const;
+
   /// Moves the rod by the solution of the assembled system.
   void apply(Rod& rod, const VectorX& delta_lambda);
 
@@ -48,7 +51,10 @@ class LinearSystem {
   std::vector<int> side_start_;  ///< sides of segment i: side_start_[i] .. side_start_[i + 1]; none for static ones
   std::vector<Side> sides_;
   std::vector<Contribution> contributions_;  ///< in the order in which assemble_matrix() visits them
-  std::vector<Lane8> impulse_;               ///< per segment: J^T dlambda (linear 3, angular 3)
+  std::vector<Lane8> displacements_;
 };
+
+/// The update: lambda += dlambda, and every free segment by its displacement.
+void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda);
 
 }  // namespace rodsweep

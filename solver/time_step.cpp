@@ -49,9 +49,9 @@ StepReport TimeStepper::step(Projection& projection) {
   return report;
 }
 
-double TimeStepper::constraint_dt() const {
+double constraint_dt(const Scene& scene, double dt) {
   // Drag slows the constraints' forces like the loads', so that it cancels at rest and cannot shift an equilibrium.
-  return settings_.dt / std::sqrt(1 + scene_.damping_per_s * settings_.dt);
+  return dt / std::sqrt(1 + scene.damping_per_s * dt);
 }
 
 void TimeStepper::predict() {

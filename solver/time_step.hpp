@@ -26,6 +26,9 @@ struct StepReport {
   int newton_iterations = 0;                       ///< solves used, the most of any rod
 };
 
+/// dt_c, which turns compliances into alpha~ and multipliers into forces, of steps of dt.
+double constraint_dt(const Scene& scene, double dt);
+
 class TimeStepper {
  public:
   TimeStepper(Scene& scene, const StepSettings& settings);
@@ -35,8 +38,7 @@ class TimeStepper {
 
   int steps_taken() const { return steps_; }
 
-  /// dt_c, which turns compliances into alpha~ and multipliers into forces.
-  double constraint_dt() const;
+  double constraint_dt() const { return rodsweep::constraint_dt(scene_, settings_.dt); }
 
  private:
   void predict();

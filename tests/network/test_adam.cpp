@@ -8,7 +8,7 @@ namespace rodsweep {
 namespace {
 
 TEST_CASE("the first step is the rate times the gradient's sign, whatever its size") {
-  std::vector<float> weights{1, 2, 3};
+  AlignedVector<float> weights{1, 2, 3};
   Adam adam(3, {});
   adam.step(0.1, {1e-3F, -50, 0}, weights);
   CHECK(weights[0] == Approx(0.9).epsilon(1e-4));
@@ -17,7 +17,7 @@ TEST_CASE("the first step is the rate times the gradient's sign, whatever its si
 }
 
 TEST_CASE("two steps follow the definition") {
-  std::vector<float> weights{0.5F};
+  AlignedVector<float> weights{0.5F};
   Adam adam(1, {0.8, 0.9, 1e-8, 0.01});
   double m = 0, v = 0, w = 0.5;
   for (int t = 1; t <= 2; ++t) {
@@ -31,7 +31,7 @@ TEST_CASE("two steps follow the definition") {
 }
 
 TEST_CASE("it finds the minimum of a badly scaled quadratic") {
-  std::vector<float> weights{5, -3};
+  AlignedVector<float> weights{5, -3};
   Adam adam(2, {});
   for (int i = 0; i < 3000; ++i)
     adam.step(0.02 * (1 - i / 3000.0), {1000 * (weights[0] - 1), 0.01F * (weights[1] - 2)}, weights);

@@ -1,40 +1,13 @@
 // Backward passes against central differences, in double precision; and what a sweep sees.
 #include <catch2/catch.hpp>
-#include <functional>
 
+#include "gradient_check.hpp"
 #include "network/sweeps.hpp"
-#include "support.hpp"
 
 namespace rodsweep {
 namespace {
 
-using Matrix = Tensor<double>;
-
-Matrix random_matrix(int rows, int columns, unsigned seed) {
-  test::Random random(seed);
-  Matrix out(rows, columns);
-  for (double& entry : out.reshaped()) entry = random.uniform(-1, 1);
-  return out;
-}
-
-/// Largest difference between `gradient` and central differences of `loss` over `values`, relative to the largest.
-double gradient_error(std::vector<double>& values, const std::vector<double>& gradient,
-                      const std::function<double()>& loss) {
-  constexpr double step = 1e-5;
-  double worst = 0, largest = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double value = values[i];
-    values[i] = value + step;
-    const double above = loss();
-    values[i] = value - step;
-    const double below = loss();
-    values[i] = value;
-    worst = std::max(worst, std::abs((above - below) / (2 * step) - gradient[i]));
-    largest = std::max(largest, std::abs(gradient[i]));
-  }
-  REQUIRE(largest > 0);
-  return worst / largest;
-}
+using namespace test;
 
 TEST_CASE("the gradients of an MLP are those of central differences, for weights and inputs") {
   Parameters<double> p;
@@ -56,7 +29,7 @@ TEST_CASE("the gradients of an MLP are those of central differences, for weights
   Matrix dx = Matrix::Zero(4, 5);
   mlp.backward(p, x, tape, weights, gradient, &dx);
   CHECK(gradient_error(p.values(), gradient.values(), loss) < 1e-8);
-  CHECK(gradient_error(inputs, {dx.data(), dx.data() + dx.size()}, loss) < 1e-8);
+  CHECK(gradient_error(inputs, std::vector<double>(dx.data(), dx.data() + dx.size()), loss) < 1e-8);
 }
 
 /// Two trees and a chain, side by side.

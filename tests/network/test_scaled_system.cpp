@@ -15,6 +15,7 @@ struct Case {
   Rod rod;
   JointForest forest;
   LinearSystem system;
+  SystemPattern pattern;
   SystemEncoding encoding;
   VectorX solution, base, residual, scale;
   ScaledSystem<float> scaled;
@@ -24,7 +25,8 @@ struct Case {
       : rod(test::random_rod(edges, {0}, seed)),
         forest(joint_forest(rod)),
         system(rod),
-        encoding((system.assemble(rod, 0.02), forest), system.matrix()) {
+        pattern((system.assemble(rod, 0.02), system_pattern(forest, system.matrix()))),
+        encoding(pattern) {
     const Eigen::MatrixXd dense = system.matrix().dense();
     solution = test::dense_solve(dense, system.rhs());
     test::Random random(seed + 7);
@@ -34,7 +36,7 @@ struct Case {
     residual = system.rhs() - dense * base;
     scale.resize(solution.size());
     const double rho = correction_scale(system.matrix(), residual, scale);
-    scaled = scaled_system(encoding.pattern(), system.matrix(), residual, solution - base, solution.dot(system.rhs()));
+    scaled = scaled_system(pattern, system.matrix(), residual, solution - base, solution.dot(system.rhs()));
     const Eigen::MatrixXd unscaled = scale.asDiagonal() * dense * scale.asDiagonal() / (rho * rho);
     a.resizeLike(unscaled);
     for (int i = 0; i < forest.size(); ++i)
@@ -118,7 +120,7 @@ TEST_CASE("features do not change with the units of length, mass and time") {
   const auto features = [](const Rod& of) {
     LinearSystem system(of);
     system.assemble(of, 0.02);
-    const SystemEncoding encoding(joint_forest(of), system.matrix());
+    const SystemEncoding encoding(system_pattern(joint_forest(of), system.matrix()));
     Tensor<float> out(SystemEncoding::size, of.joint_count());
     VectorX scale(system.rhs().size());
     encoding.encode(system.matrix(), system.rhs(), out, scale);

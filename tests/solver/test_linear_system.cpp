@@ -113,14 +113,20 @@ TEST_CASE("applying a solution moves the rod by M^-1 J^T dlambda and adds to its
       const VectorX dl = 1e-3 * test::Random(30 + again).entries(6 * rod.joint_count());
       system.apply(rod, dl);
       const VectorX moved = dense.inverse_mass * dense.jacobian.transpose() * dl;
-      double worst = 0;
+      std::vector<Lane8> displacements;
+      system.displacements(before, dl, displacements);
+      double worst = 0, worst_displacement = 0;
       for (int s = 0; s < rod.segment_count(); ++s) {
+        for (int i = 0; i < 6; ++i)
+          worst_displacement =
+              std::max(worst_displacement, std::abs(displacements[std::size_t(s)][i] - moved[6 * s + i]));
         const Vector3 shift = moved.segment<3>(6 * s), turn = moved.segment<3>(6 * s + 3);
         worst = std::max(worst, (rod.position[s] - before.position[s] - shift).norm());
         worst = std::max(worst, (rod.orientation[s].coeffs() - rotated(before.orientation[s], turn).coeffs()).norm());
       }
       REQUIRE(moved.lpNorm<Eigen::Infinity>() > 1e-3);
       CHECK(worst < 1e-10);
+      CHECK(worst_displacement < 1e-10 * moved.lpNorm<Eigen::Infinity>());
       CHECK((rod.lambda - before.lambda - dl).norm() < 1e-17);
     }
   }

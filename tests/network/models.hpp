@@ -1,0 +1,38 @@
+// Networks with random weights for tests: what they say means nothing, but they say it in the right shapes.
+#pragma once
+
+#include <memory>
+
+#include "network/model.hpp"
+
+namespace rodsweep::test {
+
+inline Normalisation no_change(int features) {
+  return {Eigen::ArrayXf::Zero(features), Eigen::ArrayXf::Ones(features)};
+}
+
+inline std::shared_ptr<Model> random_model(const CopingNetSettings& settings, std::uint64_t seed = 1) {
+  return std::make_shared<Model>(
+      Model{CopingNet<float>(settings, seed),
+            {no_change(node_features(settings)), no_change(edge_features(settings)), no_change(6), no_change(6)}});
+}
+
+/// A small one of every kind.
+inline std::vector<CopingNetSettings> kinds_of_networks() {
+  std::vector<CopingNetSettings> out;
+  for (const Encoding encoding : {Encoding::deck, Encoding::physics, Encoding::system})
+    for (const Processor processor : {Processor::sweeps, Processor::message_passing})
+      for (const BaseGuess base : {BaseGuess::none, BaseGuess::extrapolation, BaseGuess::pod}) {
+        CopingNetSettings settings;
+        settings.encoding = encoding;
+        settings.processor = processor;
+        settings.base = base;
+        settings.base_size = 3;
+        settings.latent = 16;
+        settings.steps = 2;
+        out.push_back(settings);
+      }
+  return out;
+}
+
+}  // namespace rodsweep::test
