@@ -8,9 +8,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+
+#include "runner/job/input_file.hpp"
 
 namespace rodsweep {
 
@@ -30,7 +33,8 @@ struct Job {
   std::string name;
   std::uint64_t seed = 0;
   std::int64_t samples = 1;
-  nlohmann::ordered_json values;  ///< validated, every default filled in, sweeps still in place
+  std::map<std::string, InputFile> files;  ///< that it names, by their path as written
+  nlohmann::ordered_json values;           ///< validated, every default filled in, sweeps still in place
 
   /// The list of guesses; empty in a kind of job that has none.
   nlohmann::ordered_json guesses() const;
