@@ -86,25 +86,18 @@ double Trainer::update(const std::vector<const float*>& shards) {
   for (float& g : sum) g *= factor;
 
   const double done = static_cast<double>(step_ + 1) / static_cast<double>(steps());
-  const double rate =
-      settings_.rate * (done < settings_.warm_up
-                            ? done / settings_.warm_up
-                            : 0.5 * (1 + std::cos(pi * (done - settings_.warm_up) / (1 - settings_.warm_up))));
-  adam_.step(rate, sum, net_.parameters().values());
+  rate_ = settings_.rate * (done < settings_.warm_up
+                                ? done / settings_.warm_up
+                                : 0.5 * (1 + std::cos(pi * (done - settings_.warm_up) / (1 - settings_.warm_up))));
+  adam_.step(rate_, sum, net_.parameters().values());
   ++step_;
   return loss * mean;
 }
 
-double Trainer::loss(const std::vector<Example>& examples) {
-  double sum = 0;
+double Trainer::loss(const std::vector<Example>& examples, std::size_t first, std::size_t count) {
   std::vector<const Example*> chosen;
-  for (std::size_t i = 0; i < examples.size(); ++i) {
-    chosen.push_back(&examples[i]);
-    if (static_cast<int>(chosen.size()) < settings_.batch && i + 1 < examples.size()) continue;
-    sum += evaluate(chosen, nullptr);
-    chosen.clear();
-  }
-  return sum / static_cast<double>(examples.size());
+  for (std::size_t i = first; i < first + count; ++i) chosen.push_back(&examples[i]);
+  return evaluate(chosen, nullptr);
 }
 
 /// The sum of losses; adds to the gradient if there is one.

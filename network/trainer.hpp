@@ -49,8 +49,10 @@ class Trainer {
   /// Takes the step from the contributions of all shards in order; its mean loss.
   double update(const std::vector<const float*>& shards);
 
-  /// Mean loss over examples, without gradients.
-  double loss(const std::vector<Example>& examples);
+  double rate() const { return rate_; }  ///< of the last step
+
+  /// Sum of the losses of `count` examples from `first` on, without gradients.
+  double loss(const std::vector<Example>& examples, std::size_t first, std::size_t count);
 
   /// All that must be kept to go on exactly from here, beside the parameters.
   struct State {
@@ -69,6 +71,7 @@ class Trainer {
   const std::vector<Example>& examples_;
   TrainingSettings settings_;
   std::int64_t steps_per_epoch_ = 0, step_ = 0, shuffled_epoch_ = -1;
+  double rate_ = 0;
   double edge_entries_ = 0, node_entries_ = 0;  ///< outputs of an example, on average: mse is per entry
   std::vector<std::uint32_t> order_;
   Adam adam_;

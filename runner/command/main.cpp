@@ -12,7 +12,9 @@
 #include "runner/command/command_line.hpp"
 #include "runner/command/file_commands.hpp"
 #include "runner/command/plan_command.hpp"
+#include "runner/command/shared_job.hpp"
 #include "runner/command/sweep_run.hpp"
+#include "runner/command/training_run.hpp"
 #include "runner/dispatch/mpi_session.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/terminal/console.hpp"
@@ -67,7 +69,8 @@ ExitCode execute(const RunOptions& options, Console& console) {
   const MpiSession mpi;
   try {
     const PetscSession petsc;
-    return run_sweep(options, mpi, console);
+    const Job job = read_job_everywhere(options.job, mpi);
+    return is_training(job) ? run_training(options, job, mpi, console) : run_sweep(options, job, mpi, console);
   } catch (const CollectiveError& error) {
     console.error(error.what());
     return ExitCode::user_error;

@@ -98,8 +98,14 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
       if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
         text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);
   }
-  text += "next     " + run_command(run, cores);
+  text += "next     " + run_command(run, ranks_for(cores));
   return text;
+}
+
+std::string extent_text(const Job& job) {
+  if (is_training(job)) return "trains a model";
+  const Plan plan(job);
+  return fmt::format("{} task{}", plan.size(), plan.size() == 1 ? "" : "s");
 }
 
 /// jobs/schema.json stands among the jobs, and `validate jobs/*.json` should pass.
@@ -128,8 +134,7 @@ ExitCode validate_jobs(const ValidateOptions& options, Console& console) {
       continue;
     }
     try {
-      const Plan plan(read_job(path));
-      console.result(fmt::format("{}: sound, {} task{}", path.native(), plan.size(), plan.size() == 1 ? "" : "s"));
+      console.result(fmt::format("{}: sound, {}", path.native(), extent_text(read_job(path))));
     } catch (const JobError& error) {
       console.error(error.what());
       code = ExitCode::user_error;

@@ -23,14 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Plan plan_everywhere(const fs::path& path, const MpiSession& mpi) {
-  std::optional<Job> job;
-  collectively(mpi.world(), [&] {
-    if (mpi.rank() == 0) job = read_job(path);
-  });
-  const std::string text = broadcast(job ? job->text : std::string(), mpi.world());
+Plan plan_everywhere(const Job& job, const MpiSession& mpi) {
   std::optional<Plan> plan;
-  collectively(mpi.world(), [&] { plan.emplace(job ? std::move(*job) : parse_job(text, path)); });
+  collectively(mpi.world(), [&] { plan.emplace(job); });
   return std::move(*plan);
 }
 
@@ -99,7 +94,7 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
                     where.workers, where.cores));
   else if (where.workers < where.cores && static_cast<std::size_t>(where.workers) < pending)
     console.note(fmt::format("{} of {} cores will work; for all of them: {}", where.workers, where.cores,
-                             run_command(options, where.cores)));
+                             run_command(options, ranks_for(where.cores))));
 }
 
 /// Master and worker take turns in one process.
@@ -129,10 +124,12 @@ Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pen
 
 fs::path default_output(const std::string& job_name) { return fs::path("results") / (job_name + ".h5"); }
 
-std::string run_command(const RunOptions& options, int workers) {
+int ranks_for(int workers) { return workers > 1 ? workers + 1 : 1; }
+
+std::string run_command(const RunOptions& options, int ranks) {
   std::string line;
-  if (workers > 1)
-    line = fmt::format("mpirun --oversubscribe {}-n {} ", geteuid() == 0 ? "--allow-run-as-root " : "", workers + 1);
+  if (ranks > 1)
+    line = fmt::format("mpirun --oversubscribe {}-n {} ", geteuid() == 0 ? "--allow-run-as-root " : "", ranks);
   line += fmt::format("{} run {}", shell_quoted(options.program), shell_quoted(options.job.native()));
   if (options.output) line += " -o " + shell_quoted(options.output->native());
   if (options.extend) line += " --extend " + shell_quoted(options.extend->native());
@@ -140,8 +137,8 @@ std::string run_command(const RunOptions& options, int workers) {
   return line;
 }
 
-ExitCode run_sweep(const RunOptions& options, const MpiSession& mpi, Console& console) {
-  const Plan plan = plan_everywhere(options.job, mpi);
+ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
+  const Plan plan = plan_everywhere(job, mpi);
   const StopSignal signal;  // from here on a signal is a request, until the file is closed
   const fs::path path = options.output.value_or(default_output(plan.job().name));
   const Placement where = placement(mpi.world());
@@ -181,7 +178,7 @@ ExitCode run_sweep(const RunOptions& options, const MpiSession& mpi, Console& co
   again.resume = true;
   if (code == ExitCode::stopped)
     console.note(fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_name(dispatch.signal),
-                             run_command(again, mpi.size() > 1 ? mpi.size() - 1 : 1)));
+                             run_command(again, mpi.size())));
   return code;
 }
 

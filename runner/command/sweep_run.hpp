@@ -1,7 +1,6 @@
 // The command `run`: a job is planned, its file created or continued, its tasks dispatched, and the end summed up.
 //
-// Collective over all ranks. Rank 0 reads the job and is the master; the others are workers; a lone rank is both. The
-// job's text travels from rank 0, so that every rank expands the same plan wherever its own copy of the file stands.
+// Collective over all ranks. Rank 0 is the master, the others are workers; a lone rank is both.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +9,7 @@
 
 #include "runner/command/exit_codes.hpp"
 #include "runner/dispatch/mpi_session.hpp"
+#include "runner/job/job.hpp"
 #include "runner/terminal/console.hpp"
 
 namespace rodsweep {
@@ -23,15 +23,18 @@ struct RunOptions {
   std::string command;                          ///< the whole line, for /runs
 };
 
-/// Needs PETSc. The same result on every rank. Throws CollectiveError, the same on every rank, when nothing could be
-/// started (a job or file error); any other exception belongs to this rank alone, and the others wait for it in vain:
-/// the caller must abort.
-ExitCode run_sweep(const RunOptions& options, const MpiSession& mpi, Console& console);
+/// Needs PETSc. `job`: of options.job, the same on every rank. The same result on every rank. Throws CollectiveError,
+/// the same on every rank, when nothing could be started (a job or file error); any other exception belongs to this
+/// rank alone, and the others wait for it in vain: the caller must abort.
+ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console);
 
 /// results/NAME.h5
 std::filesystem::path default_output(const std::string& job_name);
 
-/// The line to type for this job on `workers` cores: "mpirun --oversubscribe -n 3 rodsweep run jobs/demo.json".
-std::string run_command(const RunOptions& options, int workers);
+/// Of a sweep on so many cores: the master sleeps.
+int ranks_for(int workers);
+
+/// The line to type for this job on so many ranks: "mpirun --oversubscribe -n 3 rodsweep run jobs/demo.json".
+std::string run_command(const RunOptions& options, int ranks);
 
 }  // namespace rodsweep

@@ -64,7 +64,7 @@ void collectively(MPI_Comm comm, const std::function<void()>& part) {
   if (lowest < size) throw CollectiveError(broadcast_from(lowest, std::move(text), comm));
 }
 
-Placement placement(MPI_Comm comm) {
+Placement placement(MPI_Comm comm, Share share) {
   int rank = 0, size = 1;
   check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
   check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
@@ -78,7 +78,7 @@ Placement placement(MPI_Comm comm) {
       CPU_SET(core, &mine);
   check_mpi(MPI_Allreduce(&mine, &ours, sizeof mine, MPI_BYTE, MPI_BOR, host), "MPI_Allreduce");
 
-  const int works = size == 1 || rank > 0;
+  const int works = size == 1 || rank > 0 || share == Share::all_work;
   int host_rank = 0, host_workers = 0;
   check_mpi(MPI_Comm_rank(host, &host_rank), "MPI_Comm_rank");
   check_mpi(MPI_Allreduce(&works, &host_workers, 1, MPI_INT, MPI_SUM, host), "MPI_Allreduce");

@@ -49,12 +49,13 @@ int broadcast(int value, MPI_Comm comm);
 /// rank at fault (and that rank's number, if it is not 0), so that an error is reported once and nobody waits for it.
 void collectively(MPI_Comm comm, const std::function<void()>& part);
 
-/// The ranks of a sweep beside the cores that they may run on (their affinity masks put together), host by host.
+/// The ranks beside the cores that they may run on (their affinity masks put together), host by host.
 struct Placement {
-  int workers = 1;              ///< ranks that compute: all but the master, or the one rank
+  int workers = 1;              ///< ranks that compute: all, or in a sweep all but the master, or the one rank
   int cores = 1;                ///< of all hosts
   bool oversubscribed = false;  ///< on some host more workers than cores; the master sleeps and is not counted
 };
-Placement placement(MPI_Comm comm);
+enum class Share { all_work, one_is_master };
+Placement placement(MPI_Comm comm, Share share = Share::one_is_master);
 
 }  // namespace rodsweep

@@ -25,32 +25,47 @@ FileError damaged_error(const fs::path& path, const std::string& reason) {
   return FileError(fmt::format("{} is damaged or incomplete: {}", path.native(), reason));
 }
 
-hdf5::File open_results(const fs::path& path) {
+hdf5::File open_own(const fs::path& path, const char* what) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw FileError(fmt::format("{}: there is no such file", path.native()));
   if (!fs::is_regular_file(status)) throw FileError(fmt::format("{} is not a file", path.native()));
   if (!std::ifstream(path)) throw FileError(fmt::format("{} cannot be read: no permission", path.native()));
   if (!has_hdf5_signature(path)) throw FileError(fmt::format("{} is not an HDF5 file", path.native()));
-
-  hdf5::File file;
   try {
-    file = hdf5::open_file(path, H5F_ACC_RDONLY);
+    hdf5::File file = hdf5::open_file(path, H5F_ACC_RDONLY);
+    if (!hdf5::has_attribute(file.id(), "/", "program") ||
+        hdf5::read_text_attribute(file.id(), "/", "program") != "rodsweep") {
+      throw FileError(fmt::format("{} is an HDF5 file, but not one of rodsweep's {}", path.native(), what));
+    }
+    return file;
   } catch (const Hdf5Error& failure) {
     throw damaged_error(path, failure.what());
   }
+}
+
+std::string kind_of(const hdf5::File& file) {
+  const bool tells = hdf5::has_attribute(file.id(), "/", "kind");
+  return tells ? hdf5::read_text_attribute(file.id(), "/", "kind") : "sweep";
+}
+
+void check_version(const hdf5::File& file, const fs::path& path, int known) {
+  const int version = hdf5::read_int_attribute(file.id(), "/", "schema_version");
+  if (version == known) return;
+  throw FileError(
+      fmt::format("{} has schema version {}, and this rodsweep knows version {} only: use the rodsweep that "
+                  "wrote it (/runs/revision in the file)",
+                  path.native(), version, known));
+}
+
+hdf5::File open_results(const fs::path& path) {
+  hdf5::File file = open_own(path, "results");
   try {
-    if (!hdf5::has_attribute(file.id(), "/", "program") ||
-        hdf5::read_text_attribute(file.id(), "/", "program") != "rodsweep") {
-      throw FileError(fmt::format("{} is an HDF5 file, but not one of rodsweep's results", path.native()));
-    }
-    const int version = hdf5::read_int_attribute(file.id(), "/", "schema_version");
-    if (version != schema_version) {
+    if (kind_of(file) == "model") {
       throw FileError(
-          fmt::format("{} has schema version {}, and this rodsweep knows version {} only: use the rodsweep that "
-                      "wrote it (/runs/revision in the file)",
-                      path.native(), version, schema_version));
+          fmt::format("{} holds a trained model, not results of simulations; `rodsweep info` shows it", path.native()));
     }
+    check_version(file, path, schema_version);
   } catch (const Hdf5Error& failure) {
     throw damaged_error(path, failure.what());
   }

@@ -4,12 +4,22 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "runner/file/file_error.hpp"
 #include "runner/file/hdf5.hpp"
 
 namespace rodsweep {
+
+/// A file that rodsweep made, of whatever kind; `what` a foreign one is not: "results".
+hdf5::File open_own(const std::filesystem::path& path, const char* what);
+
+/// What an own file holds, "model" or the kind of the job whose results it has.
+std::string kind_of(const hdf5::File& file);
+
+/// Refuses a file that another version of rodsweep wrote in another form.
+void check_version(const hdf5::File& file, const std::filesystem::path& path, int known);
 
 hdf5::File open_results(const std::filesystem::path& path);
 

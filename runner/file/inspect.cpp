@@ -82,8 +82,7 @@ FileSummary inspect(const fs::path& path) {
     summary.bytes = fs::file_size(path);
     summary.schema_version = schema_version;
     summary.job_name = hdf5::read_text_attribute(file.id(), "/job", "name");
-    const bool tells_kind = hdf5::has_attribute(file.id(), "/", "kind");
-    summary.job_kind = tells_kind ? hdf5::read_text_attribute(file.id(), "/", "kind") : "sweep";
+    summary.job_kind = kind_of(file);
     summary.plan_hash = hdf5::read_text_attribute(file.id(), "/job", "plan_hash");
     if (hdf5::has_attribute(file.id(), "/job", "rerun_of_task"))
       summary.rerun_of_task = hdf5::read_int_attribute(file.id(), "/job", "rerun_of_task");

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <stdio.h>  // renameat2
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -43,6 +44,13 @@ void make_folder_of(const fs::path& path) {
   if (error) throw creation_error(path, "its folder cannot be made: " + error.message());
 }
 
+FileIdentity identity_of(const fs::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0)
+    throw FileError(fmt::format("{} cannot be found again: {}", path.native(), std::system_category().message(errno)));
+  return {status.st_dev, status.st_ino};
+}
+
 UnfinishedFile::UnfinishedFile(const fs::path& path)
     : path_(path),
       temporary_(
@@ -67,6 +75,13 @@ void UnfinishedFile::publish() const {
   if (renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) == 0) return;
   if (errno == EEXIST) throw exists_error(path_);
   throw creation_error(path_, std::system_category().message(errno));
+}
+
+void UnfinishedFile::replace(const FileIdentity& earlier) const {
+  if (!(identity_of(path_) == earlier))
+    throw FileError(fmt::format("{} was replaced by another program meanwhile, and is left as it is", path_.native()));
+  if (rename(temporary_.c_str(), path_.c_str()) != 0)
+    throw creation_error(path_, std::system_category().message(errno));
 }
 
 }  // namespace rodsweep

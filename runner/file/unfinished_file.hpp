@@ -3,6 +3,7 @@
 // make the same file, and one that is killed meanwhile leaves its name free. Throws FileError.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -11,6 +12,13 @@
 namespace rodsweep {
 
 FileError creation_error(const std::filesystem::path& path, const std::string& reason);
+
+/// Which file a path leads to, whatever its name.
+struct FileIdentity {
+  std::uintmax_t device = 0, number = 0;
+  bool operator==(const FileIdentity& other) const { return device == other.device && number == other.number; }
+};
+FileIdentity identity_of(const std::filesystem::path& path);
 
 class UnfinishedFile {
  public:
@@ -27,6 +35,8 @@ class UnfinishedFile {
 
   /// Gives the file its name unless another file took it meanwhile.
   void publish() const;
+  /// Gives it its name in place of an earlier state of itself, which must still be there.
+  void replace(const FileIdentity& earlier) const;
 
  private:
   std::filesystem::path path_, temporary_;

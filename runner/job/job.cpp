@@ -11,6 +11,7 @@
 #include "runner/job/job_reader.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/job/sweep_space.hpp"
+#include "runner/job/training_job.hpp"
 
 namespace rodsweep {
 namespace {
@@ -46,6 +47,8 @@ JobError job_error(const std::filesystem::path& file, const std::string& key_pat
   return JobError(file.string() + ": " + (key_path.empty() ? "" : key_path + ": ") + text);
 }
 
+bool is_training(const Job& job) { return job.values["kind"] == "train"; }
+
 nlohmann::ordered_json Job::guesses() const { return values.value("guesses", nlohmann::ordered_json::array()); }
 
 Job parse_job(std::string text, const std::filesystem::path& path) {
@@ -58,6 +61,10 @@ Job parse_job(std::string text, const std::filesystem::path& path) {
   job.text = std::move(text);
   job.name = job.values["name"];
   job.seed = job.values["seed"];
+  if (is_training(job)) {
+    training_job(job);
+    return job;
+  }
   job.samples = job.values["samples"];
   const SweepSpace space(job.values, path);
   check_guesses(job, space);

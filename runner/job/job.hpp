@@ -32,13 +32,16 @@ struct Job {
   std::string text;            ///< the file as it was read, byte for byte: stored in /job/text
   std::string name;
   std::uint64_t seed = 0;
-  std::int64_t samples = 1;
+  std::int64_t samples = 1;                ///< of a training 1
   std::map<std::string, InputFile> files;  ///< that it names, by their path as written
   nlohmann::ordered_json values;           ///< validated, every default filled in, sweeps still in place
 
   /// The list of guesses; empty in a kind of job that has none.
   nlohmann::ordered_json guesses() const;
 };
+
+/// Is a network trained? Then it is a TrainingJob (runner/job/training_job.hpp), not a Plan.
+bool is_training(const Job& job);
 
 /// Reads and validates every key and every value that a sweep can take; throws JobError. What depends on several values
 /// at one parameter point (such as a duration of a whole number of steps) is checked by Plan (runner/job/plan.hpp).

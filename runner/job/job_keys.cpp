@@ -1,11 +1,13 @@
 #include "runner/job/job_keys.hpp"
 
+#include "runner/job/training_keys.hpp"
+
 namespace rodsweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* no_guesses = "a data set is made with the direct solve alone: remove this key";
+constexpr const char* no_guesses = "only a sweep tries guesses: remove this key";
 
 Key scene() {
   return object_key(
@@ -22,10 +24,10 @@ Key scene() {
               .at_least(1)
               .at_most(1000000)
               .also_called({"n", "number_of_segments", "elements"}),
-          number_key("length_m", "length of the rod").in("m").above(0).at_most(1e6).only("bending_rod"),
-          number_key("helix_radius_m", "radius of the helix").in("m").above(0).at_most(1e6).only("helix"),
-          number_key("helix_height_m", "height of the helix").in("m").above(0).at_most(1e6).only("helix"),
-          number_key("windings", "turns of the helix").above(0).at_most(1e6).only("helix").also_called({"turns"}),
+          number_key("length_m", "length of the rod").in("m").above(0).at_most(1e6).only({"bending_rod"}),
+          number_key("helix_radius_m", "radius of the helix").in("m").above(0).at_most(1e6).only({"helix"}),
+          number_key("helix_height_m", "height of the helix").in("m").above(0).at_most(1e6).only({"helix"}),
+          number_key("windings", "turns of the helix").above(0).at_most(1e6).only({"helix"}).also_called({"turns"}),
           number_key("radius_m", "radius of the rod's cross-section").in("m").above(0).at_most(1e3),
           number_key("density_kg_m3", "density").in("kg/m^3").above(0).at_most(1e6).also_called({"rho"}),
           number_key("youngs_modulus_pa", "Young's modulus, for bending")
@@ -43,7 +45,7 @@ Key scene() {
               .at_least(-360)
               .at_most(360)
               .defaults_to(0)
-              .only("bending_rod"),
+              .only({"bending_rod"}),
           vector_key("gravity_m_s2", "acceleration of gravity")
               .in("m/s^2")
               .at_least(-1e6)
@@ -134,14 +136,14 @@ Key record() {
                  choice_key("norms", "count iterations in both norms, or only in the one that the job tests (faster)",
                             {"both", "one"})
                      .defaults_to("both")
-                     .only("sweep", no_guesses)
+                     .only({"sweep"}, no_guesses)
                      .setting(),
                  choice_key("systems",
                             "of which linear systems the rods, the multipliers and the solution are stored: those of "
                             "the first Newton iteration of every step, or all",
                             {"first", "all"})
                      .defaults_to("first")
-                     .only("dataset", "make the simulations a job of that kind")
+                     .only({"dataset"}, "make the simulations a job of that kind")
                      .setting(),
                  integer_key("trajectory_every", "a frame of all segments every so many steps; 0: none")
                      .at_least(0)
@@ -160,61 +162,64 @@ Key subspace_size() {
       .defaults_to(10);
 }
 
+std::vector<Key> keys_of_all() {
+  return {
+      text_key("name", "name of the job and of its results file").at_most(100).of_form(Key::Text::file_name).setting(),
+      text_key("description", "a remark for the reader")
+          .defaults_to("")
+          .also_called({"comment", "//", "_comment", "note", "#"})
+          .setting(),
+      choice_key("kind", "kind of job", {"sweep", "dataset", "train"}).setting(),
+      integer_key("seed", "seed of all random values").at_least(0).at_most(9007199254740991).defaults_to(0).setting(),
+      text_key("$schema", "the JSON Schema by which an editor helps (jobs/schema.json); not read here")
+          .defaults_to("")
+          .setting(),
+  };
+}
+
+std::vector<Key> keys_of_simulations() {
+  std::vector<Key> keys{
+      integer_key("samples", "draws of the random values at every grid point")
+          .at_least(1)
+          .at_most(1000000)
+          .defaults_to(1)
+          .setting(),
+      choice_key("sampling",
+                 "how random values are drawn: independently, or by Sobol's sequence, which covers their "
+                 "ranges more evenly (best for a power of two of samples)",
+                 {"random", "sobol"})
+          .defaults_to("random")
+          .setting(),
+      choice_key("evaluation", "all guesses on the systems of one trajectory, or each on a trajectory of its own",
+                 {"paired", "closed_loop"})
+          .defaults_to("paired")
+          .only({"sweep"}, no_guesses),
+      scene(),
+      time(),
+      solve().only({"sweep"}, no_guesses),
+      guesses_key("guesses", "initial guesses of cg")
+          .defaults_to(Json::array())
+          .only({"sweep"}, no_guesses)
+          .unswept("all tasks share one list of guesses; put every guess in it, or a sweep in place of a guess"),
+      record(),
+      number_key("task_time_limit_s", "a task that takes longer is recorded as timed out; 0: no limit")
+          .in("s")
+          .at_least(0)
+          .at_most(1e9)
+          .defaults_to(0)
+          .setting(),
+  };
+  for (Key& key : keys)
+    if (key.only_for.empty())
+      key.only({"sweep", "dataset"}, "a training learns from the simulations in \"data\": remove this key");
+  return keys;
+}
+
 Key job() {
-  return object_key(
-             "job", "a job",
-             {
-                 text_key("name", "name of the job and of its results file")
-                     .at_most(100)
-                     .of_form(Key::Text::file_name)
-                     .setting(),
-                 text_key("description", "a remark for the reader")
-                     .defaults_to("")
-                     .also_called({"comment", "//", "_comment", "note", "#"})
-                     .setting(),
-                 choice_key("kind", "kind of job", {"sweep", "dataset"}).not_yet({"train"}).setting(),
-                 integer_key("seed", "seed of all random values")
-                     .at_least(0)
-                     .at_most(9007199254740991)
-                     .defaults_to(0)
-                     .setting(),
-                 integer_key("samples", "draws of the random values at every grid point")
-                     .at_least(1)
-                     .at_most(1000000)
-                     .defaults_to(1)
-                     .setting(),
-                 choice_key("sampling",
-                            "how random values are drawn: independently, or by Sobol's sequence, which covers their "
-                            "ranges more evenly (best for a power of two of samples)",
-                            {"random", "sobol"})
-                     .defaults_to("random")
-                     .setting(),
-                 choice_key("evaluation",
-                            "all guesses on the systems of one trajectory, or each on a trajectory of its own",
-                            {"paired", "closed_loop"})
-                     .defaults_to("paired")
-                     .only("sweep", no_guesses),
-                 scene(),
-                 time(),
-                 solve().only("sweep", no_guesses),
-                 guesses_key("guesses", "initial guesses of cg")
-                     .defaults_to(Json::array())
-                     .only("sweep", no_guesses)
-                     .unswept(
-                         "all tasks share one list of guesses; put every guess in it, or a sweep in place of a guess"),
-                 record(),
-                 number_key("task_time_limit_s", "a task that takes longer is recorded as timed out; 0: no limit")
-                     .in("s")
-                     .at_least(0)
-                     .at_most(1e9)
-                     .defaults_to(0)
-                     .setting(),
-                 text_key("$schema", "the JSON Schema by which an editor helps (jobs/schema.json); not read here")
-                     .defaults_to("")
-                     .setting(),
-             },
-             "kind")
-      .unswept("put the sweep in place of a value");
+  std::vector<Key> keys = keys_of_all();
+  for (std::vector<Key> more : {keys_of_simulations(), training_keys()})
+    keys.insert(keys.end(), more.begin(), more.end());
+  return object_key("job", "a job", keys, "kind").unswept("put the sweep in place of a value");
 }
 
 }  // namespace

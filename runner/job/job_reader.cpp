@@ -64,6 +64,9 @@ Json JobReader::read(const Key& key, const Json& value, const std::string& path)
     case Key::Kind::object: return read_object(key, value, path);
     case Key::Kind::integer:
     case Key::Kind::number: return read_number(key, value, path);
+    case Key::Kind::boolean:
+      if (!value.is_boolean()) refuse(key, value, path);
+      return value;
     case Key::Kind::text:
     case Key::Kind::choice: return read_text(key, value, path);
     case Key::Kind::guess: return read_guess(key, value, path, false);
@@ -177,12 +180,6 @@ Json JobReader::read_text(const Key& key, const Json& value, const std::string& 
   }
   for (const std::string& choice : key.choices) {
     if (text == choice) return value;
-  }
-  for (const std::string& planned : key.planned) {
-    if (text == planned) {
-      mistake(path, fmt::format("\"{}\" is not in this version of rodsweep; must be {}", text, allowed(key)));
-      return value;
-    }
   }
   refuse(key, value, path, key.choices.size() > 1 ? did_you_mean(text, key.choices) : "");
   return value;

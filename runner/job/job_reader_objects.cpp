@@ -20,6 +20,13 @@ std::vector<std::string> names(const std::vector<Key>& keys) {
   return result;
 }
 
+/// "a" or "b"
+std::string alternatives(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : " or ", word);
+  return text;
+}
+
 /// "oracle 0.1", "oracle 0.1 smooth": the name and those parameters that are not swept, words only if not the default.
 std::string default_label(const std::string& name, const Json& parameters) {
   std::string label = name;
@@ -50,16 +57,14 @@ std::string varying_label(const Json& guess) {
 
 }  // namespace
 
-bool JobReader::applies(const Key& key) const {
-  return key.only_for.empty() || tag_.value.empty() || key.only_for == tag_.value;
-}
+bool JobReader::applies(const Key& key) const { return tag_.value.empty() || belongs(key, tag_.value); }
 
 JobReader::Tag JobReader::tag_of(const Key& key, const Json& value, const std::string& path) {
   Tag tag{member(path, key.tag), ""};
-  if (!value.contains(key.tag) || !value[key.tag].is_string()) return tag;
-  const std::string given = value[key.tag];
-  for (const std::string& choice : find_key(key.keys, key.tag)->choices) {
-    if (given == choice) tag.value = given;
+  const Key& decides = *find_key(key.keys, key.tag);
+  const Json given = value.contains(key.tag) ? value[key.tag] : decides.preset.value_or(Json());
+  for (const std::string& choice : decides.choices) {
+    if (given == choice) tag.value = choice;
   }
   return tag;
 }
@@ -88,8 +93,8 @@ Json JobReader::read_object(const Key& key, const Json& value, const std::string
 void JobReader::refuse_unknown(const Key& key, const std::string& name, const std::string& path) {
   if (const Key* other = find_key(key.keys, name)) {
     mistake(member(path, name),
-            fmt::format("this key belongs to {} \"{}\", not to \"{}\"{}{}", tag_.path, other->only_for, tag_.value,
-                        other->only_advice.empty() ? "" : "; ", other->only_advice));
+            fmt::format("this key belongs to {} {}, not to \"{}\"{}{}", tag_.path, alternatives(other->only_for),
+                        tag_.value, other->only_advice.empty() ? "" : "; ", other->only_advice));
     return;
   }
   std::vector<std::string> known, words;
@@ -114,7 +119,7 @@ void JobReader::refuse_unknown(const Key& key, const std::string& name, const st
 void JobReader::fill_absent(const Key& key, const std::string& path, Json& result) {
   std::map<std::string, std::vector<const Key*>> groups;
   for (const Key& child : key.keys) {
-    if (!child.only_for.empty() && child.only_for != tag_.value) continue;
+    if (!belongs(child, tag_.value)) continue;
     if (!child.alternative_group.empty()) {
       groups[child.alternative_group].push_back(&child);
     } else if (result.contains(child.name)) {

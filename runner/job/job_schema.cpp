@@ -98,6 +98,7 @@ class SchemaWriter {
     switch (key.kind) {
       case Key::Kind::object: return object(key, path);
       case Key::Kind::integer: return bounded("integer", key);
+      case Key::Kind::boolean: return {{"type", "boolean"}};
       case Key::Kind::number: {
         const Json plain = bounded("number", key);
         return key.choices.empty() ? plain : Json{{"anyOf", Json::array({plain, Json{{"enum", key.choices}}})}};
@@ -148,12 +149,13 @@ class SchemaWriter {
   static void append_rule(const Key& key, const std::string& tag_value, Json& rules) {
     Json required = Json::array();
     for (const Key& child : key.keys) {
-      if (child.only_for == tag_value && !child.preset && child.alternative_group.empty())
+      if (!child.only_for.empty() && belongs(child, tag_value) && !child.preset && child.alternative_group.empty())
         required.push_back(child.name);
     }
     const Json refused = refusals(key, tag_value);
     if (required.empty() && refused.empty()) return;
-    const Json condition{{"properties", {{key.tag, {{"const", tag_value}}}}}, {"required", Json::array({key.tag})}};
+    Json condition{{"properties", {{key.tag, {{"const", tag_value}}}}}};
+    if (find_key(key.keys, key.tag)->preset != tag_value) condition["required"] = Json::array({key.tag});
     rules.push_back({{"if", condition}, {"then", {{"required", required}, {"properties", refused}}}});
   }
 
@@ -161,7 +163,7 @@ class SchemaWriter {
   static Json refusals(const Key& key, const std::string& tag_value) {
     Json refused = Json::object();
     for (const Key& child : key.keys) {
-      if (!child.only_for.empty() && child.only_for != tag_value) {
+      if (!belongs(child, tag_value)) {
         refused[child.name] = false;
       } else if (child.kind == Key::Kind::object && child.tag.empty()) {
         if (Json within = refusals(child, tag_value); !within.empty())

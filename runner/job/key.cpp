@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "runner/job/job_keys.hpp"
@@ -55,8 +56,8 @@ Key& Key::defaults_to(nlohmann::ordered_json value) {
   preset = std::move(value);
   return *this;
 }
-Key& Key::only(const char* tag_value, const char* advice) {
-  only_for = tag_value;
+Key& Key::only(std::vector<std::string> tag_values, const char* advice) {
+  only_for = std::move(tag_values);
   only_advice = advice;
   return *this;
 }
@@ -66,10 +67,6 @@ Key& Key::one_of_group(const char* group) {
 }
 Key& Key::of_form(Text form) {
   text = form;
-  return *this;
-}
-Key& Key::not_yet(std::vector<std::string> words) {
-  planned = std::move(words);
   return *this;
 }
 Key& Key::also_called(std::vector<std::string> words) {
@@ -94,6 +91,7 @@ Key object_key(const char* name, const char* help, std::vector<Key> keys, const 
   return key;
 }
 Key integer_key(const char* name, const char* help) { return make(Key::Kind::integer, name, help); }
+Key boolean_key(const char* name, const char* help) { return make(Key::Kind::boolean, name, help); }
 Key number_key(const char* name, const char* help) { return make(Key::Kind::number, name, help); }
 Key vector_key(const char* name, const char* help) { return make(Key::Kind::vector, name, help); }
 Key text_key(const char* name, const char* help) { return make(Key::Kind::text, name, help); }
@@ -122,6 +120,7 @@ std::string allowed(const Key& key) {
   switch (key.kind) {
     case Key::Kind::object: return "an object {...}";
     case Key::Kind::integer: return "an integer" + bounds(key);
+    case Key::Kind::boolean: return "true or false";
     case Key::Kind::number:
       return "a number" + bounds(key) + (key.choices.empty() ? "" : ", or " + quoted_list(key.choices));
     case Key::Kind::vector: return "three numbers [x, y, z], each" + (bounds(key).empty() ? " finite" : bounds(key));
@@ -144,6 +143,10 @@ std::string allowed(const Key& key) {
 
 std::string describe(const Key& key) {
   return key.help + (key.unit.empty() ? "" : " [" + key.unit + "]") + ", " + allowed(key);
+}
+
+bool belongs(const Key& key, const std::string& tag_value) {
+  return key.only_for.empty() || std::find(key.only_for.begin(), key.only_for.end(), tag_value) != key.only_for.end();
 }
 
 const Key* find_key(const std::vector<Key>& keys, const std::string& name) {

@@ -14,6 +14,7 @@ struct Key {
   enum class Kind {
     object,   ///< `keys` are its members
     integer,  ///< within [low, high]
+    boolean,  ///< true or false
     number,   ///< finite, within the bounds; or one of `choices`, a word that stands for a number
     vector,   ///< three numbers, each within the bounds
     text,     ///< 1 to `high` bytes of the form `text`
@@ -38,16 +39,16 @@ struct Key {
   double high = std::numeric_limits<double>::infinity();
   bool above_low = false;  ///< `low` itself is excluded
   std::vector<std::string> choices;
-  std::vector<std::string> planned;  ///< choices that a later version will have: refused with that remark
   Text text = Text::any;
   std::optional<nlohmann::ordered_json> preset;  ///< value if the key is absent; none: the key is required
   bool sweepable = true;                         ///< may its value be a sweep?
   bool parameter = true;                         ///< part of a task's parameters, not a setting of the whole job?
   std::string no_sweep_advice;                   ///< what to do instead of sweeping it
   std::vector<std::string> synonyms;             ///< other words for it: suggested, never accepted
-  std::string only_for;  ///< the value of the enclosing `tag` that has this key: of its own object or one further out
-  std::string only_advice;        ///< what to do where the tag has another value
-  std::string alternative_group;  ///< exactly one of the keys with the same group must be given
+  std::vector<std::string> only_for;  ///< the values of the enclosing `tag`, of its own object or one further out, that
+                                      ///< have this key; none: all have
+  std::string only_advice;            ///< what to do where the tag has another value
+  std::string alternative_group;      ///< exactly one of the keys with the same group must be given
 
   std::string tag;        ///< object: the member whose value decides which `only_for` members apply
   std::vector<Key> keys;  ///< object: its members
@@ -58,10 +59,9 @@ struct Key {
   Key& at_most(double bound);
   Key& or_word(const char* word);
   Key& defaults_to(nlohmann::ordered_json value);
-  Key& only(const char* tag_value, const char* advice = "");
+  Key& only(std::vector<std::string> tag_values, const char* advice = "");
   Key& one_of_group(const char* group);
   Key& of_form(Text form);
-  Key& not_yet(std::vector<std::string> words);
   Key& also_called(std::vector<std::string> words);
   Key& unswept(const char* advice = "");
   Key& setting();  ///< concerns the whole job: neither swept nor a parameter of its tasks
@@ -69,6 +69,7 @@ struct Key {
 
 Key object_key(const char* name, const char* help, std::vector<Key> keys, const char* tag = "");
 Key integer_key(const char* name, const char* help);
+Key boolean_key(const char* name, const char* help);
 Key number_key(const char* name, const char* help);
 Key vector_key(const char* name, const char* help);
 Key text_key(const char* name, const char* help);
@@ -88,6 +89,9 @@ std::string describe(const Key& key);
 
 /// Member by name, nullptr if there is none.
 const Key* find_key(const std::vector<Key>& keys, const std::string& name);
+
+/// Does a key belong to this value of the tag?
+bool belongs(const Key& key, const std::string& tag_value);
 
 /// "a", "b", "c"
 std::string quoted_list(const std::vector<std::string>& words);

@@ -97,6 +97,7 @@ void SweepSpace::read(const Key& key, const Json& value, const std::string& path
       }
       return;
     case Key::Kind::guess: return read_guess(value, path, key, scope);
+    case Key::Kind::boolean: throw std::logic_error(path + ": true or false is no parameter of tasks");
     case Key::Kind::integer:
     case Key::Kind::number:
     case Key::Kind::choice:

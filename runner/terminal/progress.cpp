@@ -10,27 +10,12 @@ namespace rodsweep {
 
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr auto bar_pause = 100ms;
-constexpr auto first_log_pause = 5s;  // then ever rarer: a log of hours stays readable
-constexpr auto longest_log_pause = 300s;
-
 double seconds(Progress::Clock::duration span) { return std::chrono::duration<double>(span).count(); }
-
-std::string bar(double fraction) {
-  constexpr int width = 24;
-  const int filled = std::clamp(static_cast<int>(fraction * width), 0, width);
-  return fmt::format("[{}{}]", std::string(filled, '#'), std::string(width - filled, '.'));
-}
 
 }  // namespace
 
 Progress::Progress(Console& console, const Work& work, Clock::time_point now)
-    : console_(&console), work_(work), begin_(now), pause_(first_log_pause) {
-  if (console.live()) pause_ = bar_pause;
-  next_ = now + pause_;
-}
+    : line_(console, now), work_(work), begin_(now) {}
 
 void Progress::finished(TaskOutcome outcome, double cost, double busy_s) {
   ++done_;
@@ -62,17 +47,9 @@ std::string Progress::text(Clock::time_point now) const {
 }
 
 void Progress::show(Clock::time_point now) {
-  if (now < next_) return;
-  if (console_->live()) {
-    const auto done = static_cast<double>(work_.done_before + done_);
-    console_->status(bar(done / static_cast<double>(std::max<std::int64_t>(work_.total, 1))) + " " + text(now));
-  } else {
-    console_->note(text(now));
-    pause_ = std::min<Clock::duration>(pause_ + pause_ / 2, longest_log_pause);
-  }
-  next_ = now + pause_;
+  if (!line_.due(now)) return;
+  const auto done = static_cast<double>(work_.done_before + done_);
+  line_.show(now, done / static_cast<double>(std::max<std::int64_t>(work_.total, 1)), text(now));
 }
-
-void Progress::clear() { console_->status(""); }
 
 }  // namespace rodsweep

@@ -9,14 +9,14 @@
 #include <optional>
 #include <string>
 
-#include "runner/terminal/console.hpp"
+#include "runner/terminal/progress_line.hpp"
 #include "solver/outcome.hpp"
 
 namespace rodsweep {
 
 class Progress {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = ProgressLine::Clock;
 
   struct Work {
     std::int64_t total = 0;        ///< tasks of the plan
@@ -30,7 +30,7 @@ class Progress {
 
   void finished(TaskOutcome outcome, double cost, double busy_s);
   void show(Clock::time_point now);  ///< speaks if it is time to; cheap
-  void clear();                      ///< takes the bar away
+  void clear() { line_.clear(); }    ///< takes the bar away
 
   /// "120 of 400 tasks (30 %), 2 failed, 31.0/s, 1 min 20 s left"
   std::string text(Clock::time_point now) const;
@@ -38,12 +38,11 @@ class Progress {
       Clock::time_point now) const;  ///< empty until a task has finished, or when overdue
 
  private:
-  Console* console_;
+  ProgressLine line_;
   Work work_;
   std::int64_t done_ = 0, failed_ = 0;  ///< in this start
   double done_cost_ = 0, busy_s_ = 0;
-  Clock::time_point begin_, next_;
-  Clock::duration pause_;
+  Clock::time_point begin_;
 };
 
 }  // namespace rodsweep

@@ -1,0 +1,194 @@
+#include "runner/command/training_run.hpp"
+
+#include <fmt/format.h>
+
+#include "runner/command/training_resume.hpp"
+#include "runner/command/training_summary.hpp"
+#include "runner/dispatch/stop_signal.hpp"
+#include "runner/job/training_job.hpp"
+#include "runner/terminal/progress_line.hpp"
+#include "runner/training/training.hpp"
+#include "solver/stopwatch.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double shortest_save_pause_s = 1, longest_save_pause_s = 30;
+
+ExitCode exit_code_of(Ending ending) {
+  switch (ending) {
+    case Ending::none: return ExitCode::stopped;
+    case Ending::diverged: return ExitCode::tasks_failed;
+    default: return ExitCode::ok;
+  }
+}
+
+/// A training under way, as this rank sees it.
+class TrainingRun {
+ public:
+  TrainingRun(const RunOptions& options, const Job& job, const fs::path& path, const MpiSession& mpi, Console& console)
+      : options_(options), job_(job), path_(path), training_job_(training_job(job)), mpi_(mpi), console_(console) {}
+
+  void prepare(const std::optional<StoredModel>& earlier);
+  ExitCode run(const StopSignal& signal);
+
+ private:
+  void advise(const Placement& where);
+  void show_progress();
+  void save(bool ends);
+  bool writes() const { return mpi_.rank() == 0; }
+
+  const RunOptions& options_;
+  const Job& job_;
+  const fs::path& path_;
+  const TrainingJob training_job_;
+  const MpiSession& mpi_;
+  Console& console_;
+  TrainingData data_;
+  std::optional<Training> training_;
+  std::optional<ModelFile> file_;
+  std::optional<ProgressLine> progress_;
+  ModelCard card_;
+  Stopwatch since_start_, since_save_;
+  std::int64_t first_step_ = 0;
+};
+
+/// Collective: reads the data and creates the file, or goes on from it.
+void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
+  console_.note(fmt::format("reading {}", training_job_.data.native()));
+  std::vector<RecordedSimulation> simulations;
+  collectively(mpi_.world(), [&] {
+    const DatasetReader dataset = open_dataset(training_job_, job_);
+    if (earlier && earlier->card.data_hash != dataset.hash())
+      throw FileError(fmt::format("{} cannot be continued: {} is not the data set that it was begun with",
+                                  path_.native(), training_job_.data.native()));
+    data_ = training_data(training_job_, dataset);
+    simulations = ratio_simulations(training_job_, dataset, mpi_.rank(), mpi_.size());
+  });
+  collectively(mpi_.world(), [&] { training_.emplace(training_job_, data_, std::move(simulations), mpi_.world()); });
+  if (earlier) {
+    card_ = earlier->card;
+    training_->restore(earlier->card, *earlier->model, *earlier->checkpoint);
+  }
+  first_step_ = training_->trainer().step();
+
+  const Placement where = placement(mpi_.world(), Share::all_work);
+  TrainingStart start{provenance_of_this_process(options_.command), "", -1};
+  start.provenance.job = fs::absolute(options_.job).lexically_normal().native();
+  start.provenance.ranks = mpi_.size();
+  start.provenance.oversubscribed = where.oversubscribed;
+  card_.starts.push_back(std::move(start));
+  card_.name = job_.name;
+  card_.job_text = job_.text;
+  card_.data_path = fs::absolute(training_job_.data).lexically_normal().native();
+  card_.data_hash = data_.hash;
+  card_.training_simulations = data_.training_simulations;
+  card_.validation_simulations = data_.validation_simulations;
+  card_.training_examples = static_cast<std::int64_t>(data_.training.size());
+  card_.validation_examples = static_cast<std::int64_t>(data_.validation.size());
+  card_.planned_epochs = training_job_.training.epochs;
+  card_.ratio_simulations = std::min(training_job_.ratio_simulations, data_.validation_simulations);
+  collectively(mpi_.world(), [&] {
+    if (!writes()) return;
+    file_.emplace(path_, earlier.has_value());
+    save(false);
+  });
+  advise(where);
+}
+
+void TrainingRun::advise(const Placement& where) {
+  if (!data_.note.empty()) console_.warn(data_.note);
+  const int shards = training_job_.training.shards;
+  if (where.oversubscribed) {
+    console_.warn(fmt::format("{} ranks share {} cores and wait for each other: use as many ranks as cores",
+                              mpi_.size(), where.cores));
+  } else if (mpi_.size() > shards) {
+    console_.note(fmt::format("a step has {} shards (training.shards): {} of {} ranks have nothing to do", shards,
+                              mpi_.size() - shards, mpi_.size()));
+  } else if (const int useful = std::min(where.cores, shards); mpi_.size() < useful) {
+    console_.note(fmt::format("{} of {} cores will work; for {} of them: {}", mpi_.size(), where.cores, useful,
+                              run_command(options_, useful)));
+  }
+  const Trainer& trainer = training_->trainer();
+  console_.note(fmt::format(
+      "{}: {} parameters learn from {} examples of {} simulations, {} steps in each of {} epochs{}", job_.name,
+      trainer.shard_size() - 1, card_.training_examples, card_.training_simulations, trainer.steps_per_epoch(),
+      card_.planned_epochs, first_step_ > 0 ? fmt::format("; continued after step {}", first_step_) : ""));
+}
+
+ExitCode TrainingRun::run(const StopSignal& signal) {
+  progress_.emplace(console_, ProgressLine::Clock::now());
+  bool stops = false;
+  while (!stops && training_->ending() == Ending::none) {
+    stops = training_->step(signal.received() != 0);
+    show_progress();
+    const double unsaved_s = since_save_.seconds();
+    if (writes() && unsaved_s > (training_->at_epoch_begin() ? shortest_save_pause_s : longest_save_pause_s))
+      save(false);
+  }
+  progress_->clear();
+  if (training_->ending() != Ending::none && training_->best_epoch() > 0) training_->end();
+  if (writes()) save(true);
+  const ExitCode code = exit_code_of(training_->ending());
+  console_.result(training_summary(card_, path_));
+  if (code == ExitCode::stopped) {
+    RunOptions again = options_;
+    again.resume = true;
+    console_.note(fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_name(signal.received()),
+                              run_command(again, mpi_.size())));
+  }
+  return code;
+}
+
+void TrainingRun::show_progress() {
+  const auto now = ProgressLine::Clock::now();
+  if (!progress_->due(now)) return;
+  const Trainer& trainer = training_->trainer();
+  const auto done = static_cast<double>(trainer.step() - first_step_);
+  const auto left = static_cast<double>(trainer.steps() - trainer.step());
+  progress_->show(now, static_cast<double>(trainer.step()) / static_cast<double>(trainer.steps()),
+                  progress_text(training_->epochs(), training_->best_epoch(), card_.planned_epochs,
+                                since_start_.seconds() / done * left));
+}
+
+/// What is known now; at the end without what it takes to go on, unless it is to go on.
+void TrainingRun::save(bool ends) {
+  card_.epochs = training_->epochs();
+  card_.best_epoch = training_->best_epoch();
+  card_.ending = training_->ending();
+  card_.message = training_->message();
+  card_.cg_ratio = training_->cg_ratio();
+  card_.base_cg_ratio = training_->base_cg_ratio();
+  if (ends) {
+    card_.starts.back().end_utc = utc_now();
+    card_.starts.back().exit_code = static_cast<int>(exit_code_of(card_.ending));
+  }
+  std::optional<Checkpoint> checkpoint;
+  if (card_.ending == Ending::none) checkpoint = training_->checkpoint();
+  file_->save(card_, training_->kept(), checkpoint);
+  since_save_ = Stopwatch();
+}
+
+}  // namespace
+
+ExitCode run_training(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
+  const StopSignal signal;  // from here on a signal is a request, until the file is closed
+  const fs::path path = options.output.value_or(default_output(job.name));
+  std::optional<StoredModel> earlier;
+  collectively(mpi.world(), [&] {
+    if (options.extend) throw job_error(job.path, "kind", "a training extends nothing: remove --extend");
+    earlier = earlier_training(options, job, path);
+  });
+  if (earlier && earlier->card.ending != Ending::none) {
+    console.note("the training has ended already");
+    console.result(training_summary(earlier->card, path));
+    return exit_code_of(earlier->card.ending);
+  }
+  TrainingRun run(options, job, path, mpi, console);
+  run.prepare(earlier);
+  return run.run(signal);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,111 @@
+#include "runner/job/training_job.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace rodsweep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Value>
+using Words = std::vector<std::pair<const char*, Value>>;
+
+const Words<Encoding> encodings{{"deck", Encoding::deck}, {"physics", Encoding::physics}, {"system", Encoding::system}};
+const Words<Processor> processors{{"sweeps", Processor::sweeps}, {"message_passing", Processor::message_passing}};
+const Words<BaseGuess> bases{
+    {"none", BaseGuess::none}, {"extrapolation", BaseGuess::extrapolation}, {"pod", BaseGuess::pod}};
+const Words<LossKind> losses{
+    {"mse", LossKind::mse}, {"energy", LossKind::energy}, {"in_the_loop", LossKind::in_the_loop}};
+
+template <class Value>
+Value value_of(const Words<Value>& words, const Json& word) {
+  const auto found = std::find_if(words.begin(), words.end(), [&](const auto& entry) { return word == entry.first; });
+  if (found == words.end()) throw std::logic_error("no value for the choice " + word.dump());
+  return found->second;
+}
+
+template <class Value>
+const char* word_of(const Words<Value>& words, Value value) {
+  const auto found = std::find_if(words.begin(), words.end(), [&](const auto& entry) { return value == entry.second; });
+  if (found == words.end()) throw std::logic_error("a choice without a word");
+  return found->first;
+}
+
+TrainingSettings training_settings(const Json& values, std::uint64_t seed) {
+  TrainingSettings settings;
+  settings.loss = value_of(losses, values["loss"]);
+  settings.cg_steps = values.value("cg_steps", settings.cg_steps);
+  settings.epochs = values["epochs"];
+  settings.batch = values["batch"];
+  settings.shards = values["shards"];
+  settings.rate = values["rate"];
+  settings.warm_up = values["warm_up"];
+  settings.weight_decay = values["weight_decay"];
+  settings.clip = values["clip"];
+  settings.seed = seed;
+  return settings;
+}
+
+void check(const TrainingJob& training, const std::filesystem::path& file) {
+  const TrainingSettings& settings = training.training;
+  if (settings.batch % settings.shards != 0) {
+    throw job_error(
+        file, "training.shards",
+        fmt::format("{} is not allowed; must be a divisor of training.batch, {}", settings.shards, settings.batch));
+  }
+  if (training.network.moves && settings.loss != LossKind::mse) {
+    throw job_error(file, "network.moves",
+                    fmt::format("true is not allowed with training.loss \"{}\", which teaches the network nothing of "
+                                "moves; use \"mse\" or remove this key",
+                                word_of(losses, settings.loss)));
+  }
+}
+
+}  // namespace
+
+CopingNetSettings network_settings(const Json& values) {
+  CopingNetSettings settings;
+  settings.encoding = value_of(encodings, values["encoding"]);
+  settings.processor = value_of(processors, values["processor"]);
+  settings.base = value_of(bases, values["base"]);
+  settings.base_size = values["base_size"];
+  settings.latent = values["latent"];
+  settings.steps = values.value("steps", settings.steps);
+  settings.globals = values.value("globals", settings.globals);
+  settings.best_length = values["best_length"];
+  settings.moves = values.value("moves", settings.moves);
+  return settings;
+}
+
+Json network_json(const CopingNetSettings& settings) {
+  Json values{{"encoding", word_of(encodings, settings.encoding)},
+              {"processor", word_of(processors, settings.processor)},
+              {"base", word_of(bases, settings.base)},
+              {"base_size", settings.base_size},
+              {"latent", settings.latent},
+              {"best_length", settings.best_length}};
+  if (settings.processor == Processor::message_passing)
+    values.update({{"steps", settings.steps}, {"globals", settings.globals}, {"moves", settings.moves}});
+  return values;
+}
+
+TrainingJob training_job(const Job& job) {
+  const Json& training = job.values["training"];
+  TrainingJob out;
+  out.data = (job.path.parent_path() / job.values["data"].get<std::string>()).lexically_normal();
+  out.validation_simulations = job.values["validation_simulations"];
+  out.network = network_settings(job.values["network"]);
+  out.training = training_settings(training, job.seed);
+  out.patience_epochs = training["patience_epochs"];
+  out.ratio_every_epochs = training["ratio_every_epochs"];
+  out.ratio_simulations = training["ratio_simulations"];
+  check(out, job.path);
+  return out;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,31 @@
+// A job of kind "train": which data a network learns from, what it is made of, and how it is trained.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "network/coping_net_settings.hpp"
+#include "network/trainer.hpp"
+#include "runner/job/job.hpp"
+
+namespace rodsweep {
+
+struct TrainingJob {
+  std::filesystem::path data;  ///< of the data set
+  std::int64_t validation_simulations = 100;
+  CopingNetSettings network;
+  TrainingSettings training;
+  int patience_epochs = 0;      ///< 0: no early end
+  int ratio_every_epochs = 10;  ///< 0: at the end only
+  std::int64_t ratio_simulations = 50;
+};
+
+/// Throws JobError for values that do not go together.
+TrainingJob training_job(const Job& job);
+
+/// The object `network` of a job, with every key that belongs to its processor, and back.
+CopingNetSettings network_settings(const nlohmann::ordered_json& values);
+nlohmann::ordered_json network_json(const CopingNetSettings& settings);
+
+}  // namespace rodsweep

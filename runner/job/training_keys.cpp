@@ -1,0 +1,128 @@
+#include "runner/job/training_keys.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// With all that it holds.
+Key never_swept(Key key) {
+  key.setting().no_sweep_advice = "a job trains one model; write another job for another";
+  for (Key& child : key.keys) child = never_swept(child);
+  return key;
+}
+
+Key training() {
+  return object_key(
+             "training", "how the network is trained",
+             {
+                 choice_key("loss",
+                            "what is made small: the mean squared error of the outputs, the energy norm of the error "
+                            "that the guess leaves, or what is left of it after a few steps of CG",
+                            {"mse", "energy", "in_the_loop"})
+                     .defaults_to("energy"),
+                 integer_key("cg_steps", "steps of CG before the error is measured")
+                     .at_least(1)
+                     .at_most(100)
+                     .defaults_to(4)
+                     .only({"in_the_loop"}),
+                 integer_key("epochs", "passes over the training examples")
+                     .at_least(1)
+                     .at_most(1000000)
+                     .defaults_to(120),
+                 integer_key("batch", "examples in a step of the optimiser")
+                     .at_least(1)
+                     .at_most(100000)
+                     .defaults_to(16)
+                     .also_called({"batch_size"}),
+                 integer_key("shards",
+                             "equal parts of a batch, a divisor of it: as many ranks at most share the work; results "
+                             "depend on it, but not on the number of ranks")
+                     .at_least(1)
+                     .at_most(100000)
+                     .defaults_to(4),
+                 number_key("rate", "largest step size of Adam, which rises linearly and falls along a cosine")
+                     .above(0)
+                     .at_most(1)
+                     .defaults_to(2e-3)
+                     .also_called({"learning_rate", "lr"}),
+                 number_key("warm_up", "part of all steps in which the rate rises")
+                     .at_least(0)
+                     .at_most(0.5)
+                     .defaults_to(0.02),
+                 number_key("weight_decay", "decoupled decay of the weights").at_least(0).at_most(1).defaults_to(0),
+                 number_key("clip", "largest norm of a gradient, above which it is scaled down")
+                     .above(0)
+                     .at_most(1e9)
+                     .defaults_to(1),
+                 integer_key("patience_epochs", "ends after so many epochs without a better validation loss; 0: never")
+                     .at_least(0)
+                     .at_most(1000000)
+                     .defaults_to(0)
+                     .also_called({"early_stopping"}),
+                 integer_key("ratio_every_epochs",
+                             "the CG ratio on validation simulations is measured every so many epochs, and at the "
+                             "end; 0: at the end only")
+                     .at_least(0)
+                     .at_most(1000000)
+                     .defaults_to(10),
+                 integer_key("ratio_simulations", "on how many, at most").at_least(1).at_most(1000000).defaults_to(50),
+             },
+             "loss")
+      .defaults_to(Json::object());
+}
+
+}  // namespace
+
+Key network_key() {
+  return object_key(
+             "network", "the network that is trained",
+             {
+                 choice_key("encoding",
+                            "what it is given of a linear system: the deck's features of segments and joints, more "
+                            "physical ones, or the scaled system itself",
+                            {"deck", "physics", "system"})
+                     .defaults_to("system"),
+                 choice_key("processor",
+                            "sweeps: over the tree of joints, up and down; message_passing: over the graph",
+                            {"sweeps", "message_passing"})
+                     .defaults_to("sweeps"),
+                 choice_key("base", "the guess that it corrects", {"none", "extrapolation", "pod"}).defaults_to("pod"),
+                 integer_key("base_size", "pod: most solutions that span the subspace")
+                     .at_least(1)
+                     .at_most(200)
+                     .defaults_to(10),
+                 integer_key("latent", "width of hidden layers and states").at_least(1).at_most(1024).defaults_to(32),
+                 integer_key("steps", "message_passing: hops over the graph")
+                     .at_least(1)
+                     .at_most(100)
+                     .defaults_to(6)
+                     .only({"message_passing"}),
+                 boolean_key("globals", "message_passing: with a state of the whole graph")
+                     .defaults_to(false)
+                     .only({"message_passing"}),
+                 boolean_key("best_length", "the correction is scaled to what lowers the error's energy most")
+                     .defaults_to(true),
+                 boolean_key("moves", "message_passing: also predict the moves of segments")
+                     .defaults_to(false)
+                     .only({"message_passing"}, "sweeps work on joints alone"),
+             },
+             "processor")
+      .defaults_to(Json::object());
+}
+
+std::vector<Key> training_keys() {
+  std::vector<Key> keys{
+      text_key("data", "data set to learn from: the file of a job of kind \"dataset\"")
+          .at_most(4000)
+          .of_form(Key::Text::line),
+      integer_key("validation_simulations", "the last so many simulations of the data set are not learned from")
+          .at_least(1)
+          .at_most(1000000)
+          .defaults_to(100),
+      network_key(), training()};
+  for (Key& key : keys) key = never_swept(key).only({"train"});
+  return keys;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,56 @@
+// What is known of a model beside its weights: how it was trained, on what, and how well it does.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "runner/file/provenance.hpp"
+#include "runner/training/validation_ratio.hpp"
+
+namespace rodsweep {
+
+struct Epoch {
+  double training_loss = 0;    ///< mean over the epoch's examples, while the weights changed
+  double validation_loss = 0;  ///< mean over the validation examples, at the end of the epoch
+  double rate = 0;             ///< step size of the last step
+  double seconds = 0;          ///< wall time
+  ValidationRatio::Ratios cg_ratio = ValidationRatio::unmeasured();
+};
+
+enum class Ending {
+  none,      ///< the training can go on
+  complete,  ///< all epochs
+  early,     ///< no better validation loss for as long as the job's patience
+  diverged   ///< a loss that is not finite
+};
+
+/// One start of the training.
+struct TrainingStart {
+  Provenance provenance;
+  std::string end_utc;  ///< empty: runs still, or was killed
+  int exit_code = -1;   ///< -1 likewise
+};
+
+struct ModelCard {
+  std::string name, job_text;        ///< of the job
+  std::string data_path, data_hash;  ///< of the data set (DatasetReader::hash)
+  std::int64_t training_simulations = 0, validation_simulations = 0;
+  std::int64_t training_examples = 0, validation_examples = 0;
+
+  std::int64_t planned_epochs = 0;
+  std::vector<Epoch> epochs;
+  std::int64_t best_epoch = 0;  ///< whose weights the model has, from 1: of the least validation loss; 0: none yet
+  Ending ending = Ending::none;
+  std::string message;  ///< about the end; empty: nothing
+  /// Means over `ratio_simulations` validation simulations, at ValidationRatio::tolerances(), of the model and of its
+  /// base guess alone.
+  ValidationRatio::Ratios cg_ratio = ValidationRatio::unmeasured(), base_cg_ratio = ValidationRatio::unmeasured();
+  std::int64_t ratio_simulations = 0;
+
+  std::vector<TrainingStart> starts;
+};
+
+}  // namespace rodsweep

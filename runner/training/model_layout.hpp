@@ -1,0 +1,88 @@
+// Where the numbers and words of a ModelCard stand in a model file: what writing and reading it walk.
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "network/model.hpp"
+#include "runner/training/model_card.hpp"
+
+namespace rodsweep {
+
+/// Attributes of /data and /training.
+struct CountPlace {
+  const char *group, *name;
+  std::int64_t ModelCard::*member;
+};
+inline constexpr std::array<CountPlace, 7> count_places{{
+    {"/data", "training_simulations", &ModelCard::training_simulations},
+    {"/data", "validation_simulations", &ModelCard::validation_simulations},
+    {"/data", "training_examples", &ModelCard::training_examples},
+    {"/data", "validation_examples", &ModelCard::validation_examples},
+    {"/training", "planned_epochs", &ModelCard::planned_epochs},
+    {"/training", "best_epoch", &ModelCard::best_epoch},
+    {"/validation", "simulations", &ModelCard::ratio_simulations},
+}};
+
+/// Columns of a row per epoch.
+struct EpochPlace {
+  const char *path, *unit, *meaning;
+  double Epoch::*member;
+};
+inline constexpr std::array<EpochPlace, 4> epoch_places{{
+    {"/training/training_loss", "1", "mean over the epoch's examples, while the weights changed",
+     &Epoch::training_loss},
+    {"/training/validation_loss", "1", "mean over the validation examples, at the end", &Epoch::validation_loss},
+    {"/training/rate", "1", "step size of Adam in the last step", &Epoch::rate},
+    {"/timing/epoch_s", "s", "wall time of the epoch, its validation included", &Epoch::seconds},
+}};
+inline constexpr const char* epoch_ratio_path = "/training/cg_ratio";
+
+/// CG ratios of the model kept.
+struct RatioPlace {
+  const char *path, *meaning;
+  ValidationRatio::Ratios ModelCard::*member;
+};
+inline constexpr std::array<RatioPlace, 2> ratio_places{{
+    {"/validation/cg_ratio", "CG iterations with the model over those from zero, mean over validation simulations",
+     &ModelCard::cg_ratio},
+    {"/validation/base_cg_ratio", "the same of the model's base guess alone", &ModelCard::base_cg_ratio},
+}};
+
+/// Texts of a row per start.
+struct StartPlace {
+  const char* path;
+  std::string& (*of)(TrainingStart&);
+};
+inline constexpr std::array<StartPlace, 8> start_places{{
+    {"/runs/begin", [](TrainingStart& start) -> std::string& { return start.provenance.begin_utc; }},
+    {"/runs/end", [](TrainingStart& start) -> std::string& { return start.end_utc; }},
+    {"/runs/host", [](TrainingStart& start) -> std::string& { return start.provenance.host; }},
+    {"/runs/job", [](TrainingStart& start) -> std::string& { return start.provenance.job; }},
+    {"/runs/command", [](TrainingStart& start) -> std::string& { return start.provenance.user_command; }},
+    {"/runs/revision", [](TrainingStart& start) -> std::string& { return start.provenance.revision; }},
+    {"/runs/versions", [](TrainingStart& start) -> std::string& { return start.provenance.versions; }},
+    {"/runs/petsc_options", [](TrainingStart& start) -> std::string& { return start.provenance.petsc_options; }},
+}};
+
+/// How an Ending is written.
+inline constexpr std::array<std::pair<Ending, const char*>, 4> endings{
+    {{Ending::none, "none"}, {Ending::complete, "complete"}, {Ending::early, "early"}, {Ending::diverged, "diverged"}}};
+
+/// Scales of a quantity, and how many numbers they are (0: the encoding has none).
+struct ScalePlace {
+  const char* folder;
+  Normalisation FeatureScales::*member;
+  int (*size)(const CopingNetSettings&);
+};
+inline constexpr std::array<ScalePlace, 4> scale_places{{
+    {"/model/scales/nodes/", &FeatureScales::nodes, [](const CopingNetSettings& s) { return node_features(s); }},
+    {"/model/scales/edges/", &FeatureScales::edges, [](const CopingNetSettings& s) { return edge_features(s); }},
+    {"/model/scales/multipliers/", &FeatureScales::multipliers, [](const CopingNetSettings&) { return 6; }},
+    {"/model/scales/moves/", &FeatureScales::moves, [](const CopingNetSettings& s) { return s.moves ? 6 : 0; }},
+}};
+inline int scale_size(const ScalePlace& place, const CopingNetSettings& settings) {
+  return settings.encoding == Encoding::system ? 0 : place.size(settings);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,192 @@
+// The part of runner/training/model_file.hpp that reads.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/file/file_reading.hpp"
+#include "runner/job/job_reader.hpp"
+#include "runner/job/training_job.hpp"
+#include "runner/job/training_keys.hpp"
+#include "runner/training/model_file.hpp"
+#include "runner/training/model_layout.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Something about the file that cannot be; what() is the reason alone.
+class Damage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// All numbers of a dataset of that extent.
+template <class T>
+std::vector<T> read(hid_t file, const std::string& path, const std::vector<hsize_t>& extent) {
+  const std::vector<hsize_t> found = hdf5::extent(hdf5::open_dataset(file, path), path);
+  if (found != extent)
+    throw Damage(fmt::format("{} has the shape [{}], not [{}]", path, fmt::join(found, ", "), fmt::join(extent, ", ")));
+  return hdf5::read_all<T>(file, path);
+}
+
+std::vector<float> read_finite(hid_t file, const std::string& path, const std::vector<hsize_t>& extent) {
+  std::vector<float> values = read<float>(file, path, extent);
+  if (!std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }))
+    throw Damage(path + " holds something that is not a finite number");
+  return values;
+}
+
+CopingNetSettings read_settings(hid_t file, const fs::path& path) {
+  const std::string text = hdf5::read_texts(file, "/model/settings").at(0);
+  JobReader reader(path);
+  const auto values = reader.read(network_key(), nlohmann::ordered_json::parse(text), "/model/settings");
+  reader.throw_mistakes();
+  return network_settings(values);
+}
+
+void read_weights(hid_t file, Parameters<float>& parameters) {
+  for (std::size_t i = 0; i < parameters.entries().size(); ++i) {
+    const auto& entry = parameters.entries()[i];
+    const auto rows = static_cast<hsize_t>(entry.rows), cols = static_cast<hsize_t>(entry.cols);
+    const std::vector<float> values = read_finite(file, "/model/weights/" + entry.name, {rows, cols});
+    using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    parameters[static_cast<int>(i)] = Eigen::Map<const RowMajor>(values.data(), entry.rows, entry.cols);
+  }
+}
+
+Eigen::ArrayXf read_array(hid_t file, const std::string& path, int size) {
+  const std::vector<float> values = read_finite(file, path, {static_cast<hsize_t>(size)});
+  return Eigen::Map<const Eigen::ArrayXf>(values.data(), size);
+}
+
+std::shared_ptr<Model> read_network(hid_t file, const fs::path& path) {
+  const CopingNetSettings settings = read_settings(file, path);
+  auto model = std::make_shared<Model>(Model{CopingNet<float>(settings, 0), {}});
+  read_weights(file, model->net.parameters());
+  for (const ScalePlace& place : scale_places) {
+    const int size = scale_size(place, settings);
+    if (size == 0) continue;
+    Normalisation& scale = model->scales.*place.member;
+    scale.mean = read_array(file, std::string(place.folder) + "mean", size);
+    scale.deviation = read_array(file, std::string(place.folder) + "deviation", size);
+    if (!(scale.deviation > 0).all()) throw Damage(std::string(place.folder) + "deviation is not above 0 everywhere");
+  }
+  if (hdf5::read_text_attribute(file, "/model", "hash") != model_hash(*model))
+    throw Damage("the model is not what was written: it has another hash");
+  return model;
+}
+
+std::vector<TrainingStart> read_starts(hid_t file) {
+  const auto ranks = hdf5::read_all<std::int32_t>(file, "/runs/ranks");
+  const auto exit_codes = read<std::int32_t>(file, "/runs/exit_code", {ranks.size()});
+  const auto oversubscribed = read<std::uint8_t>(file, "/runs/oversubscribed", {ranks.size()});
+  std::vector<TrainingStart> starts(ranks.size());
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    starts[i].provenance.ranks = ranks[i];
+    starts[i].exit_code = exit_codes[i];
+    starts[i].provenance.oversubscribed = oversubscribed[i] != 0;
+  }
+  for (const StartPlace& place : start_places) {
+    const std::vector<std::string> texts = hdf5::read_texts(file, place.path);
+    for (std::size_t i = 0; i < starts.size(); ++i) place.of(starts[i]) = texts.at(i);
+  }
+  return starts;
+}
+
+std::vector<Epoch> read_epochs(hid_t file) {
+  constexpr std::size_t columns = ValidationRatio::tolerance_count;
+  std::vector<Epoch> epochs(hdf5::read_all<double>(file, epoch_places.front().path).size());
+  for (const EpochPlace& place : epoch_places) {
+    const auto values = read<double>(file, place.path, {epochs.size()});
+    for (std::size_t i = 0; i < epochs.size(); ++i) epochs[i].*place.member = values[i];
+  }
+  const auto ratios = read<double>(file, epoch_ratio_path, {epochs.size(), columns});
+  for (std::size_t i = 0; i < epochs.size(); ++i)
+    std::copy_n(ratios.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, epochs[i].cg_ratio.begin());
+  return epochs;
+}
+
+ModelCard read_card(hid_t file) {
+  ModelCard card;
+  card.name = hdf5::read_text_attribute(file, "/job", "name");
+  card.job_text = hdf5::read_texts(file, "/job/text").at(0);
+  card.data_path = hdf5::read_texts(file, "/data/path").at(0);
+  card.data_hash = hdf5::read_texts(file, "/data/hash").at(0);
+  for (const CountPlace& place : count_places)
+    card.*place.member = hdf5::read_int_attribute(file, place.group, place.name);
+  card.epochs = read_epochs(file);
+  if (card.best_epoch < 0 || card.best_epoch > static_cast<std::int64_t>(card.epochs.size()))
+    throw Damage(fmt::format("the best epoch is said to be {} of {}", card.best_epoch, card.epochs.size()));
+  for (const RatioPlace& place : ratio_places) {
+    const auto ratios = read<double>(file, place.path, {ValidationRatio::tolerance_count});
+    std::copy(ratios.begin(), ratios.end(), (card.*place.member).begin());
+  }
+  const std::string word = hdf5::read_text_attribute(file, "/training", "ending");
+  const auto ending = std::find_if(endings.begin(), endings.end(), [&](const auto& e) { return word == e.second; });
+  if (ending == endings.end()) throw Damage(fmt::format("the training is said to have ended \"{}\"", word));
+  card.ending = ending->first;
+  card.message = hdf5::read_text_attribute(file, "/training", "message");
+  card.starts = read_starts(file);
+  return card;
+}
+
+std::optional<Checkpoint> read_checkpoint(hid_t file, std::size_t size) {
+  if (!hdf5::exists(file, "/checkpoint")) return std::nullopt;
+  const auto numbers = [&](const char* path) {
+    const std::vector<float> values = read_finite(file, path, {size});
+    return AlignedVector<float>(values.begin(), values.end());
+  };
+  Checkpoint checkpoint;
+  checkpoint.weights = numbers("/checkpoint/weights");
+  checkpoint.optimiser.mean = numbers("/checkpoint/mean");
+  checkpoint.optimiser.square = numbers("/checkpoint/square");
+  checkpoint.optimiser.step = read<std::int64_t>(file, "/checkpoint/step", {1}).front();
+  checkpoint.epoch_loss = read<double>(file, "/checkpoint/epoch_loss", {1}).front();
+  checkpoint.epoch_seconds = read<double>(file, "/checkpoint/epoch_s", {1}).front();
+  return checkpoint;
+}
+
+hdf5::File open_model(const fs::path& path) {
+  hdf5::File file = open_own(path, "models");
+  try {
+    if (const std::string kind = kind_of(file); kind != "model")
+      throw FileError(fmt::format("{} holds the results of a {}, not a model: give the file of a job of kind \"train\"",
+                                  path.native(), kind));
+    check_version(file, path, model_schema_version);
+  } catch (const Hdf5Error& failure) {
+    throw damaged_error(path, failure.what());
+  }
+  return file;
+}
+
+}  // namespace
+
+bool is_model_file(const fs::path& path) {
+  const hdf5::File file = open_own(path, "files");
+  try {
+    return kind_of(file) == "model";
+  } catch (const Hdf5Error& failure) {
+    throw damaged_error(path, failure.what());
+  }
+}
+
+StoredModel read_training(const fs::path& path) {
+  const hdf5::File file = open_model(path);
+  try {
+    StoredModel stored{read_network(file.id(), path), read_card(file.id()), std::nullopt};
+    stored.checkpoint = read_checkpoint(file.id(), stored.model->net.parameters().values().size());
+    return stored;
+  } catch (const std::exception& failure) {
+    throw damaged_error(path, failure.what());
+  }
+}
+
+StoredModel read_model(const fs::path& path) {
+  StoredModel stored = read_training(path);
+  if (stored.card.best_epoch > 0) return stored;
+  throw FileError(fmt::format("{} holds no trained model yet: no epoch of its training has ended", path.native()));
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,133 @@
+#include "runner/training/training.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "network/base_guess.hpp"
+#include "network/coping_net_guess.hpp"
+#include "solver/stopwatch.hpp"
+
+namespace rodsweep {
+
+Training::Training(const TrainingJob& job, const TrainingData& data, std::vector<RecordedSimulation> simulations,
+                   MPI_Comm comm)
+    : job_(job),
+      data_(data),
+      model_(std::make_shared<Model>(Model{CopingNet<float>(job.network, job.training.seed), data.scales})),
+      kept_(std::make_shared<Model>(*model_)),
+      trainer_(model_->net, data.training, job.training),
+      exchange_(comm, job.training.shards, trainer_.shard_size()),
+      ratio_(std::move(simulations)) {}
+
+void Training::restore(const ModelCard& card, const Model& kept, const Checkpoint& checkpoint) {
+  *kept_ = kept;
+  model_->net.parameters().values() = checkpoint.weights;
+  trainer_.restore(checkpoint.optimiser);
+  epochs_ = card.epochs;
+  best_epoch_ = card.best_epoch;
+  epoch_loss_ = checkpoint.epoch_loss;
+  epoch_seconds_ = checkpoint.epoch_seconds;
+}
+
+Checkpoint Training::checkpoint() const {
+  return {model_->net.parameters().values(), trainer_.state(), epoch_loss_, epoch_seconds_};
+}
+
+bool Training::step(bool stop) {
+  const Stopwatch watch;
+  const bool stops = exchange_.gather([&](int shard, float* out) { trainer_.compute(shard, out); }, stop);
+  const double loss = trainer_.update(exchange_.shards());
+  epoch_loss_ += loss;
+  if (!std::isfinite(loss)) {
+    diverge("training");
+  } else if (at_epoch_begin()) {
+    end_epoch();
+  }
+  epoch_seconds_ += watch.seconds();
+  if (at_epoch_begin() && ending_ != Ending::diverged) epochs_.back().seconds = std::exchange(epoch_seconds_, 0);
+  return stops;
+}
+
+void Training::end_epoch() {
+  Epoch epoch;
+  epoch.training_loss = std::exchange(epoch_loss_, 0) / static_cast<double>(trainer_.steps_per_epoch());
+  epoch.validation_loss = validation_loss();
+  epoch.rate = trainer_.rate();
+  if (!std::isfinite(epoch.validation_loss)) {
+    diverge("validation");
+    return;
+  }
+  const auto number = static_cast<std::int64_t>(epochs_.size()) + 1;
+  if (job_.ratio_every_epochs > 0 && number % job_.ratio_every_epochs == 0) epoch.cg_ratio = mean_ratio(model_);
+  if (best_epoch_ == 0 || epoch.validation_loss < epochs_[static_cast<std::size_t>(best_epoch_) - 1].validation_loss) {
+    best_epoch_ = number;
+    kept_->net.parameters().values() = model_->net.parameters().values();
+  }
+  epochs_.push_back(epoch);
+  if (number == job_.training.epochs)
+    ending_ = Ending::complete;
+  else if (job_.patience_epochs > 0 && number - best_epoch_ >= job_.patience_epochs)
+    ending_ = Ending::early;
+}
+
+void Training::diverge(const char* loss) {
+  ending_ = Ending::diverged;
+  message_ = fmt::format("the {} loss is not finite any more in epoch {}: try a lower training.rate", loss,
+                         epochs_.size() + 1);
+}
+
+/// Batches are shared among the ranks, and summed in their order.
+double Training::validation_loss() {
+  const std::size_t batch = static_cast<std::size_t>(job_.training.batch), size = data_.validation.size();
+  std::vector<double> sums((size + batch - 1) / batch);
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    if (exchange_.is_mine(static_cast<std::int64_t>(i)))
+      sums[i] = trainer_.loss(data_.validation, i * batch, std::min(batch, size - i * batch));
+  exchange_.share(sums);
+  double sum = 0;
+  for (const double part : sums) sum += part;
+  return sum / static_cast<double>(size);
+}
+
+ValidationRatio::Ratios Training::mean_ratio(const ValidationRatio::MakeGuess& make_guess) const {
+  constexpr std::size_t columns = ValidationRatio::tolerance_count;
+  const auto count = static_cast<std::size_t>(std::min(job_.ratio_simulations, data_.validation_simulations));
+  std::vector<double> ratios(count * columns);
+  for (std::size_t own = 0; own < ratio_.simulations(); ++own) {
+    const ValidationRatio::Ratios of = ratio_.measure(own, make_guess);
+    const std::size_t simulation =
+        own * static_cast<std::size_t>(exchange_.ranks()) + static_cast<std::size_t>(exchange_.rank());
+    std::copy(of.begin(), of.end(), ratios.begin() + static_cast<std::ptrdiff_t>(simulation * columns));
+  }
+  exchange_.share(ratios);
+  ValidationRatio::Ratios mean{};
+  for (std::size_t t = 0; t < columns; ++t) {
+    double sum = 0;
+    int measured = 0;
+    for (std::size_t simulation = 0; simulation < count; ++simulation) {
+      const double ratio = ratios[simulation * columns + t];
+      if (std::isnan(ratio)) continue;
+      sum += ratio;
+      ++measured;
+    }
+    mean[t] = sum / measured;  // NaN where nothing was
+  }
+  return mean;
+}
+
+ValidationRatio::Ratios Training::mean_ratio(const std::shared_ptr<const Model>& model) const {
+  return mean_ratio([&](const Scene& scene, const RecordedSimulation& simulation) {
+    return std::make_unique<CopingNetGuess>(model, scene, simulation.constraint_dt_s, simulation.newton_iterations);
+  });
+}
+
+void Training::end() {
+  cg_ratio_ = mean_ratio(kept_);
+  base_cg_ratio_ = mean_ratio([&](const Scene& scene, const RecordedSimulation& simulation) {
+    return base_guess(job_.network, scene, simulation.newton_iterations);
+  });
+}
+
+}  // namespace rodsweep

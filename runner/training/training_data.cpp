@@ -1,0 +1,56 @@
+#include "runner/training/training_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "network/example_builder.hpp"
+
+namespace rodsweep {
+
+DatasetReader open_dataset(const TrainingJob& training, const Job& job) {
+  std::error_code error;
+  if (!std::filesystem::exists(training.data, error)) {
+    throw job_error(job.path, "data",
+                    fmt::format("there is no file {}: make the data set first, with `rodsweep run` and a job of kind "
+                                "\"dataset\"",
+                                training.data.native()));
+  }
+  DatasetReader dataset(training.data);
+  if (dataset.size() <= training.validation_simulations) {
+    throw job_error(job.path, "validation_simulations",
+                    fmt::format("{} is not allowed, since {} holds {} simulations and some must be left to learn from",
+                                training.validation_simulations, training.data.native(), dataset.size()));
+  }
+  return dataset;
+}
+
+TrainingData training_data(const TrainingJob& training, const DatasetReader& dataset) {
+  TrainingData data;
+  data.hash = dataset.hash();
+  data.note = dataset.note();
+  data.validation_simulations = training.validation_simulations;
+  data.training_simulations = dataset.size() - training.validation_simulations;
+  for (std::int64_t i = 0; i < dataset.size(); ++i)
+    add_examples(training.network, dataset.read(i), i < data.training_simulations ? data.training : data.validation);
+  if (data.training.size() < static_cast<std::size_t>(training.training.batch) || data.validation.empty()) {
+    throw FileError(fmt::format("{} gives {} examples for training and {} for validation: too few for batches of {}",
+                                training.data.native(), data.training.size(), data.validation.size(),
+                                training.training.batch));
+  }
+  data.scales = feature_scales(training.network, data.training);
+  normalise(training.network, data.scales, data.training);
+  normalise(training.network, data.scales, data.validation);
+  return data;
+}
+
+std::vector<RecordedSimulation> ratio_simulations(const TrainingJob& training, const DatasetReader& dataset, int part,
+                                                  int parts) {
+  const std::int64_t count = std::min(training.ratio_simulations, training.validation_simulations);
+  std::vector<RecordedSimulation> out;
+  for (std::int64_t i = part; i < count; i += parts)
+    out.push_back(dataset.read(dataset.size() - training.validation_simulations + i));
+  return out;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,82 @@
+#include "runner/training/validation_ratio.hpp"
+
+#include <limits>
+
+#include "runner/job/plan.hpp"
+#include "solver/conjugate_gradient.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double rounding_level = 1e-13;  // of b, as in runner/experiment/measured_solve.cpp
+
+/// What one rod is solved with.
+struct RodSolver {
+  LinearSystem system;
+  ConjugateGradient cg;
+  VectorX x;
+
+  explicit RodSolver(const Rod& rod)
+      : system(rod),
+        cg(system.matrix(), {Preconditioner::jacobi, Norm::true_residual, 0}),
+        x(VectorX::Zero(system.rhs().size())) {
+    cg.record_history(true);
+  }
+};
+
+}  // namespace
+
+const std::vector<double>& ValidationRatio::tolerances() {
+  static const std::vector<double> chosen(tolerance_ladder().begin(), tolerance_ladder().begin() + tolerance_count);
+  return chosen;
+}
+
+ValidationRatio::Ratios ValidationRatio::unmeasured() {
+  Ratios ratios;
+  ratios.fill(std::numeric_limits<double>::quiet_NaN());
+  return ratios;
+}
+
+ValidationRatio::ValidationRatio(std::vector<RecordedSimulation> simulations) : simulations_(std::move(simulations)) {
+  for (const RecordedSimulation& simulation : simulations_)
+    from_zero_.push_back(
+        count(simulation, [](const Scene&, const RecordedSimulation&) { return std::make_unique<ZeroGuess>(); }));
+}
+
+ValidationRatio::Ratios ValidationRatio::measure(std::size_t simulation, const MakeGuess& make_guess) const {
+  const Iterations with_guess = count(simulations_[simulation], make_guess);
+  const Iterations& from_zero = from_zero_[simulation];
+  Ratios ratios = unmeasured();
+  for (std::size_t t = 0; t < tolerance_count; ++t)
+    if (from_zero[t] > 0) ratios[t] = static_cast<double>(with_guess[t]) / static_cast<double>(from_zero[t]);
+  return ratios;
+}
+
+ValidationRatio::Iterations ValidationRatio::count(const RecordedSimulation& simulation, const MakeGuess& make_guess) {
+  Scene scene = simulation.scene;
+  const std::unique_ptr<InitialGuess> guess = make_guess(scene, simulation);
+  std::vector<RodSolver> solvers;
+  solvers.reserve(scene.rods.size());
+  for (const Rod& rod : scene.rods) solvers.emplace_back(rod);
+  Iterations sums{};
+  std::array<std::int16_t, tolerance_count> reached{};
+  for (const RecordedSystem& recorded : simulation.systems) {
+    if (recorded.at.newton > 0) continue;
+    Rod& rod = scene.rods[static_cast<std::size_t>(recorded.at.rod)];
+    RodSolver& of = solvers[static_cast<std::size_t>(recorded.at.rod)];
+    restore(recorded, rod);
+    of.system.assemble(rod, simulation.constraint_dt_s);
+    const Proposal proposal = guess->propose(of.system, recorded.at, of.x);
+    if (of.system.newton_residual() > rounding_level) {
+      of.cg.matrix_changed();
+      const double reference = of.cg.norm_of(of.system.rhs());
+      const CgReport report = of.cg.solve(of.system.rhs(), of.x, proposal.nonzero, tolerances().back(), reference);
+      iterations_to(of.cg.history(), reference, tolerances(), reached.data());
+      for (std::size_t t = 0; t < tolerance_count; ++t) sums[t] += reached[t] >= 0 ? reached[t] : report.iterations;
+    }
+    guess->accept(recorded.at, recorded.solution);
+  }
+  return sums;
+}
+
+}  // namespace rodsweep

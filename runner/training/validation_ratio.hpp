@@ -1,0 +1,41 @@
+// The CG ratio of a guess on recorded simulations: how many iterations it saves, rather than how small its loss is.
+//
+// Every recorded system of a first Newton iteration is assembled again and solved with CG (jacobi, true residual), the
+// guess reading the exact history. Per simulation: the sum of iterations with the guess over the sum from zero, which
+// is what MeasuredSolve counts as a task's cg_ratio of the first Newton iteration. Needs PETSc.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "network/recorded_simulation.hpp"
+#include "solver/initial_guess.hpp"
+
+namespace rodsweep {
+
+class ValidationRatio {
+ public:
+  static constexpr std::size_t tolerance_count = 4;
+  static const std::vector<double>& tolerances();      ///< 1e-1 ... 1e-4
+  using Ratios = std::array<double, tolerance_count>;  ///< NaN where CG from zero takes no iterations at all
+  static Ratios unmeasured();                          ///< NaN everywhere
+  /// Makes the guess for the simulation's scene, whose rods the solves move.
+  using MakeGuess = std::function<std::unique_ptr<InitialGuess>(const Scene&, const RecordedSimulation&)>;
+
+  /// Counts the iterations from zero.
+  explicit ValidationRatio(std::vector<RecordedSimulation> simulations);
+
+  std::size_t simulations() const { return simulations_.size(); }
+  Ratios measure(std::size_t simulation, const MakeGuess& make_guess) const;
+
+ private:
+  using Iterations = std::array<std::int64_t, tolerance_count>;
+  static Iterations count(const RecordedSimulation& simulation, const MakeGuess& make_guess);
+
+  std::vector<RecordedSimulation> simulations_;
+  std::vector<Iterations> from_zero_;
+};
+
+}  // namespace rodsweep
