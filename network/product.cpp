@@ -5,28 +5,31 @@
 namespace rodsweep {
 namespace {
 
+// One register of the processor: unlike the solver's six rows, these loops would drown in the halves of wider vectors.
+// Of the registers, `sums` hold a tile of outputs; `widest` columns share a load of W.
+#if defined(__AVX512F__)
+constexpr int lane_bytes = 64, sums = 16, widest = 8;
+#elif defined(__AVX__)
+constexpr int lane_bytes = 32, sums = 8, widest = 4;
+#else
+constexpr int lane_bytes = 16, sums = 8, widest = 4;
+#endif
+
 template <class T>
 struct LaneOf;
 template <>
 struct LaneOf<float> {
-  using Type = float __attribute__((vector_size(64)));  // one AVX-512 register, two of AVX
+  using Type = float __attribute__((vector_size(lane_bytes)));
 };
 template <>
 struct LaneOf<double> {
-  using Type = double __attribute__((vector_size(64)));
+  using Type = double __attribute__((vector_size(lane_bytes)));
 };
 template <class T>
 using Lane = typename LaneOf<T>::Type;
 
 template <class T>
-constexpr int lane_size = 64 / sizeof(T);
-
-/// Sums that fit into the processor's vector registers, and the columns that share a load of W.
-#ifdef __AVX512F__
-constexpr int sums = 16, widest = 8;
-#else
-constexpr int sums = 4, widest = 2;
-#endif
+constexpr int lane_size = lane_bytes / sizeof(T);
 
 template <class T>
 Lane<T> load(const T* from) {

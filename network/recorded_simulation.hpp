@@ -25,7 +25,7 @@ struct RecordedSystem {
 struct RecordedSimulation {
   Scene scene;                          ///< at its start: what is constant, the rods' masses, joints and loads
   double step_s = 0;                    ///< time step
-  double constraint_dt_s = 0;           ///< TimeStepper::constraint_dt()
+  double constraint_dt_s = 0;           ///< constraint_dt(scene, step_s)
   int newton_iterations = 0;            ///< at most, in a step
   std::vector<RecordedSystem> systems;  ///< in the order in which they were solved
 };

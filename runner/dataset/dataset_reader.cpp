@@ -82,8 +82,7 @@ RecordedSimulation DatasetReader::read(std::int64_t simulation) const {
   result.scene = build_scene(spec.scene);
   result.step_s = spec.time.step_s;
   result.newton_iterations = spec.time.newton_iterations;
-  const StepSettings settings{spec.time.step_s, spec.time.newton_iterations, spec.time.newton_tolerance};
-  result.constraint_dt_s = TimeStepper(result.scene, settings).constraint_dt();
+  result.constraint_dt_s = constraint_dt(result.scene, result.step_s);
   result.systems = recorded_systems(record, result.scene, spec.record.recorded_iterations(spec.time.newton_iterations));
   return result;
 }

@@ -1,5 +1,7 @@
 #include "runner/dataset/system_recording.hpp"
 
+#include <utility>
+
 #include "runner/file/state_rows.hpp"
 
 namespace rodsweep {
@@ -32,15 +34,15 @@ SolveOutcome RecordingSolve::solve(const LinearSystem& system, const SolvePositi
   record_.system_step[place.system] = at.step;
   record_.system_newton[place.system] = static_cast<std::int16_t>(at.newton);
   record_.system_rod[place.system] = static_cast<std::int16_t>(at.rod);
-  store(rod.position, &record_.system_position_m[3 * place.segment]);
-  store(rod.orientation, &record_.system_orientation[4 * place.segment]);
-  store(rod.velocity, &record_.system_velocity_m_s[3 * place.segment]);
-  store(rod.angular_velocity, &record_.system_angular_velocity_rad_s[3 * place.segment]);
-  VectorX::Map(&record_.system_lambda[6 * place.joint], rod.lambda.size()) = rod.lambda;
+  store(rod.position, record_.system_position_m.data() + 3 * place.segment);
+  store(rod.orientation, record_.system_orientation.data() + 4 * place.segment);
+  store(rod.velocity, record_.system_velocity_m_s.data() + 3 * place.segment);
+  store(rod.angular_velocity, record_.system_angular_velocity_rad_s.data() + 3 * place.segment);
+  VectorX::Map(record_.system_lambda.data() + 6 * place.joint, rod.lambda.size()) = rod.lambda;
 
   const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
   if (outcome == SolveOutcome::converged)
-    VectorX::Map(&record_.system_solution[6 * place.joint], delta_lambda.size()) = delta_lambda;
+    VectorX::Map(record_.system_solution.data() + 6 * place.joint, delta_lambda.size()) = delta_lambda;
   return outcome;
 }
 
@@ -57,12 +59,12 @@ std::vector<RecordedSystem> recorded_systems(const TaskRecord& record, const Sce
     system.orientation.resize(rod.segments.size());
     system.velocity.resize(rod.segments.size());
     system.angular_velocity.resize(rod.segments.size());
-    load(&record.system_position_m[3 * place.segment], system.position);
-    load(&record.system_orientation[4 * place.segment], system.orientation);
-    load(&record.system_velocity_m_s[3 * place.segment], system.velocity);
-    load(&record.system_angular_velocity_rad_s[3 * place.segment], system.angular_velocity);
-    system.lambda = VectorX::Map(&record.system_lambda[6 * place.joint], rod.lambda.size());
-    system.solution = VectorX::Map(&record.system_solution[6 * place.joint], rod.lambda.size());
+    load(record.system_position_m.data() + 3 * place.segment, system.position);
+    load(record.system_orientation.data() + 4 * place.segment, system.orientation);
+    load(record.system_velocity_m_s.data() + 3 * place.segment, system.velocity);
+    load(record.system_angular_velocity_rad_s.data() + 3 * place.segment, system.angular_velocity);
+    system.lambda = VectorX::Map(record.system_lambda.data() + 6 * place.joint, rod.lambda.size());
+    system.solution = VectorX::Map(record.system_solution.data() + 6 * place.joint, rod.lambda.size());
     systems.push_back(std::move(system));
   }
   return systems;

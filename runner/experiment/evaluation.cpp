@@ -64,8 +64,8 @@ void record_frame(TaskRecord& record, const Task& task, std::size_t frame, const
   record.frame_time_s[frame] = scene.time_s;
   std::size_t row = first;
   for (const Rod& rod : scene.rods) {
-    store(rod.position, &record.position_m[3 * row]);
-    store(rod.orientation, &record.orientation[4 * row]);
+    store(rod.position, record.position_m.data() + 3 * row);
+    store(rod.orientation, record.orientation.data() + 4 * row);
     row += rod.segments.size();
   }
 }

@@ -2,7 +2,10 @@
 
 #include <stdexcept>
 
+#include "network/coping_net_guess.hpp"
+#include "runner/experiment/models.hpp"
 #include "solver/subspace_guess.hpp"
+#include "solver/time_step.hpp"
 
 namespace rodsweep {
 
@@ -21,6 +24,9 @@ std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec&
     case Kind::quadratic: return extrapolation(3);
     case Kind::fischer: return subspace(SubspaceGuess::Window::restarted);
     case Kind::pod: return subspace(SubspaceGuess::Window::sliding);
+    case Kind::copingnet:
+      return std::make_unique<CopingNetGuess>(shared_model(guess.model), scene, constraint_dt(scene, task.time.step_s),
+                                              task.time.newton_iterations);
     case Kind::oracle: return std::make_unique<OracleGuess>(scene, guess.error, guess.error_kind, task.seed);
     case Kind::guarded:
       return std::make_unique<GuardedGuess>(scene, make_guess(guess.inner.front(), task, scene), guess.threshold);

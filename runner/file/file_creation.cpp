@@ -34,7 +34,7 @@ FileError exists_error(const fs::path& path) {
 FileError space_error(const fs::path& path, std::int64_t bytes, const std::string& found) {
   return FileError(
       fmt::format("{} needs {}, but {}: free some space, name a file on another disk with -o FILE, or record "
-                  "less (record.solves: \"summary\", a larger record.trajectory_every)",
+                  "less (record.solves: \"summary\", record.systems: \"first\", a larger record.trajectory_every)",
                   path.native(), bytes_text(bytes), found));
 }
 

@@ -158,6 +158,7 @@ std::string plan_hash(const Plan& plan, const std::vector<ParameterColumn>& para
     }
   }
   for (const std::string& label : plan.guess_labels()) add_text(label);
+  for (const auto& [text, file] : plan.job().files) add_text(text + " " + file.hash);
   for (const double tolerance : tolerance_ladder()) sum.add(&tolerance, sizeof tolerance);
   return fmt::format("{:016x}", sum.value());
 }

@@ -8,9 +8,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+
+#include "runner/job/input_file.hpp"
 
 namespace rodsweep {
 
@@ -29,8 +32,9 @@ struct Job {
   std::string text;            ///< the file as it was read, byte for byte: stored in /job/text
   std::string name;
   std::uint64_t seed = 0;
-  std::int64_t samples = 1;       ///< of a training 1
-  nlohmann::ordered_json values;  ///< validated, every default filled in, sweeps still in place
+  std::int64_t samples = 1;                ///< of a training 1
+  std::map<std::string, InputFile> files;  ///< that it names, by their path as written
+  nlohmann::ordered_json values;           ///< validated, every default filled in, sweeps still in place
 
   /// The list of guesses; empty in a kind of job that has none.
   nlohmann::ordered_json guesses() const;

@@ -239,6 +239,8 @@ const std::vector<Key>& guess_keys() {
                  "best approximation within the last solutions, collected until there are `size`, then from one again",
                  {subspace_size()}),
       object_key("pod", "best approximation within the last `size` solutions", {subspace_size()}),
+      object_key("copingnet", "a learned guess: a network's correction of the guess that it was trained with",
+                 {file_key("model", "model file of a train job")}),
       object_key("oracle", "the exact solution plus a random error",
                  {number_key("error", "A-norm of the error relative to the solution's")
                       .at_least(0)

@@ -32,7 +32,7 @@ bool within(const Key& key, double value) {
 bool has_form(const std::string& text, Key::Text form) {
   if (form == Key::Text::any) return true;
   if (text.empty()) return false;
-  if (form == Key::Text::line) {
+  if (form == Key::Text::line || form == Key::Text::path) {
     return std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   }
   const std::string allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
@@ -172,7 +172,10 @@ Json JobReader::read_text(const Key& key, const Json& value, const std::string& 
   }
   const auto& text = value.get_ref<const std::string&>();
   if (key.kind == Key::Kind::text) {
-    if (static_cast<double>(text.size()) > key.high || !has_form(text, key.text)) refuse(key, value, path);
+    if (static_cast<double>(text.size()) > key.high || !has_form(text, key.text))
+      refuse(key, value, path);
+    else if (key.text == Key::Text::path)
+      files_.emplace(text, path);
     return value;
   }
   for (const std::string& choice : key.choices) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ class JobReader {
   /// The value as it is to be used: defaults in place, guesses all in the form {"name": {parameters, "label"}} or
   /// {"grid": [...], "label"}.
   Json read(const Key& key, const Json& value, const std::string& path);
+
+  /// The files that the job names, each with the first key path that does.
+  const std::map<std::string, std::string>& files() const { return files_; }
 
   /// Throws JobError with one line per mistake, if there was any.
   void throw_mistakes() const;
@@ -48,6 +52,7 @@ class JobReader {
   std::filesystem::path file_;
   Tag tag_;
   std::vector<std::string> mistakes_;
+  std::map<std::string, std::string> files_;
 };
 
 }  // namespace rodsweep

@@ -37,6 +37,8 @@ std::string default_label(const std::string& name, const Json& parameters) {
     if (value.is_string() && described->preset == value) continue;
     if (value.is_object() && !value.empty()) {
       label += " " + default_label(value.begin().key(), value.begin().value());
+    } else if (described->text == Key::Text::path) {
+      label += " " + std::filesystem::path(value.get<std::string>()).stem().native();
     } else {
       label += " " + (value.is_string() ? value.get<std::string>() : value.dump());
     }

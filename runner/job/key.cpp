@@ -95,6 +95,7 @@ Key boolean_key(const char* name, const char* help) { return make(Key::Kind::boo
 Key number_key(const char* name, const char* help) { return make(Key::Kind::number, name, help); }
 Key vector_key(const char* name, const char* help) { return make(Key::Kind::vector, name, help); }
 Key text_key(const char* name, const char* help) { return make(Key::Kind::text, name, help); }
+Key file_key(const char* name, const char* help) { return text_key(name, help).at_most(4095).of_form(Key::Text::path); }
 Key choice_key(const char* name, const char* help, std::vector<std::string> choices) {
   Key key = make(Key::Kind::choice, name, help);
   key.choices = std::move(choices);
@@ -125,6 +126,7 @@ std::string allowed(const Key& key) {
     case Key::Kind::vector: return "three numbers [x, y, z], each" + (bounds(key).empty() ? " finite" : bounds(key));
     case Key::Kind::text:
       if (key.text == Key::Text::any) return "a text";
+      if (key.text == Key::Text::path) return "the path of a file";
       if (key.text == Key::Text::line) return fmt::format("a text of 1 to {} characters on one line", key.high);
       return fmt::format(
           "a file name of 1 to {} letters, digits, \"_\", \"-\" or \".\", not beginning with \"-\" or \".\"", key.high);

@@ -26,6 +26,7 @@ struct Key {
   enum class Text {
     any,       ///< may be empty
     line,      ///< no control characters
+    path,      ///< of a file that must be there, relative to the job file
     file_name  ///< letters, digits, "_", "-" and ".", beginning with none of the latter two
   };
 
@@ -72,6 +73,7 @@ Key boolean_key(const char* name, const char* help);
 Key number_key(const char* name, const char* help);
 Key vector_key(const char* name, const char* help);
 Key text_key(const char* name, const char* help);
+Key file_key(const char* name, const char* help);  ///< a file that the job reads
 Key choice_key(const char* name, const char* help, std::vector<std::string> choices);
 Key guess_key(const char* name, const char* help);
 Key guesses_key(const char* name, const char* help);

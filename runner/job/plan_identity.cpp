@@ -11,11 +11,14 @@ using State = Point::Value::State;
 
 constexpr std::string_view guesses = "guesses[";
 
-/// A parameter and its value, numbers to the last bit: -0 is another one than 0.
-void append(std::string& text, std::string_view path, const Point::Value& value) {
+/// A parameter and its value, numbers to the last bit: -0 is another one than 0; of a file what is in it.
+void append(std::string& text, std::string_view path, const Point::Value& value, const Parameter& parameter,
+            const Job& job) {
   text += path;
   text += " = ";
-  if (value.state == State::text) {
+  if (parameter.key.text == Key::Text::path) {
+    text += job.files.at(*value.text).hash;
+  } else if (value.state == State::text) {
     text += *value.text;
   } else {
     text.append(reinterpret_cast<const char*>(value.number), sizeof value.number);
@@ -34,13 +37,14 @@ TaskIdentity Plan::identity(std::int64_t index) const {
   if (tries_guesses) identity.guesses.resize(guess_labels_.size());
   for (const auto& [path, parameter] : space_.by_path()) {
     const Point::Value& value = point[static_cast<std::size_t>(parameter)];
+    const Parameter& described = space_.parameters()[static_cast<std::size_t>(parameter)];
     if (value.state == State::absent) continue;
     if (path.rfind(guesses, 0) != 0) {
-      append(identity.trajectory, path, value);
+      append(identity.trajectory, path, value, described, job_);
     } else if (tries_guesses) {
       const std::size_t end = path.find(']');
       const auto guess = std::stoul(path.substr(guesses.size(), end - guesses.size()));
-      append(identity.guesses.at(guess), std::string_view(path).substr(end + 1), value);
+      append(identity.guesses.at(guess), std::string_view(path).substr(end + 1), value, described, job_);
     }
   }
   const auto own = static_cast<std::size_t>(task.own_guess);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,11 @@ struct SolveSpec {
 
 /// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.
 struct GuessSpec {
-  enum class Kind { zero, previous, linear, quadratic, fischer, pod, oracle, guarded };
+  enum class Kind { zero, previous, linear, quadratic, fischer, pod, copingnet, oracle, guarded };
   Kind kind = Kind::zero;
   std::string label;
   int size = 10;       ///< fischer, pod: how many solutions span the subspace
+  std::filesystem::path model;  ///< copingnet
   double error = 0.1;  ///< oracle: relative A-norm of the error added to the exact solution
   OracleGuess::Error error_kind = OracleGuess::Error::white;  ///< oracle
   double threshold =

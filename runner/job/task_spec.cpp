@@ -78,12 +78,13 @@ int whole_steps(double duration_s, double step_s, const Job& job) {
   return static_cast<int>(steps);
 }
 
-GuessSpec guess_spec(const Point& point, const std::string& path) {
+GuessSpec guess_spec(const Point& point, const Job& job, const std::string& path) {
   using Kind = GuessSpec::Kind;
   static const std::map<std::string, Kind> kinds{{"zero", Kind::zero},       {"previous", Kind::previous},
                                                  {"linear", Kind::linear},   {"quadratic", Kind::quadratic},
                                                  {"fischer", Kind::fischer}, {"pod", Kind::pod},
-                                                 {"oracle", Kind::oracle},   {"guarded", Kind::guarded}};
+                                                 {"copingnet", Kind::copingnet}, {"oracle", Kind::oracle},
+                                                 {"guarded", Kind::guarded}};
   static const std::map<std::string, OracleGuess::Error> error_kinds{{"white", OracleGuess::Error::white},
                                                                      {"smooth", OracleGuess::Error::smooth}};
   GuessSpec guess;
@@ -92,13 +93,14 @@ GuessSpec guess_spec(const Point& point, const std::string& path) {
   const std::string parameters = path + "." + name + ".";
   if (guess.kind == Kind::fischer || guess.kind == Kind::pod)
     guess.size = static_cast<int>(point.integer(parameters + "size"));
+  if (guess.kind == Kind::copingnet) guess.model = job.files.at(point.text(parameters + "model")).path;
   if (guess.kind == Kind::oracle) {
     guess.error = point.number(parameters + "error");
     guess.error_kind = choice(error_kinds, point.text(parameters + "errors"));
   }
   if (guess.kind == Kind::guarded) {
     guess.threshold = point.number(parameters + "threshold");
-    guess.inner.push_back(guess_spec(point, parameters + "guess"));
+    guess.inner.push_back(guess_spec(point, job, parameters + "guess"));
     guess.inner.back().label = guess.inner.back().kind == Kind::guarded ? "guarded" : point.text(parameters + "guess");
   }
   return guess;
@@ -168,7 +170,7 @@ std::vector<GuessSpec> guess_specs(const Point& point, const Job& job) {
   std::vector<GuessSpec> guesses;
   const std::vector<std::string> labels = guess_labels(job);
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    guesses.push_back(guess_spec(point, element("guesses", i)));
+    guesses.push_back(guess_spec(point, job, element("guesses", i)));
     guesses.back().label = labels[i];
   }
   return guesses;

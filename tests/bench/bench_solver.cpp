@@ -3,11 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
-#include <map>
 #include <string>
-#include <vector>
 
 #include "bare_cg.hpp"
+#include "medians.hpp"
 #include "solver/conjugate_gradient.hpp"
 #include "solver/petsc_session.hpp"
 #include "solver/scenes.hpp"
@@ -105,40 +104,21 @@ void petsc_cg(benchmark::State& state) {
   }
 }
 
-/// Prints and keeps [s] the medians only.
-class Medians : public benchmark::ConsoleReporter {
- public:
-  Medians() : ConsoleReporter(OO_None) {}
-  void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs) {
-      if (run.aggregate_name != "median") continue;
-      ConsoleReporter::ReportRuns({run});
-      seconds_[run.run_name.function_name + "/" + run.run_name.args] = run.GetAdjustedRealTime() * 1e-9;
-    }
-  }
-  double operator()(const std::string& function, int n) const {
-    const auto at = seconds_.find(function + "/" + std::to_string(n));
-    return at == seconds_.end() ? 0 : at->second;
-  }
-
- private:
-  std::map<std::string, double> seconds_;
-};
-
 void print_summary(const Medians& median) {
+  const auto at = [](const char* name, int n) { return name + ("/" + std::to_string(n)); };
   std::printf("\nWhole direct step, one Newton iteration, per segment (target: at most 0.7 us from N = 30 on)\n");
   std::printf("%6s %10s %22s %22s\n", "N", "step [us]", "assembly, share [%]", "factor+solve [%]");
   for (const int n : sizes) {
-    const double step = median("direct_step", n);
-    std::printf("%6d %10.3f %22.0f %22.0f\n", n, step / n * 1e6, 100 * median("assemble", n) / step,
-                100 * median("factor_and_solve", n) / step);
+    const double step = median(at("direct_step", n));
+    std::printf("%6d %10.3f %22.0f %22.0f\n", n, step / n * 1e6, 100 * median(at("assemble", n)) / step,
+                100 * median(at("factor_and_solve", n)) / step);
   }
   std::printf("\nCG per iteration, Jacobi (target: KSP at most 1.6 times the bare loop from N = 50 on)\n");
   std::printf("%6s %14s %14s %8s %22s\n", "N", "bare [us]", "KSPCG [us]", "ratio", "product, of bare [%]");
   for (const int n : sizes) {
-    const double bare = median("bare_cg", n) / cg_iterations, petsc = median("petsc_cg", n) / cg_iterations;
+    const double bare = median(at("bare_cg", n)) / cg_iterations, petsc = median(at("petsc_cg", n)) / cg_iterations;
     std::printf("%6d %14.3f %14.3f %8.2f %22.0f\n", n, bare * 1e6, petsc * 1e6, petsc / bare,
-                100 * median("multiply", n) / bare);
+                100 * median(at("multiply", n)) / bare);
   }
 }
 
@@ -153,17 +133,7 @@ int main(int argc, char** argv) {
                                        {"bare_cg", bare_cg},
                                        {"petsc_cg", petsc_cg}})
     for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
-  // Medians over interleaved repetitions by default; the command line comes after and wins.
-  std::string defaults[] = {"--benchmark_repetitions=9", "--benchmark_enable_random_interleaving=true",
-                            "--benchmark_min_time=0.05", "--benchmark_report_aggregates_only=true"};
-  std::vector<char*> arguments{argv[0]};
-  for (std::string& argument : defaults) arguments.push_back(argument.data());
-  arguments.insert(arguments.end(), argv + 1, argv + argc);
-  argc = static_cast<int>(arguments.size());
-  argv = arguments.data();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   Medians medians;
-  benchmark::RunSpecifiedBenchmarks(&medians);
+  if (!run_benchmarks(argc, argv, medians)) return 2;
   print_summary(medians);
 }

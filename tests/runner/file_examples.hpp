@@ -36,7 +36,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// 6 tasks of 4, 5 and 7 segments; rows in every group of the file.
+/// 6 tasks of 4, 5 and 7 segments; rows in every group of a sweep's file.
 inline Json full_job() {
   Json job = with("/scene/segments", R"({"grid": [4, 5, 7]})");
   job["samples"] = 2;
@@ -44,6 +44,14 @@ inline Json full_job() {
   job["scene"]["length_m"] = uniform(1, 2);
   job["time"] = {{"step_s", 0.02}, {"steps", 3}, {"newton_iterations", 2}};
   job["record"] = {{"trajectory_every", 2}};
+  return job;
+}
+
+/// The same as a data set, whose file has /systems in place of what is of guesses.
+inline Json full_data_job() {
+  Json job = without("/guesses", full_job());
+  job["kind"] = "dataset";
+  job["record"]["systems"] = "all";
   return job;
 }
 

@@ -28,6 +28,14 @@ inline Json small_job() {
           {"guesses", {"zero", "previous"}}};
 }
 
+/// The same rod as a data set.
+inline Json data_job() {
+  return {{"name", "data"},
+          {"kind", "dataset"},
+          {"scene", bending_scene()},
+          {"time", {{"step_s", 0.02}, {"steps", 4}, {"newton_iterations", 3}}}};
+}
+
 /// The small job with the JSON text `value` at a JSON pointer such as "/scene/segments".
 inline Json with(const std::string& pointer, const std::string& value, Json job = small_job()) {
   job[Json::json_pointer(pointer)] = Json::parse(value);

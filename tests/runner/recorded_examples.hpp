@@ -1,20 +1,12 @@
-// For tests of data sets: a small job of one, and a simulation whose systems are kept as they were solved.
+// For tests of data sets: a solve that keeps its systems, to compare with those that were recorded.
 #pragma once
 
 #include <catch2/catch.hpp>
 
-#include "job_examples.hpp"
 #include "network/recorded_simulation.hpp"
 #include "solver/time_step.hpp"
 
 namespace rodsweep {
-
-inline Json data_job() {
-  Json job = without("/guesses", with("/kind", "\"dataset\""));
-  job["scene"]["segments"] = 6;
-  job["time"] = {{"step_s", 0.02}, {"steps", 4}, {"newton_iterations", 3}};
-  return job;
-}
 
 /// The direct solve, which keeps what it was given and what it found.
 class SolveProbe : public LinearSolve {

@@ -1,0 +1,126 @@
+// What a learned guess costs on one rod in motion, by parts: base guess, features, network, and all that proposes x0.
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "medians.hpp"
+#include "network/base_guess.hpp"
+#include "network/coping_net_guess.hpp"
+#include "network/sweeps_inference.hpp"
+#include "solver/scenes.hpp"
+#include "solver/time_step.hpp"
+
+namespace {
+
+using namespace rodsweep;
+
+constexpr std::array<int, 2> sizes{50, 100};           // segments
+constexpr std::array<int, 4> latents{16, 32, 48, 64};  // of sweeps
+
+/// A bending rod after some steps, and guesses that know its history.
+struct Case {
+  Scene scene;
+  std::unique_ptr<LinearSystem> system;
+  std::shared_ptr<const Model> model;
+  std::unique_ptr<InitialGuess> base;
+  std::unique_ptr<CopingNetGuess> guess;
+  VectorX x0;
+  SolvePosition last;
+
+  Case(int segments, int latent) {
+    BendingRod spec;
+    spec.segments = segments;
+    scene = build_scene(spec);
+    CopingNetSettings settings;
+    settings.latent = latent;
+    model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
+    base = base_guess(settings, scene, 1);
+    guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1);
+    system = std::make_unique<LinearSystem>(scene.rods.front());
+    DirectSolve direct(scene);
+    LinearProjection projection(scene, direct);
+    TimeStepper stepper(scene, {0.02, 1, 0});
+    x0.resize(6 * scene.rods.front().joint_count());
+    VectorX solution(x0.size());
+    for (last.step = 0; last.step < 30; ++last.step) {
+      stepper.step(projection);
+      system->assemble(scene.rods.front(), 0.02);
+      direct.solve(*system, last, 0, solution);
+      guess->propose(*system, last, x0);
+      for (InitialGuess* one : {base.get(), static_cast<InitialGuess*>(guess.get())}) one->accept(last, solution);
+    }
+    system->assemble(scene.rods.front(), 0.02);
+  }
+};
+
+void whole(benchmark::State& state) {
+  Case c(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  for (auto _ : state) {
+    c.guess->propose(*c.system, c.last, c.x0);
+    benchmark::ClobberMemory();
+  }
+}
+
+void base_alone(benchmark::State& state) {
+  Case c(static_cast<int>(state.range(0)), 16);
+  for (auto _ : state) {
+    c.base->propose(*c.system, c.last, c.x0);
+    benchmark::ClobberMemory();
+  }
+}
+
+void features(benchmark::State& state) {
+  Case c(static_cast<int>(state.range(0)), 16);
+  FeatureEncoder encoder(c.model->net.settings(), c.scene.rods.front(), c.system->matrix());
+  Tensor<float> nodes(0, c.scene.rods.front().segment_count()), edges(SystemEncoding::size, state.range(0) - 1);
+  for (auto _ : state) {
+    encoder.encode(c.scene.rods.front(), *c.system, 0, 0.02, c.x0, c.system->rhs(), nodes, edges);
+    benchmark::ClobberMemory();
+  }
+}
+
+void network(benchmark::State& state) {
+  Case c(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const Topology chain = topology(c.scene.rods.front());
+  SweepsInference inference(c.model->net.sweeps(), c.model->net.parameters(), chain.forest.size());
+  const Tensor<float> x = Tensor<float>::Random(SystemEncoding::size, chain.forest.size());
+  Tensor<float> y(6, chain.forest.size());
+  for (auto _ : state) {
+    inference.run(chain.forest, x, y);
+    benchmark::ClobberMemory();
+  }
+}
+
+void print_summary(const Medians& median) {
+  std::printf("\nA learned guess (encoding system, sweeps, base pod 10), us per segment (target: at most 1.2)\n");
+  std::printf("%9s %7s %9s %7s %9s %9s %8s %9s\n", "segments", "latent", "weights", "base", "features", "network",
+              "GFLOP/s", "whole");
+  for (const int n : sizes)
+    for (const int latent : latents) {
+      const std::string size = "/" + std::to_string(n), both = size + "/" + std::to_string(latent);
+      CopingNetSettings settings;
+      settings.latent = latent;
+      const auto weights = static_cast<double>(CopingNet<float>(settings, 1).parameters().values().size());
+      const auto per_segment = [&](double seconds) { return seconds / n * 1e6; };
+      const double seconds = median("network" + both);
+      std::printf("%9d %7d %9.0f %7.3f %9.3f %9.3f %8.0f %9.3f\n", n, latent, weights,
+                  per_segment(median("base" + size)), per_segment(median("features" + size)), per_segment(seconds),
+                  2 * weights * n / seconds * 1e-9, per_segment(median("whole" + both)));
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (const int n : sizes) {
+    benchmark::RegisterBenchmark("base", base_alone)->Arg(n);
+    benchmark::RegisterBenchmark("features", features)->Arg(n);
+    for (const int latent : latents) {
+      benchmark::RegisterBenchmark("network", network)->Args({n, latent});
+      benchmark::RegisterBenchmark("whole", whole)->Args({n, latent});
+    }
+  }
+  Medians medians;
+  if (!run_benchmarks(argc, argv, medians)) return 2;
+  print_summary(medians);
+}
