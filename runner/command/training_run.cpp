@@ -51,7 +51,7 @@ class TrainingRun {
   std::optional<ModelFile> file_;
   std::optional<ProgressLine> progress_;
   ModelCard card_;
-  Stopwatch since_start_, since_save_;
+  Stopwatch since_begin_, since_save_;  ///< of the steps; of the last time that the file was written
   std::int64_t first_step_ = 0;
 };
 
@@ -120,6 +120,7 @@ void TrainingRun::advise(const Placement& where) {
 
 ExitCode TrainingRun::run(const StopSignal& signal) {
   progress_.emplace(console_, ProgressLine::Clock::now());
+  since_begin_ = Stopwatch();
   bool stops = false;
   while (!stops && training_->ending() == Ending::none) {
     stops = training_->step(signal.received() != 0);
@@ -150,7 +151,7 @@ void TrainingRun::show_progress() {
   const auto left = static_cast<double>(trainer.steps() - trainer.step());
   progress_->show(now, static_cast<double>(trainer.step()) / static_cast<double>(trainer.steps()),
                   progress_text(training_->epochs(), training_->best_epoch(), card_.planned_epochs,
-                                since_start_.seconds() / done * left));
+                                since_begin_.seconds() / done * left));
 }
 
 /// What is known now; at the end without what it takes to go on, unless it is to go on.

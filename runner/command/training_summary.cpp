@@ -61,7 +61,7 @@ std::string training_summary(const ModelCard& card, const std::filesystem::path&
   std::string text = fmt::format("{}: {}", card.name, ending_text(card));
   if (card.best_epoch > 0)
     text += fmt::format("; the model is that of epoch {}, validation loss {:.4g}", card.best_epoch,
-                        card.epochs[static_cast<std::size_t>(card.best_epoch) - 1].validation_loss);
+                        best_epoch(card).validation_loss);
   text += '\n' + ratio_table(card);
   double seconds = 0;
   for (const Epoch& epoch : card.epochs) seconds += epoch.seconds;

@@ -1,39 +1,69 @@
-// Simulations recorded by direct solves, as a training set holds them.
+// Simulations with all that a data set would hold of them, and examples made of these.
 #pragma once
 
-#include "network/recorded_simulation.hpp"
+#include <stdexcept>
+
+#include "network/example_builder.hpp"
 #include "solver/time_step.hpp"
+#include "support.hpp"
 
 namespace rodsweep::test {
 
-/// Records the systems of the first `iterations` Newton iterations while it solves directly.
-class RecordingDirectSolve : public LinearSolve {
+/// Direct solves that are recorded as a data set records them.
+class Recorder : public LinearSolve {
  public:
-  RecordingDirectSolve(const Scene& scene, int iterations, RecordedSimulation& out)
-      : scene_(scene), direct_(scene), iterations_(iterations), out_(out) {}
+  explicit Recorder(const Scene& scene) : scene_(scene), direct_(scene) {}
   SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
                      VectorX& delta_lambda) override {
     const SolveOutcome outcome = direct_.solve(system, at, assemble_s, delta_lambda);
     const Rod& rod = scene_.rods[static_cast<std::size_t>(at.rod)];
-    if (at.newton < iterations_)
-      out_.systems.push_back(
-          {at, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, delta_lambda});
+    systems.push_back(
+        {at, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, delta_lambda});
     return outcome;
   }
+
+  std::vector<RecordedSystem> systems;
 
  private:
   const Scene& scene_;
   DirectSolve direct_;
-  int iterations_;
-  RecordedSimulation& out_;
 };
 
-inline RecordedSimulation recorded(Scene scene, int steps, int iterations = 1, double dt = 0.02) {
-  TimeStepper stepper(scene, {dt, 4, 1e-9});
-  RecordedSimulation out{scene, dt, stepper.constraint_dt(), 4, {}};
-  RecordingDirectSolve solve(scene, iterations, out);
-  LinearProjection projection(scene, solve);
-  for (int step = 0; step < steps; ++step) stepper.step(projection);
+inline RecordedSimulation recorded_simulation(Scene scene, int steps, int newton_iterations = 2) {
+  RecordedSimulation out;
+  out.scene = scene;
+  out.step_s = 0.02;
+  out.newton_iterations = newton_iterations;
+  Recorder recorder(scene);
+  LinearProjection projection(scene, recorder);
+  TimeStepper stepper(scene, {out.step_s, newton_iterations, 0});
+  out.constraint_dt_s = stepper.constraint_dt();
+  for (int step = 0; step < steps; ++step)
+    if (stepper.step(projection).outcome != SolveOutcome::converged) throw std::runtime_error("a step failed");
+  out.systems = std::move(recorder.systems);
+  return out;
+}
+
+/// A rod of some stiffness and angle that differ with `number`.
+inline Scene sample_scene(int number) {
+  BendingRod rod = bending_rod(4 + number % 3);
+  rod.initial_angle_deg = 10 + 7 * (number % 5);
+  rod.youngs_modulus_pa = 1e5 * (1 + number);
+  return build_scene(rod);
+}
+
+struct Examples {
+  std::vector<Example> examples;
+  FeatureScales scales;
+};
+
+/// Normalised by themselves.
+inline Examples sample_examples(const CopingNetSettings& settings, int simulations, int steps) {
+  Examples out;
+  for (int i = 0; i < simulations; ++i)
+    add_examples(settings, recorded_simulation(sample_scene(i), steps), out.examples);
+  out.scales = feature_scales(settings, out.examples);
+  normalise(settings, out.scales, out.examples);
   return out;
 }
 
