@@ -42,8 +42,8 @@ RecordedSystem planted(const Rod& rod, const Vector3& velocity, const VectorX& s
 TEST_CASE("a system of the training set is its own nearest neighbour and is answered with its solution") {
   BendingRod other = test::bending_rod(7);
   other.length_m *= 1.3;
-  const std::vector<RecordedSimulation> simulations{test::recorded(build_scene(test::bending_rod(9)), 12, 2),
-                                                    test::recorded(build_scene(other), 12, 2)};
+  const std::vector<RecordedSimulation> simulations{test::recorded_simulation(build_scene(test::bending_rod(9)), 12, 2),
+                                                    test::recorded_simulation(build_scene(other), 12, 2)};
   const auto set = set_of(simulations);
   CHECK(set->size(0) == 24);
   for (const RecordedSimulation& simulation : simulations)
@@ -96,9 +96,9 @@ TEST_CASE("twice as many segments in the same pose are given the same forces and
 TEST_CASE("the tree finds what a look at every system finds") {
   std::vector<RecordedSimulation> simulations;
   for (const int segments : {6, 8, 11, 14})
-    simulations.push_back(test::recorded(build_scene(test::bending_rod(segments)), 20));
+    simulations.push_back(test::recorded_simulation(build_scene(test::bending_rod(segments)), 20, 1));
   const auto set = set_of(simulations);
-  const RecordedSimulation unseen = test::recorded(build_scene(test::bending_rod(9)), 20);
+  const RecordedSimulation unseen = test::recorded_simulation(build_scene(test::bending_rod(9)), 20, 1);
   Rod rod = unseen.scene.rods[0];
   const ChainProfile profile(rod, unseen.scene.gravity_m_s2);
   LinearSystem system(rod);
@@ -120,7 +120,7 @@ TEST_CASE("the tree finds what a look at every system finds") {
 }
 
 TEST_CASE("a Newton iteration without training data is answered with zero") {
-  const RecordedSimulation simulation = test::recorded(build_scene(test::bending_rod(6)), 3);
+  const RecordedSimulation simulation = test::recorded_simulation(build_scene(test::bending_rod(6)), 3, 1);
   RecordedSystem later = simulation.systems.back();
   later.at.newton = 1;
   Proposal proposal{true, 7};
@@ -135,11 +135,11 @@ TEST_CASE("an unseen rod of the training set's kind is guessed roughly right") {
   for (const double length : {1.0, 1.2, 1.4, 1.6, 1.8, 2.0}) {
     BendingRod rod = test::bending_rod(10);
     rod.length_m = length;
-    simulations.push_back(test::recorded(build_scene(rod), 15));
+    simulations.push_back(test::recorded_simulation(build_scene(rod), 15, 1));
   }
   BendingRod rod = test::bending_rod(17);
   rod.length_m = 1.5;
-  const RecordedSimulation unseen = test::recorded(build_scene(rod), 15);
+  const RecordedSimulation unseen = test::recorded_simulation(build_scene(rod), 15, 1);
   const auto set = set_of(simulations);
   double error = 0, norm = 0;
   for (const RecordedSystem& system : unseen.systems) {
@@ -150,7 +150,7 @@ TEST_CASE("an unseen rod of the training set's kind is guessed roughly right") {
 }
 
 TEST_CASE("no neighbours is not a number of neighbours") {
-  const RecordedSimulation simulation = test::recorded(build_scene(test::bending_rod(4)), 1);
+  const RecordedSimulation simulation = test::recorded_simulation(build_scene(test::bending_rod(4)), 1);
   CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0.02, 0), std::invalid_argument);
 }
 

@@ -59,7 +59,7 @@ TEST_CASE("a network instead of the solve allocates nothing on a rod seen before
 
 TEST_CASE("nearest neighbours allocate nothing") {
   const auto set = std::make_shared<KnnSet>();
-  set->add(test::recorded(build_scene(test::bending_rod(12)), 30));
+  set->add(test::recorded_simulation(build_scene(test::bending_rod(12)), 30));
   set->finish();
   const Scene scene = build_scene(test::bending_rod(20));
   LinearSystem system(scene.rods.front());
