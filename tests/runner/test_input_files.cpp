@@ -1,4 +1,6 @@
 // Files that a job names: found beside the job, refused with a reason, part of what a task is.
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
