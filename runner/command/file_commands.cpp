@@ -4,8 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runner/command/model_commands.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/terminal/text.hpp"
+#include "runner/training/model_file.hpp"
 
 namespace rodsweep {
 
@@ -92,6 +94,7 @@ std::string provenance_text(const FileSummary& file) {
 }  // namespace
 
 ExitCode show_status(const StatusOptions& options, Console& console) {
+  if (is_model_file(options.file)) return show_model_status(options, console);
   const FileSummary file = inspect(options.file);
   if (options.json) {
     console.result(to_json(file).dump(2));
@@ -111,6 +114,7 @@ ExitCode show_status(const StatusOptions& options, Console& console) {
 }
 
 ExitCode show_info(const InfoOptions& options, Console& console) {
+  if (is_model_file(options.file)) return show_model_info(options, console);
   const FileSummary file = inspect(options.file);
   if (options.job) {
     console.raw_result(file.job_text);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "runner/command/plan_estimate.hpp"
+#include "runner/command/training_plan.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/terminal/text.hpp"
 
@@ -120,7 +121,9 @@ bool is_json_schema(const std::filesystem::path& path) {
 }  // namespace
 
 ExitCode show_plan(const PlanOptions& options, Console& console) {
-  const Plan plan(read_job(options.job));
+  const Job job = read_job(options.job);
+  if (is_training(job)) return show_training_plan(options, job, console);
+  const Plan plan(job);
   const std::vector<Probe> probes = options.probe ? probe(plan, evaluate) : std::vector<Probe>();
   console.result(options.json ? to_json(plan, probes).dump(2) : to_text(plan, probes, options));
   return ExitCode::ok;

@@ -26,7 +26,8 @@ std::string ending_text(const ModelCard& card) {
 
 std::string ratio_table(const ModelCard& card) {
   if (std::isnan(card.cg_ratio.front())) return "";
-  std::string text = fmt::format("CG ratio on {:3} validation simulations ", card.ratio_simulations);
+  std::string text =
+      fmt::format("{:<41}", fmt::format("CG ratio on {} validation simulations", card.ratio_simulations));
   for (const double tolerance : ValidationRatio::tolerances()) text += fmt::format("{:>7.0e}", tolerance);
   const auto row = [&](const char* name, const ValidationRatio::Ratios& ratios) {
     text += fmt::format("\n  {:<39}", name);
@@ -61,7 +62,7 @@ std::string training_summary(const ModelCard& card, const std::filesystem::path&
   std::string text = fmt::format("{}: {}", card.name, ending_text(card));
   if (card.best_epoch > 0)
     text += fmt::format("; the model is that of epoch {}, validation loss {:.4g}", card.best_epoch,
-                        card.epochs[static_cast<std::size_t>(card.best_epoch) - 1].validation_loss);
+                        best_epoch(card).validation_loss);
   text += '\n' + ratio_table(card);
   double seconds = 0;
   for (const Epoch& epoch : card.epochs) seconds += epoch.seconds;

@@ -43,9 +43,9 @@ struct GuessSpec {
   enum class Kind { zero, previous, linear, quadratic, fischer, pod, copingnet, oracle, guarded };
   Kind kind = Kind::zero;
   std::string label;
-  int size = 10;       ///< fischer, pod: how many solutions span the subspace
+  int size = 10;                ///< fischer, pod: how many solutions span the subspace
   std::filesystem::path model;  ///< copingnet
-  double error = 0.1;  ///< oracle: relative A-norm of the error added to the exact solution
+  double error = 0.1;           ///< oracle: relative A-norm of the error added to the exact solution
   OracleGuess::Error error_kind = OracleGuess::Error::white;  ///< oracle
   double threshold =
       1;  ///< guarded: use `inner` only where the natural norm of b - A x0 is below threshold times that of b

@@ -80,11 +80,10 @@ int whole_steps(double duration_s, double step_s, const Job& job) {
 
 GuessSpec guess_spec(const Point& point, const Job& job, const std::string& path) {
   using Kind = GuessSpec::Kind;
-  static const std::map<std::string, Kind> kinds{{"zero", Kind::zero},       {"previous", Kind::previous},
-                                                 {"linear", Kind::linear},   {"quadratic", Kind::quadratic},
-                                                 {"fischer", Kind::fischer}, {"pod", Kind::pod},
-                                                 {"copingnet", Kind::copingnet}, {"oracle", Kind::oracle},
-                                                 {"guarded", Kind::guarded}};
+  static const std::map<std::string, Kind> kinds{
+      {"zero", Kind::zero},           {"previous", Kind::previous}, {"linear", Kind::linear},
+      {"quadratic", Kind::quadratic}, {"fischer", Kind::fischer},   {"pod", Kind::pod},
+      {"copingnet", Kind::copingnet}, {"oracle", Kind::oracle},     {"guarded", Kind::guarded}};
   static const std::map<std::string, OracleGuess::Error> error_kinds{{"white", OracleGuess::Error::white},
                                                                      {"smooth", OracleGuess::Error::smooth}};
   GuessSpec guess;

@@ -53,4 +53,9 @@ struct ModelCard {
   std::vector<TrainingStart> starts;
 };
 
+/// The epoch whose weights the model has; there is one.
+inline const Epoch& best_epoch(const ModelCard& card) {
+  return card.epochs.at(static_cast<std::size_t>(card.best_epoch) - 1);
+}
+
 }  // namespace rodsweep

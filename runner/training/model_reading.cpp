@@ -164,7 +164,7 @@ hdf5::File open_model(const fs::path& path) {
 }  // namespace
 
 bool is_model_file(const fs::path& path) {
-  const hdf5::File file = open_own(path, "files");
+  const hdf5::File file = open_own(path, "results");
   try {
     return kind_of(file) == "model";
   } catch (const Hdf5Error& failure) {

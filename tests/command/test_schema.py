@@ -19,6 +19,8 @@ HELIX = {"type": "helix", "segments": 45, "helix_radius_m": 0.5, "helix_height_m
 JOB = {"name": "small", "kind": "sweep", "scene": ROD, "time": {"step_s": 0.02, "steps": 10},
        "guesses": ["zero", "previous"]}
 
+TRAINING = {"kind": "train", "scene": None, "time": None, "guesses": None, "data": "data.h5"}
+
 # Each with changes of JOB: a path of keys and the value there, or None to take it away.
 GOOD = {
     "nothing changed": {},
@@ -43,6 +45,13 @@ GOOD = {
     "a swept guess with a label": {"guesses": ["zero", {"grid": ["linear", "quadratic"], "label": "history"}]},
     "a whole number with a point": {"scene.segments": 10.0},
     "a data set": {"kind": "dataset", "guesses": None},
+    "a training": TRAINING,
+    "a training with all its keys": {**TRAINING, "validation_simulations": 3, "network": {
+        "encoding": "deck", "processor": "message_passing", "base": "none", "base_size": 3, "latent": 16, "steps": 2,
+        "globals": True, "best_length": False, "moves": True}, "training": {
+            "loss": "mse", "epochs": 3, "batch": 8, "shards": 2, "rate": 1e-3, "warm_up": 0.1, "weight_decay": 1e-4,
+            "clip": 2, "patience_epochs": 2, "ratio_every_epochs": 0, "ratio_simulations": 3}},
+    "a training in the loop": {**TRAINING, "training": {"loss": "in_the_loop", "cg_steps": 3}},
     "a data set of all systems": {"kind": "dataset", "guesses": None, "record": {"systems": "all", "solves": "summary"}},
 }
 BAD = {
@@ -61,7 +70,15 @@ BAD = {
     "an unknown word for a number": {"scene.stretch_compliance_per_j": "stiff"},
     "a name that is no file name": {"name": "a/b"},
     "a name that begins with a point": {"name": ".a"},
-    "a kind of a later version": {"kind": "train"},
+    "an unknown kind": {"kind": "trian"},
+    "a training with a scene": {**TRAINING, "scene": ROD},
+    "a training without data": {**TRAINING, "data": None},
+    "a training that is swept": {**TRAINING, "training": {"rate": {"grid": [1e-3, 2e-3]}}},
+    "sweeps with moves": {**TRAINING, "network": {"moves": True}, "training": {"loss": "mse"}},
+    "sweeps with hops": {**TRAINING, "network": {"processor": "sweeps", "steps": 3}},
+    "an energy loss with steps of CG": {**TRAINING, "training": {"cg_steps": 3}},
+    "a number for true": {**TRAINING, "network": {"best_length": 1}},
+    "a sweep with a network": {"network": {}},
     "two components": {"scene.gravity_m_s2": [0, -9.81]},
     "steps and duration": {"time.duration_s": 0.2},
     "neither steps nor duration": {"time.steps": None},

@@ -36,6 +36,9 @@ inline Json data_job() {
           {"time", {{"step_s", 0.02}, {"steps", 4}, {"newton_iterations", 3}}}};
 }
 
+/// A network that learns from a data set.
+inline Json train_job() { return {{"name", "net"}, {"kind", "train"}, {"data", "data.h5"}}; }
+
 /// The small job with the JSON text `value` at a JSON pointer such as "/scene/segments".
 inline Json with(const std::string& pointer, const std::string& value, Json job = small_job()) {
   job[Json::json_pointer(pointer)] = Json::parse(value);
@@ -58,7 +61,8 @@ inline Plan plan_of(const Json& job) { return Plan(job_of(job)); }
 /// What the user is told, "" if nothing is wrong.
 inline std::string refusal_of_text(const std::string& text) {
   try {
-    Plan plan(parse_job(text, "job.json"));
+    const Job job = parse_job(text, "job.json");
+    if (!is_training(job)) Plan plan(job);
   } catch (const JobError& e) {
     return e.what();
   }

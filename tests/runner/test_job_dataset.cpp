@@ -11,15 +11,14 @@ TEST_CASE("a data set has no keys of guesses and solves: they are refused with w
   const auto refused = [](const std::string& key, const std::string& value) {
     return refusal(with("/" + key, value, data_job())) ==
            "job.json: " + key +
-               ": this key belongs to kind \"sweep\", not to \"dataset\"; a data set is made with the direct solve "
-               "alone: remove this key";
+               ": this key belongs to kind \"sweep\", not to \"dataset\"; only a sweep tries guesses: remove this key";
   };
   CHECK(refused("solve", R"({"method": "direct"})"));
   CHECK(refused("guesses", R"(["zero"])"));
   CHECK(refused("evaluation", R"("paired")"));
   CHECK(refusal(with("/record", R"({"norms": "one"})", data_job())) ==
-        "job.json: record.norms: this key belongs to kind \"sweep\", not to \"dataset\"; a data set is made with the "
-        "direct solve alone: remove this key");
+        "job.json: record.norms: this key belongs to kind \"sweep\", not to \"dataset\"; only a sweep tries guesses: "
+        "remove this key");
 }
 
 TEST_CASE("record.systems is a data set's and no sweep's") {

@@ -41,9 +41,8 @@ TEST_CASE("a mistyped choice is refused with the nearest one") {
         "job.json: evaluation: \"pared\" is not allowed; must be one of \"paired\", \"closed_loop\"; did you mean "
         "\"paired\"?");
   CHECK(refusal(with("/kind", "\"swep\"")) ==
-        "job.json: kind: \"swep\" is not allowed; must be one of \"sweep\", \"dataset\"; did you mean \"sweep\"?");
-  CHECK(refusal(with("/kind", "\"train\"")) ==
-        "job.json: kind: \"train\" is not in this version of rodsweep; must be one of \"sweep\", \"dataset\"");
+        "job.json: kind: \"swep\" is not allowed; must be one of \"sweep\", \"dataset\", \"train\"; did you mean "
+        "\"sweep\"?");
 }
 
 TEST_CASE("an unknown key is refused with the nearest known one, or with all of them") {
@@ -62,7 +61,7 @@ TEST_CASE("an unknown key is refused with the nearest known one, or with all of 
 TEST_CASE("a missing key is refused with its meaning, unit and bounds") {
   CHECK(refusal(without("/scene/length_m")) ==
         "job.json: scene.length_m: missing: length of the rod [m], a number above 0 and at most 1000000");
-  CHECK(refusal(without("/kind")) == "job.json: kind: missing: kind of job, one of \"sweep\", \"dataset\"");
+  CHECK(refusal(without("/kind")) == "job.json: kind: missing: kind of job, one of \"sweep\", \"dataset\", \"train\"");
   CHECK(refusal(without("/time/steps")) ==
         "job.json: time: missing: the length of the run, exactly one of \"steps\", \"duration_s\"");
   CHECK(refusal(with("/time/duration_s", "1")) ==

@@ -16,10 +16,34 @@ TEST_CASE("every key of a job has a property with its help and default, or is re
     CHECK(property["description"].get<std::string>().find(key.help) == 0);
     const Json& required = schema["required"];
     const bool is_required = std::find(required.begin(), required.end(), key.name) != required.end();
-    CHECK(is_required == !key.preset.has_value());
+    CHECK(is_required == (!key.preset && key.only_for.empty()));
     if (key.preset && !key.preset->is_object()) CHECK(property["default"] == *key.preset);
   }
   CHECK(schema["additionalProperties"] == false);
+}
+
+TEST_CASE("what only some kinds of job have is required there and refused elsewhere") {
+  const Json rules = job_schema()["allOf"];
+  for (const Key& key : job_key().keys) {
+    CAPTURE(key.name);
+    for (const Json& rule : rules) {
+      const std::string kind = rule["if"]["properties"]["kind"]["const"];
+      const Json& required = rule["then"]["required"];
+      const bool is_required = std::find(required.begin(), required.end(), key.name) != required.end();
+      CHECK(is_required == (!key.preset && !key.only_for.empty() && belongs(key, kind)));
+      CHECK((rule["then"]["properties"].value(key.name, Json()) == false) == !belongs(key, kind));
+    }
+  }
+}
+
+TEST_CASE("a tag that is not given has its default: the keys of other values are refused") {
+  const Json rules = job_schema()["properties"]["network"]["allOf"];
+  const auto sweeps = std::find_if(rules.begin(), rules.end(), [](const Json& rule) {
+    return rule["if"]["properties"]["processor"]["const"] == "sweeps";
+  });
+  REQUIRE(sweeps != rules.end());
+  CHECK_FALSE((*sweeps)["if"].contains("required"));
+  CHECK((*sweeps)["then"]["properties"]["steps"] == false);
 }
 
 TEST_CASE("every guess has a definition, a name alone where nothing is required") {

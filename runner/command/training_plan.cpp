@@ -1,0 +1,165 @@
+#include "runner/command/training_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "network/coping_net_guess.hpp"
+#include "network/example_builder.hpp"
+#include "runner/terminal/text.hpp"
+#include "runner/training/training_data.hpp"
+#include "runner/training/validation_ratio.hpp"
+#include "solver/stopwatch.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr std::int64_t probed_simulations = 8;
+constexpr double probed_s = 0.5;
+
+/// What is known without computing anything.
+struct Extent {
+  std::size_t parameters = 0;
+  std::int64_t training_simulations = 0;
+  std::int64_t training_examples = 0, validation_examples = 0;  ///< at most
+  std::int64_t steps_per_epoch = 0, steps = 0;
+};
+
+/// What a probe tells. Seconds are of one core; what every rank does for itself is apart from what they share.
+struct Probe {
+  double bytes = 0;         ///< of all examples
+  double reading_s = 0;     ///< of the data, on every rank
+  double training_s = 0;    ///< of all steps
+  double validation_s = 0;  ///< of all losses and CG ratios
+};
+
+Extent extent_of(const TrainingJob& job, const DatasetReader& dataset) {
+  Extent extent;
+  extent.parameters = CopingNet<float>(job.network, 0).parameters().values().size();
+  extent.training_simulations = dataset.size() - job.validation_simulations;
+  for (std::int64_t i = 0; i < dataset.size(); ++i)
+    (i < extent.training_simulations ? extent.training_examples : extent.validation_examples) +=
+        dataset.task(i).systems;
+  extent.steps_per_epoch = extent.training_examples / job.training.batch;
+  extent.steps = extent.steps_per_epoch * job.training.epochs;
+  return extent;
+}
+
+double bytes_of(const Example& example) {
+  const ScaledSystem<float>& system = example.system;
+  Eigen::Index floats = 0;
+  for (const Tensor<float>* part : {&example.nodes, &example.edges, &example.unit, &example.edge_target,
+                                    &example.node_target, &system.diagonal, &system.coupling, &system.residual})
+    floats += part->size();
+  return static_cast<double>(floats) * sizeof(float) +
+         static_cast<double>(system.couplings.size() * sizeof(SystemPattern::Coupling) + sizeof(Example));
+}
+
+double seconds_of_ratio(const TrainingJob& job, const Model& model, RecordedSimulation simulation) {
+  const ValidationRatio ratio({std::move(simulation)});
+  const auto shared = std::make_shared<const Model>(model);
+  const Stopwatch watch;
+  ratio.measure(0, [&](const Scene& scene, const RecordedSimulation& of) {
+    return std::make_unique<CopingNetGuess>(shared, scene, of.constraint_dt_s, of.newton_iterations);
+  });
+  const int times = 1 + (job.ratio_every_epochs > 0 ? job.training.epochs / job.ratio_every_epochs : 0);
+  return watch.seconds() * times * static_cast<double>(std::min(job.ratio_simulations, job.validation_simulations));
+}
+
+Probe probe(const TrainingJob& job, const DatasetReader& dataset, const Extent& extent) {
+  Probe probe;
+  std::vector<Example> examples;
+  const std::int64_t tried = std::min(probed_simulations, extent.training_simulations);
+  const Stopwatch reading;
+  std::int64_t read = 0;
+  for (; read < tried || static_cast<int>(examples.size()) < job.training.batch; ++read) {
+    if (read == extent.training_simulations)
+      throw FileError(fmt::format("{} has too few examples for a batch of {}", job.data.native(), job.training.batch));
+    add_examples(job.network, dataset.read(read * extent.training_simulations / std::max(tried, read + 1)), examples);
+  }
+  probe.reading_s = reading.seconds() / static_cast<double>(read) * static_cast<double>(dataset.size());
+  for (const Example& example : examples) probe.bytes += bytes_of(example);
+  probe.bytes *= static_cast<double>(dataset.size()) / static_cast<double>(read);
+
+  Model model{CopingNet<float>(job.network, job.training.seed), feature_scales(job.network, examples)};
+  normalise(job.network, model.scales, examples);
+  Trainer trainer(model.net, examples, job.training);
+  std::vector<std::vector<float>> shards(static_cast<std::size_t>(job.training.shards),
+                                         std::vector<float>(trainer.shard_size()));
+  std::vector<const float*> gradients;
+  for (const std::vector<float>& shard : shards) gradients.push_back(shard.data());
+  int steps = -1;  // the first one touches memory for the first time
+  Stopwatch watch;
+  for (; steps < 3 || watch.seconds() < probed_s; ++steps) {
+    if (steps == 0) watch = Stopwatch();
+    for (std::size_t i = 0; i < shards.size(); ++i) trainer.compute(static_cast<int>(i), shards[i].data());
+    trainer.update(gradients);
+  }
+  probe.training_s = watch.seconds() / steps * static_cast<double>(extent.steps);
+
+  const auto batch = static_cast<std::size_t>(job.training.batch);
+  const Stopwatch forward;
+  for (int i = 0; i < 3; ++i) trainer.loss(examples, 0, batch);
+  probe.validation_s = forward.seconds() / 3 / static_cast<double>(batch) *
+                       static_cast<double>(extent.validation_examples) * job.training.epochs;
+  probe.validation_s += seconds_of_ratio(job, model, dataset.read(extent.training_simulations));
+  return probe;
+}
+
+nlohmann::ordered_json to_json(const Job& job, const TrainingJob& training, const Extent& extent,
+                               const std::optional<Probe>& probe) {
+  nlohmann::ordered_json json{{"job", job.path.native()},
+                              {"name", job.name},
+                              {"data", training.data.native()},
+                              {"parameters", extent.parameters},
+                              {"training_simulations", extent.training_simulations},
+                              {"validation_simulations", training.validation_simulations},
+                              {"most_training_examples", extent.training_examples},
+                              {"most_validation_examples", extent.validation_examples},
+                              {"epochs", training.training.epochs},
+                              {"steps", extent.steps}};
+  if (!probe) return json;
+  json["bytes_per_rank"] = probe->bytes;
+  json["core_hours"] = (probe->reading_s + probe->training_s + probe->validation_s) / 3600;
+  return json;
+}
+
+std::string to_text(const PlanOptions& options, const Job& job, const TrainingJob& training, const Extent& extent,
+                    const std::optional<Probe>& probe) {
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int ranks = std::min(cores, training.training.shards);
+  RunOptions run;
+  run.job = options.job;
+  run.program = options.program;
+  std::string text = fmt::format("job       {} ({})\n", job.name, job.path.native());
+  text += fmt::format("data      {}\n", training.data.native());
+  text += fmt::format("examples  {} of {} simulations to learn from, {} of {} to validate with, at most\n",
+                      extent.training_examples, extent.training_simulations, extent.validation_examples,
+                      training.validation_simulations);
+  text += fmt::format("network   {} parameters\n", extent.parameters);
+  text += fmt::format("steps     {}: {} in each of {} epochs\n", extent.steps, extent.steps_per_epoch,
+                      training.training.epochs);
+  if (probe) {
+    const double seconds = probe->reading_s + (probe->training_s + probe->validation_s) / ranks;
+    text += fmt::format("memory    about {} on each rank\n", bytes_text(static_cast<std::int64_t>(probe->bytes)));
+    text += fmt::format("time      about {} on {} core{} here\n", duration_text(seconds), ranks, ranks == 1 ? "" : "s");
+  }
+  return text + "next      " + run_command(run, ranks);
+}
+
+}  // namespace
+
+ExitCode show_training_plan(const PlanOptions& options, const Job& job, Console& console) {
+  const TrainingJob training = training_job(job);
+  const DatasetReader dataset = open_dataset(training, job);
+  const Extent extent = extent_of(training, dataset);
+  std::optional<Probe> probed;
+  if (options.probe) probed = probe(training, dataset, extent);
+  console.result(options.json ? to_json(job, training, extent, probed).dump(2)
+                              : to_text(options, job, training, extent, probed));
+  return ExitCode::ok;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,14 @@
+// The command `plan` for a job of kind "train": parameters, examples, steps, and, from a few examples and steps really
+// computed, memory and time. Throws JobError and FileError. A probe needs PETSc.
+#pragma once
+
+#include "runner/command/command_line.hpp"
+#include "runner/command/exit_codes.hpp"
+#include "runner/job/job.hpp"
+#include "runner/terminal/console.hpp"
+
+namespace rodsweep {
+
+ExitCode show_training_plan(const PlanOptions& options, const Job& job, Console& console);
+
+}  // namespace rodsweep

@@ -1,0 +1,70 @@
+// Simulations with all that a data set would hold of them, and examples made of these.
+#pragma once
+
+#include <stdexcept>
+
+#include "network/example_builder.hpp"
+#include "solver/time_step.hpp"
+#include "support.hpp"
+
+namespace rodsweep::test {
+
+/// Direct solves that are recorded as a data set records them.
+class Recorder : public LinearSolve {
+ public:
+  explicit Recorder(const Scene& scene) : scene_(scene), direct_(scene) {}
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override {
+    const SolveOutcome outcome = direct_.solve(system, at, assemble_s, delta_lambda);
+    const Rod& rod = scene_.rods[static_cast<std::size_t>(at.rod)];
+    systems.push_back(
+        {at, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, delta_lambda});
+    return outcome;
+  }
+
+  std::vector<RecordedSystem> systems;
+
+ private:
+  const Scene& scene_;
+  DirectSolve direct_;
+};
+
+inline RecordedSimulation recorded_simulation(Scene scene, int steps, int newton_iterations = 2) {
+  RecordedSimulation out;
+  out.scene = scene;
+  out.step_s = 0.02;
+  out.newton_iterations = newton_iterations;
+  Recorder recorder(scene);
+  LinearProjection projection(scene, recorder);
+  TimeStepper stepper(scene, {out.step_s, newton_iterations, 0});
+  out.constraint_dt_s = stepper.constraint_dt();
+  for (int step = 0; step < steps; ++step)
+    if (stepper.step(projection).outcome != SolveOutcome::converged) throw std::runtime_error("a step failed");
+  out.systems = std::move(recorder.systems);
+  return out;
+}
+
+/// A rod of some stiffness and angle that differ with `number`.
+inline Scene sample_scene(int number) {
+  BendingRod rod = bending_rod(4 + number % 3);
+  rod.initial_angle_deg = 10 + 7 * (number % 5);
+  rod.youngs_modulus_pa = 1e5 * (1 + number);
+  return build_scene(rod);
+}
+
+struct Examples {
+  std::vector<Example> examples;
+  FeatureScales scales;
+};
+
+/// Normalised by themselves.
+inline Examples sample_examples(const CopingNetSettings& settings, int simulations, int steps) {
+  Examples out;
+  for (int i = 0; i < simulations; ++i)
+    add_examples(settings, recorded_simulation(sample_scene(i), steps), out.examples);
+  out.scales = feature_scales(settings, out.examples);
+  normalise(settings, out.scales, out.examples);
+  return out;
+}
+
+}  // namespace rodsweep::test
