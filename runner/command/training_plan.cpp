@@ -17,7 +17,7 @@ namespace rodsweep {
 namespace {
 
 constexpr std::int64_t probed_simulations = 8;
-constexpr double probed_s = 1;
+constexpr double probed_s = 0.5;
 
 /// What is known without computing anything.
 struct Extent {

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double shortest_save_pause_s = 1, longest_save_pause_s = 30;
+constexpr double most_of_time_for_saving = 0.02, longest_unsaved_s = 30;
 
 ExitCode exit_code_of(Ending ending) {
   switch (ending) {
@@ -38,6 +38,7 @@ class TrainingRun {
   void advise(const Placement& where);
   void show_progress();
   void save(bool ends);
+  bool save_is_due() const;
   bool writes() const { return mpi_.rank() == 0; }
 
   const RunOptions& options_;
@@ -52,6 +53,7 @@ class TrainingRun {
   std::optional<ProgressLine> progress_;
   ModelCard card_;
   Stopwatch since_begin_, since_save_;  ///< of the steps; of the last time that the file was written
+  double save_s_ = 0;                   ///< how long that took
   std::int64_t first_step_ = 0;
 };
 
@@ -125,9 +127,7 @@ ExitCode TrainingRun::run(const StopSignal& signal) {
   while (!stops && training_->ending() == Ending::none) {
     stops = training_->step(signal.received() != 0);
     show_progress();
-    const double unsaved_s = since_save_.seconds();
-    if (writes() && unsaved_s > (training_->at_epoch_begin() ? shortest_save_pause_s : longest_save_pause_s))
-      save(false);
+    if (writes() && save_is_due()) save(false);
   }
   progress_->clear();
   if (training_->ending() != Ending::none && training_->best_epoch() > 0) training_->end();
@@ -154,6 +154,13 @@ void TrainingRun::show_progress() {
                                 since_begin_.seconds() / done * left));
 }
 
+/// After an epoch, unless that would take much of the time (a slow disk), and in long epochs now and then.
+bool TrainingRun::save_is_due() const {
+  const double unsaved_s = since_save_.seconds();
+  return unsaved_s > longest_unsaved_s ||
+         (training_->at_epoch_begin() && save_s_ < most_of_time_for_saving * unsaved_s);
+}
+
 /// What is known now; at the end without what it takes to go on, unless it is to go on.
 void TrainingRun::save(bool ends) {
   card_.epochs = training_->epochs();
@@ -166,9 +173,11 @@ void TrainingRun::save(bool ends) {
     card_.starts.back().end_utc = utc_now();
     card_.starts.back().exit_code = static_cast<int>(exit_code_of(card_.ending));
   }
+  const Stopwatch watch;
   std::optional<Checkpoint> checkpoint;
   if (card_.ending == Ending::none) checkpoint = training_->checkpoint();
   file_->save(card_, training_->kept(), checkpoint);
+  save_s_ = watch.seconds();
   since_save_ = Stopwatch();
 }
 

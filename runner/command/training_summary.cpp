@@ -26,7 +26,8 @@ std::string ending_text(const ModelCard& card) {
 
 std::string ratio_table(const ModelCard& card) {
   if (std::isnan(card.cg_ratio.front())) return "";
-  std::string text = fmt::format("CG ratio on {:3} validation simulations ", card.ratio_simulations);
+  std::string text =
+      fmt::format("{:<41}", fmt::format("CG ratio on {} validation simulations", card.ratio_simulations));
   for (const double tolerance : ValidationRatio::tolerances()) text += fmt::format("{:>7.0e}", tolerance);
   const auto row = [&](const char* name, const ValidationRatio::Ratios& ratios) {
     text += fmt::format("\n  {:<39}", name);

@@ -1,10 +1,9 @@
 // Data sets in files: what is read back, and which files are refused.
 #include <catch2/catch.hpp>
 
-#include "file_examples.hpp"
+#include "data_set_examples.hpp"
 #include "recorded_examples.hpp"
 #include "runner/dataset/dataset_reader.hpp"
-#include "runner/experiment/evaluation.hpp"
 #include "runner/file/pack.hpp"
 
 namespace rodsweep {
@@ -22,22 +21,6 @@ Json ragged_job() {
   job["scene"]["segments"] = {{"integer", {4, 12}}};
   job["scene"]["damping_per_s"] = 0.5;
   return job;
-}
-
-/// The file of a job, of which tasks from `failing` on fail, or are left out where `pending`.
-Plan make(const fs::path& path, const Json& job, std::int64_t failing = 1000, bool pending = false) {
-  const Plan plan = plan_of(job);
-  ResultsFile file = ResultsFile::create(path, plan, test_provenance(), MPI_COMM_SELF);
-  for (const Task& task : plan.tasks()) {
-    if (pending && task.index >= failing) continue;
-    TaskRecord record;
-    record.prepare(task, axis_sizes(plan));
-    evaluate(task, plan.spec(task.index), record, [] { return false; });
-    if (task.index >= failing) record.outcome = TaskOutcome::diverged, record.message = "step 2: too bad";
-    file.write(task, record);
-  }
-  file.close();
-  return plan;
 }
 
 std::string refusal_of(const fs::path& path) {
@@ -75,7 +58,7 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
     Json job = ragged_job();
     job["record"] = {{"systems", systems}, {"solves", "summary"}};
     const fs::path path = folder / (systems + ".h5");
-    const Plan plan = make(path, job);
+    const Plan plan = make_data_set(path, job);
     const DatasetReader data(path);
     REQUIRE(data.size() == 3);
     CHECK(data.note().empty());
@@ -98,7 +81,7 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
 
 TEST_CASE("simulations are of different sizes, and a range of them is read") {
   const TemporaryFolder folder;
-  const Plan plan = make(folder / "a.h5", ragged_job());
+  const Plan plan = make_data_set(folder / "a.h5", ragged_job());
   const DatasetReader data(folder / "a.h5");
   const std::vector<RecordedSimulation> last = data.read(1, 2);
   REQUIRE(last.size() == 2);
@@ -113,22 +96,22 @@ TEST_CASE("simulations are of different sizes, and a range of them is read") {
 
 TEST_CASE("failed simulations are left out with a note") {
   const TemporaryFolder folder;
-  make(folder / "a.h5", ragged_job(), 2);
+  make_data_set(folder / "a.h5", ragged_job(), 2);
   const DatasetReader data(folder / "a.h5");
   CHECK(data.size() == 2);
   CHECK(data.note() == "1 of 3 simulations of " + (folder / "a.h5").native() +
                            " failed and are left out (the first: task 2, diverged: step 2: too bad)");
-  make(folder / "none.h5", ragged_job(), 0);
+  make_data_set(folder / "none.h5", ragged_job(), 0);
   CHECK_THAT(refusal_of(folder / "none.h5"), Contains("holds no simulation that can be used: all 3 failed"));
 }
 
 TEST_CASE("the hash is that of the data: the same for the same job, another for another") {
   const TemporaryFolder folder;
-  make(folder / "a.h5", ragged_job());
-  make(folder / "again.h5", ragged_job());
+  make_data_set(folder / "a.h5", ragged_job());
+  make_data_set(folder / "again.h5", ragged_job());
   Json other = ragged_job();
   other["seed"] = 5;
-  make(folder / "other.h5", other);
+  make_data_set(folder / "other.h5", other);
   pack_results(folder / "a.h5", folder / "packed.h5");
   const std::string hash = DatasetReader(folder / "a.h5").hash();
   CHECK(hash.size() == 16);
@@ -139,7 +122,7 @@ TEST_CASE("the hash is that of the data: the same for the same job, another for 
 
 TEST_CASE("a packed copy is read like the original") {
   const TemporaryFolder folder;
-  make(folder / "a.h5", ragged_job());
+  make_data_set(folder / "a.h5", ragged_job());
   pack_results(folder / "a.h5", folder / "packed.h5");
   const RecordedSimulation a = DatasetReader(folder / "a.h5").read(1), b = DatasetReader(folder / "packed.h5").read(1);
   REQUIRE(a.systems.size() == b.systems.size());
@@ -157,7 +140,7 @@ TEST_CASE("what is no finished data set is refused with what to do") {
 
   Json sweep = small_job();
   sweep["time"]["steps"] = 1;
-  make(folder / "sweep.h5", sweep);
+  make_data_set(folder / "sweep.h5", sweep);
   CHECK_THAT(refusal_of(folder / "sweep.h5"),
              EndsWith("holds the results of a sweep, not a data set: give the file of a job of kind \"dataset\""));
 
@@ -165,7 +148,7 @@ TEST_CASE("what is no finished data set is refused with what to do") {
   CHECK_THAT(refusal_of(folder / "task.h5"),
              EndsWith("holds one task of a data set, made by `rodsweep rerun`: give the file of the data set"));
 
-  make(folder / "part.h5", ragged_job(), 1, true);
+  make_data_set(folder / "part.h5", ragged_job(), 1, true);
   CHECK_THAT(refusal_of(folder / "part.h5"),
              Contains("is not complete: 2 of 3 simulations are missing; finish it with: rodsweep run ") &&
                  EndsWith("-o " + (folder / "part.h5").native() + " --resume"));
@@ -174,7 +157,7 @@ TEST_CASE("what is no finished data set is refused with what to do") {
 TEST_CASE("a damaged simulation is refused, the others are read") {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.h5";
-  const Plan plan = make(path, ragged_job());
+  const Plan plan = make_data_set(path, ragged_job());
   {
     const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
     const auto row = static_cast<hsize_t>(plan.task(1).first_system_joint);

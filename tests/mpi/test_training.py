@@ -1,0 +1,204 @@
+#!/usr/bin/python3
+"""Training under mpirun: the same bits on any number of ranks, after a stop and after being killed; what is refused and said.
+
+Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
+"""
+
+import json
+import os
+import signal
+import time
+import unittest
+
+import h5py
+import numpy as np
+from test_sweeps import ALL_DONE, STOPPED, SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, kill_all, ranks_of, \
+    rodsweep, start, status
+
+
+def train_job(name="train", **changes):
+    """A toy that learns in a second."""
+    training = {"epochs": 3, "batch": 8, "shards": 4, "ratio_every_epochs": 2, "ratio_simulations": 5}
+    values = {"name": name, "kind": "train", "seed": 5, "data": "data.h5", "validation_simulations": 6,
+              "network": {"base_size": 3, "latent": 16}, **changes}
+    values["training"] = {**training, **changes.get("training", {})}
+    with open(name + ".json", "w", encoding="utf-8") as file:
+        json.dump(values, file)
+    return name + ".json"
+
+
+class TrainingCase(SweepCase):
+    def setUp(self):
+        if not os.path.exists("data.h5"):
+            self.assert_exit(rodsweep(0, "run", data_job(samples=12, steps=10, record={"systems": "first"}), "-o", "data.h5"),
+                             ALL_DONE)
+
+    def assert_finished(self, path):
+        self.assertTrue(status(path)["ended"])
+        with h5py.File(path) as file:
+            self.assertNotIn("checkpoint", file)
+        self.assertEqual([name for name in os.listdir(".") if "unfinished" in name], [])
+
+
+class Learning(TrainingCase):
+    def test_models_are_the_same_on_1_2_4_and_6_ranks(self):
+        for name, changes in (
+                ("sweeps", {}),
+                ("hops", {"network": {"encoding": "deck", "processor": "message_passing", "base": "none", "latent": 16,
+                                      "steps": 2, "best_length": False, "moves": True}, "training": {"loss": "mse"}})):
+            path = train_job(name, **changes)
+            alone = rodsweep(0, "run", path, "-o", f"{name}.h5")
+            self.assert_exit(alone, ALL_DONE)
+            self.assertIn("all 3 epochs; the model is that of epoch", alone.stdout)
+            self.assertIn("CG ratio on 5 validation simulations", alone.stdout)
+            for ranks in (2, 4, 6) if name == "sweeps" else (3,):
+                with self.subTest(name=name, ranks=ranks):
+                    ran = rodsweep(ranks, "run", path, "-o", f"{name}{ranks}.h5")
+                    self.assert_exit(ran, ALL_DONE)
+                    self.assert_same_results(f"{name}.h5", f"{name}{ranks}.h5")
+                    self.assert_finished(f"{name}{ranks}.h5")
+                    self.assertEqual(status(f"{name}{ranks}.h5")["starts"][0]["ranks"], ranks)
+
+    def test_what_a_model_file_tells(self):
+        self.assert_exit(rodsweep(0, "run", train_job("told")), ALL_DONE)
+        with h5py.File("results/told.h5") as file:
+            self.assertEqual(file.attrs["kind"], b"model")
+            self.assertEqual(file["training/training_loss"].shape, (3,))
+            ratios = file["training/cg_ratio"][:]
+            self.assertEqual(np.isnan(ratios[:, 0]).tolist(), [True, False, True])
+            self.assertTrue((file["validation/cg_ratio"][:] > 0).all())
+            self.assertEqual(file["model/weights/encode.weight"].shape[0], 16)
+            for path in ("training/rate", "timing/epoch_s", "validation/base_cg_ratio"):
+                self.assertTrue(file[path].attrs["meaning"])
+        told = json.loads(rodsweep(0, "info", "results/told.h5", "--json").stdout)
+        self.assertEqual((told["kind"], told["epochs"], told["network"]["latent"]), ("model", 3, 16))
+
+
+class Stopping(TrainingCase):
+    """A training of a second or two, hit in the middle."""
+
+    def setUp(self):
+        super().setUp()
+        self.job = train_job("long", training={"epochs": 1000, "ratio_every_epochs": 100})
+        if not os.path.exists("whole.h5"):
+            self.assert_exit(rodsweep(2, "run", self.job, "-o", "whole.h5"), ALL_DONE)
+
+    def interrupt(self, path, ranks, hit):
+        process = start(ranks, "run", self.job, "-o", path)
+        for _ in range(600):
+            if os.path.exists(path) and status(path)["epochs"] >= 3:
+                break
+            self.assertIsNone(process.poll())
+            time.sleep(0.02)
+        hit(process)
+        stdout, stderr = process.communicate(timeout=30)
+        now = status(path)
+        self.assertFalse(now["ended"], "the training is too short to be interrupted")
+        return process.returncode, stdout, stderr
+
+    def resume(self, path, ranks):
+        resumed = rodsweep(ranks, "run", self.job, "-o", path, "--resume")
+        self.assert_exit(resumed, ALL_DONE)
+        self.assertIn("continued after step", resumed.stderr)
+        self.assert_same_results("whole.h5", path)
+        self.assertTrue(status(path)["ended"])
+        self.assertEqual(len(status(path)["starts"]), 2)
+
+    def test_after_a_signal_to_one_rank_or_to_all(self):
+        for name, ranks, hit in (("one", 3, lambda p: os.kill(ranks_of(p)[2], signal.SIGTERM)),
+                                 ("all", 2, lambda p: p.send_signal(signal.SIGUSR1)),
+                                 ("alone", 0, lambda p: p.send_signal(signal.SIGINT))):
+            with self.subTest(name=name):
+                code, stdout, stderr = self.interrupt(f"{name}.h5", ranks, hit)
+                self.assertEqual(code, STOPPED, stderr)
+                self.assertIn(" of 1000 epochs", stdout)
+                self.assertIn("nothing is lost. To continue:", stderr)
+                self.assertEqual(status(f"{name}.h5")["starts"][0]["exit_code"], STOPPED)
+                self.resume(f"{name}.h5", 4 if name == "one" else 1)
+
+    def test_after_all_ranks_are_killed(self):
+        self.interrupt("killed.h5", 2, kill_all)
+        self.assertIsNone(status("killed.h5")["starts"][0]["end"])
+        self.resume("killed.h5", 2)
+
+
+class Refused(TrainingCase):
+    def assert_refused_once(self, process, text):
+        self.assert_exit(process, USER_ERROR)
+        self.assertEqual(process.stderr.count(text), 1, process.stderr)
+        self.assertEqual(process.stderr.count("rodsweep: error:"), 1, process.stderr)
+
+    def test_what_a_training_does_not_touch(self):
+        path = train_job("first")
+        self.assert_exit(rodsweep(0, "run", path, "-o", "first.h5"), ALL_DONE)
+        before = checksum("first.h5")
+        other = train_job("other", training={"rate": 0.01})
+        for number, (words, text) in enumerate((
+                ((path, "-o", "first.h5"), "first.h5 exists already"),
+                ((other, "-o", "first.h5", "--resume"),
+                 "first.h5 cannot be continued with other.json: training.rate was 0.002 and is 0.01"),
+                ((path, "-o", "data.h5", "--resume"), "data.h5 holds the results of a dataset, not a model"),
+                ((path, "-o", "new.h5", "--extend", "data.h5"), "a training extends nothing"),
+                ((train_job("lost", data="nowhere.h5"),), "lost.json: data: there is no file nowhere.h5"),
+                ((train_job("few", validation_simulations=24),), "few.json: validation_simulations: 24 is not allowed"),
+                ((train_job("huge", training={"batch": 4000}),), "too few for batches of 4000"),
+                ((data_job("data"), "-o", "first.h5", "--resume"), "first.h5 holds a trained model"))):
+            with self.subTest(text=text):
+                self.assert_refused_once(rodsweep(2 if number < 2 else 0, "run", *words), text)
+        for words in (("query", "first.h5"), ("pack", "first.h5"), ("rerun", "first.h5", "0")):
+            with self.subTest(words=words):
+                self.assert_refused_once(rodsweep(0, *words), "first.h5 holds a trained model, not results of simulations")
+        self.assertEqual(checksum("first.h5"), before)
+        again = rodsweep(2, "run", path, "-o", "first.h5", "--resume")
+        self.assert_exit(again, ALL_DONE)
+        self.assertIn("the training has ended already", again.stderr)
+        self.assertEqual(checksum("first.h5"), before)
+        self.assertFalse(os.path.exists("results/lost.h5"))
+
+    def stopped_training(self, name):
+        """A training that has not ended, in NAME.h5: its job."""
+        path = train_job(name, training={"epochs": 1000000})
+        process = start(0, "run", path, "-o", f"{name}.h5")
+        while not (os.path.exists(f"{name}.h5") and status(f"{name}.h5")["epochs"]):
+            self.assertIsNone(process.poll())
+            time.sleep(0.02)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, STOPPED)
+        return path
+
+    def test_another_data_set_is_no_continuation(self):
+        self.stopped_training("moved")
+        other = data_job("other_data", samples=12, steps=10, seed=99, record={"systems": "first"})
+        self.assert_exit(rodsweep(0, "run", other, "-o", "other_data.h5"), ALL_DONE)
+        path = train_job("moved", data="other_data.h5", training={"epochs": 1000000})
+        self.assert_refused_once(rodsweep(2, "run", path, "-o", "moved.h5", "--resume"),
+                                 "other_data.h5 is not the data set that it was begun with")
+
+    def test_a_training_that_diverges_says_so_and_keeps_what_it_has(self):
+        path = self.stopped_training("wild")
+        kept = json.loads(rodsweep(0, "info", "wild.h5", "--json").stdout)
+        with h5py.File("wild.h5", "r+") as file:
+            file["checkpoint/weights"][:] *= np.float32(1e30)
+        ran = rodsweep(2, "run", path, "-o", "wild.h5", "--resume")
+        self.assert_exit(ran, TASKS_FAILED)
+        self.assertIn("loss is not finite any more", ran.stdout)
+        now = json.loads(rodsweep(0, "info", "wild.h5", "--json").stdout)
+        self.assertEqual((now["hash"], now["best_epoch"]), (kept["hash"], kept["best_epoch"]))
+        self.assertEqual(now["starts"][1]["exit_code"], TASKS_FAILED)
+        self.assert_exit(rodsweep(0, "run", path, "-o", "wild.h5", "--resume"), TASKS_FAILED)
+
+    def test_plan_and_validate(self):
+        path = train_job("planned")
+        planned = json.loads(rodsweep(0, "plan", path, "--json").stdout)
+        self.assertEqual((planned["most_training_examples"], planned["epochs"], planned["steps"]), (180, 3, 66))
+        self.assertGreater(planned["core_hours"], 0)
+        self.assertGreater(planned["bytes_per_rank"], 1e5)
+        self.assertNotIn("core_hours", json.loads(rodsweep(0, "plan", path, "--json", "--no-probe").stdout))
+        said = rodsweep(3, "plan", path)
+        self.assertEqual(said.stdout.count("parameters"), 1, said.stdout)
+        self.assertIn("planned.json: sound, trains a model", rodsweep(0, "validate", path).stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,58 @@
+// For tests of trainings: a toy job, its data set, and a training without files.
+#pragma once
+
+#include "data_set_examples.hpp"
+#include "runner/training/training.hpp"
+
+namespace rodsweep {
+
+/// Eight short simulations of rods that differ.
+inline Json toy_data_job() {
+  Json job = data_job();
+  job["samples"] = 8;
+  job["scene"]["segments"] = {{"integer", {4, 7}}};
+  job["scene"]["initial_angle_deg"] = uniform(0, 45);
+  job["scene"]["youngs_modulus_pa"] = {{"log_uniform", {1e4, 1e6}}};
+  job["time"]["steps"] = 6;
+  return job;
+}
+
+/// Four epochs of three steps.
+inline Json toy_train_job() {
+  Json job = train_job();
+  job["validation_simulations"] = 4;
+  job["network"] = {{"base", "none"}, {"latent", 8}};
+  job["training"] = {{"epochs", 4}, {"batch", 8}, {"shards", 4}, {"ratio_every_epochs", 2}, {"ratio_simulations", 3}};
+  return job;
+}
+
+/// A job with its data, read once, and trainings of it in this process.
+struct Toy {
+  TemporaryFolder folder;
+  Job job;
+  TrainingJob training;
+  TrainingData data;
+  std::vector<RecordedSimulation> simulations;
+
+  explicit Toy(const Json& values = toy_train_job()) {
+    make_data_set(folder / "data.h5", toy_data_job());
+    job = parse_job(values.dump(), folder / "job.json");
+    training = training_job(job);
+    const DatasetReader dataset = open_dataset(training, job);
+    data = training_data(training, dataset);
+    simulations = ratio_simulations(training, dataset, 0, 1);
+  }
+
+  Training begin() const { return Training(training, data, simulations, MPI_COMM_SELF); }
+  /// To its end.
+  Training run() const {
+    Training result = begin();
+    finish(result);
+    return result;
+  }
+  static void finish(Training& training) {
+    while (training.ending() == Ending::none) training.step(false);
+  }
+};
+
+}  // namespace rodsweep
