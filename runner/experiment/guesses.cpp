@@ -3,7 +3,9 @@
 #include <stdexcept>
 
 #include "network/coping_net_guess.hpp"
+#include "network/knn_guess.hpp"
 #include "runner/experiment/models.hpp"
+#include "runner/experiment/training_sets.hpp"
 #include "solver/subspace_guess.hpp"
 #include "solver/time_step.hpp"
 
@@ -27,6 +29,9 @@ std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec&
     case Kind::copingnet:
       return std::make_unique<CopingNetGuess>(shared_model(guess.model), scene, constraint_dt(scene, task.time.step_s),
                                               task.time.newton_iterations);
+    case Kind::knn:
+      return std::make_unique<KnnGuess>(shared_knn_set(guess.data, guess.simulations), scene,
+                                        constraint_dt(scene, task.time.step_s), guess.neighbours);
     case Kind::oracle: return std::make_unique<OracleGuess>(scene, guess.error, guess.error_kind, task.seed);
     case Kind::guarded:
       return std::make_unique<GuardedGuess>(scene, make_guess(guess.inner.front(), task, scene), guess.threshold);

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "runner/experiment/guesses.hpp"
+#include "runner/experiment/solve_rows.hpp"
 #include "runner/job/plan.hpp"
-#include "solver/observables.hpp"
 #include "solver/stopwatch.hpp"
 
 namespace rodsweep {
@@ -105,19 +105,12 @@ MeasuredSolve::RodSolvers& MeasuredSolve::solvers_for(const LinearSystem& system
   return *solvers;
 }
 
-std::size_t MeasuredSolve::row_of(const SolvePosition& at) const {
-  const auto newton_iterations = static_cast<std::size_t>(spec_.time.newton_iterations);
-  const std::size_t iteration =
-      static_cast<std::size_t>(at.step) * newton_iterations + static_cast<std::size_t>(at.newton);
-  return iteration * solvers_.size() + static_cast<std::size_t>(at.rod);
-}
-
 SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
                                   VectorX& delta_lambda) {
   const Stopwatch whole;
   elapsed_s_ += assemble_s;
   RodSolvers& solvers = solvers_for(system, at.rod);
-  const std::size_t row = row_of(at);
+  const std::size_t row = solve_row(spec_, solvers_.size(), at);
 
   SolveOutcome outcome = SolveOutcome::not_run;
   for (double& seconds : solvers.direct_s) {
@@ -126,12 +119,7 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
     seconds = watch.seconds();
   }
   if (spec_.record.solves) {
-    record_.step[row] = at.step;
-    record_.newton[row] = static_cast<std::int16_t>(at.newton);
-    record_.rod[row] = static_cast<std::int16_t>(at.rod);
-    record_.newton_residual[row] = system.newton_residual();
-    record_.solve_joint_gap[row] = joint_gap(scene_.rods[static_cast<std::size_t>(at.rod)]);
-    record_.rhs_norm[row] = system.rhs().norm();
+    record_system(system, scene_.rods[static_cast<std::size_t>(at.rod)], at, row, record_);
     record_.assemble_s[row] = static_cast<float>(assemble_s);
     record_.direct_s[row] = static_cast<float>(median(solvers.direct_s));
   }

@@ -41,7 +41,6 @@ class MeasuredSolve : public LinearSolve {
   struct Guess;       // one guess under test
   struct RodSolvers;  // the solvers of one rod
   RodSolvers& solvers_for(const LinearSystem& system, int rod);
-  std::size_t row_of(const SolvePosition& at) const;
   void count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution);

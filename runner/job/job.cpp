@@ -21,7 +21,7 @@ void check_guesses(const Job& job, const SweepSpace& space) {
   const auto& guesses = job.values["guesses"];
   if (!space.can_be("solve.method", "cg")) {
     if (guesses.empty()) return;
-    throw job_error(job.path, "guesses", "solve.method \"direct\" uses no initial guess; remove this key");
+    throw job_error(job.path, "guesses", "only solve.method \"cg\" uses initial guesses; remove this key");
   }
   for (const auto& guess : guesses) {
     if (guess.contains("zero")) return;

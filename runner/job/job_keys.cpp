@@ -94,9 +94,13 @@ Key time() {
 Key solve() {
   return object_key("solve", "the linear solves",
                     {
-                        choice_key("method", "conjugate gradients with counted iterations, or the direct solve alone",
-                                   {"cg", "direct"})
+                        choice_key("method",
+                                   "conjugate gradients with counted iterations, the direct solve alone, or a "
+                                   "network's answers applied without a solve, in a closed loop",
+                                   {"cg", "direct", "end_to_end"})
                             .defaults_to("cg"),
+                        file_key("model", "model file of a train job")
+                            .only({"end_to_end"}, "a model that starts cg is a guess, \"copingnet\""),
                         choice_key("preconditioner", "preconditioner of cg",
                                    {"none", "jacobi", "point_block_jacobi", "icc", "cholesky", "lagged_cholesky"})
                             .defaults_to("jacobi"),
@@ -122,7 +126,8 @@ Key solve() {
                             .at_least(1)
                             .at_most(1000)
                             .defaults_to(1),
-                    })
+                    },
+                    "method")
       .defaults_to(Json::object());
 }
 
@@ -241,6 +246,14 @@ const std::vector<Key>& guess_keys() {
       object_key("pod", "best approximation within the last `size` solutions", {subspace_size()}),
       object_key("copingnet", "a learned guess: a network's correction of the guess that it was trained with",
                  {file_key("model", "model file of a train job")}),
+      object_key("knn", "the solutions of the most similar systems of a data set, resampled by arc length and averaged",
+                 {integer_key("k", "how many").at_least(1).at_most(1000).defaults_to(3).also_called({"neighbours"}),
+                  file_key("data", "data set: the file of a job of kind \"dataset\"").unlabelled(),
+                  integer_key("simulations", "the first so many simulations of the data set, or fewer; 0: all")
+                      .at_least(0)
+                      .at_most(1000000)
+                      .defaults_to(0)
+                      .unlabelled()}),
       object_key("oracle", "the exact solution plus a random error",
                  {number_key("error", "A-norm of the error relative to the solution's")
                       .at_least(0)

@@ -78,6 +78,11 @@ Key& Key::unswept(const char* advice) {
   no_sweep_advice = advice;
   return *this;
 }
+Key& Key::unlabelled() {
+  labelled = false;
+  return *this;
+}
+
 Key& Key::setting() {
   sweepable = false;
   parameter = false;

@@ -41,6 +41,7 @@ struct Key {
   std::vector<std::string> choices;
   Text text = Text::any;
   std::optional<nlohmann::ordered_json> preset;  ///< value if the key is absent; none: the key is required
+  bool labelled = true;                          ///< of a guess: part of its label?
   bool sweepable = true;                         ///< may its value be a sweep?
   bool parameter = true;                         ///< part of a task's parameters, not a setting of the whole job?
   std::string no_sweep_advice;                   ///< what to do instead of sweeping it
@@ -64,6 +65,7 @@ struct Key {
   Key& of_form(Text form);
   Key& also_called(std::vector<std::string> words);
   Key& unswept(const char* advice = "");
+  Key& unlabelled();
   Key& setting();  ///< concerns the whole job: neither swept nor a parameter of its tasks
 };
 

@@ -34,6 +34,7 @@ Plan::Plan(Job job)
     fill(values, point);
     const SceneSpec scene = scene_spec(values);
     check_scene(scene, job_);
+    check_method(values, job_);
     const TimeSpec time = time_spec(values, job_);
 
     Task task;
@@ -50,7 +51,7 @@ Plan::Plan(Job job)
     task.cost = static_cast<double>(task.segments) * time.steps * time.newton_iterations;
 
     const bool own_trajectories =
-        evaluation(values) == Evaluation::closed_loop && solve_spec(values).method == Method::cg;
+        evaluation(values) == Evaluation::closed_loop && solve_spec(values, job_).method == Method::cg;
     const int copies = own_trajectories ? static_cast<int>(guess_labels_.size()) : 1;
     for (int copy = 0; copy < copies; ++copy) {
       task.index = size();
@@ -111,7 +112,7 @@ TaskSpec Plan::spec(std::int64_t index) const {
   TaskSpec spec;
   spec.scene = scene_spec(point);
   spec.time = time_spec(point, job_);
-  spec.solve = solve_spec(point);
+  spec.solve = solve_spec(point, job_);
   spec.evaluation = evaluation(point);
   if (spec.solve.method == Method::cg) spec.guesses = guess_specs(point, job_);
   spec.own_guess = task.own_guess;

@@ -33,7 +33,7 @@ TaskIdentity Plan::identity(std::int64_t index) const {
   Point point;
   fill(point, task.point);
   TaskIdentity identity;
-  const bool tries_guesses = solve_spec(point).method == Method::cg;
+  const bool tries_guesses = solve_spec(point, job_).method == Method::cg;
   if (tries_guesses) identity.guesses.resize(guess_labels_.size());
   for (const auto& [path, parameter] : space_.by_path()) {
     const Point::Value& value = point[static_cast<std::size_t>(parameter)];

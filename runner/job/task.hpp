@@ -18,7 +18,11 @@ enum class Evaluation {
   closed_loop  ///< the task's own guess (or the direct solve) advances its own trajectory
 };
 
-enum class Method { direct, cg };
+enum class Method {
+  direct,
+  cg,
+  end_to_end  ///< a network's increments, applied without a solve
+};
 
 struct TimeSpec {
   double step_s = 0.02;
@@ -33,18 +37,22 @@ struct SolveSpec {
   Norm norm = Norm::true_residual;
   double tolerance =
       1e-2;  ///< of the timed solves and, in a closed loop, of the solves that advance the rod; relative to ||b||
-  int max_iterations = 0;  ///< 0: ten times the number of unknowns
-  int lag_steps = 10;      ///< lagged_cholesky: time steps from one factorisation to the next
-  int timing_repeats = 1;  ///< times are medians over so many repeats of guess, solve and direct solve
+  int max_iterations = 0;       ///< 0: ten times the number of unknowns
+  int lag_steps = 10;           ///< lagged_cholesky: time steps from one factorisation to the next
+  int timing_repeats = 1;       ///< times are medians over so many repeats of guess, solve and direct solve
+  std::filesystem::path model;  ///< end_to_end
 };
 
 /// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.
 struct GuessSpec {
-  enum class Kind { zero, previous, linear, quadratic, fischer, pod, copingnet, oracle, guarded };
+  enum class Kind { zero, previous, linear, quadratic, fischer, pod, copingnet, knn, oracle, guarded };
   Kind kind = Kind::zero;
   std::string label;
   int size = 10;                ///< fischer, pod: how many solutions span the subspace
   std::filesystem::path model;  ///< copingnet
+  std::filesystem::path data;   ///< knn: the data set
+  int simulations = 0;          ///< knn: of the data set, from the first; 0: all
+  int neighbours = 3;           ///< knn
   double error = 0.1;           ///< oracle: relative A-norm of the error added to the exact solution
   OracleGuess::Error error_kind = OracleGuess::Error::white;  ///< oracle
   double threshold =

@@ -80,10 +80,11 @@ int whole_steps(double duration_s, double step_s, const Job& job) {
 
 GuessSpec guess_spec(const Point& point, const Job& job, const std::string& path) {
   using Kind = GuessSpec::Kind;
-  static const std::map<std::string, Kind> kinds{
-      {"zero", Kind::zero},           {"previous", Kind::previous}, {"linear", Kind::linear},
-      {"quadratic", Kind::quadratic}, {"fischer", Kind::fischer},   {"pod", Kind::pod},
-      {"copingnet", Kind::copingnet}, {"oracle", Kind::oracle},     {"guarded", Kind::guarded}};
+  static const std::map<std::string, Kind> kinds{{"zero", Kind::zero},           {"previous", Kind::previous},
+                                                 {"linear", Kind::linear},       {"quadratic", Kind::quadratic},
+                                                 {"fischer", Kind::fischer},     {"pod", Kind::pod},
+                                                 {"copingnet", Kind::copingnet}, {"knn", Kind::knn},
+                                                 {"oracle", Kind::oracle},       {"guarded", Kind::guarded}};
   static const std::map<std::string, OracleGuess::Error> error_kinds{{"white", OracleGuess::Error::white},
                                                                      {"smooth", OracleGuess::Error::smooth}};
   GuessSpec guess;
@@ -93,6 +94,11 @@ GuessSpec guess_spec(const Point& point, const Job& job, const std::string& path
   if (guess.kind == Kind::fischer || guess.kind == Kind::pod)
     guess.size = static_cast<int>(point.integer(parameters + "size"));
   if (guess.kind == Kind::copingnet) guess.model = job.files.at(point.text(parameters + "model")).path;
+  if (guess.kind == Kind::knn) {
+    guess.data = job.files.at(point.text(parameters + "data")).path;
+    guess.simulations = static_cast<int>(point.integer(parameters + "simulations"));
+    guess.neighbours = static_cast<int>(point.integer(parameters + "k"));
+  }
   if (guess.kind == Kind::oracle) {
     guess.error = point.number(parameters + "error");
     guess.error_kind = choice(error_kinds, point.text(parameters + "errors"));
@@ -125,8 +131,9 @@ TimeSpec time_spec(const Point& point, const Job& job) {
   return time;
 }
 
-SolveSpec solve_spec(const Point& point) {
-  static const std::map<std::string, Method> methods{{"cg", Method::cg}, {"direct", Method::direct}};
+SolveSpec solve_spec(const Point& point, const Job& job) {
+  static const std::map<std::string, Method> methods{
+      {"cg", Method::cg}, {"direct", Method::direct}, {"end_to_end", Method::end_to_end}};
   static const std::map<std::string, Norm> norms{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}};
   static const std::map<std::string, Preconditioner> preconditioners{
       {"none", Preconditioner::none},
@@ -147,6 +154,11 @@ SolveSpec solve_spec(const Point& point) {
   solve.max_iterations = static_cast<int>(point.integer("solve.max_iterations"));
   solve.lag_steps = static_cast<int>(point.integer("solve.lag_steps"));
   solve.timing_repeats = static_cast<int>(point.integer("solve.timing_repeats"));
+  if (solve.method == Method::end_to_end) {
+    if (!point.has("solve.model"))
+      throw job_error(job.path, "solve.model", "missing: \"end_to_end\" needs the model file of a train job");
+    solve.model = job.files.at(point.text("solve.model")).path;
+  }
   return solve;
 }
 
@@ -179,6 +191,13 @@ std::vector<std::string> guess_labels(const Job& job) {
   std::vector<std::string> labels;
   for (const auto& guess : job.guesses()) labels.push_back(guess_label(guess));
   return labels;
+}
+
+void check_method(const Point& point, const Job& job) {
+  if (solve_spec(point, job).method != Method::end_to_end || evaluation(point) == Evaluation::closed_loop) return;
+  throw job_error(job.path, "solve.method",
+                  "\"end_to_end\" is not allowed with evaluation \"paired\", in which the direct solve advances the "
+                  "rod: a network in its place has a trajectory of its own; must be with \"closed_loop\"");
 }
 
 void check_scene(const SceneSpec& scene, const Job& job) {

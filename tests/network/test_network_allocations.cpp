@@ -4,6 +4,9 @@
 #include "allocations.hpp"
 #include "models.hpp"
 #include "network/coping_net_guess.hpp"
+#include "network/end_to_end.hpp"
+#include "network/knn_guess.hpp"
+#include "recorded.hpp"
 #include "support.hpp"
 
 namespace rodsweep {
@@ -31,6 +34,45 @@ TEST_CASE("a guess allocates nothing on a rod seen before, whatever the network"
     }
     CHECK(test::allocations() == before);
   }
+}
+
+TEST_CASE("a network instead of the solve allocates nothing on a rod seen before") {
+  CopingNetSettings settings;
+  settings.encoding = Encoding::physics;
+  settings.processor = Processor::message_passing;
+  settings.base_size = 3;
+  settings.latent = 16;
+  settings.steps = 2;
+  settings.moves = GENERATE(false, true);
+  const Scene scene = build_scene(test::bending_rod(20));
+  Rod rod = scene.rods.front();
+  EndToEndProjection projection(scene, std::make_unique<CopingNetIncrements>(test::random_model(settings), scene, 1));
+  long before = 0;
+  for (int step = 0; step < 7; ++step) {
+    if (step == 5) before = test::allocations();
+    rod = scene.rods.front();
+    for (Vector3& x : rod.position) x += Vector3(0, 0.01 * x.x() * x.x(), 0);
+    projection.project(rod, {step, 0, 0}, 0.02, 0);
+  }
+  CHECK(test::allocations() == before);
+}
+
+TEST_CASE("nearest neighbours allocate nothing") {
+  const auto set = std::make_shared<KnnSet>();
+  set->add(test::recorded_simulation(build_scene(test::bending_rod(12)), 30));
+  set->finish();
+  const Scene scene = build_scene(test::bending_rod(20));
+  LinearSystem system(scene.rods.front());
+  system.assemble(scene.rods.front(), 0.02);
+  KnnGuess guess(set, scene, 0.02, 3);
+  VectorX x0(system.rhs().size());
+  long before = 0;
+  for (int step = 0; step < 3; ++step) {
+    if (step == 1) before = test::allocations();
+    CHECK(guess.propose(system, {step, 0, 0}, x0).nonzero);
+    guess.accept({step, 0, 0}, x0);
+  }
+  CHECK(test::allocations() == before);
 }
 
 }  // namespace

@@ -2,45 +2,20 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
 
-#include "job_examples.hpp"
+#include "job_folder.hpp"
 
 namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with a job in it and files beside.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("rodsweep-inputs-" + std::to_string(::getpid()))) {
-    fs::create_directories(path_ / "models");
-  }
-  ~Folder() { fs::remove_all(path_); }
-  void write(const char* name, const char* text) const { std::ofstream(path_ / name) << text; }
-  Job job(const Json& job) const { return parse_job(job.dump(), path_ / "job.json"); }
-  std::string refusal(const Json& of) const {
-    try {
-      job(of);
-    } catch (const JobError& error) {
-      return error.what();
-    }
-    return "";
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 Json learned(const std::string& model) {
   return with("/guesses", R"(["zero", {"copingnet": {"model": ")" + model + R"("}}])");
 }
 
 TEST_CASE("a model is found beside the job, whatever the current folder, and names its guess") {
-  const Folder folder;
+  const JobFolder folder;
   folder.write("models/bending.h5", "weights");
   const Plan plan(folder.job(learned("models/bending.h5")));
   CHECK(plan.guess_labels().back() == "copingnet bending");
@@ -48,7 +23,7 @@ TEST_CASE("a model is found beside the job, whatever the current folder, and nam
 }
 
 TEST_CASE("a file that cannot be read is refused with key, path and reason") {
-  const Folder folder;
+  const JobFolder folder;
   CHECK(folder.refusal(learned("models/none.h5")) ==
         (folder.path() / "job.json").native() + ": guesses[1].copingnet.model: \"models/none.h5\" is not allowed: " +
             (folder.path() / "models/none.h5").native() +
@@ -58,7 +33,7 @@ TEST_CASE("a file that cannot be read is refused with key, path and reason") {
 }
 
 TEST_CASE("what a task is depends on what its files hold, not on their names") {
-  const Folder folder;
+  const JobFolder folder;
   folder.write("a.h5", "weights");
   folder.write("b.h5", "weights");
   const auto identity = [&](const char* model) { return Plan(folder.job(learned(model))).identity(0); };
@@ -71,7 +46,7 @@ TEST_CASE("what a task is depends on what its files hold, not on their names") {
 }
 
 TEST_CASE("models can be swept") {
-  const Folder folder;
+  const JobFolder folder;
   folder.write("a.h5", "one");
   folder.write("b.h5", "two");
   const Plan plan(folder.job(

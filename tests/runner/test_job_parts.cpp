@@ -62,8 +62,8 @@ TEST_CASE("every key is described") {
     CHECK_FALSE(key.help.empty());
     CHECK_FALSE(allowed(key).empty());
     if (key.kind == Key::Kind::choice) CHECK_FALSE(key.choices.empty());
-    const bool has_unit_suffix =
-        key.name.find("_m") == key.name.size() - 2 || key.name.find("_pa") != std::string::npos;
+    const bool has_unit_suffix = (key.name.size() > 2 && key.name.find("_m") == key.name.size() - 2) ||
+                                 key.name.find("_pa") != std::string::npos;
     if (has_unit_suffix) CHECK_FALSE(key.unit.empty());
     if (!key.tag.empty()) CHECK(find_key(key.keys, key.tag) != nullptr);
   };

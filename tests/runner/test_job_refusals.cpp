@@ -188,7 +188,7 @@ TEST_CASE("guesses that make no guess axis are refused") {
   CHECK(refusal(without("/guesses")) == needs_zero);
   CHECK(refusal(with("/solve", R"({"method": {"grid": ["direct", "cg"]}})", without("/guesses"))) == needs_zero);
   CHECK(refusal(with("/solve", R"({"method": "direct"})")) ==
-        "job.json: guesses: solve.method \"direct\" uses no initial guess; remove this key");
+        "job.json: guesses: only solve.method \"cg\" uses initial guesses; remove this key");
   CHECK(refusal(with("/guesses", R"(["zero", "previous", "zero"])")) ==
         "job.json: guesses[2]: its label \"zero\" is also that of guesses[0]; give one of them a \"label\" of its own");
   CHECK(
@@ -216,9 +216,7 @@ TEST_CASE("guesses that make no guess axis are refused") {
         "\"grid\"");
   const std::string names =
       " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"pod\", "
-      "\"oracle\", \"guarded\", or "
-      "an "
-      "object such as {\"oracle\": {\"error\": 0.1}}";
+      "\"copingnet\", \"knn\", \"oracle\", \"guarded\", or an object such as {\"oracle\": {\"error\": 0.1}}";
   CHECK(refusal(with("/guesses", R"(["zero", "orcale"])")) ==
         "job.json: guesses[1]: \"orcale\"" + names + "; did you mean \"oracle\"?");
   CHECK(refusal(with("/guesses", R"(["zero", 3])")) == "job.json: guesses[1]: 3" + names);

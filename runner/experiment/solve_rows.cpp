@@ -1,0 +1,24 @@
+#include "runner/experiment/solve_rows.hpp"
+
+#include "solver/observables.hpp"
+
+namespace rodsweep {
+
+std::size_t solve_row(const TaskSpec& spec, std::size_t rods, const SolvePosition& at) {
+  const auto newton_iterations = static_cast<std::size_t>(spec.time.newton_iterations);
+  const std::size_t iteration =
+      static_cast<std::size_t>(at.step) * newton_iterations + static_cast<std::size_t>(at.newton);
+  return iteration * rods + static_cast<std::size_t>(at.rod);
+}
+
+void record_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
+                   TaskRecord& record) {
+  record.step[row] = at.step;
+  record.newton[row] = static_cast<std::int16_t>(at.newton);
+  record.rod[row] = static_cast<std::int16_t>(at.rod);
+  record.newton_residual[row] = system.newton_residual();
+  record.solve_joint_gap[row] = joint_gap(rod);
+  record.rhs_norm[row] = system.rhs().norm();
+}
+
+}  // namespace rodsweep

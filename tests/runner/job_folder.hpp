@@ -1,0 +1,37 @@
+// For tests of jobs that name files: a folder with a job in it, which goes away.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "job_examples.hpp"
+
+namespace rodsweep {
+
+/// A folder with a job in it and files beside.
+class JobFolder {
+ public:
+  JobFolder() : path_(std::filesystem::temp_directory_path() / ("rodsweep-inputs-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_ / "models");
+  }
+  ~JobFolder() { std::filesystem::remove_all(path_); }
+  void write(const char* name, const char* text) const { std::ofstream(path_ / name) << text; }
+  Job job(const Json& job) const { return parse_job(job.dump(), path_ / "job.json"); }
+  std::string refusal(const Json& of) const {
+    try {
+      const Plan plan(job(of));
+    } catch (const JobError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace rodsweep
