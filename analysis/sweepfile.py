@@ -84,22 +84,27 @@ class Parameter:
         return str(value) if self.values.dtype.kind == "U" else f"{value:g}"
 
 
+def opened(path, what):
+    """The h5py.File of a path that should lead to `what`."""
+    if not os.path.exists(path):
+        raise SweepFileError(f"{path}: there is no such file")
+    if os.path.isdir(path):
+        raise SweepFileError(f"{path} is a folder; give {what}")
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        if not os.access(path, os.R_OK):
+            raise SweepFileError(f"{path}: no permission to read it") from error
+        kind = "damaged" if h5py.is_hdf5(path) else "not an HDF5 file"
+        raise SweepFileError(f"{path} is {kind}; give a file written by `rodsweep run`") from error
+
+
 class SweepFile:
     """Use as `with SweepFile(path) as file:`. Task numbers index all per-task columns."""
 
     def __init__(self, path):
         self.path = os.fspath(path)
-        if not os.path.exists(self.path):
-            raise SweepFileError(f"{self.path}: there is no such file")
-        if os.path.isdir(self.path):
-            raise SweepFileError(f"{self.path} is a folder; give a results file (results/NAME.h5)")
-        try:
-            self.h5 = h5py.File(self.path, "r")
-        except OSError as error:
-            if not os.access(self.path, os.R_OK):
-                raise SweepFileError(f"{self.path}: no permission to read it") from error
-            kind = "damaged" if h5py.is_hdf5(self.path) else "not an HDF5 file"
-            raise SweepFileError(f"{self.path} is {kind}; give a file written by `rodsweep run`") from error
+        self.h5 = opened(self.path, "a results file (results/NAME.h5)")
         try:
             self._open()
         except SweepFileError:

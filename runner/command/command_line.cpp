@@ -19,7 +19,7 @@ constexpr const char* exit_codes =
     "Exit codes:\n"
     "  0  all done\n"
     "  2  the command line, a job or a file is at fault; nothing of yours was changed\n"
-    "  3  the sweep is complete, some of its tasks failed\n"
+    "  3  the sweep is complete, some of its tasks failed; or a training diverged\n"
     "  4  stopped early; --resume continues";
 
 constexpr const char* main_footer =
@@ -34,10 +34,12 @@ constexpr const char* main_footer =
 constexpr const char* run_footer =
     "One rank runs the tasks itself; of more, rank 0 hands them out and sleeps, so C cores want C+1 ranks.\n"
     "Open MPI refuses more ranks than cores unless told --oversubscribe; inside containers as root it also\n"
-    "wants --allow-run-as-root.\n\n"
+    "wants --allow-run-as-root.\n"
+    "A training (kind \"train\") has no master: C cores want C ranks, at most as many as training.shards.\n\n"
     "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop the sweep between two time steps: running tasks are abandoned,\n"
     "finished ones are in the file. mpirun hands SIGUSR1 on to all ranks and then exits 4 as well. On SIGTERM and\n"
-    "SIGINT it kills what still runs a second later, and itself exits 1. However a sweep ended, it can be resumed.\n\n"
+    "SIGINT it kills what still runs a second later, and itself exits 1. However a sweep ended, it can be resumed.\n"
+    "A training stops between two steps and goes on from there, to the same bits.\n\n"
     "Examples:\n"
     "  rodsweep run jobs/smoke.json                        one core, results/smoke.h5\n"
     "  mpirun --oversubscribe -n 5 rodsweep run job.json   4 cores\n"
@@ -49,7 +51,8 @@ constexpr const char* run_footer =
     "                                                      out.h5 is read only; more.h5 is as if run from scratch.";
 
 constexpr const char* plan_footer =
-    "Up to three tasks (cheapest, median, dearest) are really run for a moment, unless --no-probe is given.\n\n"
+    "Up to three tasks (cheapest, median, dearest), or some steps of a training, are really run for a moment, unless\n"
+    "--no-probe is given. A training's data set must be there.\n\n"
     "Example:\n"
     "  rodsweep plan jobs/spatial_bending.json";
 

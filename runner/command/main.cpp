@@ -76,7 +76,7 @@ ExitCode execute(const RunOptions& options, Console& console) {
     return ExitCode::user_error;
   } catch (const std::exception& error) {
     fmt::print(stderr, "rodsweep: error: rank {} on {} cannot go on: {}\n", mpi.rank(), host_name(), error.what());
-    fmt::print(stderr, "rodsweep: finished tasks are in the file; once the cause is gone, --resume continues\n");
+    fmt::print(stderr, "rodsweep: what was finished is in the file; once the cause is gone, --resume continues\n");
     std::fflush(nullptr);
     MPI_Abort(mpi.world(), static_cast<int>(ExitCode::user_error));
     std::abort();

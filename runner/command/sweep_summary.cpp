@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runner/command/scripts.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -25,20 +26,6 @@ std::int64_t finished_now(const Dispatch& dispatch) {
   std::int64_t count = 0;
   for (const std::int64_t of_outcome : dispatch.finished) count += of_outcome;
   return count;
-}
-
-/// The script that makes tables, of the source tree or installation that this program belongs to, as typed from here.
-std::string summary_script() {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  for (const char* folder : {"../share/rodsweep/analysis", "../analysis"}) {
-    const fs::path script = (program.parent_path() / folder / "summary.py").lexically_normal();
-    if (!fs::exists(script, error)) continue;
-    const std::string here = fs::proximate(script, error).native();
-    return here.empty() || here.size() > script.native().size() ? script.native() : here;
-  }
-  return "analysis/summary.py";
 }
 
 }  // namespace
@@ -73,9 +60,7 @@ std::string summary_text(const SweepSummary& summary) {
                     duration_text(dispatch.wall_s), now, static_cast<double>(now) / dispatch.wall_s, summary.workers,
                     summary.workers == 1 ? "" : "s", 100 * dispatch.busy_s / (summary.workers * dispatch.wall_s));
   text += "results: " + summary.path.native();
-  if (dispatch.left == 0)
-    text += fmt::format("\nnext: /usr/bin/python3 {} {}", shell_quoted(summary_script()),
-                        shell_quoted(summary.path.native()));
+  if (dispatch.left == 0) text += "\nnext: " + script_line("summary.py", summary.path);
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "runner/command/scripts.hpp"
 #include "runner/command/training_resume.hpp"
 #include "runner/command/training_summary.hpp"
 #include "runner/dispatch/stop_signal.hpp"
@@ -133,7 +134,8 @@ ExitCode TrainingRun::run(const StopSignal& signal) {
   if (training_->ending() != Ending::none && training_->best_epoch() > 0) training_->end();
   if (writes()) save(true);
   const ExitCode code = exit_code_of(training_->ending());
-  console_.result(training_summary(card_, path_));
+  console_.result(training_summary(card_, path_) +
+                  (code == ExitCode::stopped ? "" : "\nnext: " + script_line("loss.py", path_)));
   if (code == ExitCode::stopped) {
     RunOptions again = options_;
     again.resume = true;

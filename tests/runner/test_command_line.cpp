@@ -39,7 +39,7 @@ TEST_CASE("the command that continues a sweep can be typed as it stands") {
   run.resume = true;
   run.output = "out.h5";
   const std::string as_root = geteuid() == 0 ? "--allow-run-as-root " : "";  // mpirun refuses root without it
-  CHECK(run_command(run, 4) ==
+  CHECK(run_command(run, ranks_for(4)) ==
         "mpirun --oversubscribe " + as_root + "-n 5 build/rodsweep run 'my job.json' -o out.h5 --resume");
 }
 

@@ -1,0 +1,140 @@
+#!/usr/bin/python3
+"""Figure and table of how networks were trained: losses, and the CG ratio on validation simulations, by epoch.
+
+The first panel has the loss of training (dotted: while the weights changed) and of validation; the dot marks the epoch
+whose weights the model has. A panel per tolerance has the CG ratio: CG iterations from the network's guess over those
+from zero, summed over a validation simulation's first Newton iterations and averaged over simulations; the level line
+is that of the base guess alone, which the network corrects, and a star the model's own. The last panel has the step
+size. Several models are drawn together; losses of different kinds do not compare. Files of trainings that still run
+are shown as far as they are.
+"""
+
+import argparse
+import os
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
+
+import commandline
+import layout
+import modelfile
+import style
+import study
+
+EXAMPLES = """examples:
+  analysis/loss.py results/train_bending.h5
+  analysis/loss.py results/train_bending.h5 results/train_bending_faithful.h5 -o figures --width 84"""
+
+
+def arguments():
+    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made.add_argument("files", nargs="+", metavar="MODEL", help="model file of `rodsweep run` with a job of kind \"train\"")
+    study.add_figure_arguments(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    trainings = [modelfile.read(path) for path in options.files]
+    print("\n".join(table(trainings)) + "\n")
+    first = trainings[0].path
+    stem = os.path.splitext(os.path.basename(first))[0]
+    if len(trainings) > 1:
+        stem += f"-and-{len(trainings) - 1}-more"
+    folder = options.output or os.path.join(os.path.dirname(first), "figures")
+    width = "" if options.width == "174" else f"-{options.width}mm"
+    print("\n".join(figure(trainings, style.WIDTHS_MM[options.width]).save(folder, f"{stem}-loss{width}")))
+    return 0
+
+
+def labels(trainings):
+    """Names of the jobs, or of the files where those are the same."""
+    names = [t.name for t in trainings]
+    return names if len(set(names)) == len(names) else [os.path.splitext(os.path.basename(t.path))[0] for t in trainings]
+
+
+def table(trainings):
+    tolerances = trainings[0].tolerances
+    rows = [["", "epochs", "kept", "validation loss", "seconds"] +
+            [f"CG ratio at {commandline.tolerance_label(t)}" for t in tolerances]]
+    for label, t in zip(labels(trainings), trainings):
+        rows.append([label + ("" if t.ended else " (has not ended)"), str(len(t.epochs)), str(t.best_epoch),
+                     f"{t.best_loss:.4g}", f"{t.seconds:.0f}"] + ratio_texts(t.kept_ratio))
+        rows.append(["  its base guess alone", "", "", "", ""] + ratio_texts(t.base_ratio))
+    return commandline.aligned(rows)
+
+
+def ratio_texts(ratios):
+    return [f"{r:.3f}" if np.isfinite(r) else "-" for r in ratios]
+
+
+def figure(trainings, width_mm):
+    looks = style.series_styles(len(trainings))
+    handles = [Line2D([], [], label=label, color=look.colour, marker=look.marker)
+               for label, look in zip(labels(trainings), looks)]
+    grey = {"color": "#555555"}
+    handles += [Line2D([], [], label="training loss", linestyle=(0, (1, 1.2)), **grey),
+                Line2D([], [], label="base guess alone", linestyle=(0, (4, 2)), linewidth=0.8, **grey)]
+    tolerances = trainings[0].tolerances
+    wide = width_mm > 100
+    page = layout.Page(width_mm, [""], len(tolerances) + 2, 3 if wide else 2, 34 if wide else 30, handles,
+                       [about(trainings)], gap_mm=9, left_mm=10, ticks_mm=8.5)
+    loss, *ratios, rate = page.axes[0]
+    _losses(loss, trainings, looks)
+    for k, axes in enumerate(ratios):
+        _ratios(axes, k, trainings, looks)
+        axes.set_title(f"CG ratio at {style.tolerance_text(tolerances[k])}")
+    for training, look in zip(trainings, looks):
+        rate.plot(training.epochs, training.rate, color=look.colour)
+    rate.set_title("step size")
+    rate.yaxis.set_major_formatter(FuncFormatter(lambda value, _: style.number_text(value)))
+    rate.yaxis.set_major_locator(MaxNLocator(3))
+    rate.set_ylim(0, 1.08 * max(t.rate.max() for t in trainings))
+    last = max(t.epochs[-1] for t in trainings)
+    for axes in page.axes[0]:
+        axes.set_xlabel("epoch", labelpad=1.5)
+        axes.set_xlim(0 if last > 1 else 0.5, last * 1.03)
+        axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
+    return page
+
+
+def about(trainings):
+    counts = commandline.range_text([t.simulations for t in trainings])
+    text = (f"CG ratio: iterations from the network's guess over those from zero, first Newton iterations (j = 0), jacobi, "
+            f"true residual; mean over {counts} validation simulations. Stars, dots: the model kept, of the epoch with the "
+            "least validation loss.")
+    running = [label for label, t in zip(labels(trainings), trainings) if not t.ended]
+    return text + (f" Not ended yet: {', '.join(running)}." if running else "")
+
+
+def _losses(axes, trainings, looks):
+    axes.set_yscale("log")
+    for t, look in zip(trainings, looks):
+        axes.plot(t.epochs, t.training_loss, color=look.colour, linestyle=(0, (1, 1.2)), linewidth=0.8)
+        axes.plot(t.epochs, t.validation_loss, color=look.colour)
+        axes.plot([t.best_epoch], [t.best_loss], color=look.colour, marker="o", linestyle="")
+    values = np.concatenate([v for t in trainings for v in (t.training_loss, t.validation_loss)])
+    ticks = layout.log_ticks(values.min() / 1.2, values.max() * 1.2)
+    axes.set_ylim(values.min() / 1.2, values.max() * 1.2)
+    axes.set_yticks(ticks, labels=[style.number_text(tick) for tick in ticks])
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.set_title("loss of validation and training")
+
+
+def _ratios(axes, k, trainings, looks):
+    top = 0
+    for t, look in zip(trainings, looks):
+        measured = np.isfinite(t.cg_ratio[:, k])
+        axes.plot(t.epochs[measured], t.cg_ratio[measured, k], color=look.colour, marker=look.marker, markersize=2.2)
+        if np.isfinite(t.base_ratio[k]):
+            axes.axhline(t.base_ratio[k], color=look.colour, linestyle=(0, (4, 2)), linewidth=0.8)
+            axes.plot([t.best_epoch], [t.kept_ratio[k]], color=look.colour, marker="*", markersize=6, linestyle="")
+        shown = np.concatenate([t.cg_ratio[measured, k], [t.base_ratio[k], t.kept_ratio[k]]])
+        top = np.nanmax([top, *shown])
+    axes.set_ylim(0, 1.08 * top if top > 0 else 1)
+
+
+if __name__ == "__main__":
+    commandline.run("loss.py", main)

@@ -1,0 +1,62 @@
+"""The one reader of a model file (HDF5, schema version 1; layout in runner/training/model_file.hpp)."""
+
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from sweepfile import PROGRAM, UNREADABLE, SweepFileError, as_text, opened
+
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Training:
+    """How a model was trained, and how well it does. Rows are epochs, columns of ratios tolerances."""
+    path: str
+    name: str
+    ended: bool
+    tolerances: np.ndarray
+    training_loss: np.ndarray
+    validation_loss: np.ndarray
+    rate: np.ndarray
+    cg_ratio: np.ndarray        # [epoch, tolerance], NaN where it was not measured
+    best_epoch: int             # whose weights the model has, from 1; 0: none yet
+    kept_ratio: np.ndarray      # [tolerance], of the model; NaN until the training has ended
+    base_ratio: np.ndarray      # of its base guess alone
+    simulations: int            # that ratios are means over
+    seconds: float
+
+    @property
+    def epochs(self):
+        return np.arange(1, len(self.training_loss) + 1)
+
+    @property
+    def best_loss(self):
+        return self.validation_loss[self.best_epoch - 1]
+
+
+def read(path):
+    """The training of a model file, whole or in the middle. Raises SweepFileError."""
+    with opened(path, "a model file") as h5:
+        try:
+            if as_text(h5.attrs.get("program", "")) != PROGRAM:
+                raise SweepFileError(f"{path} is an HDF5 file, but not one of {PROGRAM}")
+            kind = as_text(h5.attrs.get("kind", "sweep"))
+            if kind != "model":
+                raise SweepFileError(f"{path} holds the results of a {kind}, not a model: give the file of a job of kind "
+                                     '"train"')
+            version = int(h5.attrs["schema_version"])
+            if version != SCHEMA_VERSION:
+                raise SweepFileError(f"{path} has schema version {version}, these scripts read {SCHEMA_VERSION}")
+            training = h5["training"]
+            found = Training(os.fspath(path), as_text(h5["job"].attrs["name"]), as_text(training.attrs["ending"]) != "none",
+                             h5["axes/tolerance"][:], training["training_loss"][:], training["validation_loss"][:],
+                             training["rate"][:], training["cg_ratio"][:], int(training.attrs["best_epoch"]),
+                             h5["validation/cg_ratio"][:], h5["validation/base_cg_ratio"][:],
+                             int(h5["validation"].attrs["simulations"]), float(h5["timing/epoch_s"][:].sum()))
+        except UNREADABLE as error:
+            raise SweepFileError(f"{path} is damaged: {error}") from error
+    if not len(found.training_loss):
+        raise SweepFileError(f"{path} has nothing to show yet: no epoch has ended")
+    return found

@@ -1,0 +1,129 @@
+"""loss.py: planted losses and CG ratios are drawn and printed, models are told apart, and what is no model is refused."""
+
+import os
+import tempfile
+import types
+import unittest
+
+import synthetic
+import h5py
+import loss
+import modelfile
+import numpy as np
+from matplotlib import pyplot
+from running import Scripts
+from test_figures import Drawn
+
+EPOCHS = 12
+
+
+def plant(path, name="net", ending="complete", epochs=EPOCHS, factor=1.0):
+    """A model file with what loss.py reads: losses fall but for the last epoch, ratios are measured in every third."""
+    number = np.arange(1, epochs + 1)
+    ratio = np.full((epochs, 4), np.nan)
+    ratio[2::3] = factor * np.array([0.1, 0.2, 0.4, 0.8]) * (1 + 1 / number[2::3, None])
+    validation = factor * 0.5 / number
+    validation[-1:] *= 2
+    with h5py.File(path, "w") as h5:
+        h5.attrs.update({"program": np.bytes_("rodsweep"), "kind": np.bytes_("model"), "schema_version": np.int32(1)})
+        h5.create_group("job").attrs["name"] = np.bytes_(name)
+        h5["axes/tolerance"] = [1e-1, 1e-2, 1e-3, 1e-4]
+        h5["training/training_loss"] = factor * 0.6 / number
+        h5["training/validation_loss"] = validation
+        h5["training/rate"] = 2e-3 * (1 - (number - 1) / epochs)
+        h5["training/cg_ratio"] = ratio
+        h5["training"].attrs.update({"ending": np.bytes_(ending), "best_epoch": np.int32(max(0, epochs - 1))})
+        known = ending != "none"
+        h5["validation/cg_ratio"] = factor * np.array([0.1, 0.2, 0.4, 0.8]) if known else np.full(4, np.nan)
+        h5["validation/base_cg_ratio"] = [0.3, 0.4, 0.6, 0.9] if known else np.full(4, np.nan)
+        h5["validation"].attrs["simulations"] = np.int32(50)
+        h5["timing/epoch_s"] = np.full(epochs, 2.5)
+    return path
+
+
+class Figures(Drawn):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(pyplot.close, "all")
+        self.folder = folder.name
+
+    def read(self, **settings):
+        folder = os.path.join(self.folder, str(len(os.listdir(self.folder))))
+        os.mkdir(folder)
+        return modelfile.read(plant(os.path.join(folder, "model.h5"), **settings))
+
+    def test_planted_values_are_drawn(self):
+        training = self.read()
+        page = loss.figure([training], 174)
+        losses, first, *_, rate = page.axes[0]
+        np.testing.assert_allclose(losses.lines[0].get_ydata(), 0.6 / np.arange(1, EPOCHS + 1))
+        np.testing.assert_allclose(losses.lines[1].get_ydata()[-2:], [0.5 / 11, 2 * 0.5 / 12])
+        self.assertEqual(losses.lines[2].get_xdata()[0], EPOCHS - 1)  # the model kept
+        np.testing.assert_array_equal(first.lines[0].get_xdata(), [3, 6, 9, 12])
+        np.testing.assert_allclose(first.lines[0].get_ydata()[0], 0.1 * (1 + 1 / 3))
+        self.assertEqual(first.lines[1].get_ydata()[0], 0.3)  # the base guess alone
+        self.assertEqual(first.lines[2].get_ydata()[0], 0.1)
+        self.assertEqual(rate.lines[0].get_ydata()[0], 2e-3)
+        self.assertIn("mean over 50 validation simulations", self.page_texts(page))
+
+    def test_figures_are_legible_for_one_and_several_models_wide_and_narrow(self):
+        trainings = [self.read(name="net"), self.read(name="faithful", factor=3.0),
+                     self.read(name="unfinished", ending="none", epochs=4)]
+        for width in (174, 84):
+            for shown in (trainings[:1], trainings):
+                with self.subTest(width=width, models=len(shown)):
+                    self.legible(loss.figure(shown, width))
+
+    def test_models_have_styles_of_their_own_and_the_names_of_their_files_where_jobs_share_one(self):
+        shown = [self.read(), self.read()]
+        colours = {line.get_color() for line in loss.figure(shown, 174).axes[0][-1].lines}
+        self.assertEqual(len(colours), 2)
+        self.assertEqual(loss.labels([types.SimpleNamespace(name="a", path="x/one.h5"),
+                                      types.SimpleNamespace(name="a", path="x/two.h5")]), ["one", "two"])
+        self.assertEqual(loss.labels([self.read(name="a"), self.read(name="b")]), ["a", "b"])
+
+    def test_a_training_that_runs_is_shown_as_far_as_it_is(self):
+        for epochs in (1, 2, 4):
+            page = loss.figure([self.read(ending="none", epochs=epochs)], 174)
+            self.legible(page)
+            self.assertIn("Not ended yet: net.", self.page_texts(page))
+
+
+class Script(Scripts):
+    def plant(self, file, **settings):
+        plant(os.path.join(self.folder, file), **settings)
+
+    def test_figure_and_table(self):
+        self.plant("net.h5")
+        self.plant("other.h5", name="other", ending="none")
+        said = self.run_script("loss.py", "net.h5").stdout
+        self.assertEqual(said.split()[-2:], ["figures/net-loss.pdf", "figures/net-loss.png"])
+        net, base = (line.split() for line in said.splitlines()[1:3])
+        self.assertEqual(net, ["net", "12", "11", "0.04545", "30", "0.100", "0.200", "0.400", "0.800"])
+        self.assertEqual(base[-4:], ["0.300", "0.400", "0.600", "0.900"])
+        said = self.run_script("loss.py", "net.h5", "other.h5", "-o", "out", "--width", "84").stdout
+        self.assertEqual(said.split()[-1], "out/net-and-1-more-loss-84mm.png")
+        self.assertIn("other (has not ended)", said)
+        with open(os.path.join(self.folder, "out/net-and-1-more-loss-84mm.pdf"), "rb") as figure:
+            self.assertEqual(figure.read(4), b"%PDF")
+
+    def test_what_is_no_model_is_refused(self):
+        self.write(samples=2)
+        self.refused("loss.py", "sweep.h5", words="sweep.h5 holds the results of a sweep, not a model")
+        self.refused("loss.py", "none.h5", words="none.h5: there is no such file")
+        self.plant("begun.h5", ending="none", epochs=0)
+        self.refused("loss.py", "begun.h5", words="begun.h5 has nothing to show yet: no epoch has ended")
+        self.plant("old.h5")
+        with h5py.File(os.path.join(self.folder, "old.h5"), "r+") as h5:
+            h5.attrs["schema_version"] = 7
+        self.refused("loss.py", "old.h5", words="old.h5 has schema version 7, these scripts read 1")
+        self.plant("hole.h5")
+        with h5py.File(os.path.join(self.folder, "hole.h5"), "r+") as h5:
+            del h5["training/rate"]
+        self.refused("loss.py", "hole.h5", words="hole.h5 is damaged")
+        self.refused("spatial.py", "hole.h5", words="hole.h5 is a rodsweep file of kind model")
+
+
+if __name__ == "__main__":
+    unittest.main()
