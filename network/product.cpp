@@ -2,18 +2,13 @@
 
 #include <cstring>
 
+#include "network/native_lanes.hpp"
+
 namespace rodsweep {
 namespace {
 
-// One register of the processor: unlike the solver's six rows, these loops would drown in the halves of wider vectors.
-// Of the registers, `sums` hold a tile of outputs; `widest` columns share a load of W.
-#if defined(__AVX512F__)
-constexpr int lane_bytes = 64, sums = 16, widest = 8;
-#elif defined(__AVX__)
-constexpr int lane_bytes = 32, sums = 8, widest = 4;
-#else
-constexpr int lane_bytes = 16, sums = 8, widest = 4;
-#endif
+// Of the processor's registers, `sums` hold a tile of outputs; `widest` columns share a load of W.
+constexpr int sums = lane_bytes == 64 ? 16 : 8, widest = lane_bytes == 64 ? 8 : 4;
 
 template <class T>
 struct LaneOf;

@@ -9,34 +9,44 @@
 namespace rodsweep {
 namespace {
 
-/// h' of one joint (network/gru.hpp) for a latent size of 16 V; u [48 V, 16 V] column-major, p [48 V].
-template <int V>
-void gru_step(const float* u, const float* p, const float* h, float* out) {
-  // Two sets of sums, so that a multiplication need not wait for the one before.
-  Lane16 even[3 * V], odd[3 * V];
-  for (int v = 0; v < 3 * V; ++v) even[v] = odd[v] = Lane16{};
-  for (int k = 0; k < 16 * V; k += 2, u += 96 * V) {
-    for (int v = 0; v < 3 * V; ++v) even[v] += load16(u + 16 * v) * h[k];
-    for (int v = 0; v < 3 * V; ++v) odd[v] += load16(u + 48 * V + 16 * v) * h[k + 1];
-  }
-  for (int v = 0; v < V; ++v) {
-    // z = 1 / (1 + ez), r = 1 / (1 + er), c = (1 - ec) / (1 + ec); h' = (1 - z) c + z h with one division
-    const Lane16 before = load16(h + 16 * v);
-    const Lane16 ez = clamped_exp(-(load16(p + 16 * v) + even[v] + odd[v]));
-    const Lane16 er = clamped_exp(-(load16(p + 16 * (V + v)) + even[V + v] + odd[V + v]));
-    const Lane16 a = load16(p + 16 * (2 * V + v)) + (even[2 * V + v] + odd[2 * V + v]) / (er + 1.F);
-    const Lane16 ec = clamped_exp(-2.F * a);
-    store16(out + 16 * v, ((1.F - ec) * ez + (1.F + ec) * before) / ((1.F + ec) * (1.F + ez)));
+/// out = U h for `rows` of U's rows, in tiles that stay in registers.
+template <int Rows, int H>
+void recurrent_product(const float* u, const float* h, float* out) {
+  constexpr int lanes = Rows / lane_floats, tile = lanes % 6 == 0 ? 6 : 3;
+  for (int first = 0; first < lanes; first += tile) {
+    // Two sets of sums, so that a multiplication need not wait for the one before.
+    FloatLane even[tile], odd[tile];
+    for (int t = 0; t < tile; ++t) even[t] = odd[t] = FloatLane{};
+    const float* column = u + first * lane_floats;
+    for (int k = 0; k < H; k += 2, column += 2 * Rows) {
+      for (int t = 0; t < tile; ++t) even[t] += load_lane(column + t * lane_floats) * h[k];
+      for (int t = 0; t < tile; ++t) odd[t] += load_lane(column + Rows + t * lane_floats) * h[k + 1];
+    }
+    for (int t = 0; t < tile; ++t) store_lane(out + (first + t) * lane_floats, even[t] + odd[t]);
   }
 }
 
-/// Of `rows` entries in each column, a multiple of 16.
+/// h' of one joint (network/gru.hpp); u [3 H, H] column-major, p [3 H].
+template <int H>
+void gru_step(const float* u, const float* p, const float* h, float* out) {
+  alignas(64) float uh[3 * H];
+  recurrent_product<3 * H, H>(u, h, uh);
+  for (int i = 0; i < H; i += lane_floats) {
+    // z = 1 / (1 + ez), r = 1 / (1 + er), c = (1 - ec) / (1 + ec); h' = (1 - z) c + z h with one division
+    const auto sum = [&](int gate) { return load_lane(p + gate * H + i) + load_lane(uh + gate * H + i); };
+    const FloatLane ez = clamped_exp(-sum(0)), er = clamped_exp(-sum(1));
+    const FloatLane ec = clamped_exp(-2.F * (load_lane(p + 2 * H + i) + load_lane(uh + 2 * H + i) / (er + 1.F)));
+    store_lane(out + i, ((1.F - ec) * ez + (1.F + ec) * load_lane(h + i)) / ((1.F + ec) * (1.F + ez)));
+  }
+}
+
+/// Columns are multiples of 16 entries long.
 void silu_in_place(Eigen::Ref<Tensor<float>> x) {
   for (Eigen::Index c = 0; c < x.cols(); ++c)
-    for (Eigen::Index r = 0; r < x.rows(); r += 16) {
+    for (Eigen::Index r = 0; r < x.rows(); r += lane_floats) {
       float* at = x.col(c).data() + r;
-      const Lane16 a = load16(at);
-      store16(at, a / (clamped_exp(-a) + 1.F));
+      const FloatLane a = load_lane(at);
+      store_lane(at, a / (clamped_exp(-a) + 1.F));
     }
 }
 
@@ -51,10 +61,10 @@ SweepsInference::SweepsInference(const Sweeps<float>& sweeps, const Parameters<f
     : layers_(sweeps.layers()), weights_(weights) {
   const int h = sweeps.latent();
   switch (h) {
-    case 16: step_ = gru_step<1>; break;
-    case 32: step_ = gru_step<2>; break;
-    case 48: step_ = gru_step<3>; break;
-    case 64: step_ = gru_step<4>; break;
+    case 16: step_ = gru_step<16>; break;
+    case 32: step_ = gru_step<32>; break;
+    case 48: step_ = gru_step<48>; break;
+    case 64: step_ = gru_step<64>; break;
     default: throw std::invalid_argument("SweepsInference: latent size " + std::to_string(h));
   }
   states_.resize(3 * h, joints);
