@@ -40,8 +40,6 @@ std::string ratio_table(const ModelCard& card) {
 
 }  // namespace
 
-std::string ratios_text(const ValidationRatio::Ratios& ratios) { return fmt::format("{:.3f}", fmt::join(ratios, " ")); }
-
 std::string progress_text(const ModelCard& card, double seconds_left) {
   const std::vector<Epoch>& epochs = card.epochs;
   std::string text = fmt::format(
@@ -53,7 +51,7 @@ std::string progress_text(const ModelCard& card, double seconds_left) {
                         best_epoch(card).validation_loss);
     const auto measured = std::find_if(epochs.rbegin(), epochs.rend(),
                                        [](const Epoch& epoch) { return !std::isnan(epoch.cg_ratio.front()); });
-    if (measured != epochs.rend()) text += ", CG ratio " + ratios_text(measured->cg_ratio);
+    if (measured != epochs.rend()) text += fmt::format(", CG ratio {:.3f}", fmt::join(measured->cg_ratio, " "));
     text += fmt::format(", rate {:.1e}", last.rate);
   }
   return text + fmt::format(", {} left", duration_text(seconds_left));
