@@ -109,8 +109,8 @@ def short_titles(panels):
 
 
 def _says_something(file, key, task):
-    """False for a parameter of a guess ("guesses[1].oracle.error") in a task where that guess is another one."""
-    return not key.startswith("guesses[") or file.parameters[key].applies()[task]
+    """False for a parameter of a guess ("guesses[1].oracle.error") or method in a task where there is another one."""
+    return not key.startswith(("guesses[", "solve.")) or file.parameters[key].applies()[task]
 
 
 def _keys(x):

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Figure and table of long runs: length drift, joint gap, total energy and momenta over time for every method.
 
-Made for closed loops, where every guess advances a trajectory of its own, with tasks of `solve.method` "direct" beside
-them; in a paired sweep there is one trajectory, that of the direct solve. A line is the median over simulations of the
-largest value in each of a few hundred stretches of the run (energy: of the middle of its range); its band goes from the
-smallest to the largest that any simulation had there. The table has the largest and the final drift, its
-slope per 1000 steps with a 95 % bootstrap interval over simulations, and what failed. The figure is written as PDF and
-PNG; the paths are printed after the table.
+Made for closed loops, where every guess advances a trajectory of its own, with tasks of `solve.method` "direct" or
+"end_to_end" beside them; in a paired sweep there is one trajectory, that of the direct solve. A line is the median over
+simulations of the largest value in each of a few hundred stretches of the run (energy: of the middle of its range); its
+band goes from the smallest to the largest that any simulation had there. The table has the largest and the final drift,
+its slope per 1000 steps with a 95 % bootstrap interval over simulations, and what failed. The figure is written as PDF
+and PNG; the paths are printed after the table.
 """
 
 import sys
@@ -78,7 +78,7 @@ def make_study(file, options):
 
 
 def methods(shown, panel):
-    """{method: (style, tasks, rows of Simulations)} of a panel, guesses in the file's order and `direct` last."""
+    """{method: (style, tasks, rows of Simulations)} of a panel: guesses in the file's order, then what has none."""
     file, sims = shown.file, shown.sims
     found = {}
     for g in shown.guesses:
@@ -86,8 +86,9 @@ def methods(shown, panel):
         if len(rows):
             found[file.guesses[g]] = (shown.style(g), sims.task[rows, g], rows)
     rows = panel.index[~sims.own[panel.index]]
-    if len(rows):
-        found["direct"] = (style.DIRECT, sims.any_task[rows], rows)
+    names = measures.without_guess(file, sims.any_task[rows])
+    for name, look in style.guess_styles(np.unique(names)[::-1]).items():
+        found[name] = (look, sims.any_task[rows[names == name]], rows[names == name])
     return found
 
 
@@ -99,7 +100,7 @@ def failures(file, options, shown):
         own = file.own_guess[task]
         if own >= 0 and own not in shown.guesses:
             continue
-        key = (scenes[task], file.guesses[own] if own >= 0 else "direct")
+        key = (scenes[task], file.guesses[own] if own >= 0 else measures.without_guess(file, [task])[0])
         bad, every = counts.get(key, (0, 0))
         counts[key] = (bad + (not file.ok[task]), every + 1)
     return counts

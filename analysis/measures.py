@@ -6,6 +6,7 @@ guess, ...]. Sums run over a simulation first; ratios are of sums. Only tasks th
 simulation would not be one. What is left out is counted in Simulations and shown by every script.
 """
 
+import os
 from collections import Counter
 from dataclasses import dataclass
 
@@ -67,11 +68,21 @@ def census(file, chosen):
 
 
 def has_guesses(file):
-    """Mask of the tasks that try guesses: a plain direct simulation has none."""
+    """Mask of the tasks that try guesses: cg does, the direct solve and a network in its place have none."""
     if not file.guesses:
         return np.zeros(file.task_count, dtype=bool)
     method = file.parameters.get("solve.method")
-    return np.ones(file.task_count, dtype=bool) if method is None else method.values != "direct"
+    return np.ones(file.task_count, dtype=bool) if method is None else method.values == "cg"
+
+
+def without_guess(file, tasks):
+    """Names of what moves the rods of tasks that have no guess of their own: "direct", or "end_to_end" and a model."""
+    method, model = file.parameters.get("solve.method"), file.parameters.get("solve.model")
+    if method is None or model is None:
+        return np.full(len(tasks), "direct")
+    stems = [os.path.splitext(os.path.basename(path))[0] for path in model.values[tasks]]
+    return np.array([f"end_to_end {stem}" if of == "end_to_end" else "direct"
+                     for of, stem in zip(method.values[tasks], stems)], dtype=str)
 
 
 def simulations(file, chosen):

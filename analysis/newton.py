@@ -17,6 +17,7 @@ import commandline
 import groups
 import intervals
 import layout
+import measures
 import newton_levels
 import study
 import style
@@ -57,7 +58,7 @@ def main():
 
 
 def methods(shown, panel):
-    """{method: (style, tasks, rows of Simulations)}: CG by tolerance and guess in a closed loop, and direct."""
+    """{method: (style, tasks, rows of Simulations)}: CG by tolerance and guess in a closed loop, and what has none."""
     file, sims = shown.file, shown.sims
     own = sims.own[panel.index]
     tolerance = file.parameters["solve.tolerance"] if "solve.tolerance" in file.parameters else None
@@ -71,9 +72,10 @@ def methods(shown, panel):
                 f", {file.guesses[g]}" if len(shown.guesses) > 1 else "")
             ways.append((label, sims.task[of_value, g], of_value))
     found = {label: (look, tasks, rows) for look, (label, tasks, rows) in zip(style.series_styles(len(ways)), ways)}
-    direct = panel.index[~own]
-    if len(direct):
-        found["direct"] = (style.DIRECT, sims.any_task[direct], direct)
+    rows = panel.index[~own]
+    names = measures.without_guess(file, sims.any_task[rows])
+    for name, look in style.guess_styles(np.unique(names)).items():
+        found[name] = (look, sims.any_task[rows[names == name]], rows[names == name])
     return found
 
 

@@ -98,7 +98,7 @@ class Tidy:
     def _has_guesses(self):
         method = self.file.parameters.get("solve.method")
         every = np.ones(self.file.task_count, dtype=bool)
-        return every if method is None or not self.by_guess else method.values != "direct"
+        return every if method is None or not self.by_guess else method.values == "cg"
 
     def _row_blocks(self):
         """(task of every row, {dataset: rows}) with rows that were never reached left out."""

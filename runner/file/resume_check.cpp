@@ -80,7 +80,9 @@ bool same(double a, double b) {
 void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& plan,
                       const std::vector<ParameterColumn>& parameters, const char* advice) {
   if (hdf5::read_text_attribute(file.id(), "/job", "plan_hash") != plan_hash(plan, parameters)) {
-    throw other_program(file, path, "its list of tasks is another (/job, plan_hash)", advice);
+    throw other_program(file, path,
+                        "its list of tasks is another, or the files that the job names have changed (/job, plan_hash)",
+                        advice);
   }
   for (const ParameterColumn& parameter : parameters) {
     const auto* here = std::get_if<std::vector<double>>(&parameter.values);

@@ -78,6 +78,7 @@ class Sweep:
     newton: int = 3
     closed_loop: bool = False
     method: str = "cg"
+    model: str = ""   # of end_to_end
     solves: bool = True
     plant: Plant = field(default_factory=Plant)
     pending: tuple = ()
@@ -133,7 +134,8 @@ class Sweep:
             h5[name] = values
 
     def _parameters(self, h5, tasks):
-        text = {"solve.method": self.method, "solve.preconditioner": "jacobi", "solve.norm": "true_residual"}
+        text = {"solve.method": self.method, **({"solve.model": self.model} if self.model else {}),
+                "solve.preconditioner": "jacobi", "solve.norm": "true_residual"}
         columns = {"scene.type": ("", [t[0] for t in tasks])}
         columns.update({key: ("", [value] * len(tasks)) for key, value in text.items()})
         columns.update({"solve.tolerance": ("", [1e-2] * len(tasks)), "time.step_s": ("s", [0.02] * len(tasks))})

@@ -272,6 +272,12 @@ class LongTerm(Studies):
         self.write(**{**self.LONG, "closed_loop": False, "steps": 50})
         self.assertIn("  direct", self.run_script("long_term.py", "sweep.h5").stdout)
 
+    def test_a_network_instead_of_the_solve_is_a_method_by_the_name_of_its_model(self):
+        self.write(method="end_to_end", model="../models/bending.h5", failed={1: "diverged"}, steps=50)
+        said = self.run_script("long_term.py", "sweep.h5").stdout
+        self.assertIn("  end_to_end bending ", said)
+        self.assertNotIn("direct", said)
+
     def test_energies_are_relative_to_the_first_step_and_the_largest_kinetic_energy(self):
         file, sims = self.open(plant=Drifting(), **self.LONG)
         options = self.options()

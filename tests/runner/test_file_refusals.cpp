@@ -208,3 +208,16 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
     CHECK_THAT(resume_refusal(path, plan), Contains("its list of tasks is another"));
   }
 }
+
+TEST_CASE("a sweep does not go on with another file under a name in its job") {
+  const TemporaryFolder folder;
+  const auto plan = [&] {
+    const Json job = with("/guesses", R"(["zero", {"knn": {"data": "data.h5"}}])", full_job());
+    return Plan(parse_job(job.dump(), folder / "job.json"));
+  };
+  std::ofstream(folder / "data.h5") << "systems";
+  make_file(folder / "a.h5", plan(), 3);
+  CHECK(resume_refusal(folder / "a.h5", plan()) == "");
+  std::ofstream(folder / "data.h5") << "other systems";
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan()), Contains("the files that the job names have changed"));
+}
