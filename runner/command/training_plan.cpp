@@ -16,7 +16,7 @@
 namespace rodsweep {
 namespace {
 
-constexpr std::int64_t probed_simulations = 8;
+constexpr std::int64_t fewest_simulations = 8;
 constexpr double probed_s = 0.5;
 
 /// What is known without computing anything.
@@ -68,43 +68,45 @@ double seconds_of_ratio(const TrainingJob& job, const Model& model, RecordedSimu
   return watch.seconds() * times * static_cast<double>(std::min(job.ratio_simulations, job.validation_simulations));
 }
 
-Probe probe(const TrainingJob& job, const DatasetReader& dataset, const Extent& extent) {
-  Probe probe;
-  std::vector<Example> examples;
-  const std::int64_t tried = std::min(probed_simulations, extent.training_simulations);
-  const Stopwatch reading;
-  std::int64_t read = 0;
-  for (; read < tried || static_cast<int>(examples.size()) < job.training.batch; ++read) {
-    if (read == extent.training_simulations)
-      throw FileError(fmt::format("{} has too few examples for a batch of {}", job.data.native(), job.training.batch));
-    add_examples(job.network, dataset.read(read * extent.training_simulations / std::max(tried, read + 1)), examples);
-  }
-  probe.reading_s = reading.seconds() / static_cast<double>(read) * static_cast<double>(dataset.size());
-  for (const Example& example : examples) probe.bytes += bytes_of(example);
-  probe.bytes *= static_cast<double>(dataset.size()) / static_cast<double>(read);
-
-  Model model{CopingNet<float>(job.network, job.training.seed), feature_scales(job.network, examples)};
-  normalise(job.network, model.scales, examples);
-  Trainer trainer(model.net, examples, job.training);
-  std::vector<std::vector<float>> shards(static_cast<std::size_t>(job.training.shards),
+/// Of one step of the optimiser.
+double seconds_of_step(Trainer& trainer, int shard_count) {
+  std::vector<std::vector<float>> shards(static_cast<std::size_t>(shard_count),
                                          std::vector<float>(trainer.shard_size()));
   std::vector<const float*> gradients;
   for (const std::vector<float>& shard : shards) gradients.push_back(shard.data());
-  int steps = -1;  // the first one touches memory for the first time
+  int steps = -1;  // the first one touches its memory for the first time
   Stopwatch watch;
   for (; steps < 3 || watch.seconds() < probed_s; ++steps) {
     if (steps == 0) watch = Stopwatch();
     for (std::size_t i = 0; i < shards.size(); ++i) trainer.compute(static_cast<int>(i), shards[i].data());
     trainer.update(gradients);
   }
-  probe.training_s = watch.seconds() / steps * static_cast<double>(extent.steps);
+  return watch.seconds() / steps;
+}
 
-  const auto batch = static_cast<std::size_t>(job.training.batch);
+Probe probe(const TrainingJob& job, const DatasetReader& dataset, const Extent& extent) {
+  Probe probe;
+  const std::int64_t all = extent.training_simulations;
+  const std::int64_t for_a_batch = 1 + job.training.batch * all / std::max<std::int64_t>(extent.training_examples, 1);
+  const std::int64_t tried = std::min(all, std::max(fewest_simulations, for_a_batch));
+  std::vector<Example> examples;
+  const Stopwatch reading;
+  for (std::int64_t i = 0; i < tried; ++i) add_examples(job.network, dataset.read(i * all / tried), examples);
+  const double share = static_cast<double>(dataset.size()) / static_cast<double>(tried);
+  probe.reading_s = share * reading.seconds();
+  for (const Example& example : examples) probe.bytes += share * bytes_of(example);
+  if (static_cast<int>(examples.size()) < job.training.batch)
+    throw FileError(fmt::format("{} has too few examples for a batch of {}", job.data.native(), job.training.batch));
+
+  Model model{CopingNet<float>(job.network, job.training.seed), feature_scales(job.network, examples)};
+  normalise(job.network, model.scales, examples);
+  Trainer trainer(model.net, examples, job.training);
+  probe.training_s = seconds_of_step(trainer, job.training.shards) * static_cast<double>(extent.steps);
   const Stopwatch forward;
-  for (int i = 0; i < 3; ++i) trainer.loss(examples, 0, batch);
-  probe.validation_s = forward.seconds() / 3 / static_cast<double>(batch) *
-                       static_cast<double>(extent.validation_examples) * job.training.epochs;
-  probe.validation_s += seconds_of_ratio(job, model, dataset.read(extent.training_simulations));
+  for (int i = 0; i < 3; ++i) trainer.loss(examples, 0, static_cast<std::size_t>(job.training.batch));
+  probe.validation_s = forward.seconds() / (3 * job.training.batch) * static_cast<double>(extent.validation_examples) *
+                       job.training.epochs;
+  probe.validation_s += seconds_of_ratio(job, model, dataset.read(all));
   return probe;
 }
 

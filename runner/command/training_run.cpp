@@ -38,7 +38,8 @@ class TrainingRun {
  private:
   void advise(const Placement& where);
   void show_progress();
-  void save(bool ends);
+  void report(const StopSignal& signal);
+  void save();
   bool save_is_due() const;
   bool writes() const { return mpi_.rank() == 0; }
 
@@ -52,7 +53,7 @@ class TrainingRun {
   std::optional<Training> training_;
   std::optional<ModelFile> file_;
   std::optional<ProgressLine> progress_;
-  ModelCard card_;
+  std::vector<TrainingStart> starts_;
   Stopwatch since_begin_, since_save_;  ///< of the steps; of the last time that the file was written
   double save_s_ = 0;                   ///< how long that took
   std::int64_t first_step_ = 0;
@@ -70,9 +71,10 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
     data_ = training_data(training_job_, dataset);
     simulations = ratio_simulations(training_job_, dataset, mpi_.rank(), mpi_.size());
   });
-  collectively(mpi_.world(), [&] { training_.emplace(training_job_, data_, std::move(simulations), mpi_.world()); });
+  collectively(mpi_.world(),
+               [&] { training_.emplace(job_, training_job_, data_, std::move(simulations), mpi_.world()); });
   if (earlier) {
-    card_ = earlier->card;
+    starts_ = earlier->card.starts;
     training_->restore(earlier->card, *earlier->model, *earlier->checkpoint);
   }
   first_step_ = training_->trainer().step();
@@ -82,21 +84,11 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   start.provenance.job = fs::absolute(options_.job).lexically_normal().native();
   start.provenance.ranks = mpi_.size();
   start.provenance.oversubscribed = where.oversubscribed;
-  card_.starts.push_back(std::move(start));
-  card_.name = job_.name;
-  card_.job_text = job_.text;
-  card_.data_path = fs::absolute(training_job_.data).lexically_normal().native();
-  card_.data_hash = data_.hash;
-  card_.training_simulations = data_.training_simulations;
-  card_.validation_simulations = data_.validation_simulations;
-  card_.training_examples = static_cast<std::int64_t>(data_.training.size());
-  card_.validation_examples = static_cast<std::int64_t>(data_.validation.size());
-  card_.planned_epochs = training_job_.training.epochs;
-  card_.ratio_simulations = std::min(training_job_.ratio_simulations, data_.validation_simulations);
+  starts_.push_back(std::move(start));
   collectively(mpi_.world(), [&] {
     if (!writes()) return;
     file_.emplace(path_, earlier.has_value());
-    save(false);
+    save();
   });
   advise(where);
 }
@@ -115,34 +107,44 @@ void TrainingRun::advise(const Placement& where) {
                               run_command(options_, useful)));
   }
   const Trainer& trainer = training_->trainer();
+  const ModelCard& card = training_->card();
   console_.note(fmt::format(
-      "{}: {} parameters learn from {} examples of {} simulations, {} steps in each of {} epochs{}", job_.name,
-      trainer.shard_size() - 1, card_.training_examples, card_.training_simulations, trainer.steps_per_epoch(),
-      card_.planned_epochs, first_step_ > 0 ? fmt::format("; continued after step {}", first_step_) : ""));
+      "{}: {} parameters learn from {} examples of {} simulations, {} steps in each of {} epochs{}", card.name,
+      trainer.shard_size() - 1, card.training_examples, card.training_simulations, trainer.steps_per_epoch(),
+      card.planned_epochs, first_step_ > 0 ? fmt::format("; continued after step {}", first_step_) : ""));
 }
 
 ExitCode TrainingRun::run(const StopSignal& signal) {
   progress_.emplace(console_, ProgressLine::Clock::now());
   since_begin_ = Stopwatch();
   bool stops = false;
-  while (!stops && training_->ending() == Ending::none) {
+  while (!stops && !training_->ended()) {
     stops = training_->step(signal.received() != 0);
     show_progress();
-    if (writes() && save_is_due()) save(false);
+    if (writes() && save_is_due()) save();
   }
   progress_->clear();
-  if (training_->ending() != Ending::none && training_->best_epoch() > 0) training_->end();
-  if (writes()) save(true);
-  const ExitCode code = exit_code_of(training_->ending());
-  console_.result(training_summary(card_, path_) +
-                  (code == ExitCode::stopped ? "" : "\nnext: " + script_line("loss.py", path_)));
-  if (code == ExitCode::stopped) {
-    RunOptions again = options_;
-    again.resume = true;
-    console_.note(fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_name(signal.received()),
-                              run_command(again, mpi_.size())));
-  }
+  if (training_->ended() && training_->card().best_epoch > 0) training_->end();
+  const ExitCode code = exit_code_of(training_->card().ending);
+  if (!writes()) return code;
+  starts_.back().end_utc = utc_now();
+  starts_.back().exit_code = static_cast<int>(code);
+  save();
+  report(signal);
   return code;
+}
+
+void TrainingRun::report(const StopSignal& signal) {
+  const std::string summary = training_summary(training_->card(), path_);
+  if (training_->ended()) {
+    console_.result(summary + "\nnext: " + script_line("loss.py", path_));
+    return;
+  }
+  console_.result(summary);
+  RunOptions again = options_;
+  again.resume = true;
+  console_.note(fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_name(signal.received()),
+                            run_command(again, mpi_.size())));
 }
 
 void TrainingRun::show_progress() {
@@ -152,33 +154,25 @@ void TrainingRun::show_progress() {
   const auto done = static_cast<double>(trainer.step() - first_step_);
   const auto left = static_cast<double>(trainer.steps() - trainer.step());
   progress_->show(now, static_cast<double>(trainer.step()) / static_cast<double>(trainer.steps()),
-                  progress_text(training_->epochs(), training_->best_epoch(), card_.planned_epochs,
-                                since_begin_.seconds() / done * left));
+                  progress_text(training_->card(), since_begin_.seconds() / done * left));
 }
 
 /// After an epoch, unless that would take much of the time (a slow disk), and in long epochs now and then.
 bool TrainingRun::save_is_due() const {
   const double unsaved_s = since_save_.seconds();
+  if (training_->ended()) return false;  // its end is yet to be measured
   return unsaved_s > longest_unsaved_s ||
          (training_->at_epoch_begin() && save_s_ < most_of_time_for_saving * unsaved_s);
 }
 
-/// What is known now; at the end without what it takes to go on, unless it is to go on.
-void TrainingRun::save(bool ends) {
-  card_.epochs = training_->epochs();
-  card_.best_epoch = training_->best_epoch();
-  card_.ending = training_->ending();
-  card_.message = training_->message();
-  card_.cg_ratio = training_->cg_ratio();
-  card_.base_cg_ratio = training_->base_cg_ratio();
-  if (ends) {
-    card_.starts.back().end_utc = utc_now();
-    card_.starts.back().exit_code = static_cast<int>(exit_code_of(card_.ending));
-  }
+/// What is known now, and what it takes to go on, as long as there is something to do.
+void TrainingRun::save() {
   const Stopwatch watch;
+  ModelCard card = training_->card();
+  card.starts = starts_;
   std::optional<Checkpoint> checkpoint;
-  if (card_.ending == Ending::none) checkpoint = training_->checkpoint();
-  file_->save(card_, training_->kept(), checkpoint);
+  if (!training_->ended()) checkpoint = training_->checkpoint();
+  file_->save(card, training_->kept(), checkpoint);
   save_s_ = watch.seconds();
   since_save_ = Stopwatch();
 }

@@ -40,22 +40,21 @@ std::string ratio_table(const ModelCard& card) {
 
 }  // namespace
 
-std::string ratios_text(const ValidationRatio::Ratios& ratios) { return fmt::format("{:.3f}", fmt::join(ratios, " ")); }
-
-std::string progress_text(const std::vector<Epoch>& epochs, std::int64_t best_epoch, std::int64_t planned_epochs,
-                          std::optional<double> seconds_left) {
-  std::string text = fmt::format("epoch {} of {}", epochs.size() + 1, planned_epochs);
+std::string progress_text(const ModelCard& card, double seconds_left) {
+  const std::vector<Epoch>& epochs = card.epochs;
+  std::string text = fmt::format(
+      "epoch {} of {}", std::min<std::int64_t>(static_cast<std::int64_t>(epochs.size()) + 1, card.planned_epochs),
+      card.planned_epochs);
   if (!epochs.empty()) {
     const Epoch& last = epochs.back();
     text += fmt::format(", loss {:.4g}, validation {:.4g} (best {:.4g})", last.training_loss, last.validation_loss,
-                        epochs[static_cast<std::size_t>(best_epoch) - 1].validation_loss);
+                        best_epoch(card).validation_loss);
     const auto measured = std::find_if(epochs.rbegin(), epochs.rend(),
                                        [](const Epoch& epoch) { return !std::isnan(epoch.cg_ratio.front()); });
-    if (measured != epochs.rend()) text += ", CG ratio " + ratios_text(measured->cg_ratio);
+    if (measured != epochs.rend()) text += fmt::format(", CG ratio {:.3f}", fmt::join(measured->cg_ratio, " "));
     text += fmt::format(", rate {:.1e}", last.rate);
   }
-  if (seconds_left) text += fmt::format(", {} left", duration_text(*seconds_left));
-  return text;
+  return text + fmt::format(", {} left", duration_text(seconds_left));
 }
 
 std::string training_summary(const ModelCard& card, const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "network/base_guess.hpp"
 #include "network/coping_net_guess.hpp"
@@ -11,22 +12,42 @@
 
 namespace rodsweep {
 
-Training::Training(const TrainingJob& job, const TrainingData& data, std::vector<RecordedSimulation> simulations,
-                   MPI_Comm comm)
-    : job_(job),
+namespace {
+
+ModelCard new_card(const Job& job, const TrainingJob& settings, const TrainingData& data) {
+  ModelCard card;
+  card.name = job.name;
+  card.job_text = job.text;
+  card.data_path = std::filesystem::absolute(settings.data).lexically_normal().native();
+  card.data_hash = data.hash;
+  card.training_simulations = data.training_simulations;
+  card.validation_simulations = data.validation_simulations;
+  card.training_examples = static_cast<std::int64_t>(data.training.size());
+  card.validation_examples = static_cast<std::int64_t>(data.validation.size());
+  card.planned_epochs = settings.training.epochs;
+  card.ratio_simulations = std::min(settings.ratio_simulations, data.validation_simulations);
+  return card;
+}
+
+}  // namespace
+
+Training::Training(const Job& job, const TrainingJob& settings, const TrainingData& data,
+                   std::vector<RecordedSimulation> simulations, MPI_Comm comm)
+    : settings_(settings),
       data_(data),
-      model_(std::make_shared<Model>(Model{CopingNet<float>(job.network, job.training.seed), data.scales})),
+      model_(std::make_shared<Model>(Model{CopingNet<float>(settings.network, settings.training.seed), data.scales})),
       kept_(std::make_shared<Model>(*model_)),
-      trainer_(model_->net, data.training, job.training),
-      exchange_(comm, job.training.shards, trainer_.shard_size()),
-      ratio_(std::move(simulations)) {}
+      trainer_(model_->net, data.training, settings.training),
+      exchange_(comm, settings.training.shards, trainer_.shard_size()),
+      ratio_(std::move(simulations)),
+      card_(new_card(job, settings, data)) {}
 
 void Training::restore(const ModelCard& card, const Model& kept, const Checkpoint& checkpoint) {
   *kept_ = kept;
   model_->net.parameters().values() = checkpoint.weights;
   trainer_.restore(checkpoint.optimiser);
-  epochs_ = card.epochs;
-  best_epoch_ = card.best_epoch;
+  card_.epochs = card.epochs;
+  card_.best_epoch = card.best_epoch;
   epoch_loss_ = checkpoint.epoch_loss;
   epoch_seconds_ = checkpoint.epoch_seconds;
 }
@@ -46,7 +67,8 @@ bool Training::step(bool stop) {
     end_epoch();
   }
   epoch_seconds_ += watch.seconds();
-  if (at_epoch_begin() && ending_ != Ending::diverged) epochs_.back().seconds = std::exchange(epoch_seconds_, 0);
+  if (at_epoch_begin() && card_.ending != Ending::diverged)
+    card_.epochs.back().seconds = std::exchange(epoch_seconds_, 0);
   return stops;
 }
 
@@ -59,28 +81,29 @@ void Training::end_epoch() {
     diverge("validation");
     return;
   }
-  const auto number = static_cast<std::int64_t>(epochs_.size()) + 1;
-  if (job_.ratio_every_epochs > 0 && number % job_.ratio_every_epochs == 0) epoch.cg_ratio = mean_ratio(model_);
-  if (best_epoch_ == 0 || epoch.validation_loss < epochs_[static_cast<std::size_t>(best_epoch_) - 1].validation_loss) {
-    best_epoch_ = number;
+  const auto number = static_cast<std::int64_t>(card_.epochs.size()) + 1;
+  if (settings_.ratio_every_epochs > 0 && number % settings_.ratio_every_epochs == 0)
+    epoch.cg_ratio = mean_ratio(model_);
+  if (card_.best_epoch == 0 || epoch.validation_loss < best_epoch(card_).validation_loss) {
+    card_.best_epoch = number;
     kept_->net.parameters().values() = model_->net.parameters().values();
   }
-  epochs_.push_back(epoch);
-  if (number == job_.training.epochs)
-    ending_ = Ending::complete;
-  else if (job_.patience_epochs > 0 && number - best_epoch_ >= job_.patience_epochs)
-    ending_ = Ending::early;
+  card_.epochs.push_back(epoch);
+  if (number == settings_.training.epochs)
+    card_.ending = Ending::complete;
+  else if (settings_.patience_epochs > 0 && number - card_.best_epoch >= settings_.patience_epochs)
+    card_.ending = Ending::early;
 }
 
 void Training::diverge(const char* loss) {
-  ending_ = Ending::diverged;
-  message_ = fmt::format("the {} loss is not finite any more in epoch {}: try a lower training.rate", loss,
-                         epochs_.size() + 1);
+  card_.ending = Ending::diverged;
+  card_.message = fmt::format("the {} loss is not finite any more in epoch {}: try a lower training.rate", loss,
+                              card_.epochs.size() + 1);
 }
 
 /// Batches are shared among the ranks, and summed in their order.
 double Training::validation_loss() {
-  const std::size_t batch = static_cast<std::size_t>(job_.training.batch), size = data_.validation.size();
+  const std::size_t batch = static_cast<std::size_t>(settings_.training.batch), size = data_.validation.size();
   std::vector<double> sums((size + batch - 1) / batch);
   for (std::size_t i = 0; i < sums.size(); ++i)
     if (exchange_.is_mine(static_cast<std::int64_t>(i)))
@@ -93,7 +116,7 @@ double Training::validation_loss() {
 
 ValidationRatio::Ratios Training::mean_ratio(const ValidationRatio::MakeGuess& make_guess) const {
   constexpr std::size_t columns = ValidationRatio::tolerance_count;
-  const auto count = static_cast<std::size_t>(std::min(job_.ratio_simulations, data_.validation_simulations));
+  const auto count = static_cast<std::size_t>(card_.ratio_simulations);
   std::vector<double> ratios(count * columns);
   for (std::size_t own = 0; own < ratio_.simulations(); ++own) {
     const ValidationRatio::Ratios of = ratio_.measure(own, make_guess);
@@ -124,9 +147,9 @@ ValidationRatio::Ratios Training::mean_ratio(const std::shared_ptr<const Model>&
 }
 
 void Training::end() {
-  cg_ratio_ = mean_ratio(kept_);
-  base_cg_ratio_ = mean_ratio([&](const Scene& scene, const RecordedSimulation& simulation) {
-    return base_guess(job_.network, scene, simulation.newton_iterations);
+  card_.cg_ratio = mean_ratio(kept_);
+  card_.base_cg_ratio = mean_ratio([&](const Scene& scene, const RecordedSimulation& simulation) {
+    return base_guess(settings_.network, scene, simulation.newton_iterations);
   });
 }
 

@@ -19,29 +19,25 @@ namespace rodsweep {
 class Training {
  public:
   /// All arguments must outlive this; `simulations` are this rank's part. Collective, like step() and end().
-  Training(const TrainingJob& job, const TrainingData& data, std::vector<RecordedSimulation> simulations,
-           MPI_Comm comm);
+  Training(const Job& job, const TrainingJob& settings, const TrainingData& data,
+           std::vector<RecordedSimulation> simulations, MPI_Comm comm);
 
-  /// Goes on from where a card, its model and a checkpoint were left.
+  /// Goes on from where a training with these settings was left.
   void restore(const ModelCard& card, const Model& kept, const Checkpoint& checkpoint);
   Checkpoint checkpoint() const;
 
   /// One step of the optimiser, and the end of the epoch if it was its last. Returns whether any rank wants to stop.
   bool step(bool stop);
   bool at_epoch_begin() const { return trainer_.step() % trainer_.steps_per_epoch() == 0; }
-  /// Why there is nothing left to do; Ending::none: there is.
-  Ending ending() const { return ending_; }
+  bool ended() const { return card_.ending != Ending::none; }
   /// Measures the CG ratio of the model kept and of its base guess.
   void end();
 
   const Trainer& trainer() const { return trainer_; }
-  const std::vector<Epoch>& epochs() const { return epochs_; }
-  std::int64_t best_epoch() const { return best_epoch_; }
+  /// All that is known of the model kept, but for the starts.
+  const ModelCard& card() const { return card_; }
   /// The model of the best epoch; before the first has ended, as it was at the start.
   const Model& kept() const { return *kept_; }
-  const std::string& message() const { return message_; }
-  const ValidationRatio::Ratios& cg_ratio() const { return cg_ratio_; }
-  const ValidationRatio::Ratios& base_cg_ratio() const { return base_cg_ratio_; }
 
  private:
   void end_epoch();
@@ -50,18 +46,14 @@ class Training {
   ValidationRatio::Ratios mean_ratio(const std::shared_ptr<const Model>& model) const;
   void diverge(const char* loss);
 
-  const TrainingJob& job_;
+  const TrainingJob& settings_;
   const TrainingData& data_;
   std::shared_ptr<Model> model_, kept_;  ///< as it is now, and of the best epoch
   Trainer trainer_;
   ShardExchange exchange_;
   ValidationRatio ratio_;
-  std::vector<Epoch> epochs_;
-  std::int64_t best_epoch_ = 0;
+  ModelCard card_;
   double epoch_loss_ = 0, epoch_seconds_ = 0;
-  Ending ending_ = Ending::none;
-  std::string message_;
-  ValidationRatio::Ratios cg_ratio_ = ValidationRatio::unmeasured(), base_cg_ratio_ = ValidationRatio::unmeasured();
 };
 
 }  // namespace rodsweep

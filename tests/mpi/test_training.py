@@ -79,7 +79,7 @@ class Stopping(TrainingCase):
 
     def setUp(self):
         super().setUp()
-        self.job = train_job("long", training={"epochs": 1000, "ratio_every_epochs": 100})
+        self.job = train_job("long", training={"epochs": 600, "batch": 60, "ratio_every_epochs": 100})
         if not os.path.exists("whole.h5"):
             self.assert_exit(rodsweep(2, "run", self.job, "-o", "whole.h5"), ALL_DONE)
 
@@ -104,17 +104,16 @@ class Stopping(TrainingCase):
         self.assertTrue(status(path)["ended"])
         self.assertEqual(len(status(path)["starts"]), 2)
 
-    def test_after_a_signal_to_one_rank_or_to_all(self):
+    def test_after_a_signal_to_one_rank(self):
         for name, ranks, hit in (("one", 3, lambda p: os.kill(ranks_of(p)[2], signal.SIGTERM)),
-                                 ("all", 2, lambda p: p.send_signal(signal.SIGUSR1)),
                                  ("alone", 0, lambda p: p.send_signal(signal.SIGINT))):
             with self.subTest(name=name):
                 code, stdout, stderr = self.interrupt(f"{name}.h5", ranks, hit)
                 self.assertEqual(code, STOPPED, stderr)
-                self.assertIn(" of 1000 epochs", stdout)
+                self.assertIn(" of 600 epochs", stdout)
                 self.assertIn("nothing is lost. To continue:", stderr)
                 self.assertEqual(status(f"{name}.h5")["starts"][0]["exit_code"], STOPPED)
-                self.resume(f"{name}.h5", 4 if name == "one" else 1)
+                self.resume(f"{name}.h5", 3 if name == "one" else 1)
 
     def test_after_all_ranks_are_killed(self):
         self.interrupt("killed.h5", 2, kill_all)
@@ -137,11 +136,8 @@ class Refused(TrainingCase):
                 ((path, "-o", "first.h5"), "first.h5 exists already"),
                 ((other, "-o", "first.h5", "--resume"),
                  "first.h5 cannot be continued with other.json: training.rate was 0.002 and is 0.01"),
-                ((path, "-o", "data.h5", "--resume"), "data.h5 holds the results of a dataset, not a model"),
                 ((path, "-o", "new.h5", "--extend", "data.h5"), "a training extends nothing"),
                 ((train_job("lost", data="nowhere.h5"),), "lost.json: data: there is no file nowhere.h5"),
-                ((train_job("few", validation_simulations=24),), "few.json: validation_simulations: 24 is not allowed"),
-                ((train_job("huge", training={"batch": 4000}),), "too few for batches of 4000"),
                 ((data_job("data"), "-o", "first.h5", "--resume"), "first.h5 holds a trained model"))):
             with self.subTest(text=text):
                 self.assert_refused_once(rodsweep(2 if number < 2 else 0, "run", *words), text)
@@ -186,7 +182,6 @@ class Refused(TrainingCase):
         now = json.loads(rodsweep(0, "info", "wild.h5", "--json").stdout)
         self.assertEqual((now["hash"], now["best_epoch"]), (kept["hash"], kept["best_epoch"]))
         self.assertEqual(now["starts"][1]["exit_code"], TASKS_FAILED)
-        self.assert_exit(rodsweep(0, "run", path, "-o", "wild.h5", "--resume"), TASKS_FAILED)
 
     def test_plan_and_validate(self):
         path = train_job("planned")

@@ -66,14 +66,14 @@ TEST_CASE("losses fall, the model kept is that of the least validation loss") {
   job["training"]["rate"] = 0.05;  // rough, so that the last epoch need not be the best
   const Toy toy(job);
   Training training = toy.run();
-  CHECK(training.ending() == Ending::complete);
-  const std::vector<Epoch>& epochs = training.epochs();
+  CHECK(training.card().ending == Ending::complete);
+  const std::vector<Epoch>& epochs = training.card().epochs;
   REQUIRE(epochs.size() == 30);
   CHECK(epochs.back().training_loss < 0.7 * epochs.front().training_loss);
   const auto best = std::min_element(epochs.begin(), epochs.end(), [](const Epoch& a, const Epoch& b) {
     return a.validation_loss < b.validation_loss;
   });
-  CHECK(training.best_epoch() == best - epochs.begin() + 1);
+  CHECK(training.card().best_epoch == best - epochs.begin() + 1);
   Model kept = training.kept();
   Trainer judge(kept.net, toy.data.training, toy.training.training);
   double sum = 0;
@@ -84,12 +84,12 @@ TEST_CASE("losses fall, the model kept is that of the least validation loss") {
 TEST_CASE("CG ratios are measured in the epochs that the job asks for, and of the model kept at the end") {
   const Toy toy;
   Training training = toy.run();
-  for (std::size_t i = 0; i < 4; ++i) CHECK(std::isnan(training.epochs()[i].cg_ratio.front()) == (i % 2 == 0));
-  CHECK(std::isnan(training.cg_ratio().front()));
+  for (std::size_t i = 0; i < 4; ++i) CHECK(std::isnan(training.card().epochs[i].cg_ratio.front()) == (i % 2 == 0));
+  CHECK(std::isnan(training.card().cg_ratio.front()));
   training.end();
-  REQUIRE(training.best_epoch() == 4);
-  CHECK(training.cg_ratio() == training.epochs().back().cg_ratio);
-  for (const double ratio : training.base_cg_ratio()) CHECK(ratio == 1);  // its base is no guess
+  REQUIRE(training.card().best_epoch == 4);
+  CHECK(training.card().cg_ratio == training.card().epochs.back().cg_ratio);
+  for (const double ratio : training.card().base_cg_ratio) CHECK(ratio == 1);  // its base is no guess
 }
 
 TEST_CASE("a training that was interrupted anywhere ends with the same bits") {
@@ -99,17 +99,14 @@ TEST_CASE("a training that was interrupted anywhere ends with the same bits") {
     CAPTURE(steps);
     Training before = toy.begin();
     for (int i = 0; i < steps; ++i) CHECK_FALSE(before.step(false));
-    ModelCard card;
-    card.epochs = before.epochs();
-    card.best_epoch = before.best_epoch();
     Training after = toy.begin();
-    after.restore(card, before.kept(), before.checkpoint());
+    after.restore(before.card(), before.kept(), before.checkpoint());
     CHECK(after.trainer().step() == steps);
     Toy::finish(after);
     CHECK(after.kept().net.parameters().values() == whole.kept().net.parameters().values());
     CHECK(after.checkpoint().weights == whole.checkpoint().weights);
-    CHECK(same(after.epochs(), whole.epochs()));
-    CHECK(after.best_epoch() == whole.best_epoch());
+    CHECK(same(after.card().epochs, whole.card().epochs));
+    CHECK(after.card().best_epoch == whole.card().best_epoch);
   }
 }
 
@@ -119,7 +116,7 @@ TEST_CASE("a rank that wants to stop is heard, and its step counts") {
   CHECK_FALSE(training.step(false));
   CHECK(training.step(true));
   CHECK(training.trainer().step() == 2);
-  CHECK(training.ending() == Ending::none);
+  CHECK(training.card().ending == Ending::none);
 }
 
 TEST_CASE("without a better validation loss the training ends when its patience does") {
@@ -129,9 +126,9 @@ TEST_CASE("without a better validation loss the training ends when its patience 
   job["training"]["patience_epochs"] = 3;
   const Toy toy(job);
   const Training training = toy.run();
-  CHECK(training.ending() == Ending::early);
-  CHECK(training.epochs().size() == 4);
-  CHECK(training.best_epoch() == 1);
+  CHECK(training.card().ending == Ending::early);
+  CHECK(training.card().epochs.size() == 4);
+  CHECK(training.card().best_epoch == 1);
 }
 
 TEST_CASE("a loss that is not finite ends the training; the best model so far is kept") {
@@ -139,9 +136,9 @@ TEST_CASE("a loss that is not finite ends the training; the best model so far is
   Toy toy;
   toy.data.validation[5].edges(0, 0) = nan;
   Training at_once = toy.run();
-  CHECK(at_once.ending() == Ending::diverged);
-  CHECK(at_once.message() == "the validation loss is not finite any more in epoch 1: try a lower training.rate");
-  CHECK(at_once.best_epoch() == 0);
+  CHECK(at_once.card().ending == Ending::diverged);
+  CHECK(at_once.card().message == "the validation loss is not finite any more in epoch 1: try a lower training.rate");
+  CHECK(at_once.card().best_epoch == 0);
 
   Toy later;
   Training training = later.begin();
@@ -149,10 +146,10 @@ TEST_CASE("a loss that is not finite ends the training; the best model so far is
   const auto kept = training.kept().net.parameters().values();
   for (Example& example : later.data.training) example.edges(0, 0) = nan;
   Toy::finish(training);
-  CHECK(training.ending() == Ending::diverged);
-  CHECK(training.message() == "the training loss is not finite any more in epoch 2: try a lower training.rate");
-  CHECK(training.epochs().size() == 1);
-  CHECK(training.best_epoch() == 1);
+  CHECK(training.card().ending == Ending::diverged);
+  CHECK(training.card().message == "the training loss is not finite any more in epoch 2: try a lower training.rate");
+  CHECK(training.card().epochs.size() == 1);
+  CHECK(training.card().best_epoch == 1);
   CHECK(training.kept().net.parameters().values() == kept);
 }
 

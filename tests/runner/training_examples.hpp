@@ -43,7 +43,7 @@ struct Toy {
     simulations = ratio_simulations(training, dataset, 0, 1);
   }
 
-  Training begin() const { return Training(training, data, simulations, MPI_COMM_SELF); }
+  Training begin() const { return Training(job, training, data, simulations, MPI_COMM_SELF); }
   /// To its end.
   Training run() const {
     Training result = begin();
@@ -51,7 +51,7 @@ struct Toy {
     return result;
   }
   static void finish(Training& training) {
-    while (training.ending() == Ending::none) training.step(false);
+    while (!training.ended()) training.step(false);
   }
 };
 
