@@ -37,6 +37,7 @@ ModelCard some_card() {
   card.base_cg_ratio = {0.5, 0.6, 0.7, 0.8};
   card.ratio_simulations = 50;
   card.starts = {{test_provenance(), "2025-11-21T16:05:09Z", 4}, {test_provenance(), "", -1}};
+  for (TrainingStart& start : card.starts) start.provenance.begin_utc = "2026-01-02T03:04:05Z";  // not now
   card.starts[1].provenance.oversubscribed = true;
   return card;
 }
