@@ -9,7 +9,7 @@ script() { /usr/bin/python3 "analysis/$1.py" "$results/$2.h5" "${@:3}"; }
 figures() { script "$@" -o $out; }
 table() { script "$@" >"$out/$2.txt"; }
 
-for study in spatial_bending spatial_helix; do
+for study in spatial_bending spatial_helix learned_bending learned_helix; do
   figures spatial $study
   table summary $study
 done
