@@ -38,6 +38,7 @@ double EnergyLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>& d,
     part(r_, a.first_place, s) -= static_cast<T>(length[i]) * part(ad_, a.first_place, s);
   }
   iterate(a);
+  if (gradient) apply_polynomial(a);
 
   double loss = 0;
   if (gradient) gradient->resize(6, d.cols());
@@ -46,7 +47,7 @@ double EnergyLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>& d,
     const double ratio = std::max(energy_[i] / a.solution_energy[i], smallest);
     loss += std::sqrt(ratio);
     if (!gradient) continue;
-    // dE/dx0 = -2 v, x0 = c d:  dE/dd = -2 (c v + (d.v) dc/dd),  dc/dd = (r^ - 2 c A^ d) / d.A^ d
+    // dE/dx0 = -2 v, v = P_k(A^) r_k, x0 = c d:  dE/dd = -2 (c v + (d.v) dc/dd),  dc/dd = (r^ - 2 c A^ d) / d.A^ d
     const auto ds = part(d, a.first_place, s), v = part(v_, a.first_place, s);
     const double c = length[i], slope = best_length_ && curvature[i] > 0 ? dot(ds, v) / curvature[i] : 0;
     const double dloss = -1 / (std::sqrt(ratio) * a.solution_energy[i]);  // dL/dE * (-2)
@@ -57,7 +58,7 @@ double EnergyLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>& d,
   return loss;
 }
 
-/// CG from r_: updates energy_, and v_ becomes P_k(A^) r_k.
+/// CG from r_: updates r_ and energy_.
 template <class T>
 void EnergyLoss<T>::iterate(const ScaledSystem<T>& a) {
   const int systems = a.systems();
@@ -80,11 +81,16 @@ void EnergyLoss<T>::iterate(const ScaledSystem<T>& a) {
       p = r + step.beta[i] * p;
     }
   }
-  // The same recurrence for the errors, v_{i+1} = v_i - alpha_i p_i with p_i = A^ v_i + beta_{i-1} p_{i-1}.
+}
+
+/// v_ becomes P_k(A^) r_k, by the recurrence of the errors in iterate():
+///   v_{i+1} = v_i - alpha_i p_i,   p_i = A^ v_i + beta_{i-1} p_{i-1}
+template <class T>
+void EnergyLoss<T>::apply_polynomial(const ScaledSystem<T>& a) {
   v_ = r_;
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     multiply<T>(a, v_, ap_);
-    for (int s = 0; s < systems; ++s) {
+    for (int s = 0; s < a.systems(); ++s) {
       const auto i = static_cast<std::size_t>(s);
       auto p = part(p_, a.first_place, s);
       if (k == 0)

@@ -26,6 +26,7 @@ class EnergyLoss {
     std::vector<T> alpha, beta;  ///< per system
   };
   void iterate(const ScaledSystem<T>& a);
+  void apply_polynomial(const ScaledSystem<T>& a);
 
   int cg_steps_;
   bool best_length_;

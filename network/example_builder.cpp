@@ -3,23 +3,19 @@
 #include <memory>
 
 #include "network/base_guess.hpp"
-#include "solver/linear_system.hpp"
+#include "solver/rounding_level.hpp"
 
 namespace rodsweep {
 namespace {
 
-constexpr double rounding = 1e-13;  // of the residual's entries, as in the measurements (max |r|, dimensionless)
-
 /// What one rod needs again and again.
 struct RodExamples {
-  LinearSystem system;
   FeatureEncoder encoder;
   VectorX base, residual, scale;
   std::vector<Lane8> moves;
 
-  RodExamples(const CopingNetSettings& settings, const Rod& rod)
-      : system(rod),
-        encoder(settings, rod, system.matrix()),
+  RodExamples(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system)
+      : encoder(settings, rod, system.matrix()),
         base(VectorX::Zero(system.rhs().size())),
         residual(base),
         scale(base),
@@ -34,17 +30,17 @@ Tensor<float> by_place(const Topology& topology, const VectorX& values) {
   return out;
 }
 
-Example example_of(const CopingNetSettings& settings, const Rod& rod, const RecordedSystem& recorded, double dt_c,
-                   RodExamples& of) {
+Example example_of(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system,
+                   const RecordedSystem& recorded, double dt_c, RodExamples& of) {
   Example out;
   out.topology = of.encoder.shared_topology();
   out.nodes.resize(node_features(settings), rod.segment_count());
   out.edges.resize(edge_features(settings), rod.joint_count());
-  of.encoder.encode(rod, of.system, recorded.at.newton, dt_c, of.base, of.residual, out.nodes, out.edges);
+  of.encoder.encode(rod, system, recorded.at.newton, dt_c, of.base, of.residual, out.nodes, out.edges);
   const VectorX error = recorded.solution - of.base;
-  out.system = scaled_system(of.encoder.pattern(), of.system.matrix(), of.residual, error,
-                             recorded.solution.dot(of.system.rhs()));
-  correction_scale(of.system.matrix(), of.residual, of.scale);
+  out.system =
+      scaled_system(of.encoder.pattern(), system.matrix(), of.residual, error, recorded.solution.dot(system.rhs()));
+  correction_scale(system.matrix(), of.residual, of.scale);
   if (settings.encoding == Encoding::system) {
     out.unit = Tensor<float>::Ones(6, rod.joint_count());
     out.edge_target = by_place(*out.topology, error.cwiseQuotient(of.scale));
@@ -54,7 +50,7 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Reco
   }
   if (settings.moves) {
     out.node_target.resize(6, rod.segment_count());
-    of.system.displacements(rod, recorded.solution, of.moves);
+    system.displacements(rod, recorded.solution, of.moves);
     for (Eigen::Index s = 0; s < out.node_target.cols(); ++s)
       for (int k = 0; k < 6; ++k) out.node_target(k, s) = static_cast<float>(of.moves[static_cast<std::size_t>(s)][k]);
   } else {
@@ -66,23 +62,20 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Reco
 }  // namespace
 
 void add_examples(const CopingNetSettings& settings, const RecordedSimulation& simulation, std::vector<Example>& out) {
-  Scene scene = simulation.scene;
+  Replay replay(simulation);
+  const Scene& scene = replay.scene();
   const std::unique_ptr<InitialGuess> base = base_guess(settings, scene, simulation.newton_iterations);
   std::vector<RodExamples> rods;
-  rods.reserve(scene.rods.size());
-  for (const Rod& rod : scene.rods) rods.emplace_back(settings, rod);
-  for (const RecordedSystem& recorded : simulation.systems) {
-    Rod& rod = scene.rods[static_cast<std::size_t>(recorded.at.rod)];
+  for (std::size_t r = 0; r < scene.rods.size(); ++r) rods.emplace_back(settings, scene.rods[r], replay.systems()[r]);
+  replay.run([&](const RecordedSystem& recorded, const Rod& rod, const LinearSystem& system) {
     RodExamples& of = rods[static_cast<std::size_t>(recorded.at.rod)];
-    restore(recorded, rod);
-    of.system.assemble(rod, simulation.constraint_dt_s);
-    base->propose(of.system, recorded.at, of.base);
-    of.system.matrix().multiply(of.base.data(), of.residual.data());
-    of.residual = of.system.rhs() - of.residual;
-    if (of.residual.lpNorm<Eigen::Infinity>() > rounding)
-      out.push_back(example_of(settings, rod, recorded, simulation.constraint_dt_s, of));
+    base->propose(system, recorded.at, of.base);
+    system.matrix().multiply(of.base.data(), of.residual.data());
+    of.residual = system.rhs() - of.residual;
+    if (of.residual.lpNorm<Eigen::Infinity>() > rounding_level)
+      out.push_back(example_of(settings, rod, system, recorded, simulation.constraint_dt_s, of));
     base->accept(recorded.at, recorded.solution);
-  }
+  });
 }
 
 FeatureScales feature_scales(const CopingNetSettings& settings, const std::vector<Example>& examples) {

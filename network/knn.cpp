@@ -4,8 +4,6 @@
 #include <cmath>
 #include <nanoflann.hpp>
 
-#include "solver/linear_system.hpp"
-
 namespace rodsweep {
 namespace {
 
@@ -63,24 +61,19 @@ KnnSet::KnnSet() = default;
 KnnSet::~KnnSet() = default;
 
 void KnnSet::add(const RecordedSimulation& simulation) {
-  Scene scene = simulation.scene;
+  Replay replay(simulation);
   std::vector<ChainProfile> profiles;
-  std::vector<LinearSystem> systems;
   const std::size_t first_rod = arcs_.size();
-  for (const Rod& rod : scene.rods) {
-    profiles.emplace_back(rod, scene.gravity_m_s2);
-    systems.emplace_back(rod);
+  for (const Rod& rod : replay.scene().rods) {
+    profiles.emplace_back(rod, replay.scene().gravity_m_s2);
     arcs_.push_back(profiles.back().arc());
   }
   Tensor<float> state, loads;
-  for (const RecordedSystem& recorded : simulation.systems) {
+  replay.run([&](const RecordedSystem& recorded, const Rod& rod, const LinearSystem& system) {
     const auto r = static_cast<std::size_t>(recorded.at.rod), j = static_cast<std::size_t>(recorded.at.newton);
-    Rod& rod = scene.rods[r];
-    restore(recorded, rod);
-    systems[r].assemble(rod, simulation.constraint_dt_s);
     state.resize(ChainProfile::state_size, rod.joint_count());
     loads.resize(6, rod.joint_count());
-    profiles[r].state(rod, systems[r], simulation.constraint_dt_s, state);
+    profiles[r].state(rod, system, simulation.constraint_dt_s, state);
     profiles[r].loads(recorded.solution, simulation.constraint_dt_s, loads);
     while (iterations_.size() <= j) iterations_.push_back(std::make_unique<Iteration>());
     Iteration& of = *iterations_[j];
@@ -88,7 +81,7 @@ void KnnSet::add(const RecordedSimulation& simulation) {
     of.rod.push_back(first_rod + r);
     of.first_load.push_back(of.loads.size());
     of.loads.insert(of.loads.end(), loads.data(), loads.data() + loads.size());
-  }
+  });
 }
 
 void KnnSet::finish() {

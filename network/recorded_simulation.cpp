@@ -17,4 +17,8 @@ void restore(const RecordedSystem& system, Rod& rod) {
   rod.lambda = system.lambda;
 }
 
+Replay::Replay(const RecordedSimulation& simulation) : simulation_(simulation), scene_(simulation.scene) {
+  for (const Rod& rod : scene_.rods) systems_.emplace_back(rod);
+}
+
 }  // namespace rodsweep

@@ -4,6 +4,7 @@
 //   restore(system, rod);  LinearSystem::assemble(rod, constraint_dt_s)   gives A and b, and A solution = b
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "solver/projection.hpp"
@@ -33,5 +34,31 @@ struct RecordedSimulation {
 /// Puts the rod `system.at.rod` of the scene into the state that the system was assembled from. Throws
 /// std::invalid_argument where the rod has another number of segments or joints.
 void restore(const RecordedSystem& system, Rod& rod);
+
+/// Goes through a simulation once more: one rod after the other is put into the state that a system was assembled from,
+/// and the system is assembled again.
+class Replay {
+ public:
+  explicit Replay(const RecordedSimulation& simulation);  ///< which must outlive this
+
+  const Scene& scene() const { return scene_; }
+  const std::vector<LinearSystem>& systems() const { return systems_; }  ///< of each rod, as it stands
+
+  /// Calls visit(recorded system, its rod, its linear system) for every system in order.
+  template <class Visit>
+  void run(Visit visit) {
+    for (const RecordedSystem& recorded : simulation_.systems) {
+      const auto r = static_cast<std::size_t>(recorded.at.rod);
+      restore(recorded, scene_.rods[r]);
+      systems_[r].assemble(scene_.rods[r], simulation_.constraint_dt_s);
+      visit(recorded, std::as_const(scene_.rods[r]), std::as_const(systems_[r]));
+    }
+  }
+
+ private:
+  const RecordedSimulation& simulation_;
+  Scene scene_;
+  std::vector<LinearSystem> systems_;
+};
 
 }  // namespace rodsweep

@@ -6,18 +6,16 @@
 #include <string>
 
 #include "network/mse_loss.hpp"
+#include "solver/split_mix.hpp"
 
 namespace rodsweep {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A hash of two numbers (SplitMix64's finaliser), the source of permutations that are the same everywhere.
-std::uint64_t hashed(std::uint64_t seed, std::uint64_t index) {
-  std::uint64_t z = seed + index * 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
+/// Number `index`, from 1, of the sequence of a seed: the source of permutations that are the same everywhere.
+std::uint64_t random_bits(std::uint64_t seed, std::uint64_t index) {
+  return split_mix(seed + (index - 1) * split_mix_increment);
 }
 
 }  // namespace
@@ -53,9 +51,9 @@ void Trainer::count_entries() {
 void Trainer::shuffle(std::int64_t epoch) {
   if (epoch == shuffled_epoch_) return;
   std::iota(order_.begin(), order_.end(), 0u);
-  const std::uint64_t key = hashed(settings_.seed, static_cast<std::uint64_t>(epoch) + 1);
+  const std::uint64_t key = random_bits(settings_.seed, static_cast<std::uint64_t>(epoch) + 1);
   for (std::size_t i = order_.size() - 1; i > 0; --i)  // Fisher and Yates
-    std::swap(order_[i], order_[hashed(key, i) % (i + 1)]);
+    std::swap(order_[i], order_[random_bits(key, i) % (i + 1)]);
   shuffled_epoch_ = epoch;
 }
 
@@ -86,9 +84,10 @@ double Trainer::update(const std::vector<const float*>& shards) {
   for (float& g : sum) g *= factor;
 
   const double done = static_cast<double>(step_ + 1) / static_cast<double>(steps());
-  rate_ = settings_.rate * (done < settings_.warm_up
-                                ? done / settings_.warm_up
-                                : 0.5 * (1 + std::cos(pi * (done - settings_.warm_up) / (1 - settings_.warm_up))));
+  rate_ =
+      settings_.rate * (done < settings_.warm_up
+                            ? done / settings_.warm_up
+                            : 0.5 * (1 + std::cos(pi * (done - settings_.warm_up) / (1 - settings_.warm_up))));
   adam_.step(rate_, sum, net_.parameters().values());
   ++step_;
   return loss * mean;

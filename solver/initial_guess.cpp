@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "solver/split_mix.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -12,14 +14,6 @@ std::vector<VectorX> vectors_for(const Scene& scene) {
   std::vector<VectorX> out;
   for (const Rod& rod : scene.rods) out.push_back(VectorX::Zero(6 * rod.joint_count()));
   return out;
-}
-
-/// SplitMix64 (Steele, Lea, Flood 2014); std::seed_seq would allocate.
-std::uint64_t mixed(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
 }
 
 /// r^T D^-1 r, D the diagonal of A.
@@ -86,8 +80,8 @@ Proposal OracleGuess::propose(const LinearSystem& system, const SolvePosition& a
   }
   const double solution = std::sqrt(energy_norm_squared(a, x0, scratch));
   // One stream per solve, so that the draw does not depend on what was solved before.
-  std::uint64_t stream = mixed(seed_);
-  for (const int part : {at.step, at.newton, at.rod}) stream = mixed(stream + static_cast<std::uint64_t>(part));
+  std::uint64_t stream = split_mix(seed_);
+  for (const int part : {at.step, at.newton, at.rod}) stream = split_mix(stream + static_cast<std::uint64_t>(part));
   std::mt19937_64 engine(stream);
   std::normal_distribution<double> normal;
   for (double& entry : noise) entry = normal(engine);

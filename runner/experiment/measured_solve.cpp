@@ -7,12 +7,11 @@
 #include "runner/experiment/guesses.hpp"
 #include "runner/experiment/solve_rows.hpp"
 #include "runner/job/plan.hpp"
+#include "solver/rounding_level.hpp"
 #include "solver/stopwatch.hpp"
 
 namespace rodsweep {
 namespace {
-
-constexpr double rounding_level = 1e-13;  // of b, whose entries are dimensionless and of order one
 
 /// Of an even count the upper one, so that it is a time that was measured. Reorders.
 double median(std::vector<double>& values) {

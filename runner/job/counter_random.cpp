@@ -1,16 +1,8 @@
 #include "runner/job/counter_random.hpp"
 
+#include "solver/split_mix.hpp"
+
 namespace rodsweep {
-namespace {
-
-std::uint64_t splitmix64(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
-}  // namespace
 
 std::uint64_t random_stream(std::string_view key_path) {
   std::uint64_t hash = 0xcbf29ce484222325u;
@@ -19,7 +11,7 @@ std::uint64_t random_stream(std::string_view key_path) {
 }
 
 std::uint64_t random_bits(std::uint64_t seed, std::uint64_t counter, std::uint64_t stream) {
-  return splitmix64(splitmix64(splitmix64(seed) ^ stream) ^ counter);
+  return split_mix(split_mix(split_mix(seed) ^ stream) ^ counter);
 }
 
 double random_unit(std::uint64_t seed, std::uint64_t counter, std::uint64_t stream) {

@@ -4,22 +4,18 @@
 
 #include "runner/job/plan.hpp"
 #include "solver/conjugate_gradient.hpp"
+#include "solver/rounding_level.hpp"
 
 namespace rodsweep {
 namespace {
 
-constexpr double rounding_level = 1e-13;  // of b, as in runner/experiment/measured_solve.cpp
-
 /// What one rod is solved with.
 struct RodSolver {
-  LinearSystem system;
   ConjugateGradient cg;
   VectorX x;
 
-  explicit RodSolver(const Rod& rod)
-      : system(rod),
-        cg(system.matrix(), {Preconditioner::jacobi, Norm::true_residual, 0}),
-        x(VectorX::Zero(system.rhs().size())) {
+  explicit RodSolver(const LinearSystem& system)
+      : cg(system.matrix(), {Preconditioner::jacobi, Norm::true_residual, 0}), x(VectorX::Zero(system.rhs().size())) {
     cg.record_history(true);
   }
 };
@@ -53,29 +49,25 @@ ValidationRatio::Ratios ValidationRatio::measure(std::size_t simulation, const M
 }
 
 ValidationRatio::Iterations ValidationRatio::count(const RecordedSimulation& simulation, const MakeGuess& make_guess) {
-  Scene scene = simulation.scene;
-  const std::unique_ptr<InitialGuess> guess = make_guess(scene, simulation);
+  Replay replay(simulation);
+  const std::unique_ptr<InitialGuess> guess = make_guess(replay.scene(), simulation);
   std::vector<RodSolver> solvers;
-  solvers.reserve(scene.rods.size());
-  for (const Rod& rod : scene.rods) solvers.emplace_back(rod);
+  for (const LinearSystem& system : replay.systems()) solvers.emplace_back(system);
   Iterations sums{};
   std::array<std::int16_t, tolerance_count> reached{};
-  for (const RecordedSystem& recorded : simulation.systems) {
-    if (recorded.at.newton > 0) continue;
-    Rod& rod = scene.rods[static_cast<std::size_t>(recorded.at.rod)];
+  replay.run([&](const RecordedSystem& recorded, const Rod&, const LinearSystem& system) {
+    if (recorded.at.newton > 0) return;
     RodSolver& of = solvers[static_cast<std::size_t>(recorded.at.rod)];
-    restore(recorded, rod);
-    of.system.assemble(rod, simulation.constraint_dt_s);
-    const Proposal proposal = guess->propose(of.system, recorded.at, of.x);
-    if (of.system.newton_residual() > rounding_level) {
+    const Proposal proposal = guess->propose(system, recorded.at, of.x);
+    if (system.newton_residual() > rounding_level) {
       of.cg.matrix_changed();
-      const double reference = of.cg.norm_of(of.system.rhs());
-      const CgReport report = of.cg.solve(of.system.rhs(), of.x, proposal.nonzero, tolerances().back(), reference);
+      const double reference = of.cg.norm_of(system.rhs());
+      const CgReport report = of.cg.solve(system.rhs(), of.x, proposal.nonzero, tolerances().back(), reference);
       iterations_to(of.cg.history(), reference, tolerances(), reached.data());
       for (std::size_t t = 0; t < tolerance_count; ++t) sums[t] += reached[t] >= 0 ? reached[t] : report.iterations;
     }
     guess->accept(recorded.at, recorded.solution);
-  }
+  });
   return sums;
 }
 

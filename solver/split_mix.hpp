@@ -1,0 +1,19 @@
+// SplitMix64 (Steele, Lea, Flood 2014): well-mixed bits of a counter, the same on every machine.
+#pragma once
+
+#include <cstdint>
+
+namespace rodsweep {
+
+/// What its counter grows by from one number to the next.
+inline constexpr std::uint64_t split_mix_increment = 0x9e3779b97f4a7c15u;
+
+/// The number after the counter `z`.
+inline std::uint64_t split_mix(std::uint64_t z) {
+  z += split_mix_increment;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+}  // namespace rodsweep
