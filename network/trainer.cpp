@@ -84,10 +84,9 @@ double Trainer::update(const std::vector<const float*>& shards) {
   for (float& g : sum) g *= factor;
 
   const double done = static_cast<double>(step_ + 1) / static_cast<double>(steps());
-  rate_ =
-      settings_.rate * (done < settings_.warm_up
-                            ? done / settings_.warm_up
-                            : 0.5 * (1 + std::cos(pi * (done - settings_.warm_up) / (1 - settings_.warm_up))));
+  rate_ = settings_.rate * (done < settings_.warm_up
+                                ? done / settings_.warm_up
+                                : 0.5 * (1 + std::cos(pi * (done - settings_.warm_up) / (1 - settings_.warm_up))));
   adam_.step(rate_, sum, net_.parameters().values());
   ++step_;
   return loss * mean;
