@@ -7,7 +7,10 @@
 namespace rodsweep {
 namespace {
 
-constexpr Mask8 lane_6_from_second = {0, 1, 2, 3, 4, 5, 14, 7};
+/// `value` with lane 6 of `from`.
+Lane8 with_lane_6(const Lane8& value, const Lane8& from) {
+  return __builtin_shufflevector(value, from, 0, 1, 2, 3, 4, 5, 14, 7);
+}
 
 /// The row operations that invert S: row k loses factor[j][k] times row j, then row j is scaled by inverse[j].
 struct RowOperations {
@@ -141,7 +144,7 @@ void BlockFactor::load(const BlockMatrix& a, const VectorX& b) {
     diagonal = a.blocks[static_cast<std::size_t>(column.diagonal_source)];
     const double* rhs = b.data() + 6 * column.row;
     for (int r = 0; r < 6; ++r)
-      diagonal.column[r] = __builtin_shuffle(diagonal.column[r], broadcast(rhs[r]), lane_6_from_second);
+      diagonal.column[r] = with_lane_6(diagonal.column[r], broadcast(rhs[r]));
     for (int p = column.off_begin; p < column.off_end; ++p) {
       const int source = off_[static_cast<std::size_t>(p)].source;
       off_work_[static_cast<std::size_t>(p)] = source < 0 ? Block6{} : a.blocks[static_cast<std::size_t>(source)];
@@ -166,7 +169,7 @@ SolveOutcome BlockFactor::solve(const BlockMatrix& a, const VectorX& b, VectorX&
     for (int q = column.off_begin; q < column.off_end; ++q) {
       Lane8* stored = off_work_[static_cast<std::size_t>(q)].column;
       Lane8 before[6], solved[6];
-      for (int r = 0; r < 6; ++r) solved[r] = before[r] = __builtin_shuffle(stored[r], rhs[r], lane_6_from_second);
+      for (int r = 0; r < 6; ++r) solved[r] = before[r] = with_lane_6(stored[r], rhs[r]);
       solve_rows(ops, solved);
       subtract_product(diagonal_work_[static_cast<std::size_t>(off_[static_cast<std::size_t>(q)].position)], before,
                        solved);
@@ -192,7 +195,7 @@ SolveOutcome BlockFactor::solve(const BlockMatrix& a, const VectorX& b, VectorX&
       solution_[i] = -sum_lanes(terms);
     }
     store6(x.data() + 6 * column.row, solution_[i]);
-    solution_[i] = __builtin_shuffle(solution_[i], broadcast(-1), lane_6_from_second);
+    solution_[i] = with_lane_6(solution_[i], broadcast(-1));
   }
   if (!positive) return SolveOutcome::indefinite;
   return std::isfinite(x.sum()) ? SolveOutcome::converged : SolveOutcome::not_a_number;

@@ -11,7 +11,6 @@
 namespace rodsweep {
 
 using Lane8 = double __attribute__((vector_size(64)));
-using Mask8 = long long __attribute__((vector_size(64)));
 
 /// A 6x6 block: six columns (or six rows, where said so) of six entries, padded to eight.
 struct Block6 {
@@ -29,17 +28,17 @@ inline void store6(double* to, const Lane8& value) { std::memcpy(to, &value, 6 *
 inline Lane8 sum_lanes(const Lane8 (&v)[6]) {
   // Three levels of pairwise sums, each halving the number of vectors and joining their partial sums.
   const auto pair = [](const Lane8& a, const Lane8& b) {
-    return __builtin_shuffle(a, b, Mask8{0, 8, 2, 10, 4, 12, 6, 14}) +
-           __builtin_shuffle(a, b, Mask8{1, 9, 3, 11, 5, 13, 7, 15});
+    return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
+           __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
   };
   const Lane8 v01 = pair(v[0], v[1]), v23 = pair(v[2], v[3]), v45 = pair(v[4], v[5]);
-  const Lane8 v0123 = __builtin_shuffle(v01, v23, Mask8{0, 1, 8, 9, 4, 5, 12, 13}) +
-                      __builtin_shuffle(v01, v23, Mask8{2, 3, 10, 11, 6, 7, 14, 15});
+  const Lane8 v0123 = __builtin_shufflevector(v01, v23, 0, 1, 8, 9, 4, 5, 12, 13) +
+                      __builtin_shufflevector(v01, v23, 2, 3, 10, 11, 6, 7, 14, 15);
   const Lane8 zero{};
-  const Lane8 v45zz = __builtin_shuffle(v45, zero, Mask8{0, 1, 8, 8, 4, 5, 8, 8}) +
-                      __builtin_shuffle(v45, zero, Mask8{2, 3, 8, 8, 6, 7, 8, 8});
-  return __builtin_shuffle(v0123, v45zz, Mask8{0, 1, 2, 3, 8, 9, 10, 11}) +
-         __builtin_shuffle(v0123, v45zz, Mask8{4, 5, 6, 7, 12, 13, 14, 15});
+  const Lane8 v45zz = __builtin_shufflevector(v45, zero, 0, 1, 8, 8, 4, 5, 8, 8) +
+                      __builtin_shufflevector(v45, zero, 2, 3, 8, 8, 6, 7, 8, 8);
+  return __builtin_shufflevector(v0123, v45zz, 0, 1, 2, 3, 8, 9, 10, 11) +
+         __builtin_shufflevector(v0123, v45zz, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
 }  // namespace rodsweep

@@ -114,8 +114,8 @@ void LinearSystem::displacements(const Rod& rod, const VectorX& delta_lambda, st
     for (int c = 0; c < 3; ++c) terms[3 + c] = jacobian.rotation_b[c] * multiplier;
     const Lane8 torque = sum_lanes(terms);  // on a in lanes 0..2, on b in lanes 3..5
     const Lane8 force = multiplier * jacobian.inverse_length;
-    out[static_cast<std::size_t>(joint.a)] += __builtin_shuffle(force, torque, Mask8{0, 1, 2, 8, 9, 10, 14, 14});
-    out[static_cast<std::size_t>(joint.b)] += __builtin_shuffle(-force, torque, Mask8{0, 1, 2, 11, 12, 13, 14, 14});
+    out[static_cast<std::size_t>(joint.a)] += __builtin_shufflevector(force, torque, 0, 1, 2, 8, 9, 10, 14, 14);
+    out[static_cast<std::size_t>(joint.b)] += __builtin_shufflevector(-force, torque, 0, 1, 2, 11, 12, 13, 14, 14);
   }
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {  // from impulses to motions
     const Segment& segment = rod.segments[s];
