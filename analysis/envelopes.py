@@ -1,5 +1,7 @@
 """What long runs did, step by step, in bounded memory: envelopes of a few quantities and fits to the length drift.
 
+A run that failed is there up to its last good step.
+
 Steps go into buckets of equal width (or equal ratio of times); of each bucket the smallest and the largest value are
 kept, so that no spike is lost, whatever the length of the run. Drift per 1000 steps is the slope of a least-squares
 line through all steps from `begin` on. A *history* is one task: of a guess in a closed loop, or of the direct solve.
@@ -27,6 +29,7 @@ class Histories:
     first: dict              # quantity: at the first step
     final: dict              # quantity: at the last step
     slope: np.ndarray        # of the length drift, per 1000 steps
+    reached: np.ndarray      # steps that were recorded: fewer than asked for where the run failed
     largest_kinetic: np.ndarray
 
     def rows(self, tasks):
@@ -62,7 +65,7 @@ def histories(file, tasks, begin=0, logarithmic=False):
     high = {name: np.full(shape, np.nan, dtype=np.float32) for name in names}
     largest, first, final = ({name: np.full(len(tasks), np.nan) for name in names} for _ in range(3))
     kinetic, sums = np.full(len(tasks), np.nan), np.zeros((len(tasks), 5))
-    done = np.zeros(len(tasks), dtype=int)
+    done, reached = np.zeros(len(tasks), dtype=int), np.zeros(len(tasks), dtype=int)
     for owners, starts, rows in file.step_blocks(tasks, paths):
         owner = np.searchsorted(tasks, owners)
         sizes = np.diff(np.append(starts, len(rows[paths[0]])))
@@ -74,6 +77,7 @@ def histories(file, tasks, begin=0, logarithmic=False):
             values = _values(name, rows)
             there = np.isfinite(values)
             w, b, v = whose[there], bucket[there], values[there]
+            np.maximum.at(reached, w, step[there] + 1)
             np.fmin.at(low[name], (w, b), v)
             np.fmax.at(high[name], (w, b), v)
             np.fmax.at(largest[name], w, np.abs(v))
@@ -85,7 +89,7 @@ def histories(file, tasks, begin=0, logarithmic=False):
             if name == "length_drift":
                 fitted = step[there] >= begin
                 _add_to_fit(sums, w[fitted], step[there][fitted], v[fitted])
-    return Histories(tasks, at, low, high, largest, first, final, _slope(sums), kinetic)
+    return Histories(tasks, at, low, high, largest, first, final, _slope(sums), reached, kinetic)
 
 
 def _values(name, rows):

@@ -8,20 +8,22 @@ import commandline
 import intervals
 from style import number_text
 
-COLUMNS = ("scene", "settings", "method", "simulations", "failed", "length_drift_largest", "length_drift_final",
-           "drift_per_1000_steps", "drift_per_1000_steps_low", "drift_per_1000_steps_high", "joint_gap_largest")
+COLUMNS = ("scene", "settings", "method", "simulations", "failed", "failed_after_steps", "length_drift_largest",
+           "length_drift_final", "drift_per_1000_steps", "drift_per_1000_steps_low", "drift_per_1000_steps_high", "joint_gap_largest")
 
 
-def records(panels, series, found, sims, failed):
-    """One per panel and method. Largest and final: of the worst simulation; the slope: median with its interval."""
+def records(panels, series, found, sims, ok):
+    """One per panel and method. Largest and final: of the worst simulation; the slope: median over those that are `ok`
+    (mask of tasks), with its interval; the steps before a failure: median over the others."""
     for panel, methods_of in zip(panels, series):
         settings = "; ".join(f"{key}={value}" for key, value in panel.settings.items())
         for method, (_, tasks, rows) in methods_of.items():
-            at = found.rows(tasks)
-            slope = intervals.median(found.slope[at], sims.sample[rows])
+            at, well = found.rows(tasks), ok[tasks]
+            slope = intervals.median(found.slope[at[well]], sims.sample[rows[well]])
             final = found.final["length_drift"][at]
             yield {"scene": panel.scene, "settings": settings, "method": method, "simulations": len(rows),
-                   "failed": failed.get((panel.scene, method), (0, 0))[0],
+                   "failed": int((~well).sum()),
+                   "failed_after_steps": np.nan if well.all() else float(np.median(found.reached[at[~well]])),
                    "length_drift_largest": np.fmax.reduce(found.largest["length_drift"][at]),
                    "length_drift_final": final[np.argmax(np.nan_to_num(np.abs(final)))],
                    "drift_per_1000_steps": float(slope.value), "drift_per_1000_steps_low": float(slope.low),
@@ -29,27 +31,33 @@ def records(panels, series, found, sims, failed):
                    "joint_gap_largest": np.fmax.reduce(found.largest["joint_gap"][at])}
 
 
-def lines(panels, series, found, sims, failed, begin):
+def lines(panels, series, found, sims, ok, begin):
     titles = {panel.title() for panel in panels}
-    rows = [["", "n", "failed", "largest |drift|", "final drift", "drift per 1000 steps", "largest gap"]]
-    every = iter(records(panels, series, found, sims, failed))
+    rows = [["", "n", "failed", "after steps", "largest |drift|", "final drift", "drift per 1000 steps", "largest gap"]]
+    every = iter(records(panels, series, found, sims, ok))
     for panel, methods_of in zip(panels, series):
         if len(titles) > 1:
-            rows.append([panel.title()] + [""] * 6)
+            rows.append([panel.title()] + [""] * 7)
         for _ in methods_of:
             r = next(every)
             interval = "" if np.isnan(r["drift_per_1000_steps_low"]) else (
                 f" [{number_text(r['drift_per_1000_steps_low'])}, {number_text(r['drift_per_1000_steps_high'])}]")
             rows.append([f"  {r['method']}", str(r["simulations"]), str(r["failed"]),
+                         _text(r["failed_after_steps"]),
                          number_text(r["length_drift_largest"]), number_text(r["length_drift_final"]),
-                         number_text(r["drift_per_1000_steps"]) + interval, number_text(r["joint_gap_largest"])])
+                         _text(r["drift_per_1000_steps"]) + interval, number_text(r["joint_gap_largest"])])
     heading = [f"Largest and final drift, largest gap: of the worst simulation. Drift per 1000 steps: slope from step "
-               f"{begin} on, median over simulations [95 % interval].", ""]
+               f"{begin} on, median over simulations that did not fail [95 % interval]. After steps: median of how far the "
+               "others came.", ""]
     return heading + commandline.aligned(rows)
 
 
-def write_csv(out, panels, series, found, sims, failed):
+def _text(value):
+    return "-" if np.isnan(value) else number_text(value)
+
+
+def write_csv(out, panels, series, found, sims, ok):
     writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    for record in records(panels, series, found, sims, failed):
+    for record in records(panels, series, found, sims, ok):
         writer.writerow({key: "" if value != value else value for key, value in record.items()})

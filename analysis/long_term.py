@@ -4,9 +4,10 @@
 Made for closed loops, where every guess advances a trajectory of its own, with tasks of `solve.method` "direct" or
 "end_to_end" beside them; in a paired sweep there is one trajectory, that of the direct solve. A line is the median over
 simulations of the largest value in each of a few hundred stretches of the run (energy: of the middle of its range); its
-band goes from the smallest to the largest that any simulation had there. The table has the largest and the final drift,
-its slope per 1000 steps with a 95 % bootstrap interval over simulations, and what failed. The figure is written as PDF
-and PNG; the paths are printed after the table.
+band goes from the smallest to the largest that any simulation had there. A simulation that failed takes part up to its
+end, which a cross marks. The table has the largest and the final drift, its slope per 1000 steps with a 95 % bootstrap
+interval over simulations, and what failed when. The figure is written as PDF and PNG; the paths are printed after the
+table.
 """
 
 import sys
@@ -35,7 +36,7 @@ PANELS = {  # quantity: title, vertical scale
     "momentum_kg_m_s": ("linear momentum (kg m/s)", "log"),
     "angular_momentum_kg_m2_s": ("angular momentum about the origin (kg m²/s)", "log"),
 }
-DECADES = 8   # of a logarithmic axis, counted from its top
+DECADES = 8   # of a logarithmic axis, counted from the largest value of a method that did not fail
 
 
 def arguments():
@@ -59,22 +60,21 @@ def main():
         begin = options.after if options.after is not None else int(file.steps[shown.sims.tasks()].max()) // 10
         found = envelopes.histories(file, shown.sims.tasks(), begin, options.log_time)
         series = [methods(shown, panel) for panel in panels]
-        failed = failures(file, options, shown)
         if options.csv:
-            history_table.write_csv(sys.stdout, panels, series, found, shown.sims, failed)
+            history_table.write_csv(sys.stdout, panels, series, found, shown.sims, file.ok)
             return 0
-        print("\n".join(history_table.lines(panels, series, found, shown.sims, failed, begin)) + "\n")
+        print("\n".join(history_table.lines(panels, series, found, shown.sims, file.ok, begin)) + "\n")
         study.save(file, options, {"long-term": figure(shown, panels, series, found, options)},
                    ["log-time" if options.log_time else ""])
     return 0
 
 
 def make_study(file, options):
-    """All tasks that were chosen, with and without guesses."""
+    """All tasks that were chosen, with and without guesses, those that failed too."""
     if not envelopes.recorded(file):
         raise KeyNotFound(f"{file.path} has no rows of steps (/steps): nothing is known of the runs")
     chosen = commandline.chosen_tasks(file, options)
-    return study.of_tasks(file, chosen, commandline.chosen_guesses(file, options), options)
+    return study.of_tasks(file, chosen, commandline.chosen_guesses(file, options), options, failed_too=True)
 
 
 def methods(shown, panel):
@@ -92,20 +92,6 @@ def methods(shown, panel):
     return found
 
 
-def failures(file, options, shown):
-    """{(scene, method): (failed, all that are complete)}; a failed task is in no line and no number."""
-    chosen = commandline.chosen_tasks(file, options) & file.complete
-    scenes, counts = file.scene_types(), {}
-    for task in np.flatnonzero(chosen):
-        own = file.own_guess[task]
-        if own >= 0 and own not in shown.guesses:
-            continue
-        key = (scenes[task], file.guesses[own] if own >= 0 else measures.without_guess(file, [task])[0])
-        bad, every = counts.get(key, (0, 0))
-        counts[key] = (bad + (not file.ok[task]), every + 1)
-    return counts
-
-
 def figure(shown, panels, series, found, options):
     names = [name for name in PANELS if name in found.low]
     labels = {label: s for methods_of in series for label, (s, _, _) in methods_of.items()}
@@ -116,8 +102,8 @@ def figure(shown, panels, series, found, options):
     times = [_time(shown.file, shown.sims.any_task[panel.index], found.edges) for panel in panels]
     notes = [f"{steps} steps in {buckets} stretches. Lines: median over {counts} simulations of the largest value in a "
              "stretch (energy: of the middle of its range, relative to the first step). Bands: smallest to largest of "
-             "all simulations, for length drift of these largest values. Logarithmic axes have at most "
-             f"{DECADES} decades."]
+             "all simulations, for length drift of these largest values. Crosses with black edges: simulations that "
+             f"failed. Logarithmic axes reach {DECADES} decades below the largest value of what did not fail."]
     titles = groups.short_titles(panels)
     columns = layout.even_columns(len(panels), 4 if shown.wide else 1)
     if max(map(len, titles)) > (shown.width_mm - 13) / columns / 1.2:    # a character has about 1.2 mm
@@ -127,10 +113,13 @@ def figure(shown, panels, series, found, options):
                        panel_titles_mm=1 + 2.6 * max(title.count("\n") + bool(title) for title in titles))
     scales = [_scales(found, methods_of, shown) for methods_of in series]
     for name, row in zip(names, page.axes):
-        values = [_draw(axes, x, name, methods_of, found, scale)
-                  for axes, (x, _), methods_of, scale in zip(row, times, series, scales)]
+        drawn = [_draw(axes, x, name, methods_of, found, scale, shown.file.ok)
+                 for axes, (x, _), methods_of, scale in zip(row, times, series, scales)]
+        values = [part for parts in drawn for part in parts.values()]
+        well = [part for parts, methods_of in zip(drawn, series) for method, part in parts.items()
+                if shown.file.ok[methods_of[method][1]].any()]
         for k, (axes, (x, _)) in enumerate(zip(row, times)):
-            _scale_y(axes, PANELS[name][1], np.concatenate([part.ravel() for part in values]))
+            _scale_y(axes, PANELS[name][1], _finite(values), _finite(well or values))
             if options.log_time:
                 axes.set_xscale("log")
             axes.set_xlim(x[0] if options.log_time else 0, x[-1])
@@ -148,9 +137,11 @@ def _time(file, tasks, edges):
 
 
 def _scales(found, methods_of, shown):
-    """{draw: J}: a simulation's largest kinetic energy, the smallest over its methods (one may have blown up)."""
+    """{draw: J}: a simulation's largest kinetic energy, the smallest over its methods (one may have blown up); failed
+    ones count where there is no other."""
     scales = {}
-    for _, tasks, rows in methods_of.values():
+    well = [(tasks[ok], rows[ok]) for _, tasks, rows in methods_of.values() for ok in [shown.file.ok[tasks]]]
+    for tasks, rows in well if any(len(tasks) for tasks, _ in well) else [m[1:] for m in methods_of.values()]:
         for task, draw in zip(tasks, shown.sims.sample[rows]):
             kinetic = found.largest_kinetic[found.rows(task)]
             if kinetic > 0:
@@ -172,7 +163,7 @@ def _envelope(found, name, method, tasks, scales):
     return np.fmin.reduce(low), np.fmax.reduce(high), measures.median_of_finite(line)
 
 
-def _draw(axes, x, name, methods_of, found, scales):
+def _draw(axes, x, name, methods_of, found, scales, ok):
     drawn = {method: _envelope(found, name, method, tasks, scales) for method, (_, tasks, _) in methods_of.items()}
     every = max(1, len(x) // 7)
     for rank, (method, (low, high, line)) in enumerate(drawn.items()):
@@ -180,25 +171,34 @@ def _draw(axes, x, name, methods_of, found, scales):
         axes.fill_between(x, low, high, color=look.colour, alpha=0.10, linewidth=0)
         axes.plot(x, line, color=look.colour, linestyle=look.dash, marker=look.marker,
                   markevery=((rank * every) // len(drawn), every), linewidth=0.9, markersize=2.8)
-    return np.array([part for parts in drawn.values() for part in parts])
+        tasks = methods_of[method][1]
+        ends = np.searchsorted(found.edges, found.reached[found.rows(tasks[~ok[tasks]])], side="left") - 1
+        ends = np.unique(ends[ends >= 0])
+        axes.plot(x[ends], high[ends], color=look.colour, linestyle="", marker="X", markersize=6.5,
+                  markeredgecolor="black", markeredgewidth=0.6, zorder=4)
+    return drawn
 
 
-def _scale_y(axes, scale, values):
-    """The same for all panels of a row, whose values these are."""
-    values = values[np.isfinite(values)]
-    sizes = np.abs(values[values != 0])
-    if not len(sizes):
+def _finite(parts):
+    values = np.concatenate([np.ravel(part) for part in parts])
+    return values[np.isfinite(values)]
+
+
+def _scale_y(axes, scale, values, well):
+    """The same for all panels of a row. `values` of all methods set the top, those that ended `well` the resolution."""
+    sizes, typical = (np.abs(some[some != 0]) for some in (values, well))
+    if not len(sizes) or not len(typical):
         return
     top, low, high = sizes.max(), values.min(), values.max()
     if scale == "log":
         axes.set_yscale("log")
-        axes.set_ylim(max(0.7 * sizes.min(), top * 10.0 ** -DECADES), 1.4 * top)
-    elif top < 20 * np.median(sizes):
+        axes.set_ylim(max(0.7 * sizes.min(), typical.max() * 10.0 ** -DECADES), 1.4 * top)
+    elif top < 20 * np.median(typical):
         axes.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
     else:
         # Linear about zero up to the size of a typical value, at most four decades below the largest.
-        linear = 10.0 ** np.clip(np.floor(np.log10(np.median(sizes))), np.ceil(np.log10(top)) - 4,
-                                 np.ceil(np.log10(top)) - 1)
+        largest = np.ceil(np.log10(typical.max()))
+        linear = 10.0 ** np.clip(np.floor(np.log10(np.median(typical))), largest - 4, largest - 1)
         axes.set_yscale("symlog", linthresh=linear, linscale=0.6)
         axes.axhline(0, color="#888888", linewidth=0.5, zorder=1)
         axes.set_ylim(1.4 * low if low < 0 else -0.1 * linear, 1.4 * high if high > 0 else 0.1 * linear)

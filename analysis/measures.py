@@ -85,9 +85,9 @@ def without_guess(file, tasks):
                      for of, stem in zip(method.values[tasks], stems)], dtype=str)
 
 
-def simulations(file, chosen):
-    """The simulations among the tasks of the mask, by point."""
-    tasks = np.flatnonzero(chosen & file.ok)
+def simulations(file, chosen, failed_too=False):
+    """The simulations among the tasks of the mask that ended well (or at all: `failed_too`), by point."""
+    tasks = np.flatnonzero(chosen & (file.complete if failed_too else file.ok))
     points, row = np.unique(file.point[tasks], return_inverse=True)
     task = np.full((len(points), max(1, len(file.guesses))), -1, dtype=np.int64)
     own = file.own_guess[tasks]

@@ -80,10 +80,10 @@ def of_guesses(file, options, needs_zero=True):
     return of_tasks(file, guessing, guesses, options)
 
 
-def of_tasks(file, chosen, guesses, options):
-    """A Study of the tasks of a mask. Raises KeyNotFound where none of them has ended well."""
+def of_tasks(file, chosen, guesses, options, failed_too=False):
+    """A Study of the tasks of a mask that ended well (or at all). Raises KeyNotFound where there is none."""
     census = measures.census(file, chosen)
-    sims = measures.simulations(file, chosen)
+    sims = measures.simulations(file, chosen, failed_too)
     if not len(sims):
         raise KeyNotFound(f"{file.path} has no simulation to show yet: {census.text()}")
     return Study(file, sims, guesses, style.guess_styles(file.guesses), options.newton, style.WIDTHS_MM[options.width],

@@ -254,7 +254,7 @@ class LongTerm(Studies):
         rows = {row["method"]: row for row in csv.DictReader(
             io.StringIO(self.run_script("long_term.py", "sweep.h5", "--csv", "--after", "0").stdout))}
         self.assertEqual(list(rows), list(synthetic.GUESSES))
-        self.assertEqual([int(row["simulations"]) for row in rows.values()], [3, 2, 3, 2])
+        self.assertEqual([int(row["simulations"]) for row in rows.values()], [3, 3, 3, 2])
         self.assertEqual([int(row["failed"]) for row in rows.values()], [0, 1, 0, 0])
         zero = {key: float(value) for key, value in rows["zero"].items() if key.startswith("drift")}
         self.assertAlmostEqual(zero["drift_per_1000_steps"], -1.1e-3)
@@ -262,6 +262,30 @@ class LongTerm(Studies):
         self.assertGreaterEqual(zero["drift_per_1000_steps_high"], -1.1e-3)
         self.assertEqual(float(rows["quadratic"]["length_drift_largest"]), 0.25)
         self.assertAlmostEqual(float(rows["zero"]["length_drift_final"]), -1199e-6 * 1.2)
+
+    def test_a_method_that_always_failed_is_shown_up_to_its_end(self):
+        class BlowingUp(Drifting):
+            def length_drift(self, step, steps, draw, guess):
+                drift = super().length_drift(step, steps, draw, guess)
+                return np.where(step < 300 + draw, drift, np.nan) if guess == "previous" else drift
+
+        own = [t for t in range(12) if t % 4 == 1]
+        self.write(plant=BlowingUp(), failed={t: "diverged" for t in own}, **self.LONG)
+        rows = {row["method"]: row for row in csv.DictReader(
+            io.StringIO(self.run_script("long_term.py", "sweep.h5", "--csv").stdout))}
+        failed = rows["previous"]
+        self.assertEqual((failed["simulations"], failed["failed"], failed["drift_per_1000_steps"]), ("3", "3", ""))
+        self.assertAlmostEqual(float(failed["length_drift_final"]), -1.2e-6 * 301)
+        self.assertEqual(rows["zero"]["failed_after_steps"], "")
+        file, sims = self.open(plant=BlowingUp(), failed={t: "diverged" for t in own}, **self.LONG)
+        shown = long_term.make_study(file, self.options())
+        found = envelopes.histories(file, np.array(own))
+        panel, = groups.panels(file, shown.sims, ("solve.method",))
+        methods = long_term.methods(shown, panel)
+        self.assertIn("previous", methods)
+        low, high, line = long_term._envelope(found, "length_drift", "previous", methods["previous"][1], {})
+        self.assertTrue(np.isfinite(line[0]) and np.isnan(line[-1]))
+        self.assertEqual(len(sims), 3)     # of those that ended well
 
     def test_figure_with_either_time_axis_and_of_a_paired_sweep(self):
         self.write(plant=Drifting(), **self.LONG)
