@@ -56,7 +56,7 @@ Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles 
   Job job;
   job.values = reader.read(job_key(), parse_strict_json(text, path), "");
   reader.throw_mistakes();
-  for (const auto& [file, key_path] : reader.files()) 
+  for (const auto& [file, key_path] : reader.files())
     job.files.emplace(file, input_file(path, key_path, file, missing));
   job.path = path;
   job.text = std::move(text);
