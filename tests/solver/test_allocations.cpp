@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "allocations.hpp"
+#include "solver/batched_step.hpp"
 #include "solver/conjugate_gradient.hpp"
 #include "solver/initial_guess.hpp"
 #include "solver/subspace_guess.hpp"
@@ -101,6 +102,13 @@ TEST_CASE("a step with the direct solve allocates nothing") {
   Scene scene = loaded_scene();
   DirectSolve direct(scene);
   CHECK(allocations_of(scene, direct) == 0);
+}
+
+TEST_CASE("a batched step allocates nothing") {
+  BatchedStepper batch({test::moving_scene(12), test::moving_scene(12, 3)}, {0.02, 4, 1e-9});
+  const long before = test::allocations();
+  for (int step = 0; step < 10; ++step) batch.step();
+  CHECK(test::allocations() == before);
 }
 
 TEST_CASE("a step with CG allocates nothing, whatever the guess") {
