@@ -5,18 +5,24 @@
 namespace rodsweep {
 
 Linearization::Linearization(const Rod& rod)
-    : joints(rod.joints.size()), axis(rod.segments.size()), constraint(VectorX::Zero(6 * rod.joint_count())) {}
+    : joints(rod.joints.size()),
+      frame(rod.segments.size()),
+      axis(rod.segments.size()),
+      constraint(VectorX::Zero(6 * rod.joint_count())) {}
 
 void linearize(const Rod& rod, Linearization& out) {
-  for (std::size_t i = 0; i < rod.segments.size(); ++i) out.axis[i] = director(rod.orientation[i]);
+  for (std::size_t i = 0; i < rod.segments.size(); ++i) {
+    out.frame[i] = rod.orientation[i].toRotationMatrix();
+    out.axis[i] = out.frame[i].col(2);
+  }
 
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
     const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
-    const Matrix3 rotation_a = rod.orientation[a].toRotationMatrix();
+    const Matrix3& frame_a = out.frame[a];
     const double inverse_length = 1 / joint.length;
-    const Vector3 arm_a = inverse_length * (rotation_a * joint.arm_a);  // rho / l
-    const Vector3 arm_b = inverse_length * (rod.orientation[b].toRotationMatrix() * joint.arm_b);
+    const Vector3 arm_a = inverse_length * (frame_a * joint.arm_a);  // rho / l
+    const Vector3 arm_b = inverse_length * (out.frame[b] * joint.arm_b);
 
     Eigen::Map<Vector3> stretch(out.constraint.data() + 6 * k), bend(out.constraint.data() + 6 * k + 3);
     stretch = (rod.position[a] - rod.position[b]) * inverse_length + arm_a - arm_b;
@@ -27,16 +33,29 @@ void linearize(const Rod& rod, Linearization& out) {
 
     Matrix3 hat;  // d_w I - [Im d]x
     hat << d.w(), d.z(), -d.y(), -d.z(), d.w(), d.x(), d.y(), -d.x(), d.w();
-    const Matrix3 g = hat * rotation_a.transpose();
+    const Matrix3 g = hat * frame_a.transpose();
 
+    // Number by number: the entries that are always zero are so since construction.
     JointJacobian& jacobian = out.joints[k];
     jacobian.inverse_length = inverse_length;
-    jacobian.rotation_a[0] = Lane8{0, -arm_a.z(), arm_a.y(), -g(0, 0), -g(1, 0), -g(2, 0), 0, 0};
-    jacobian.rotation_a[1] = Lane8{arm_a.z(), 0, -arm_a.x(), -g(0, 1), -g(1, 1), -g(2, 1), 0, 0};
-    jacobian.rotation_a[2] = Lane8{-arm_a.y(), arm_a.x(), 0, -g(0, 2), -g(1, 2), -g(2, 2), 0, 0};
-    jacobian.rotation_b[0] = Lane8{0, arm_b.z(), -arm_b.y(), g(0, 0), g(1, 0), g(2, 0), 0, 0};
-    jacobian.rotation_b[1] = Lane8{-arm_b.z(), 0, arm_b.x(), g(0, 1), g(1, 1), g(2, 1), 0, 0};
-    jacobian.rotation_b[2] = Lane8{arm_b.y(), -arm_b.x(), 0, g(0, 2), g(1, 2), g(2, 2), 0, 0};
+    Lane8 *const ka = jacobian.rotation_a, *const kb = jacobian.rotation_b;
+    ka[1][0] = arm_a.z();
+    ka[2][0] = -arm_a.y();
+    ka[0][1] = -arm_a.z();
+    ka[2][1] = arm_a.x();
+    ka[0][2] = arm_a.y();
+    ka[1][2] = -arm_a.x();
+    kb[1][0] = -arm_b.z();
+    kb[2][0] = arm_b.y();
+    kb[0][1] = arm_b.z();
+    kb[2][1] = -arm_b.x();
+    kb[0][2] = -arm_b.y();
+    kb[1][2] = arm_b.x();
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) {
+        ka[c][3 + r] = -g(r, c);
+        kb[c][3 + r] = g(r, c);
+      }
   }
 }
 

@@ -26,8 +26,9 @@ struct JointJacobian {
 
 struct Linearization {
   std::vector<JointJacobian> joints;
-  std::vector<Vector3> axis;  ///< world direction of every segment's local z
-  VectorX constraint;         ///< C, six per joint
+  std::vector<Matrix3> frame;  ///< R of every segment
+  std::vector<Vector3> axis;   ///< world direction of every segment's local z
+  VectorX constraint;          ///< C, six per joint
 
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };

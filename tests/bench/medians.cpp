@@ -8,7 +8,7 @@ void Medians::ReportRuns(const std::vector<Run>& runs) {
   for (const Run& run : runs) {
     if (run.aggregate_name != "median") continue;
     ConsoleReporter::ReportRuns({run});
-    seconds_[run.run_name.function_name + "/" + run.run_name.args] = run.GetAdjustedRealTime() * 1e-9;
+    seconds_[run.run_name.function_name + "/" + run.run_name.args] = run.GetAdjustedCPUTime() * 1e-9;
   }
 }
 

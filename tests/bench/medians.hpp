@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-/// Prints and keeps [s] the medians only.
+/// Prints and keeps [s] the medians only, of processor time: what other programs take meanwhile is not counted.
 class Medians : public benchmark::ConsoleReporter {
  public:
   Medians() : ConsoleReporter(OO_None) {}

@@ -1,0 +1,151 @@
+// What the direct time step costs: its parts, its cost over the number of segments, and eight rods at once beside one.
+// Google Benchmark times the cases; at the end tables set their medians beside the targets, as ratios of this run.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "medians.hpp"
+#include "solver/batched_step.hpp"
+#include "solver/scenes.hpp"
+
+namespace {
+
+using namespace rodsweep;
+
+constexpr int sizes[] = {10, 30, 50, 100, 500, 1000, 10000, 100000};
+int segments_of(const benchmark::State& state) { return static_cast<int>(state.range(0)); }
+
+const StepSettings one_iteration{0.02, 1, 0};
+
+/// Segments as long as they are wide, whatever their number, all of them in motion: multipliers that fade out along a
+/// rod at rest are denormal numbers, which are slow. `variant` tells the rods of a batch apart.
+Scene moving_scene(int segments, int variant = 0) {
+  BendingRod rod;
+  rod.segments = segments;
+  rod.length_m = (0.1 + 0.01 * variant) * segments;
+  rod.initial_angle_deg = -80 - variant;
+  rod.youngs_modulus_pa = 1e6 * (1 + variant);
+  Scene scene = build_scene(rod);
+  for (int s = 1; s < segments; ++s)
+    scene.rods[0].angular_velocity[static_cast<std::size_t>(s)] = {std::sin(1.7 * s), std::cos(2.3 * s), std::sin(s)};
+  return scene;
+}
+
+/// A scene with all that its step and its parts need, made once for all cases.
+struct Single {
+  Scene scene;
+  DirectSolve direct;
+  LinearProjection projection;
+  TimeStepper stepper;
+  LinearSystem system;
+  BlockFactor factor;
+  VectorX solution;
+
+  explicit Single(int segments)
+      : scene(moving_scene(segments)),
+        direct(scene),
+        projection(scene, direct),
+        stepper(scene, one_iteration),
+        system(rod()),
+        factor(system.matrix(), root_to_leaf_order(rod())),
+        solution(VectorX::Zero(system.rhs().size())) {}
+  Single(const Single&) = delete;
+  Single& operator=(const Single&) = delete;
+
+  Rod& rod() { return scene.rods.front(); }
+
+  static Single& of(const benchmark::State& state) {
+    static std::map<int, Single> made;
+    return made.try_emplace(segments_of(state), segments_of(state)).first->second;
+  }
+};
+
+void step(benchmark::State& state) {
+  Single& single = Single::of(state);
+  for (auto _ : state)
+    if (single.stepper.step(single.projection).outcome != SolveOutcome::converged)
+      state.SkipWithError("a solve failed");
+}
+
+void batched_step(benchmark::State& state) {
+  static std::map<int, BatchedStepper> made;
+  auto at = made.find(segments_of(state));
+  if (at == made.end()) {
+    std::vector<Scene> scenes;
+    for (int rod = 0; rod < BatchedRods::lanes; ++rod) scenes.push_back(moving_scene(segments_of(state), rod));
+    at = made.try_emplace(segments_of(state), scenes, one_iteration).first;
+  }
+  for (auto _ : state)
+    for (const StepReport& report : at->second.step())
+      if (report.outcome != SolveOutcome::converged) state.SkipWithError("a solve failed");
+}
+
+void linearize(benchmark::State& state) {
+  Single& single = Single::of(state);
+  Linearization out(single.rod());
+  for (auto _ : state) {
+    linearize(single.rod(), out);
+    benchmark::ClobberMemory();
+  }
+}
+
+void assemble(benchmark::State& state) {
+  Single& single = Single::of(state);
+  for (auto _ : state) {
+    single.system.assemble(single.rod(), one_iteration.dt);
+    benchmark::ClobberMemory();
+  }
+}
+
+void factor_and_solve(benchmark::State& state) {
+  Single& single = Single::of(state);
+  single.system.assemble(single.rod(), one_iteration.dt);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(single.factor.solve(single.system.matrix(), single.system.rhs(), single.solution));
+}
+
+void update(benchmark::State& state) {
+  Single& single = Single::of(state);
+  Rod rod = single.rod();
+  single.system.assemble(rod, one_iteration.dt);
+  single.solution.setConstant(1e-20);  // moves nothing far
+  for (auto _ : state) {
+    single.system.apply(rod, single.solution);
+    benchmark::ClobberMemory();
+  }
+}
+
+void print_summary(const Medians& median) {
+  const auto us = [&median](const char* name, int n) { return median(name + ("/" + std::to_string(n))) / n * 1e6; };
+  std::printf(
+      "\nDirect step, one Newton iteration, per segment (targets: at most 0.5 us from N = 30 on, assembly at most"
+      " 25 %%, a batch of %d at least 3 times the throughput)\n",
+      BatchedRods::lanes);
+  std::printf("%6s %10s %15s %14s %16s %11s %13s %12s\n", "N", "step [us]", "linearise [%]", "assemble [%]",
+              "factor+solve [%]", "update [%]", "batched [us]", "throughput");
+  for (const int n : sizes) {
+    const double whole = us("step", n), assembly = us("assemble", n);
+    const double batched = us("batched_step", n) / BatchedRods::lanes;
+    std::printf("%6d %10.3f %15.0f %14.0f %16.0f %11.0f %13.3f %12.1f\n", n, whole, 100 * us("linearize", n) / whole,
+                100 * assembly / whole, 100 * us("factor_and_solve", n) / whole, 100 * us("update", n) / whole, batched,
+                whole / batched);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (const auto& [name, function] : {std::pair{"step", step},
+                                       {"batched_step", batched_step},
+                                       {"linearize", linearize},
+                                       {"assemble", assemble},
+                                       {"factor_and_solve", factor_and_solve},
+                                       {"update", update}})
+    for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
+  Medians medians;
+  if (!run_benchmarks(argc, argv, medians)) return 2;
+  print_summary(medians);
+}
