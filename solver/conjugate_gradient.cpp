@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "solver/petsc_check.hpp"
+#include "solver/petsc_operator.hpp"
 #include "solver/petsc_vector.hpp"
 
 namespace rodsweep {
@@ -31,33 +32,6 @@ PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReaso
     *reason = KSP_CONVERGED_RTOL;
   else if (norm > divergence_limit * target.reference)
     *reason = KSP_DIVERGED_DTOL;
-  return 0;
-}
-
-/// What the shell matrix stands for.
-struct Operator {
-  const BlockMatrix& a;
-  int products = 0;
-};
-
-Operator& operator_of(Mat shell) {
-  void* context = nullptr;
-  petsc_check(MatShellGetContext(shell, &context), "MatShellGetContext");
-  return *static_cast<Operator*>(context);
-}
-
-PetscErrorCode multiply(Mat shell, Vec x, Vec y) {
-  Operator& op = operator_of(shell);
-  op.a.multiply(vector_data(x), vector_data(y));
-  ++op.products;
-  return 0;
-}
-
-PetscErrorCode extract_diagonal(Mat shell, Vec diagonal) {
-  const BlockMatrix& a = operator_of(shell).a;
-  double* out = vector_data(diagonal);
-  for (int row = 0; row < a.block_rows(); ++row)
-    for (int i = 0; i < 6; ++i) out[6 * row + i] = a.blocks[static_cast<std::size_t>(a.diagonal(row))].column[i][i];
   return 0;
 }
 
@@ -94,9 +68,9 @@ bool factorises(Preconditioner p) {
 
 struct ConjugateGradient::Impl {
   const BlockMatrix& a;
-  Operator op;
+  BlockOperator op;
   CgSettings settings;
-  Mat shell = nullptr;
+  Mat product = nullptr;
   Mat entries = nullptr;  ///< copy of the blocks for preconditioners that factorise; else null
   KSP ksp = nullptr;
   Vec b = nullptr, x = nullptr, scratch = nullptr;
@@ -120,12 +94,7 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : 
   if (settings.max_iterations <= 0)
     settings.max_iterations = std::min(10 * n, int{std::numeric_limits<std::int16_t>::max()});
 
-  petsc_check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &op, &shell), "MatCreateShell");
-  petsc_check(MatShellSetManageScalingShifts(shell), "MatShellSetManageScalingShifts");
-  petsc_check(MatShellSetOperation(shell, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)), "MatShellSetOperation");
-  petsc_check(MatShellSetOperation(shell, MATOP_GET_DIAGONAL, reinterpret_cast<void (*)()>(extract_diagonal)),
-              "MatShellSetOperation");
-  petsc_check(MatSetOption(shell, MAT_SYMMETRIC, PETSC_TRUE), "MatSetOption");
+  product = create_operator(op);
   b = create_vector(n);
   x = create_vector(n);
   scratch = create_vector(n);
@@ -140,7 +109,7 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : 
               "KSPSetNormType");
   petsc_check(KSPGetPC(ksp, &pc), "KSPGetPC");
   petsc_check(PCSetType(pc, pc_type(settings.preconditioner)), "PCSetType");
-  petsc_check(KSPSetOperators(ksp, shell, entries ? entries : shell), "KSPSetOperators");
+  petsc_check(KSPSetOperators(ksp, product, entries ? entries : product), "KSPSetOperators");
   petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, settings.max_iterations), "KSPSetTolerances");
   petsc_check(KSPSetConvergenceTest(ksp, test_convergence, &target, nullptr), "KSPSetConvergenceTest");
 }
@@ -149,7 +118,7 @@ ConjugateGradient::Impl::~Impl() {
   // A destructor cannot report; PETSc prints what it has to say.
   KSPDestroy(&ksp);
   MatDestroy(&entries);
-  MatDestroy(&shell);
+  MatDestroy(&product);
   VecDestroy(&scratch);
   VecDestroy(&x);
   VecDestroy(&b);
@@ -172,6 +141,7 @@ void ConjugateGradient::Impl::create_entries(bool symmetric) {
   else
     petsc_check(MatSeqBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
                 "MatSeqBAIJSetPreallocationCSR");
+  use_our_vectors(entries);
 }
 
 void ConjugateGradient::Impl::refresh() {
@@ -179,7 +149,7 @@ void ConjugateGradient::Impl::refresh() {
   stale = false;
   if (entries) copy_entries();
   // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
-  Mat changed = entries ? entries : shell;
+  Mat changed = entries ? entries : product;
   petsc_check(MatAssemblyBegin(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
   petsc_check(MatAssemblyEnd(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
 }
@@ -212,10 +182,12 @@ CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, bool nonzero, do
   Impl& s = *impl_;
   s.refresh();
   s.target = {tolerance, reference};
-  const VectorView rhs(s.b, const_cast<double*>(b.data())), solution(s.x, x.data());
+  copy(b, s.b);
+  if (nonzero) copy(x, s.x);
   s.op.products = 0;
   petsc_check(KSPSetInitialGuessNonzero(s.ksp, nonzero ? PETSC_TRUE : PETSC_FALSE), "KSPSetInitialGuessNonzero");
   petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
+  copy(s.x, x);
 
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   PetscInt iterations = 0;
@@ -234,7 +206,7 @@ double ConjugateGradient::norm_of(const VectorX& b) {
   Impl& s = *impl_;
   if (s.settings.norm == Norm::true_residual) return b.norm();
   s.refresh();
-  const VectorView rhs(s.b, const_cast<double*>(b.data()));
+  copy(b, s.b);
   PC pc = nullptr;
   PetscScalar square = 0;
   petsc_check(KSPSetUp(s.ksp), "KSPSetUp");

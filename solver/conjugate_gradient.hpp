@@ -1,6 +1,6 @@
 // Conjugate gradients on A x = b by PETSc's KSPCG, instrumented: iterations to any tolerance from the residual history.
 //
-// The operator is a matrix-free shell around BlockMatrix::multiply; a preconditioner that needs entries gets a copy of
+// The operator is BlockMatrix::multiply (petsc_operator.hpp); a preconditioner that needs entries gets a copy of
 // the blocks in PETSc's own format. Convergence: the norm of the residual relative to that of b (`reference`), also
 // with a nonzero guess; growth is a failure only past 1e30 times that: a history guess may start far above a
 // late, tiny b. One solver per guess and rod. Needs PETSc initialised (PetscSession). Throws PetscError when a call
