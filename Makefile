@@ -29,7 +29,7 @@ sources = $$(find solver network runner tests -name '*.[ch]pp')
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
-	@echo 'make studies       run the studies of jobs/, draw analysis/results (about an hour; continued if it was stopped)'
+	@echo 'make studies       run the studies of jobs/, draw analysis/results (an hour and a half; continued if it was stopped)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
 	@echo 'make bench         build and run the benchmarks'
