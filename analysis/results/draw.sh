@@ -27,7 +27,7 @@ for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step
   table summary "$study" --by "${by#*:}"
 done
 table summary learned_closed_loop
-for study in learned_bending learned_helix learned_closed_loop; do
+for study in deck_bending deck_helix learned_closed_loop; do
   echo >>"$out/$study.txt"
   script summary "$study" --newton all >>"$out/$study.txt"
 done
