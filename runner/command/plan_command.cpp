@@ -10,6 +10,7 @@
 
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/training_plan.hpp"
+#include "runner/experiment/inputs.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/terminal/text.hpp"
 
@@ -123,6 +124,7 @@ bool is_json_schema(const std::filesystem::path& path) {
 
 ExitCode show_plan(const PlanOptions& options, Console& console) {
   const Job job = read_job(options.job);
+  check_inputs(job);
   if (is_training(job)) return show_training_plan(options, job, console);
   const Plan plan(job);
   const std::vector<Probe> probes = options.probe ? probe(plan, evaluate) : std::vector<Probe>();
@@ -138,7 +140,12 @@ ExitCode validate_jobs(const ValidateOptions& options, Console& console) {
       continue;
     }
     try {
-      console.result(fmt::format("{}: sound, {}", path.native(), extent_text(read_job(path))));
+      const Job job = read_job(path, MissingFiles::accepted);
+      check_inputs(job);
+      console.result(fmt::format("{}: sound, {}", path.native(), extent_text(job)));
+      for (const auto& [written, file] : job.files)
+        if (file.hash.empty())
+          console.note(fmt::format("{}: {}: {} is not there yet", path.native(), file.key_path, file.path.native()));
     } catch (const JobError& error) {
       console.error(error.what());
       code = ExitCode::user_error;
