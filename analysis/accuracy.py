@@ -3,8 +3,8 @@
 A way is a method with its effort: Newton iterations of the direct solve, the tolerance of CG, Gauss-Seidel iterations.
 The reference of a simulation is the direct solve with the most Newton iterations, of the same scene, draw and step.
 Error: the distance of a segment from where the reference has it, root mean square over segments, the largest over the
-frames of the trajectory, relative to the rod's length. Cost: mean wall time of a step with its assembly, guess and
-solves. NaN where a simulation has no reference.
+frames of the trajectory, relative to the rod's length; NaN where a simulation has no reference. Cost: wall time of a
+step with its assembly, guess and solves, the median over steps.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,8 @@ import numpy as np
 import measures
 from sweepfile import KeyNotFound
 
-ROWS = ("/timing/solves/assemble_s", "/timing/solves/direct_s", "/timing/solves/guess_s", "/timing/solves/cg_s")
+REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
+                                                               ("assemble", "direct", "guess", "cg")))
 NEWTON = "time.newton_iterations"
 
 
@@ -23,7 +24,7 @@ class Accuracy:
     """A row per task."""
     tasks: np.ndarray
     family: np.ndarray     # "direct", "CG from zero", "xpbd", …
-    effort: np.ndarray     # "3 Newton iterations", "tolerance 1e-2", "100 iterations"
+    effort: np.ndarray     # iterations, or CG's tolerance
     reference: np.ndarray  # is it one?
     error: np.ndarray
     step_s: np.ndarray
@@ -33,10 +34,10 @@ def accuracy(file, tasks):
     """Of tasks that are complete. Raises KeyNotFound where the file has no trajectories, times or reference."""
     if not file.has("/trajectories/position_m"):
         raise KeyNotFound(f"{file.path} has no trajectories: ask for them with record.trajectory_every")
-    if not all(file.has(path) for path in ROWS[:2]):
+    if not all(file.has(path) for path in (REST, ASSEMBLY, DIRECT)):
         raise KeyNotFound(f"{file.path} has no times of single solves (record.solves is \"summary\")")
     family, effort = zip(*(_way(file, task) for task in tasks))
-    family, effort = np.array(family), np.array(effort)
+    family, effort = np.array(family), np.array(effort, dtype=float)
     reference = _references(file, tasks, family)
     error = np.full(len(tasks), np.nan)
     for of in np.unique(reference[reference >= 0]):
@@ -44,16 +45,17 @@ def accuracy(file, tasks):
         for k in np.flatnonzero(reference == of):
             error[k] = _error(file, tasks[k], exact)
     own = reference == np.arange(len(tasks))
-    return Accuracy(tasks, family, effort, own, error, _step_s(file, tasks))
+    return Accuracy(tasks, family, effort, own, error, np.array([_step_s(file, task) for task in tasks]))
 
 
 def _way(file, task):
+    """(family, effort)"""
     method = file.parameters["solve.method"].values[task]
     if method == "cg":
-        return f"CG from {file.guesses[file.own_guess[task]]}", f"tolerance {file.parameters['solve.tolerance'].text(task)}"
+        return f"CG from {file.guesses[file.own_guess[task]]}", file.parameters["solve.tolerance"].values[task]
     if method in ("xpbd", "pbd"):
-        return method, f"{file.parameters['solve.iterations'].text(task)} iterations"
-    return measures.without_guess(file, [task])[0], f"{file.parameters[NEWTON].text(task)} Newton iterations"
+        return method, file.parameters["solve.iterations"].values[task]
+    return measures.without_guess(file, [task])[0], file.parameters[NEWTON].values[task]
 
 
 def _references(file, tasks, family):
@@ -76,7 +78,7 @@ def _positions(file, task):
     first = file.h5["/trajectories/first_row"][task]
     first = first[first >= 0]
     if len(first) < 2:
-        raise KeyNotFound(f"task {task} has a trajectory of fewer than two frames: make record.trajectory_every smaller")
+        raise KeyNotFound(f"task {task} has fewer than two frames: make record.trajectory_every smaller")
     count = first[1] - first[0]
     return file.h5["/trajectories/position_m"][first[0]:first[-1] + count].reshape(len(first), count, 3)
 
@@ -86,14 +88,16 @@ def _error(file, task, exact):
     return apart / np.linalg.norm(np.diff(exact[0], axis=0), axis=1).sum()
 
 
-def _step_s(file, tasks):
-    total = np.zeros(file.task_count)
-    for owners, starts, rows in file.step_blocks(tasks, ["/timing/steps/rest_s"]):
-        np.add.at(total, owners, np.add.reduceat(rows["/timing/steps/rest_s"].astype(float), starts))
-    for owners, starts, rows in file.solve_blocks(tasks, [path for path in ROWS if file.has(path)]):
-        parts = {path: np.add.reduceat(np.nan_to_num(values.astype(float)), starts) for path, values in rows.items()}
-        for k, task in enumerate(owners):
-            own = file.own_guess[task]
-            solve = parts[ROWS[1]][k] if own < 0 else parts[ROWS[2]][k, own] + parts[ROWS[3]][k, own]
-            total[task] += parts[ROWS[0]][k] + solve
-    return total[tasks] / file.steps[tasks]
+def _step_s(file, task):
+    """Median over steps; a task at a time, whose rows are those of its steps one after the other."""
+    def rows(path, first, count):
+        return file.h5[path][first[task]:first[task] + count[task]].astype(float)
+
+    def solves(path, column=None):
+        found = rows(path, file.first_solve, file.solves)
+        found = found if column is None else found[:, column]
+        return np.nan_to_num(found).reshape(file.steps[task], -1).sum(axis=1)
+
+    own = file.own_guess[task]
+    solved = solves(DIRECT) if own < 0 else solves(GUESS, own) + solves(CG, own)
+    return np.median(rows(REST, file.first_step, file.steps) + solves(ASSEMBLY) + solved)

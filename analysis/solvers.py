@@ -3,10 +3,10 @@
 
 The error is relative to the trajectory of the direct solve with the most Newton iterations that the job has for the
 same rod at the same step (see accuracy.py): what it shows is convergence within a step, not the error of the step. A
-row of panels per value of one parameter, a panel per value of another; a line per method, a point per effort (Newton
-iterations, tolerance, Gauss-Seidel iterations), the median over simulations; whiskers are 95 % bootstrap intervals over
-them. The table has the cheapest way to every error. Needs trajectories in the file (record.trajectory_every) and
-/solves (record.solves "all").
+row of panels per value of one parameter, a panel per value of another; a line per method, a point per effort
+(iterations per step, tolerance of CG), the median over simulations; whiskers are 95 % bootstrap intervals over them.
+The table has the cheapest way to every error. Needs trajectories in the file (record.trajectory_every) and /solves
+(record.solves "all").
 """
 
 import numpy as np
@@ -44,12 +44,10 @@ def main():
         found = accuracy.accuracy(file, shown.sims.tasks())
         if not found.reference.any():
             raise KeyNotFound(f"{file.path} has no task of the direct solve to compare the others with")
-        cells = [[lines(found, file, (found_row == row) & (found_column == column))
-                  for column in np.unique(found_column)]
-                 for found_row, found_column in [(values(file, options.rows, found), values(file, options.columns, found))]
-                 for row in np.unique(found_row)]
-        names = [[f"{style.parameter_label(key, '')} {style.number_text(value)}" for value in
-                  np.unique(values(file, key, found))] for key in (options.rows, options.columns)]
+        row, column = (values(file, key, found) for key in (options.rows, options.columns))
+        cells = [[lines(found, file, (row == r) & (column == c)) for c in np.unique(column)] for r in np.unique(row)]
+        names = [[f"{style.parameter_label(key, file.parameter(key).unit)} {style.number_text(value)}"
+                  for value in np.unique(of)] for key, of in ((options.rows, row), (options.columns, column))]
         print("\n".join(table(cells, names)) + "\n")
         study.save(file, options, {"solvers": figure(shown, found, cells, names)})
     return 0
@@ -63,18 +61,18 @@ def values(file, key, found):
 
 
 def lines(found, file, cell):
-    """{family: [(effort, time, error)]} of the tasks of a mask, the cheapest effort first; both are Estimates."""
+    """{family: [(effort, time [µs], error)]} of the tasks of a mask, least effort first; the latter two Estimates."""
     cell = cell & ~found.reference & np.isfinite(found.error)
     ways = {}
     for family in np.unique(found.family[cell]):
         of = cell & (found.family == family)
-        points = []
-        for effort in np.unique(found.effort[of]):
+        efforts = np.unique(found.effort[of])
+        ways[family] = []
+        for effort in efforts[::-1] if family.startswith("CG") else efforts:
             rows = np.flatnonzero(of & (found.effort == effort))
             draws = file.sample[found.tasks[rows]]
-            points.append((effort, intervals.median(1e6 * found.step_s[rows], draws),
-                           intervals.median(np.maximum(found.error[rows], FLOOR), draws)))
-        ways[family] = sorted(points, key=lambda point: float(point[1].value))
+            ways[family].append((style.number_text(effort), intervals.median(1e6 * found.step_s[rows], draws),
+                                 intervals.median(np.maximum(found.error[rows], FLOOR), draws)))
     return ways
 
 
@@ -91,7 +89,7 @@ def table(cells, names):
         rows.append([title] + [""] * len(LEVELS))
         for column, ways in zip(names[1], row):
             best = [cheapest(ways, level) for level in LEVELS]
-            rows.append([f"  {column}"] + [f"{b[1]}, {b[2]}: {b[0]:.3g} µs" if b else "-" for b in best])
+            rows.append([f"  {column}"] + [f"{b[1]} {b[2]}: {b[0]:.3g} µs" if b else "-" for b in best])
     return commandline.aligned(rows)
 
 
@@ -101,10 +99,12 @@ def figure(shown, found, cells, names):
     families = [family for family in looks if any(family in ways for row in cells for ways in row)]
     handles = [Line2D([], [], label=family, **looks[family].line()) for family in families]
     points = [error for row in cells for ways in row for line in ways.values() for _, _, error in line]
-    efforts = "; ".join(f"{family}: " + ", ".join(dict.fromkeys(
+    efforts = "; ".join(f"{family} " + ", ".join(dict.fromkeys(
         effort for row in cells for ways in row for effort, _, _ in ways.get(family, []))) for family in families)
-    notes = [f"Medians of {study.sample_text(points)}. Points: {efforts}. Errors up to {FLOOR:g} are drawn there. Lines "
-             "end where a method's tasks failed.", shown.about()]
+    notes = [f"Medians of {study.sample_text(points)}. Points: tolerances of CG, else iterations per step: {efforts}. "
+             f"Errors up to {FLOOR:g} are drawn there; tasks that failed are not. Reference: Newton with direct "
+             "solves, converged, with the same step; xpbd converges to a trajectory of its own, whose forces acted "
+             "along the positions on its way.", shown.about()]
     page = layout.Page(shown.width_mm, names[0], len(names[1]), len(names[1]) if shown.wide else 2, 32, handles, notes,
                        shown.timing_warning(), left_mm=12)
     errors = [error.value for error in points]
