@@ -1,9 +1,8 @@
 // Whole tasks that Gauss-Seidel advances: what their records hold, beside the direct solve's.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 
-#include "file_examples.hpp"
+#include "job_examples.hpp"
 #include "runner/experiment/evaluation.hpp"
 
 namespace rodsweep {
