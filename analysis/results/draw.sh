@@ -13,8 +13,12 @@ for study in spatial_bending spatial_helix learned_bending learned_helix; do
   figures spatial $study
   table summary $study
 done
+for study in deck_bending deck_helix; do
+  figures spatial $study
+  table summary $study
+done
 for study in temporal_bending temporal_helix; do
-  figures temporal $study --tolerance 1e-1,1e-2,1e-3
+  figures temporal $study --tolerance 1e-2,1e-3,1e-4
   table summary $study
 done
 for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step_s; do
