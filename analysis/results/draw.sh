@@ -13,6 +13,8 @@ for study in spatial_bending spatial_helix learned_bending learned_helix; do
   figures spatial $study
   table summary $study
 done
+pretrained=network/pretrained
+/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful}.h5 -o $out >$out/pretrained.txt
 for study in deck_bending deck_helix; do
   figures spatial $study
   table summary $study
