@@ -84,6 +84,15 @@ Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointS
   lambda = VectorX::Zero(6 * joint_count());
 }
 
+void refuse_static_joints(const Rod& rod) {
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    if (rod.segments[static_cast<std::size_t>(joint.a)].is_static &&
+        rod.segments[static_cast<std::size_t>(joint.b)].is_static)
+      throw SceneError("joint " + std::to_string(k) + " joins two static segments; remove it or free one of them");
+  }
+}
+
 Vector6 joint_compliance(double length_m, double radius_m, double youngs_modulus_pa, double torsion_modulus_pa,
                          double stretch_per_j) {
   const double r4 = radius_m * radius_m * radius_m * radius_m;

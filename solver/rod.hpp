@@ -71,6 +71,9 @@ class Rod {
   VectorX lambda;
 };
 
+/// Refuses a joint between two static segments, which nothing can move.
+void refuse_static_joints(const Rod& rod);
+
 /// Bend-twist compliance (l/EI, l/EI, l/GJ) of a circular cross-section, and `stretch` for the three stretch-shear
 /// rows.
 Vector6 joint_compliance(double length_m, double radius_m, double youngs_modulus_pa, double torsion_modulus_pa,

@@ -13,8 +13,14 @@ for study in spatial_bending spatial_helix learned_bending learned_helix; do
   figures spatial $study
   table summary $study
 done
+pretrained=network/pretrained
+/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful}.h5 -o $out >$out/pretrained.txt
+for study in deck_bending deck_helix; do
+  figures spatial $study
+  table summary $study
+done
 for study in temporal_bending temporal_helix; do
-  figures temporal $study --tolerance 1e-1,1e-2,1e-3
+  figures temporal $study --tolerance 1e-2,1e-3,1e-4
   table summary $study
 done
 for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step_s; do
@@ -23,7 +29,7 @@ for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step
   table summary "$study" --by "${by#*:}"
 done
 table summary learned_closed_loop
-for study in learned_bending learned_helix learned_closed_loop; do
+for study in deck_bending deck_helix learned_closed_loop; do
   echo >>"$out/$study.txt"
   script summary "$study" --newton all >>"$out/$study.txt"
 done
@@ -40,6 +46,7 @@ figures heatmap stiffness --x scene.youngs_modulus_pa --y scene.segments --measu
 table summary step_size --by time.step_s
 table summary stiffness --by scene.youngs_modulus_pa
 figures newton newton >"$out/newton.txt"
+figures solvers solvers >"$out/solvers.txt"
 figures long_term long_term >"$out/long_term.txt"
 figures long_term long_term_learned --log-time >"$out/long_term_learned.txt"
 sed -i '/\.\(png\|pdf\)$/d' "$out"/*.txt   # the paths of the figures

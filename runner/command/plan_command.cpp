@@ -30,7 +30,8 @@ Extent extent(const Plan& plan, Member member) {
   return {(*least).*member, (*most).*member};
 }
 
-/// Linear systems at most, were no Newton iteration to end early: Task::cost is segments x steps x newton_iterations.
+/// Linear systems (of Gauss-Seidel: iterations) at most, were no step to end early: Task::cost is segments x steps x
+/// those of a step.
 std::int64_t most_systems(const Plan& plan) {
   double systems = 0;
   for (const Task& task : plan.tasks()) systems += task.cost / task.segments;

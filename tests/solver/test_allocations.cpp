@@ -9,8 +9,10 @@
 #include "solver/batched_step.hpp"
 #include "solver/conjugate_gradient.hpp"
 #include "solver/initial_guess.hpp"
+#include "solver/pbd_projection.hpp"
 #include "solver/subspace_guess.hpp"
 #include "solver/time_step.hpp"
+#include "solver/xpbd_projection.hpp"
 #include "support.hpp"
 
 namespace rodsweep {
@@ -42,8 +44,7 @@ class CgSolve : public LinearSolve {
 };
 
 /// Allocations of ten steps after five.
-long allocations_of(Scene& scene, LinearSolve& solve) {
-  LinearProjection projection(scene, solve);
+long allocations_of(Scene& scene, Projection& projection) {
   TimeStepper stepper(scene, {0.02, 4, 1e-9});
   long before = 0;
   for (int step = 0; step < 15; ++step) {
@@ -52,6 +53,11 @@ long allocations_of(Scene& scene, LinearSolve& solve) {
     if (report.outcome != SolveOutcome::converged) return -1;
   }
   return test::allocations() - before;
+}
+
+long allocations_of(Scene& scene, LinearSolve& solve) {
+  LinearProjection projection(scene, solve);
+  return allocations_of(scene, projection);
 }
 
 Scene loaded_scene() {
@@ -109,6 +115,14 @@ TEST_CASE("a batched step allocates nothing") {
   const long before = test::allocations();
   for (int step = 0; step < 10; ++step) batch.step();
   CHECK(test::allocations() == before);
+}
+
+TEST_CASE("a step with Gauss-Seidel allocates nothing") {
+  Scene scene = loaded_scene();
+  XpbdProjection xpbd(scene);
+  CHECK(allocations_of(scene, xpbd) == 0);
+  PbdProjection pbd(scene, {0.9, 0.5});
+  CHECK(allocations_of(scene, pbd) == 0);
 }
 
 TEST_CASE("a step with CG allocates nothing, whatever the guess") {
