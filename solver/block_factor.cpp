@@ -146,8 +146,7 @@ void BlockFactor::load(const BlockMatrix& a, const VectorX& b) {
     Block6& diagonal = diagonal_work_[i];
     diagonal = a.blocks[static_cast<std::size_t>(column.diagonal_source)];
     const double* rhs = b.data() + 6 * column.row;
-    for (int r = 0; r < 6; ++r)
-      diagonal.column[r] = with_lane_6(diagonal.column[r], broadcast(rhs[r]));
+    for (int r = 0; r < 6; ++r) diagonal.column[r] = with_lane_6(diagonal.column[r], broadcast(rhs[r]));
     for (int p = column.off_begin; p < column.off_end; ++p) {
       const int source = off_[static_cast<std::size_t>(p)].source;
       off_work_[static_cast<std::size_t>(p)] = source < 0 ? Block6{} : a.blocks[static_cast<std::size_t>(source)];

@@ -17,7 +17,8 @@ bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order) {
       if (place_of(pattern.column(k)) < place_of(row)) left.push_back(pattern.column(k));
     if (left.empty()) continue;
     // Enough that the next of them knows the others: whom that leaves uncoupled is found at its own elimination.
-    const int next = *std::max_element(left.begin(), left.end(), [&](int a, int b) { return place_of(a) < place_of(b); });
+    const int next =
+        *std::max_element(left.begin(), left.end(), [&](int a, int b) { return place_of(a) < place_of(b); });
     for (const int other : left)
       if (pattern.find(next, other) < 0) return true;
   }

@@ -1,9 +1,9 @@
 // In which order the block rows of a matrix are best eliminated.
 //
 // An elimination couples all later neighbours of its row; a pair that the matrix does not couple fills in. Chains and
-// trees have orders without fill (root_to_leaf_order() of block_factor.hpp). Where joints close loops there is none, and
-// minimum degree keeps the fill low: the row with the fewest neighbours left comes next (Amestoy, Davis & Duff 1996,
-// whose approximate degrees are Eigen's).
+// trees have orders without fill (root_to_leaf_order() of block_factor.hpp). Where joints close loops there is none,
+// and minimum degree keeps the fill low: the row with the fewest neighbours left comes next (Amestoy, Davis & Duff
+// 1996, whose approximate degrees are Eigen's).
 #pragma once
 
 #include <vector>

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/axial_compliance.hpp"
 #include "solver/rotation.hpp"
 
 namespace rodsweep {
@@ -15,7 +16,10 @@ constexpr Lane8 unit[6] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0}, {
 }  // namespace
 
 LinearSystem::LinearSystem(const Rod& rod)
-    : linearization_(rod), rhs_(VectorX::Zero(6 * rod.joint_count())), displacements_(rod.segments.size()) {
+    : linearization_(rod),
+      rhs_(VectorX::Zero(6 * rod.joint_count())),
+      axial_joints_(axial_joints(rod)),
+      displacements_(rod.segments.size()) {
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
@@ -57,6 +61,7 @@ void LinearSystem::assemble(const Rod& rod, double dt) {
     rhs_.segment<6>(row) = -linearization_.constraint.segment<6>(row) -
                            inverse_dt2 * rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
   }
+  add_axial_compliance(rod, linearization_, axial_joints_, inverse_dt2, matrix_, rhs_);
 }
 
 void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
