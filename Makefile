@@ -20,15 +20,17 @@ packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt
 configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G Ninja) -DCMAKE_BUILD_TYPE=$(BUILD_TYPE) \
   -DRODSWEEP_NATIVE=$(if $(call yes,$(PORTABLE)),OFF,ON) -DRODSWEEP_WERROR=$(if $(call yes,$(WERROR)),ON,OFF) $(2) 2>&1) \
   || { echo "$$log"; exit 1; }
-studies = spatial_bending spatial_helix temporal_bending temporal_helix newton stiffness step_size long_term \
-  learned_bending learned_helix
+studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
+  temporal_bending temporal_helix learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
+  generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
+  solvers
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
 .PHONY: help configure build demo studies test test-long bench sanitize schema format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
-	@echo 'make studies       run the studies of jobs/, draw analysis/results (most of an hour; continued if it was stopped)'
+	@echo 'make studies       run the studies of jobs/, draw analysis/results (an hour; continued if it was stopped)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
 	@echo 'make bench         build and run the benchmarks'

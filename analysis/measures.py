@@ -68,7 +68,7 @@ def census(file, chosen):
 
 
 def has_guesses(file):
-    """Mask of the tasks that try guesses: cg does, the direct solve and a network in its place have none."""
+    """Mask of the tasks that try guesses: cg does, the direct solve and what stands in its place have none."""
     if not file.guesses:
         return np.zeros(file.task_count, dtype=bool)
     method = file.parameters.get("solve.method")
@@ -76,13 +76,21 @@ def has_guesses(file):
 
 
 def without_guess(file, tasks):
-    """Names of what moves the rods of tasks that have no guess of their own: "direct", or "end_to_end" and a model."""
-    method, model = file.parameters.get("solve.method"), file.parameters.get("solve.model")
-    if method is None or model is None:
+    """Names of what moves the rods of tasks that have no guess of their own: "direct", "end_to_end" and a model,
+    "xpbd" or "pbd" and how many iterations."""
+    method = file.parameters.get("solve.method")
+    if method is None:
         return np.full(len(tasks), "direct")
-    stems = [os.path.splitext(os.path.basename(path))[0] for path in model.values[tasks]]
-    return np.array([f"end_to_end {stem}" if of == "end_to_end" else "direct"
-                     for of, stem in zip(method.values[tasks], stems)], dtype=str)
+    return np.array([_method_name(file, method.values[task], task) for task in tasks], dtype=str)
+
+
+def _method_name(file, method, task):
+    if method == "end_to_end":
+        model = file.parameters["solve.model"].values[task]
+        return f"end_to_end {os.path.splitext(os.path.basename(model))[0]}"
+    if method in ("xpbd", "pbd"):
+        return f"{method} {file.parameters['solve.iterations'].text(task)}"
+    return "direct"
 
 
 def simulations(file, chosen, failed_too=False):

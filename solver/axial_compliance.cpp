@@ -1,19 +1,11 @@
 #include "solver/axial_compliance.hpp"
 
 namespace rodsweep {
-namespace {
 
-Vector3 direction(const Linearization& at, const Joint& joint) {
-  return (at.axis[static_cast<std::size_t>(joint.a)] + at.axis[static_cast<std::size_t>(joint.b)]).normalized();
-}
-
-}  // namespace
-
-Vector3 axial_part(const Rod& rod, const Linearization& at, std::size_t k, const Vector3& lambda) {
+Matrix3 axial_compliance(const Rod& rod, const Linearization& at, std::size_t k) {
   const Joint& joint = rod.joints[k];
-  if (joint.axial_excess == 0) return Vector3::Zero();
-  const Vector3 t = direction(at, joint);
-  return joint.axial_excess * t.dot(lambda) * t;
+  return axial_compliance(joint, at.axis[static_cast<std::size_t>(joint.a)],
+                          at.axis[static_cast<std::size_t>(joint.b)]);
 }
 
 double stretch_energy(const Rod& rod, const Linearization& at, std::size_t k) {
@@ -25,10 +17,10 @@ double stretch_energy(const Rod& rod, const Linearization& at, std::size_t k) {
       if (joint.compliance[row] > 0) energy += c[row] * c[row] / joint.compliance[row] / 2;
     return energy;
   }
-  const double along = direction(at, joint).dot(c);
   const double shear = joint.compliance[0], axial = shear + joint.axial_excess;
-  if (shear > 0) energy += (c.squaredNorm() - along * along) / shear / 2;
-  if (axial > 0) energy += along * along / axial / 2;
+  const double along2 = c.dot(axial_compliance(rod, at, k) * c) / joint.axial_excess;  // (t.C)^2
+  if (shear > 0) energy += (c.squaredNorm() - along2) / shear / 2;
+  if (axial > 0) energy += along2 / axial / 2;
   return energy;
 }
 
@@ -42,12 +34,11 @@ std::vector<std::size_t> axial_joints(const Rod& rod) {
 void add_axial_compliance(const Rod& rod, const Linearization& at, const std::vector<std::size_t>& joints,
                           double inverse_dt2, BlockMatrix& matrix, VectorX& rhs) {
   for (const std::size_t k : joints) {
-    const Vector3 t = direction(at, rod.joints[k]);
-    const double excess = inverse_dt2 * rod.joints[k].axial_excess;
+    const Matrix3 softness = inverse_dt2 * axial_compliance(rod, at, k);
     Block6& block = matrix.blocks[static_cast<std::size_t>(matrix.diagonal(static_cast<int>(k)))];
-    for (int c = 0; c < 3; ++c) block.column[c] += excess * t[c] * Lane8{t[0], t[1], t[2], 0, 0, 0, 0, 0};
+    for (int c = 0; c < 3; ++c) block.column[c] += Lane8{softness(0, c), softness(1, c), softness(2, c), 0, 0, 0, 0, 0};
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
-    rhs.segment<3>(row) -= inverse_dt2 * axial_part(rod, at, k, rod.lambda.segment<3>(row));
+    rhs.segment<3>(row) -= softness * rod.lambda.segment<3>(row);
   }
 }
 

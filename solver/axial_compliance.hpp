@@ -14,8 +14,12 @@
 
 namespace rodsweep {
 
-/// e t t^T lambda_s of joint k.
-Vector3 axial_part(const Rod& rod, const Linearization& at, std::size_t k, const Vector3& lambda);
+/// e t t^T of a joint between segments of these directions.
+inline Matrix3 axial_compliance(const Joint& joint, const Vector3& axis_a, const Vector3& axis_b) {
+  const Vector3 t = (axis_a + axis_b).normalized();
+  return joint.axial_excess * t * t.transpose();
+}
+Matrix3 axial_compliance(const Rod& rod, const Linearization& at, std::size_t k);
 
 /// C_s^T alpha_s^-1 C_s / 2 [J] of the stretch-shear rows of joint k; what has no compliance stores nothing.
 double stretch_energy(const Rod& rod, const Linearization& at, std::size_t k);

@@ -4,22 +4,17 @@
 #include <limits>
 
 #include "solver/axial_compliance.hpp"
+#include "solver/joint_kernels.hpp"
 #include "solver/rotation.hpp"
 
 namespace rodsweep {
-namespace {
-
-/// Lane i is one, the others zero.
-constexpr Lane8 unit[6] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0},
-                           {0, 0, 0, 1, 0, 0, 0, 0}, {0, 0, 0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1, 0, 0}};
-
-}  // namespace
 
 LinearSystem::LinearSystem(const Rod& rod)
     : linearization_(rod),
       rhs_(VectorX::Zero(6 * rod.joint_count())),
       axial_joints_(axial_joints(rod)),
       displacements_(rod.segments.size()) {
+  refuse_static_joints(rod);  // their rows would be alpha~ alone, and must not be singular
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
@@ -46,10 +41,6 @@ LinearSystem::LinearSystem(const Rod& rod)
         contributions_.push_back({block, !written[static_cast<std::size_t>(block)]});
         written[static_cast<std::size_t>(block)] = true;
       }
-  // A joint between two static segments is in no contribution: its row is alpha~ alone, and must not be singular.
-  for (int k = 0; k < rod.joint_count(); ++k)
-    if (!written[static_cast<std::size_t>(matrix_.diagonal(k))])
-      throw SceneError("joint " + std::to_string(k) + " joins two static segments; remove it or free one of them");
 }
 
 void LinearSystem::assemble(const Rod& rod, double dt) {
@@ -68,38 +59,30 @@ void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
   const Contribution* next = contributions_.data();
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     const Segment& segment = rod.segments[s];
-    const Vector3& axis = linearization_.axis[s];
-    // World inverse inertia: V = i_t I + (i_a - i_t) t t^T.
-    const double transverse = segment.inverse_inertia_transverse;
-    const double excess = segment.inverse_inertia_axial - transverse;
-
     for (int u = side_start_[s]; u < side_start_[s + 1]; ++u) {
       const Side& side_u = sides_[static_cast<std::size_t>(u)];
       const JointJacobian& jacobian_u = linearization_.joints[static_cast<std::size_t>(side_u.joint)];
-      const Lane8* k = side_u.is_b ? jacobian_u.rotation_b : jacobian_u.rotation_a;
-      const Lane8 along = excess * (k[0] * axis.x() + k[1] * axis.y() + k[2] * axis.z());
-      const Lane8 kv0 = k[0] * transverse + along * axis.x();
-      const Lane8 kv1 = k[1] * transverse + along * axis.y();
-      const Lane8 kv2 = k[2] * transverse + along * axis.z();
+      const TurnedColumns turned(side_u.is_b ? jacobian_u.rotation_b : jacobian_u.rotation_a, segment,
+                                 linearization_.axis[s]);
 
       for (int v = side_start_[s]; v < side_start_[s + 1]; ++v, ++next) {
         const Side& side_v = sides_[static_cast<std::size_t>(v)];
         const JointJacobian& jacobian_v = linearization_.joints[static_cast<std::size_t>(side_v.joint)];
-        const Lane8* kk = side_v.is_b ? jacobian_v.rotation_b : jacobian_v.rotation_a;
+        const Lane8* k = side_v.is_b ? jacobian_v.rotation_b : jacobian_v.rotation_a;
         const double sign = side_u.is_b == side_v.is_b ? 1 : -1;
         const double linear = sign * segment.inverse_mass * jacobian_u.inverse_length * jacobian_v.inverse_length;
 
         Block6& block = matrix_.blocks[static_cast<std::size_t>(next->block)];
         Lane8 product[6];
-        for (int c = 0; c < 6; ++c) product[c] = kv0 * kk[0][c] + kv1 * kk[1][c] + kv2 * kk[2][c];
-        for (int c = 0; c < 3; ++c) product[c] += unit[c] * linear;
+        for (int c = 0; c < 6; ++c) product[c] = turned.times(k, c);
+        for (int c = 0; c < 3; ++c) product[c] += unit_lane[c] * linear;
         if (!next->first) {
           for (int c = 0; c < 6; ++c) block.column[c] += product[c];
           continue;
         }
         if (side_u.joint == side_v.joint) {
           const Vector6& alpha = rod.joints[static_cast<std::size_t>(side_u.joint)].compliance;
-          for (int c = 0; c < 6; ++c) product[c] += unit[c] * (inverse_dt2 * alpha[c]);
+          for (int c = 0; c < 6; ++c) product[c] += unit_lane[c] * (inverse_dt2 * alpha[c]);
         }
         for (int c = 0; c < 6; ++c) block.column[c] = product[c];
       }
@@ -111,26 +94,13 @@ void LinearSystem::displacements(const Rod& rod, const VectorX& delta_lambda, st
   out.assign(rod.segments.size(), Lane8{});
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
-    const JointJacobian& jacobian = linearization_.joints[k];
-    const double* dl = delta_lambda.data() + 6 * k;
-    const Lane8 multiplier = load6(dl);
-    Lane8 terms[6];
-    for (int c = 0; c < 3; ++c) terms[c] = jacobian.rotation_a[c] * multiplier;
-    for (int c = 0; c < 3; ++c) terms[3 + c] = jacobian.rotation_b[c] * multiplier;
-    const Lane8 torque = sum_lanes(terms);  // on a in lanes 0..2, on b in lanes 3..5
-    const Lane8 force = multiplier * jacobian.inverse_length;
-    out[static_cast<std::size_t>(joint.a)] += __builtin_shufflevector(force, torque, 0, 1, 2, 8, 9, 10, 14, 14);
-    out[static_cast<std::size_t>(joint.b)] += __builtin_shufflevector(-force, torque, 0, 1, 2, 11, 12, 13, 14, 14);
+    Lane8 on_a, on_b;
+    impulses(linearization_.joints[k], load6(delta_lambda.data() + 6 * k), on_a, on_b);
+    out[static_cast<std::size_t>(joint.a)] += on_a;
+    out[static_cast<std::size_t>(joint.b)] += on_b;
   }
-  for (std::size_t s = 0; s < rod.segments.size(); ++s) {  // from impulses to motions
-    const Segment& segment = rod.segments[s];
-    const Vector3& axis = linearization_.axis[s];
-    const double m = segment.inverse_mass, transverse = segment.inverse_inertia_transverse;
-    Lane8& motion = out[s];
-    const double along = axis.x() * motion[3] + axis.y() * motion[4] + axis.z() * motion[5];
-    motion *= Lane8{m, m, m, transverse, transverse, transverse, 0, 0};
-    motion += (segment.inverse_inertia_axial - transverse) * along * Lane8{0, 0, 0, axis.x(), axis.y(), axis.z(), 0, 0};
-  }
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    out[s] = motion(rod.segments[s], linearization_.axis[s], out[s]);
 }
 
 void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
@@ -140,12 +110,14 @@ void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
 
 void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda) {
   rod.lambda += delta_lambda;
-  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-    if (rod.segments[s].is_static) continue;
-    const Lane8& d = displacements[s];
-    rod.position[s] += Vector3(d[0], d[1], d[2]);
-    rod.orientation[s] = rotated(rod.orientation[s], Vector3(d[3], d[4], d[5]));
-  }
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) move(rod, s, displacements[s]);
+}
+
+void move(Rod& rod, std::size_t segment, const Lane8& displacement) {
+  if (rod.segments[segment].is_static) return;
+  const Lane8& d = displacement;
+  rod.position[segment] += Vector3(d[0], d[1], d[2]);
+  rod.orientation[segment] = rotated(rod.orientation[segment], Vector3(d[3], d[4], d[5]));
 }
 
 double LinearSystem::newton_residual() const {

@@ -55,6 +55,9 @@ class LinearSystem {
   std::vector<Lane8> displacements_;
 };
 
+/// Moves a free segment by dx (lanes 0..2) and dtheta (lanes 3..5); a static one stays.
+void move(Rod& rod, std::size_t segment, const Lane8& displacement);
+
 /// The update: lambda += dlambda, and every free segment by its displacement.
 void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda);
 

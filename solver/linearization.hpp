@@ -32,6 +32,9 @@ struct Linearization {
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };
 
+/// One joint's Jacobian and the six values of its C at the rod's positions.
+void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint);
+
 /// Evaluates `out` at the rod's positions. Allocates nothing.
 void linearize(const Rod& rod, Linearization& out);
 

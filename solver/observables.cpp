@@ -70,7 +70,7 @@ double newton_residual(const Rod& rod, double constraint_dt) {
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
     Vector6 yielding = rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
-    yielding.head<3>() += axial_part(rod, at, k, rod.lambda.segment<3>(row));
+    yielding.head<3>() += axial_compliance(rod, at, k) * rod.lambda.segment<3>(row);
     const Vector6 residual = at.constraint.segment<6>(row) + yielding / (constraint_dt * constraint_dt);
     if (!residual.allFinite()) return std::numeric_limits<double>::quiet_NaN();
     worst = std::max(worst, residual.lpNorm<Eigen::Infinity>());

@@ -100,6 +100,15 @@ Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointS
   lambda = VectorX::Zero(6 * joint_count());
 }
 
+void refuse_static_joints(const Rod& rod) {
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    if (rod.segments[static_cast<std::size_t>(joint.a)].is_static &&
+        rod.segments[static_cast<std::size_t>(joint.b)].is_static)
+      throw SceneError("joint " + std::to_string(k) + " joins two static segments; remove it or free one of them");
+  }
+}
+
 Section elliptic_section(double half_axis_x_m, double half_axis_y_m, double youngs_modulus_pa,
                          double torsion_modulus_pa) {
   const double a = half_axis_x_m, b = half_axis_y_m, a2 = a * a, b2 = b * b, area = pi * a * b;

@@ -36,8 +36,8 @@ struct JointSpec {
   int a = 0, b = 0;                            ///< segments
   Vector3 arm_a_m{0, 0, 0}, arm_b_m{0, 0, 0};  ///< from the segments' centres to the shared point, local frames
   Vector6 compliance_per_j = Vector6::Zero();  ///< stretch-shear rows, then bend-twist rows
-  double axial_excess_per_j = 0;               ///< along the rod on top of the stretch-shear rows, which are equal then
   std::optional<Quaternion> rest;              ///< conj(q_a) q_b at rest; empty: as given by the initial orientations
+  double axial_excess_per_j = 0;               ///< along the rod on top of the stretch-shear rows, which are equal then
 };
 
 struct Segment {
@@ -73,6 +73,9 @@ class Rod {
   std::vector<Quaternion> orientation;
   VectorX lambda;
 };
+
+/// Refuses a joint between two static segments, which nothing can move.
+void refuse_static_joints(const Rod& rod);
 
 /// What a cross-section puts against each strain, in the segments' local frames.
 struct Section {

@@ -4,9 +4,9 @@
 // towards +y; gravity bends it. Helix: joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi
 // windings], so its axis is vertical (y) and it hangs from its first segment; the rest shape is the initial shape.
 // Ring: a closed regular polygon in the vertical xy-plane below the origin, the middle of its first and topmost side;
-// naturally straight or circular, and twisted by a total angle before its ends were joined. Net: `rows` rods along x and
-// `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where rods cross, the centres
-// of their segments are joined at the angle that they have there, with the stiffness EI / l about every axis.
+// naturally straight or circular, and twisted by a total angle before its ends were joined. Net: `rows` rods along x
+// and `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where rods cross, the
+// centres of their segments are joined at the angle that they have there, with the stiffness EI / l about every axis.
 //
 // Clamps: `segment` holds the whole first segment (free length L - L/N); `wall` adds a static segment of zero length at
 // the first end and a first joint of half length, an exact clamp (not of a ring); `free` holds nothing.

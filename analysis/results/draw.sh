@@ -13,10 +13,32 @@ for study in spatial_bending spatial_helix learned_bending learned_helix; do
   figures spatial $study
   table summary $study
 done
-for study in temporal_bending temporal_helix; do
-  figures temporal $study --tolerance 1e-1,1e-2,1e-3
+pretrained=network/pretrained
+/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful}.h5 -o $out >$out/pretrained.txt
+for study in deck_bending deck_helix; do
+  figures spatial $study
   table summary $study
 done
+for study in temporal_bending temporal_helix; do
+  figures temporal $study --tolerance 1e-2,1e-3,1e-4
+  table summary $study
+done
+for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step_s; do
+  study=generalisation_${by%%:*}
+  figures spatial "$study" --x "${by#*:}"
+  table summary "$study" --by "${by#*:}"
+done
+table summary learned_closed_loop
+for study in deck_bending deck_helix learned_closed_loop; do
+  echo >>"$out/$study.txt"
+  script summary "$study" --newton all >>"$out/$study.txt"
+done
+for scene in bending_rod:bending helix:helix; do
+  model=${scene#*:}
+  figures spatial guarded --scene "${scene%%:*}" --x 'guesses[4].guarded.threshold' \
+    --guess "zero,quadratic,copingnet $model,guarded quadratic,guarded $model"
+done
+table summary guarded --by 'guesses[4].guarded.threshold'
 figures heatmap step_size --x time.step_s --y tolerance
 figures heatmap step_size --x time.step_s --y solve.preconditioner --measure iterations
 figures heatmap stiffness --x scene.youngs_modulus_pa --y scene.segments
@@ -24,6 +46,8 @@ figures heatmap stiffness --x scene.youngs_modulus_pa --y scene.segments --measu
 table summary step_size --by time.step_s
 table summary stiffness --by scene.youngs_modulus_pa
 figures newton newton >"$out/newton.txt"
+figures solvers solvers >"$out/solvers.txt"
 figures long_term long_term >"$out/long_term.txt"
+figures long_term long_term_learned --log-time >"$out/long_term_learned.txt"
 sed -i '/\.\(png\|pdf\)$/d' "$out"/*.txt   # the paths of the figures
 rm -f $out/*.pdf

@@ -10,6 +10,7 @@
 
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/training_plan.hpp"
+#include "runner/experiment/inputs.hpp"
 #include "runner/experiment/loop_check.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/terminal/text.hpp"
@@ -30,7 +31,8 @@ Extent extent(const Plan& plan, Member member) {
   return {(*least).*member, (*most).*member};
 }
 
-/// Linear systems at most, were no Newton iteration to end early: Task::cost is segments x steps x newton_iterations.
+/// Linear systems (of Gauss-Seidel: iterations) at most, were no step to end early: Task::cost is segments x steps x
+/// those of a step.
 std::int64_t most_systems(const Plan& plan) {
   double systems = 0;
   for (const Task& task : plan.tasks()) systems += task.cost / task.segments;
@@ -123,6 +125,7 @@ bool is_json_schema(const std::filesystem::path& path) {
 
 ExitCode show_plan(const PlanOptions& options, Console& console) {
   const Job job = read_job(options.job);
+  check_inputs(job);
   if (is_training(job)) return show_training_plan(options, job, console);
   const Plan plan(job);
   check_loops(plan);
@@ -139,7 +142,12 @@ ExitCode validate_jobs(const ValidateOptions& options, Console& console) {
       continue;
     }
     try {
-      console.result(fmt::format("{}: sound, {}", path.native(), extent_text(read_job(path))));
+      const Job job = read_job(path, MissingFiles::accepted);
+      check_inputs(job);
+      console.result(fmt::format("{}: sound, {}", path.native(), extent_text(job)));
+      for (const auto& [written, file] : job.files)
+        if (file.hash.empty())
+          console.note(fmt::format("{}: {}: {} is not there yet", path.native(), file.key_path, file.path.native()));
     } catch (const JobError& error) {
       console.error(error.what());
       code = ExitCode::user_error;

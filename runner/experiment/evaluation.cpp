@@ -8,7 +8,7 @@
 
 #include "runner/dataset/system_recording.hpp"
 #include "runner/experiment/measured_solve.hpp"
-#include "runner/experiment/recorded_increments.hpp"
+#include "runner/experiment/projections.hpp"
 #include "runner/file/state_rows.hpp"
 #include "solver/observables.hpp"
 #include "solver/stopwatch.hpp"
@@ -83,12 +83,8 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   std::optional<RecordingSolve> recording;
   if (const int iterations = spec.record.recorded_iterations(spec.time.newton_iterations); iterations > 0)
     recording.emplace(scene, iterations, solve, record);
-  const bool end_to_end = spec.solve.method == Method::end_to_end;
-  std::unique_ptr<Projection> projection;
-  if (end_to_end)
-    projection = std::make_unique<EndToEndProjection>(scene, std::make_unique<RecordedIncrements>(scene, spec, record));
-  else
-    projection = std::make_unique<LinearProjection>(scene, recording ? static_cast<LinearSolve&>(*recording) : solve);
+  const std::unique_ptr<Projection> projection =
+      make_projection(scene, spec, record, recording ? static_cast<LinearSolve&>(*recording) : solve);
   TimeStepper stepper(scene, {spec.time.step_s, spec.time.newton_iterations, spec.time.newton_tolerance});
   const int every = spec.record.trajectory_every;
   if (every > 0) record_frame(record, task, 0, scene);
@@ -116,9 +112,7 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
       fail(TaskOutcome::iteration_limit,
            where + "a solve that advances the rod hit its iteration limit (and others may)");
     else if (report.outcome != SolveOutcome::converged && report.outcome != SolveOutcome::iteration_limit) {
-      fail(
-          outcome_of(report.outcome),
-          where + (end_to_end ? "the network's answer is " : "the linear solve ended as ") + to_string(report.outcome));
+      fail(outcome_of(report.outcome), where + projection_failed(spec.solve.method) + to_string(report.outcome));
       break;
     }
     record_step(record, static_cast<std::size_t>(step), scene, report, stepper.constraint_dt(), initial_length);

@@ -11,7 +11,10 @@ namespace rodsweep {
 /// The row of a solve among its task's, of a scene of so many rods: step-major, then Newton iterations, then rods.
 std::size_t solve_row(const TaskSpec& spec, std::size_t rods, const SolvePosition& at);
 
-/// `rod` in the state that the system was assembled from.
+/// Where in its simulation a row stands.
+void record_position(const SolvePosition& at, std::size_t row, TaskRecord& record);
+
+/// Position, residuals and gap: `rod` in the state that the system was assembled from.
 void record_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
                    TaskRecord& record);
 

@@ -146,9 +146,11 @@ void visit_columns(Record& r, Visit&& visit) {
         r.counted_other_norm.cg_ratio);
 
   visit(Column{"/solves/step", R::solve, none, "1", "time step, from 0"}, r.step);
-  visit(Column{"/solves/newton", R::solve, none, "1", "Newton iteration within the step, from 0"}, r.newton);
+  visit(Column{"/solves/newton", R::solve, none, "1", "Newton or Gauss-Seidel iteration within the step, from 0"},
+        r.newton);
   visit(Column{"/solves/rod", R::solve, none, "1", "rod within the scene, from 0"}, r.rod);
-  visit(Column{"/solves/newton_residual", R::solve, none, "1", "max |C + alpha~ lambda| before the solve"},
+  visit(Column{"/solves/newton_residual", R::solve, none, "1",
+               "max |C + alpha~ lambda| before the solve; of Gauss-Seidel, that met by the iteration"},
         r.newton_residual);
   visit(Column{"/solves/joint_gap", R::solve, none, "1",
                "largest distance between the two sides of a joint over the joint length, before the solve"},
@@ -187,7 +189,8 @@ void visit_columns(Record& r, Visit&& visit) {
   visit(Column{"/steps/angular_momentum_kg_m2_s", R::step, xyz, "kg m^2/s",
                "angular momentum of the dynamic segments about the origin"},
         r.angular_momentum_kg_m2_s);
-  visit(Column{"/steps/newton_iterations", R::step, none, "1", "Newton iterations used"}, r.newton_iterations);
+  visit(Column{"/steps/newton_iterations", R::step, none, "1", "Newton (or Gauss-Seidel) iterations used"},
+        r.newton_iterations);
   visit(Column{"/steps/newton_residual", R::step, none, "1", "max |C + alpha~ lambda| at the end of the step"},
         r.step_newton_residual);
 

@@ -8,11 +8,15 @@
 namespace rodsweep {
 
 struct InputFile {
+  std::string key_path;        ///< the first in the job that names it
   std::filesystem::path path;  ///< from the current folder
   std::string hash;            ///< of its bytes, sixteen hexadecimal digits
 };
 
+enum class MissingFiles { refused, accepted };  ///< accepted: without a hash, for a job that is only looked at
+
 /// The file named `text` under `key_path` of a job file. Throws JobError where it cannot be read.
-InputFile input_file(const std::filesystem::path& job, const std::string& key_path, const std::string& text);
+InputFile input_file(const std::filesystem::path& job, const std::string& key_path, const std::string& text,
+                     MissingFiles missing);
 
 }  // namespace rodsweep

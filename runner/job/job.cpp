@@ -51,12 +51,13 @@ bool is_training(const Job& job) { return job.values["kind"] == "train"; }
 
 nlohmann::ordered_json Job::guesses() const { return values.value("guesses", nlohmann::ordered_json::array()); }
 
-Job parse_job(std::string text, const std::filesystem::path& path) {
+Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles missing) {
   JobReader reader(path);
   Job job;
   job.values = reader.read(job_key(), parse_strict_json(text, path), "");
   reader.throw_mistakes();
-  for (const auto& [file, key_path] : reader.files()) job.files.emplace(file, input_file(path, key_path, file));
+  for (const auto& [file, key_path] : reader.files())
+    job.files.emplace(file, input_file(path, key_path, file, missing));
   job.path = path;
   job.text = std::move(text);
   job.name = job.values["name"];
@@ -72,7 +73,7 @@ Job parse_job(std::string text, const std::filesystem::path& path) {
   return job;
 }
 
-Job read_job(const std::filesystem::path& path) {
+Job read_job(const std::filesystem::path& path, MissingFiles missing) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (std::filesystem::is_directory(status)) throw job_error(path, "", "is a folder, not a job file");
@@ -83,7 +84,7 @@ Job read_job(const std::filesystem::path& path) {
   std::ostringstream text;
   if (in) text << in.rdbuf();
   if (!in) throw job_error(path, "", fmt::format("cannot be read: {}", std::strerror(errno ? errno : EIO)));
-  return parse_job(std::move(text).str(), path);
+  return parse_job(std::move(text).str(), path, missing);
 }
 
 }  // namespace rodsweep

@@ -45,7 +45,7 @@ bool is_training(const Job& job);
 
 /// Reads and validates every key and every value that a sweep can take; throws JobError. What depends on several values
 /// at one parameter point (such as a duration of a whole number of steps) is checked by Plan (runner/job/plan.hpp).
-Job read_job(const std::filesystem::path& path);
-Job parse_job(std::string text, const std::filesystem::path& path);
+Job read_job(const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);
+Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);
 
 }  // namespace rodsweep

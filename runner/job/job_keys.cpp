@@ -21,8 +21,12 @@ Key time() {
               .above(0)
               .at_most(1e9)
               .one_of_group("length of the run"),
-          integer_key("newton_iterations", "most Newton iterations in a step").at_least(1).at_most(1000).defaults_to(6),
-          number_key("newton_tolerance", "Newton ends when max |C + alpha~ lambda| is below it")
+          integer_key("newton_iterations",
+                      "most Newton iterations in a step; not of xpbd and pbd, which have their own")
+              .at_least(1)
+              .at_most(1000)
+              .defaults_to(6),
+          number_key("newton_tolerance", "a step's iterations end when max |C + alpha~ lambda| is below it")
               .at_least(0)
               .at_most(1)
               .defaults_to(1e-9),
@@ -30,15 +34,31 @@ Key time() {
 }
 
 Key solve() {
-  return object_key("solve", "the linear solves",
+  return object_key("solve", "what moves the rods towards their constraints: mostly linear solves",
                     {
                         choice_key("method",
-                                   "conjugate gradients with counted iterations, the direct solve alone, or a "
-                                   "network's answers applied without a solve, in a closed loop",
-                                   {"cg", "direct", "end_to_end"})
+                                   "conjugate gradients with counted iterations, the direct solve alone, or in a "
+                                   "closed loop what does without linear systems: a network's answers, or Gauss-Seidel "
+                                   "over the joints, with compliances (xpbd) or without (pbd)",
+                                   {"cg", "direct", "end_to_end", "xpbd", "pbd"})
                             .defaults_to("cg"),
                         file_key("model", "model file of a train job")
                             .only({"end_to_end"}, "a model that starts cg is a guess, \"copingnet\""),
+                        integer_key("iterations", "most Gauss-Seidel iterations in a step")
+                            .at_least(1)
+                            .at_most(10000)
+                            .defaults_to(20)
+                            .only({"xpbd", "pbd"}, "cg has max_iterations, Newton time.newton_iterations"),
+                        number_key("stretch_stiffness", "share of a stretch or shear that one correction takes away")
+                            .at_least(0)
+                            .at_most(1)
+                            .defaults_to(1)
+                            .only({"pbd"}, "moduli and stretch_compliance_per_j of the scene say how stiff a rod is"),
+                        number_key("bending_stiffness", "share of a bend or twist that one correction takes away")
+                            .at_least(0)
+                            .at_most(1)
+                            .defaults_to(1)
+                            .only({"pbd"}, "moduli of the scene say how stiff a rod is"),
                         choice_key("preconditioner", "preconditioner of cg",
                                    {"none", "jacobi", "point_block_jacobi", "icc", "cholesky", "lagged_cholesky"})
                             .defaults_to("jacobi"),

@@ -9,6 +9,7 @@
 
 #include "solver/conjugate_gradient.hpp"
 #include "solver/initial_guess.hpp"
+#include "solver/pbd_projection.hpp"
 #include "solver/scenes.hpp"
 
 namespace rodsweep {
@@ -21,13 +22,17 @@ enum class Evaluation {
 enum class Method {
   direct,
   cg,
-  end_to_end  ///< a network's increments, applied without a solve
+  end_to_end,  ///< a network's increments, applied without a solve
+  pbd,         ///< \ Gauss-Seidel, without a linear system
+  xpbd         ///< /
 };
+
+inline bool is_gauss_seidel(Method method) { return method == Method::pbd || method == Method::xpbd; }
 
 struct TimeSpec {
   double step_s = 0.02;
   int steps = 100;
-  int newton_iterations = 6;       ///< at most this many per step
+  int newton_iterations = 6;       ///< at most this many per step; Gauss-Seidel: its iterations
   double newton_tolerance = 1e-9;  ///< Newton ends when max |C + alpha~ lambda| falls below it
 };
 
@@ -41,6 +46,7 @@ struct SolveSpec {
   int lag_steps = 10;           ///< lagged_cholesky: time steps from one factorisation to the next
   int timing_repeats = 1;       ///< times are medians over so many repeats of guess, solve and direct solve
   std::filesystem::path model;  ///< end_to_end
+  PbdStiffness stiffness;       ///< pbd
 };
 
 /// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.

@@ -12,6 +12,15 @@
 namespace rodsweep {
 namespace {
 
+Method method(const Point& point) {
+  static const std::map<std::string, Method> methods{{"cg", Method::cg},
+                                                     {"direct", Method::direct},
+                                                     {"end_to_end", Method::end_to_end},
+                                                     {"pbd", Method::pbd},
+                                                     {"xpbd", Method::xpbd}};
+  return point.has("solve.method") ? choice(methods, point.text("solve.method")) : Method::direct;
+}
+
 int whole_steps(double duration_s, double step_s, const Job& job) {
   constexpr double tolerance = 1e-6;
   constexpr double most = 10000000;
@@ -72,14 +81,13 @@ TimeSpec time_spec(const Point& point, const Job& job) {
   time.step_s = point.number("time.step_s");
   time.steps = point.has("time.steps") ? static_cast<int>(point.integer("time.steps"))
                                        : whole_steps(point.number("time.duration_s"), time.step_s, job);
-  time.newton_iterations = static_cast<int>(point.integer("time.newton_iterations"));
+  time.newton_iterations =
+      static_cast<int>(point.integer(is_gauss_seidel(method(point)) ? "solve.iterations" : "time.newton_iterations"));
   time.newton_tolerance = point.number("time.newton_tolerance");
   return time;
 }
 
 SolveSpec solve_spec(const Point& point, const Job& job) {
-  static const std::map<std::string, Method> methods{
-      {"cg", Method::cg}, {"direct", Method::direct}, {"end_to_end", Method::end_to_end}};
   static const std::map<std::string, Norm> norms{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}};
   static const std::map<std::string, Preconditioner> preconditioners{
       {"none", Preconditioner::none},
@@ -89,11 +97,8 @@ SolveSpec solve_spec(const Point& point, const Job& job) {
       {"cholesky", Preconditioner::cholesky},
       {"lagged_cholesky", Preconditioner::lagged_cholesky}};
   SolveSpec solve;
-  if (!point.has("solve.method")) {
-    solve.method = Method::direct;
-    return solve;
-  }
-  solve.method = choice(methods, point.text("solve.method"));
+  solve.method = method(point);
+  if (!point.has("solve.method")) return solve;
   solve.preconditioner = choice(preconditioners, point.text("solve.preconditioner"));
   solve.norm = choice(norms, point.text("solve.norm"));
   solve.tolerance = point.number("solve.tolerance");
@@ -105,6 +110,8 @@ SolveSpec solve_spec(const Point& point, const Job& job) {
       throw job_error(job.path, "solve.model", "missing: \"end_to_end\" needs the model file of a train job");
     solve.model = job.files.at(point.text("solve.model")).path;
   }
+  if (solve.method == Method::pbd)
+    solve.stiffness = {point.number("solve.stretch_stiffness"), point.number("solve.bending_stiffness")};
   return solve;
 }
 
@@ -140,10 +147,13 @@ std::vector<std::string> guess_labels(const Job& job) {
 }
 
 void check_method(const Point& point, const Job& job) {
-  if (solve_spec(point, job).method != Method::end_to_end || evaluation(point) == Evaluation::closed_loop) return;
-  throw job_error(job.path, "solve.method",
-                  "\"end_to_end\" is not allowed with evaluation \"paired\", in which the direct solve advances the "
-                  "rod: a network in its place has a trajectory of its own; must be with \"closed_loop\"");
+  const Method own = method(point);
+  if (own == Method::cg || own == Method::direct || evaluation(point) == Evaluation::closed_loop) return;
+  throw job_error(
+      job.path, "solve.method",
+      fmt::format("\"{}\" is not allowed with evaluation \"paired\", in which the direct solve advances the "
+                  "rod: what stands in its place has a trajectory of its own; must be with \"closed_loop\"",
+                  point.text("solve.method")));
 }
 
 }  // namespace rodsweep

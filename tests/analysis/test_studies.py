@@ -302,6 +302,12 @@ class LongTerm(Studies):
         self.assertIn("  end_to_end bending ", said)
         self.assertNotIn("direct", said)
 
+    def test_gauss_seidel_is_a_method_by_its_iterations(self):
+        self.write(method="xpbd", grid={"solve.iterations": (20,)}, steps=50)
+        said = self.run_script("long_term.py", "sweep.h5").stdout
+        self.assertIn("  xpbd 20 ", said)
+        self.assertNotIn("direct", said)
+
     def test_energies_are_relative_to_the_first_step_and_the_largest_kinetic_energy(self):
         file, sims = self.open(plant=Drifting(), **self.LONG)
         options = self.options()

@@ -15,7 +15,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import h5py
 import numpy as np
 import program
-from program import ALL_DONE, DATA, STOPPED, TASKS_FAILED, USER_ERROR, rodsweep, sweep
+from program import ALL_DONE, DATA, JOB, STOPPED, TASKS_FAILED, USER_ERROR, rodsweep, sweep
 from sweepfile import SweepFile
 
 
@@ -93,6 +93,16 @@ class Query(Case):
     def test_a_job_without_guesses_has_tasks_too(self):
         path = sweep("direct", solve={"method": "direct"}, guesses=[])
         self.assertEqual(len(json.loads(self.assert_exit(rodsweep("query", path, "--json"), ALL_DONE))), 4)
+
+    def test_a_file_that_is_not_what_its_key_says_is_refused_before_anything_runs(self):
+        path = sweep()
+        for guess, key, words in (({"copingnet": {"model": f"../{path}"}}, "copingnet.model", "not a model"),
+                                  ({"knn": {"data": f"../{path}"}}, "knn.data", "not a data set")):
+            with open("jobs/wrong.json", "w", encoding="utf-8") as file:
+                json.dump({**JOB, "name": "wrong", "guesses": ["zero", guess]}, file)
+            for command in ("run", "plan", "validate"):
+                self.assert_refused(rodsweep(command, "jobs/wrong.json"), f"guesses[1].{key}", words)
+            self.assertFalse(os.path.exists("results/wrong.h5"))
 
     def test_all_columns_are_listed_with_meaning_and_unit(self):
         said = self.assert_exit(rodsweep("query", sweep(), "--columns", "help"), ALL_DONE)

@@ -32,6 +32,15 @@ TEST_CASE("a file that cannot be read is refused with key, path and reason") {
   CHECK_THAT(folder.refusal(learned("")), Catch::Contains("must be the path of a file"));
 }
 
+TEST_CASE("a file that is missing may come from a job beside, and may be missing in a job that is only looked at") {
+  const JobFolder folder;
+  folder.write("data.json", "{}");
+  CHECK_THAT(folder.refusal(learned("../results/data.h5")),
+             Catch::Contains("is not there; does " + (folder.path() / "data.json").native() + " make it?"));
+  const Job job = parse_job(learned("none.h5").dump(), folder.path() / "job.json", MissingFiles::accepted);
+  CHECK(job.files.at("none.h5").hash.empty());
+}
+
 TEST_CASE("what a task is depends on what its files hold, not on their names") {
   const JobFolder folder;
   folder.write("a.h5", "weights");

@@ -8,8 +8,10 @@
 #include "allocations.hpp"
 #include "solver/conjugate_gradient.hpp"
 #include "solver/initial_guess.hpp"
+#include "solver/pbd_projection.hpp"
 #include "solver/subspace_guess.hpp"
 #include "solver/time_step.hpp"
+#include "solver/xpbd_projection.hpp"
 #include "support.hpp"
 
 namespace rodsweep {
@@ -41,8 +43,7 @@ class CgSolve : public LinearSolve {
 };
 
 /// Allocations of ten steps after five.
-long allocations_of(Scene& scene, LinearSolve& solve) {
-  LinearProjection projection(scene, solve);
+long allocations_of(Scene& scene, Projection& projection) {
   TimeStepper stepper(scene, {0.02, 4, 1e-9});
   long before = 0;
   for (int step = 0; step < 15; ++step) {
@@ -51,6 +52,11 @@ long allocations_of(Scene& scene, LinearSolve& solve) {
     if (report.outcome != SolveOutcome::converged) return -1;
   }
   return test::allocations() - before;
+}
+
+long allocations_of(Scene& scene, LinearSolve& solve) {
+  LinearProjection projection(scene, solve);
+  return allocations_of(scene, projection);
 }
 
 Scene loaded_scene() {
@@ -101,6 +107,14 @@ TEST_CASE("a step with the direct solve allocates nothing") {
   Scene scene = loaded_scene();
   DirectSolve direct(scene);
   CHECK(allocations_of(scene, direct) == 0);
+}
+
+TEST_CASE("a step with Gauss-Seidel allocates nothing") {
+  Scene scene = loaded_scene();
+  XpbdProjection xpbd(scene);
+  CHECK(allocations_of(scene, xpbd) == 0);
+  PbdProjection pbd(scene, {0.9, 0.5});
+  CHECK(allocations_of(scene, pbd) == 0);
 }
 
 TEST_CASE("a step with CG allocates nothing, whatever the guess") {

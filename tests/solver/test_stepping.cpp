@@ -6,27 +6,11 @@
 #include <vector>
 
 #include "solver/observables.hpp"
-#include "solver/time_step.hpp"
+#include "stepping.hpp"
 #include "support.hpp"
 
 namespace rodsweep {
 namespace {
-
-/// Passes projections on and keeps what they report.
-class Recorder : public Projection {
- public:
-  explicit Recorder(Projection& inner) : inner_(inner) {}
-  ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override {
-    positions.push_back(at);
-    reports.push_back(inner_.project(rod, at, dt, newton_tolerance));
-    return reports.back();
-  }
-  std::vector<SolvePosition> positions;
-  std::vector<ProjectionReport> reports;
-
- private:
-  Projection& inner_;
-};
 
 /// Solves directly, but reports something else at one position.
 class Failing : public LinearSolve {
@@ -52,11 +36,10 @@ TEST_CASE("Newton converges quadratically to its floor") {
   for (Vector3& v : scene.rods[0].velocity) v *= 3;  // a hard step
   DirectSolve direct(scene);
   LinearProjection projection(scene, direct);
-  Recorder recorder(projection);
+  test::Recorder recorder(projection);
   TimeStepper stepper(scene, {0.04, 12, 0});
   stepper.step(recorder);
-  std::vector<double> residual;
-  for (const ProjectionReport& report : recorder.reports) residual.push_back(report.newton_residual);
+  const std::vector<double> residual = recorder.residuals();
   REQUIRE(residual.size() == 12);
   CAPTURE(residual);
   REQUIRE(residual.front() > 0.1);
@@ -74,7 +57,7 @@ TEST_CASE("Newton ends below its tolerance, and the step says how many solves th
   Scene scene = test::moving_scene(10);
   DirectSolve direct(scene);
   LinearProjection projection(scene, direct);
-  Recorder recorder(projection);
+  test::Recorder recorder(projection);
   TimeStepper stepper(scene, {0.02, 20, 1e-6});
   const StepReport report = stepper.step(recorder);
   REQUIRE(recorder.reports.size() >= 3);
@@ -93,7 +76,7 @@ TEST_CASE("Newton ends at its limit") {
   Scene scene = test::moving_scene(10);
   DirectSolve direct(scene);
   LinearProjection projection(scene, direct);
-  Recorder recorder(projection);
+  test::Recorder recorder(projection);
   TimeStepper stepper(scene, {0.02, 2, 0});
   for (int step = 0; step < 3; ++step) CHECK(stepper.step(recorder).newton_iterations == 2);
   REQUIRE(recorder.positions.size() == 6);

@@ -1,0 +1,30 @@
+#include "runner/experiment/inputs.hpp"
+
+#include "runner/dataset/dataset_reader.hpp"
+#include "runner/experiment/models.hpp"
+#include "runner/file/file_error.hpp"
+
+namespace rodsweep {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+}  // namespace
+
+void check_inputs(const Job& job) {
+  for (const auto& [written, file] : job.files) {
+    if (file.hash.empty()) continue;
+    try {
+      if (ends_with(file.key_path, "model"))
+        shared_model(file.path);
+      else
+        DatasetReader reader(file.path);
+    } catch (const FileError& error) {
+      throw job_error(job.path, file.key_path, error.what());
+    }
+  }
+}
+
+}  // namespace rodsweep

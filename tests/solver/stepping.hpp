@@ -1,0 +1,58 @@
+// What the tests of projections share: one step of a scene by a projection, what it reported, and how far two scenes
+// are apart.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/time_step.hpp"
+
+namespace rodsweep::test {
+
+/// Passes projections on and keeps what they report.
+class Recorder : public Projection {
+ public:
+  explicit Recorder(Projection& inner) : inner_(inner) {}
+  ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override {
+    positions.push_back(at);
+    reports.push_back(inner_.project(rod, at, dt, newton_tolerance));
+    return reports.back();
+  }
+  std::vector<double> residuals() const {
+    std::vector<double> out;
+    for (const ProjectionReport& report : reports) out.push_back(report.newton_residual);
+    return out;
+  }
+  std::vector<SolvePosition> positions;
+  std::vector<ProjectionReport> reports;
+
+ private:
+  Projection& inner_;
+};
+
+/// The scene after one step of Newton with direct solves, run to its floor.
+inline Scene after_newton(Scene scene, double dt) {
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper(scene, {dt, 40, 1e-15}).step(projection);
+  return scene;
+}
+
+/// The scene after one step of a Gauss-Seidel projection, of up to so many iterations.
+template <class GaussSeidel, class... Settings>
+Scene after(Scene scene, double dt, int iterations, const Settings&... settings) {
+  GaussSeidel projection(scene, settings...);
+  TimeStepper(scene, {dt, iterations, 1e-15}).step(projection);
+  return scene;
+}
+
+/// The largest difference between two scenes' vectors of one kind, such as &Rod::position.
+inline double distance(const Scene& one, const Scene& other, std::vector<Vector3> Rod::*of) {
+  double most = 0;
+  for (std::size_t r = 0; r < one.rods.size(); ++r)
+    for (std::size_t s = 0; s < one.rods[r].segments.size(); ++s)
+      most = std::max(most, ((one.rods[r].*of)[s] - (other.rods[r].*of)[s]).norm());
+  return most;
+}
+
+}  // namespace rodsweep::test
