@@ -28,11 +28,7 @@ Key scene_key() {
               .at_least(1)
               .at_most(1000000)
               .also_called({"n", "number_of_segments", "elements"}),
-          number_key("length_m", "length of the rod; of a ring its circumference")
-              .in("m")
-              .above(0)
-              .at_most(1e6)
-              .only({"bending_rod", "ring"}),
+          number_key("length_m", "length of the rod").in("m").above(0).at_most(1e6).only({"bending_rod", "ring"}),
           number_key("twist_deg", "total angle by which a ring was twisted before its ends were joined")
               .in("deg")
               .at_least(-1e6)

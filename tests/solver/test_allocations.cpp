@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "allocations.hpp"
+#include "solver/batched_step.hpp"
 #include "solver/conjugate_gradient.hpp"
 #include "solver/initial_guess.hpp"
 #include "solver/pbd_projection.hpp"
@@ -115,6 +116,13 @@ TEST_CASE("a step with Gauss-Seidel allocates nothing") {
   CHECK(allocations_of(scene, xpbd) == 0);
   PbdProjection pbd(scene, {0.9, 0.5});
   CHECK(allocations_of(scene, pbd) == 0);
+}
+
+TEST_CASE("a batched step allocates nothing") {
+  BatchedStepper batch({test::moving_scene(12), test::moving_scene(12, 3)}, {0.02, 4, 1e-9});
+  const long before = test::allocations();
+  for (int step = 0; step < 10; ++step) batch.step();
+  CHECK(test::allocations() == before);
 }
 
 TEST_CASE("a step with CG allocates nothing, whatever the guess") {
