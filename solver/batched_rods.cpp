@@ -26,6 +26,9 @@ void check_alone(const Scene& scene, const std::string& name) {
     if (rod.segments[static_cast<std::size_t>(k)].is_static && rod.segments[static_cast<std::size_t>(k) + 1].is_static)
       throw SceneError(name + ": joint " + std::to_string(k) +
                        " joins two static segments; remove it or free one of them");
+    if (joint.axial_excess != 0)
+      throw SceneError(name + ": joint " + std::to_string(k) +
+                       " stretches more easily or less along the rod than across; a batched step knows one stretch");
   }
 }
 

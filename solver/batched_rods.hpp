@@ -36,7 +36,8 @@ struct BatchedRods {
   static constexpr int lanes = 8;
 
   /// From the states of scenes of one rod each, for steps of dt. Throws SceneError: fewer than one or more than eight
-  /// scenes, rods that are not equal chains, a joint between static segments, moving clamps or point loads.
+  /// scenes, rods that are not equal chains, a joint between static segments or of physical stretch, moving
+  /// clamps or point loads.
   BatchedRods(const std::vector<Scene>& scenes, double dt);
 
   /// Writes the state of rod `lane` into its scene.

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "solver/block_kernels.hpp"
+#include "solver/elimination_order.hpp"
 
 namespace rodsweep {
 namespace {
@@ -63,7 +64,8 @@ std::vector<int> root_to_leaf_order(const Rod& rod) {
   return order;
 }
 
-BlockFactor::BlockFactor(const BlockMatrix& pattern, const std::vector<int>& order) {
+BlockFactor::BlockFactor(const BlockMatrix& pattern, const std::vector<int>& preferred) {
+  const std::vector<int> order = fills_in(pattern, preferred) ? minimum_degree_order(pattern) : preferred;
   const std::size_t n = order.size();
   std::vector<int> position(n);
   for (std::size_t i = 0; i < n; ++i) position[static_cast<std::size_t>(order[i])] = static_cast<int>(n - 1 - i);

@@ -2,7 +2,8 @@
 //
 // Joints are eliminated in the reverse of a breadth-first order that starts at the held segments, so that the remaining
 // neighbours of an eliminated joint (its parent and its siblings) are coupled already: no block fills in, as in the
-// body-and-joint tree of Deul et al. 2018. Loops are handled by the fill-in that a symbolic elimination finds.
+// body-and-joint tree of Deul et al. 2018. Where joints close loops (rings, nets) a symbolic elimination finds what
+// fills in, in an order of minimum degree (elimination_order.hpp): a sparse Cholesky factorisation in blocks.
 //
 // Per joint k, with S the block left on the diagonal and B_p the blocks towards the joints p eliminated later:
 //   X_p = S^-1 B_p,  y = S^-1 b_k,  A_pq -= B_p^T X_q,  b_p -= B_p^T y      and backwards   x_k = y - sum_p X_p x_p.
@@ -24,8 +25,9 @@ std::vector<int> root_to_leaf_order(const Rod& rod);
 
 class BlockFactor {
  public:
-  /// `order`: block rows, eliminated from the last to the first.
-  BlockFactor(const BlockMatrix& pattern, const std::vector<int>& order);
+  /// `preferred`: block rows, eliminated from the last to the first; an order that fills in gives way to minimum
+  /// degree.
+  BlockFactor(const BlockMatrix& pattern, const std::vector<int>& preferred);
 
   /// Factorises and solves. `a` has the pattern of construction. On anything but `converged`, x is not to be used.
   SolveOutcome solve(const BlockMatrix& a, const VectorX& b, VectorX& x);

@@ -3,12 +3,17 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/axial_compliance.hpp"
 #include "solver/joint_kernels.hpp"
 #include "solver/rotation.hpp"
 
 namespace rodsweep {
+
 LinearSystem::LinearSystem(const Rod& rod)
-    : linearization_(rod), rhs_(VectorX::Zero(6 * rod.joint_count())), displacements_(rod.segments.size()) {
+    : linearization_(rod),
+      rhs_(VectorX::Zero(6 * rod.joint_count())),
+      axial_joints_(axial_joints(rod)),
+      displacements_(rod.segments.size()) {
   refuse_static_joints(rod);  // their rows would be alpha~ alone, and must not be singular
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
@@ -47,6 +52,7 @@ void LinearSystem::assemble(const Rod& rod, double dt) {
     rhs_.segment<6>(row) = -linearization_.constraint.segment<6>(row) -
                            inverse_dt2 * rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
   }
+  add_axial_compliance(rod, linearization_, axial_joints_, inverse_dt2, matrix_, rhs_);
 }
 
 void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {

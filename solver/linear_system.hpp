@@ -48,6 +48,7 @@ class LinearSystem {
   Linearization linearization_;
   BlockMatrix matrix_;
   VectorX rhs_;
+  std::vector<std::size_t> axial_joints_;  ///< see axial_compliance.hpp
   std::vector<int> side_start_;  ///< sides of segment i: side_start_[i] .. side_start_[i + 1]; none for static ones
   std::vector<Side> sides_;
   std::vector<Contribution> contributions_;  ///< in the order in which assemble_matrix() visits them

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/axial_compliance.hpp"
 #include "solver/linearization.hpp"
 #include "solver/rotation.hpp"
 
@@ -39,14 +40,15 @@ double rod_length(const Rod& rod) {
     tail[s] = rod.position[s] - half;
     head[s] = rod.position[s] + half;
   }
-  const auto end_of = [&](int segment, const Vector3& arm) -> Vector3& {
+  const auto move_end = [&](int segment, const Vector3& arm, const Vector3& to) {
     const std::size_t s = static_cast<std::size_t>(segment);
-    return arm.z() < 0 ? tail[s] : head[s];
+    if (std::abs(arm.z()) < rod.segments[s].length_m / 4) return;  // nearer to the centre than to an end
+    (arm.z() < 0 ? tail[s] : head[s]) = to;
   };
   for (const Joint& j : rod.joints) {
     const Vector3 midpoint = (point_on_a(rod, j) + point_on_b(rod, j)) / 2;
-    end_of(j.a, j.arm_a) = midpoint;
-    end_of(j.b, j.arm_b) = midpoint;
+    move_end(j.a, j.arm_a, midpoint);
+    move_end(j.b, j.arm_b, midpoint);
   }
   double length = 0;
   for (std::size_t s = 0; s < n; ++s)
@@ -67,9 +69,9 @@ double newton_residual(const Rod& rod, double constraint_dt) {
   double worst = 0;
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
-    const Vector6 force =
-        rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row)) / (constraint_dt * constraint_dt);
-    const Vector6 residual = at.constraint.segment<6>(row) + force;
+    Vector6 yielding = rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
+    yielding.head<3>() += axial_compliance(rod, at, k) * rod.lambda.segment<3>(row);
+    const Vector6 residual = at.constraint.segment<6>(row) + yielding / (constraint_dt * constraint_dt);
     if (!residual.allFinite()) return std::numeric_limits<double>::quiet_NaN();
     worst = std::max(worst, residual.lpNorm<Eigen::Infinity>());
   }
@@ -80,12 +82,14 @@ double elastic_energy(const Rod& rod) {
   Linearization at(rod);
   linearize(rod, at);
   double energy = 0;
-  for (std::size_t k = 0; k < rod.joints.size(); ++k)
-    for (int row = 0; row < 6; ++row) {
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    energy += stretch_energy(rod, at, k);
+    for (int row = 3; row < 6; ++row) {
       const double c = at.constraint[static_cast<Eigen::Index>(6 * k) + row];
       const double alpha = rod.joints[k].compliance[row];
       if (alpha > 0) energy += c * c / alpha / 2;
     }
+  }
   return energy;
 }
 

@@ -7,7 +7,8 @@ namespace rodsweep {
 
 /// Length of a rod through its joint midpoints: a joint's midpoint is its shared point as seen from both sides,
 /// averaged. From midpoint to midpoint within each segment, plus from the outermost midpoints to the free ends. A
-/// polyline of segment centres would read bending as drift.
+/// polyline of segment centres would read bending as drift. A joint within a segment, as where the rods of a net cross,
+/// does not end it: the length of a net is that of all its rods together, that of a ring its circumference.
 double rod_length(const Rod& rod);
 
 /// max over joints of |x_a + rho_a - x_b - rho_b| / l.

@@ -2,106 +2,95 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
+
+#include "solver/scene_rods.hpp"
 
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double standard_gravity = 9.81;
+constexpr int most_segments = 10000000;
 
-/// A rod whose joints lie on `vertices`; orientations are parallel-transported along it.
-Rod rod_through(const std::vector<Vector3>& vertices, const RodParameters& p) {
-  const int n = static_cast<int>(vertices.size()) - 1;
-  std::vector<SegmentSpec> segments;
-  Quaternion orientation = Quaternion::Identity();
-  double mass = 0;
-  if (p.clamp == Clamp::wall) {
-    SegmentSpec wall;
-    wall.position_m = vertices.front();
-    wall.is_static = true;
-    segments.push_back(wall);
-  }
-  for (int i = 0; i < n; ++i) {
-    const Vector3 chord = vertices[static_cast<std::size_t>(i) + 1] - vertices[static_cast<std::size_t>(i)];
-    const Vector3 before = orientation * Vector3::UnitZ();
-    orientation = (Quaternion::FromTwoVectors(before, chord) * orientation).normalized();
-    SegmentSpec s;
-    s.position_m = vertices[static_cast<std::size_t>(i)] + chord / 2;
-    s.orientation = orientation;
-    s.length_m = chord.norm();
-    s.radius_m = p.radius_m;
-    s.density_kg_m3 = p.density_kg_m3;
-    s.is_static = i == 0 && p.clamp == Clamp::segment;
-    segments.push_back(s);
-    mass += p.density_kg_m3 * pi * p.radius_m * p.radius_m * s.length_m;
-  }
-  if (p.clamp == Clamp::wall) segments.front().orientation = segments[1].orientation;
-
-  const double force = mass * std::max(p.gravity_m_s2.norm(), standard_gravity) + p.tip_force_n.norm();
-  std::vector<JointSpec> joints;
-  for (std::size_t b = 1; b < segments.size(); ++b) {
-    JointSpec joint;
-    joint.a = static_cast<int>(b) - 1;
-    joint.b = static_cast<int>(b);
-    joint.arm_a_m = Vector3(0, 0, segments[b - 1].length_m / 2);
-    joint.arm_b_m = Vector3(0, 0, -segments[b].length_m / 2);
-    const double length = (segments[b - 1].length_m + segments[b].length_m) / 2;
-    joint.compliance_per_j = joint_compliance(
-        length, p.radius_m, p.youngs_modulus_pa, p.torsion_modulus_pa,
-        p.stretch_compliance_per_j ? *p.stretch_compliance_per_j : inextensible_compliance(length, force));
-    joints.push_back(joint);
-  }
-  return Rod(segments, joints);
+void check_least(const char* what, int value, int least, const char* why = "") {
+  if (value < least)
+    throw SceneError(std::string(what) + " is " + std::to_string(value) + "; must be at least " +
+                     std::to_string(least) + why);
 }
 
-std::vector<Vector3> vertices_of(const BendingRod& p) {
-  const double angle = p.initial_angle_deg * pi / 180;
-  const Vector3 along = p.length_m / p.segments * Vector3(std::cos(angle), std::sin(angle), 0);
-  std::vector<Vector3> out;
-  for (int i = 0; i <= p.segments; ++i) out.push_back(i * along);
-  return out;
+void check(const OpenRod& p) {
+  if (p.clamp == Clamp::segment)
+    check_least("segments", p.segments, 2, ": the clamp \"segment\" holds the first one");
+  else
+    check_least("segments", p.segments, 1);
 }
 
-std::vector<Vector3> vertices_of(const Helix& p) {
-  std::vector<Vector3> out;
-  for (int i = 0; i <= p.segments; ++i) {
-    const double fraction = static_cast<double>(i) / p.segments;
-    const double t = 2 * pi * p.windings * fraction;
-    out.emplace_back(p.helix_radius_m * std::cos(t), -p.helix_height_m * fraction, p.helix_radius_m * std::sin(t));
-  }
-  return out;
+void check(const Ring& p) {
+  check_least("segments", p.segments, 3, ": fewer do not close a ring");
+  if (p.clamp == Clamp::wall) throw SceneError("a ring has no end that the clamp \"wall\" could hold");
+  if (!(std::abs(p.twist_deg) <= 90.0 * p.segments))
+    throw SceneError("twist_deg is " + std::to_string(p.twist_deg) + "; must be at most 90 degrees for each of " +
+                     std::to_string(p.segments) + " segments");
 }
 
-void check(const RodParameters& p) {
-  const int least = p.clamp == Clamp::segment ? 2 : 1;
-  if (p.segments < least)
-    throw SceneError("segments is " + std::to_string(p.segments) + "; must be at least " + std::to_string(least) +
-                     (least == 2 ? ": the clamp \"segment\" holds the first one" : ""));
+void check(const Net& p) {
+  check_least("rows", p.rows, 2);
+  check_least("columns", p.columns, 2);
+  check_least("segments", p.segments, 1);
+  if (p.held == Net::Held::corners && p.rows == 2)
+    check_least("segments", p.segments, 2, ": between the held ends of two rows nothing would be free");
+  if (2.0 * p.rows * p.columns * p.segments > most_segments)
+    throw SceneError("a net of so many segments is too large; the most is " + std::to_string(most_segments));
 }
+
+void add_loads(Scene& scene, const OpenRod& p) {
+  if (p.tip_force_n.isZero()) return;
+  const Rod& rod = scene.rods.front();
+  const Vector3 tip(0, 0, rod.segments.back().length_m / 2);
+  scene.loads.push_back({0, rod.segment_count() - 1, p.tip_force_n, Vector3::Zero(), tip});
+}
+void add_loads(Scene&, const RodParameters&) {}
+
+int segments_of(const OpenRod& p) { return p.segments + (p.clamp == Clamp::wall ? 1 : 0); }
+int segments_of(const Ring& p) { return p.segments; }
+int segments_of(const Net& p) {
+  return p.rows * ((p.columns - 1) * p.segments + 1) + p.columns * ((p.rows - 1) * p.segments + 1);
+}
+
+int joints_of(const OpenRod& p) { return segments_of(p) - 1; }
+int joints_of(const Ring& p) { return p.segments; }
+int joints_of(const Net& p) { return segments_of(p) - p.rows - p.columns + p.rows * p.columns; }
 
 }  // namespace
 
-Scene build_scene(const SceneSpec& spec) {
-  return std::visit(
+void validate(const SceneSpec& spec) {
+  std::visit(
       [](const auto& p) {
         check(p);
+        if (p.stretch == Stretch::physical && p.stretch_compliance_per_j)
+          throw SceneError("stretch is physical, but stretch_compliance_per_j is given too; must be one of them");
+      },
+      spec);
+}
+
+Scene build_scene(const SceneSpec& spec) {
+  validate(spec);
+  return std::visit(
+      [](const auto& p) {
         Scene scene;
-        scene.rods.push_back(rod_through(vertices_of(p), p));
+        scene.rods.push_back(build_rod(p));
         scene.gravity_m_s2 = p.gravity_m_s2;
         scene.damping_per_s = p.damping_per_s;
-        if (!p.tip_force_n.isZero()) {
-          const int tip = scene.rods.front().segment_count() - 1;
-          const double half = scene.rods.front().segments.back().length_m / 2;
-          scene.loads.push_back({0, tip, p.tip_force_n, Vector3::Zero(), Vector3(0, 0, half)});
-        }
+        add_loads(scene, p);
         return scene;
       },
       spec);
 }
 
 int segment_count(const SceneSpec& spec) {
-  return std::visit([](const auto& p) { return p.segments + (p.clamp == Clamp::wall ? 1 : 0); }, spec);
+  return std::visit([](const auto& p) { return segments_of(p); }, spec);
+}
+
+int joint_count(const SceneSpec& spec) {
+  return std::visit([](const auto& p) { return joints_of(p); }, spec);
 }
 
 }  // namespace rodsweep

@@ -1,11 +1,15 @@
-// The deck's two test scenes: a bending rod and a hanging helix, from a handful of parameters.
+// The scenes that jobs name, from a handful of parameters: the deck's bending rod and hanging helix, a ring and a net.
 //
 // Bending rod: straight and at rest, its first end at the origin, pointing along +x raised by `initial_angle_deg`
 // towards +y; gravity bends it. Helix: joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi
 // windings], so its axis is vertical (y) and it hangs from its first segment; the rest shape is the initial shape.
+// Ring: a closed regular polygon in the vertical xy-plane below the origin, the middle of its first and topmost side;
+// naturally straight or circular, and twisted by a total angle before its ends were joined. Net: `rows` rods along x
+// and `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where rods cross, the
+// centres of their segments are joined at the angle that they have there, with the stiffness EI / l about every axis.
 //
 // Clamps: `segment` holds the whole first segment (free length L - L/N); `wall` adds a static segment of zero length at
-// the first end and a first joint of half length, an exact clamp; `free` holds nothing.
+// the first end and a first joint of half length, an exact clamp (not of a ring); `free` holds nothing.
 // Throws SceneError when a scene cannot be built (bounds are in the message).
 #pragma once
 
@@ -19,37 +23,68 @@ namespace rodsweep {
 
 enum class Clamp { segment, wall, free };
 
-/// What the two scenes share. SI units.
+enum class Stretch {
+  inextensible,  ///< see inextensible_compliance()
+  physical       ///< EA along the rod, kappa G A across it, see Section
+};
+
+/// What all scenes share. SI units.
 struct RodParameters {
-  int segments = 30;
   double radius_m = 0.05;
   double density_kg_m3 = 1000;
   double youngs_modulus_pa = 1e5;
   double torsion_modulus_pa = 1e6;
-  Clamp clamp = Clamp::segment;
   Vector3 gravity_m_s2{0, -9.81, 0};
   double damping_per_s = 0;
-  Vector3 tip_force_n{0, 0, 0};
-  /// Compliance of the three stretch-shear rows [1/J]; empty: "inextensible", see inextensible_compliance().
-  std::optional<double> stretch_compliance_per_j;
+  Stretch stretch = Stretch::inextensible;
+  std::optional<double> stretch_compliance_per_j;  ///< of the three stretch-shear rows [1/J], in place of `stretch`
 };
 
-struct BendingRod : RodParameters {
+/// Rods with two ends.
+struct OpenRod : RodParameters {
+  int segments = 30;
+  Clamp clamp = Clamp::segment;
+  Vector3 tip_force_n{0, 0, 0};
+};
+
+struct BendingRod : OpenRod {
   double length_m = 2;
   double initial_angle_deg = 0;
 };
 
-struct Helix : RodParameters {
+struct Helix : OpenRod {
   double helix_radius_m = 0.5;
   double helix_height_m = 0.5;
   double windings = 2.5;
 };
 
-using SceneSpec = std::variant<BendingRod, Helix>;
+struct Ring : RodParameters {
+  enum class RestShape { straight, circle };
+  int segments = 30;
+  Clamp clamp = Clamp::segment;
+  double length_m = 2;  ///< circumference
+  double twist_deg = 0;
+  RestShape rest_shape = RestShape::straight;
+};
+
+struct Net : RodParameters {
+  /// The first segments of all rods along z; the first and last ones of the outermost two; nothing.
+  enum class Held { side, corners, free };
+  int rows = 5, columns = 5;
+  int segments = 1;  ///< from one crossing to the next
+  double mesh_m = 0.2;
+  Held held = Held::corners;
+};
+
+using SceneSpec = std::variant<BendingRod, Helix, Ring, Net>;
+
+/// Throws SceneError where parameters do not fit together; build_scene() does so too.
+void validate(const SceneSpec& spec);
 
 Scene build_scene(const SceneSpec& spec);
 
-/// Number of segments (graph nodes) and joints of the scene without building it: what a plan needs.
-int segment_count(const SceneSpec& spec);
+// Of the scene without building it: what a plan needs.
+int segment_count(const SceneSpec& spec);  ///< graph nodes
+int joint_count(const SceneSpec& spec);    ///< graph edges
 
 }  // namespace rodsweep

@@ -1,5 +1,6 @@
 #include "solver/xpbd_projection.hpp"
 
+#include "solver/axial_compliance.hpp"
 #include "solver/block_kernels.hpp"
 #include "solver/joint_kernels.hpp"
 #include "solver/rotation.hpp"
@@ -30,10 +31,15 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
     auto lambda = rod.lambda.segment<6>(6 * joint_index);
     const Vector6 softness = inverse_dt2 * joint.compliance;
     residual += softness.cwiseProduct(lambda);
-    iteration.meet(residual);
-
     Lane8 s[6];
     for (int r = 0; r < 6; ++r) s[r] = unit_lane[r] * softness[r];
+    if (joint.axial_excess != 0) {
+      const Matrix3 axial = inverse_dt2 * axial_compliance(joint, axis_a, axis_b);
+      residual.head<3>() += axial * lambda.head<3>();
+      for (int r = 0; r < 3; ++r) s[r] += Lane8{axial(r, 0), axial(r, 1), axial(r, 2), 0, 0, 0, 0, 0};
+    }
+    iteration.meet(residual);
+
     add_side(s, jacobian.rotation_a, rod.segments[a], axis_a, jacobian.inverse_length);
     add_side(s, jacobian.rotation_b, rod.segments[b], axis_b, jacobian.inverse_length);
     for (int r = 0; r < 6; ++r) s[r] = with_lane_6(s[r], broadcast(-residual[r]));

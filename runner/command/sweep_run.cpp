@@ -11,6 +11,7 @@
 #include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/experiment/extending_body.hpp"
+#include "runner/experiment/loop_check.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
@@ -25,7 +26,10 @@ namespace fs = std::filesystem;
 
 Plan plan_everywhere(const Job& job, const MpiSession& mpi) {
   std::optional<Plan> plan;
-  collectively(mpi.world(), [&] { plan.emplace(job); });
+  collectively(mpi.world(), [&] {
+    plan.emplace(job);
+    check_loops(*plan);
+  });
   return std::move(*plan);
 }
 

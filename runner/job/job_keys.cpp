@@ -1,5 +1,6 @@
 #include "runner/job/job_keys.hpp"
 
+#include "runner/job/scene_keys.hpp"
 #include "runner/job/training_keys.hpp"
 
 namespace rodsweep {
@@ -8,69 +9,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* no_guesses = "only a sweep tries guesses: remove this key";
-
-Key scene() {
-  return object_key(
-      "scene", "the rod that is simulated",
-      {
-          choice_key("type", "which scene", {"bending_rod", "helix"})
-              .unswept(
-                  "to sweep over scenes, list whole ones: \"scene\": {\"grid\": [{\"type\": \"bending_rod\", ...}, "
-                  "{\"type\": \"helix\", ...}]}"),
-          choice_key("clamp", "how the first end is held: its segment, an exact wall, or not at all",
-                     {"segment", "wall", "free"})
-              .defaults_to("segment"),
-          integer_key("segments", "number of segments of the rod, without a wall's static one")
-              .at_least(1)
-              .at_most(1000000)
-              .also_called({"n", "number_of_segments", "elements"}),
-          number_key("length_m", "length of the rod").in("m").above(0).at_most(1e6).only({"bending_rod"}),
-          number_key("helix_radius_m", "radius of the helix").in("m").above(0).at_most(1e6).only({"helix"}),
-          number_key("helix_height_m", "height of the helix").in("m").above(0).at_most(1e6).only({"helix"}),
-          number_key("windings", "turns of the helix").above(0).at_most(1e6).only({"helix"}).also_called({"turns"}),
-          number_key("radius_m", "radius of the rod's cross-section").in("m").above(0).at_most(1e3),
-          number_key("density_kg_m3", "density").in("kg/m^3").above(0).at_most(1e6).also_called({"rho"}),
-          number_key("youngs_modulus_pa", "Young's modulus, for bending")
-              .in("Pa")
-              .above(0)
-              .at_most(1e15)
-              .also_called({"bending_modulus_pa", "elastic_modulus_pa", "e", "y"}),
-          number_key("torsion_modulus_pa", "torsion modulus, for twisting and shear")
-              .in("Pa")
-              .above(0)
-              .at_most(1e15)
-              .also_called({"shear_modulus_pa", "g", "t"}),
-          number_key("initial_angle_deg", "angle from the horizontal at the start")
-              .in("deg")
-              .at_least(-360)
-              .at_most(360)
-              .defaults_to(0)
-              .only({"bending_rod"}),
-          vector_key("gravity_m_s2", "acceleration of gravity")
-              .in("m/s^2")
-              .at_least(-1e6)
-              .at_most(1e6)
-              .defaults_to(Json::array({0, -9.81, 0})),
-          number_key("damping_per_s", "viscous damping: velocities decay at this rate")
-              .in("1/s")
-              .at_least(0)
-              .at_most(1e6)
-              .defaults_to(0),
-          vector_key("tip_force_n", "constant force at the free end")
-              .in("N")
-              .at_least(-1e12)
-              .at_most(1e12)
-              .defaults_to(Json::array({0, 0, 0})),
-          number_key("stretch_compliance_per_j",
-                     "compliance of the stretch and shear constraints, or one chosen from the expected forces")
-              .in("1/J")
-              .at_least(0)
-              .at_most(1e6)
-              .or_word("inextensible")
-              .defaults_to("inextensible"),
-      },
-      "type");
-}
 
 Key time() {
   return object_key(
@@ -219,7 +157,7 @@ std::vector<Key> keys_of_simulations() {
                  {"paired", "closed_loop"})
           .defaults_to("paired")
           .only({"sweep"}, no_guesses),
-      scene(),
+      scene_key(),
       time(),
       solve().only({"sweep"}, no_guesses),
       guesses_key("guesses", "initial guesses of cg")

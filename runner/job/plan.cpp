@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runner/job/counter_random.hpp"
+#include "runner/job/scene_spec.hpp"
 #include "runner/job/task_spec.hpp"
 
 namespace rodsweep {
@@ -41,7 +42,7 @@ Plan::Plan(Job job)
     task.point = point;
     task.sample = point % job_.samples;
     task.segments = segment_count(scene);
-    task.joints = task.segments - 1;
+    task.joints = joint_count(scene);
     task.steps = time.steps;
     task.solves = record.solves ? task.steps * time.newton_iterations : 0;
     task.frames = record.trajectory_every > 0 ? 1 + task.steps / record.trajectory_every : 0;

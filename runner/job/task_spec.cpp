@@ -4,59 +4,13 @@
 
 #include <cmath>
 #include <map>
-#include <stdexcept>
 
+#include "runner/job/choice.hpp"
 #include "runner/job/key_path.hpp"
 #include "runner/job/sweep.hpp"
 
 namespace rodsweep {
 namespace {
-
-template <class Value>
-Value choice(const std::map<std::string, Value>& words, const std::string& word) {
-  const auto found = words.find(word);
-  if (found == words.end()) throw std::logic_error("no value for the choice " + word);
-  return found->second;
-}
-
-Vector3 vector(const Point& point, const char* path) {
-  const Point::Value& value = point.at(path);
-  return {value.number[0], value.number[1], value.number[2]};
-}
-
-void read_rod(const Point& point, RodParameters& rod) {
-  static const std::map<std::string, Clamp> clamps{
-      {"segment", Clamp::segment}, {"wall", Clamp::wall}, {"free", Clamp::free}};
-  rod.segments = static_cast<int>(point.integer("scene.segments"));
-  rod.radius_m = point.number("scene.radius_m");
-  rod.density_kg_m3 = point.number("scene.density_kg_m3");
-  rod.youngs_modulus_pa = point.number("scene.youngs_modulus_pa");
-  rod.torsion_modulus_pa = point.number("scene.torsion_modulus_pa");
-  rod.clamp = choice(clamps, point.text("scene.clamp"));
-  rod.gravity_m_s2 = vector(point, "scene.gravity_m_s2");
-  rod.damping_per_s = point.number("scene.damping_per_s");
-  rod.tip_force_n = vector(point, "scene.tip_force_n");
-  if (!point.is_text("scene.stretch_compliance_per_j")) {
-    rod.stretch_compliance_per_j = point.number("scene.stretch_compliance_per_j");
-  }
-}
-
-BendingRod bending_rod(const Point& point) {
-  BendingRod rod;
-  read_rod(point, rod);
-  rod.length_m = point.number("scene.length_m");
-  rod.initial_angle_deg = point.number("scene.initial_angle_deg");
-  return rod;
-}
-
-Helix helix(const Point& point) {
-  Helix rod;
-  read_rod(point, rod);
-  rod.helix_radius_m = point.number("scene.helix_radius_m");
-  rod.helix_height_m = point.number("scene.helix_height_m");
-  rod.windings = point.number("scene.windings");
-  return rod;
-}
 
 Method method(const Point& point) {
   static const std::map<std::string, Method> methods{{"cg", Method::cg},
@@ -121,14 +75,6 @@ GuessSpec guess_spec(const Point& point, const Job& job, const std::string& path
 }
 
 }  // namespace
-
-SceneSpec scene_spec(const Point& point) {
-  using Make = SceneSpec (*)(const Point&);
-  static const std::map<std::string, Make> scenes{
-      {"bending_rod", [](const Point& p) -> SceneSpec { return bending_rod(p); }},
-      {"helix", [](const Point& p) -> SceneSpec { return helix(p); }}};
-  return choice(scenes, point.text("scene.type"))(point);
-}
 
 TimeSpec time_spec(const Point& point, const Job& job) {
   TimeSpec time;
@@ -208,16 +154,6 @@ void check_method(const Point& point, const Job& job) {
       fmt::format("\"{}\" is not allowed with evaluation \"paired\", in which the direct solve advances the "
                   "rod: what stands in its place has a trajectory of its own; must be with \"closed_loop\"",
                   point.text("solve.method")));
-}
-
-void check_scene(const SceneSpec& scene, const Job& job) {
-  const RodParameters& rod = std::visit([](const auto& s) -> const RodParameters& { return s; }, scene);
-  if (segment_count(scene) >= 2) return;
-  throw job_error(
-      job.path, "scene.segments",
-      fmt::format("{} is not allowed with clamp \"{}\", since nothing is jointed; must be at least 2, or 1 with "
-                  "clamp \"wall\"",
-                  rod.segments, rod.clamp == Clamp::free ? "free" : "segment"));
 }
 
 }  // namespace rodsweep

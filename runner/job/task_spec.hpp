@@ -12,7 +12,6 @@
 
 namespace rodsweep {
 
-SceneSpec scene_spec(const Point& point);
 TimeSpec time_spec(const Point& point, const Job& job);
 SolveSpec solve_spec(const Point& point, const Job& job);  ///< the direct solve where the job says nothing: a data set
 Evaluation evaluation(const Point& point);                 ///< paired where the job says nothing
@@ -24,8 +23,5 @@ std::vector<std::string> guess_labels(const Job& job);
 
 /// Refuses a method that advances trajectories of its own where they are to be shared.
 void check_method(const Point& point, const Job& job);
-
-/// Refuses a scene in which nothing can be solved for.
-void check_scene(const SceneSpec& scene, const Job& job);
 
 }  // namespace rodsweep

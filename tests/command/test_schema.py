@@ -34,7 +34,7 @@ GOOD = {
     "whole scenes swept": {"scene": {"grid": [ROD, HELIX]}},
     "a swept component": {"scene.gravity_m_s2": [0, {"grid": [-9.81, -1.6]}, 0]},
     "a swept vector": {"scene.gravity_m_s2": {"grid": [[0, -9.81, 0], [0, 0, 0]]}},
-    "a word for a number": {"scene.stretch_compliance_per_j": {"grid": ["inextensible", 1e-9]}},
+    "a word for a number": {"scene.stretch_compliance_per_j": {"grid": ["from_stretch", 1e-9]}},
     "a duration": {"time.steps": None, "time.duration_s": 2},
     "words swept": {"solve": {"preconditioner": {"grid": ["none", "icc"]}}},
     "guesses as objects": {"guesses": [{"zero": {}}, {"oracle": {"error": {"grid": [0.1, 0.2]}, "label": "o"}}]},

@@ -24,7 +24,7 @@ TEST_CASE("a value that its key does not take is refused with what is allowed") 
         "job.json: scene.gravity_m_s2[2]: true is not allowed; must be a number from -1000000 to 1000000");
   CHECK(refusal(with("/scene/stretch_compliance_per_j", "\"rigid\"")) ==
         "job.json: scene.stretch_compliance_per_j: \"rigid\" is not allowed; must be a number from 0 to 1000000, or "
-        "\"inextensible\"");
+        "\"from_stretch\"");
   CHECK(refusal(with("/scene", "3")) == "job.json: scene: 3 is not allowed; must be an object {...}");
   CHECK(refusal(with("/seed", "-1")) ==
         "job.json: seed: -1 is not allowed; must be an integer from 0 to 9007199254740991");

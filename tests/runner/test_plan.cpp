@@ -179,7 +179,7 @@ TEST_CASE("a column says whether it varies, in which unit, and what it means") {
 }
 
 TEST_CASE("a word in a column of numbers is NaN, and its change counts as varying") {
-  const Plan plan = plan_of(with("/scene/stretch_compliance_per_j", R"({"grid": ["inextensible", 1e-6]})"));
+  const Plan plan = plan_of(with("/scene/stretch_compliance_per_j", R"({"grid": ["from_stretch", 1e-6]})"));
   const ParameterColumn compliance = column(plan, "scene.stretch_compliance_per_j");
   CHECK(compliance.swept);
   CHECK(std::isnan(std::get<std::vector<double>>(compliance.values)[0]));

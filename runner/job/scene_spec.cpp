@@ -1,0 +1,119 @@
+#include "runner/job/scene_spec.hpp"
+
+#include <fmt/format.h>
+
+#include "runner/job/choice.hpp"
+
+namespace rodsweep {
+namespace {
+
+Vector3 vector(const Point& point, const char* path) {
+  const Point::Value& value = point.at(path);
+  return {value.number[0], value.number[1], value.number[2]};
+}
+
+void read_rod(const Point& point, RodParameters& rod) {
+  static const std::map<std::string, Stretch> stretches{{"inextensible", Stretch::inextensible},
+                                                        {"physical", Stretch::physical}};
+  rod.radius_m = point.number("scene.radius_m");
+  rod.density_kg_m3 = point.number("scene.density_kg_m3");
+  rod.youngs_modulus_pa = point.number("scene.youngs_modulus_pa");
+  rod.torsion_modulus_pa = point.number("scene.torsion_modulus_pa");
+  rod.gravity_m_s2 = vector(point, "scene.gravity_m_s2");
+  rod.damping_per_s = point.number("scene.damping_per_s");
+  rod.stretch = choice(stretches, point.text("scene.stretch"));
+  if (!point.is_text("scene.stretch_compliance_per_j")) {
+    rod.stretch_compliance_per_j = point.number("scene.stretch_compliance_per_j");
+  }
+}
+
+int segments(const Point& point) { return static_cast<int>(point.integer("scene.segments")); }
+
+Clamp clamp(const Point& point) {
+  static const std::map<std::string, Clamp> clamps{
+      {"segment", Clamp::segment}, {"wall", Clamp::wall}, {"free", Clamp::free}};
+  return choice(clamps, point.text("scene.clamp"));
+}
+
+void read_open_rod(const Point& point, OpenRod& rod) {
+  read_rod(point, rod);
+  rod.segments = segments(point);
+  rod.clamp = clamp(point);
+  rod.tip_force_n = vector(point, "scene.tip_force_n");
+}
+
+BendingRod bending_rod(const Point& point) {
+  BendingRod rod;
+  read_open_rod(point, rod);
+  rod.length_m = point.number("scene.length_m");
+  rod.initial_angle_deg = point.number("scene.initial_angle_deg");
+  return rod;
+}
+
+Helix helix(const Point& point) {
+  Helix rod;
+  read_open_rod(point, rod);
+  rod.helix_radius_m = point.number("scene.helix_radius_m");
+  rod.helix_height_m = point.number("scene.helix_height_m");
+  rod.windings = point.number("scene.windings");
+  return rod;
+}
+
+Ring ring(const Point& point) {
+  static const std::map<std::string, Ring::RestShape> shapes{{"straight", Ring::RestShape::straight},
+                                                             {"circle", Ring::RestShape::circle}};
+  Ring rod;
+  read_rod(point, rod);
+  rod.segments = segments(point);
+  rod.clamp = clamp(point);
+  rod.length_m = point.number("scene.length_m");
+  rod.twist_deg = point.number("scene.twist_deg");
+  rod.rest_shape = choice(shapes, point.text("scene.rest_shape"));
+  return rod;
+}
+
+Net net(const Point& point) {
+  static const std::map<std::string, Net::Held> held{
+      {"side", Net::Held::side}, {"corners", Net::Held::corners}, {"free", Net::Held::free}};
+  Net rods;
+  read_rod(point, rods);
+  rods.rows = static_cast<int>(point.integer("scene.rows"));
+  rods.columns = static_cast<int>(point.integer("scene.columns"));
+  rods.segments = segments(point);
+  rods.mesh_m = point.number("scene.mesh_m");
+  rods.held = choice(held, point.text("scene.held"));
+  return rods;
+}
+
+const OpenRod* as_open_rod(const OpenRod& rod) { return &rod; }
+const OpenRod* as_open_rod(const RodParameters&) { return nullptr; }
+
+}  // namespace
+
+SceneSpec scene_spec(const Point& point) {
+  using Make = SceneSpec (*)(const Point&);
+  static const std::map<std::string, Make> scenes{
+      {"bending_rod", [](const Point& p) -> SceneSpec { return bending_rod(p); }},
+      {"helix", [](const Point& p) -> SceneSpec { return helix(p); }},
+      {"ring", [](const Point& p) -> SceneSpec { return ring(p); }},
+      {"net", [](const Point& p) -> SceneSpec { return net(p); }}};
+  return choice(scenes, point.text("scene.type"))(point);
+}
+
+void check_scene(const SceneSpec& scene, const Job& job) {
+  const auto* rod = std::visit([](const auto& s) { return as_open_rod(s); }, scene);
+  if (rod && segment_count(scene) < 2) {
+    throw job_error(
+        job.path, "scene.segments",
+        fmt::format("{} is not allowed with clamp \"{}\", since nothing is jointed; must be at least 2, or 1 with "
+                    "clamp \"wall\"",
+                    rod->segments, rod->clamp == Clamp::free ? "free" : "segment"));
+  }
+  try {
+    validate(scene);
+  } catch (const SceneError& error) {
+    throw job_error(job.path, "scene", error.what());
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,25 @@
+// What the scenes are built of: segments along a direction, joints of their material, and the rods themselves.
+#pragma once
+
+#include <vector>
+
+#include "solver/scenes.hpp"
+
+namespace rodsweep {
+
+/// A segment of the scene's material.
+SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, double length_m, const RodParameters& p);
+
+/// Segments a and b end to end (the local z axis of both points from a to b), as stiff as the material. `force_n`: what
+/// an "inextensible" joint has to hold.
+JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p, double force_n);
+
+/// Weight of the segments, under standard gravity at least [N].
+double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p);
+
+Rod build_rod(const BendingRod& p);
+Rod build_rod(const Helix& p);
+Rod build_rod(const Ring& p);
+Rod build_rod(const Net& p);
+
+}  // namespace rodsweep
