@@ -53,6 +53,8 @@ void check(const Forest& p) {
 
 void check(const SkeletonTree& p) {
   if (!p.skeleton || p.skeleton->size() < 2) throw SceneError("a skeleton needs at least two nodes");
+  if (const auto wrong = fault(*p.skeleton))
+    throw SceneError("node " + std::to_string(wrong->node) + " of a skeleton: " + wrong->text);
 }
 
 template <class Parameters>

@@ -1,14 +1,10 @@
 #include <cmath>
-#include <string>
 
-#include "solver/rotation.hpp"
 #include "solver/scene_rods.hpp"
 #include "solver/split_mix.hpp"
 
 namespace rodsweep {
 namespace {
-
-constexpr double smallest_cosine = -0.94;  // between an edge and the next: the joint's constraint ends at 180 degrees
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -59,14 +55,9 @@ std::vector<SegmentSpec> segments_along(const Skeleton& skeleton, const RodParam
   for (std::size_t i = 1; i < skeleton.size(); ++i) {
     const SkeletonNode &node = skeleton[i], &parent = skeleton[at(node.parent)];
     const Vector3 edge = node.position_m - parent.position_m;
-    if (!(edge.norm() > 0))
-      throw SceneError("node " + std::to_string(i) + " of a skeleton stands where its parent does");
     const SegmentSpec& below = segments[at(node.parent)];
     const bool first = i == 1;  // of all edges: it gives the ground its frame
     const Vector3 before = (first ? Quaternion::Identity() : below.orientation) * Vector3::UnitZ();
-    if (!first && before.dot(edge) < smallest_cosine * edge.norm())
-      throw SceneError("node " + std::to_string(i) +
-                       " of a skeleton turns back onto its parent by more than 160 degrees");
     Quaternion orientation = Quaternion::FromTwoVectors(before, edge);
     if (!first) orientation = orientation * below.orientation;
     segments[i] = segment_at(base + parent.position_m + edge / 2, orientation.normalized(), edge.norm(), p);

@@ -1,5 +1,6 @@
 #include "solver/tree_skeleton.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -13,6 +14,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double degree = pi / 180;
 constexpr double golden_angle = pi * (3 - 2.23606797749978969641);
 constexpr double most_edges = 1e7;
+constexpr double widest_turn = 160 * degree;
 
 void require(bool holds, const char* quantity, double value, const char* bound) {
   if (holds) return;
@@ -66,6 +68,25 @@ class Growth {
 };
 
 }  // namespace
+
+std::optional<SkeletonFault> fault(const Skeleton& skeleton) {
+  const auto edge = [&skeleton](int node) -> Vector3 {
+    const SkeletonNode& end = skeleton[static_cast<std::size_t>(node)];
+    return end.position_m - skeleton[static_cast<std::size_t>(end.parent)].position_m;
+  };
+  for (int i = 1; i < static_cast<int>(skeleton.size()); ++i) {
+    const SkeletonNode& node = skeleton[static_cast<std::size_t>(i)];
+    std::ostringstream text;
+    if (!(node.radius_m > 0)) text << "radius is " << node.radius_m << "; must be positive";
+    if (edge(i).norm() == 0) text << "stands where its parent does; must be elsewhere";
+    const Vector3 below = edge(std::max(node.parent, 1));
+    const double turn = std::atan2(below.cross(edge(i)).norm(), below.dot(edge(i)));
+    if (turn > widest_turn)
+      text << "turns back onto the edge below by " << turn / degree << " degrees; must be at most 160";
+    if (!text.str().empty()) return SkeletonFault{i, text.str()};
+  }
+  return std::nullopt;
+}
 
 void validate(const TreeShape& p) {
   require(p.depth >= 0 && p.depth <= 100, "depth", p.depth, "from 0 to 100");

@@ -13,6 +13,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "solver/types.hpp"
@@ -26,6 +28,16 @@ struct SkeletonNode {
 };
 
 using Skeleton = std::vector<SkeletonNode>;
+
+/// What makes a skeleton none of a rod, at the first such node.
+struct SkeletonFault {
+  int node;
+  std::string text;
+};
+
+/// Radii that are not positive, edges without length, and such as turn back onto the one below (those from the root:
+/// onto its first) by more than 160 degrees: the constraint of a joint ends at 180.
+std::optional<SkeletonFault> fault(const Skeleton& skeleton);
 
 struct TreeShape {
   enum class Phyllotaxis { golden, random };

@@ -254,9 +254,10 @@ TEST_CASE("trees that cannot grow are refused with quantity, value and bound") {
   SkeletonTree folded;
   folded.skeleton =
       std::make_shared<const Skeleton>(Skeleton{{-1, {0, 0, 0}, 0.1}, {0, {0, 1, 0}, 0.1}, {1, {0.1, 0.2, 0}, 0.1}});
-  CHECK(refusal(folded) == "node 2 of a skeleton turns back onto its parent by more than 160 degrees");
+  CHECK(refusal(folded) ==
+        "node 2 of a skeleton: turns back onto the edge below by 172.875 degrees; must be at most 160");
   folded.skeleton = std::make_shared<const Skeleton>(Skeleton{{-1, {0, 0, 0}, 0.1}, {0, {0, 0, 0}, 0.1}});
-  CHECK(refusal(folded) == "node 1 of a skeleton stands where its parent does");
+  CHECK(refusal(folded) == "node 1 of a skeleton: stands where its parent does; must be elsewhere");
 }
 
 }  // namespace
