@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "solver/rod.hpp"
 #include "solver/types.hpp"
+#include "solver/wind.hpp"
 
 namespace rodsweep {
 
@@ -37,6 +39,7 @@ struct Scene {
   double damping_per_s = 0;  ///< viscous drag rate c: dv/dt = -c v, dw/dt = -c w, taken implicitly
   std::vector<MovingClamp> clamps;
   std::vector<PointLoad> loads;
+  std::optional<Wind> wind;
   double time_s = 0;
 };
 
