@@ -43,6 +43,7 @@ inline bool any(const LaneMask& mask) {
 }
 
 inline Lane8 absolute(const Lane8& value) { return value < 0 ? -value : value; }
+inline Lane8 larger(const Lane8& a, const Lane8& b) { return a < b ? b : a; }
 
 /// cos(2 pi t), to 1e-13: the sine of a quarter less the distance to the next whole number, by its series.
 inline Lane8 cosine_of_turns(const Lane8& t) {
