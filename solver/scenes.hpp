@@ -10,12 +10,12 @@
 // centres of their segments are joined at the angle that they have there, with the stiffness EI / l about every axis.
 //
 // Tree: grown (tree_skeleton.hpp) or from a skeleton, a segment for every edge, standing on the ground by an exact
-// clamp (a static segment of zero length at the root). Both moduli of an edge grow with its radius r as (r /
-// r_0)^`exponent`, r_0 that of the widest edge at the ground. A joint is half of one edge and half of the next behind
-// each other; where it rests bent by an angle theta, it is softer by cos(theta / 2)^2 about the axis of that bend,
-// which its constraint measures by so much. An "inextensible" joint is made to hold the weight above it. The shape is
-// that without load: trees have grown against gravity, and sag a little under it at first. Forest: trees of one shape
-// and as many seeds on a grid along x and z, the first one near the origin, each off its place by up to `jitter` / 2
+// clamp (a static segment of zero length at the root). Both moduli of an edge of radius r are those of the widest edge
+// at the ground times (r / its radius)^`modulus_exponent`. A joint is half of one edge and half of the next behind each
+// other; where it rests bent by an angle theta, it is softer by cos(theta / 2)^2 about the axis of that bend, since its
+// constraint measures so much of it. An "inextensible" joint is made to hold the weight above it. The shape is that
+// without load: trees have grown against gravity, and sag a little under it at first. Forest: trees of one shape and as
+// many seeds on a grid along x and z, the first one near the origin, each off its place by up to half of `jitter`
 // spacings along both; a rod each.
 //
 // Clamps: `segment` holds the whole first segment (free length L - L/N); `wall` adds a static segment of zero length at

@@ -1,24 +1,30 @@
-// Wind, and what it does to a segment.
+// Wind, and what it does to a segment. SI; y is up. Throws SceneError.
 //
-// u(x, t) = U h(y) (1 + g sin(2 pi t / T)) + sum over m of a_m cos(k_m . (x - U t) + w_m t + phi_m)
-//   U mean, g and T strength and period of gusts, h(y) = (y / y_ref)^p a power law above the ground (0 below; p = 0:
-//   1). The sum is turbulence in the way of Kraichnan (1970): a_m is perpendicular to k_m, so its divergence is zero;
-//   it drifts with the mean (Taylor's frozen turbulence) and changes by itself. k_m is drawn from a normal distribution
-//   of deviation 1/L in each component, w_m from one of deviation sigma |k_m|, all |a_m| are sigma sqrt(6 / modes):
-//   <u'.u'> = 3 sigma^2 exactly, <u'(x).u'(x + r)> = 3 sigma^2 exp(-r^2 / 2L^2) as the number of modes grows.
+//   u(x, t) = U h(y) (1 + g sin(2 pi t / T)) + sum over m of a_m cos(k_m . (x - U t) + w_m t + phi_m)
 //
-// Drag of a segment of length l and diameter d, by the velocity u = wind - v of the air past its centre, u_n across and
-// u_t along it (the cross-flow principle, Hoerner 1965):
+// U mean, g and T strength and period of gusts, h = (y / y_ref)^p a power law above the ground (p = 0: 1). The sum is
+// turbulence in the way of Kraichnan (1970): a_m is perpendicular to k_m, so its divergence is zero; it drifts with the
+// mean (Taylor's frozen turbulence) and changes by itself. k_m is drawn from a normal distribution of deviation 1/L in
+// each component, w_m from one of deviation sigma |k_m|; all |a_m| are sigma sqrt(6 / modes). So <u'.u'> = 3 sigma^2,
+// and with more and more modes correlations over a distance r, and over a time t in the drifting air, tend to
+//
+//   exp(-r^2 / 2 L^2),   (1 + (sigma t / L)^2)^(-3/2)
+//
+// Drag of a segment of length l and diameter d, by the velocity u of the air past its centre, u_n across and u_t along
+// it (the cross-flow principle, Hoerner 1965):
+//
 //   F = 1/2 rho C_d d l |u_n| u_n + 1/2 rho C_f pi d l |u_t| u_t
-// TimeStepper takes it at the start of the step: first order in dt, and at rest exact. The coefficients 1/2 rho C d l
-// |u| are held below m / dt, where drag would overshoot within a step: so it only ever takes from the motion relative
-// to the air, at any dt. Implicit drag in the prediction would be as stable, but the multipliers do not know of it, and
-// it would weaken the wind on everything that resists it, by 1 + dt k / m. SI; y is up. Throws SceneError.
+//
+// TimeStepper takes it at the start of the step: first order in dt, exact at rest. Its factors k = 1/2 rho C d l |u|
+// are held below m / dt, above which drag would overshoot within a step: so it never adds to the motion past the air,
+// at any dt. Implicit drag in the prediction would be as stable, but the multipliers do not know of it: what resists
+// the wind would feel it weaker by 1 + dt k / m.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "solver/lanes.hpp"
 #include "solver/rod.hpp"
 #include "solver/types.hpp"
 
@@ -50,12 +56,12 @@ class Wind {
                double time_s, double dt) const;
 
  private:
-  struct Mode {
-    Vector3 amplitude, wave;
-    double rate, phase;  ///< w - k . U, phi
+  /// Eight modes, one in each lane; rate w - k . U. Angles are in turns, an amplitude is zero where there is no mode.
+  struct Modes {
+    Lane8 amplitude[3], wave[3], rate, phase;
   };
   WindParameters p_;
-  std::vector<Mode> modes_;
+  std::vector<Modes> modes_;
 };
 
 }  // namespace rodsweep

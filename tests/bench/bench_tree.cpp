@@ -130,9 +130,9 @@ int main(int argc, char** argv) {
   const PetscSession petsc;
   for (const auto& [thousands, spec] : trees)
     for (const auto& [name, function] : {std::pair{"direct", direct}, {"calm", calm}})
-      benchmark::RegisterBenchmark(name, function)->Arg(thousands)->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark(name, function)->Arg(thousands)->Unit(benchmark::kNanosecond);
   for (const auto& [name, function] : {std::pair{"cg", cg}, {"xpbd", xpbd}, {"pbd", pbd}})
-    benchmark::RegisterBenchmark(name, function)->Arg(1)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(name, function)->Arg(1)->Unit(benchmark::kNanosecond);
   Medians medians;
   if (!run_benchmarks(argc, argv, medians)) return 2;
   print_summary(medians);

@@ -4,6 +4,7 @@
 
 #include "simulation.hpp"
 #include "solver/batched_step.hpp"
+#include "solver/lane_math.hpp"
 #include "solver/observables.hpp"
 #include "support.hpp"
 
@@ -111,6 +112,17 @@ TEST_CASE("turbulence is as strong as asked for, and forgets over its length and
   for (int d = 0; d < 2; ++d)
     CHECK(along[d] / size == Approx(std::exp(-distances[d] * distances[d] / (2 * 9))).margin(0.03));
   CHECK(later / size == Approx(std::pow(1 + std::pow(2 * time / 3, 2), -1.5)).margin(0.03));
+}
+
+TEST_CASE("cosines of eight angles at once are cosines") {
+  test::Random random(1);
+  for (int i = 0; i < 200; ++i) {
+    Lane8 turns;
+    for (int lane = 0; lane < 8; ++lane) turns[lane] = random.uniform(-3, 3);
+    turns[0] = i / 8.0 - 12;
+    const Lane8 cosine = cosine_of_turns(turns);
+    for (int lane = 0; lane < 8; ++lane) CHECK(std::abs(cosine[lane] - std::cos(2 * pi * turns[lane])) < 1e-13);
+  }
 }
 
 TEST_CASE("the same seed blows the same bits, another seed another wind") {
