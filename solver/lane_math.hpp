@@ -43,6 +43,7 @@ inline bool any(const LaneMask& mask) {
 }
 
 inline Lane8 absolute(const Lane8& value) { return value < 0 ? -value : value; }
+inline Lane8 larger(const Lane8& a, const Lane8& b) { return a < b ? b : a; }
 
 inline Lane8 square_root(Lane8 value) {
   Eigen::Map<Eigen::Array<double, 8, 1>, Eigen::Aligned64> entries(reinterpret_cast<double*>(&value));
