@@ -8,6 +8,7 @@
 #include "solver/contact_settings.hpp"
 #include "solver/rod.hpp"
 #include "solver/types.hpp"
+#include "solver/wind.hpp"
 
 namespace rodsweep {
 
@@ -41,6 +42,7 @@ struct Scene {
   std::vector<PointLoad> loads;
   std::optional<ContactSettings> contact;  ///< empty: everything passes through everything
   std::vector<Obstacle> obstacles;
+  std::optional<Wind> wind;
   double time_s = 0;
 };
 

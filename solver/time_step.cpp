@@ -96,8 +96,9 @@ void TimeStepper::predict() {
       const Vector3 torque = old.torque[s] - spin * w.cross(axis);
       const double excess = segment.inverse_inertia_axial - segment.inverse_inertia_transverse;
       const Vector3 turn = segment.inverse_inertia_transverse * torque + (excess * axis.dot(torque)) * axis;
-      const Vector3 velocity =
-          damping * (rod.velocity[s] + dt * (scene_.gravity_m_s2 + segment.inverse_mass * old.force[s]));
+      Vector3 force = old.force[s];
+      if (scene_.wind) force += scene_.wind->drag(segment, rod.position[s], axis, rod.velocity[s], scene_.time_s, dt);
+      const Vector3 velocity = damping * (rod.velocity[s] + dt * (scene_.gravity_m_s2 + segment.inverse_mass * force));
       rod.position[s] += dt * velocity;
       rod.orientation[s] = rotated(rod.orientation[s], dt * damping * (w + dt * turn));
     }

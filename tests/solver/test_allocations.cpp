@@ -64,6 +64,9 @@ Scene loaded_scene() {
   BendingRod spec = test::bending_rod(12);
   spec.tip_force_n = {0, 1, 1};
   spec.damping_per_s = 0.1;
+  WindParameters wind;
+  wind.turbulence_m_s = 1;
+  spec.wind = wind;
   Scene scene = build_scene(spec);
   const Pose start{scene.rods[0].position[0], scene.rods[0].orientation[0]};
   scene.clamps.push_back({0, 0, [start](double t) {
