@@ -72,6 +72,19 @@ void record_frame(TaskRecord& record, const Task& task, std::size_t frame, const
   }
 }
 
+void record_segments(TaskRecord& record, const Scene& scene) {
+  std::size_t row = 0;
+  for (std::size_t rod = 0; rod < scene.rods.size(); ++rod) {
+    for (const Segment& segment : scene.rods[rod].segments) {
+      record.segment_length_m[row] = segment.length_m;
+      record.segment_radius_m[row] = segment.radius_m;
+      record.segment_rod[row] = static_cast<std::int16_t>(rod);
+      record.segment_static[row] = segment.is_static ? 1 : 0;
+      ++row;
+    }
+  }
+}
+
 /// Runs the steps; sets outcome and message. Returns false when abandoned.
 bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop,
               const Stopwatch& watch) {
@@ -87,7 +100,10 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
       make_projection(scene, spec, record, recording ? static_cast<LinearSolve&>(*recording) : solve);
   TimeStepper stepper(scene, {spec.time.step_s, spec.time.newton_iterations, spec.time.newton_tolerance});
   const int every = spec.record.trajectory_every;
-  if (every > 0) record_frame(record, task, 0, scene);
+  if (every > 0) {
+    record_segments(record, scene);
+    record_frame(record, task, 0, scene);
+  }
 
   record.outcome = TaskOutcome::ok;
   record.steps_done[0] = 0;
