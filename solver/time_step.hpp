@@ -5,7 +5,8 @@
 //   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance
 //   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
 //   v = (x - x_old) / dt,  w = (2 / dt) Im(d) / Re(d),  d = q conj(q_old)
-// a_ext: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing allocates after construction.
+// a_ext: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
+// allocates after construction.
 #pragma once
 
 #include <vector>
