@@ -23,10 +23,13 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
   for (const Rod& rod : scene.rods)
     old_.push_back({rod.position, rod.orientation, std::vector<Vector3>(rod.segments.size(), Vector3::Zero()),
                     std::vector<Vector3>(rod.segments.size(), Vector3::Zero())});
+  if (scene.contact) contact_ = std::make_unique<ContactProjection>(scene, *scene.contact);
 }
 
 StepReport TimeStepper::step(Projection& projection) {
+  if (contact_) contact_->start_step();
   predict();
+  if (contact_) contact_->find();
   const double dt_c = constraint_dt();
   StepReport report;
   bool converged = false;
@@ -42,6 +45,14 @@ StepReport TimeStepper::step(Projection& projection) {
       report.outcome = outcome;
       if (outcome != SolveOutcome::iteration_limit) return report;
     }
+    if (contact_ && !contact_->project(newton + 1 == settings_.newton_iterations)) {
+      converged = false;
+      report.newton_iterations = newton + 1;
+    }
+  }
+  if (contact_) {
+    report.contacts = static_cast<int>(contact_->contacts().size());
+    report.penetration = contact_->penetration();
   }
   update_velocities();
   ++steps_;

@@ -128,6 +128,17 @@ TEST_CASE("a step with Gauss-Seidel allocates nothing") {
   CHECK(allocations_of(scene, pbd) == 0);
 }
 
+TEST_CASE("a step with contacts allocates nothing unless there are more of them or the broad phase searches anew") {
+  Scene scene = build_scene(test::bending_rod(12, Clamp::free));
+  for (Vector3& position : scene.rods[0].position) position.y() = 0.05;
+  for (Quaternion& orientation : scene.rods[0].orientation)
+    orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  scene.contact = ContactSettings{};
+  scene.obstacles = {HalfSpace{}, Ball{{0, -9, 0}, 8.9}};
+  DirectSolve direct(scene);
+  CHECK(allocations_of(scene, direct) == 0);
+}
+
 TEST_CASE("a step with CG allocates nothing, whatever the guess") {
   const auto make = [](const std::string& name, const Scene& scene) -> std::unique_ptr<InitialGuess> {
     if (name == "previous") return std::make_unique<ExtrapolationGuess>(scene, 4, 1);
