@@ -90,7 +90,8 @@ class Drawing:
     """Pictures of one trajectory, all with the same camera, lights and colours."""
 
     def __init__(self, shown, stage, colouring, options):
-        self.shown, self.stage, self.colouring, self.size, self.jobs = shown, stage, colouring, options.size, options.jobs
+        self.shown, self.stage, self.colouring = shown, stage, colouring
+        self.size, self.jobs = options.size, options.jobs
 
     def picture(self, frame, threads=1, shrink=1):
         size = tuple(max(1, side // shrink) for side in self.size)

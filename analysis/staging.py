@@ -63,7 +63,7 @@ def staged(trajectory, frames, up, view, size, floor="auto"):
         raise KeyNotFound(f"task {trajectory.task} has positions that are not numbers in these frames: choose others "
                           "with --frame")
     extent = float(np.linalg.norm(high - low))
-    level = lowest(trajectory, frames, up) - GAP * extent if floor == "auto" else None if floor == "none" else float(floor)
+    level = floor_level(trajectory, frames, up, floor, extent)
     angles = VIEWS.get(view, view) if view else chosen_view(spread / count, low, high, up)
     framing = camera.Framing(camera.direction(*angles, up), up, size)
     for frame in frames:
@@ -74,9 +74,13 @@ def staged(trajectory, frames, up, view, size, floor="auto"):
     return Stage(framing.camera(), up, level, (low + high) / 2, extent)
 
 
-def lowest(trajectory, frames, up):
+def floor_level(trajectory, frames, up, floor, extent):
+    """Height along `up`, or None."""
+    if floor != "auto":
+        return None if floor == "none" else float(floor)
     radius = drawn_radius(trajectory)
-    return min(float(np.min(points @ up - radius)) for frame in frames for points in trajectory.ends(frame))
+    lowest = min(float(np.min(points @ up - radius)) for frame in frames for points in trajectory.ends(frame))
+    return lowest - GAP * extent
 
 
 def chosen_view(spread, low, high, up):
