@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "network/tensor.hpp"
+#include "solver/split_mix.hpp"
 
 namespace rodsweep {
 
@@ -59,17 +60,16 @@ class Parameters {
 /// Where initial weights come from: uniform in +-sqrt(3 / fan_in) times `gain`, the same on every machine.
 class WeightSource {
  public:
-  explicit WeightSource(std::uint64_t seed) : state_(seed) {}
+  explicit WeightSource(std::uint64_t seed) : random_(seed) {}
   template <class T>
   void fill(Eigen::Map<Tensor<T>> weights, double gain = 1) {
     const double bound = gain * std::sqrt(3.0 / static_cast<double>(weights.cols()));
     for (Eigen::Index c = 0; c < weights.cols(); ++c)
-      for (Eigen::Index r = 0; r < weights.rows(); ++r) weights(r, c) = static_cast<T>(bound * (2 * uniform() - 1));
+      for (Eigen::Index r = 0; r < weights.rows(); ++r) weights(r, c) = static_cast<T>(bound * (2 * random_.uniform() - 1));
   }
 
  private:
-  double uniform();  ///< in [0, 1)
-  std::uint64_t state_;
+  SplitMix random_;
 };
 
 }  // namespace rodsweep

@@ -2,8 +2,8 @@
 
 namespace rodsweep {
 
-LaneMask linearize(const BatchedRods& rods, double tolerance, BatchedLinearization& out) {
-  LaneMask below = Lane8{} < tolerance;
+void linearize(const BatchedRods& rods, BatchedLinearization& out) {
+  Lane8 residual{}, squared_norm{}, squared_gap{};
   LaneFrame frame_b = frame(rods.segments.front().orientation);
   out.axes.front() = frame_b.z;
   for (std::size_t k = 0; k < rods.joints.size(); ++k) {
@@ -28,10 +28,14 @@ LaneMask linearize(const BatchedRods& rods, double tolerance, BatchedLinearizati
 #pragma GCC unroll 6
     for (int row = 0; row < 6; ++row) {
       out.b[k][row] = -constraint[row] - joint.compliance[row] * joint.lambda[row];
-      below &= absolute(out.b[k][row]) < tolerance;  // false for NaN
+      residual = larger(residual, absolute(out.b[k][row]));
+      squared_norm += out.b[k][row] * out.b[k][row];
     }
+    squared_gap = larger(squared_gap, dot(stretch, stretch));
   }
-  return below;
+  out.residual = residual;
+  out.squared_norm = squared_norm;
+  out.squared_gap = squared_gap;
 }
 
 }  // namespace rodsweep

@@ -22,9 +22,13 @@ struct BatchedLinearization {
   std::vector<BatchedJacobian> joints;
   std::vector<LaneVector6> b;    ///< -C - alpha~ lambda
   std::vector<LaneVector> axes;  ///< world direction of every segment's local z
+
+  Lane8 residual;      ///< max |b|
+  Lane8 squared_norm;  ///< of b
+  Lane8 squared_gap;   ///< of the widest joint, over the joint length
 };
 
-/// Evaluates `out` at the rods' positions. Returns the lanes in which all |b| are below the tolerance.
-LaneMask linearize(const BatchedRods& rods, double tolerance, BatchedLinearization& out);
+/// Evaluates `out` at the rods' positions.
+void linearize(const BatchedRods& rods, BatchedLinearization& out);
 
 }  // namespace rodsweep

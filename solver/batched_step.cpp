@@ -7,6 +7,7 @@ BatchedStepper::BatchedStepper(const std::vector<Scene>& scenes, const StepSetti
       rods_(scenes, settings.dt),
       system_(rods_),
       sound_{},
+      running_{},
       steps_(scenes.size(), 0),
       reports_(scenes.size()) {
   for (int rod = 0; rod < rods_.rods; ++rod) {
@@ -16,27 +17,44 @@ BatchedStepper::BatchedStepper(const std::vector<Scene>& scenes, const StepSetti
 }
 
 const std::vector<StepReport>& BatchedStepper::step() {
+  begin();
+  while (linearize()) solve();
+  return end();
+}
+
+void BatchedStepper::begin() {
   predict();
-  LaneMask running = sound_;
+  running_ = sound_;
+  newton_ = 0;
   for (StepReport& report : reports_) report.newton_iterations = 0;
-  for (int newton = 0; newton < settings_.newton_iterations; ++newton) {
-    running &= ~system_.linearize(rods_, settings_.newton_tolerance);
-    if (!any(running)) break;
-    const BatchedSystem::Outcome outcome = system_.solve(rods_);
-    for (int rod = 0; rod < rods_.rods; ++rod) {
-      StepReport& report = reports_[static_cast<std::size_t>(rod)];
-      if (!running[rod]) continue;
-      report.newton_iterations = newton + 1;
-      if (!outcome.positive[rod])
-        report.outcome = SolveOutcome::indefinite;
-      else if (!outcome.finite[rod])
-        report.outcome = SolveOutcome::not_a_number;
-    }
-    const LaneMask solved = outcome.positive & outcome.finite;
-    sound_ &= ~running | solved;
-    running &= solved;
-    system_.apply(rods_, running);
+}
+
+bool BatchedStepper::linearize() {
+  if (newton_ == settings_.newton_iterations) return false;
+  system_.linearize(rods_);
+  running_ &= ~system_.below(settings_.newton_tolerance);
+  return any(running_);
+}
+
+void BatchedStepper::solve() {
+  const BatchedSystem::Outcome outcome = system_.solve(rods_);
+  ++newton_;
+  for (int rod = 0; rod < rods_.rods; ++rod) {
+    StepReport& report = reports_[static_cast<std::size_t>(rod)];
+    if (!running_[rod]) continue;
+    report.newton_iterations = newton_;
+    if (!outcome.positive[rod])
+      report.outcome = SolveOutcome::indefinite;
+    else if (!outcome.finite[rod])
+      report.outcome = SolveOutcome::not_a_number;
   }
+  const LaneMask solved = outcome.positive & outcome.finite;
+  sound_ &= ~running_ | solved;
+  running_ &= solved;
+  system_.apply(rods_, running_);
+}
+
+const std::vector<StepReport>& BatchedStepper::end() {
   update_velocities();
   for (int rod = 0; rod < rods_.rods; ++rod) steps_[static_cast<std::size_t>(rod)] += sound_[rod] != 0;
   return reports_;

@@ -98,6 +98,11 @@ LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
   return positive;
 }
 
+LaneMask BatchedSystem::below(double tolerance) const {
+  const LaneMask finite = linearization_.squared_norm <= std::numeric_limits<double>::max();
+  return finite & (linearization_.residual < tolerance);
+}
+
 BatchedSystem::Outcome BatchedSystem::solve(const BatchedRods& rods) {
   const LaneMask positive = eliminate(rods);
   Lane8 sum{};
@@ -111,6 +116,11 @@ BatchedSystem::Outcome BatchedSystem::solve(const BatchedRods& rods) {
     for (int i = 0; i < 6; ++i) sum += x[i];
   }
   return {positive, absolute(sum) <= std::numeric_limits<double>::max()};
+}
+
+void BatchedSystem::write_solution(int lane, double* solution) const {
+  for (const Column& column : columns_)
+    for (int row = 0; row < 6; ++row) *solution++ = column.solution[row][lane];
 }
 
 void BatchedSystem::apply(BatchedRods& rods, const LaneMask& where) const {

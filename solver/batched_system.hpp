@@ -21,10 +21,12 @@ class BatchedSystem {
  public:
   explicit BatchedSystem(const BatchedRods& rods) : linearization_(rods), columns_(rods.joints.size()) {}
 
-  /// Evaluates b and the Jacobians. Returns the lanes in which all |b| are below the tolerance.
-  LaneMask linearize(const BatchedRods& rods, double tolerance) {
-    return rodsweep::linearize(rods, tolerance, linearization_);
-  }
+  /// Evaluates b and the Jacobians.
+  void linearize(const BatchedRods& rods) { rodsweep::linearize(rods, linearization_); }
+
+  /// The lanes in which all |b| are below the tolerance; NaN is not.
+  LaneMask below(double tolerance) const;
+  const BatchedLinearization& linearization() const { return linearization_; }
 
   struct Outcome {
     LaneMask positive;  ///< all pivots are: A is positive definite
@@ -32,6 +34,9 @@ class BatchedSystem {
   };
   /// Evaluates A and solves A dlambda = b.
   Outcome solve(const BatchedRods& rods);
+
+  /// Of one lane, six numbers a joint.
+  void write_solution(int lane, double* solution) const;
 
   /// Moves the rods by the solution in the lanes `where`, the others not at all.
   void apply(BatchedRods& rods, const LaneMask& where) const;

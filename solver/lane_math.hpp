@@ -43,6 +43,17 @@ inline bool any(const LaneMask& mask) {
 }
 
 inline Lane8 absolute(const Lane8& value) { return value < 0 ? -value : value; }
+inline Lane8 larger(const Lane8& a, const Lane8& b) { return a < b ? b : a; }
+
+/// cos(2 pi t), to 1e-13: the sine of a quarter less the distance to the next whole number, by its series.
+inline Lane8 cosine_of_turns(const Lane8& t) {
+  constexpr double whole = 0x1.8p52;  // what is added to it has no fraction
+  constexpr double pi = 3.14159265358979323846;
+  const Lane8 angle = 2 * pi * (0.25 - absolute(t - ((t + whole) - whole)));
+  Lane8 sum{};
+  for (int n = 19; n > 1; n -= 2) sum = -angle * angle / (n * (n - 1)) * (1 + sum);
+  return angle * (1 + sum);
+}
 
 inline Lane8 square_root(Lane8 value) {
   Eigen::Map<Eigen::Array<double, 8, 1>, Eigen::Aligned64> entries(reinterpret_cast<double*>(&value));

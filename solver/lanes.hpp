@@ -11,6 +11,7 @@
 namespace rodsweep {
 
 using Lane8 = double __attribute__((vector_size(64)));
+using Lane4 = double __attribute__((vector_size(32)));  ///< a vector or quaternion
 
 /// A 6x6 block: six columns (or six rows, where said so) of six entries, padded to eight.
 struct Block6 {

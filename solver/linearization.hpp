@@ -24,11 +24,16 @@ struct JointJacobian {
   double inverse_length;  ///< 1/l [1/m]
 };
 
+/// A segment's axes in the world, the columns of R.
+struct SegmentFrame {
+  Lane4 column[3];  ///< the fourth lane zero
+};
+
 struct Linearization {
   std::vector<JointJacobian> joints;
-  std::vector<Matrix3> frame;  ///< R of every segment
-  std::vector<Vector3> axis;   ///< world direction of every segment's local z
-  VectorX constraint;          ///< C, six per joint
+  std::vector<SegmentFrame> frame;
+  std::vector<Vector3> axis;  ///< world direction of every segment's local z
+  VectorX constraint;         ///< C, six per joint
 
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
+#include "solver/contact_settings.hpp"
 #include "solver/rod.hpp"
 #include "solver/types.hpp"
+#include "solver/wind.hpp"
 
 namespace rodsweep {
 
@@ -37,6 +40,9 @@ struct Scene {
   double damping_per_s = 0;  ///< viscous drag rate c: dv/dt = -c v, dw/dt = -c w, taken implicitly
   std::vector<MovingClamp> clamps;
   std::vector<PointLoad> loads;
+  std::optional<ContactSettings> contact;  ///< empty: everything passes through everything
+  std::vector<Obstacle> obstacles;
+  std::optional<Wind> wind;
   double time_s = 0;
 };
 

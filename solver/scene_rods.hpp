@@ -21,5 +21,8 @@ Rod build_rod(const BendingRod& p);
 Rod build_rod(const Helix& p);
 Rod build_rod(const Ring& p);
 Rod build_rod(const Net& p);
+Rod build_rod(const Tree& p);
+Rod build_rod(const SkeletonTree& p);
+std::vector<Rod> build_rods(const Forest& p);
 
 }  // namespace rodsweep

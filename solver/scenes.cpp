@@ -41,6 +41,27 @@ void check(const Net& p) {
     throw SceneError("a net of so many segments is too large; the most is " + std::to_string(most_segments));
 }
 
+void check(const Tree& p) { validate(p.shape); }
+
+void check(const Forest& p) {
+  validate(p.shape);
+  check_least("rows", p.rows, 1);
+  check_least("columns", p.columns, 1);
+  if (static_cast<double>(edge_count(p.shape)) * p.rows * p.columns > most_segments)
+    throw SceneError("a forest of so many segments is too large; the most is " + std::to_string(most_segments));
+}
+
+void check(const SkeletonTree& p) {
+  if (!p.skeleton || p.skeleton->size() < 2) throw SceneError("a skeleton needs at least two nodes");
+  if (const auto wrong = fault(*p.skeleton))
+    throw SceneError("node " + std::to_string(wrong->node) + " of a skeleton: " + wrong->text);
+}
+
+template <class Parameters>
+std::vector<Rod> build_rods(const Parameters& p) {
+  return {build_rod(p)};
+}
+
 void add_loads(Scene& scene, const OpenRod& p) {
   if (p.tip_force_n.isZero()) return;
   const Rod& rod = scene.rods.front();
@@ -55,9 +76,20 @@ int segments_of(const Net& p) {
   return p.rows * ((p.columns - 1) * p.segments + 1) + p.columns * ((p.rows - 1) * p.segments + 1);
 }
 
+// With the ground's.
+int segments_of(const Tree& p) { return edge_count(p.shape) + 1; }
+int segments_of(const Forest& p) { return p.rows * p.columns * (edge_count(p.shape) + 1); }
+int segments_of(const SkeletonTree& p) { return static_cast<int>(p.skeleton->size()); }
+
+int rods_of(const RodParameters&) { return 1; }
+int rods_of(const Forest& p) { return p.rows * p.columns; }
+
 int joints_of(const OpenRod& p) { return segments_of(p) - 1; }
 int joints_of(const Ring& p) { return p.segments; }
 int joints_of(const Net& p) { return segments_of(p) - p.rows - p.columns + p.rows * p.columns; }
+int joints_of(const Tree& p) { return segments_of(p) - 1; }
+int joints_of(const Forest& p) { return segments_of(p) - rods_of(p); }
+int joints_of(const SkeletonTree& p) { return segments_of(p) - 1; }
 
 }  // namespace
 
@@ -76,9 +108,10 @@ Scene build_scene(const SceneSpec& spec) {
   return std::visit(
       [](const auto& p) {
         Scene scene;
-        scene.rods.push_back(build_rod(p));
+        scene.rods = build_rods(p);
         scene.gravity_m_s2 = p.gravity_m_s2;
         scene.damping_per_s = p.damping_per_s;
+        if (p.wind) scene.wind.emplace(*p.wind);
         add_loads(scene, p);
         return scene;
       },
@@ -91,6 +124,10 @@ int segment_count(const SceneSpec& spec) {
 
 int joint_count(const SceneSpec& spec) {
   return std::visit([](const auto& p) { return joints_of(p); }, spec);
+}
+
+int rod_count(const SceneSpec& spec) {
+  return std::visit([](const auto& p) { return rods_of(p); }, spec);
 }
 
 }  // namespace rodsweep

@@ -1,4 +1,5 @@
-// The scenes that jobs name, from a handful of parameters: the deck's bending rod and hanging helix, a ring and a net.
+// The scenes that jobs name, from a handful of parameters: the deck's bending rod and hanging helix, a ring, a net,
+// and trees.
 //
 // Bending rod: straight and at rest, its first end at the origin, pointing along +x raised by `initial_angle_deg`
 // towards +y; gravity bends it. Helix: joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi
@@ -8,15 +9,26 @@
 // and `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where rods cross, the
 // centres of their segments are joined at the angle that they have there, with the stiffness EI / l about every axis.
 //
+// Tree: grown (tree_skeleton.hpp) or from a skeleton, a segment for every edge, standing on the ground by an exact
+// clamp (a static segment of zero length at the root). Both moduli of an edge of radius r are those of the widest edge
+// at the ground times (r / its radius)^`modulus_exponent`. A joint is half of one edge and half of the next behind each
+// other; where it rests bent by an angle theta, it is softer by cos(theta / 2)^2 about the axis of that bend, since its
+// constraint measures so much of it. An "inextensible" joint is made to hold the weight above it. The shape is that
+// without load: trees have grown against gravity, and sag a little under it at first. Forest: trees of one shape and as
+// many seeds on a grid along x and z, the first one near the origin, each off its place by up to half of `jitter`
+// spacings along both; a rod each.
+//
 // Clamps: `segment` holds the whole first segment (free length L - L/N); `wall` adds a static segment of zero length at
 // the first end and a first joint of half length, an exact clamp (not of a ring); `free` holds nothing.
 // Throws SceneError when a scene cannot be built (bounds are in the message).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <variant>
 
 #include "solver/scene.hpp"
+#include "solver/tree_skeleton.hpp"
 #include "solver/types.hpp"
 
 namespace rodsweep {
@@ -38,6 +50,7 @@ struct RodParameters {
   double damping_per_s = 0;
   Stretch stretch = Stretch::inextensible;
   std::optional<double> stretch_compliance_per_j;  ///< of the three stretch-shear rows [1/J], in place of `stretch`
+  std::optional<WindParameters> wind;
 };
 
 /// Rods with two ends.
@@ -76,7 +89,23 @@ struct Net : RodParameters {
   Held held = Held::corners;
 };
 
-using SceneSpec = std::variant<BendingRod, Helix, Ring, Net>;
+struct Tree : RodParameters {  ///< radius and moduli: those of the trunk at the ground
+  TreeShape shape;
+  double modulus_exponent = 0;
+};
+
+struct Forest : Tree {
+  int rows = 3, columns = 3;  ///< along z and x
+  double spacing_m = 3;
+  double jitter = 0.5;
+};
+
+struct SkeletonTree : RodParameters {  ///< radii are the skeleton's
+  std::shared_ptr<const Skeleton> skeleton;
+  double modulus_exponent = 0;
+};
+
+using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Tree, Forest, SkeletonTree>;
 
 /// Throws SceneError where parameters do not fit together; build_scene() does so too.
 void validate(const SceneSpec& spec);
@@ -86,5 +115,6 @@ Scene build_scene(const SceneSpec& spec);
 // Of the scene without building it: what a plan needs.
 int segment_count(const SceneSpec& spec);  ///< graph nodes
 int joint_count(const SceneSpec& spec);    ///< graph edges
+int rod_count(const SceneSpec& spec);
 
 }  // namespace rodsweep

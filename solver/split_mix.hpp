@@ -16,4 +16,19 @@ inline std::uint64_t split_mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
+/// Its numbers one after the other.
+class SplitMix {
+ public:
+  explicit SplitMix(std::uint64_t seed) : state_(seed) {}
+
+  double uniform() {  ///< in [0, 1)
+    const std::uint64_t bits = split_mix(state_);
+    state_ += split_mix_increment;
+    return static_cast<double>(bits >> 11) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
 }  // namespace rodsweep

@@ -23,10 +23,13 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
   for (const Rod& rod : scene.rods)
     old_.push_back({rod.position, rod.orientation, std::vector<Vector3>(rod.segments.size(), Vector3::Zero()),
                     std::vector<Vector3>(rod.segments.size(), Vector3::Zero())});
+  if (scene.contact) contact_ = std::make_unique<ContactProjection>(scene, *scene.contact);
 }
 
 StepReport TimeStepper::step(Projection& projection) {
+  if (contact_) contact_->start_step();
   predict();
+  if (contact_) contact_->find();
   const double dt_c = constraint_dt();
   StepReport report;
   bool converged = false;
@@ -42,6 +45,14 @@ StepReport TimeStepper::step(Projection& projection) {
       report.outcome = outcome;
       if (outcome != SolveOutcome::iteration_limit) return report;
     }
+    if (contact_ && !contact_->project(newton + 1 == settings_.newton_iterations)) {
+      converged = false;
+      report.newton_iterations = newton + 1;
+    }
+  }
+  if (contact_) {
+    report.contacts = static_cast<int>(contact_->contacts().size());
+    report.penetration = contact_->penetration();
   }
   update_velocities();
   ++steps_;
@@ -85,8 +96,9 @@ void TimeStepper::predict() {
       const Vector3 torque = old.torque[s] - spin * w.cross(axis);
       const double excess = segment.inverse_inertia_axial - segment.inverse_inertia_transverse;
       const Vector3 turn = segment.inverse_inertia_transverse * torque + (excess * axis.dot(torque)) * axis;
-      const Vector3 velocity =
-          damping * (rod.velocity[s] + dt * (scene_.gravity_m_s2 + segment.inverse_mass * old.force[s]));
+      Vector3 force = old.force[s];
+      if (scene_.wind) force += scene_.wind->drag(segment, rod.position[s], axis, rod.velocity[s], scene_.time_s, dt);
+      const Vector3 velocity = damping * (rod.velocity[s] + dt * (scene_.gravity_m_s2 + segment.inverse_mass * force));
       rod.position[s] += dt * velocity;
       rod.orientation[s] = rotated(rod.orientation[s], dt * damping * (w + dt * turn));
     }

@@ -2,14 +2,18 @@
 //
 //   v* = (v + dt a_ext) / (1 + c dt),  w* = (w + dt I^-1 (tau - w x I w)) / (1 + c dt)       explicit gyroscopic term
 //   x* = x + dt v*,  q* = normalise(q + dt [0, w*] q / 2);  held segments go to their pose at the end of the step
-//   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance
+//   contacts, if the scene has any, are found from x and x*
+//   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance, then the contacts
 //   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
 //   v = (x - x_old) / dt,  w = (2 / dt) Im(d) / Re(d),  d = q conj(q_old)
-// First order in dt. Nothing allocates after construction.
+// a_ext: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
+// allocates after construction, but for contacts (contact_projection.hpp).
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "solver/contact_projection.hpp"
 #include "solver/projection.hpp"
 #include "solver/scene.hpp"
 
@@ -23,7 +27,9 @@ struct StepSettings {
 
 struct StepReport {
   SolveOutcome outcome = SolveOutcome::converged;  ///< the first failure of a solve, else converged
-  int newton_iterations = 0;                       ///< solves used, the most of any rod
+  int newton_iterations = 0;                       ///< solves used, the most of any rod, or those of the contacts
+  int contacts = 0;                                ///< places where bodies are near each other
+  double penetration = 0;                          ///< the deepest overlap, relative to the radius
 };
 
 /// dt_c, which turns compliances into alpha~ and multipliers into forces, of steps of dt.
@@ -54,6 +60,7 @@ class TimeStepper {
     std::vector<Vector3> force, torque;  ///< of the point loads, per segment
   };
   std::vector<OldPose> old_;
+  std::unique_ptr<ContactProjection> contact_;  ///< null in a scene without
 };
 
 }  // namespace rodsweep

@@ -10,9 +10,9 @@
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/stop_signal.hpp"
+#include "runner/experiment/batch_body.hpp"
 #include "runner/experiment/extending_body.hpp"
 #include "runner/experiment/loop_check.hpp"
-#include "runner/experiment/task_body.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
@@ -83,10 +83,13 @@ ResultsFile open_results(const RunOptions& options, const fs::path& path, const 
 
 std::vector<PendingTask> pending_tasks(const Plan& plan, const std::vector<std::uint8_t>& done,
                                        const std::optional<Extension>& extension) {
+  // Tasks of an earlier file are looked at one by one.
+  const std::vector<std::int64_t> batch =
+      extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
   std::vector<PendingTask> pending;
   for (const Task& task : plan.tasks())
-    if (!done[static_cast<std::size_t>(task.index)])
-      pending.push_back({task.index, task.cost * (extension ? extension->cost(task.index) : 1)});
+    if (const auto i = static_cast<std::size_t>(task.index); !done[i])
+      pending.push_back({task.index, task.cost * (extension ? extension->cost(task.index) : 1), batch[i]});
   return pending;
 }
 
@@ -102,7 +105,7 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
 }
 
 /// Master and worker take turns in one process.
-Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, TaskBody body) {
+Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, BatchBody body) {
   const auto received = [&] { return signal.received(); };
   MemoryNetwork network(2);
   Master master(network[0], std::move(pending), progress, received);
@@ -112,7 +115,7 @@ Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, co
 }
 
 Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pending, Progress& progress,
-                             const StopSignal& signal, TaskBody body) {
+                             const StopSignal& signal, BatchBody body) {
   const auto received = [&] { return signal.received(); };
   MpiChannel channel(mpi.world());
   if (mpi.rank() > 0) {
@@ -166,8 +169,8 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     file.write(task, record, origin);
   };
   const auto warn = [](const std::string& text) { Console(true).warn(text); };  // whichever rank finds the damage
-  TaskBody body = extension ? extending_body(plan, *extension, evaluate, write, warn)
-                            : task_body(plan, evaluate, [&](const Task& t, const TaskRecord& r) { file.write(t, r); });
+  BatchBody body = extension ? one_by_one(extending_body(plan, *extension, evaluate, write, warn))
+                             : batch_body(plan, [&](const Task& t, const TaskRecord& r) { file.write(t, r); });
   const Dispatch dispatch = mpi.size() == 1
                                 ? dispatch_alone(std::move(pending), progress, signal, std::move(body))
                                 : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body));

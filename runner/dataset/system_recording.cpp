@@ -23,13 +23,7 @@ SystemRows::Place SystemRows::place(const SolvePosition& at) const {
           before * iteration_.joint + rod.joint};
 }
 
-RecordingSolve::RecordingSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record)
-    : scene_(scene), rows_(scene, iterations), solve_(solve), record_(record) {}
-
-SolveOutcome RecordingSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
-                                   VectorX& delta_lambda) {
-  if (!rows_.holds(at)) return solve_.solve(system, at, assemble_s, delta_lambda);
-  const Rod& rod = scene_.rods[static_cast<std::size_t>(at.rod)];
+void SystemRecorder::before(const Rod& rod, const SolvePosition& at) {
   const SystemRows::Place place = rows_.place(at);
   record_.system_step[place.system] = at.step;
   record_.system_newton[place.system] = static_cast<std::int16_t>(at.newton);
@@ -39,10 +33,18 @@ SolveOutcome RecordingSolve::solve(const LinearSystem& system, const SolvePositi
   store(rod.velocity, record_.system_velocity_m_s.data() + 3 * place.segment);
   store(rod.angular_velocity, record_.system_angular_velocity_rad_s.data() + 3 * place.segment);
   VectorX::Map(record_.system_lambda.data() + 6 * place.joint, rod.lambda.size()) = rod.lambda;
+}
 
+RecordingSolve::RecordingSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record)
+    : scene_(scene), recorder_(scene, iterations, record), solve_(solve) {}
+
+SolveOutcome RecordingSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                                   VectorX& delta_lambda) {
+  if (!recorder_.holds(at)) return solve_.solve(system, at, assemble_s, delta_lambda);
+  recorder_.before(scene_.rods[static_cast<std::size_t>(at.rod)], at);
   const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
   if (outcome == SolveOutcome::converged)
-    VectorX::Map(record_.system_solution.data() + 6 * place.joint, delta_lambda.size()) = delta_lambda;
+    VectorX::Map(recorder_.solution(at), delta_lambda.size()) = delta_lambda;
   return outcome;
 }
 

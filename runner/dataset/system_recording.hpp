@@ -30,6 +30,24 @@ class SystemRows {
   Place iteration_;          ///< rows of all rods
 };
 
+/// Writes systems into a record. Allocates nothing after construction.
+class SystemRecorder {
+ public:
+  SystemRecorder(const Scene& scene, int iterations, TaskRecord& record) : rows_(scene, iterations), record_(record) {}
+
+  bool holds(const SolvePosition& at) const { return rows_.holds(at); }
+
+  /// What the system is assembled from: the rod as it is.
+  void before(const Rod& rod, const SolvePosition& at);
+
+  /// Where the solution belongs once there is one, six numbers a joint.
+  double* solution(const SolvePosition& at) { return record_.system_solution.data() + 6 * rows_.place(at).joint; }
+
+ private:
+  SystemRows rows_;
+  TaskRecord& record_;
+};
+
 /// Records what another solve is given and what it finds. Allocates nothing.
 class RecordingSolve : public LinearSolve {
  public:
@@ -41,9 +59,8 @@ class RecordingSolve : public LinearSolve {
 
  private:
   const Scene& scene_;
-  SystemRows rows_;
+  SystemRecorder recorder_;
   LinearSolve& solve_;
-  TaskRecord& record_;
 };
 
 /// The systems that were solved, in order.

@@ -21,10 +21,15 @@ namespace rodsweep {
 
 enum class Tag : int { assign = 1, stop, finish, report, interrupted };
 
-/// Master to worker: run this task after what you have in hand.
+/// Master to worker: run these tasks, at once where they can be, after what you have in hand.
 struct Assign {
   static constexpr Tag tag = Tag::assign;
-  std::int64_t task = 0;
+  static constexpr std::size_t most = 8;
+  std::uint64_t count = 0;
+  std::array<std::int64_t, most> task{};
+
+  void add(std::int64_t index) { task.at(count++) = index; }
+  std::vector<std::int64_t> tasks() const { return {task.begin(), task.begin() + count}; }
 };
 
 /// Master to worker: abandon what runs and what is in hand, report each, wait for Finish.
@@ -37,7 +42,7 @@ struct Finish {
   static constexpr Tag tag = Tag::finish;
 };
 
-/// Worker to master: one for every Assign.
+/// Worker to master: one for every task of every Assign.
 struct Report {
   static constexpr Tag tag = Tag::report;
   std::int64_t task = 0;

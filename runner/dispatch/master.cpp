@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "runner/dispatch/backoff.hpp"
 
@@ -22,7 +23,7 @@ Master::Master(Channel& channel, std::vector<PendingTask> tasks, Progress& progr
       workers_(static_cast<std::size_t>(channel.size())),
       begin_(Progress::Clock::now()) {
   std::sort(pool_.begin(), pool_.end(), [](const PendingTask& a, const PendingTask& b) {
-    return a.cost != b.cost ? a.cost > b.cost : a.index < b.index;
+    return std::tuple(-a.cost, a.batch, a.index) < std::tuple(-b.cost, b.batch, b.index);
   });
   for (const PendingTask& task : pool_) pool_cost_ += task.cost;
   dispatch_.left = static_cast<std::int64_t>(pool_.size());
@@ -101,18 +102,24 @@ void Master::hand_out() {
 
 bool Master::may_hold_another(const Worker& worker) const {
   constexpr double margin = 2;  // costs are estimates
-  if (worker.tasks.size() != 1) return false;
+  if (worker.tasks.size() != 1 || pool_[next_].batch >= 0) return false;
   const double second = pool_[next_].cost;
   const auto workers = static_cast<double>(channel_->size() - 1);
   return margin * workers * (worker.tasks.front().cost + second) <= pool_cost_ - second;
 }
 
 void Master::assign(int rank) {
-  const PendingTask task = pool_[next_++];
-  pool_cost_ -= task.cost;
-  workers_[static_cast<std::size_t>(rank)].tasks.push_back(task);
-  ++in_flight_;
-  channel_->send(rank, Assign{task.index});
+  const PendingTask first = pool_[next_];
+  Assign assign;
+  do {
+    const PendingTask& task = pool_[next_++];
+    pool_cost_ -= task.cost;
+    workers_[static_cast<std::size_t>(rank)].tasks.push_back(task);
+    ++in_flight_;
+    assign.add(task.index);
+  } while (first.batch >= 0 && assign.count < Assign::most && next_ < pool_.size() &&
+           pool_[next_].batch == first.batch && pool_[next_].cost == first.cost);
+  channel_->send(rank, assign);
 }
 
 }  // namespace rodsweep

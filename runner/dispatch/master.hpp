@@ -1,4 +1,5 @@
-// Hands out the tasks of a sweep, longest first (by cost, ties by number), one to each idle worker.
+// Hands out the tasks of a sweep, longest first (by cost, ties by number), one to each idle worker; of tasks that are
+// evaluated together in batches as many as a batch holds.
 //
 // A worker gets a second task into its hand, to spare it the wait for the next, only while the tasks not yet handed out
 // keep all workers busy for at least twice as long as both of its tasks take (by cost). So the pool never runs dry
@@ -23,6 +24,7 @@ namespace rodsweep {
 struct PendingTask {
   std::int64_t index = 0;
   double cost = 0;
+  std::int64_t batch = -1;  ///< tasks of equal cost and number here may be evaluated together; -1: this one alone
 };
 
 /// What came of the tasks that were to do.

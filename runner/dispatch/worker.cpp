@@ -14,11 +14,22 @@ constexpr std::chrono::milliseconds look_pause{5};
 
 }  // namespace
 
-Worker::Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running)
+BatchBody one_by_one(TaskBody body) {
+  return [body = std::move(body)](const std::vector<std::int64_t>& tasks, const StopRequested& stop) {
+    std::vector<TaskResult> results;
+    for (const std::int64_t task : tasks) results.push_back(body(task, stop));
+    return results;
+  };
+}
+
+Worker::Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running)
     : channel_(&channel),
       body_(std::move(body)),
       signal_(std::move(signal)),
       while_running_(std::move(while_running)) {}
+
+Worker::Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running)
+    : Worker(channel, one_by_one(std::move(body)), std::move(signal), std::move(while_running)) {}
 
 void Worker::run() {
   Backoff backoff;
@@ -35,13 +46,13 @@ Worker::Step Worker::step() {
   const bool traffic = receive();
   heed_signal();
   if (stopping_) {
-    for (const std::int64_t task : std::exchange(hand_, {}))
-      channel_->send(master, Report(task, TaskOutcome::pending, 0, ""));
+    for (const std::vector<std::int64_t>& tasks : std::exchange(hand_, {}))
+      for (const std::int64_t task : tasks) channel_->send(master, Report(task, TaskOutcome::pending, 0, ""));
   }
   if (!hand_.empty()) {
-    const std::int64_t task = hand_.front();
+    const std::vector<std::int64_t> tasks = std::move(hand_.front());
     hand_.pop_front();
-    run_task(task);
+    run(tasks);
     return Step::worked;
   }
   if (dismissed_) return Step::finished;
@@ -53,7 +64,7 @@ bool Worker::receive() {
   while (const auto envelope = channel_->probe()) {
     any = true;
     switch (envelope->tag) {
-      case Tag::assign: hand_.push_back(channel_->receive<Assign>(*envelope).task); break;
+      case Tag::assign: hand_.push_back(channel_->receive<Assign>(*envelope).tasks()); break;
       case Tag::stop: channel_->receive<Stop>(*envelope), stopping_ = true; break;
       case Tag::finish: channel_->receive<Finish>(*envelope), dismissed_ = true; break;
       default: channel_->unexpected(*envelope);
@@ -69,12 +80,14 @@ void Worker::heed_signal() {
   told_ = stopping_ = true;
 }
 
-void Worker::run_task(std::int64_t task) {
+void Worker::run(const std::vector<std::int64_t>& tasks) {
   const auto begin = Clock::now();
   looked_ = begin;
-  const TaskResult result = body_(task, [this] { return stop_requested(); });
+  const std::vector<TaskResult> results = body_(tasks, [this] { return stop_requested(); });
   const std::chrono::duration<double> busy = Clock::now() - begin;
-  channel_->send(master, Report(task, result.outcome, busy.count(), result.message));
+  const double share_s = busy.count() / static_cast<double>(tasks.size());
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    channel_->send(master, Report(tasks[i], results.at(i).outcome, share_s, results[i].message));
 }
 
 bool Worker::stop_requested() {

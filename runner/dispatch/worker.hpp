@@ -1,6 +1,6 @@
-// Runs the tasks that the master assigns, one at a time, and reports each.
+// Runs the tasks that the master assigns, one assignment after the other, and reports each task.
 //
-// While a task runs it asks between time steps whether to stop; every few milliseconds that question also looks at the
+// While they run it asks between time steps whether to stop; every few milliseconds that question also looks at the
 // messages. An exception from the task's body is the end of this rank (say, a results file that cannot be written):
 // what is wrong with a task is an outcome, and the body's affair (runner/experiment/task_body.hpp).
 #pragma once
@@ -10,6 +10,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "runner/dispatch/channel.hpp"
 #include "runner/experiment/evaluation.hpp"
@@ -21,15 +22,23 @@ struct TaskResult {
   std::string message;
 };
 
+/// Runs one task.
 using TaskBody = std::function<TaskResult(std::int64_t task, const StopRequested& stop)>;
+
+/// Runs the tasks of an assignment. One result for each.
+using BatchBody =
+    std::function<std::vector<TaskResult>(const std::vector<std::int64_t>& tasks, const StopRequested& stop)>;
+
+BatchBody one_by_one(TaskBody body);
 
 class Worker {
  public:
   /// `signal` tells the signal that this rank received, 0 for none. `while_running` is called now and then between two
   /// time steps (a lone rank keeps its master alive there).
+  Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running = {});
   Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running = {});
 
-  /// Deals with all messages that have arrived, then runs at most one task.
+  /// Deals with all messages that have arrived, then runs at most one assignment.
   enum class Step { worked, waited, finished };
   Step step();
 
@@ -39,14 +48,15 @@ class Worker {
  private:
   bool receive();
   void heed_signal();
-  void run_task(std::int64_t task);
+  void run(const std::vector<std::int64_t>& tasks);
   bool stop_requested();
 
   Channel* channel_;
-  TaskBody body_;
+  BatchBody body_;
   std::function<int()> signal_;
   std::function<void()> while_running_;
-  std::deque<std::int64_t> hand_;
+  std::deque<std::vector<std::int64_t>> hand_;  ///< assignments
+
   bool stopping_ = false, dismissed_ = false, told_ = false;
   std::chrono::steady_clock::time_point looked_{};
 };

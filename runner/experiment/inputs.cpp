@@ -19,7 +19,7 @@ void check_inputs(const Job& job) {
     try {
       if (ends_with(file.key_path, "model"))
         shared_model(file.path);
-      else
+      else if (!ends_with(file.key_path, "skeleton"))  // which the plan has read
         DatasetReader reader(file.path);
     } catch (const FileError& error) {
       throw job_error(job.path, file.key_path, error.what());

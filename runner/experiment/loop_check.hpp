@@ -1,4 +1,4 @@
-// Guesses and networks that need rods without loops, found before anything runs.
+// Guesses and networks that need rods without loops or branches, found before anything runs.
 //
 // A network with `sweeps` walks the joints as a forest, nearest neighbours compare rods along one arc length. A ring
 // that is held has no loop for the former, since nothing couples through a held segment, but for the latter it has.

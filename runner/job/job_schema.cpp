@@ -96,13 +96,10 @@ class SchemaWriter {
   /// A value itself, not a sweep.
   Json value(const Key& key, const std::string& path) {
     switch (key.kind) {
-      case Key::Kind::object: return object(key, path);
+      case Key::Kind::object: return or_words(object(key, path), key);
       case Key::Kind::integer: return bounded("integer", key);
       case Key::Kind::boolean: return {{"type", "boolean"}};
-      case Key::Kind::number: {
-        const Json plain = bounded("number", key);
-        return key.choices.empty() ? plain : Json{{"anyOf", Json::array({plain, Json{{"enum", key.choices}}})}};
-      }
+      case Key::Kind::number: return or_words(bounded("number", key), key);
       case Key::Kind::vector: {
         const std::string name = path + ".component";
         define(name, component_key(key), path);
@@ -114,6 +111,10 @@ class SchemaWriter {
       case Key::Kind::guesses: return {{"type", "array"}, {"items", guess(true)}};
     }
     throw std::logic_error("a kind of key without a schema");
+  }
+
+  static Json or_words(Json plain, const Key& key) {
+    return key.choices.empty() ? plain : Json{{"anyOf", Json::array({plain, Json{{"enum", key.choices}}})}};
   }
 
   static Json text(const Key& key) {

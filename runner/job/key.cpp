@@ -123,7 +123,7 @@ std::string quoted_list(const std::vector<std::string>& words) {
 
 std::string allowed(const Key& key) {
   switch (key.kind) {
-    case Key::Kind::object: return "an object {...}";
+    case Key::Kind::object: return "an object {...}" + (key.choices.empty() ? "" : ", or " + quoted_list(key.choices));
     case Key::Kind::integer: return "an integer" + bounds(key);
     case Key::Kind::boolean: return "true or false";
     case Key::Kind::number:

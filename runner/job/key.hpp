@@ -12,7 +12,7 @@ namespace rodsweep {
 
 struct Key {
   enum class Kind {
-    object,   ///< `keys` are its members
+    object,   ///< `keys` are its members; or one of `choices`, a word that stands for none of them
     integer,  ///< within [low, high]
     boolean,  ///< true or false
     number,   ///< finite, within the bounds; or one of `choices`, a word that stands for a number

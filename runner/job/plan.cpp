@@ -33,7 +33,7 @@ Plan::Plan(Job job)
   Point values;
   for (std::int64_t point = 0; point < points * job_.samples; ++point) {
     fill(values, point);
-    const SceneSpec scene = scene_spec(values);
+    const SceneSpec scene = scene_spec(values, job_);
     check_scene(scene, job_);
     check_method(values, job_);
     const TimeSpec time = time_spec(values, job_);
@@ -44,11 +44,13 @@ Plan::Plan(Job job)
     task.segments = segment_count(scene);
     task.joints = joint_count(scene);
     task.steps = time.steps;
-    task.solves = record.solves ? task.steps * time.newton_iterations : 0;
+    const int rods = rod_count(scene);
+    task.solves = record.solves ? task.steps * time.newton_iterations * rods : 0;
     task.frames = record.trajectory_every > 0 ? 1 + task.steps / record.trajectory_every : 0;
-    task.systems = task.steps * record.recorded_iterations(time.newton_iterations);
-    task.system_segments = task.systems * task.segments;
-    task.system_joints = task.systems * task.joints;
+    const std::int64_t recorded = task.steps * record.recorded_iterations(time.newton_iterations);
+    task.systems = recorded * rods;
+    task.system_segments = recorded * task.segments;
+    task.system_joints = recorded * task.joints;
     task.cost = static_cast<double>(task.segments) * time.steps * time.newton_iterations;
 
     const bool own_trajectories =
@@ -114,7 +116,7 @@ TaskSpec Plan::spec(std::int64_t index) const {
   Point point;
   fill(point, task.point);
   TaskSpec spec;
-  spec.scene = scene_spec(point);
+  spec.scene = scene_spec(point, job_);
   spec.time = time_spec(point, job_);
   spec.solve = solve_spec(point, job_);
   spec.evaluation = evaluation(point);

@@ -1,21 +1,26 @@
 #include "runner/job/scene_keys.hpp"
 
+#include <iterator>
+
+#include "runner/job/tree_keys.hpp"
+#include "runner/job/wind_keys.hpp"
+
 namespace rodsweep {
 
 using Json = nlohmann::ordered_json;
 
 Key scene_key() {
-  return object_key(
-      "scene", "the rod that is simulated",
+  Key scene = object_key(
+      "scene", "the rods that are simulated",
       {
-          choice_key("type", "which scene", {"bending_rod", "helix", "ring", "net"})
+          choice_key("type", "which scene", {"bending_rod", "helix", "ring", "net", "tree", "forest", "skeleton"})
               .unswept(
                   "to sweep over scenes, list whole ones: \"scene\": {\"grid\": [{\"type\": \"bending_rod\", ...}, "
                   "{\"type\": \"helix\", ...}]}"),
           choice_key("clamp", "how the first end is held: its segment, an exact wall (not of a ring), or not at all",
                      {"segment", "wall", "free"})
               .defaults_to("segment")
-              .only({"bending_rod", "helix", "ring"}, "a net is \"held\""),
+              .only({"bending_rod", "helix", "ring"}, "a net is \"held\", trees stand on the ground"),
           choice_key("held",
                      "what of a net is held: the first segments of all its rods along z, the end segments of the "
                      "outermost two of them, or nothing",
@@ -24,11 +29,16 @@ Key scene_key() {
               .only({"net"}, "a rod's end has a \"clamp\""),
           integer_key("segments",
                       "number of segments of the rod, without a wall's static one; of a net from one crossing to the "
-                      "next")
+                      "next; of a tree's trunk and of each of its branches")
               .at_least(1)
               .at_most(1000000)
-              .also_called({"n", "number_of_segments", "elements"}),
-          number_key("length_m", "length of the rod").in("m").above(0).at_most(1e6).only({"bending_rod", "ring"}),
+              .also_called({"n", "number_of_segments", "elements"})
+              .only({"bending_rod", "helix", "ring", "net", "tree", "forest"}, "a skeleton has one for every edge"),
+          number_key("length_m", "length of the rod; of a tree's trunk")
+              .in("m")
+              .above(0)
+              .at_most(1e6)
+              .only({"bending_rod", "ring", "tree", "forest"}),
           number_key("twist_deg", "total angle by which a ring was twisted before its ends were joined")
               .in("deg")
               .at_least(-1e6)
@@ -38,13 +48,23 @@ Key scene_key() {
           choice_key("rest_shape", "what the rod of a ring would be without load, cut open", {"straight", "circle"})
               .defaults_to("straight")
               .only({"ring"}),
-          integer_key("rows", "rods of a net along x").at_least(2).at_most(1000).only({"net"}),
-          integer_key("columns", "rods of a net along z").at_least(2).at_most(1000).only({"net"}),
+          integer_key("rows", "rods of a net along x; rows of a forest")
+              .at_least(1)
+              .at_most(1000)
+              .only({"net", "forest"}),
+          integer_key("columns", "rods of a net along z; trees in a row of a forest")
+              .at_least(1)
+              .at_most(1000)
+              .only({"net", "forest"}),
           number_key("mesh_m", "distance of neighbouring rods of a net").in("m").above(0).at_most(1e6).only({"net"}),
           number_key("helix_radius_m", "radius of the helix").in("m").above(0).at_most(1e6).only({"helix"}),
           number_key("helix_height_m", "height of the helix").in("m").above(0).at_most(1e6).only({"helix"}),
           number_key("windings", "turns of the helix").above(0).at_most(1e6).only({"helix"}).also_called({"turns"}),
-          number_key("radius_m", "radius of the rod's cross-section").in("m").above(0).at_most(1e3),
+          number_key("radius_m", "radius of the rod's cross-section; of a tree's trunk at the ground")
+              .in("m")
+              .above(0)
+              .at_most(1e3)
+              .only({"bending_rod", "helix", "ring", "net", "tree", "forest"}, "a skeleton has its own radii"),
           number_key("density_kg_m3", "density").in("kg/m^3").above(0).at_most(1e6).also_called({"rho"}),
           number_key("youngs_modulus_pa", "Young's modulus, for bending")
               .in("Pa")
@@ -90,8 +110,12 @@ Key scene_key() {
               .at_most(1e6)
               .or_word("from_stretch")
               .defaults_to("from_stretch"),
+          wind_key(),
       },
       "type");
+  std::vector<Key> trees = tree_keys();
+  scene.keys.insert(scene.keys.end(), std::make_move_iterator(trees.begin()), std::make_move_iterator(trees.end()));
+  return scene;
 }
 
 }  // namespace rodsweep

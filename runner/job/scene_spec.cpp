@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include "runner/job/choice.hpp"
+#include "runner/job/skeleton_file.hpp"
+#include "runner/job/tree_keys.hpp"
+#include "runner/job/wind_keys.hpp"
 
 namespace rodsweep {
 namespace {
@@ -15,13 +18,14 @@ Vector3 vector(const Point& point, const char* path) {
 void read_rod(const Point& point, RodParameters& rod) {
   static const std::map<std::string, Stretch> stretches{{"inextensible", Stretch::inextensible},
                                                         {"physical", Stretch::physical}};
-  rod.radius_m = point.number("scene.radius_m");
+  if (point.has("scene.radius_m")) rod.radius_m = point.number("scene.radius_m");
   rod.density_kg_m3 = point.number("scene.density_kg_m3");
   rod.youngs_modulus_pa = point.number("scene.youngs_modulus_pa");
   rod.torsion_modulus_pa = point.number("scene.torsion_modulus_pa");
   rod.gravity_m_s2 = vector(point, "scene.gravity_m_s2");
   rod.damping_per_s = point.number("scene.damping_per_s");
   rod.stretch = choice(stretches, point.text("scene.stretch"));
+  rod.wind = wind_parameters(point);
   if (!point.is_text("scene.stretch_compliance_per_j")) {
     rod.stretch_compliance_per_j = point.number("scene.stretch_compliance_per_j");
   }
@@ -85,19 +89,60 @@ Net net(const Point& point) {
   return rods;
 }
 
+void read_tree(const Point& point, Tree& tree) {
+  read_rod(point, tree);
+  tree.shape = tree_shape(point);
+  tree.modulus_exponent = point.number("scene.modulus_exponent");
+}
+
+Tree tree(const Point& point) {
+  Tree tree;
+  read_tree(point, tree);
+  return tree;
+}
+
+Forest forest(const Point& point) {
+  Forest trees;
+  read_tree(point, trees);
+  trees.rows = static_cast<int>(point.integer("scene.rows"));
+  trees.columns = static_cast<int>(point.integer("scene.columns"));
+  trees.spacing_m = point.number("scene.spacing_m");
+  trees.jitter = point.number("scene.jitter");
+  return trees;
+}
+
+SkeletonTree skeleton_tree(const Point& point, const Job& job) {
+  static const std::map<std::string, Up> ups{{"y", Up::y}, {"z", Up::z}};
+  SkeletonTree tree;
+  read_rod(point, tree);
+  tree.modulus_exponent = point.number("scene.modulus_exponent");
+  const InputFile& file = job.files.at(point.text("scene.skeleton"));
+  try {
+    tree.skeleton = std::make_shared<const Skeleton>(placed(*shared_skeleton(file.path, file.hash),
+                                                            point.number("scene.skeleton_unit_m"),
+                                                            choice(ups, point.text("scene.skeleton_up"))));
+  } catch (const SkeletonError& error) {
+    throw job_error(job.path, "scene.skeleton", error.what());
+  }
+  return tree;
+}
+
 const OpenRod* as_open_rod(const OpenRod& rod) { return &rod; }
 const OpenRod* as_open_rod(const RodParameters&) { return nullptr; }
 
 }  // namespace
 
-SceneSpec scene_spec(const Point& point) {
-  using Make = SceneSpec (*)(const Point&);
+SceneSpec scene_spec(const Point& point, const Job& job) {
+  using Make = SceneSpec (*)(const Point&, const Job&);
   static const std::map<std::string, Make> scenes{
-      {"bending_rod", [](const Point& p) -> SceneSpec { return bending_rod(p); }},
-      {"helix", [](const Point& p) -> SceneSpec { return helix(p); }},
-      {"ring", [](const Point& p) -> SceneSpec { return ring(p); }},
-      {"net", [](const Point& p) -> SceneSpec { return net(p); }}};
-  return choice(scenes, point.text("scene.type"))(point);
+      {"bending_rod", [](const Point& p, const Job&) -> SceneSpec { return bending_rod(p); }},
+      {"helix", [](const Point& p, const Job&) -> SceneSpec { return helix(p); }},
+      {"ring", [](const Point& p, const Job&) -> SceneSpec { return ring(p); }},
+      {"net", [](const Point& p, const Job&) -> SceneSpec { return net(p); }},
+      {"tree", [](const Point& p, const Job&) -> SceneSpec { return tree(p); }},
+      {"forest", [](const Point& p, const Job&) -> SceneSpec { return forest(p); }},
+      {"skeleton", [](const Point& p, const Job& j) -> SceneSpec { return skeleton_tree(p, j); }}};
+  return choice(scenes, point.text("scene.type"))(point, job);
 }
 
 void check_scene(const SceneSpec& scene, const Job& job) {

@@ -7,7 +7,7 @@
 
 namespace rodsweep {
 
-SceneSpec scene_spec(const Point& point);
+SceneSpec scene_spec(const Point& point, const Job& job);
 
 /// Refuses a scene that cannot be built, or in which nothing can be solved for.
 void check_scene(const SceneSpec& scene, const Job& job);

@@ -82,6 +82,7 @@ void SweepSpace::read(const Key& key, const Json& value, const std::string& path
   if (!sweep_word(value).empty()) return read_sweep(key, value, path, component, scope);
   switch (key.kind) {
     case Key::Kind::object:
+      if (value.is_string()) return;  // none of its keys
       for (const auto& [name, child] : value.items()) {
         const Key& child_key = *find_key(key.keys, name);
         if (child_key.parameter) read(child_key, child, member(path, name), 0, scope);

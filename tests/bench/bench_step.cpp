@@ -1,4 +1,5 @@
-// What the direct time step costs: its parts, its cost over the number of segments, and eight rods at once beside one.
+// What the direct time step costs: its parts, its cost over the number of segments, eight rods at once beside one, and
+// an iteration of Gauss-Seidel beside one of Newton.
 // Google Benchmark times the cases; at the end tables set their medians beside the targets, as ratios of this run.
 #include <benchmark/benchmark.h>
 
@@ -9,7 +10,9 @@
 
 #include "medians.hpp"
 #include "solver/batched_step.hpp"
+#include "solver/pbd_projection.hpp"
 #include "solver/scenes.hpp"
+#include "solver/xpbd_projection.hpp"
 
 namespace {
 
@@ -118,6 +121,33 @@ void update(benchmark::State& state) {
   }
 }
 
+/// One call of project(), on rods that keep moving towards their constraints.
+void iterate(benchmark::State& state, Projection& projection, Rod& rod) {
+  for (auto _ : state)
+    if (projection.project(rod, {}, one_iteration.dt, 0).outcome == SolveOutcome::indefinite)
+      state.SkipWithError("a projection failed");
+}
+
+void newton(benchmark::State& state) {
+  Single& single = Single::of(state);
+  Rod rod = single.rod();
+  iterate(state, single.projection, rod);
+}
+
+void xpbd(benchmark::State& state) {
+  const Scene& scene = Single::of(state).scene;
+  XpbdProjection projection(scene);
+  Rod rod = scene.rods.front();
+  iterate(state, projection, rod);
+}
+
+void pbd(benchmark::State& state) {
+  const Scene& scene = Single::of(state).scene;
+  PbdProjection projection(scene, {});
+  Rod rod = scene.rods.front();
+  iterate(state, projection, rod);
+}
+
 void print_summary(const Medians& median) {
   const auto us = [&median](const char* name, int n) { return median(name + ("/" + std::to_string(n))) / n * 1e6; };
   std::printf(
@@ -133,6 +163,15 @@ void print_summary(const Medians& median) {
                 100 * assembly / whole, 100 * us("factor_and_solve", n) / whole, 100 * us("update", n) / whole, batched,
                 whole / batched);
   }
+  std::printf(
+      "\nOne iteration of each projection, per segment (a step takes one to six of Newton's, tens of the others)\n");
+  std::printf("%6s %12s %10s %10s %14s %13s\n", "N", "direct [us]", "xpbd [us]", "pbd [us]", "xpbd / direct",
+              "pbd / direct");
+  for (const int n : sizes) {
+    const double direct = us("newton", n);
+    std::printf("%6d %12.3f %10.3f %10.3f %14.2f %13.2f\n", n, direct, us("xpbd", n), us("pbd", n),
+                us("xpbd", n) / direct, us("pbd", n) / direct);
+  }
 }
 
 }  // namespace
@@ -143,7 +182,10 @@ int main(int argc, char** argv) {
                                        {"linearize", linearize},
                                        {"assemble", assemble},
                                        {"factor_and_solve", factor_and_solve},
-                                       {"update", update}})
+                                       {"update", update},
+                                       {"newton", newton},
+                                       {"xpbd", xpbd},
+                                       {"pbd", pbd}})
     for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
   Medians medians;
   if (!run_benchmarks(argc, argv, medians)) return 2;

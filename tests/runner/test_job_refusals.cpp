@@ -60,7 +60,8 @@ TEST_CASE("an unknown key is refused with the nearest known one, or with all of 
 
 TEST_CASE("a missing key is refused with its meaning, unit and bounds") {
   CHECK(refusal(without("/scene/length_m")) ==
-        "job.json: scene.length_m: missing: length of the rod [m], a number above 0 and at most 1000000");
+        "job.json: scene.length_m: missing: length of the rod; of a tree's trunk [m], a number above 0 and at most "
+        "1000000");
   CHECK(refusal(without("/kind")) == "job.json: kind: missing: kind of job, one of \"sweep\", \"dataset\", \"train\"");
   CHECK(refusal(without("/time/steps")) ==
         "job.json: time: missing: the length of the run, exactly one of \"steps\", \"duration_s\"");
@@ -73,10 +74,11 @@ TEST_CASE("all mistakes of a job are reported at once, one per line") {
   job["bogus"] = 1;
   CHECK_THAT(
       refusal(job),
-      StartsWith("job.json: scene.segments: 0 is not allowed; must be an integer from 1 to 1000000\n"
-                 "job.json: scene.radius_m: missing: radius of the rod's cross-section [m], a number above 0 and "
-                 "at most 1000\n"
-                 "job.json: bogus: unknown key; allowed here: \"name\", "));
+      StartsWith(
+          "job.json: scene.segments: 0 is not allowed; must be an integer from 1 to 1000000\n"
+          "job.json: scene.radius_m: missing: radius of the rod's cross-section; of a tree's trunk at the ground [m], "
+          "a number above 0 and at most 1000\n"
+          "job.json: bogus: unknown key; allowed here: \"name\", "));
 }
 
 TEST_CASE("a job's name must be usable as a file name") {

@@ -37,6 +37,23 @@ TEST_CASE("simulations are divided between training and validation, scales are t
   CHECK((sum / static_cast<float>(count)).abs().maxCoeff() < 1e-4F);
 }
 
+TEST_CASE(
+    "networks learn from trees in the wind, whose joints have several children, and their guess saves iterations") {
+  for (const char* processor : {"sweeps", "message_passing"}) {
+    INFO(processor);
+    Json job = toy_train_job();
+    job["network"]["processor"] = processor;
+    job["training"]["epochs"] = 30;
+    job["training"]["ratio_every_epochs"] = 30;
+    const Toy toy(job, toy_tree_data_job());
+    const Training training = toy.run();
+    const std::vector<Epoch>& epochs = training.card().epochs;
+    REQUIRE(epochs.size() == 30);
+    CHECK(epochs.back().validation_loss < 0.9 * epochs.front().validation_loss);
+    CHECK(epochs.back().cg_ratio[0] < 1);
+  }
+}
+
 TEST_CASE("ranks take turns with the simulations whose CG ratio is measured") {
   const Toy toy;
   const DatasetReader dataset = open_dataset(toy.training, toy.job);

@@ -17,6 +17,16 @@ inline Json toy_data_job() {
   return job;
 }
 
+/// The same of trees in the wind.
+inline Json toy_tree_data_job() {
+  Json job = toy_data_job();
+  job["scene"] =
+      Json::parse(R"({"type": "tree", "depth": {"integer": [1, 2]}, "branches": 2, "segments": 2, "length_m": 1,
+      "tree_seed": {"integer": [0, 1000]}, "radius_m": 0.05, "density_kg_m3": 800, "youngs_modulus_pa": 1e7,
+      "torsion_modulus_pa": 1e7, "wind": {"mean_m_s": [9, 0, 0], "turbulence_m_s": 2}})");
+  return job;
+}
+
 /// Four epochs of three steps.
 inline Json toy_train_job() {
   Json job = train_job();
@@ -34,8 +44,8 @@ struct Toy {
   TrainingData data;
   std::vector<RecordedSimulation> simulations;
 
-  explicit Toy(const Json& values = toy_train_job()) {
-    make_data_set(folder / "data.h5", toy_data_job());
+  explicit Toy(const Json& values = toy_train_job(), const Json& rods = toy_data_job()) {
+    make_data_set(folder / "data.h5", rods);
     job = parse_job(values.dump(), folder / "job.json");
     training = training_job(job);
     const DatasetReader dataset = open_dataset(training, job);

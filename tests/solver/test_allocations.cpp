@@ -64,6 +64,9 @@ Scene loaded_scene() {
   BendingRod spec = test::bending_rod(12);
   spec.tip_force_n = {0, 1, 1};
   spec.damping_per_s = 0.1;
+  WindParameters wind;
+  wind.turbulence_m_s = 1;
+  spec.wind = wind;
   Scene scene = build_scene(spec);
   const Pose start{scene.rods[0].position[0], scene.rods[0].orientation[0]};
   scene.clamps.push_back({0, 0, [start](double t) {
@@ -123,6 +126,17 @@ TEST_CASE("a step with Gauss-Seidel allocates nothing") {
   CHECK(allocations_of(scene, xpbd) == 0);
   PbdProjection pbd(scene, {0.9, 0.5});
   CHECK(allocations_of(scene, pbd) == 0);
+}
+
+TEST_CASE("a step with contacts allocates nothing unless there are more of them or the broad phase searches anew") {
+  Scene scene = build_scene(test::bending_rod(12, Clamp::free));
+  for (Vector3& position : scene.rods[0].position) position.y() = 0.05;
+  for (Quaternion& orientation : scene.rods[0].orientation)
+    orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  scene.contact = ContactSettings{};
+  scene.obstacles = {HalfSpace{}, Ball{{0, -9, 0}, 8.9}};
+  DirectSolve direct(scene);
+  CHECK(allocations_of(scene, direct) == 0);
 }
 
 TEST_CASE("a step with CG allocates nothing, whatever the guess") {

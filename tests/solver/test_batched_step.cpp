@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/batched_step.hpp"
+#include "solver/observables.hpp"
 #include "support.hpp"
 
 namespace rodsweep {
@@ -202,6 +203,75 @@ TEST_CASE("a step goes on from whatever state and time a scene has") {
   batch.write(0, scene);
   CHECK(distance(scene.rods.front(), alone.scene.rods.front()) < 1e-12);
   CHECK(scene.time_s == alone.scene.time_s);
+}
+
+TEST_CASE("a step in parts shows every rod's system as the linear system of it alone has it") {
+  std::vector<Scene> scenes;
+  for (int r = 0; r < 3; ++r) scenes.push_back(bending_scene(8, r));
+  BatchedStepper batch(scenes, settings), whole(scenes, settings);
+  const auto scene_of = [&](int rod) {
+    Scene scene = scenes[static_cast<std::size_t>(rod)];
+    batch.write(rod, scene);
+    return scene;
+  };
+  for (int step = 0; step < 3; ++step) {
+    batch.begin();
+    int solves = 0;
+    while (batch.linearize()) {
+      std::vector<VectorX> exact(3);
+      for (int rod = 0; rod < 3; ++rod) {
+        if (!batch.iterates(rod)) continue;
+        const Scene scene = scene_of(rod);
+        LinearSystem system(scene.rods.front());
+        system.assemble(scene.rods.front(), constraint_dt(scene, settings.dt));
+        const BatchedLinearization& seen = batch.system().linearization();
+        CHECK(seen.residual[rod] == Approx(system.newton_residual()).margin(1e-14));
+        CHECK(std::sqrt(seen.squared_norm[rod]) == Approx(system.rhs().norm()).margin(1e-14));
+        CHECK(std::sqrt(seen.squared_gap[rod]) == Approx(joint_gap(scene.rods.front())).margin(1e-14));
+        exact[static_cast<std::size_t>(rod)].resize(system.rhs().size());
+        BlockFactor(system.matrix(), root_to_leaf_order(scene.rods.front()))
+            .solve(system.matrix(), system.rhs(), exact[static_cast<std::size_t>(rod)]);
+      }
+      batch.solve();
+      ++solves;
+      for (int rod = 0; rod < 3; ++rod) {
+        VectorX& expected = exact[static_cast<std::size_t>(rod)];
+        if (!batch.iterates(rod) || expected.size() == 0) continue;
+        VectorX solution(expected.size());
+        batch.system().write_solution(rod, solution.data());
+        CHECK((solution - expected).norm() < 1e-9 * expected.norm() + 1e-14);
+      }
+    }
+    batch.end();
+    whole.step();
+    CHECK(solves > 1);
+  }
+  for (int rod = 0; rod < 3; ++rod) {
+    Scene expected = scenes[static_cast<std::size_t>(rod)];
+    whole.write(rod, expected);
+    CHECK(same_bits(scene_of(rod).rods.front(), expected.rods.front()));
+  }
+}
+
+TEST_CASE("a rod that is abandoned stays where it is, the others go on") {
+  std::vector<Scene> scenes{bending_scene(6, 0), bending_scene(6, 1)};
+  BatchedStepper batch(scenes, settings), other({scenes[1]}, settings);
+  batch.step();
+  other.step();
+  Scene left = scenes[0], after = scenes[0];
+  batch.write(0, left);
+  batch.abandon(0);
+  for (int step = 0; step < 3; ++step) {
+    batch.step();
+    other.step();
+  }
+  batch.write(0, after);
+  CHECK(same_bits(left.rods.front(), after.rods.front()));
+  CHECK(batch.steps_taken(0) == 1);
+  Scene alone = scenes[1];
+  batch.write(1, scenes[1]);
+  other.write(0, alone);
+  CHECK(same_bits(scenes[1].rods.front(), alone.rods.front()));
 }
 
 TEST_CASE("what a batch cannot hold is refused") {

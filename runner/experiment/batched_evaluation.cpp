@@ -1,0 +1,153 @@
+#include "runner/experiment/batched_evaluation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <exception>
+#include <numeric>
+#include <utility>
+
+#include "runner/dataset/system_recording.hpp"
+#include "runner/experiment/simulation_record.hpp"
+#include "runner/experiment/solve_rows.hpp"
+#include "solver/batched_step.hpp"
+#include "solver/stopwatch.hpp"
+
+namespace rodsweep {
+namespace {
+
+const OpenRod* open_rod(const SceneSpec& scene) {
+  if (const auto* rod = std::get_if<BendingRod>(&scene)) return rod;
+  return std::get_if<Helix>(&scene);
+}
+
+/// One of the batch: its scene as the record sees it, and where its results go.
+struct Member {
+  const TaskRun& run;
+  Scene scene;
+  SimulationRecord simulation;
+  SystemRecorder systems;
+
+  Member(const TaskRun& of, Scene start)
+      : run(of),
+        scene(std::move(start)),
+        simulation(*of.task, of.spec, *of.record, scene),
+        systems(scene, of.spec.record.recorded_iterations(of.spec.time.newton_iterations), *of.record) {}
+  Member(const Member&) = delete;
+  Member& operator=(const Member&) = delete;
+};
+
+/// Its columns of /solves and the system itself, before the solve.
+void record_before(const BatchedStepper& stepper, int lane, const SolvePosition& at, Member& member) {
+  TaskRecord& record = *member.run.record;
+  if (member.run.spec.record.solves) {
+    const BatchedLinearization& linearization = stepper.system().linearization();
+    const std::size_t row = solve_row(member.run.spec, 1, at);
+    record_position(at, row, record);
+    record.newton_residual[row] = linearization.residual[lane];
+    record.solve_joint_gap[row] = std::sqrt(linearization.squared_gap[lane]);
+    record.rhs_norm[row] = std::sqrt(linearization.squared_norm[lane]);
+  }
+  if (!member.systems.holds(at)) return;
+  stepper.write(lane, member.scene);
+  member.systems.before(member.scene.rods.front(), at);
+}
+
+/// One step of all that go on.
+const std::vector<StepReport>& step(BatchedStepper& stepper, std::deque<Member>& members, int step) {
+  const auto each = [&](const auto& visit) {
+    for (std::size_t lane = 0; lane < members.size(); ++lane)
+      if (stepper.iterates(static_cast<int>(lane))) visit(static_cast<int>(lane), members[lane]);
+  };
+  stepper.begin();
+  for (int newton = 0; stepper.linearize(); ++newton) {
+    const SolvePosition at{step, newton, 0};
+    each([&](int lane, Member& member) { record_before(stepper, lane, at, member); });
+    stepper.solve();
+    each([&](int lane, Member& member) {
+      if (member.systems.holds(at)) stepper.system().write_solution(lane, member.systems.solution(at));
+    });
+  }
+  return stepper.end();
+}
+
+/// Members whose scenes can be built; of the others the record says why not.
+std::deque<Member> built(const std::vector<TaskRun>& runs) {
+  std::deque<Member> members;
+  for (const TaskRun& run : runs) {
+    try {
+      members.emplace_back(run, build_scene(run.spec.scene));
+    } catch (const std::exception& error) {
+      run.record->outcome = TaskOutcome::error;
+      run.record->message = error.what();
+    }
+  }
+  return members;
+}
+
+bool simulate(std::deque<Member>& members, const StopRequested& stop, const Stopwatch& watch) {
+  std::vector<Scene> scenes;
+  for (const Member& member : members) scenes.push_back(member.scene);
+  const TimeSpec& time = members.front().run.spec.time;
+  BatchedStepper stepper(scenes, {time.step_s, time.newton_iterations, time.newton_tolerance});
+
+  std::vector<int> left(members.size());  // lanes that go on
+  std::iota(left.begin(), left.end(), 0);
+  /// Keeps the lanes of which `goes_on` is true.
+  const auto keep = [&](const auto& goes_on) {
+    const auto ends = [&](int lane) {
+      if (goes_on(lane, members[static_cast<std::size_t>(lane)])) return false;
+      stepper.abandon(lane);
+      return true;
+    };
+    left.erase(std::remove_if(left.begin(), left.end(), ends), left.end());
+  };
+  for (int s = 0; s < time.steps; ++s) {
+    if (stop && stop()) return false;
+    keep([&](int, Member& member) { return !member.simulation.out_of_time(s, watch.seconds()); });
+    if (left.empty()) break;
+    const Stopwatch step_watch;
+    const std::vector<StepReport>& reports = step(stepper, members, s);
+    const double share_s = step_watch.seconds() / static_cast<double>(left.size());
+    keep([&](int lane, Member& member) {
+      stepper.write(lane, member.scene);
+      member.run.record->rest_s[static_cast<std::size_t>(s)] = static_cast<float>(share_s);
+      return member.simulation.finish_step(s, member.scene, reports[static_cast<std::size_t>(lane)],
+                                           constraint_dt(member.scene, time.step_s));
+    });
+  }
+  return true;
+}
+
+}  // namespace
+
+bool steps_in_batches(const TaskSpec& spec) {
+  const OpenRod* rod = open_rod(spec.scene);
+  return rod && spec.record.systems != RecordedSystems::none && rod->tip_force_n.isZero() && !rod->wind &&
+         (rod->stretch == Stretch::inextensible || rod->stretch_compliance_per_j);
+}
+
+BatchKey batch_key(const TaskSpec& spec) {
+  const OpenRod& rod = *open_rod(spec.scene);
+  const TimeSpec& time = spec.time;
+  return {rod.segments, rod.clamp, time.step_s, time.steps, time.newton_iterations, time.newton_tolerance};
+}
+
+bool evaluate_batch(const std::vector<TaskRun>& runs, const StopRequested& stop) {
+  const Stopwatch watch;
+  bool finished = true;
+  std::deque<Member> members = built(runs);
+  if (!members.empty()) finished = simulate(members, stop, watch);
+  for (const TaskRun& run : runs) run.record->elapsed_s[0] = watch.seconds() / static_cast<double>(runs.size());
+  return finished;
+}
+
+bool evaluate_among_equals(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
+  if (!steps_in_batches(spec)) return evaluate(task, spec, record, stop);
+  std::vector<TaskRecord> others(BatchedRods::lanes - 1, record);
+  std::vector<TaskRun> runs{{&task, spec, &record}};
+  for (TaskRecord& other : others) runs.push_back({&task, spec, &other});
+  return evaluate_batch(runs, stop);
+}
+
+}  // namespace rodsweep

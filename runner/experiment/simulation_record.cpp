@@ -1,0 +1,129 @@
+#include "runner/experiment/simulation_record.hpp"
+
+#include <algorithm>
+
+#include "runner/experiment/projections.hpp"
+#include "runner/file/state_rows.hpp"
+#include "solver/observables.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double meaningless_gap = 100;  // joint lengths: the simulation has blown up
+
+TaskOutcome outcome_of(SolveOutcome solve) {
+  switch (solve) {
+    case SolveOutcome::indefinite: return TaskOutcome::indefinite;
+    case SolveOutcome::not_a_number: return TaskOutcome::not_a_number;
+    case SolveOutcome::iteration_limit: return TaskOutcome::iteration_limit;
+    case SolveOutcome::diverged: return TaskOutcome::diverged;
+    default: return TaskOutcome::ok;
+  }
+}
+
+/// Writes the observables of one finished step into row `step` of /steps.
+void record_step(TaskRecord& record, std::size_t step, const Scene& scene, const StepReport& report,
+                 double constraint_dt, double initial_length) {
+  double length = 0, gap = 0, residual = 0, kinetic = 0, potential = 0, elastic = 0;
+  Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
+  for (const Rod& rod : scene.rods) {
+    length += rod_length(rod);
+    gap = std::max(gap, joint_gap(rod));
+    residual = std::max(residual, newton_residual(rod, constraint_dt));
+    kinetic += kinetic_energy(rod);
+    potential += gravitational_energy(rod, scene.gravity_m_s2);
+    elastic += elastic_energy(rod);
+    momentum += linear_momentum(rod);
+    spin += angular_momentum(rod);
+  }
+  record.time_s[step] = scene.time_s;
+  record.length_drift[step] = length / initial_length - 1;
+  record.joint_gap[step] = gap;
+  record.kinetic_energy_j[step] = kinetic;
+  record.potential_energy_j[step] = potential;
+  record.elastic_energy_j[step] = elastic;
+  for (std::size_t i = 0; i < 3; ++i) {
+    record.momentum_kg_m_s[3 * step + i] = momentum[static_cast<Eigen::Index>(i)];
+    record.angular_momentum_kg_m2_s[3 * step + i] = spin[static_cast<Eigen::Index>(i)];
+  }
+  record.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
+  record.step_newton_residual[step] = residual;
+}
+
+/// What the segments of a trajectory's frames are.
+void record_segments(const Scene& scene, TaskRecord& record) {
+  std::size_t row = 0;
+  for (std::size_t rod = 0; rod < scene.rods.size(); ++rod) {
+    for (const Segment& segment : scene.rods[rod].segments) {
+      record.segment_length_m[row] = segment.length_m;
+      record.segment_radius_m[row] = segment.radius_m;
+      record.segment_rod[row] = static_cast<std::int16_t>(rod);
+      record.segment_static[row] = segment.is_static ? 1 : 0;
+      ++row;
+    }
+  }
+}
+
+}  // namespace
+
+SimulationRecord::SimulationRecord(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)
+    : task_(task), spec_(spec), record_(record) {
+  for (const Rod& rod : scene.rods) initial_length_ += rod_length(rod);
+  record_.outcome = TaskOutcome::ok;
+  record_.steps_done[0] = 0;
+  if (spec_.record.trajectory_every > 0) {
+    record_segments(scene, record_);
+    record_frame(0, scene);
+  }
+}
+
+bool SimulationRecord::out_of_time(int step, double elapsed_s) {
+  if (spec_.time_limit_s <= 0 || elapsed_s <= spec_.time_limit_s) return false;
+  fail(TaskOutcome::timed_out, step,
+       "the limit task_time_limit_s of " + std::to_string(spec_.time_limit_s) + " s has passed");
+  return true;
+}
+
+bool SimulationRecord::finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt) {
+  if (report.outcome == SolveOutcome::iteration_limit && record_.outcome == TaskOutcome::ok)
+    fail(TaskOutcome::iteration_limit, step, "a solve that advances the rod hit its iteration limit (and others may)");
+  else if (report.outcome != SolveOutcome::converged && report.outcome != SolveOutcome::iteration_limit) {
+    fail(outcome_of(report.outcome), step,
+         projection_failed(spec_.solve.method) + std::string(to_string(report.outcome)));
+    return false;
+  }
+  const auto row = static_cast<std::size_t>(step);
+  record_step(record_, row, scene, report, constraint_dt, initial_length_);
+  record_.steps_done[0] = step + 1;
+  const int every = spec_.record.trajectory_every;
+  if (every > 0 && (step + 1) % every == 0) record_frame(static_cast<std::size_t>((step + 1) / every), scene);
+
+  if (!std::all_of(scene.rods.begin(), scene.rods.end(), [](const Rod& rod) { return is_finite(rod); })) {
+    fail(TaskOutcome::not_a_number, step, "the rod's state is not finite");
+    return false;
+  }
+  if (const double gap = record_.joint_gap[row]; gap > meaningless_gap) {
+    fail(TaskOutcome::diverged, step, "a joint is open by " + std::to_string(gap) + " joint lengths");
+    return false;
+  }
+  return true;
+}
+
+void SimulationRecord::fail(TaskOutcome outcome, int step, const std::string& why) {
+  record_.outcome = outcome;
+  record_.message = "step " + std::to_string(step) + ": " + why;
+}
+
+void SimulationRecord::record_frame(std::size_t frame, const Scene& scene) {
+  const std::size_t first = frame * static_cast<std::size_t>(task_.segments);
+  record_.first_row[frame] = task_.first_frame_row + static_cast<std::int64_t>(first);
+  record_.frame_time_s[frame] = scene.time_s;
+  std::size_t row = first;
+  for (const Rod& rod : scene.rods) {
+    store(rod.position, record_.position_m.data() + 3 * row);
+    store(rod.orientation, record_.orientation.data() + 4 * row);
+    row += rod.segments.size();
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,35 @@
+// What a simulation leaves in its task's record after every step, and when it has to end: the observables, the frames
+// of the trajectory, the outcome. The same for tasks that run alone and in batches.
+#pragma once
+
+#include <string>
+
+#include "runner/file/record.hpp"
+#include "runner/job/task.hpp"
+#include "solver/scene.hpp"
+#include "solver/time_step.hpp"
+
+namespace rodsweep {
+
+class SimulationRecord {
+ public:
+  /// `scene` at the start, which is frame 0. All but the scene must outlive this.
+  SimulationRecord(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene);
+
+  /// Ends the task if its time limit has passed: true.
+  bool out_of_time(int step, double elapsed_s);
+
+  /// `scene` after the step. False: the task has ended here, by a failure.
+  bool finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt);
+
+ private:
+  void fail(TaskOutcome outcome, int step, const std::string& why);
+  void record_frame(std::size_t frame, const Scene& scene);
+
+  const Task& task_;
+  const TaskSpec& spec_;
+  TaskRecord& record_;
+  double initial_length_ = 0;
+};
+
+}  // namespace rodsweep

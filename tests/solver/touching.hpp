@@ -1,0 +1,106 @@
+// What the tests of contacts share: capsules and straight rods anywhere, a scene of them advanced by direct solves, and
+// how near its bodies are.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/contact_bodies.hpp"
+#include "solver/observables.hpp"
+#include "solver/scene_rods.hpp"
+#include "solver/time_step.hpp"
+
+namespace rodsweep::test {
+
+/// A straight rod from one point to another.
+inline Rod straight_rod(const Vector3& from, const Vector3& to, int segments, const RodParameters& p) {
+  const Vector3 along = (to - from) / segments;
+  const Quaternion orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), along);
+  std::vector<SegmentSpec> specs;
+  for (int i = 0; i < segments; ++i)
+    specs.push_back(segment_at(from + (i + 0.5) * along, orientation, along.norm(), p));
+  std::vector<JointSpec> joints;
+  for (int i = 1; i < segments; ++i) joints.push_back(joint_between(specs, i - 1, i, p, weight(specs, p)));
+  return Rod(specs, joints);
+}
+
+/// A free rigid capsule on its way.
+inline Rod capsule(const Vector3& from, const Vector3& to, const Vector3& velocity, const RodParameters& p = {}) {
+  Rod rod = straight_rod(from, to, 1, p);
+  rod.velocity[0] = velocity;
+  return rod;
+}
+
+inline Scene contact_scene(std::vector<Rod> rods, double friction = 0, const Vector3& gravity = Vector3::Zero()) {
+  Scene scene;
+  scene.rods = std::move(rods);
+  scene.gravity_m_s2 = gravity;
+  scene.contact = ContactSettings{};
+  scene.contact->friction = friction;
+  return scene;
+}
+
+class Touching {
+ public:
+  Touching(Scene initial, double dt, int newton_iterations = 20)
+      : scene(std::move(initial)),
+        direct_(scene),
+        projection_(scene, direct_),
+        stepper_(scene, {dt, newton_iterations, 1e-9}) {}
+  Touching(const Touching&) = delete;
+  Touching& operator=(const Touching&) = delete;
+
+  StepReport step() {
+    const StepReport report = stepper_.step(projection_);
+    if (report.outcome != SolveOutcome::converged)
+      throw std::runtime_error(std::string("a step ended: ") + to_string(report.outcome));
+    return report;
+  }
+  /// Returns the deepest penetration after any of the steps.
+  double run(int steps) {
+    double deepest = 0;
+    for (int i = 0; i < steps; ++i) deepest = std::max(deepest, step().penetration);
+    return deepest;
+  }
+
+  Scene scene;
+
+ private:
+  DirectSolve direct_;
+  LinearProjection projection_;
+  TimeStepper stepper_;
+};
+
+/// The least of |axis - axis| / R over all pairs that can touch: 1 where they do.
+inline double nearest(const Scene& scene) {
+  const ContactBodies bodies(scene);
+  std::vector<Axis> axes;
+  bodies.place(scene, axes);
+  double least = HUGE_VAL;
+  for (int a = 0; a < bodies.count(); ++a)
+    for (int b = a + 1; b < bodies.count(); ++b)
+      if (bodies.matter(a, b))
+        least = std::min(least, separation(axes[a], axes[b]).norm() / (bodies.body(a).radius + bodies.body(b).radius));
+  return least;
+}
+
+inline double kinetic_energy(const Scene& scene) {
+  double sum = 0;
+  for (const Rod& rod : scene.rods) sum += rodsweep::kinetic_energy(rod);
+  return sum;
+}
+inline Vector3 linear_momentum(const Scene& scene) {
+  Vector3 sum = Vector3::Zero();
+  for (const Rod& rod : scene.rods) sum += rodsweep::linear_momentum(rod);
+  return sum;
+}
+inline Vector3 angular_momentum(const Scene& scene) {
+  Vector3 sum = Vector3::Zero();
+  for (const Rod& rod : scene.rods) sum += rodsweep::angular_momentum(rod);
+  return sum;
+}
+
+}  // namespace rodsweep::test
