@@ -17,6 +17,7 @@ GAP = 0.015             # between the lowest point and the floor, of the scene's
 WALL_RADII = 2.2        # radius of the plate that stands for a wall (a held segment without length), in rod radii
 RODS = ("#2f6f9f", "#c8553d", "#4f8a5b", "#d9a03f", "#7a5c99", "#5aa5b5", "#a8475c", "#8a8f3c")
 HELD = "#4a4e54"
+WOOD = colors.LinearSegmentedColormap.from_list("wood", ["#8fb648", "#6f8a3c", "#7a5d3b", "#5d4230"])   # thin to thick
 SHADES = 64             # colours of a continuous scale
 
 
@@ -105,7 +106,7 @@ def colours(trajectory, by):
     else:
         values = np.log(drawn_radius(trajectory)) if by == "radius" else along(trajectory.rod)
         low, high = values.min(), values.max()
-        scale = colormaps["viridis"] if by == "along" else colormaps["summer"].reversed()
+        scale = colormaps["viridis"] if by == "along" else WOOD
         palette = [scale(shade)[:3] for shade in np.linspace(0.1, 0.95, SHADES)]
         number = np.rint((SHADES - 1) * (values - low) / (high - low or 1)).astype(int)
     return np.array([*palette, colors.to_rgb(HELD)]), np.where(trajectory.static, len(palette), number)

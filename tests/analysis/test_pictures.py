@@ -166,6 +166,16 @@ class Pictures(Planted):
             found = np.flatnonzero(tube.any(axis=0))
             np.testing.assert_allclose((found[0], found[-1] + 1), ends, atol=1.5)
 
+    def test_fine_pictures_have_the_rods_that_are_thinner_than_a_pixel(self):
+        with self.shown(rods=1, radius=0.001) as shown:
+            stage = self.stage(shown, view=(20, 10), floor="none")
+            text = povray.scene(shown, stage, staging.colours(shown, "rod"), 0)
+            ends = stage.camera.project(np.concatenate(shown.ends(0)))[0][:, 0]
+            columns = slice(int(ends.min()) + 2, int(ends.max()) - 2)
+            pictures = [opened_picture(povray.picture(text, (240, 180), fine=fine)) for fine in (False, True)]
+            found = [(picture.min(axis=(0, 2))[columns] < 250).mean() for picture in pictures]
+            self.assertGreater(found[1], max(0.95, found[0]))
+
     def test_handedness_x_is_to_the_right_from_the_front_and_z_is_near(self):
         with self.shown() as shown:  # rods at z = 0 and, nearer, at 0.5
             stage = self.stage(shown, view=(0, 30), floor="none")
