@@ -26,7 +26,8 @@ class Camera:
 
     def project(self, points):
         """Pixel coordinates [point, 2], from the upper left corner, and depth along the line of sight [point]."""
-        x, y, depth = np.moveaxis((np.asarray(points) - self.eye) @ np.stack([self.right, self.up, self.forward]).T, -1, 0)
+        away = np.asarray(points) - self.eye
+        x, y, depth = away @ self.right, away @ self.up, away @ self.forward
         width, height = self.size
         across, upwards = self.tangents
         return np.stack([width / 2 * (1 + x / (depth * across)), height / 2 * (1 - y / (depth * upwards))], -1), depth
@@ -62,7 +63,7 @@ class Framing:
 
 
 def direction(azimuth_deg, elevation_deg, up):
-    """From the scene to the eye. Azimuth 0 looks at x to the right; 90 from where that x came to the left... of `up`."""
+    """From the scene to the eye. Azimuth: 0 the front, 90 the side that is to the right there; elevation: 90 above."""
     right, back = horizontal(up)
     azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
     return np.cos(elevation) * (np.sin(azimuth) * right + np.cos(azimuth) * back) + np.sin(elevation) * np.asarray(up)

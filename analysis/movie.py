@@ -51,7 +51,7 @@ def write_gif(path, pictures, rate, samples):
 
 
 class Palette:
-    """The colours of a GIF. Pillow's own search for the nearest takes neighbours in steps of 4, which shows in greys."""
+    """The colours of a GIF. Pillow's own search for the nearest one is coarse, which shows in soft greys."""
 
     def __init__(self, samples):
         colours = np.concatenate([pixels(sample).reshape(-1, 3) for sample in samples])

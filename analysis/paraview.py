@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""A recorded trajectory for ParaView (or VisIt): an XDMF file that points into the results file, which stays as it is.
+"""A recorded trajectory for ParaView or VisIt: an XDMF file that points into the results file.
 
-Every frame is a set of segments' centres joined by lines, with orientation (w, x, y, z), radius, length, rod and whether
-they are held; numbers are read from the HDF5 file, so keep the two together. In ParaView open the .xdmf with any of its
-XDMF readers; then Filters > Tube, Vary Radius "By Absolute Scalar", Scalars "radius" shows tubes. The path is printed.
+Every frame is a set of segments' centres joined by lines, with orientation (w, x, y, z), radius, length, rod and
+whether they are held. Numbers are read from the HDF5 file, which stays as it is: keep the two together. Open the .xdmf
+with ParaView's "XDMF Reader" (its Xdmf3 readers fail on parts of datasets, which frames are). Extract Surface and Tube,
+there with Scalars "radius" and Vary Radius "By Absolute Scalar", show the rods as they are. The path is printed.
 """
 
 import os
@@ -18,9 +19,8 @@ from sweepfile import SweepFile
 EXAMPLES = """examples:
   analysis/paraview.py results/net.h5
   analysis/paraview.py results/ring.h5 --task 3 -o ring.xdmf"""
-PRECISION = {"f": "Float", "i": "Int", "u": "UInt"}
 TOPOLOGY = "/Xdmf/Domain/Topology[1]"
-PER_FRAME = {"orientation": ("Matrix", 4)}   # attribute type, values
+NUMBERS = {"f8": "Float", "i2": "Int", "i1": "Char"}
 CONSTANT = {"radius": "radius_m", "length": "length_m", "rod": "rod", "static": "static"}
 
 
@@ -55,14 +55,13 @@ def document(shown, reference):
     topology(domain, joints.pairs(shown), len(shown.length))
     series = ElementTree.SubElement(domain, "Grid", Name=f"task {shown.task}", GridType="Collection",
                                     CollectionType="Temporal")
+    rows = Rows(shown.h5, reference, len(shown.length))
     for frame, (row, time) in enumerate(zip(shown.first_row, shown.time_s)):
         grid = ElementTree.SubElement(series, "Grid", Name=f"frame {frame}", GridType="Uniform")
         ElementTree.SubElement(grid, "Time", Value=repr(float(time)))
         ElementTree.SubElement(grid, "Topology", Reference=TOPOLOGY)
-        rows = Rows(shown.h5, reference, len(shown.length))
         rows.add(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"), "/trajectories/position_m", row)
-        for name, (kind, _) in PER_FRAME.items():
-            rows.add(attribute(grid, name, kind), f"/trajectories/{name}", row)
+        rows.add(attribute(grid, "orientation", "Matrix"), "/trajectories/orientation", row)
         for name, column in CONSTANT.items():
             rows.add(attribute(grid, name, "Scalar"), f"{trajectory.SEGMENTS}/{column}", shown.first_segment)
     ElementTree.indent(root, " ")
@@ -102,7 +101,7 @@ class Rows:
         start, stride = text(int(first), *[0] * len(width)), text(*[1] * len(shape))
         ElementTree.SubElement(slab, "DataItem", Format="XML", NumberType="Int",
                                Dimensions=text(3, len(shape))).text = f"{start} {stride} {extent}"
-        whole = ElementTree.SubElement(slab, "DataItem", Format="HDF", NumberType=PRECISION[dataset.dtype.kind],
+        whole = ElementTree.SubElement(slab, "DataItem", Format="HDF", NumberType=NUMBERS[dataset.dtype.str[1:]],
                                        Precision=str(dataset.dtype.itemsize), Dimensions=text(*shape))
         whole.text = f"{self.reference}:{path}"
 

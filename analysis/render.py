@@ -49,6 +49,8 @@ def arguments():
                       help="what colours tell: the rod (default), the place along it, or the radius")
     made.add_argument("--floor", metavar="HEIGHT", type=height, default="auto",
                       help="height of the floor in m, or none (default: auto, a little under the lowest point)")
+    made.add_argument("--fine", action="store_true", help="smooth edges of rods thinner than a pixel, three "
+                                                          "times slower")
     made.add_argument("-j", "--jobs", metavar="J", type=whole_number, default=os.cpu_count() or 1,
                       help="frames drawn at a time (default: one per core)")
     outputs.add_force(made)
@@ -90,11 +92,12 @@ class Drawing:
     """Pictures of one trajectory, all with the same camera, lights and colours."""
 
     def __init__(self, shown, stage, colouring, options):
-        self.shown, self.stage, self.colouring, self.size, self.jobs = shown, stage, colouring, options.size, options.jobs
+        self.shown, self.stage, self.colouring = shown, stage, colouring
+        self.size, self.jobs, self.fine = options.size, options.jobs, options.fine
 
     def picture(self, frame, threads=1, shrink=1):
         size = tuple(max(1, side // shrink) for side in self.size)
-        return povray.picture(self.text(frame), size, threads)
+        return povray.picture(self.text(frame), size, threads, self.fine)
 
     def pictures(self, frames):
         """In order; `jobs` are drawn at a time, and no more are kept."""
@@ -104,7 +107,7 @@ class Drawing:
         with ThreadPoolExecutor(self.jobs) as pool:
             waiting = deque()
             for frame in frames:
-                waiting.append(pool.submit(povray.picture, self.text(frame), self.size))
+                waiting.append(pool.submit(povray.picture, self.text(frame), self.size, fine=self.fine))
                 if len(waiting) > self.jobs:
                     yield waiting.popleft().result()
             while waiting:

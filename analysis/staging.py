@@ -17,6 +17,7 @@ GAP = 0.015             # between the lowest point and the floor, of the scene's
 WALL_RADII = 2.2        # radius of the plate that stands for a wall (a held segment without length), in rod radii
 RODS = ("#2f6f9f", "#c8553d", "#4f8a5b", "#d9a03f", "#7a5c99", "#5aa5b5", "#a8475c", "#8a8f3c")
 HELD = "#4a4e54"
+WOOD = colors.LinearSegmentedColormap.from_list("wood", ["#8fb648", "#6f8a3c", "#7a5d3b", "#5d4230"])   # thin to thick
 SHADES = 64             # colours of a continuous scale
 
 
@@ -63,7 +64,7 @@ def staged(trajectory, frames, up, view, size, floor="auto"):
         raise KeyNotFound(f"task {trajectory.task} has positions that are not numbers in these frames: choose others "
                           "with --frame")
     extent = float(np.linalg.norm(high - low))
-    level = lowest(trajectory, frames, up) - GAP * extent if floor == "auto" else None if floor == "none" else float(floor)
+    level = floor_level(trajectory, frames, up, floor, extent)
     angles = VIEWS.get(view, view) if view else chosen_view(spread / count, low, high, up)
     framing = camera.Framing(camera.direction(*angles, up), up, size)
     for frame in frames:
@@ -74,9 +75,13 @@ def staged(trajectory, frames, up, view, size, floor="auto"):
     return Stage(framing.camera(), up, level, (low + high) / 2, extent)
 
 
-def lowest(trajectory, frames, up):
+def floor_level(trajectory, frames, up, floor, extent):
+    """Height along `up`, or None."""
+    if floor != "auto":
+        return None if floor == "none" else float(floor)
     radius = drawn_radius(trajectory)
-    return min(float(np.min(points @ up - radius)) for frame in frames for points in trajectory.ends(frame))
+    lowest = min(float(np.min(points @ up - radius)) for frame in frames for points in trajectory.ends(frame))
+    return lowest - GAP * extent
 
 
 def chosen_view(spread, low, high, up):
@@ -101,7 +106,7 @@ def colours(trajectory, by):
     else:
         values = np.log(drawn_radius(trajectory)) if by == "radius" else along(trajectory.rod)
         low, high = values.min(), values.max()
-        scale = colormaps["viridis"] if by == "along" else colormaps["summer"].reversed()
+        scale = colormaps["viridis"] if by == "along" else WOOD
         palette = [scale(shade)[:3] for shade in np.linspace(0.1, 0.95, SHADES)]
         number = np.rint((SHADES - 1) * (values - low) / (high - low or 1)).astype(int)
     return np.array([*palette, colors.to_rgb(HELD)]), np.where(trajectory.static, len(palette), number)

@@ -78,10 +78,11 @@ def recorded(file):
     """Refuses a file without frames, or whose frames do not say how long and thick the segments are."""
     again = f"`rodsweep rerun {file.path} TASK` makes a file of one task that has them"
     if not file.has("/trajectories/position_m"):
-        raise KeyNotFound(f"{file.path} has no trajectories: ask for them with record.trajectory_every in the job; {again}")
+        raise KeyNotFound(f"{file.path} has no trajectories: ask for them with record.trajectory_every in the job; "
+                          f"{again}")
     if not file.has(f"{SEGMENTS}/radius_m"):
-        raise KeyNotFound(f"{file.path} does not say how long and thick its segments are ({SEGMENTS} is missing: written "
-                          f"by an older rodsweep); {again}")
+        raise KeyNotFound(f"{file.path} does not say how long and thick its segments are ({SEGMENTS} is missing: an "
+                          f"older rodsweep wrote it); {again}")
 
 
 def chosen_task(file, options):

@@ -3,7 +3,8 @@
 import h5py
 import numpy as np
 
-AXES = {"x": (np.sqrt(0.5), 0, np.sqrt(0.5), 0), "y": (np.sqrt(0.5), -np.sqrt(0.5), 0, 0), "z": (1, 0, 0, 0)}  # w, x, y, z
+HALF = np.sqrt(0.5)
+AXES = {"x": (HALF, 0, HALF, 0), "y": (HALF, -HALF, 0, 0), "z": (1, 0, 0, 0)}   # w, x, y, z
 
 
 def plant(path, segments=6, frames=4, radius=0.05, length=0.2, rods=2, walls=0, along="x", last=None):
@@ -15,7 +16,8 @@ def plant(path, segments=6, frames=4, radius=0.05, length=0.2, rods=2, walls=0, 
     lengths[:walls] = 0
     offset = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}[along]
     place = np.arange(segments) % each - (each - 1) / 2
-    centre = place[:, None] * length * np.array(offset) + (np.arange(segments) // each)[:, None] * [0, 0, 0.5] + [0, 1, 0]
+    rod = np.arange(segments) // each
+    centre = place[:, None] * length * np.array(offset) + rod[:, None] * [0, 0, 0.5] + [0, 1, 0]
     with h5py.File(path, "r+") as h5:
         tasks = len(h5["tasks/state"])
         first_row = np.arange(tasks * frames).reshape(tasks, frames) * segments
@@ -29,7 +31,7 @@ def plant(path, segments=6, frames=4, radius=0.05, length=0.2, rods=2, walls=0, 
         h5["trajectories/first_row"] = first_row
         h5["trajectories/time_s"] = np.tile(0.04 * np.arange(frames), (tasks, 1))
         columns = {"length_m": lengths, "radius_m": np.where(lengths > 0, radius, 0),
-                   "rod": (np.arange(segments) // each).astype(np.int16),
+                   "rod": rod.astype(np.int16),
                    "static": (np.arange(segments) % each == 0).astype(np.int8)}
         for name, values in columns.items():
             h5[f"trajectories/segments/{name}"] = np.tile(values, tasks)
