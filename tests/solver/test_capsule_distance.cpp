@@ -78,7 +78,8 @@ TEST_CASE("a first touch is never later than a finely sampled one") {
   test::Random random(2);
   int touches = 0;
   for (int i = 0; i < 200; ++i) {
-    const CapsuleAxis a0 = random_axis(random), a1 = random_axis(random), b0 = random_axis(random), b1 = random_axis(random);
+    const CapsuleAxis a0 = random_axis(random), a1 = random_axis(random), b0 = random_axis(random),
+                      b1 = random_axis(random);
     double sampled = HUGE_VAL;
     for (int k = 1000; k >= 0; --k)
       if (separation(between(a0, a1, k / 1000.0), between(b0, b1, k / 1000.0)).norm() < 0.2) sampled = k / 1000.0;
