@@ -26,11 +26,12 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   solvers
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo studies test test-long bench sanitize schema format format-check tidy install clean
+.PHONY: help configure build demo studies pictures test test-long bench sanitize schema format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (an hour; continued if it was stopped)'
+	@echo 'make pictures      run jobs/pictures.json, draw its trajectories as stills and films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
 	@echo 'make bench         build and run the benchmarks'
@@ -67,6 +68,16 @@ studies: build
 	  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$$study.json -o results/$$study.h5 $$resume </dev/null || [ $$? = 3 ]; \
 	done
 	@analysis/results/draw.sh results
+
+# What exists is not drawn again.
+pictures: build
+	@$(call packages,pictures)
+	@mkdir -p results; [ -e results/pictures.h5 ] && resume=--resume || resume=; \
+	$(BUILD)/rodsweep run jobs/pictures.json -o results/pictures.h5 $$resume </dev/null
+	@for scene in helix net ring; do for film in gif mp4; do \
+	  [ -e results/figures/$$scene.$$film ] || $(PYTHON) analysis/render.py results/pictures.h5 --scene $$scene \
+	    --movie $$film --size 480x360 --colour along -o results/figures/$$scene.$$film; \
+	done; done
 
 test: configure
 	@cmake --build $(BUILD) -j $(CORES)

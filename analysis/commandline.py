@@ -8,6 +8,7 @@ import numpy as np
 
 import measures
 from sweepfile import KeyNotFound, SweepFileError, not_found
+from tools import ToolError
 
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 NORMS = {"true_residual": "‖b − Ax‖₂ relative to ‖b‖₂", "natural": "natural norm of b − Ax relative to that of b"}
@@ -38,7 +39,7 @@ def run(name, main):
     try:
         code = main()
         sys.stdout.flush()
-    except (SweepFileError, KeyNotFound) as error:
+    except (SweepFileError, KeyNotFound, ToolError) as error:
         print(f"{name}: {error.args[0]}", file=sys.stderr)
         code = 2
     except BrokenPipeError:  # the reader of a pipe has seen enough

@@ -14,14 +14,14 @@ import contextlib
 import csv
 import gzip
 import io
-import os
 import sys
 
 import numpy as np
 
 import commandline
+import outputs
 import tidy
-from sweepfile import KeyNotFound, SweepFile, SweepFileError
+from sweepfile import KeyNotFound, SweepFile
 
 EXAMPLES = """examples:
   analysis/export.py results/demo.h5 -o demo.csv
@@ -41,7 +41,7 @@ def arguments():
                       help="only rows with these values of a column, chosen or not: COLUMN=VALUE, COLUMN=A,B or "
                            "COLUMN=LOW:HIGH; may be repeated")
     made.add_argument("--list", action="store_true", help="print the names of the columns and stop")
-    made.add_argument("--force", action="store_true", help="replace the output file if it is there")
+    outputs.add_force(made)
     made.set_defaults(tolerance="all")
     return made.parse_args()
 
@@ -76,19 +76,11 @@ def opened(options):
     if path is None:
         yield sys.stdout
         return
-    if os.path.exists(path) and (not options.force or os.path.samefile(path, options.file)):
-        raise SweepFileError(f"{path} is there already; give another name with -o" +
-                             ("" if os.path.samefile(path, options.file) else ", or --force to replace it"))
-    part = f"{path}.part"
-    try:
-        with open(part, "wb") as raw, \
-                gzip.GzipFile("", "wb", 6, raw, 0) if path.endswith(".gz") else contextlib.nullcontext(raw) as packed, \
-                io.TextIOWrapper(packed, encoding="utf-8", newline="") as text:
-            yield text
-        os.replace(part, path)
-    finally:
-        if os.path.exists(part):
-            os.remove(part)
+    outputs.check(path, options)
+    with outputs.whole(path) as part, open(part, "wb") as raw, \
+            gzip.GzipFile("", "wb", 6, raw, 0) if path.endswith(".gz") else contextlib.nullcontext(raw) as packed, \
+            io.TextIOWrapper(packed, encoding="utf-8", newline="") as text:
+        yield text
 
 
 def write(out, table, names, tests):

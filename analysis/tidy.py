@@ -15,8 +15,8 @@ from sweepfile import KeyNotFound, decoded, not_found
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
 COUNTED = ("newton", "step", "rod")                 # whole numbers whose -1 says that the row was never reached
-INTERNAL = ("first_step", "first_solve", "first_frame_row", "first_system", "first_system_segment", "first_system_joint",
-            "state", "checksum", "segments_total")
+INTERNAL = ("first_step", "first_solve", "first_frame_row", "first_segment_row", "first_system", "first_system_segment",
+            "first_system_joint", "state", "checksum", "segments_total")
 COMPONENTS = ("x", "y", "z")
 
 

@@ -65,7 +65,8 @@ class WeightSource {
   void fill(Eigen::Map<Tensor<T>> weights, double gain = 1) {
     const double bound = gain * std::sqrt(3.0 / static_cast<double>(weights.cols()));
     for (Eigen::Index c = 0; c < weights.cols(); ++c)
-      for (Eigen::Index r = 0; r < weights.rows(); ++r) weights(r, c) = static_cast<T>(bound * (2 * random_.uniform() - 1));
+      for (Eigen::Index r = 0; r < weights.rows(); ++r)
+        weights(r, c) = static_cast<T>(bound * (2 * random_.uniform() - 1));
   }
 
  private:

@@ -9,7 +9,7 @@ double clamp(double s) { return std::clamp(s, -1.0, 1.0); }
 
 }  // namespace
 
-AxisPoints closest_points(const Axis& a, const Axis& b) {
+AxisPoints closest_points(const CapsuleAxis& a, const CapsuleAxis& b) {
   constexpr double parallel = 1e-12;  // sine squared of the angle, below which it says nothing
   const Vector3 c = a.centre - b.centre;
   const double uu = a.half.squaredNorm(), uv = a.half.dot(b.half), vv = b.half.squaredNorm();
@@ -26,34 +26,35 @@ AxisPoints closest_points(const Axis& a, const Axis& b) {
   return {uu > 0 ? clamp((uv * t - uc) / uu) : 0, t};
 }
 
-double closest_point(const Axis& axis, const Vector3& point) {
+double closest_point(const CapsuleAxis& axis, const Vector3& point) {
   const double square = axis.half.squaredNorm();
   return square > 0 ? clamp(axis.half.dot(point - axis.centre) / square) : 0;
 }
 
-Vector3 separation(const Axis& a, const Axis& b) {
+Vector3 separation(const CapsuleAxis& a, const CapsuleAxis& b) {
   const AxisPoints at = closest_points(a, b);
   return a.at(at.s) - b.at(at.t);
 }
 
-Overlap overlap(const Axis& a, const Axis& b) {
+Overlap overlap(const CapsuleAxis& a, const CapsuleAxis& b) {
   const double square = a.half.squaredNorm();
   if (!(square > 0)) return {0, 0};
   const double middle = a.half.dot(b.centre - a.centre) / square, reach = std::abs(a.half.dot(b.half)) / square;
   return {std::max(-1.0, middle - reach), std::min(1.0, middle + reach)};
 }
 
-double relative_motion(const Axis& a_from, const Axis& a_to, const Axis& b_from, const Axis& b_to) {
+double relative_motion(const CapsuleAxis& a_from, const CapsuleAxis& a_to, const CapsuleAxis& b_from,
+                       const CapsuleAxis& b_to) {
   return ((a_to.centre - a_from.centre) - (b_to.centre - b_from.centre)).norm() + (a_to.half - a_from.half).norm() +
          (b_to.half - b_from.half).norm();
 }
 
-Axis between(const Axis& from, const Axis& to, double time) {
+CapsuleAxis between(const CapsuleAxis& from, const CapsuleAxis& to, double time) {
   return {from.centre + time * (to.centre - from.centre), from.half + time * (to.half - from.half)};
 }
 
-std::optional<double> first_touch(const Axis& a_from, const Axis& a_to, const Axis& b_from, const Axis& b_to,
-                                  double distance) {
+std::optional<double> first_touch(const CapsuleAxis& a_from, const CapsuleAxis& a_to, const CapsuleAxis& b_from,
+                                  const CapsuleAxis& b_to, double distance) {
   const double speed = relative_motion(a_from, a_to, b_from, b_to);
   double time = 0;
   for (int advance = 0; advance < 64; ++advance) {

@@ -11,7 +11,7 @@
 
 namespace rodsweep {
 
-struct Axis {
+struct CapsuleAxis {
   Vector3 centre, half;
   Vector3 at(double s) const { return centre + s * half; }
 };
@@ -21,29 +21,30 @@ struct AxisPoints {
   double s, t;
 };
 
-AxisPoints closest_points(const Axis& a, const Axis& b);
+AxisPoints closest_points(const CapsuleAxis& a, const CapsuleAxis& b);
 
 /// The place on an axis that is closest to a point.
-double closest_point(const Axis& axis, const Vector3& point);
+double closest_point(const CapsuleAxis& axis, const Vector3& point);
 
 /// From b to a, between their closest points.
-Vector3 separation(const Axis& a, const Axis& b);
+Vector3 separation(const CapsuleAxis& a, const CapsuleAxis& b);
 
 /// The part of a's axis that lies beside b's, seen at right angles to a: empty where low > high.
 struct Overlap {
   double low, high;
 };
-Overlap overlap(const Axis& a, const Axis& b);
+Overlap overlap(const CapsuleAxis& a, const CapsuleAxis& b);
 
 /// How far any point of a can have moved against any of b while their ends went straight from one place to the next.
-double relative_motion(const Axis& a_from, const Axis& a_to, const Axis& b_from, const Axis& b_to);
+double relative_motion(const CapsuleAxis& a_from, const CapsuleAxis& a_to, const CapsuleAxis& b_from,
+                       const CapsuleAxis& b_to);
 
 /// When, from 0 to 1, two axes that move so first come as near as `distance`; by conservative advancement (Mirtich
 /// 1996), to a thousandth of the distance. A graze that it cannot decide in 64 advances counts.
-std::optional<double> first_touch(const Axis& a_from, const Axis& a_to, const Axis& b_from, const Axis& b_to,
-                                  double distance);
+std::optional<double> first_touch(const CapsuleAxis& a_from, const CapsuleAxis& a_to, const CapsuleAxis& b_from,
+                                  const CapsuleAxis& b_to, double distance);
 
 /// Where an axis is at a time from 0 to 1.
-Axis between(const Axis& from, const Axis& to, double time);
+CapsuleAxis between(const CapsuleAxis& from, const CapsuleAxis& to, double time);
 
 }  // namespace rodsweep

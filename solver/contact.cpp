@@ -17,7 +17,7 @@ std::vector<double> margins(const ContactBodies& bodies) {
   return out;
 }
 
-Box swept_box(const Axis& from, const Axis& to, double beyond) {
+Box swept_box(const CapsuleAxis& from, const CapsuleAxis& to, double beyond) {
   Box box{from.at(1), from.at(1)};
   box.include(from.at(-1));
   box.include(to.at(1));
@@ -26,7 +26,7 @@ Box swept_box(const Axis& from, const Axis& to, double beyond) {
 }
 
 /// The direction from b to a, any that is at right angles to both where they meet.
-Vector3 direction(const Vector3& separation, const Axis& a, const Axis& b, double scale) {
+Vector3 direction(const Vector3& separation, const CapsuleAxis& a, const CapsuleAxis& b, double scale) {
   const double distance = separation.norm();
   if (distance > 1e-9 * scale) return separation / distance;
   const Vector3 across = a.half.cross(b.half);
@@ -78,7 +78,7 @@ void ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
 void ContactFinder::find_pair(int a, int b, const Vector3* side) {
   const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
   const double contact_distance = bodies_.body(a).radius + bodies_.body(b).radius;
-  const Axis &a_start = start_[ia], &b_start = start_[ib], &a_free = free_[ia], &b_free = free_[ib];
+  const CapsuleAxis &a_start = start_[ia], &b_start = start_[ib], &a_free = free_[ia], &b_free = free_[ib];
   const double motion = relative_motion(a_start, a_free, b_start, b_free);
   const Vector3 ends = separation(a_free, b_free);
   const double at_end = ends.norm();
@@ -95,7 +95,7 @@ void ContactFinder::find_pair(int a, int b, const Vector3* side) {
     normal = *side;
   } else if (motion >= at_start) {
     if (const auto time = first_touch(a_start, a_free, b_start, b_free, std::min(contact_distance, at_start))) {
-      const Axis a_then = between(a_start, a_free, *time), b_then = between(b_start, b_free, *time);
+      const CapsuleAxis a_then = between(a_start, a_free, *time), b_then = between(b_start, b_free, *time);
       normal = direction(separation(a_then, b_then), a_then, b_then, contact_distance);
       when = *time;
     }
@@ -143,8 +143,8 @@ void ContactFinder::add(Contact contact, bool sided) {
   found_.push_back(contact);
 }
 
-Gap ContactFinder::follow(Contact& contact, const std::vector<Axis>& axes) const {
-  const Axis& a = axes[static_cast<std::size_t>(contact.a)];
+Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const {
+  const CapsuleAxis& a = axes[static_cast<std::size_t>(contact.a)];
   const double radius = bodies_.body(contact.a).radius;
   if (contact.b < 0) {
     const Plane& plane = planes_[static_cast<std::size_t>(-1 - contact.b)];
@@ -152,7 +152,7 @@ Gap ContactFinder::follow(Contact& contact, const std::vector<Axis>& axes) const
     const double width = plane.normal.dot(end - plane.point) - radius;
     return {width, end - (radius + width / 2) * plane.normal};
   }
-  const Axis& b = axes[static_cast<std::size_t>(contact.b)];
+  const CapsuleAxis& b = axes[static_cast<std::size_t>(contact.b)];
   const double other_radius = bodies_.body(contact.b).radius;
   const AxisPoints at = contact.place == Contact::Place::closest
                             ? closest_points(a, b)

@@ -56,8 +56,8 @@ class ContactFinder {
   void find(const Scene& scene, std::vector<Contact>& contacts);
 
   /// With the bodies' axes as they are now.
-  Gap follow(Contact& contact, const std::vector<Axis>& axes) const;
-  const std::vector<Axis>& start() const { return start_; }
+  Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const;
+  const std::vector<CapsuleAxis>& start() const { return start_; }
 
  private:
   void find_pair(int a, int b, const Vector3* side);
@@ -72,8 +72,8 @@ class ContactFinder {
   std::vector<Plane> planes_;
   BroadPhase broad_phase_;
   double recovery_;
-  std::vector<Axis> start_, free_;  ///< at p and p*
-  std::vector<double> reach_;       ///< of every body, how far from its axis its contacts begin [m]
+  std::vector<CapsuleAxis> start_, free_;  ///< at p and p*
+  std::vector<double> reach_;              ///< of every body, how far from its axis its contacts begin [m]
   std::vector<Box> boxes_;
   std::vector<Contact> found_;
 };

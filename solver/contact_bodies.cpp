@@ -120,7 +120,7 @@ bool ContactBodies::matter(int a, int b) const {
   return !std::binary_search(excluded.begin(), excluded.end(), b);
 }
 
-void ContactBodies::place(const Scene& scene, std::vector<Axis>& axes) const {
+void ContactBodies::place(const Scene& scene, std::vector<CapsuleAxis>& axes) const {
   axes.resize(bodies_.size());
   auto out = axes.begin();
   for (const Rod& rod : scene.rods)

@@ -42,7 +42,7 @@ class ContactBodies {
   const std::vector<Next>& next(int i) const { return next_[static_cast<std::size_t>(i)]; }
 
   /// Axes in the current state of the scene, one for each body.
-  void place(const Scene& scene, std::vector<Axis>& axes) const;
+  void place(const Scene& scene, std::vector<CapsuleAxis>& axes) const;
 
  private:
   void add(const Obstacle& obstacle);
@@ -50,7 +50,7 @@ class ContactBodies {
   void exclude_neighbours(const Rod& rod, int first_body);
 
   std::vector<Body> bodies_;
-  std::vector<Axis> obstacles_;
+  std::vector<CapsuleAxis> obstacles_;
   std::vector<std::vector<Next>> next_;     ///< of every body
   std::vector<std::vector<int>> excluded_;  ///< of every segment, the later ones that it cannot touch, sorted
 };

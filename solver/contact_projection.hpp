@@ -71,7 +71,7 @@ class ContactProjection {
   ContactFinder finder_;
   std::vector<Contact> contacts_;
   std::vector<Linear> linear_;
-  std::vector<Axis> axes_;
+  std::vector<CapsuleAxis> axes_;
   std::vector<Motion> motion_;  ///< of every body
   struct OldPose {
     Vector3 position;

@@ -105,7 +105,8 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
 }
 
 /// Master and worker take turns in one process.
-Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, BatchBody body) {
+Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal,
+                        BatchBody body) {
   const auto received = [&] { return signal.received(); };
   MemoryNetwork network(2);
   Master master(network[0], std::move(pending), progress, received);

@@ -43,8 +43,7 @@ SolveOutcome RecordingSolve::solve(const LinearSystem& system, const SolvePositi
   if (!recorder_.holds(at)) return solve_.solve(system, at, assemble_s, delta_lambda);
   recorder_.before(scene_.rods[static_cast<std::size_t>(at.rod)], at);
   const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
-  if (outcome == SolveOutcome::converged)
-    VectorX::Map(recorder_.solution(at), delta_lambda.size()) = delta_lambda;
+  if (outcome == SolveOutcome::converged) VectorX::Map(recorder_.solution(at), delta_lambda.size()) = delta_lambda;
   return outcome;
 }
 

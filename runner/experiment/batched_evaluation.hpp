@@ -18,7 +18,7 @@ struct TaskRun {
   TaskRecord* record = nullptr;
 };
 
-/// Is this a simulation of a data set that the batched step knows: a chain without loads and wind, inextensible?
+/// Is this a simulation of a data set that the batched step knows: an inextensible chain without loads or wind?
 bool steps_in_batches(const TaskSpec& spec);
 
 /// Such tasks fit together whose keys are equal: equal chains, and as many steps of the same kind.

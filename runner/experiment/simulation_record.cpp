@@ -50,6 +50,20 @@ void record_step(TaskRecord& record, std::size_t step, const Scene& scene, const
   record.step_newton_residual[step] = residual;
 }
 
+/// What the segments of a trajectory's frames are.
+void record_segments(const Scene& scene, TaskRecord& record) {
+  std::size_t row = 0;
+  for (std::size_t rod = 0; rod < scene.rods.size(); ++rod) {
+    for (const Segment& segment : scene.rods[rod].segments) {
+      record.segment_length_m[row] = segment.length_m;
+      record.segment_radius_m[row] = segment.radius_m;
+      record.segment_rod[row] = static_cast<std::int16_t>(rod);
+      record.segment_static[row] = segment.is_static ? 1 : 0;
+      ++row;
+    }
+  }
+}
+
 }  // namespace
 
 SimulationRecord::SimulationRecord(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)
@@ -57,7 +71,10 @@ SimulationRecord::SimulationRecord(const Task& task, const TaskSpec& spec, TaskR
   for (const Rod& rod : scene.rods) initial_length_ += rod_length(rod);
   record_.outcome = TaskOutcome::ok;
   record_.steps_done[0] = 0;
-  if (spec_.record.trajectory_every > 0) record_frame(0, scene);
+  if (spec_.record.trajectory_every > 0) {
+    record_segments(scene, record_);
+    record_frame(0, scene);
+  }
 }
 
 bool SimulationRecord::out_of_time(int step, double elapsed_s) {

@@ -83,7 +83,7 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   if (!plan.guess_labels().empty()) hdf5::write_texts(file, "/axes/guess", plan.guess_labels());
   hdf5::write_all(file, "/axes/tolerance", tolerance_ladder());
   write_parameters(file, parameters);
-  visit_task_columns(plan.system_rows() > 0, [&](const char* path, const char*, const char*, auto value) {
+  visit_task_columns(placed_rows(plan), [&](const char* path, const char*, const char*, auto value) {
     std::vector<decltype(value(Task{}))> values;
     for (const Task& task : plan.tasks()) values.push_back(value(task));
     hdf5::write_all(file, path, values);

@@ -68,6 +68,7 @@ std::int64_t row_count(const Plan& plan, Rows rows) {
     case Rows::step: return plan.step_rows();
     case Rows::solve: return plan.solve_rows();
     case Rows::frame_segment: return plan.frame_rows();
+    case Rows::segment: return plan.segment_rows();
     case Rows::system: return plan.system_rows();
     case Rows::system_segment: return plan.system_segment_rows();
     case Rows::system_joint: return plan.system_joint_rows();
@@ -76,6 +77,8 @@ std::int64_t row_count(const Plan& plan, Rows rows) {
 }
 
 }  // namespace
+
+PlacedRows placed_rows(const Plan& plan) { return {plan.segment_rows() > 0, plan.system_rows() > 0}; }
 
 std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& parameters) {
   std::vector<Field> fields;
@@ -90,7 +93,7 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(number_field<double>("/axes/tolerance", {sizes.tolerances}, "1",
                                         "tolerances at which iterations are counted, relative to ||b||"));
   append_parameters(fields, plan, parameters);
-  visit_task_columns(plan.system_rows() > 0, [&](const char* path, const char* unit, const char* meaning, auto value) {
+  visit_task_columns(placed_rows(plan), [&](const char* path, const char* unit, const char* meaning, auto value) {
     fields.push_back(number_field<decltype(value(Task{}))>(path, {plan.size()}, unit, meaning));
   });
   fields.push_back(number_field<std::uint8_t>("/tasks/state", {plan.size()}, "1",
@@ -142,7 +145,7 @@ std::int64_t data_bytes(const Field& field) {
 std::string plan_hash(const Plan& plan, const std::vector<ParameterColumn>& parameters) {
   Checksum sum;
   const auto add_text = [&](const std::string& text) { sum.add(text.data(), text.size()); };
-  visit_task_columns(plan.system_rows() > 0, [&](const char* path, const char*, const char*, auto value) {
+  visit_task_columns(placed_rows(plan), [&](const char* path, const char*, const char*, auto value) {
     add_text(path);
     for (const Task& task : plan.tasks()) {
       const auto number = value(task);

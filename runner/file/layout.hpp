@@ -60,10 +60,16 @@ hdf5::Datatype type_of(const Field& field);
 /// Bytes of a dataset's values.
 std::int64_t data_bytes(const Field& field);
 
+/// What only some files hold, so that only they say where a task has it.
+struct PlacedRows {
+  bool segments = false;  ///< of recorded trajectories
+  bool systems = false;   ///< the linear systems of a data set
+};
+PlacedRows placed_rows(const Plan& plan);
+
 /// What the plan says about each task, as datasets: calls visit(path, unit, meaning, value), value(task) a number.
-/// `systems`: also where the recorded linear systems of a data set are.
 template <class Visit>
-void visit_task_columns(bool systems, Visit&& visit) {
+void visit_task_columns(const PlacedRows& placed, Visit&& visit) {
   visit("/tasks/point", "1", "parameter point; tasks of a closed loop that differ in their guess alone share it",
         [](const Task& task) { return task.point; });
   visit("/tasks/sample", "1", "which draw of the random parameters, from 0",
@@ -82,7 +88,11 @@ void visit_task_columns(bool systems, Visit&& visit) {
         [](const Task& task) { return task.first_frame_row; });
   visit("/tasks/frames", "1", "frames in /trajectories, each of `segments` rows",
         [](const Task& task) { return task.frames; });
-  if (!systems) return;
+  if (placed.segments) {
+    visit("/tasks/first_segment_row", "1", "first row in /trajectories/segments",
+          [](const Task& task) { return task.first_segment_row; });
+  }
+  if (!placed.systems) return;
   visit("/tasks/first_system", "1", "first row in /systems", [](const Task& task) { return task.first_system; });
   visit("/tasks/systems", "1", "rows in /systems", [](const Task& task) { return task.systems; });
   visit("/tasks/first_system_segment", "1", "first row in /systems/segments",

@@ -36,6 +36,7 @@ RowRange rows_of(const Task& task, Rows rows) {
     case Rows::step: return {task.first_step, task.steps};
     case Rows::solve: return {task.first_solve, task.solves};
     case Rows::frame_segment: return {task.first_frame_row, task.frames * task.segments};
+    case Rows::segment: return {task.first_segment_row, task.segment_rows()};
     case Rows::system: return {task.first_system, task.systems};
     case Rows::system_segment: return {task.first_system_segment, task.system_segments};
     case Rows::system_joint: return {task.first_system_joint, task.system_joints};

@@ -19,7 +19,7 @@ namespace rodsweep {
 class Plan;
 
 /// What one row of a dataset stands for.
-enum class Rows { task, step, solve, frame_segment, system, system_segment, system_joint };
+enum class Rows { task, step, solve, frame_segment, segment, system, system_segment, system_joint };
 
 /// Axes after the row: none, guess, tolerance, the three components of a vector, four of a quaternion, the six of a
 /// joint's constraint (stretch-shear, then bend-twist), frames of a task.
@@ -83,9 +83,12 @@ struct TaskRecord {
   std::vector<double> step_newton_residual;
 
   // ---- /trajectories
-  std::vector<double> position_m, orientation;  ///< [frame x segment, 3], [frame x segment, 4] (w, x, y, z)
-  std::vector<std::int64_t> first_row;          ///< [frame] row of the frame in /trajectories
-  std::vector<double> frame_time_s;             ///< [frame]
+  std::vector<double> position_m, orientation;             ///< [frame x segment, 3], [frame x segment, 4] (w, x, y, z)
+  std::vector<std::int64_t> first_row;                     ///< [frame] row of the frame in /trajectories
+  std::vector<double> frame_time_s;                        ///< [frame]
+  std::vector<double> segment_length_m, segment_radius_m;  ///< [segment]
+  std::vector<std::int16_t> segment_rod;                   ///< [segment]
+  std::vector<std::int8_t> segment_static;                 ///< [segment]
 
   // ---- /systems: the recorded linear systems of a data set (runner/dataset/system_recording.hpp)
   std::vector<std::int32_t> system_step;                      ///< [system]
@@ -204,6 +207,12 @@ void visit_columns(Record& r, Visit&& visit) {
   visit(Column{"/trajectories/first_row", R::task, {A::frame}, "1", "row of the frame's first segment; -1 none"},
         r.first_row);
   visit(Column{"/trajectories/time_s", R::task, {A::frame}, "s", "time of the frame"}, r.frame_time_s);
+  visit(Column{"/trajectories/segments/length_m", R::segment, none, "m", "length; 0: a wall"}, r.segment_length_m);
+  visit(Column{"/trajectories/segments/radius_m", R::segment, none, "m", "radius; 0: a wall"}, r.segment_radius_m);
+  visit(Column{"/trajectories/segments/rod", R::segment, none, "1", "rod within the scene, from 0"}, r.segment_rod);
+  visit(
+      Column{"/trajectories/segments/static", R::segment, none, "1", "1: held, as its clamp says; 0: it moves freely"},
+      r.segment_static);
 
   const std::vector<Axis> six{A::constraint};
   visit(Column{"/systems/step", R::system, none, "1", "time step, from 0; -1: a Newton iteration that was not needed"},

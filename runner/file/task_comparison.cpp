@@ -41,8 +41,9 @@ void compare_results(const Pair& pair, TaskComparison& result) {
     const Column& column = a[i].column;
     if (!a[i].dataset) continue;
     const bool frames = column.rows == Rows::frame_segment;
-    if (frames && (pair.sweep_every == 0 || pair.rerun_every == 0)) continue;
-    if (!frames && std::string(column.path).rfind("/trajectories/", 0) == 0) continue;  // places and times of frames
+    const bool of_trajectory = std::string(column.path).rfind("/trajectories/", 0) == 0;
+    if (of_trajectory && (pair.sweep_every == 0 || pair.rerun_every == 0)) continue;
+    if (of_trajectory && column.rows == Rows::task) continue;  // places and times of frames
     ++result.compared;
     const bool same =
         frames ? same_frames(pair, a[i], b[i])

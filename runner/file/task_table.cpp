@@ -47,7 +47,7 @@ std::string attribute(hid_t file, const std::string& path, const char* name) {
 /// Known before the task runs.
 bool is_planned(const std::string& path) {
   bool found = false;
-  visit_task_columns(true,
+  visit_task_columns(PlacedRows{true, true},
                      [&](const char* planned, const char*, const char*, auto) { found = found || path == planned; });
   return found;
 }

@@ -62,6 +62,7 @@ Plan::Plan(Job job)
       task.first_step = step_rows_;
       task.first_solve = solve_rows_;
       task.first_frame_row = frame_rows_;
+      task.first_segment_row = segment_rows_;
       task.first_system = system_rows_;
       task.first_system_segment = system_segment_rows_;
       task.first_system_joint = system_joint_rows_;
@@ -75,6 +76,7 @@ Plan::Plan(Job job)
       step_rows_ += task.steps;
       solve_rows_ += task.solves;
       frame_rows_ += task.frames * task.segments;
+      segment_rows_ += task.segment_rows();
       max_frames_ = std::max(max_frames_, task.frames);
       system_rows_ += task.systems;
       system_segment_rows_ += task.system_segments;
@@ -90,12 +92,13 @@ Plan Plan::alone(std::int64_t index, int trajectory_every) const {
   for (const ParameterColumn& column : parameters()) plan.kept_.push_back(column.path);
   plan.job_.values["record"]["trajectory_every"] = trajectory_every;
   Task task = tasks_.at(static_cast<std::size_t>(index));
-  task.index = task.first_step = task.first_solve = task.first_frame_row = 0;
+  task.index = task.first_step = task.first_solve = task.first_frame_row = task.first_segment_row = 0;
   task.first_system = task.first_system_segment = task.first_system_joint = 0;
   task.frames = trajectory_every > 0 ? 1 + task.steps / trajectory_every : 0;
   plan.step_rows_ = task.steps;
   plan.solve_rows_ = task.solves;
   plan.frame_rows_ = task.frames * task.segments;
+  plan.segment_rows_ = task.segment_rows();
   plan.max_frames_ = task.frames;
   plan.system_rows_ = task.systems;
   plan.system_segment_rows_ = task.system_segments;

@@ -62,6 +62,7 @@ class Plan {
   std::int64_t step_rows() const { return step_rows_; }
   std::int64_t solve_rows() const { return solve_rows_; }
   std::int64_t frame_rows() const { return frame_rows_; }
+  std::int64_t segment_rows() const { return segment_rows_; }
   std::int64_t max_frames() const { return max_frames_; }
   std::int64_t system_rows() const { return system_rows_; }  ///< 0 unless the job is a data set
   std::int64_t system_segment_rows() const { return system_segment_rows_; }
@@ -76,7 +77,7 @@ class Plan {
   std::vector<std::string> guess_labels_;
   std::optional<std::int64_t> task_alone_;
   std::vector<std::string> kept_;  ///< of a task alone: parameters that the whole plan has columns of
-  std::int64_t step_rows_ = 0, solve_rows_ = 0, frame_rows_ = 0, max_frames_ = 0;
+  std::int64_t step_rows_ = 0, solve_rows_ = 0, frame_rows_ = 0, segment_rows_ = 0, max_frames_ = 0;
   std::int64_t system_rows_ = 0, system_segment_rows_ = 0, system_joint_rows_ = 0;
 };
 

@@ -16,15 +16,19 @@ import commandline
 import export
 import h5py
 import heatmap
+import joints
 import long_term
 import measures
 import newton
 import newton_levels
 import numpy as np
+import paraview
+import render
 import spatial
 import summary
 import temporal
 import timings
+import trajectory
 from sweepfile import SweepFile
 
 ROD = {"type": "bending_rod", "segments": {"grid": [6, 9]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
@@ -250,6 +254,24 @@ class Program(unittest.TestCase):
         self.assertEqual(len(self.script(export, path).split("\n")), 1 + 6 + 1)
         self.assertEqual(len(self.script(export, path, "--level", "steps").split("\n")), 1 + 24 + 1)
         self.assertNotIn("first_system", self.script(export, path, "--list"))
+
+    def test_a_trajectory_is_where_its_rod_is_and_can_be_drawn(self):
+        path = self.run_job("frames", scene=ROD, record={"trajectory_every": 2})
+        with SweepFile(path) as file:
+            for task in (0, 2):
+                shown = trajectory.of_task(file, task)
+                segments = int(file.h5["tasks/segments"][task])
+                length = file.parameter("scene.length_m").values[task]
+                self.assertEqual((shown.frames(), len(shown.length)), (3, segments))
+                self.assertTrue(shown.static[0] and not shown.static[1:].any())
+                self.assertAlmostEqual(shown.length.sum(), length)
+                low, high = shown.ends(0)
+                np.testing.assert_allclose(low[1:], high[:-1], atol=1e-12)
+                self.assertAlmostEqual(np.linalg.norm(high[-1] - low[0]), length)
+                np.testing.assert_array_equal(joints.pairs(shown), [[k, k + 1] for k in range(segments - 1)])
+        picture = os.path.join(self.folder.name, "rod.png")
+        self.assertEqual(self.script(render, path, "--task", "2", "--size", "60x40", "-o", picture).strip(), picture)
+        self.assertTrue(os.path.exists(self.script(paraview, path, "--task", "2").strip()))
 
     def test_tasks_that_are_not_complete_are_not_read(self):
         path = self.run_job("partial")

@@ -49,9 +49,9 @@ struct Fallen {
 
   explicit Fallen(int segments) : scene(heap(segments)), projection(scene, *scene.contact), bodies(scene) {
     projection.start_step();
-    std::vector<Axis> axes;
+    std::vector<CapsuleAxis> axes;
     bodies.place(scene, axes);
-    for (const Axis& axis : axes) {
+    for (const CapsuleAxis& axis : axes) {
       Box box{axis.at(1), axis.at(1)};
       box.include(axis.at(-1));
       boxes.push_back(box.grown(0.06));

@@ -106,7 +106,7 @@ class Query(Case):
 
     def test_all_columns_are_listed_with_meaning_and_unit(self):
         said = self.assert_exit(rodsweep("query", sweep(), "--columns", "help"), ALL_DONE)
-        for words in ("scene.length_m", "length of the rod [m]", "cg_ratio.GUESS[@TOLERANCE]",
+        for words in ("scene.length_m", "length of the rod; of a tree's trunk [m]", "cg_ratio.GUESS[@TOLERANCE]",
                       "GUESS      zero, previous, oracle 0.1", "without one 1e-2"):
             self.assertIn(words, said)
 

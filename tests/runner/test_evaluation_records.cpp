@@ -99,6 +99,23 @@ TEST_CASE("steps and frames of a falling rod have its times, energies, length an
   CHECK(r.position_m[3 * 29 + 1] < r.position_m[3 * 19 + 1]);
 }
 
+TEST_CASE("a recorded trajectory says how long, thick and free its segments are, rod after rod") {
+  Json job = job_with(R"(["zero"])");
+  job["scene"]["clamp"] = "wall";
+  CHECK(evaluated(job).segment_radius_m.empty());
+  job["record"] = {{"trajectory_every", 2}};
+  const TaskRecord r = evaluated(job);
+  std::vector<double> lengths(11, 0.2), radii(11, 0.05);  // a rod of 2 m, ten segments
+  lengths[0] = radii[0] = 0;                              // and its wall
+  REQUIRE(r.segment_length_m.size() == lengths.size());
+  for (std::size_t i = 0; i < lengths.size(); ++i) CHECK(r.segment_length_m[i] == Approx(lengths[i]).margin(1e-15));
+  CHECK(r.segment_radius_m == radii);
+  CHECK(r.segment_rod == std::vector<std::int16_t>(11, 0));
+  std::vector<std::int8_t> held(11, 0);
+  held[0] = 1;
+  CHECK(r.segment_static == held);
+}
+
 TEST_CASE("a rod that blows up and a task out of time end with what was done") {
   Json wild = job_with(R"(["zero"])");
   wild["scene"]["tip_force_n"] = {0, 1e12, 0};

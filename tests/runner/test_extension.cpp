@@ -129,6 +129,7 @@ TEST_CASE("what is taken over stands at its new rows, and a simulation that diff
   const TaskRecord written = synthetic_record(before, 3);
   CHECK(taken.joint_gap == written.joint_gap);
   CHECK(taken.position_m == written.position_m);
+  CHECK(taken.segment_radius_m == written.segment_radius_m);
   CHECK(taken.copied_guess == std::vector<std::int8_t>{-1, 1, 1});
   const std::size_t tolerances = tolerance_ladder().size();
   for (std::size_t row = 0; row < 6; ++row)

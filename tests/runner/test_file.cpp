@@ -113,6 +113,8 @@ TEST_CASE("what the plan knows is in the file from the start") {
   CHECK(stored_texts(folder / "a.h5", "/tasks/parameters/scene.type") == std::vector<std::string>(6, "bending_rod"));
   CHECK(stored<std::int64_t>(folder / "a.h5", "/tasks/first_frame_row") ==
         std::vector<std::int64_t>{0, 8, 16, 26, 36, 50});
+  CHECK(stored<std::int64_t>(folder / "a.h5", "/tasks/first_segment_row") ==
+        std::vector<std::int64_t>{0, 4, 8, 13, 18, 25});
   CHECK(stored_texts(folder / "a.h5", "/tasks/outcome") == std::vector<std::string>(6, "pending"));
 
   const hdf5::File read = hdf5::open_file(folder / "a.h5", H5F_ACC_RDONLY);
@@ -154,6 +156,8 @@ TEST_CASE("datasets that would be empty are left out, and the rest of a record i
   const auto summary = write_first(with("/record", R"({"solves": "summary"})", full_job()), "summary.h5");
   CHECK_FALSE(holds(summary, "/solves/iterations"));
   CHECK_FALSE(holds(summary, "/trajectories/position_m"));
+  CHECK_FALSE(holds(summary, "/trajectories/segments/radius_m"));
+  CHECK_FALSE(holds(summary, "/tasks/first_segment_row"));
   CHECK(holds(summary, "/tasks/iterations_sum"));
 
   const auto direct =

@@ -127,7 +127,7 @@ TEST_CASE("a skeleton is found beside the job; units, axis and root are brought 
   const Plan plan(folder.job(skeleton_job(R"(, "skeleton_unit_m": 0.01, "skeleton_up": "z")")));
   CHECK(plan.task(0).segments == 4);
   CHECK(plan.task(0).joints == 3);
-  const Skeleton& skeleton = *std::get<SkeletonTree>(plan.spec(0).scene).skeleton;
+  const Skeleton skeleton = *std::get<SkeletonTree>(plan.spec(0).scene).skeleton;
   CHECK(skeleton[0].position_m.norm() == 0);
   CHECK((skeleton[1].position_m - Vector3(0, 0.5, 0)).norm() < 1e-15);
   CHECK((skeleton[3].position_m - Vector3(-0.2, 0.9, -0.2)).norm() < 1e-15);

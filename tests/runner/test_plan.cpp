@@ -277,29 +277,34 @@ TEST_CASE("rows of the file follow one another without gaps") {
   job["time"] = {{"step_s", 0.02}, {"steps", grid({10, 25})}, {"newton_iterations", 3}};
   job["record"] = {{"trajectory_every", 10}};
   const Plan plan = plan_of(job);
-  std::int64_t steps = 0, solves = 0, frames = 0;
+  std::int64_t steps = 0, solves = 0, frames = 0, segments = 0;
   for (const Task& task : plan.tasks()) {
     CHECK(task.joints == task.segments - 1);
     CHECK(task.first_step == steps);
     CHECK(task.first_solve == solves);
     CHECK(task.first_frame_row == frames);
+    CHECK(task.first_segment_row == segments);
+    CHECK(task.segment_rows() == task.segments);
     CHECK(task.solves == 3 * task.steps);
     CHECK(task.frames == (task.steps == 10 ? 2 : 3));  // the initial state too
     CHECK(task.cost == static_cast<double>(task.segments * task.solves));
     steps += task.steps;
     solves += task.solves;
     frames += task.frames * task.segments;
+    segments += task.segments;
   }
   CHECK(plan.task(0).segments == 5);  // a wall adds its static segment
   CHECK(plan.step_rows() == steps);
   CHECK(plan.solve_rows() == solves);
   CHECK(plan.frame_rows() == frames);
+  CHECK(plan.segment_rows() == segments);
   CHECK(plan.max_frames() == 3);
 
   job["record"] = {{"solves", "summary"}};
   const Plan summary = plan_of(job);
   CHECK(summary.solve_rows() == 0);
   CHECK(summary.frame_rows() == 0);
+  CHECK(summary.segment_rows() == 0);
   CHECK(summary.max_frames() == 0);
 }
 
@@ -330,11 +335,13 @@ TEST_CASE("a task alone keeps its point, sample, guess, values and seed, and has
   REQUIRE(one.size() == 1);
   CHECK(one.task_alone() == 11);
   const Task &there = whole.task(11), &here = one.task(0);
-  CHECK((here.index == 0 && here.first_step == 0 && here.first_solve == 0 && here.first_frame_row == 0));
+  CHECK((here.index == 0 && here.first_step == 0 && here.first_solve == 0 && here.first_frame_row == 0 &&
+         here.first_segment_row == 0));
   CHECK((here.point == there.point && here.sample == there.sample && here.own_guess == there.own_guess));
   CHECK((here.steps == there.steps && here.solves == there.solves && here.segments == there.segments));
   CHECK(here.frames == 1 + 10 / 4);
   CHECK((one.step_rows() == 10 && one.frame_rows() == here.frames * here.segments));
+  CHECK(one.segment_rows() == here.segments);
   const TaskSpec a = whole.spec(11), b = one.spec(0);
   CHECK(b.seed == a.seed);
   CHECK(b.record.trajectory_every == 4);

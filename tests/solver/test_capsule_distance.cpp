@@ -10,7 +10,7 @@ namespace rodsweep {
 namespace {
 
 /// The least distance over a fine grid of one axis, exact along the other.
-double searched_distance(const Axis& a, const Axis& b) {
+double searched_distance(const CapsuleAxis& a, const CapsuleAxis& b) {
   double least = HUGE_VAL;
   for (int i = -4000; i <= 4000; ++i) {
     const Vector3 on_a = a.at(i / 4000.0);
@@ -21,9 +21,9 @@ double searched_distance(const Axis& a, const Axis& b) {
   return least;
 }
 
-Axis random_axis(test::Random& random) { return {random.vector(1), random.vector(0.7)}; }
+CapsuleAxis random_axis(test::Random& random) { return {random.vector(1), random.vector(0.7)}; }
 
-void check_closest(const Axis& a, const Axis& b) {
+void check_closest(const CapsuleAxis& a, const CapsuleAxis& b) {
   const AxisPoints at = closest_points(a, b);
   CHECK(std::max(std::abs(at.s), std::abs(at.t)) <= 1);
   const double found = (a.at(at.s) - b.at(at.t)).norm(), searched = searched_distance(a, b);
@@ -36,7 +36,7 @@ TEST_CASE("closest points of axes are as near as any, however they lie") {
   test::Random random(1);
   for (int i = 0; i < 100; ++i) check_closest(random_axis(random), random_axis(random));
   for (int i = 0; i < 20; ++i) {
-    const Axis a = random_axis(random);
+    const CapsuleAxis a = random_axis(random);
     check_closest(a, {a.centre + random.vector(1), random.uniform(-2, 2) * a.half});          // parallel
     check_closest(a, {a.centre + random.vector(1), a.half + 1e-7 * random.vector(1)});        // nearly
     check_closest(a, {a.centre + random.uniform(-3, 3) * a.half, a.half});                    // in one line
@@ -47,7 +47,7 @@ TEST_CASE("closest points of axes are as near as any, however they lie") {
 }
 
 TEST_CASE("parallel axes are closest in the middle of their overlap") {
-  const Axis a{{0, 0, 0}, {2, 0, 0}}, b{{3, 1, 0}, {-2, 0, 0}};
+  const CapsuleAxis a{{0, 0, 0}, {2, 0, 0}}, b{{3, 1, 0}, {-2, 0, 0}};
   const Overlap both = overlap(a, b);
   CHECK(both.low == Approx(0.5));
   CHECK(both.high == Approx(1));
@@ -57,14 +57,14 @@ TEST_CASE("parallel axes are closest in the middle of their overlap") {
 }
 
 TEST_CASE("the place on an axis closest to a point is its foot or an end") {
-  const Axis a{{1, 0, 0}, {2, 0, 0}};
+  const CapsuleAxis a{{1, 0, 0}, {2, 0, 0}};
   CHECK(closest_point(a, {2, 5, 0}) == Approx(0.5));
   CHECK(closest_point(a, {9, 5, 0}) == 1);
   CHECK(closest_point(a, {-9, 5, 0}) == -1);
 }
 
 TEST_CASE("axes that fly at each other first touch when they have come as near as asked") {
-  const Axis a{{0, 0, 0}, {1, 0, 0}}, from{{0, 3, 0}, {0, 0, 1}}, to{{0, -3, 0}, {0, 0, 1}};
+  const CapsuleAxis a{{0, 0, 0}, {1, 0, 0}}, from{{0, 3, 0}, {0, 0, 1}}, to{{0, -3, 0}, {0, 0, 1}};
   const auto touch = first_touch(a, a, from, to, 0.6);
   REQUIRE(touch);
   CHECK(*touch == Approx((3 - 0.6) / 6).epsilon(1e-3));
@@ -78,7 +78,8 @@ TEST_CASE("a first touch is never later than a finely sampled one") {
   test::Random random(2);
   int touches = 0;
   for (int i = 0; i < 200; ++i) {
-    const Axis a0 = random_axis(random), a1 = random_axis(random), b0 = random_axis(random), b1 = random_axis(random);
+    const CapsuleAxis a0 = random_axis(random), a1 = random_axis(random), b0 = random_axis(random),
+                      b1 = random_axis(random);
     double sampled = HUGE_VAL;
     for (int k = 1000; k >= 0; --k)
       if (separation(between(a0, a1, k / 1000.0), between(b0, b1, k / 1000.0)).norm() < 0.2) sampled = k / 1000.0;

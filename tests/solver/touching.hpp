@@ -77,7 +77,7 @@ class Touching {
 /// The least of |axis - axis| / R over all pairs that can touch: 1 where they do.
 inline double nearest(const Scene& scene) {
   const ContactBodies bodies(scene);
-  std::vector<Axis> axes;
+  std::vector<CapsuleAxis> axes;
   bodies.place(scene, axes);
   double least = HUGE_VAL;
   for (int a = 0; a < bodies.count(); ++a)

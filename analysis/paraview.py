@@ -1,0 +1,114 @@
+#!/usr/bin/python3
+"""A recorded trajectory for ParaView or VisIt: an XDMF file that points into the results file.
+
+Every frame is a set of segments' centres joined by lines, with orientation (w, x, y, z), radius, length, rod and
+whether they are held. Numbers are read from the HDF5 file, which stays as it is: keep the two together. Open the .xdmf
+with ParaView's "XDMF Reader" (its Xdmf3 readers fail on parts of datasets, which frames are). Extract Surface and Tube,
+there with Scalars "radius" and Vary Radius "By Absolute Scalar", show the rods as they are. The path is printed.
+"""
+
+import os
+from xml.etree import ElementTree
+
+import commandline
+import joints
+import outputs
+import trajectory
+from sweepfile import SweepFile
+
+EXAMPLES = """examples:
+  analysis/paraview.py results/net.h5
+  analysis/paraview.py results/ring.h5 --task 3 -o ring.xdmf"""
+TOPOLOGY = "/Xdmf/Domain/Topology[1]"
+NUMBERS = {"f8": "Float", "i2": "Int", "i1": "Char"}
+CONSTANT = {"radius": "radius_m", "length": "length_m", "rod": "rod", "static": "static"}
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
+    made.add_argument("--task", metavar="N", type=int, help="this task (default: the first that --scene, --select and "
+                                                            "--guess leave)")
+    made.add_argument("-o", "--output", metavar="FILE", help="file to write (default: NAME-taskN.xdmf beside the file)")
+    outputs.add_force(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        trajectory.recorded(file)
+        task = trajectory.chosen_task(file, options)
+        shown = trajectory.of_task(file, task)
+        path = options.output or f"{os.path.splitext(options.file)[0]}-task{task}.xdmf"
+        outputs.check(path, options)
+        reference = os.path.relpath(options.file, os.path.dirname(path) or ".")
+        with outputs.whole(path) as part:
+            document(shown, reference).write(part, encoding="utf-8", xml_declaration=True)
+        print(path)
+    return 0
+
+
+def document(shown, reference):
+    """The XDMF (version 2) of all frames; `reference`: path of the results file from where the XDMF is."""
+    root = ElementTree.Element("Xdmf", Version="2.0")
+    domain = ElementTree.SubElement(root, "Domain")
+    topology(domain, joints.pairs(shown), len(shown.length))
+    series = ElementTree.SubElement(domain, "Grid", Name=f"task {shown.task}", GridType="Collection",
+                                    CollectionType="Temporal")
+    rows = Rows(shown.h5, reference, len(shown.length))
+    for frame, (row, time) in enumerate(zip(shown.first_row, shown.time_s)):
+        grid = ElementTree.SubElement(series, "Grid", Name=f"frame {frame}", GridType="Uniform")
+        ElementTree.SubElement(grid, "Time", Value=repr(float(time)))
+        ElementTree.SubElement(grid, "Topology", Reference=TOPOLOGY)
+        rows.add(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"), "/trajectories/position_m", row)
+        rows.add(attribute(grid, "orientation", "Matrix"), "/trajectories/orientation", row)
+        for name, column in CONSTANT.items():
+            rows.add(attribute(grid, name, "Scalar"), f"{trajectory.SEGMENTS}/{column}", shown.first_segment)
+    ElementTree.indent(root, " ")
+    return ElementTree.ElementTree(root)
+
+
+def topology(parent, pairs, segments):
+    """Lines between the centres of joined segments; points where nothing is joined."""
+    if len(pairs):
+        lines = ElementTree.SubElement(parent, "Topology", TopologyType="Polyline", NodesPerElement="2",
+                                       NumberOfElements=str(len(pairs)))
+    else:
+        pairs = [[segment] for segment in range(segments)]
+        lines = ElementTree.SubElement(parent, "Topology", TopologyType="Polyvertex", NodesPerElement="1",
+                                       NumberOfElements=str(segments))
+    item = ElementTree.SubElement(lines, "DataItem", Format="XML", NumberType="Int",
+                                  Dimensions=f"{len(pairs)} {len(pairs[0])}")
+    item.text = "\n" + "\n".join(" ".join(map(str, pair)) for pair in pairs) + "\n"
+
+
+def attribute(grid, name, kind):
+    return ElementTree.SubElement(grid, "Attribute", Name=name, AttributeType=kind, Center="Node")
+
+
+class Rows:
+    """Points at rows of datasets."""
+
+    def __init__(self, h5, reference, count):
+        self.h5, self.reference, self.count = h5, reference, count
+
+    def add(self, parent, path, first):
+        """Rows [first, first + count) of a dataset as a hyperslab: start, stride and count along every axis."""
+        dataset = self.h5[path]
+        shape, width = dataset.shape, dataset.shape[1:]
+        extent = text(self.count, *width)
+        slab = ElementTree.SubElement(parent, "DataItem", ItemType="HyperSlab", Type="HyperSlab", Dimensions=extent)
+        start, stride = text(int(first), *[0] * len(width)), text(*[1] * len(shape))
+        ElementTree.SubElement(slab, "DataItem", Format="XML", NumberType="Int",
+                               Dimensions=text(3, len(shape))).text = f"{start} {stride} {extent}"
+        whole = ElementTree.SubElement(slab, "DataItem", Format="HDF", NumberType=NUMBERS[dataset.dtype.str[1:]],
+                                       Precision=str(dataset.dtype.itemsize), Dimensions=text(*shape))
+        whole.text = f"{self.reference}:{path}"
+
+
+def text(*numbers):
+    return " ".join(map(str, numbers))
+
+
+if __name__ == "__main__":
+    commandline.run("paraview.py", main)

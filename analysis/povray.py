@@ -1,0 +1,108 @@
+"""A frame as a scene for POV-Ray, and its picture.
+
+Segments are cylinders whose ends are spheres of the same radius; a held one without length is a plate. The floor is a
+disc that takes shadows and fades into the white background. Vectors are handed over as they are: POV-Ray's camera takes
+right, up and direction in any handedness. The picture comes through a pipe; the scene is a temporary file, since
+POV-Ray cannot read one from a pipe.
+"""
+
+import subprocess
+import tempfile
+
+import numpy as np
+
+import staging
+from tools import ToolError
+
+SETTINGS = ("-D", "-V", "-GA", "+O-", "+FN8", "-J")
+EDGES = {False: ("+A0.2", "+AM2", "+R2"), True: ("+A0.05", "+AM1", "+R3")}   # antialiasing; fine: three times slower
+LAMP = 0.4    # width of the lamp, of the scene's extent: how soft its shadows are
+PLATE = 0.3   # thickness of a wall's plate, in the radius of the sphere that holds it
+
+
+def scene(trajectory, stage, colouring, frame):
+    """The text of one frame. colouring: palette and numbers of staging.colours()."""
+    return surroundings(stage) + tubes(trajectory, *colouring, frame)
+
+
+def surroundings(stage):
+    """Camera, lights, floor."""
+    seen, up = stage.camera, stage.up
+    across, upwards = (2 * tangent for tangent in seen.tangents)
+    lamp = stage.centre + stage.extent * (2.4 * up - 0.8 * seen.right - 0.6 * seen.forward)
+    fill = stage.centre + stage.extent * (0.6 * up + 1.6 * seen.right - 2.0 * seen.forward)
+    wide = LAMP * stage.extent
+    text = f"""#version 3.7;
+global_settings {{ assumed_gamma 1 max_trace_level 3 }}
+background {{ rgb 1 }}
+camera {{ perspective location {vector(seen.eye)} direction {vector(seen.forward)}
+  right {vector(across * seen.right)} up {vector(upwards * seen.up)} }}
+light_source {{ {vector(lamp)} rgb 0.95 area_light {vector(wide * seen.right)}, {vector(wide * seen.up)},
+  5, 5 adaptive 1 circular orient }}
+light_source {{ {vector(fill)} rgb 0.3 shadowless }}
+"""
+    if stage.floor is None:
+        return text
+    under = stage.centre + (stage.floor - stage.centre @ up) * up
+    return text + f"""plane {{ {vector(up)}, 0
+  texture {{ cylindrical texture_map {{
+    [0 pigment {{ rgb 1 }} finish {{ ambient 0 diffuse 0 emission 1 }}]
+    [0.7 pigment {{ rgb 0.97 }} finish {{ ambient 0 diffuse 0.6 emission 0.4 }}] }}
+    scale {number(2.5 * stage.extent)} {turned_from_y(up)} }}
+  translate {vector(under)} }}
+"""
+
+
+def turned_from_y(up):
+    """POV-Ray's cylindrical pattern has y for its axis."""
+    if abs(up[1]) > 0.9:
+        return ""
+    return "rotate 90*x" if abs(up[2]) > 0.9 else "rotate 90*z"
+
+
+def tubes(trajectory, palette, colour, frame):
+    low, high = trajectory.ends(frame)
+    parts = []
+    for k in np.unique(colour):
+        mine = (colour == k) & (trajectory.length > 0)
+        radius = trajectory.radius[mine, None]
+        body = many("cylinder{<%.7g,%.7g,%.7g>,<%.7g,%.7g,%.7g>,%.7g}\n", low[mine], high[mine], radius)
+        body += "".join(many("sphere{<%.7g,%.7g,%.7g>,%.7g}\n", ends[mine], radius) for ends in (low, high))
+        walls = (colour == k) & (trajectory.length <= 0)
+        if walls.any():
+            radius = staging.drawn_radius(trajectory)[walls, None]
+            behind = low[walls] - PLATE * radius * trajectory.axes(frame)[walls]
+            body += many("cylinder{<%.7g,%.7g,%.7g>,<%.7g,%.7g,%.7g>,%.7g}\n", behind, low[walls],
+                         np.sqrt(1 - PLATE ** 2) * radius)
+        parts.append(f"union{{\n{body}pigment{{srgb {vector(palette[k])}}} "
+                     "finish{ambient 0.14 diffuse 0.78 specular 0.18 roughness 0.03}}\n")
+    return "".join(parts)
+
+
+def many(shape, *columns):
+    """`shape` for every row of the columns, at a stroke: numbers are formatted together."""
+    rows = np.concatenate(columns, axis=1)
+    return (shape * len(rows)) % tuple(rows.ravel().tolist())
+
+
+def vector(values):
+    return "<" + ", ".join(number(v) for v in values) + ">"
+
+
+def number(value):
+    return f"{value:.12g}"
+
+
+def picture(text, size, threads=1, fine=False):
+    """PNG bytes. Raises ToolError with what POV-Ray says where it fails."""
+    with tempfile.NamedTemporaryFile("w", suffix=".pov", encoding="ascii") as scene_file:
+        scene_file.write(text)
+        scene_file.flush()
+        command = ["povray", *SETTINGS, *EDGES[fine], f"+I{scene_file.name}", f"+W{size[0]}", f"+H{size[1]}",
+                   f"+WT{threads}"]
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    if done.returncode or not done.stdout.startswith(b"\x89PNG"):
+        said = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if line.strip()]
+        raise ToolError("povray failed: " + " ".join(said[-8:]))
+    return done.stdout
+

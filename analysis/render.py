@@ -1,0 +1,181 @@
+#!/usr/bin/python3
+"""Pictures and films of a recorded trajectory: segments as tubes of their radius, with soft shadows.
+
+Without --movie, a PNG of the last frame, of the frames of --frame, or of every N-th of --every N. The job must record
+frames (record.trajectory_every), or `rodsweep rerun FILE TASK` makes a file of one task that has them.
+POV-Ray draws the pictures; --movie mp4 needs ffmpeg. `make pictures` installs both.
+The camera sees every segment in every frame that is drawn. Paths are printed; files that exist are not replaced.
+"""
+
+import os
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+import commandline
+import movie
+import outputs
+import povray
+import staging
+import tools
+import trajectory
+from sweepfile import KeyNotFound, SweepFile
+
+EXAMPLES = """examples:
+  analysis/render.py results/net.h5
+  analysis/render.py results/net.h5 --task 3 --frame 0 10 -1 --view 30,20 --size 1600x1200 -o pictures
+  analysis/render.py results/helix.h5 --select scene.segments=50 --movie mp4 --every 2 -o helix.mp4
+  analysis/render.py results/ring.h5 --movie gif --size 400x300 --colour along"""
+SAMPLES = 4   # small pictures from which a GIF takes its colours
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
+    made.add_argument("--task", metavar="N", type=int, help="this task (default: the first that --scene, --select and "
+                                                            "--guess leave)")
+    made.add_argument("-o", "--output", metavar="PATH", help="file of one still or of a film, folder of several stills "
+                                                             "(default: in figures/ beside the file)")
+    which = made.add_mutually_exclusive_group()
+    which.add_argument("--frame", metavar="K", type=int, nargs="+", help="these frames; -1 is the last (the default)")
+    which.add_argument("--every", metavar="N", type=whole_number, help="frames 0, N, 2 N …")
+    made.add_argument("--movie", choices=["mp4", "gif"], help="a film of all frames, or of those of --every")
+    made.add_argument("--rate", metavar="F", type=whole_number, default=25, help="frames a second of a film (default: "
+                                                                                 "25)")
+    made.add_argument("--size", metavar="WxH", type=pixels, default=(800, 600), help="pixels (default: 800x600)")
+    made.add_argument("--view", metavar="VIEW", type=view, help="front, side, top or AZIMUTH,ELEVATION in degrees "
+                                                               "(default: chosen from the shape of the scene)")
+    made.add_argument("--colour", choices=["rod", "along", "radius"], default="rod",
+                      help="what colours tell: the rod (default), the place along it, or the radius")
+    made.add_argument("--floor", metavar="HEIGHT", type=height, default="auto",
+                      help="height of the floor in m, or none (default: auto, a little under the lowest point)")
+    made.add_argument("--fine", action="store_true", help="smooth edges of rods thinner than a pixel, three "
+                                                          "times slower")
+    made.add_argument("-j", "--jobs", metavar="J", type=whole_number, default=os.cpu_count() or 1,
+                      help="frames drawn at a time (default: one per core)")
+    outputs.add_force(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    if options.movie and options.frame:
+        raise KeyNotFound("--movie shows all frames, or those of --every N: remove --frame")
+    if options.movie == "mp4" and any(side % 2 for side in options.size):
+        raise KeyNotFound("--size of an MP4 must be even: its colours have half the resolution")
+    tools.needed("povray", "which draws the pictures")
+    if options.movie == "mp4":
+        tools.needed("ffmpeg", "which --movie mp4 needs (gif does not)")
+    with SweepFile(options.file) as file:
+        trajectory.recorded(file)
+        task = trajectory.chosen_task(file, options)
+        shown = trajectory.of_task(file, task)
+        frames = chosen_frames(shown, options)
+        paths = names(options, task, frames)
+        for path in paths:
+            outputs.check(path, options)
+        stage = staging.staged(shown, frames, staging.upwards(file, task), options.view, options.size, options.floor)
+        draw = Drawing(shown, stage, staging.colours(shown, options.colour), options)
+        for path in paths:
+            os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+        if options.movie:
+            write_movie(draw, frames, paths[0], options)
+        else:
+            for path, picture in zip(paths, draw.pictures(frames)):
+                with outputs.whole(path) as part, open(part, "wb") as out:
+                    out.write(picture)
+        print("\n".join(paths))
+    return 0
+
+
+class Drawing:
+    """Pictures of one trajectory, all with the same camera, lights and colours."""
+
+    def __init__(self, shown, stage, colouring, options):
+        self.shown, self.stage, self.colouring = shown, stage, colouring
+        self.size, self.jobs, self.fine = options.size, options.jobs, options.fine
+
+    def picture(self, frame, threads=1, shrink=1):
+        size = tuple(max(1, side // shrink) for side in self.size)
+        return povray.picture(self.text(frame), size, threads, self.fine)
+
+    def pictures(self, frames):
+        """In order; `jobs` are drawn at a time, and no more are kept."""
+        if len(frames) == 1:
+            yield self.picture(frames[0], self.jobs)
+            return
+        with ThreadPoolExecutor(self.jobs) as pool:
+            waiting = deque()
+            for frame in frames:
+                waiting.append(pool.submit(povray.picture, self.text(frame), self.size, fine=self.fine))
+                if len(waiting) > self.jobs:
+                    yield waiting.popleft().result()
+            while waiting:
+                yield waiting.popleft().result()
+
+    def text(self, frame):
+        return povray.scene(self.shown, self.stage, self.colouring, frame)
+
+
+def write_movie(draw, frames, path, options):
+    with outputs.whole(path) as part:
+        if options.movie == "mp4":
+            movie.write_mp4(part, draw.pictures(frames), options.rate)
+        else:
+            some = frames[np.unique(np.linspace(0, len(frames) - 1, SAMPLES).astype(int))]
+            movie.write_gif(part, draw.pictures(frames), options.rate,
+                            [draw.picture(frame, options.jobs, shrink=2) for frame in some])
+
+
+def chosen_frames(shown, options):
+    """Their numbers, in order."""
+    count = shown.frames()
+    if options.movie or options.every:
+        return np.arange(0, count, options.every or 1)
+    chosen = options.frame or [-1]
+    for frame in chosen:
+        if not -count <= frame < count:
+            raise KeyNotFound(f"task {shown.task} has frames 0 to {count - 1}, not {frame}")
+    return np.array(sorted({frame % count for frame in chosen}))
+
+
+def names(options, task, frames):
+    """A path for every picture, or the film's."""
+    stem = f"{os.path.splitext(os.path.basename(options.file))[0]}-task{task}"
+    folder = os.path.join(os.path.dirname(options.file), "figures")
+    if options.movie:
+        return [options.output or os.path.join(folder, f"{stem}.{options.movie}")]
+    if options.output and len(frames) == 1:
+        return [options.output]
+    return [os.path.join(options.output or folder, f"{stem}-frame{frame:04d}.png") for frame in frames]
+
+
+def whole_number(text):
+    value = int(text)
+    if value < 1:
+        raise ValueError
+    return value
+
+
+def pixels(text):
+    size = tuple(whole_number(side) for side in text.lower().split("x"))
+    if len(size) != 2:
+        raise ValueError
+    return size
+
+
+def view(text):
+    if text in staging.VIEWS:
+        return text
+    azimuth, elevation = (float(angle) for angle in text.split(","))
+    if not abs(elevation) < 90:
+        raise ValueError
+    return azimuth, elevation
+
+
+def height(text):
+    return text if text in ("auto", "none") else float(text)
+
+
+if __name__ == "__main__":
+    commandline.run("render.py", main)

@@ -1,0 +1,121 @@
+"""How a trajectory is shown: which way is up, where the floor and the eye are, and in what colours.
+
+Only sums and extremes over the frames are kept, so any number of them takes the same memory.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import colormaps, colors
+
+import camera
+from sweepfile import KeyNotFound
+
+VIEWS = {"front": (0, 4), "side": (90, 4), "top": (0, 89.9)}   # azimuth and elevation in degrees
+TURN_DEG = 28           # of a chosen view, away from looking at the broad side
+GAP = 0.015             # between the lowest point and the floor, of the scene's extent
+WALL_RADII = 2.2        # radius of the plate that stands for a wall (a held segment without length), in rod radii
+RODS = ("#2f6f9f", "#c8553d", "#4f8a5b", "#d9a03f", "#7a5c99", "#5aa5b5", "#a8475c", "#8a8f3c")
+HELD = "#4a4e54"
+WOOD = colors.LinearSegmentedColormap.from_list("wood", ["#8fb648", "#6f8a3c", "#7a5d3b", "#5d4230"])   # thin to thick
+SHADES = 64             # colours of a continuous scale
+
+
+@dataclass(frozen=True)
+class Stage:
+    camera: camera.Camera
+    up: np.ndarray
+    floor: float          # height along `up`; None: there is none
+    centre: np.ndarray    # of the scene
+    extent: float         # diagonal of its bounding box
+
+
+def upwards(file, task):
+    """The axis that points most against gravity; y where there is none."""
+    gravity = file.parameters.get("scene.gravity_m_s2")
+    against = -gravity.values[task] if gravity is not None and gravity.values.ndim == 2 else np.zeros(3)
+    up = np.zeros(3)
+    largest = int(np.argmax(np.abs(against))) if np.any(against) else 1
+    up[largest] = -1.0 if against[largest] < 0 else 1.0
+    return up
+
+
+def drawn_radius(trajectory):
+    """Of every segment's spheres. A wall, which has neither length nor radius, is wider than the rod that it holds."""
+    radius = trajectory.radius.copy()
+    for wall in np.flatnonzero(trajectory.length <= 0):
+        radius[wall] = WALL_RADII * trajectory.radius[trajectory.rod == trajectory.rod[wall]].max()
+    return radius
+
+
+def staged(trajectory, frames, up, view, size, floor="auto"):
+    """A Stage that shows all segments in all of these frames, and their shadows on the floor.
+
+    view: None, a name of VIEWS or (azimuth, elevation) in degrees; floor: "auto", "none" or a height [m]."""
+    radius = drawn_radius(trajectory)[:, None]
+    low, high, spread, count = np.full(3, np.inf), np.full(3, -np.inf), np.zeros((3, 3)), 0
+    for frame in frames:
+        points = trajectory.centres(frame)
+        reach = radius + trajectory.length[:, None] / 2
+        low, high = np.minimum(low, (points - reach).min(axis=0)), np.maximum(high, (points + reach).max(axis=0))
+        middle = points - points.mean(axis=0)
+        spread, count = spread + middle.T @ middle, count + len(points)
+    if not np.isfinite(low).all() or not np.isfinite(high).all():
+        raise KeyNotFound(f"task {trajectory.task} has positions that are not numbers in these frames: choose others "
+                          "with --frame")
+    extent = float(np.linalg.norm(high - low))
+    level = floor_level(trajectory, frames, up, floor, extent)
+    angles = VIEWS.get(view, view) if view else chosen_view(spread / count, low, high, up)
+    framing = camera.Framing(camera.direction(*angles, up), up, size)
+    for frame in frames:
+        for points in trajectory.ends(frame):
+            framing.add(points, radius[:, 0])
+            if level is not None:
+                framing.add(points + (level - points @ up)[:, None] * up, radius[:, 0])
+    return Stage(framing.camera(), up, level, (low + high) / 2, extent)
+
+
+def floor_level(trajectory, frames, up, floor, extent):
+    """Height along `up`, or None."""
+    if floor != "auto":
+        return None if floor == "none" else float(floor)
+    radius = drawn_radius(trajectory)
+    lowest = min(float(np.min(points @ up - radius)) for frame in frames for points in trajectory.ends(frame))
+    return lowest - GAP * extent
+
+
+def chosen_view(spread, low, high, up):
+    """Azimuth and elevation: turned a little from the broad side, from higher above the flatter the scene is."""
+    right, back = camera.horizontal(up)
+    plane = np.stack([right, back])
+    values, vectors = np.linalg.eigh(plane @ spread @ plane.T)
+    azimuth = TURN_DEG
+    if values[1] > 1.7 * max(values[0], 0):
+        normal = vectors[:, 0] if vectors[1, 0] >= 0 else -vectors[:, 0]
+        azimuth += np.degrees(np.arctan2(normal[0], normal[1]))
+    box = high - low
+    wide, tall = np.linalg.norm(plane @ box), abs(up @ box)
+    return azimuth, 12 + 20 * max(0.0, 1 - tall / wide)
+
+
+def colours(trajectory, by):
+    """A palette [colour, rgb] (sRGB) and every segment's number in it. by: "rod", "along" its rod, or "radius"."""
+    if by == "rod":
+        palette = [colors.to_rgb(c) for c in RODS]
+        number = trajectory.rod % len(palette)
+    else:
+        values = np.log(drawn_radius(trajectory)) if by == "radius" else along(trajectory.rod)
+        low, high = values.min(), values.max()
+        scale = colormaps["viridis"] if by == "along" else WOOD
+        palette = [scale(shade)[:3] for shade in np.linspace(0.1, 0.95, SHADES)]
+        number = np.rint((SHADES - 1) * (values - low) / (high - low or 1)).astype(int)
+    return np.array([*palette, colors.to_rgb(HELD)]), np.where(trajectory.static, len(palette), number)
+
+
+def along(rod):
+    """Every segment's place within its rod, from 0 to 1."""
+    place = np.zeros(len(rod))
+    for number in np.unique(rod):
+        mine = rod == number
+        place[mine] = np.linspace(0, 1, mine.sum())
+    return place

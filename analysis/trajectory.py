@@ -1,0 +1,99 @@
+"""The recorded trajectory of a task: what its segments are, and where they are in every frame.
+
+A segment is a cylinder along its local z with length, radius and centre x; its orientation is the unit quaternion
+q = (w, x, y, z), and its axis in the world the third column of q's rotation matrix. Lengths in metres. A frame is read
+when it is asked for, so that memory does not grow with their number. Raises KeyNotFound for what the file lacks.
+"""
+
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+import commandline
+from sweepfile import KeyNotFound
+
+SEGMENTS = "/trajectories/segments"
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    h5: h5py.File
+    task: int
+    first_segment: int      # row in /trajectories/segments
+    first_row: np.ndarray   # [frame] row in /trajectories
+    time_s: np.ndarray      # [frame]
+    length: np.ndarray      # [segment]
+    radius: np.ndarray      # [segment] 0, like the length: a wall that holds the rod
+    rod: np.ndarray         # [segment]
+    static: np.ndarray      # [segment] held by a clamp
+
+    def frames(self):
+        return len(self.first_row)
+
+    def centres(self, frame):
+        """[segment, 3]"""
+        return self._rows("position_m", frame)
+
+    def axes(self, frame):
+        """[segment, 3] unit vectors along the segments."""
+        return axis(self._rows("orientation", frame))
+
+    def ends(self, frame):
+        """Both ends of every segment's centre line, [segment, 3] each."""
+        centre, half = self.centres(frame), 0.5 * self.length[:, None] * self.axes(frame)
+        return centre - half, centre + half
+
+    def _rows(self, name, frame):
+        row = self.first_row[frame]
+        return self.h5[f"/trajectories/{name}"][row:row + len(self.length)]
+
+
+def axis(orientation):
+    """Third column of the rotation matrices of unit quaternions (w, x, y, z)."""
+    w, x, y, z = np.moveaxis(orientation, -1, 0)
+    return np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+
+
+def of_task(file, task):
+    """The frames that a complete task recorded; of one that failed, those up to then."""
+    recorded(file)
+    if not 0 <= task < file.task_count:
+        raise KeyNotFound(f"{file.path} has tasks 0 to {file.task_count - 1}, not {task}")
+    if not file.complete[task]:
+        raise KeyNotFound(f"task {task} of {file.path} is not complete yet")
+    first_row = file.h5["/trajectories/first_row"][task]
+    there = first_row >= 0
+    if not there.any():
+        raise KeyNotFound(f"task {task} of {file.path} recorded no frame: {file.outcome[task]}")
+    first = int(file.h5["/tasks/first_segment_row"][task])
+    rows = slice(first, first + int(file.h5["/tasks/segments"][task]))
+    length, radius, rod, static = (file.h5[f"{SEGMENTS}/{name}"][rows]
+                                   for name in ("length_m", "radius_m", "rod", "static"))
+    return Trajectory(file.h5, task, first, first_row[there], file.h5["/trajectories/time_s"][task][there], length,
+                      radius, rod, static == 1)
+
+
+def recorded(file):
+    """Refuses a file without frames, or whose frames do not say how long and thick the segments are."""
+    again = f"`rodsweep rerun {file.path} TASK` makes a file of one task that has them"
+    if not file.has("/trajectories/position_m"):
+        raise KeyNotFound(f"{file.path} has no trajectories: ask for them with record.trajectory_every in the job; "
+                          f"{again}")
+    if not file.has(f"{SEGMENTS}/radius_m"):
+        raise KeyNotFound(f"{file.path} does not say how long and thick its segments are ({SEGMENTS} is missing: an "
+                          f"older rodsweep wrote it); {again}")
+
+
+def chosen_task(file, options):
+    """--task, or the first complete task that --scene, --select and --guess leave."""
+    if options.task is not None:
+        return options.task
+    left = commandline.chosen_tasks(file, options) & file.complete
+    if options.guess:
+        left &= np.isin(file.own_guess, commandline.chosen_guesses(file, options))
+    if not left.any():
+        raise KeyNotFound(f"no complete task of {file.path} is left" +
+                          ("; --guess chooses tasks of closed loops, which have a guess of their own" if options.guess
+                           else ""))
+    return int(np.flatnonzero(left)[0])

@@ -1,0 +1,37 @@
+"""A planted trajectory in a file of synthetic.py: rods whose every pose is known."""
+
+import h5py
+import numpy as np
+
+HALF = np.sqrt(0.5)
+AXES = {"x": (HALF, 0, HALF, 0), "y": (HALF, -HALF, 0, 0), "z": (1, 0, 0, 0)}   # w, x, y, z
+
+
+def plant(path, segments=6, frames=4, radius=0.05, length=0.2, rods=2, walls=0, along="x", last=None):
+    """`rods` straight rods of `segments` in all, side by side along z at heights y = 1, that rise by 0.1 m a frame and
+    lie along `along`; the first `walls` segments have neither length nor radius. `last`: frames of task 0 (others -1).
+    All tasks of the file are alike."""
+    each = segments // rods
+    lengths = np.full(segments, float(length))
+    lengths[:walls] = 0
+    offset = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}[along]
+    place = np.arange(segments) % each - (each - 1) / 2
+    rod = np.arange(segments) // each
+    centre = place[:, None] * length * np.array(offset) + rod[:, None] * [0, 0, 0.5] + [0, 1, 0]
+    with h5py.File(path, "r+") as h5:
+        tasks = len(h5["tasks/state"])
+        first_row = np.arange(tasks * frames).reshape(tasks, frames) * segments
+        if last is not None:
+            first_row[0, last:] = -1
+        position = np.stack([centre + [0, 0.1 * k, 0] for _ in range(tasks) for k in range(frames)])
+        h5["tasks/segments"][:] = segments
+        h5["tasks/first_segment_row"] = np.arange(tasks) * segments
+        h5["trajectories/position_m"] = position.reshape(-1, 3)
+        h5["trajectories/orientation"] = np.tile(AXES[along], (tasks * frames * segments, 1))
+        h5["trajectories/first_row"] = first_row
+        h5["trajectories/time_s"] = np.tile(0.04 * np.arange(frames), (tasks, 1))
+        columns = {"length_m": lengths, "radius_m": np.where(lengths > 0, radius, 0),
+                   "rod": rod.astype(np.int16),
+                   "static": (np.arange(segments) % each == 0).astype(np.int8)}
+        for name, values in columns.items():
+            h5[f"trajectories/segments/{name}"] = np.tile(values, tasks)
