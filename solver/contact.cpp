@@ -7,7 +7,7 @@
 namespace rodsweep {
 namespace {
 
-constexpr double reach = 1.2;         ///< contacts begin at so many R
+constexpr double reach = 1.2;         ///< contacts begin at so many radii from either axis, and more for what moves
 constexpr double catching = 0.3;      ///< cosine: how much nearer the next segment must be
 constexpr double side_by_side = 0.1;  ///< of R: by how much less the distance may differ along the overlap
 
@@ -51,8 +51,13 @@ ContactFinder::ContactFinder(const Scene& scene, double recovery)
 void ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
   bodies_.place(scene, free_);
   boxes_.resize(free_.size());
-  for (std::size_t i = 0; i < free_.size(); ++i)
-    boxes_[i] = swept_box(start_[i], free_[i], reach * bodies_.body(static_cast<int>(i)).radius);
+  reach_.resize(free_.size());
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const double radius = bodies_.body(static_cast<int>(i)).radius;
+    const double motion = (free_[i].centre - start_[i].centre).norm() + (free_[i].half - start_[i].half).norm();
+    reach_[i] = reach * radius + std::min(motion, 2 * radius);
+    boxes_[i] = swept_box(start_[i], free_[i], reach_[i]);
+  }
 
   found_.clear();
   auto last = contacts.begin();
@@ -77,10 +82,11 @@ void ContactFinder::find_pair(int a, int b, const Vector3* side) {
   const double motion = relative_motion(a_start, a_free, b_start, b_free);
   const Vector3 ends = separation(a_free, b_free);
   const double at_end = ends.norm();
-  if (at_end - motion > reach * contact_distance) return;
+  const double near = reach_[ia] + reach_[ib];
+  if (at_end - motion > near) return;
   const Vector3 starts = separation(a_start, b_start);
   const double at_start = starts.norm();
-  if (at_start + at_end - motion > 2 * reach * contact_distance) return;
+  if (at_start + at_end - motion > 2 * near) return;
 
   double when = 1;
   Vector3 normal = direction(ends, a_free, b_free, contact_distance);
@@ -103,15 +109,16 @@ void ContactFinder::find_pair(int a, int b, const Vector3* side) {
     add({a, b, Contact::Place::high, beside.high, normal}, crossed);
   } else {
     const AxisPoints at = closest_points(between(a_start, a_free, when), between(b_start, b_free, when));
-    if (!crossed && (nearer_beyond(a, at.s, normal, when) || nearer_beyond(b, at.t, -normal, when))) return;
+    if (!crossed && (nearer_beyond(a, b, at.s, normal, when) || nearer_beyond(b, a, at.t, -normal, when))) return;
     add({a, b, Contact::Place::closest, 0, normal}, crossed);
   }
 }
 
-bool ContactFinder::nearer_beyond(int body, double s, const Vector3& away, double time) const {
+bool ContactFinder::nearer_beyond(int body, int other, double s, const Vector3& away, double time) const {
   if (std::abs(s) < 1) return false;
   for (const ContactBodies::Next& next : bodies_.next(body)) {
     const auto i = static_cast<std::size_t>(next.body);
+    if (!bodies_.matter(std::min(next.body, other), std::max(next.body, other))) continue;
     if (next.end * s > 0 && next.into * away.dot(between(start_[i], free_[i], time).half.normalized()) < -catching)
       return true;
   }
@@ -125,7 +132,7 @@ void ContactFinder::find_below(int a, int half_space) {
     const double s = place == Contact::Place::low ? -1 : 1;
     const double height =
         std::min(plane.normal.dot(start_[ia].at(s) - plane.point), plane.normal.dot(free_[ia].at(s) - plane.point));
-    if (height < reach * bodies_.body(a).radius) add({a, -1 - half_space, place, s, plane.normal}, true);
+    if (height < reach_[ia]) add({a, -1 - half_space, place, s, plane.normal}, true);
   }
 }
 

@@ -8,7 +8,7 @@
 // step pass their side on, so that axes which ended a step crossed are still pushed back.
 //
 // Where one of the closest points is the end of a segment and the rod goes on there towards the other, its next segment
-// is nearer: those have the contact. Otherwise rods would catch on each other's joints.
+// is nearer: that has the contact. Otherwise rods would catch on each other's joints.
 //
 // There is a contact where the axes can have come as near as 1.2 R; the rods' projection may move them into it.
 // Capsules that lie side by side have two, at the ends of their overlap, and so has a capsule on a half-space, at both
@@ -62,7 +62,7 @@ class ContactFinder {
  private:
   void find_pair(int a, int b, const Vector3* side);
   void find_below(int a, int half_space);
-  bool nearer_beyond(int body, double s, const Vector3& away, double time) const;
+  bool nearer_beyond(int body, int other, double s, const Vector3& away, double time) const;
   void add(Contact contact, bool sided);
 
   struct Plane {
@@ -73,6 +73,7 @@ class ContactFinder {
   BroadPhase broad_phase_;
   double recovery_;
   std::vector<CapsuleAxis> start_, free_;  ///< at p and p*
+  std::vector<double> reach_;              ///< of every body, how far from its axis its contacts begin [m]
   std::vector<Box> boxes_;
   std::vector<Contact> found_;
 };

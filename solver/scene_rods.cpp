@@ -9,34 +9,42 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double standard_gravity = 9.81;
 
-/// A rod whose joints lie on `vertices`; orientations are parallel-transported along it.
+/// A rod whose joints lie on `vertices`.
 Rod rod_through(const std::vector<Vector3>& vertices, const OpenRod& p) {
-  const int n = static_cast<int>(vertices.size()) - 1;
-  std::vector<SegmentSpec> segments;
-  Quaternion orientation = Quaternion::Identity();
+  std::vector<SegmentSpec> segments = segments_through(vertices, p);
+  segments.front().is_static = p.clamp == Clamp::segment;
   if (p.clamp == Clamp::wall) {
     SegmentSpec wall;
     wall.position_m = vertices.front();
+    wall.orientation = segments.front().orientation;
     wall.is_static = true;
-    segments.push_back(wall);
+    segments.insert(segments.begin(), wall);
   }
-  for (int i = 0; i < n; ++i) {
-    const Vector3 chord = vertices[static_cast<std::size_t>(i) + 1] - vertices[static_cast<std::size_t>(i)];
-    const Vector3 before = orientation * Vector3::UnitZ();
-    orientation = (Quaternion::FromTwoVectors(before, chord) * orientation).normalized();
-    segments.push_back(segment_at(vertices[static_cast<std::size_t>(i)] + chord / 2, orientation, chord.norm(), p));
-    segments.back().is_static = i == 0 && p.clamp == Clamp::segment;
-  }
-  if (p.clamp == Clamp::wall) segments.front().orientation = segments[1].orientation;
-
-  const double force = weight(segments, p) + p.tip_force_n.norm();
-  std::vector<JointSpec> joints;
-  for (int b = 1; b < static_cast<int>(segments.size()); ++b)
-    joints.push_back(joint_between(segments, b - 1, b, p, force));
-  return Rod(segments, joints);
+  return chain(segments, p, weight(segments, p) + p.tip_force_n.norm());
 }
 
 }  // namespace
+
+std::vector<SegmentSpec> segments_through(const std::vector<Vector3>& vertices, const RodParameters& p) {
+  std::vector<SegmentSpec> segments;
+  Quaternion orientation = Quaternion::Identity();
+  for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
+    const Vector3 chord = vertices[i + 1] - vertices[i];
+    const Vector3 before = orientation * Vector3::UnitZ();
+    orientation = (Quaternion::FromTwoVectors(before, chord) * orientation).normalized();
+    segments.push_back(segment_at(vertices[i] + chord / 2, orientation, chord.norm(), p));
+  }
+  return segments;
+}
+
+Rod chain(const std::vector<SegmentSpec>& segments, const RodParameters& p, double force_n, bool straight) {
+  std::vector<JointSpec> joints;
+  for (int b = 1; b < static_cast<int>(segments.size()); ++b) {
+    joints.push_back(joint_between(segments, b - 1, b, p, force_n));
+    if (straight) joints.back().rest = Quaternion::Identity();
+  }
+  return Rod(segments, joints);
+}
 
 SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, double length_m, const RodParameters& p) {
   SegmentSpec s;

@@ -57,6 +57,50 @@ void check(const SkeletonTree& p) {
     throw SceneError("node " + std::to_string(wrong->node) + " of a skeleton: " + wrong->text);
 }
 
+void check_total(const char* what, double segments) {
+  if (segments > most_segments)
+    throw SceneError(std::string(what) + " of so many segments is too large; the most is " +
+                     std::to_string(most_segments));
+}
+
+void check(const FallingRods& p) {
+  check_least("rods", p.rods, 1);
+  check_least("segments", p.segments, 2);
+  if (!(p.height_m >= 2 * p.radius_m))
+    throw SceneError("height_m is " + std::to_string(p.height_m) +
+                     "; must be at least 2 radius_m, or the rods overlap");
+  check_total("a heap", static_cast<double>(p.rods) * p.segments);
+}
+
+void check(const CoilingRod& p) { check_least("segments", p.segments, 2, ": the first one is held"); }
+
+void check(const Knot& p) {
+  check_least("segments", p.segments, 30, ": fewer do not make a knot");
+  const double shortest = loose_knot_radii() * p.radius_m;
+  if (!(p.length_m >= shortest))
+    throw SceneError("length_m is " + std::to_string(p.length_m) + "; must be at least " + std::to_string(shortest) +
+                     " for a loose knot of this radius_m");
+}
+
+void check(const RingChain& p) {
+  check_least("rings", p.rings, 1);
+  check_least("segments", p.segments, 8, ": fewer do not make a round ring");
+  const double shortest = open_ring_radii * p.radius_m;
+  if (!(p.length_m >= shortest))
+    throw SceneError("length_m is " + std::to_string(p.length_m) + "; must be at least " + std::to_string(shortest) +
+                     " for rings of this radius_m to hang through each other");
+  check_total("a chain", static_cast<double>(p.rings) * p.segments);
+}
+
+void check(const Bundle& p) {
+  check_least("rods", p.rods, 1);
+  check_least("segments", p.segments, 2, ": the first ones are held");
+  if (!(p.initial_angle_deg >= 0 && p.initial_angle_deg <= 90))
+    throw SceneError("initial_angle_deg is " + std::to_string(p.initial_angle_deg) +
+                     "; must be from 0 to 90 for a bundle, whose rods must not cross");
+  check_total("a bundle", static_cast<double>(p.rods) * p.segments);
+}
+
 template <class Parameters>
 std::vector<Rod> build_rods(const Parameters& p) {
   return {build_rod(p)};
@@ -70,6 +114,26 @@ void add_loads(Scene& scene, const OpenRod& p) {
 }
 void add_loads(Scene&, const RodParameters&) {}
 
+/// Held segments that move on from where they are at a velocity.
+void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s) {
+  const Rod& rod = scene.rods.front();
+  const auto s = static_cast<std::size_t>(segment);
+  scene.clamps.push_back({0, segment, [from = rod.position[s], turned = rod.orientation[s], velocity_m_s](double t) {
+                            return Pose{from + t * velocity_m_s, turned};
+                          }});
+}
+
+void add_surroundings(Scene& scene, const FallingRods&) { scene.obstacles.emplace_back(HalfSpace{}); }
+void add_surroundings(Scene& scene, const CoilingRod& p) {
+  scene.obstacles.emplace_back(HalfSpace{});
+  move_clamp(scene, 0, Vector3(0, -p.feed_m_s, 0));
+}
+void add_surroundings(Scene& scene, const Knot& p) {
+  move_clamp(scene, 0, Vector3(-p.pull_m_s, 0, 0));
+  move_clamp(scene, p.segments - 1, Vector3(p.pull_m_s, 0, 0));
+}
+void add_surroundings(Scene&, const RodParameters&) {}
+
 int segments_of(const OpenRod& p) { return p.segments + (p.clamp == Clamp::wall ? 1 : 0); }
 int segments_of(const Ring& p) { return p.segments; }
 int segments_of(const Net& p) {
@@ -81,8 +145,17 @@ int segments_of(const Tree& p) { return edge_count(p.shape) + 1; }
 int segments_of(const Forest& p) { return p.rows * p.columns * (edge_count(p.shape) + 1); }
 int segments_of(const SkeletonTree& p) { return static_cast<int>(p.skeleton->size()); }
 
+int segments_of(const FallingRods& p) { return p.rods * p.segments; }
+int segments_of(const CoilingRod& p) { return p.segments; }
+int segments_of(const Knot& p) { return p.segments; }
+int segments_of(const RingChain& p) { return p.rings * p.segments; }
+int segments_of(const Bundle& p) { return p.rods * p.segments; }
+
 int rods_of(const RodParameters&) { return 1; }
 int rods_of(const Forest& p) { return p.rows * p.columns; }
+int rods_of(const FallingRods& p) { return p.rods; }
+int rods_of(const RingChain& p) { return p.rings; }
+int rods_of(const Bundle& p) { return p.rods; }
 
 int joints_of(const OpenRod& p) { return segments_of(p) - 1; }
 int joints_of(const Ring& p) { return p.segments; }
@@ -90,6 +163,11 @@ int joints_of(const Net& p) { return segments_of(p) - p.rows - p.columns + p.row
 int joints_of(const Tree& p) { return segments_of(p) - 1; }
 int joints_of(const Forest& p) { return segments_of(p) - rods_of(p); }
 int joints_of(const SkeletonTree& p) { return segments_of(p) - 1; }
+int joints_of(const FallingRods& p) { return segments_of(p) - rods_of(p); }
+int joints_of(const CoilingRod& p) { return segments_of(p) - 1; }
+int joints_of(const Knot& p) { return segments_of(p) - 1; }
+int joints_of(const RingChain& p) { return segments_of(p); }
+int joints_of(const Bundle& p) { return segments_of(p) - rods_of(p); }
 
 }  // namespace
 
@@ -112,7 +190,9 @@ Scene build_scene(const SceneSpec& spec) {
         scene.gravity_m_s2 = p.gravity_m_s2;
         scene.damping_per_s = p.damping_per_s;
         if (p.wind) scene.wind.emplace(*p.wind);
+        scene.contact = p.contact;
         add_loads(scene, p);
+        add_surroundings(scene, p);
         return scene;
       },
       spec);

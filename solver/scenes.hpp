@@ -1,5 +1,5 @@
 // The scenes that jobs name, from a handful of parameters: the deck's bending rod and hanging helix, a ring, a net,
-// and trees.
+// trees, and rods that touch each other.
 //
 // Bending rod: straight and at rest, its first end at the origin, pointing along +x raised by `initial_angle_deg`
 // towards +y; gravity bends it. Helix: joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi
@@ -17,6 +17,15 @@
 // without load: trees have grown against gravity, and sag a little under it at first. Forest: trees of one shape and as
 // many seeds on a grid along x and z, the first one near the origin, each off its place by up to half of `jitter`
 // spacings along both; a rod each.
+//
+// Every scene may have contact (contact.hpp); these are made for it. Falling rods: horizontal ones, each `height_m`
+// above the one below or the floor y = 0, turned against it by `turn_deg`. Coiling rod: a vertical one, straight but
+// for a hundredth of a turn of a helix as wide as itself, whose lower end is `height_m` above the floor y = 0; its
+// first and topmost segment is held and goes down at `feed_m_s`. Knot: an overhand knot, loose at first (an opened
+// trefoil between straight ends along x), of a rod that is naturally straight; its end segments are held and go apart
+// along x, each at `pull_m_s`. Ring chain: naturally circular rings, each hanging through the one above at right angles
+// to it, the first one from its first segment. Bundle: rods in hexagonal packing, a tenth of a radius apart, that hang
+// from their first segments, splayed by up to `initial_angle_deg` outwards.
 //
 // Clamps: `segment` holds the whole first segment (free length L - L/N); `wall` adds a static segment of zero length at
 // the first end and a first joint of half length, an exact clamp (not of a ring); `free` holds nothing.
@@ -51,6 +60,7 @@ struct RodParameters {
   Stretch stretch = Stretch::inextensible;
   std::optional<double> stretch_compliance_per_j;  ///< of the three stretch-shear rows [1/J], in place of `stretch`
   std::optional<WindParameters> wind;
+  std::optional<ContactSettings> contact;
 };
 
 /// Rods with two ends.
@@ -105,7 +115,42 @@ struct SkeletonTree : RodParameters {  ///< radii are the skeleton's
   double modulus_exponent = 0;
 };
 
-using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Tree, Forest, SkeletonTree>;
+struct FallingRods : RodParameters {
+  int rods = 8;
+  int segments = 10;
+  double length_m = 1;
+  double height_m = 0.2;
+  double turn_deg = 50;
+};
+
+struct CoilingRod : RodParameters {
+  int segments = 60;
+  double length_m = 2;
+  double height_m = 0.1;
+  double feed_m_s = 1;
+};
+
+struct Knot : RodParameters {
+  int segments = 80;
+  double length_m = 5;
+  double pull_m_s = 0.2;
+};
+
+struct RingChain : RodParameters {
+  int rings = 5;
+  int segments = 16;    ///< of each
+  double length_m = 2;  ///< circumference
+};
+
+struct Bundle : RodParameters {
+  int rods = 100;
+  int segments = 10;
+  double length_m = 1;
+  double initial_angle_deg = 20;
+};
+
+using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Tree, Forest, SkeletonTree, FallingRods, CoilingRod, Knot,
+                               RingChain, Bundle>;
 
 /// Throws SceneError where parameters do not fit together; build_scene() does so too.
 void validate(const SceneSpec& spec);

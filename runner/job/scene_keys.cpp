@@ -2,6 +2,7 @@
 
 #include <iterator>
 
+#include "runner/job/contact_keys.hpp"
 #include "runner/job/tree_keys.hpp"
 #include "runner/job/wind_keys.hpp"
 
@@ -13,7 +14,9 @@ Key scene_key() {
   Key scene = object_key(
       "scene", "the rods that are simulated",
       {
-          choice_key("type", "which scene", {"bending_rod", "helix", "ring", "net", "tree", "forest", "skeleton"})
+          choice_key("type", "which scene",
+                     {"bending_rod", "helix", "ring", "net", "tree", "forest", "skeleton", "falling_rods",
+                      "coiling_rod", "knot", "ring_chain", "bundle"})
               .unswept(
                   "to sweep over scenes, list whole ones: \"scene\": {\"grid\": [{\"type\": \"bending_rod\", ...}, "
                   "{\"type\": \"helix\", ...}]}"),
@@ -27,18 +30,22 @@ Key scene_key() {
                      {"side", "corners", "free"})
               .defaults_to("corners")
               .only({"net"}, "a rod's end has a \"clamp\""),
-          integer_key("segments",
-                      "number of segments of the rod, without a wall's static one; of a net from one crossing to the "
-                      "next; of a tree's trunk and of each of its branches")
+          integer_key(
+              "segments",
+              "number of segments of the rod, or of each of them, without a wall's static one; of a net from one "
+              "crossing to the next; of a tree's trunk and of each of its branches")
               .at_least(1)
               .at_most(1000000)
               .also_called({"n", "number_of_segments", "elements"})
-              .only({"bending_rod", "helix", "ring", "net", "tree", "forest"}, "a skeleton has one for every edge"),
-          number_key("length_m", "length of the rod; of a tree's trunk")
+              .only({"bending_rod", "helix", "ring", "net", "tree", "forest", "falling_rods", "coiling_rod", "knot",
+                     "ring_chain", "bundle"},
+                    "a skeleton has one for every edge"),
+          number_key("length_m", "length of the rod, or of each of them; of a tree's trunk")
               .in("m")
               .above(0)
               .at_most(1e6)
-              .only({"bending_rod", "ring", "tree", "forest"}),
+              .only({"bending_rod", "ring", "tree", "forest", "falling_rods", "coiling_rod", "knot", "ring_chain",
+                     "bundle"}),
           number_key("twist_deg", "total angle by which a ring was twisted before its ends were joined")
               .in("deg")
               .at_least(-1e6)
@@ -64,7 +71,9 @@ Key scene_key() {
               .in("m")
               .above(0)
               .at_most(1e3)
-              .only({"bending_rod", "helix", "ring", "net", "tree", "forest"}, "a skeleton has its own radii"),
+              .only({"bending_rod", "helix", "ring", "net", "tree", "forest", "falling_rods", "coiling_rod", "knot",
+                     "ring_chain", "bundle"},
+                    "a skeleton has its own radii"),
           number_key("density_kg_m3", "density").in("kg/m^3").above(0).at_most(1e6).also_called({"rho"}),
           number_key("youngs_modulus_pa", "Young's modulus, for bending")
               .in("Pa")
@@ -76,12 +85,13 @@ Key scene_key() {
               .above(0)
               .at_most(1e15)
               .also_called({"shear_modulus_pa", "g", "t"}),
-          number_key("initial_angle_deg", "angle from the horizontal at the start")
+          number_key("initial_angle_deg",
+                     "angle from the horizontal at the start; of a bundle's outermost rods from the vertical")
               .in("deg")
               .at_least(-360)
               .at_most(360)
               .defaults_to(0)
-              .only({"bending_rod"}),
+              .only({"bending_rod", "bundle"}),
           vector_key("gravity_m_s2", "acceleration of gravity")
               .in("m/s^2")
               .at_least(-1e6)
@@ -113,8 +123,8 @@ Key scene_key() {
           wind_key(),
       },
       "type");
-  std::vector<Key> trees = tree_keys();
-  scene.keys.insert(scene.keys.end(), std::make_move_iterator(trees.begin()), std::make_move_iterator(trees.end()));
+  for (std::vector<Key> keys : {tree_keys(), contact_keys()})
+    scene.keys.insert(scene.keys.end(), std::make_move_iterator(keys.begin()), std::make_move_iterator(keys.end()));
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runner/job/choice.hpp"
+#include "runner/job/contact_keys.hpp"
 #include "runner/job/skeleton_file.hpp"
 #include "runner/job/tree_keys.hpp"
 #include "runner/job/wind_keys.hpp"
@@ -26,6 +27,7 @@ void read_rod(const Point& point, RodParameters& rod) {
   rod.damping_per_s = point.number("scene.damping_per_s");
   rod.stretch = choice(stretches, point.text("scene.stretch"));
   rod.wind = wind_parameters(point);
+  rod.contact = contact_settings(point);
   if (!point.is_text("scene.stretch_compliance_per_j")) {
     rod.stretch_compliance_per_j = point.number("scene.stretch_compliance_per_j");
   }
@@ -127,6 +129,12 @@ SkeletonTree skeleton_tree(const Point& point, const Job& job) {
   return tree;
 }
 
+template <class Spec>
+SceneSpec with_rod(const Point& point, Spec spec) {
+  read_rod(point, spec);
+  return spec;
+}
+
 const OpenRod* as_open_rod(const OpenRod& rod) { return &rod; }
 const OpenRod* as_open_rod(const RodParameters&) { return nullptr; }
 
@@ -141,7 +149,12 @@ SceneSpec scene_spec(const Point& point, const Job& job) {
       {"net", [](const Point& p, const Job&) -> SceneSpec { return net(p); }},
       {"tree", [](const Point& p, const Job&) -> SceneSpec { return tree(p); }},
       {"forest", [](const Point& p, const Job&) -> SceneSpec { return forest(p); }},
-      {"skeleton", [](const Point& p, const Job& j) -> SceneSpec { return skeleton_tree(p, j); }}};
+      {"skeleton", [](const Point& p, const Job& j) -> SceneSpec { return skeleton_tree(p, j); }},
+      {"falling_rods", [](const Point& p, const Job&) { return with_rod(p, falling_rods(p)); }},
+      {"coiling_rod", [](const Point& p, const Job&) { return with_rod(p, coiling_rod(p)); }},
+      {"knot", [](const Point& p, const Job&) { return with_rod(p, knot(p)); }},
+      {"ring_chain", [](const Point& p, const Job&) { return with_rod(p, ring_chain(p)); }},
+      {"bundle", [](const Point& p, const Job&) { return with_rod(p, bundle(p)); }}};
   return choice(scenes, point.text("scene.type"))(point, job);
 }
 
