@@ -113,3 +113,41 @@ TEST_CASE("guesses that need rods without loops are refused before anything runs
       {{"guarded", {{"threshold", 1}, {"guess", guess_of_model(Json{{"guesses", Json::array()}})["guesses"][0]}}}});
   CHECK_THAT(refusal_of_loops(guarded), Catch::StartsWith("job.json: guesses[2]: a network with \"sweeps\""));
 }
+
+TEST_CASE("contact is a key of every scene, and none where it is not asked for") {
+  CHECK_FALSE(std::get<Net>(plan_of(net_job()).spec(0).scene).contact);
+  const Plan plan = plan_of(with("/scene/contact", R"({"grid": ["none", {"friction": 0.6, "sweeps": 9}]})", net_job()));
+  REQUIRE(plan.size() == 2);
+  CHECK_FALSE(std::get<Net>(plan.spec(0).scene).contact);
+  const auto contact = std::get<Net>(plan.spec(1).scene).contact;
+  REQUIRE(contact);
+  CHECK(contact->friction == 0.6);
+  CHECK(contact->sweeps == 9);
+  CHECK(contact->tolerance == ContactSettings{}.tolerance);
+  CHECK_THAT(refusal(with("/scene/contact", R"({"friction": -1})", net_job())),
+             Catch::StartsWith("job.json: scene.contact.friction: -1 is not allowed"));
+}
+
+TEST_CASE("the scenes that are made for contact are read from their keys, and count all their rods") {
+  const std::string material =
+      R"("radius_m": 0.01, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})";
+  const auto plan = [&](const std::string& keys) { return plan_of(job_with_scene("{" + keys + ", " + material)); };
+  const Plan falling =
+      plan(R"("type": "falling_rods", "rods": 3, "segments": 5, "length_m": 1, "height_m": 0.3, "turn_deg": 70)");
+  const FallingRods rods = std::get<FallingRods>(falling.spec(0).scene);
+  CHECK(rods.height_m == 0.3);
+  CHECK(rods.turn_deg == 70);
+  CHECK(rods.radius_m == 0.01);
+  CHECK(falling.task(0).segments == 15);
+  CHECK(falling.task(0).joints == 12);
+  CHECK(falling.task(0).solves % (3 * falling.task(0).steps) == 0);
+  const Plan coiling = plan(R"("type": "coiling_rod", "segments": 9, "length_m": 1, "height_m": 0.3, "feed_m_s": 2)");
+  CHECK(std::get<CoilingRod>(coiling.spec(0).scene).feed_m_s == 2);
+  const Plan knot = plan(R"("type": "knot", "segments": 40, "length_m": 1, "pull_m_s": 0.3)");
+  CHECK(std::get<Knot>(knot.spec(0).scene).pull_m_s == 0.3);
+  const Plan rings = plan(R"("type": "ring_chain", "rings": 4, "segments": 10, "length_m": 1)");
+  CHECK(rings.task(0).joints == 40);
+  const Plan bundle = plan(R"("type": "bundle", "rods": 7, "segments": 4, "length_m": 1, "initial_angle_deg": 30)");
+  CHECK(std::get<Bundle>(bundle.spec(0).scene).initial_angle_deg == 30);
+  CHECK(bundle.task(0).segments == 28);
+}
