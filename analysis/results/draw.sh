@@ -14,7 +14,13 @@ for study in spatial_bending spatial_helix learned_bending learned_helix; do
   table summary $study
 done
 pretrained=network/pretrained
-/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful}.h5 -o $out >$out/pretrained.txt
+/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful,tree}.h5 -o $out >$out/pretrained.txt
+for study in tree_wind learned_tree; do
+  figures spatial $study --x scene.depth
+  table summary $study --by scene.depth
+done
+table summary forest
+figures long_term tree_long_term >"$out/tree_long_term.txt"
 for study in deck_bending deck_helix; do
   figures spatial $study
   table summary $study

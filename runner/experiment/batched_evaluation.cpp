@@ -123,8 +123,8 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop, const Stop
 
 bool steps_in_batches(const TaskSpec& spec) {
   const OpenRod* rod = open_rod(spec.scene);
-  return rod && spec.record.systems != RecordedSystems::none && rod->tip_force_n.isZero() && !rod->wind && !rod->contact &&
-         (rod->stretch == Stretch::inextensible || rod->stretch_compliance_per_j);
+  return rod && spec.record.systems != RecordedSystems::none && rod->tip_force_n.isZero() && !rod->wind &&
+         !rod->contact && (rod->stretch == Stretch::inextensible || rod->stretch_compliance_per_j);
 }
 
 BatchKey batch_key(const TaskSpec& spec) {
