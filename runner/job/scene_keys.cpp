@@ -40,7 +40,7 @@ Key scene_key() {
               .only({"bending_rod", "helix", "ring", "net", "tree", "forest", "falling_rods", "coiling_rod", "knot",
                      "ring_chain", "bundle"},
                     "a skeleton has one for every edge"),
-          number_key("length_m", "length of the rod, or of each of them; of a tree's trunk")
+          number_key("length_m", "length of the rod; of a tree's trunk")
               .in("m")
               .above(0)
               .at_most(1e6)

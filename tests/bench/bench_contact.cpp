@@ -22,12 +22,12 @@ constexpr int sizes[] = {1000, 10000, 100000};
 Scene heap(int segments) {
   RodParameters p;
   p.radius_m = 0.05;
-  const int rods = segments / 10, side = static_cast<int>(std::lround(std::cbrt(rods)));
+  const int rods = segments / 10, columns = static_cast<int>(std::lround(std::cbrt(rods / 14.0))), rows = 7 * columns;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> jitter(-0.01, 0.01);
   Scene scene;
   for (int k = 0; k < rods; ++k) {
-    const int layer = k / (side * side), row = k / side % side, column = k % side;
+    const int layer = k / (rows * columns), row = k / columns % rows, column = k % columns;
     std::vector<Vector3> vertices;
     for (int i = 0; i <= 10; ++i) {
       const double along = 2.2 * column + 0.2 * i, across = 0.3 * row, y = 0.095 * layer + jitter(random);
@@ -94,7 +94,7 @@ void project(benchmark::State& state) {
 
 int main(int argc, char** argv) {
   for (const auto& [name, function] : {std::pair{"search", search}, {"find", find}, {"project", project}})
-    for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kMicrosecond);
+    for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
   Medians medians;
   if (!run_benchmarks(argc, argv, medians)) return 2;
   std::printf("\nContact, per segment [us]: searching pairs anew, finding contacts of known pairs, one projection\n");
