@@ -117,10 +117,17 @@ def _keys(x):
     return () if x is None else (x,) if isinstance(x, str) else tuple(x)
 
 
-def applicable(file, sims, x):
-    """Rows of Simulations for whose scene the key x has a meaning. Raises KeyNotFound where there is none."""
+def applicable(file, sims, x, without=False):
+    """Rows of Simulations for whose scene the key x has a meaning. Raises KeyNotFound where there is none.
+
+    `without`: those of the same types of scene too that do without, such as friction where "contact" is "none".
+    """
     parameter = file.parameter(x)
-    rows = np.flatnonzero(parameter.applies()[sims.any_task])
+    applies = parameter.applies()[sims.any_task]
+    if without and x.startswith("scene."):
+        scenes = file.scene_types()[sims.any_task]
+        applies = np.isin(scenes, scenes[applies])
+    rows = np.flatnonzero(applies)
     if not len(rows):
         raise KeyNotFound(f"parameter {x!r} has no meaning for the chosen simulations")
     return rows

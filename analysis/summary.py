@@ -50,7 +50,7 @@ def main():
         sims = measures.simulations(file, chosen)
         if options.by:
             file.parameter(options.by)
-            sims = sims.subset(groups.applicable(file, sims, options.by)) if len(sims) else sims
+            sims = sims.subset(groups.applicable(file, sims, options.by, without=True)) if len(sims) else sims
         found = blocks.blocks(file, sims, options.by, options.newton)
         if options.csv or options.json:
             records = [r for block in found for r in blocks.records(file, block, guesses, tolerances, options.newton)]

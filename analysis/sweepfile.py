@@ -81,7 +81,9 @@ class Parameter:
         value = self.values[task]
         if np.ndim(value):
             return "(" + ", ".join(f"{v:g}" for v in value) + ")"
-        return str(value) if self.values.dtype.kind == "U" else f"{value:g}"
+        if self.values.dtype.kind == "U":
+            return str(value)
+        return "none" if np.isnan(value) else f"{value:g}"
 
 
 def opened(path, what):

@@ -31,6 +31,17 @@ class Groups(unittest.TestCase):
             self.assertEqual(set(file.parameter("scene.segments").values[sims.any_task[rows]]), {value})
             self.assertEqual(set(file.scene_types()[sims.any_task[rows]]), {"helix"})
 
+    def test_what_does_without_a_key_stands_beside_what_has_it(self):
+        key = "scene.contact.friction"
+        file, sims = self.open(grid={"scene.segments": [10, 20], key: [float("nan"), 0.3]}, scenes=("helix",))
+        self.assertEqual(len(groups.applicable(file, sims, key)), len(sims) // 2)
+        both = sims.subset(groups.applicable(file, sims, key, without=True))
+        self.assertEqual(len(both), len(sims))
+        panel, = groups.panels(file, both, key, pooled="scene.")
+        points = groups.points(file, both, panel, key)
+        self.assertEqual(points.text, ["0.3", "none"])
+        self.assertEqual([len(rows) for rows in points.index], [len(sims) // 2] * 2)
+
     def test_random_keys_are_averaged_over_and_gridded_ones_kept_apart(self):
         file, sims = self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01, 0.02]}, scenes=("helix",))
         self.assertEqual(groups.gridded_keys(file, sims.any_task, "scene.segments"), ["time.step_s"])
