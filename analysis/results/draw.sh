@@ -21,6 +21,7 @@ for study in tree_wind learned_tree; do
 done
 table summary forest
 table summary learned_collision
+figures spatial learned_collision --x scene.type
 for study in collision_falling collision_coiling collision_bundle collision_ring_chain knot; do
   table summary $study --by scene.contact.friction
 done
