@@ -16,6 +16,12 @@ void check_least(const char* what, int value, int least, const char* why = "") {
                      std::to_string(least) + why);
 }
 
+void check_total(const char* what, double segments) {
+  if (segments > most_segments)
+    throw SceneError(std::string(what) + " of so many segments is too large; the most is " +
+                     std::to_string(most_segments));
+}
+
 void check(const OpenRod& p) {
   if (p.clamp == Clamp::segment)
     check_least("segments", p.segments, 2, ": the clamp \"segment\" holds the first one");
@@ -37,8 +43,7 @@ void check(const Net& p) {
   check_least("segments", p.segments, 1);
   if (p.held == Net::Held::corners && p.rows == 2)
     check_least("segments", p.segments, 2, ": between the held ends of two rows nothing would be free");
-  if (2.0 * p.rows * p.columns * p.segments > most_segments)
-    throw SceneError("a net of so many segments is too large; the most is " + std::to_string(most_segments));
+  check_total("a net", 2.0 * p.rows * p.columns * p.segments);
 }
 
 void check(const Tree& p) { validate(p.shape); }
@@ -47,20 +52,13 @@ void check(const Forest& p) {
   validate(p.shape);
   check_least("rows", p.rows, 1);
   check_least("columns", p.columns, 1);
-  if (static_cast<double>(edge_count(p.shape)) * p.rows * p.columns > most_segments)
-    throw SceneError("a forest of so many segments is too large; the most is " + std::to_string(most_segments));
+  check_total("a forest", static_cast<double>(edge_count(p.shape)) * p.rows * p.columns);
 }
 
 void check(const SkeletonTree& p) {
   if (!p.skeleton || p.skeleton->size() < 2) throw SceneError("a skeleton needs at least two nodes");
   if (const auto wrong = fault(*p.skeleton))
     throw SceneError("node " + std::to_string(wrong->node) + " of a skeleton: " + wrong->text);
-}
-
-void check_total(const char* what, double segments) {
-  if (segments > most_segments)
-    throw SceneError(std::string(what) + " of so many segments is too large; the most is " +
-                     std::to_string(most_segments));
 }
 
 void check(const FallingRods& p) {
@@ -196,6 +194,11 @@ Scene build_scene(const SceneSpec& spec) {
         return scene;
       },
       spec);
+}
+
+const OpenRod* open_rod(const SceneSpec& spec) {
+  if (const auto* rod = std::get_if<BendingRod>(&spec)) return rod;
+  return std::get_if<Helix>(&spec);
 }
 
 int segment_count(const SceneSpec& spec) {

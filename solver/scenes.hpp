@@ -152,6 +152,9 @@ struct Bundle : RodParameters {
 using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Tree, Forest, SkeletonTree, FallingRods, CoilingRod, Knot,
                                RingChain, Bundle>;
 
+/// The scene's rod where it is one with two ends, else null.
+const OpenRod* open_rod(const SceneSpec& spec);
+
 /// Throws SceneError where parameters do not fit together; build_scene() does so too.
 void validate(const SceneSpec& spec);
 

@@ -5,10 +5,14 @@
 #include <utility>
 
 #include "runner/experiment/batched_evaluation.hpp"
+#include "solver/batched_rods.hpp"
 
 namespace rodsweep {
 
+static_assert(Assign::most <= BatchedRods::lanes, "an assignment must fit into a batch");
+
 std::vector<std::int64_t> batches(const Plan& plan) {
+  if (plan.system_rows() == 0) return std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1);
   std::map<BatchKey, std::int64_t> numbers;
   std::vector<std::int64_t> out;
   for (const Task& task : plan.tasks()) {

@@ -16,11 +16,6 @@
 namespace rodsweep {
 namespace {
 
-const OpenRod* open_rod(const SceneSpec& scene) {
-  if (const auto* rod = std::get_if<BendingRod>(&scene)) return rod;
-  return std::get_if<Helix>(&scene);
-}
-
 /// One of the batch: its scene as the record sees it, and where its results go.
 struct Member {
   const TaskRun& run;
@@ -71,6 +66,11 @@ const std::vector<StepReport>& step(BatchedStepper& stepper, std::deque<Member>&
   return stepper.end();
 }
 
+void fail(TaskRecord& record, const std::exception& error) {
+  record.outcome = TaskOutcome::error;
+  record.message = error.what();
+}
+
 /// Members whose scenes can be built; of the others the record says why not.
 std::deque<Member> built(const std::vector<TaskRun>& runs) {
   std::deque<Member> members;
@@ -78,8 +78,7 @@ std::deque<Member> built(const std::vector<TaskRun>& runs) {
     try {
       members.emplace_back(run, build_scene(run.spec.scene));
     } catch (const std::exception& error) {
-      run.record->outcome = TaskOutcome::error;
-      run.record->message = error.what();
+      fail(*run.record, error);
     }
   }
   return members;
@@ -137,7 +136,11 @@ bool evaluate_batch(const std::vector<TaskRun>& runs, const StopRequested& stop)
   const Stopwatch watch;
   bool finished = true;
   std::deque<Member> members = built(runs);
-  if (!members.empty()) finished = simulate(members, stop, watch);
+  try {
+    if (!members.empty()) finished = simulate(members, stop, watch);
+  } catch (const std::exception& error) {
+    for (const Member& member : members) fail(*member.run.record, error);
+  }
   for (const TaskRun& run : runs) run.record->elapsed_s[0] = watch.seconds() / static_cast<double>(runs.size());
   return finished;
 }

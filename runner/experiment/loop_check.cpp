@@ -19,7 +19,7 @@ bool is_forest(const SceneSpec& scene) {
 }
 
 bool branches(const SceneSpec& scene) {
-  if (std::holds_alternative<BendingRod>(scene) || std::holds_alternative<Helix>(scene)) return false;
+  if (open_rod(scene)) return false;
   for (const Rod& rod : build_scene(scene).rods) {
     std::vector<int> joints(rod.segments.size(), 0);
     for (const Joint& joint : rod.joints)

@@ -135,9 +135,6 @@ SceneSpec with_rod(const Point& point, Spec spec) {
   return spec;
 }
 
-const OpenRod* as_open_rod(const OpenRod& rod) { return &rod; }
-const OpenRod* as_open_rod(const RodParameters&) { return nullptr; }
-
 }  // namespace
 
 SceneSpec scene_spec(const Point& point, const Job& job) {
@@ -159,7 +156,7 @@ SceneSpec scene_spec(const Point& point, const Job& job) {
 }
 
 void check_scene(const SceneSpec& scene, const Job& job) {
-  const auto* rod = std::visit([](const auto& s) { return as_open_rod(s); }, scene);
+  const OpenRod* rod = open_rod(scene);
   if (rod && segment_count(scene) < 2) {
     throw job_error(
         job.path, "scene.segments",

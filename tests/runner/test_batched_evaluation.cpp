@@ -153,6 +153,18 @@ TEST_CASE("a member that fails ends alone, with its reason") {
   for (std::size_t task = 0; task < 3; ++task) CHECK(differing(alone.records[task], together.records[task]).empty());
 }
 
+TEST_CASE("rods that do not fit together are an error of each task, not the end of the worker") {
+  Json job = random_data();
+  job["samples"] = 1;
+  job["scene"]["segments"] = grid({9, 10});
+  Evaluated unequal(job);
+  REQUIRE(unequal.together({0, 1}));
+  for (std::size_t task = 0; task < 2; ++task) {
+    CHECK(unequal.records[task].outcome == TaskOutcome::error);
+    CHECK(unequal.records[task].message == "scene 1 of a batch has 10 segments; the first one has 9");
+  }
+}
+
 TEST_CASE("a time limit ends every member, a request all of them") {
   Json job = random_data();
   job["task_time_limit_s"] = 1e-9;
