@@ -32,6 +32,14 @@ inline void subtract_product(Block6& target, const Lane8* b, const Lane8* x) {
   }
 }
 
+/// X^T b of the rows of X.
+inline Lane8 combined(const Block6& x, const Lane8& b) {
+  Lane8 sum = x.column[0] * b[0];
+#pragma GCC unroll 6
+  for (int r = 1; r < 6; ++r) sum += x.column[r] * b[r];
+  return sum;
+}
+
 }  // namespace
 
 std::vector<int> root_to_leaf_order(const Rod& rod) {
@@ -112,13 +120,13 @@ BlockFactor::BlockFactor(const BlockMatrix& pattern, const std::vector<int>& pre
   solution_.resize(n);
 }
 
-void BlockFactor::load(const BlockMatrix& a, const VectorX& b) {
+void BlockFactor::load(const BlockMatrix& a, const double* b) {
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const Column& column = columns_[i];
     Block6& diagonal = diagonal_work_[i];
     diagonal = a.blocks[static_cast<std::size_t>(column.diagonal_source)];
-    const double* rhs = b.data() + 6 * column.row;
-    for (int r = 0; r < 6; ++r) diagonal.column[r] = with_lane_6(diagonal.column[r], broadcast(rhs[r]));
+    for (int r = 0; r < 6; ++r)
+      diagonal.column[r] = with_lane_6(diagonal.column[r], broadcast(b ? b[6 * column.row + r] : 0));
     for (int p = column.off_begin; p < column.off_end; ++p) {
       const int source = off_[static_cast<std::size_t>(p)].source;
       off_work_[static_cast<std::size_t>(p)] = source < 0 ? Block6{} : a.blocks[static_cast<std::size_t>(source)];
@@ -127,34 +135,8 @@ void BlockFactor::load(const BlockMatrix& a, const VectorX& b) {
 }
 
 SolveOutcome BlockFactor::solve(const BlockMatrix& a, const VectorX& b, VectorX& x) {
-  load(a, b);
-  bool positive = true;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const Column& column = columns_[i];
-    Lane8 s[6];
-    for (int r = 0; r < 6; ++r) s[r] = diagonal_work_[i].column[r];
-    const Lane8 rhs[6] = {s[0], s[1], s[2], s[3], s[4], s[5]};  // in lane 6
-    RowOperations ops;
-    positive &= invert(s, ops);
-    if (column.off_begin == column.off_end)
-      for (int r = 0; r < 6; ++r) solution_[i][r] = s[r][6] * ops.inverse[r][6];
-
-    const int* target = updates_.data() + column.update_begin;
-    for (int q = column.off_begin; q < column.off_end; ++q) {
-      Lane8* stored = off_work_[static_cast<std::size_t>(q)].column;
-      Lane8 before[6], solved[6];
-      for (int r = 0; r < 6; ++r) solved[r] = before[r] = with_lane_6(stored[r], rhs[r]);
-      solve_rows(ops, solved);
-      subtract_product(diagonal_work_[static_cast<std::size_t>(off_[static_cast<std::size_t>(q)].position)], before,
-                       solved);
-      // S^-1 is symmetric: B_p^T X_q = X_p^T B_q, and X_p is stored by now.
-      for (int p = column.off_begin; p < q; ++p)
-        subtract_product(off_work_[static_cast<std::size_t>(*target++)], off_work_[static_cast<std::size_t>(p)].column,
-                         before);
-      for (int r = 0; r < 6; ++r) stored[r] = solved[r];
-    }
-  }
-
+  load(a, b.data());
+  const bool positive = eliminate<false>();
   for (std::size_t i = columns_.size(); i-- > 0;) {
     const Column& column = columns_[i];
     if (column.off_begin < column.off_end) {
@@ -173,6 +155,70 @@ SolveOutcome BlockFactor::solve(const BlockMatrix& a, const VectorX& b, VectorX&
   }
   if (!positive) return SolveOutcome::indefinite;
   return std::isfinite(x.sum()) ? SolveOutcome::converged : SolveOutcome::not_a_number;
+}
+
+bool BlockFactor::factorise(const BlockMatrix& a) {
+  inverse_.resize(columns_.size());
+  load(a, nullptr);
+  return eliminate<true>();
+}
+
+void BlockFactor::substitute(VectorX& x) {
+  for (std::size_t i = 0; i < columns_.size(); ++i) solution_[i] = load6(x.data() + 6 * columns_[i].row);
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const Column& column = columns_[i];
+    const Lane8 b = solution_[i];
+    for (int p = column.off_begin; p < column.off_end; ++p)
+      solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)] -=
+          combined(off_work_[static_cast<std::size_t>(p)], b);
+    solution_[i] = combined(inverse_[i], b);
+  }
+  for (std::size_t i = columns_.size(); i-- > 0;) {
+    const Column& column = columns_[i];
+    Lane8 terms[6]{};
+    for (int p = column.off_begin; p < column.off_end; ++p)
+      for (int r = 0; r < 6; ++r)
+        terms[r] += off_work_[static_cast<std::size_t>(p)].column[r] *
+                    solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];
+    if (column.off_begin < column.off_end) solution_[i] -= sum_lanes(terms);
+    store6(x.data() + 6 * column.row, solution_[i]);
+  }
+}
+
+template <bool keep_inverse>
+bool BlockFactor::eliminate() {
+  bool positive = true;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const Column& column = columns_[i];
+    Lane8 s[6];
+    for (int r = 0; r < 6; ++r) s[r] = diagonal_work_[i].column[r];
+    const Lane8 rhs[6] = {s[0], s[1], s[2], s[3], s[4], s[5]};  // in lane 6
+    RowOperations ops;
+    positive &= invert(s, ops);
+    if constexpr (keep_inverse) {
+      Lane8 inverse[6] = {unit_lane[0], unit_lane[1], unit_lane[2], unit_lane[3], unit_lane[4], unit_lane[5]};
+      solve_rows(ops, inverse);
+      for (int r = 0; r < 6; ++r) inverse_[i].column[r] = inverse[r];
+    }
+    if (column.off_begin == column.off_end)
+      for (int r = 0; r < 6; ++r) solution_[i][r] = s[r][6] * ops.inverse[r][6];
+
+    const int* target = updates_.data() + column.update_begin;
+    for (int q = column.off_begin; q < column.off_end; ++q) {
+      Lane8* stored = off_work_[static_cast<std::size_t>(q)].column;
+      Lane8 before[6], solved[6];
+      for (int r = 0; r < 6; ++r) solved[r] = before[r] = with_lane_6(stored[r], rhs[r]);
+      solve_rows(ops, solved);
+      subtract_product(diagonal_work_[static_cast<std::size_t>(off_[static_cast<std::size_t>(q)].position)], before,
+                       solved);
+      // S^-1 is symmetric: B_p^T X_q = X_p^T B_q, and X_p is stored by now.
+      for (int p = column.off_begin; p < q; ++p)
+        subtract_product(off_work_[static_cast<std::size_t>(*target++)], off_work_[static_cast<std::size_t>(p)].column,
+                         before);
+      for (int r = 0; r < 6; ++r) stored[r] = solved[r];
+    }
+  }
+  return positive;
 }
 
 }  // namespace rodsweep

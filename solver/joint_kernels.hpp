@@ -6,10 +6,6 @@
 
 namespace rodsweep {
 
-/// Lane i is one, the others zero.
-inline constexpr Lane8 unit_lane[6] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0},
-                                       {0, 0, 0, 1, 0, 0, 0, 0}, {0, 0, 0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1, 0, 0}};
-
 /// K V, K the three columns dC/dtheta of a side and V = i_t I + (i_a - i_t) t t^T its segment's world inverse inertia.
 struct TurnedColumns {
   Lane8 column[3];
@@ -38,6 +34,13 @@ inline void impulses(const JointJacobian& jacobian, const Lane8& multiplier, Lan
   const Lane8 force = multiplier * jacobian.inverse_length;
   on_a = __builtin_shufflevector(force, torque, 0, 1, 2, 8, 9, 10, 14, 14);
   on_b = __builtin_shufflevector(-force, torque, 0, 1, 2, 11, 12, 13, 14, 14);
+}
+
+/// J u of one joint, from the motions of its two segments.
+inline Lane8 constraint_change(const JointJacobian& jacobian, const Lane8& of_a, const Lane8& of_b) {
+  Lane8 change = (of_a - of_b) * (jacobian.inverse_length * Lane8{1, 1, 1, 0, 0, 0, 0, 0});
+  for (int c = 0; c < 3; ++c) change += jacobian.rotation_a[c] * of_a[3 + c] + jacobian.rotation_b[c] * of_b[3 + c];
+  return change;
 }
 
 /// M^-1 times the impulse on a segment; zero where it is static.

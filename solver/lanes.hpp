@@ -20,6 +20,10 @@ struct Block6 {
 
 inline Lane8 broadcast(double value) { return Lane8{value, value, value, value, value, value, value, value}; }
 
+/// Lane i is one, the others zero.
+inline constexpr Lane8 unit_lane[6] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0},
+                                       {0, 0, 0, 1, 0, 0, 0, 0}, {0, 0, 0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1, 0, 0}};
+
 /// Six doubles from memory, the spare lanes zero.
 inline Lane8 load6(const double* from) { return Lane8{from[0], from[1], from[2], from[3], from[4], from[5], 0, 0}; }
 

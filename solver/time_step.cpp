@@ -45,7 +45,7 @@ StepReport TimeStepper::step(Projection& projection) {
       report.outcome = outcome;
       if (outcome != SolveOutcome::iteration_limit) return report;
     }
-    if (contact_ && !contact_->project(newton + 1 == settings_.newton_iterations)) {
+    if (contact_ && !contact_->project(dt_c)) {
       converged = false;
       report.newton_iterations = newton + 1;
     }

@@ -25,11 +25,11 @@ std::vector<Key> contact_keys() {
                                 "contacts have converged where none wants to move a segment by more, in its radii")
                          .above(0)
                          .at_most(1)
-                         .defaults_to(1e-6),
-                     integer_key("sweeps", "over all contacts after every projection of the rods")
+                         .defaults_to(1e-5),
+                     integer_key("sweeps", "over all contacts after a projection of the rods, at most")
                          .at_least(1)
                          .at_most(10000)
-                         .defaults_to(20),
+                         .defaults_to(100),
                      number_key("recovery", "share of a penetration, left by earlier steps, that a step takes back")
                          .at_least(0)
                          .at_most(1)

@@ -87,7 +87,7 @@ void find(benchmark::State& state) {
 
 void project(benchmark::State& state) {
   Fallen& fallen = Fallen::of(state);
-  for (auto _ : state) benchmark::DoNotOptimize(fallen.projection.project(false));
+  for (auto _ : state) benchmark::DoNotOptimize(fallen.projection.project(0.01));
 }
 
 }  // namespace

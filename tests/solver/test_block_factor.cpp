@@ -104,6 +104,26 @@ TEST_CASE("systems of rods are solved to rounding") {
   }
 }
 
+TEST_CASE("a factor that is kept solves as often as wanted, whatever was solved before") {
+  for (const Graph& graph : all_graphs()) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
+    const BlockMatrix a = matrix_like(rod, 2);
+    BlockFactor factor(a, root_to_leaf_order(rod));
+    solve(factor, matrix_like(rod, 5), test::Random(6).entries(a.unknowns()));
+    CHECK(factor.factorise(a));
+    for (const unsigned seed : {3U, 4U}) {
+      const VectorX b = test::Random(seed).entries(a.unknowns());
+      VectorX x = b;
+      factor.substitute(x);
+      CHECK((x - test::dense_solve(a.dense(), b)).lpNorm<Eigen::Infinity>() < 1e-13);
+    }
+  }
+  BlockMatrix indefinite = matrix_like(test::random_rod(test::chain(4), {0}, 1), 2);
+  indefinite.blocks[static_cast<std::size_t>(indefinite.diagonal(1))].column[2][2] = -1;
+  CHECK(!BlockFactor(indefinite, {0, 1, 2}).factorise(indefinite));
+}
+
 TEST_CASE("nothing fills in on chains and trees, whatever is held") {
   for (const Graph& graph : trees()) {
     INFO(graph.name);
