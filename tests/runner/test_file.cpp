@@ -8,6 +8,7 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
+#include "runner/file/task_checksum.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;
@@ -183,6 +184,16 @@ TEST_CASE("contacts have columns where rods touch in any task, also in the file 
   }
   CHECK(stored<std::int32_t>(folder / "some.h5", "/steps/contacts").size() == 20);
   for (const char* name : {"some.h5", "alone.h5", "none.h5"}) CHECK(verify(folder / name).damaged.empty());
+}
+
+TEST_CASE("a file older than the columns of contact has the checksums that it had") {
+  const Column contacts{"/steps/contacts", Rows::contact_step, {}, "1", ""};
+  const std::int32_t count = 3;
+  TaskChecksum before(0, "ok", ""), none(0, "ok", ""), some(0, "ok", "");
+  none.add(contacts, nullptr, 0);
+  some.add(contacts, &count, sizeof count);
+  CHECK(none.value() == before.value());
+  CHECK(some.value() != before.value());
 }
 
 TEST_CASE("the predicted size of the file is within 5 % of its real size") {
