@@ -64,7 +64,7 @@ def _measured(file, sims, title, panel, settings, index, newton):
 def _steps(file, sims):
     figures = measures.step_figures(file, sims)
     found = {}
-    for name in ("newton_iterations", "newton_residual", "length_drift", "joint_gap"):
+    for name in ("newton_iterations", *measures.LARGEST):
         values = getattr(figures, name)
         if np.isfinite(values).any():
             found[name] = (intervals.median(values, sims.sample), np.fmax.reduce(values, axis=0))

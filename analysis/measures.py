@@ -148,13 +148,17 @@ class StepFigures:
     newton_residual: np.ndarray     # largest at the end of a step
     length_drift: np.ndarray        # largest magnitude
     joint_gap: np.ndarray           # largest
+    penetration: np.ndarray         # deepest; NaN without contact
+
+
+LARGEST = ("newton_residual", "length_drift", "joint_gap", "penetration")
 
 
 def step_figures(file, sims):
     tasks = sims.tasks()
-    wanted = {name: f"/steps/{name}" for name in ("newton_iterations", "newton_residual", "length_drift", "joint_gap")}
+    wanted = {name: f"/steps/{name}" for name in ("newton_iterations", *LARGEST)}
     wanted = {name: path for name, path in wanted.items() if file.has(path)}
-    largest = {name: np.full(file.task_count, np.nan) for name in ("newton_residual", "length_drift", "joint_gap")}
+    largest = {name: np.full(file.task_count, np.nan) for name in LARGEST}
     newton, steps = np.zeros(file.task_count), np.zeros(file.task_count)
     for owners, starts, rows in file.step_blocks(tasks, list(wanted.values())):
         for name in largest.keys() & wanted.keys():

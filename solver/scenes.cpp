@@ -189,6 +189,7 @@ Scene build_scene(const SceneSpec& spec) {
         scene.damping_per_s = p.damping_per_s;
         if (p.wind) scene.wind.emplace(*p.wind);
         scene.contact = p.contact;
+        scene.obstacles = p.obstacles;
         add_loads(scene, p);
         add_surroundings(scene, p);
         return scene;

@@ -35,6 +35,7 @@
 #include <memory>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "solver/scene.hpp"
 #include "solver/tree_skeleton.hpp"
@@ -61,6 +62,7 @@ struct RodParameters {
   std::optional<double> stretch_compliance_per_j;  ///< of the three stretch-shear rows [1/J], in place of `stretch`
   std::optional<WindParameters> wind;
   std::optional<ContactSettings> contact;
+  std::vector<Obstacle> obstacles;  ///< besides a scene's own floor
 };
 
 /// Rods with two ends.

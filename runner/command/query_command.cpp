@@ -28,14 +28,15 @@ class ColumnCache {
   std::map<std::string, ColumnValues> values_;
 };
 
-/// Task number, what is swept, outcome, and the CG ratios; in a closed loop whose guess it is instead of those, since
-/// there a task has one guess alone.
+/// Task number, what is swept, outcome, how deep bodies got into each other, and the CG ratios; in a closed loop whose
+/// guess it is instead of those, since there a task has one guess alone.
 std::vector<TaskColumn> usual_columns(const TaskTable& table) {
   std::vector<TaskColumn> columns{table.column("task")};
   for (const TaskColumn& column : table.columns())
     if (column.parameter && column.swept) columns.push_back(column);
   if (table.has_own_guesses()) columns.push_back(table.column("own_guess"));
   columns.push_back(table.column("outcome"));
+  if (const auto found = table.find("penetration")) columns.push_back(*found);
   for (const char* name : {"steps_done", "elapsed_s"})
     if (const auto found = table.find(name); found && table.has_own_guesses()) columns.push_back(*found);
   for (const std::string& guess : table.guesses())

@@ -1,6 +1,7 @@
 #include "runner/experiment/simulation_record.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "runner/experiment/projections.hpp"
 #include "runner/file/state_rows.hpp"
@@ -48,6 +49,10 @@ void record_step(TaskRecord& record, std::size_t step, const Scene& scene, const
   }
   record.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
   record.step_newton_residual[step] = residual;
+  if (!scene.contact) return;
+  record.contacts[step] = report.contacts;
+  record.penetration[step] = report.penetration;
+  record.deepest_penetration[0] = std::fmax(record.deepest_penetration[0], report.penetration);
 }
 
 /// What the segments of a trajectory's frames are.

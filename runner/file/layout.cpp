@@ -66,6 +66,8 @@ std::int64_t row_count(const Plan& plan, Rows rows) {
   switch (rows) {
     case Rows::task: return plan.size();
     case Rows::step: return plan.step_rows();
+    case Rows::contact_task: return plan.contact_rows() ? plan.size() : 0;
+    case Rows::contact_step: return plan.contact_rows() ? plan.step_rows() : 0;
     case Rows::solve: return plan.solve_rows();
     case Rows::frame_segment: return plan.frame_rows();
     case Rows::segment: return plan.segment_rows();

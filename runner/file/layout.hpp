@@ -1,6 +1,7 @@
 // Every dataset of a plan's results file: path, type, extents, unit and meaning. Creating the file, its size, opening
 // it and the checks of --resume all walk this one list. A dataset that would hold nothing is left out (/solves of a job
-// that records summaries, /trajectories, /systems of a sweep, what has a guess axis where there are no guesses).
+// that records summaries, /trajectories, /systems of a sweep, what has a guess axis where there are no guesses,
+// contacts where no task has contact).
 #pragma once
 
 #include <cstdint>

@@ -34,6 +34,8 @@ RowRange rows_of(const Task& task, Rows rows) {
   switch (rows) {
     case Rows::task: return {task.index, 1};
     case Rows::step: return {task.first_step, task.steps};
+    case Rows::contact_task: return task.contact_rows ? RowRange{task.index, 1} : RowRange{};
+    case Rows::contact_step: return task.contact_rows ? RowRange{task.first_step, task.steps} : RowRange{};
     case Rows::solve: return {task.first_solve, task.solves};
     case Rows::frame_segment: return {task.first_frame_row, task.frames * task.segments};
     case Rows::segment: return {task.first_segment_row, task.segment_rows()};

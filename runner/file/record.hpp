@@ -19,7 +19,18 @@ namespace rodsweep {
 class Plan;
 
 /// What one row of a dataset stands for.
-enum class Rows { task, step, solve, frame_segment, segment, system, system_segment, system_joint };
+enum class Rows {
+  task,
+  step,
+  contact_task,  ///< \ as those, in files of jobs in any of whose tasks rods touch
+  contact_step,  ///< /
+  solve,
+  frame_segment,
+  segment,
+  system,
+  system_segment,
+  system_joint
+};
 
 /// Axes after the row: none, guess, tolerance, the three components of a vector, four of a quaternion, the six of a
 /// joint's constraint (stretch-shear, then bend-twist), frames of a task.
@@ -63,9 +74,10 @@ struct TaskRecord {
   TaskOutcome outcome = TaskOutcome::pending;
   std::string message;  ///< for outcomes other than ok: what happened, at which step
 
-  std::vector<std::int32_t> steps_done;  ///< [1]
-  CountSums counted, counted_all;        ///< of first Newton iterations; of all
-  CountSums counted_other_norm;          ///< of first ones, without matvecs
+  std::vector<std::int32_t> steps_done;     ///< [1]
+  std::vector<double> deepest_penetration;  ///< [1]
+  CountSums counted, counted_all;           ///< of first Newton iterations; of all
+  CountSums counted_other_norm;             ///< of first ones, without matvecs
 
   // ---- /solves [row ...]
   std::vector<std::int32_t> step;
@@ -81,6 +93,8 @@ struct TaskRecord {
   std::vector<double> momentum_kg_m_s, angular_momentum_kg_m2_s;  ///< [row, 3]
   std::vector<std::int16_t> newton_iterations;
   std::vector<double> step_newton_residual;
+  std::vector<std::int32_t> contacts;
+  std::vector<double> penetration;
 
   // ---- /trajectories
   std::vector<double> position_m, orientation;             ///< [frame x segment, 3], [frame x segment, 4] (w, x, y, z)
@@ -117,6 +131,9 @@ void visit_columns(Record& r, Visit&& visit) {
   const std::vector<Axis> gt{A::guess, A::tolerance}, g{A::guess}, none{}, xyz{A::xyz};
 
   visit(Column{"/tasks/steps_done", R::task, none, "1", "time steps completed"}, r.steps_done);
+  visit(Column{"/tasks/penetration", R::contact_task, none, "1",
+               "deepest overlap of two bodies after any step, over the smaller radius; NaN without contact"},
+        r.deepest_penetration);
   visit(Column{"/tasks/iterations_sum", R::task, gt, "1",
                "CG iterations summed over the first Newton iteration of every step; solves that missed the tolerance "
                "count what they used"},
@@ -196,6 +213,12 @@ void visit_columns(Record& r, Visit&& visit) {
         r.newton_iterations);
   visit(Column{"/steps/newton_residual", R::step, none, "1", "max |C + alpha~ lambda| at the end of the step"},
         r.step_newton_residual);
+  visit(Column{"/steps/contacts", R::contact_step, none, "1",
+               "places where bodies are near each other in this step; -1 without contact"},
+        r.contacts);
+  visit(Column{"/steps/penetration", R::contact_step, none, "1",
+               "deepest overlap of two bodies after the step, over the smaller radius; NaN without contact"},
+        r.penetration);
 
   visit(Column{"/trajectories/position_m", R::frame_segment, xyz, "m", "segment centre"}, r.position_m);
   visit(Column{"/trajectories/orientation",

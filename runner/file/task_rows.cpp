@@ -47,6 +47,8 @@ std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
     tasks[i].first_solve = first_solve[i], tasks[i].solves = solves[i];
     tasks[i].first_frame_row = first_frame_row[i], tasks[i].frames = frames[i];
   }
+  const bool contact_rows = hdf5::exists(file.id(), "/steps/contacts");
+  for (Task& task : tasks) task.contact_rows = contact_rows;
   if (hdf5::exists(file.id(), "/tasks/first_segment_row")) {
     const auto first_segment_row = numbers("/tasks/first_segment_row");
     for (std::size_t i = 0; i < count; ++i) tasks[i].first_segment_row = first_segment_row[i];

@@ -9,6 +9,7 @@
 
 #include "runner/job/job_keys.hpp"
 #include "runner/job/job_reader.hpp"
+#include "runner/job/obstacle_keys.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/job/sweep_space.hpp"
 #include "runner/job/training_job.hpp"
@@ -70,6 +71,7 @@ Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles 
   const SweepSpace space(job.values, path);
   check_guesses(job, space);
   check_samples(job, space);
+  check_obstacles(job.values["scene"], "scene", path);
   return job;
 }
 

@@ -69,6 +69,8 @@ Json JobReader::read(const Key& key, const Json& value, const std::string& path)
       return value;
     case Key::Kind::text:
     case Key::Kind::choice: return read_text(key, value, path);
+    case Key::Kind::variant: return read_variant(key, value, path);
+    case Key::Kind::list: return read_list(key, value, path);
     case Key::Kind::guess: return read_guess(key, value, path, false);
     case Key::Kind::guesses: return read_guesses(value, path);
     case Key::Kind::vector: {

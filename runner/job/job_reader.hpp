@@ -32,6 +32,8 @@ class JobReader {
   Json read_sweep(const Key& key, const Json& value, const std::string& path);
   Json read_range(const Key& key, const std::string& word, const Json& ends, const std::string& path);
   Json read_object(const Key& key, const Json& value, const std::string& path);
+  Json read_variant(const Key& key, const Json& value, const std::string& path);
+  Json read_list(const Key& key, const Json& value, const std::string& path);
   Json read_number(const Key& key, const Json& value, const std::string& path);
   Json read_text(const Key& key, const Json& value, const std::string& path);
   Json read_guess(const Key& key, const Json& value, const std::string& path, bool labelled);

@@ -1,4 +1,4 @@
-// The part of JobReader that reads objects of keys and lists of guesses.
+// The part of JobReader that reads objects of keys, and lists, those of guesses above all.
 #include <fmt/format.h>
 
 #include <map>
@@ -87,6 +87,28 @@ Json JobReader::read_object(const Key& key, const Json& value, const std::string
   }
   fill_absent(key, path, result);
   tag_ = outer;
+  return result;
+}
+
+Json JobReader::read_variant(const Key& key, const Json& value, const std::string& path) {
+  if (!value.is_object() || value.size() != 1) {
+    refuse(key, value, path);
+    return value;
+  }
+  const std::string& kind = value.begin().key();
+  if (const Key* found = find_key(key.keys, kind))
+    return Json{{kind, read(*found, value.begin().value(), member(path, kind))}};
+  refuse_unknown(key, kind, path);
+  return value;
+}
+
+Json JobReader::read_list(const Key& key, const Json& value, const std::string& path) {
+  if (!value.is_array()) {
+    refuse(key, value, path);
+    return value;
+  }
+  Json result = Json::array();
+  for (std::size_t i = 0; i < value.size(); ++i) result.push_back(read(key.keys.front(), value[i], element(path, i)));
   return result;
 }
 

@@ -38,6 +38,14 @@ Json object_of(const std::string& word, Json value) {
           {"additionalProperties", false}};
 }
 
+Json exactly_one(Json properties) {
+  return {{"type", "object"},
+          {"properties", std::move(properties)},
+          {"minProperties", 1},
+          {"maxProperties", 1},
+          {"additionalProperties", false}};
+}
+
 class SchemaWriter {
  public:
   Json write() {
@@ -107,6 +115,8 @@ class SchemaWriter {
       }
       case Key::Kind::text: return text(key);
       case Key::Kind::choice: return {{"enum", key.choices}};
+      case Key::Kind::variant: return variant(key, path);
+      case Key::Kind::list: return {{"type", "array"}, {"items", place(key.keys.front(), path + ".item")}};
       case Key::Kind::guess: return guess(false);
       case Key::Kind::guesses: return {{"type", "array"}, {"items", guess(true)}};
     }
@@ -145,6 +155,12 @@ class SchemaWriter {
       for (const std::string& tag_value : find_key(key.keys, key.tag)->choices) append_rule(key, tag_value, rules);
     if (!rules.empty()) schema["allOf"] = rules;
     return schema;
+  }
+
+  Json variant(const Key& key, const std::string& path) {
+    Json properties = Json::object();
+    for (const Key& kind : key.keys) properties[kind.name] = place(kind, member(path, kind.name));
+    return exactly_one(std::move(properties));
   }
 
   static void append_rule(const Key& key, const std::string& tag_value, Json& rules) {
@@ -194,12 +210,7 @@ class SchemaWriter {
       for (const Key& parameter : key.keys) complete = complete && parameter.preset;
       if (complete) words.push_back(key.name);
     }
-    const Json object{{"type", "object"},
-                      {"properties", properties},
-                      {"minProperties", 1},
-                      {"maxProperties", 1},
-                      {"additionalProperties", false}};
-    Json alternatives = Json::array({Json{{"enum", words}}, object});
+    Json alternatives = Json::array({Json{{"enum", words}}, exactly_one(std::move(properties))});
     const std::size_t plain = alternatives.size();
     append_sweeps(guess_key("guess", ""), labelled ? guess(false) : reference(name), alternatives);
     for (std::size_t i = plain; labelled && i < alternatives.size(); ++i)

@@ -106,6 +106,16 @@ Key choice_key(const char* name, const char* help, std::vector<std::string> choi
   key.choices = std::move(choices);
   return key;
 }
+Key variant_key(const char* name, const char* help, std::vector<Key> kinds) {
+  Key key = make(Key::Kind::variant, name, help);
+  key.keys = std::move(kinds);
+  return key;
+}
+Key list_key(const char* name, const char* help, Key item) {
+  Key key = make(Key::Kind::list, name, help);
+  key.keys.push_back(std::move(item));
+  return key;
+}
 Key guess_key(const char* name, const char* help) { return make(Key::Kind::guess, name, help); }
 Key guesses_key(const char* name, const char* help) { return make(Key::Kind::guesses, name, help); }
 
@@ -136,6 +146,12 @@ std::string allowed(const Key& key) {
       return fmt::format(
           "a file name of 1 to {} letters, digits, \"_\", \"-\" or \".\", not beginning with \"-\" or \".\"", key.high);
     case Key::Kind::choice: return (key.choices.size() > 1 ? "one of " : "") + quoted_list(key.choices);
+    case Key::Kind::variant: {
+      std::vector<std::string> kinds;
+      for (const Key& kind : key.keys) kinds.push_back(kind.name);
+      return "an object {...} with one of " + quoted_list(kinds);
+    }
+    case Key::Kind::list: return "a list [...], of which each is " + allowed(key.keys.front());
     case Key::Kind::guess: {
       std::vector<std::string> names;
       for (const Key& guess : guess_keys()) names.push_back(guess.name);

@@ -19,6 +19,8 @@ struct Key {
     vector,   ///< three numbers, each within the bounds
     text,     ///< 1 to `high` bytes of the form `text`
     choice,   ///< one of `choices`
+    variant,  ///< an object with exactly one of `keys`, which says what kind of thing it is, and its members within
+    list,     ///< of values of the one key in `keys`, none or more
     guess,    ///< a name of guess_keys(), or an object with that name as its one key and the guess's parameters within
     guesses   ///< a list of guesses, each with a label of its own
   };
@@ -52,7 +54,7 @@ struct Key {
   std::string alternative_group;      ///< exactly one of the keys with the same group must be given
 
   std::string tag;        ///< object: the member whose value decides which `only_for` members apply
-  std::vector<Key> keys;  ///< object: its members
+  std::vector<Key> keys;  ///< object: its members; variant: the kinds; list: what each item is
 
   Key& in(const char* si_unit);
   Key& above(double bound);
@@ -77,6 +79,8 @@ Key vector_key(const char* name, const char* help);
 Key text_key(const char* name, const char* help);
 Key file_key(const char* name, const char* help);  ///< a file that the job reads
 Key choice_key(const char* name, const char* help, std::vector<std::string> choices);
+Key variant_key(const char* name, const char* help, std::vector<Key> kinds);
+Key list_key(const char* name, const char* help, Key item);
 Key guess_key(const char* name, const char* help);
 Key guesses_key(const char* name, const char* help);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runner/job/contact_keys.hpp"
 #include "runner/job/counter_random.hpp"
 #include "runner/job/scene_spec.hpp"
 #include "runner/job/task_spec.hpp"
@@ -36,6 +37,7 @@ Plan::Plan(Job job)
     const SceneSpec scene = scene_spec(values, job_);
     check_scene(scene, job_);
     check_method(values, job_);
+    contact_rows_ = contact_rows_ || contact_settings(values);
     const TimeSpec time = time_spec(values, job_);
 
     Task task;
@@ -84,6 +86,7 @@ Plan::Plan(Job job)
       tasks_.push_back(task);
     }
   }
+  for (Task& task : tasks_) task.contact_rows = contact_rows_;
 }
 
 Plan Plan::alone(std::int64_t index, int trajectory_every) const {

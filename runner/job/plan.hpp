@@ -56,10 +56,12 @@ class Plan {
 
   /// Built on demand, in the order of the job: every key of scene, time, solve and evaluation that applies anywhere
   /// (`steps` always, from `duration_s` if need be), and of the guesses what varies over the tasks: "guesses[2]" is
-  /// the name of the guess itself, "guesses[2].oracle.error" a parameter of it.
+  /// the name of the guess itself, "guesses[2].oracle.error" a parameter of it. Keys that stand for many, such as
+  /// "scene.contact", where they vary, by their option_label().
   std::vector<ParameterColumn> parameters() const;
 
   std::int64_t step_rows() const { return step_rows_; }
+  bool contact_rows() const { return contact_rows_; }  ///< do rods touch in any task?
   std::int64_t solve_rows() const { return solve_rows_; }
   std::int64_t frame_rows() const { return frame_rows_; }
   std::int64_t segment_rows() const { return segment_rows_; }
@@ -77,6 +79,7 @@ class Plan {
   std::vector<std::string> guess_labels_;
   std::optional<std::int64_t> task_alone_;
   std::vector<std::string> kept_;  ///< of a task alone: parameters that the whole plan has columns of
+  bool contact_rows_ = false;
   std::int64_t step_rows_ = 0, solve_rows_ = 0, frame_rows_ = 0, segment_rows_ = 0, max_frames_ = 0;
   std::int64_t system_rows_ = 0, system_segment_rows_ = 0, system_joint_rows_ = 0;
 };

@@ -1,6 +1,7 @@
 // What makes two tasks of two plans the same.
 #include <fmt/format.h>
 
+#include "runner/job/option_label.hpp"
 #include "runner/job/plan.hpp"
 #include "runner/job/task_spec.hpp"
 
@@ -38,7 +39,7 @@ TaskIdentity Plan::identity(std::int64_t index) const {
   for (const auto& [path, parameter] : space_.by_path()) {
     const Point::Value& value = point[static_cast<std::size_t>(parameter)];
     const Parameter& described = space_.parameters()[static_cast<std::size_t>(parameter)];
-    if (value.state == State::absent) continue;
+    if (value.state == State::absent || has_option_label(described.key)) continue;
     if (path.rfind(guesses, 0) != 0) {
       append(identity.trajectory, path, value, described, job_);
     } else if (tries_guesses) {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "runner/job/job_keys.hpp"
+#include "runner/job/option_label.hpp"
 #include "runner/job/plan.hpp"
 
 namespace rodsweep {
@@ -79,18 +80,24 @@ std::vector<ParameterColumn> Plan::parameters() const {
     steps->swept = steps->swept || tasks_[task].steps != tasks_[0].steps;
   }
 
-  // A guess that is the same in all tasks is in its label already. Of one that varies all parameters stay, also those
-  // that do not vary themselves: they say what the guess was where they apply.
+  // A guess that is the same in all tasks is in its label already, and what stands for many keys in their columns. Of a
+  // guess that varies all parameters stay, also those that do not vary themselves: they say what it was where they
+  // apply.
+  const auto is_option = [&](const ParameterColumn& c) {
+    const int parameter = space_.find(c.path);
+    return parameter >= 0 && has_option_label(parameters[static_cast<std::size_t>(parameter)].key);
+  };
   std::vector<std::string> varying;
   for (const ParameterColumn& c : columns)
     if (is_of_guess(c) && c.swept && std::holds_alternative<std::vector<std::string>>(c.values))
       varying.push_back(c.path + ".");
-  const auto is_settled_guess = [&](const ParameterColumn& c) {
-    return is_of_guess(c) && !c.swept && std::find(kept_.begin(), kept_.end(), c.path) == kept_.end() &&
+  const auto is_settled = [&](const ParameterColumn& c) {
+    return (is_of_guess(c) || is_option(c)) && !c.swept &&
+           std::find(kept_.begin(), kept_.end(), c.path) == kept_.end() &&
            std::none_of(varying.begin(), varying.end(),
                         [&](const std::string& guess) { return c.path.rfind(guess, 0) == 0; });
   };
-  columns.erase(std::remove_if(columns.begin(), columns.end(), is_settled_guess), columns.end());
+  columns.erase(std::remove_if(columns.begin(), columns.end(), is_settled), columns.end());
   return columns;
 }
 

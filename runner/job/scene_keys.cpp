@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "runner/job/contact_keys.hpp"
+#include "runner/job/obstacle_keys.hpp"
 #include "runner/job/tree_keys.hpp"
 #include "runner/job/wind_keys.hpp"
 
@@ -121,6 +122,7 @@ Key scene_key() {
               .or_word("from_stretch")
               .defaults_to("from_stretch"),
           wind_key(),
+          obstacles_key(),
       },
       "type");
   for (std::vector<Key> keys : {tree_keys(), contact_keys()})

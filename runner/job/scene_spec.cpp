@@ -4,6 +4,7 @@
 
 #include "runner/job/choice.hpp"
 #include "runner/job/contact_keys.hpp"
+#include "runner/job/obstacle_keys.hpp"
 #include "runner/job/skeleton_file.hpp"
 #include "runner/job/tree_keys.hpp"
 #include "runner/job/wind_keys.hpp"
@@ -152,7 +153,9 @@ SceneSpec scene_spec(const Point& point, const Job& job) {
       {"knot", [](const Point& p, const Job&) { return with_rod(p, knot(p)); }},
       {"ring_chain", [](const Point& p, const Job&) { return with_rod(p, ring_chain(p)); }},
       {"bundle", [](const Point& p, const Job&) { return with_rod(p, bundle(p)); }}};
-  return choice(scenes, point.text("scene.type"))(point, job);
+  SceneSpec scene = choice(scenes, point.text("scene.type"))(point, job);
+  std::visit([&](RodParameters& rod) { rod.obstacles = obstacles(point, job); }, scene);
+  return scene;
 }
 
 void check_scene(const SceneSpec& scene, const Job& job) {

@@ -10,6 +10,7 @@
 #include "runner/job/job.hpp"
 #include "runner/job/job_keys.hpp"
 #include "runner/job/key_path.hpp"
+#include "runner/job/option_label.hpp"
 #include "runner/job/sweep.hpp"
 
 namespace rodsweep {
@@ -80,8 +81,10 @@ int SweepSpace::parameter(const std::string& path, const Key& key) {
 
 void SweepSpace::read(const Key& key, const Json& value, const std::string& path, int component, Scope& scope) {
   if (!sweep_word(value).empty()) return read_sweep(key, value, path, component, scope);
+  if (has_option_label(key)) scope.fixed.push_back({parameter(path, key), 0, option_label(key, value)});
   switch (key.kind) {
     case Key::Kind::object:
+    case Key::Kind::variant:
       if (value.is_string()) return;  // none of its keys
       for (const auto& [name, child] : value.items()) {
         const Key& child_key = *find_key(key.keys, name);
@@ -91,6 +94,9 @@ void SweepSpace::read(const Key& key, const Json& value, const std::string& path
     case Key::Kind::vector:
       parameter(path, key);
       for (int i = 0; i < 3; ++i) read(component_key(key), value[static_cast<std::size_t>(i)], path, i, scope);
+      return;
+    case Key::Kind::list:
+      for (std::size_t i = 0; i < value.size(); ++i) read(key.keys.front(), value[i], element(path, i), 0, scope);
       return;
     case Key::Kind::guesses:
       for (std::size_t i = 0; i < value.size(); ++i) {

@@ -28,7 +28,8 @@
 
 namespace rodsweep {
 
-/// One parameter: a key of the job that holds a value, wherever it stands among the alternatives of a grid.
+/// One parameter: a key of the job that holds a value, wherever it stands among the alternatives of a grid; or one that
+/// stands for many, whose value is its option_label().
 struct Parameter {
   std::string path;  ///< without the marks of sweeps: "scene.segments", "guesses[2].oracle.error"
   Key key;

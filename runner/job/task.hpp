@@ -111,6 +111,7 @@ struct Task {
   int segments = 0;  ///< dynamic and static ones (graph nodes)
   int joints = 0;
   std::int64_t first_step = 0, steps = 0;  ///< rows of /steps
+  bool contact_rows = false;  ///< has the file columns of contact? It has where rods touch in any of its tasks
   std::int64_t first_solve = 0,
                solves = 0;  ///< rows of /solves: steps x newton_iterations x rods, step-major; 0 for summaries
   std::int64_t first_frame_row = 0, frames = 0;  ///< rows of /trajectories: frames x segments

@@ -63,6 +63,7 @@ class Plant:
     rest_s = 3e-6
     drift = 1e-3
     gap = 2e-3
+    penetration = None   # a number: that of every step, in a file of rods that touch
     reached = staticmethod(lambda guess, tolerance, newton, segments, draw: True)
 
 
@@ -164,6 +165,8 @@ class Sweep:
         found.update({f"solves/{name}": np.zeros(rows) for name in LEVELS})
         found.update({f"steps/{name}": np.zeros(count * steps) for name in (*LEVELS, *ALONG, "time_s")})
         found["steps/momentum_kg_m_s"] = np.zeros((count * steps, 3))
+        if self.plant.penetration is not None:
+            found["steps/penetration"] = np.full(count * steps, self.plant.penetration)
         found["steps/newton_iterations"] = np.zeros(count * steps, dtype=np.int16)
         found["timing/steps/rest_s"] = np.zeros(count * steps, dtype=np.float32)
         for t in np.flatnonzero(done):

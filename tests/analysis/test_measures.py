@@ -255,6 +255,20 @@ class Steps(Tables):
         np.testing.assert_allclose(figures.length_drift, 1e-3)  # planted negative: magnitudes count
         np.testing.assert_allclose(figures.joint_gap, 2e-3)
         np.testing.assert_allclose(figures.newton_iterations, 3)
+        self.assertTrue(np.isnan(figures.penetration).all())
+
+    def test_penetration_of_the_simulations_that_have_contact(self):
+        plant = synthetic.Plant()
+        plant.penetration = 0.01
+        file, sims, _ = self.open(plant=plant)
+
+        def pass_through(h5):
+            h5["steps/penetration"][:5] = np.nan
+
+        file = self.changed(file, pass_through)
+        found = measures.step_figures(file, sims).penetration
+        self.assertTrue(np.isnan(found[0]).all())
+        np.testing.assert_allclose(found[1:], 0.01)
 
     def test_a_direct_simulation_has_steps_and_nothing_to_compare(self):
         file, sims, _ = self.open(method="direct")

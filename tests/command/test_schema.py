@@ -35,6 +35,10 @@ GOOD = {
     "a swept component": {"scene.gravity_m_s2": [0, {"grid": [-9.81, -1.6]}, 0]},
     "a swept vector": {"scene.gravity_m_s2": {"grid": [[0, -9.81, 0], [0, 0, 0]]}},
     "a word for a number": {"scene.stretch_compliance_per_j": {"grid": ["from_stretch", 1e-9]}},
+    "obstacles": {"scene.contact": {}, "scene.obstacles": [
+        {"half_space": {}}, {"ball": {"centre_m": [0, {"uniform": [-1, 0]}, 0], "radius_m": 1}},
+        {"grid": [{"capsule": {"from_m": [0, 0, 0], "to_m": [1, 0, 0], "radius_m": 0.1}}, {"half_space": {}}]}]},
+    "swept obstacles": {"scene.contact": {}, "scene.obstacles": {"grid": [[], [{"half_space": {}}]]}},
     "a duration": {"time.steps": None, "time.duration_s": 2},
     "words swept": {"solve": {"preconditioner": {"grid": ["none", "icc"]}}},
     "guesses as objects": {"guesses": [{"zero": {}}, {"oracle": {"error": {"grid": [0.1, 0.2]}, "label": "o"}}]},
@@ -80,6 +84,11 @@ BAD = {
     "a number for true": {**TRAINING, "network": {"best_length": 1}},
     "a sweep with a network": {"network": {}},
     "two components": {"scene.gravity_m_s2": [0, -9.81]},
+    "an obstacle alone": {"scene.contact": {}, "scene.obstacles": {"half_space": {}}},
+    "an unknown obstacle": {"scene.contact": {}, "scene.obstacles": [{"cube": {}}]},
+    "two obstacles in one": {"scene.contact": {}, "scene.obstacles": [
+        {"half_space": {}, "ball": {"centre_m": [0, 0, 0], "radius_m": 1}}]},
+    "a ball without a radius": {"scene.contact": {}, "scene.obstacles": [{"ball": {"centre_m": [0, 0, 0]}}]},
     "steps and duration": {"time.duration_s": 0.2},
     "neither steps nor duration": {"time.steps": None},
     "a sweep of what cannot be swept": {"seed": {"grid": [1, 2]}},

@@ -20,6 +20,13 @@ inline Json helix_scene() {
                          "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e5})");
 }
 
+/// Two small trees, a rod each.
+inline Json forest_scene() {
+  return Json::parse(R"({"type": "forest", "rows": 1, "columns": 2, "spacing_m": 3, "depth": 1, "branches": 2,
+                         "segments": 2, "length_m": 1, "radius_m": 0.05, "density_kg_m3": 1000,
+                         "youngs_modulus_pa": 1e7, "torsion_modulus_pa": 1e7})");
+}
+
 inline Json small_job() {
   return {{"name", "small"},
           {"kind", "sweep"},

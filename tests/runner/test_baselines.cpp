@@ -101,6 +101,20 @@ TEST_CASE("a network that says nothing lets the rod fall apart, which is data: r
   CHECK(record.rest_s.front() > 0);
 }
 
+TEST_CASE("a network moves every tree of a forest instead of the solve") {
+  const TemporaryFolder folder;
+  write_model(folder / "quiet.h5", 0.01F);
+  Json job = instead_of_the_solve("quiet.h5");
+  job["scene"] = forest_scene();
+  const TaskRecord record = evaluated(folder, job).front();
+  CHECK(record.outcome == TaskOutcome::ok);
+  CHECK(record.joint_gap.back() > record.joint_gap.front());
+  for (std::size_t rod = 0; rod < 2; ++rod) {
+    CHECK(record.rod[rod] == static_cast<int>(rod));
+    CHECK(record.newton_residual[rod] > 0);
+  }
+}
+
 TEST_CASE("a network whose answer is no number ends its task, and only that") {
   const TemporaryFolder folder;
   write_model(folder / "broken.h5", 1e30F);

@@ -1,4 +1,5 @@
 // One task evaluated: what its record says of guesses with a history, of solves that miss a tolerance, of the motion.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -17,11 +18,11 @@ Json job_with(const std::string& guesses, const std::string& solve = "{}") {
   return job;
 }
 
-TaskRecord evaluated(const Json& job) {
+TaskRecord evaluated(const Json& job, std::int64_t task = 0) {
   const Plan plan = plan_of(job);
   TaskRecord record;
-  record.prepare(plan.task(0), axis_sizes(plan));
-  REQUIRE(evaluate(plan.task(0), plan.spec(0), record, [] { return false; }));
+  record.prepare(plan.task(task), axis_sizes(plan));
+  REQUIRE(evaluate(plan.task(task), plan.spec(task), record, [] { return false; }));
   return record;
 }
 
@@ -114,6 +115,25 @@ TEST_CASE("a recorded trajectory says how long, thick and free its segments are,
   std::vector<std::int8_t> held(11, 0);
   held[0] = 1;
   CHECK(r.segment_static == held);
+}
+
+TEST_CASE("contacts and the deepest penetration are recorded where rods touch, and are not there where they cannot") {
+  Json job = job_with(R"(["zero"])");
+  job["scene"] = Json::parse(R"({"type": "falling_rods", "rods": 1, "segments": 4, "length_m": 1, "height_m": 0.11,
+                                 "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6,
+                                 "torsion_modulus_pa": 1e6, "contact": {"grid": ["none", {}]}})");
+  job["time"]["steps"] = 10;  // 6 cm of air take 0.11 s
+  const TaskRecord none = evaluated(job, 0), touching = evaluated(job, 1);
+  CHECK(none.contacts == std::vector<std::int32_t>(10, -1));
+  CHECK(std::isnan(none.penetration.back()));
+  CHECK(std::isnan(none.deepest_penetration[0]));
+  CHECK(touching.contacts.front() == 0);
+  CHECK(touching.penetration.front() == 0);
+  CHECK(touching.contacts.back() > 0);
+  CHECK(touching.deepest_penetration[0] == *std::max_element(touching.penetration.begin(), touching.penetration.end()));
+  CHECK(touching.deepest_penetration[0] < 1e-2);
+  job["scene"]["contact"] = "none";
+  CHECK(evaluated(job).contacts.empty());
 }
 
 TEST_CASE("a rod that blows up and a task out of time end with what was done") {

@@ -6,7 +6,9 @@
 
 #include "file_examples.hpp"
 #include "runner/file/hdf5.hpp"
+#include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
+#include "runner/file/task_checksum.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;
@@ -40,7 +42,7 @@ std::vector<T> task_rows(const hdf5::File& file, const Column& column, const Tas
 
 TEST_CASE("a record comes back from the file value by value, whatever the order of writing") {
   const TemporaryFolder folder;
-  const Plan plan = plan_of(GENERATE(full_job(), full_data_job()));
+  const Plan plan = plan_of(GENERATE(full_job(), full_data_job(), with("/scene/contact", "{}", full_job())));
   ResultsFile file = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
   for (const std::int64_t i : {3, 0, 5, 1}) file.write(plan.task(i), synthetic_record(plan, i));
   file.close();
@@ -167,6 +169,31 @@ TEST_CASE("datasets that would be empty are left out, and the rest of a record i
   CHECK_FALSE(holds(direct, "/solves/iterations"));
   CHECK(holds(direct, "/solves/newton"));
   CHECK(stored<std::uint8_t>(direct, "/tasks/state").at(0) == 1);
+}
+
+TEST_CASE("contacts have columns where rods touch in any task, also in the file of one task alone") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(with("/scene/contact", R"({"grid": ["none", {}]})")), none = plan_of(small_job());
+  make_file(folder / "some.h5", plan, 2);
+  make_file(folder / "alone.h5", plan.alone(0, 0), 1);
+  make_file(folder / "none.h5", none, 1);
+  for (const char* path : {"/tasks/penetration", "/steps/contacts", "/steps/penetration"}) {
+    CHECK(holds(folder / "some.h5", path));
+    CHECK(holds(folder / "alone.h5", path));
+    CHECK_FALSE(holds(folder / "none.h5", path));
+  }
+  CHECK(stored<std::int32_t>(folder / "some.h5", "/steps/contacts").size() == 20);
+  for (const char* name : {"some.h5", "alone.h5", "none.h5"}) CHECK(verify(folder / name).damaged.empty());
+}
+
+TEST_CASE("a file older than the columns of contact has the checksums that it had") {
+  const Column contacts{"/steps/contacts", Rows::contact_step, {}, "1", ""};
+  const std::int32_t count = 3;
+  TaskChecksum before(0, "ok", ""), none(0, "ok", ""), some(0, "ok", "");
+  none.add(contacts, nullptr, 0);
+  some.add(contacts, &count, sizeof count);
+  CHECK(none.value() == before.value());
+  CHECK(some.value() != before.value());
 }
 
 TEST_CASE("the predicted size of the file is within 5 % of its real size") {

@@ -52,6 +52,27 @@ TEST_CASE("xpbd with many iterations takes the steps of the direct solve, pbd do
   }
 }
 
+TEST_CASE("every tree of a forest takes the steps of the direct solve under xpbd, and sags under pbd too") {
+  Json job = small_job();
+  job["scene"] = forest_scene();
+  job["time"] = {{"step_s", 0.002}, {"steps", 5}, {"newton_tolerance", 1e-10}};
+  const TaskRecord direct = evaluated(R"({"method": "direct"})", job);
+  const TaskRecord xpbd = evaluated(R"({"method": "xpbd", "iterations": 3000})", job);
+  const TaskRecord pbd = evaluated(R"({"method": "pbd", "iterations": 20})", job);
+  REQUIRE(direct.outcome == TaskOutcome::ok);
+  REQUIRE(xpbd.outcome == TaskOutcome::ok);
+  REQUIRE(pbd.outcome == TaskOutcome::ok);
+  for (std::size_t step = 0; step < 5; ++step) {
+    CHECK(xpbd.kinetic_energy_j[step] == Approx(direct.kinetic_energy_j[step]).epsilon(1e-3));
+    CHECK(pbd.kinetic_energy_j[step] > 0);
+    CHECK(pbd.joint_gap[step] < 1e-2);
+  }
+  for (std::size_t rod = 0; rod < 2; ++rod) {
+    CHECK(pbd.rod[rod] == static_cast<int>(rod));
+    CHECK(pbd.newton_residual[rod] > 0);
+  }
+}
+
 TEST_CASE("summaries of Gauss-Seidel have steps and no rows of iterations") {
   const TaskRecord record = evaluated(R"({"method": "pbd"})", with("/record", R"({"solves": "summary"})"));
   CHECK(record.outcome == TaskOutcome::ok);

@@ -186,6 +186,24 @@ TEST_CASE("a word in a column of numbers is NaN, and its change counts as varyin
   CHECK(std::get<std::vector<double>>(compliance.values)[1] == 1e-6);
 }
 
+TEST_CASE("an object that is swept against a word has a column that says which it is, and by what it differs") {
+  const auto contact = [](const std::string& value) { return plan_of(with("/scene/contact", value)); };
+  const Plan plan = contact(R"({"grid": ["none", {"friction": 0.3}, {"sweeps": 9, "friction": 0.6}]})");
+  CHECK(column(plan, "scene.contact").swept);
+  CHECK(texts(plan, "scene.contact") == std::vector<std::string>{"none", "friction 0.3", "friction 0.6, sweeps 9"});
+  CHECK(texts(contact(R"({"grid": ["none", {"friction": {"grid": [0.3, 0.6]}, "sweeps": 9}]})"), "scene.contact") ==
+        std::vector<std::string>{"none", "sweeps 9", "sweeps 9"});
+  CHECK_FALSE(has_column(contact("{}"), "scene.contact"));
+  CHECK_FALSE(has_column(contact(R"({"friction": {"grid": [0.3, 0.6]}})"), "scene.contact"));
+  CHECK(texts(plan.alone(1, 0), "scene.contact") == std::vector<std::string>{"friction 0.3"});
+
+  const Plan wind = plan_of(with("/scene/wind", R"({"grid": [{"mean_m_s": [8, 0, 0], "turbulence_m_s": 2}, "none"]})"));
+  CHECK(texts(wind, "scene.wind") == std::vector<std::string>{"mean_m_s [8,0,0], turbulence_m_s 2", "none"});
+
+  CHECK(contact("{}").identity(0).trajectory == plan.identity(1).trajectory);
+  CHECK(contact("{}").identity(0).trajectory != plan.identity(0).trajectory);
+}
+
 TEST_CASE("a duration becomes whole steps, in the tasks and in a column") {
   Json job = with("/time/duration_s", "0.6", without("/time/steps"));
   job["time"]["step_s"] = grid({0.01, 0.02, 0.03});
