@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "solver/rotation.hpp"
 
@@ -35,7 +36,15 @@ void ContactProjection::start_step() {
 }
 
 void ContactProjection::find() {
+  last_ = contacts_;
   finder_.find(scene_, contacts_);
+  const auto key = [](const Contact& contact) { return std::tuple(contact.a, contact.b, contact.place); };
+  auto last = last_.begin();
+  for (Contact& contact : contacts_) {
+    while (last != last_.end() && key(*last) < key(contact)) ++last;
+    if (last != last_.end() && key(*last) == key(contact)) contact.impulse = last->impulse;
+  }
+  fresh_ = true;
   linear_.resize(contacts_.size());
   before_.resize(contacts_.size());
   swept_.resize(contacts_.size());
@@ -44,13 +53,14 @@ void ContactProjection::find() {
 bool ContactProjection::project(double constraint_dt) {
   if (contacts_.empty()) return true;
   linearise();
+  const bool pressed = press(constraint_dt);
   restart(HUGE_VAL);
   for (int i = 0; i < settings_.sweeps; ++i) {
     for (std::size_t c = 0; c < contacts_.size(); ++c) before_[c] = contacts_[c].impulse;
     if (i == 0) swept_ = before_;
     const double moved = sweep();
     const bool converged = moved < settings_.tolerance;
-    if (converged && i == 0) {
+    if (converged && i == 0 && !pressed) {
       for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c].impulse = before_[c];
       motion_.clear();
       return true;
@@ -62,6 +72,21 @@ bool ContactProjection::project(double constraint_dt) {
   }
   motion_.apply();
   return false;
+}
+
+// Contacts that last are pressed at once as they were in the last step. Returns whether that moves anything.
+bool ContactProjection::press(double constraint_dt) {
+  bool any = false;
+  for (std::size_t c = 0; c < contacts_.size() && fresh_; ++c) {
+    Contact& contact = contacts_[c];
+    if (contact.impulse.isZero(0)) continue;
+    contact.impulse = linear_[c].law.admissible(contact.impulse);
+    push(contact, linear_[c], contact.impulse);
+    any = true;
+  }
+  fresh_ = false;
+  motion_.settle(constraint_dt);
+  return any;
 }
 
 void ContactProjection::linearise() {

@@ -10,8 +10,8 @@
 // once. It leaves joints as closed as they were, but for the second order, which the next Newton iteration closes, keeps
 // linear momentum to rounding, and angular momentum as well as one rotation update does, to O(dtheta^2).
 //
-// Multipliers start from 0 in every step, like the rods': those of the last step would be a delayed feedback, unstable
-// where a step leaves more than half of the error.
+// Multipliers start from those of the last step where a contact lasts; a step's result depends on that start only as far
+// as it has not converged.
 //
 // Allocates only when there are more contacts than ever before, when a rod is touched for the first time, and where the
 // broad phase searches anew.
@@ -51,6 +51,7 @@ class ContactProjection {
     double size;           ///< that motions are relative to: the smaller radius
   };
   void linearise();
+  bool press(double constraint_dt);
   double sweep();
   void restart(double moved);
   void accelerate(double moved);
@@ -62,7 +63,8 @@ class ContactProjection {
   ContactSettings settings_;
   ContactFinder finder_;
   ContactMotion motion_;
-  std::vector<Contact> contacts_;
+  std::vector<Contact> contacts_, last_;  ///< of this step and of the one before
+  bool fresh_ = false;                    ///< not projected yet
   std::vector<Linear> linear_;
   std::vector<CapsuleAxis> axes_;
   struct OldPose {

@@ -50,8 +50,8 @@ TEST_CASE("a stack of rods comes to rest and does not sink in") {
   }
 }
 
-TEST_CASE("half the Newton iterations still keep a stack from sinking in") {
-  Touching t(stack(3, 10, 1e7), 0.01, 10);
+TEST_CASE("two Newton iterations still keep a stack from sinking in") {
+  Touching t(stack(3, 10, 1e7), 0.01, 2);
   t.run(60);
   CHECK(t.run(40) < 0.01);
 }

@@ -45,7 +45,7 @@ inline Scene contact_scene(std::vector<Rod> rods, double friction = 0, const Vec
 
 class Touching {
  public:
-  Touching(Scene initial, double dt, int newton_iterations = 20)
+  Touching(Scene initial, double dt, int newton_iterations = 10)
       : scene(std::move(initial)),
         direct_(scene),
         projection_(scene, direct_),
