@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runner/dataset/system_recording.hpp"
 #include "runner/file/checksum.hpp"
 #include "runner/file/file_reading.hpp"
@@ -62,6 +64,8 @@ DatasetReader::DatasetReader(const fs::path& path) : path_(path) {
   reader_ = std::make_unique<TaskReader>(path, *plan_, "Use that revision, or make the data set again");
   for (const Task& task : plan_->tasks())
     if (reader_->outcome(task.index) == TaskOutcome::ok) tasks_.push_back(task.index);
+  std::stable_sort(tasks_.begin(), tasks_.end(),
+                   [this](std::int64_t a, std::int64_t b) { return plan_->task(a).sample < plan_->task(b).sample; });
   hash_ = hash_of(file);
   note_ = failures_text(file);
 }

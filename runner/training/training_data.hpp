@@ -1,6 +1,6 @@
 // What a training reads of its data set: examples to learn from, examples to judge by, and simulations to solve.
 //
-// Simulations are taken in the order of the data set, the last `validation_simulations` for validation; scales are
+// Simulations are taken in the order of DatasetReader, the last `validation_simulations` for validation; scales are
 // those of the training examples alone. The same on every rank.
 #pragma once
 

@@ -106,6 +106,18 @@ TEST_CASE("simulations are of different sizes, and a range of them is read") {
   CHECK(data.plan().task(1).segments == plan.task(1).segments);
 }
 
+TEST_CASE("the first and the last simulations have something of every grid point") {
+  const TemporaryFolder folder;
+  Json job = ragged_job();
+  job["scene"]["length_m"] = {{"grid", {1, 2}}};
+  make_data_set(folder / "a.h5", job);
+  const DatasetReader data(folder / "a.h5");
+  REQUIRE(data.size() == 6);
+  std::vector<std::int64_t> tasks;
+  for (std::int64_t i = 0; i < 6; ++i) tasks.push_back(data.task(i).index);
+  CHECK(tasks == std::vector<std::int64_t>{0, 3, 1, 4, 2, 5});
+}
+
 TEST_CASE("failed simulations are left out with a note") {
   const TemporaryFolder folder;
   make_data_set(folder / "a.h5", ragged_job(), 2);
