@@ -24,7 +24,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   temporal_bending temporal_helix learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
   solvers tree_wind learned_tree forest tree_long_term learned_collision \
-  collision_falling collision_coiling collision_bundle collision_ring_chain knot
+  collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
 .PHONY: help configure build demo studies pictures test test-long bench sanitize schema format format-check tidy install clean

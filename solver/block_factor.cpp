@@ -48,23 +48,26 @@ std::vector<int> root_to_leaf_order(const Rod& rod) {
     joints_of[static_cast<std::size_t>(rod.joints[static_cast<std::size_t>(k)].a)].push_back(k);
     joints_of[static_cast<std::size_t>(rod.joints[static_cast<std::size_t>(k)].b)].push_back(k);
   }
-  std::vector<int> order, queue;
+  std::vector<int> order, open;
   std::vector<bool> joint_seen(rod.joints.size(), false), segment_seen(rod.segments.size(), false);
   const auto visit_from = [&](int root) {
     if (segment_seen[static_cast<std::size_t>(root)]) return;
     segment_seen[static_cast<std::size_t>(root)] = true;
-    queue.assign(1, root);
-    for (std::size_t head = 0; head < queue.size(); ++head)
-      for (const int k : joints_of[static_cast<std::size_t>(queue[head])]) {
+    open.assign(1, root);
+    while (!open.empty()) {
+      const int segment = open.back();
+      open.pop_back();
+      for (const int k : joints_of[static_cast<std::size_t>(segment)]) {
         if (joint_seen[static_cast<std::size_t>(k)]) continue;
         joint_seen[static_cast<std::size_t>(k)] = true;
         order.push_back(k);
         const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-        const int other = joint.a == queue[head] ? joint.b : joint.a;
+        const int other = joint.a == segment ? joint.b : joint.a;
         if (segment_seen[static_cast<std::size_t>(other)]) continue;
         segment_seen[static_cast<std::size_t>(other)] = true;
-        queue.push_back(other);
+        open.push_back(other);
       }
+    }
   };
   for (int s = 0; s < rod.segment_count(); ++s)
     if (rod.segments[static_cast<std::size_t>(s)].is_static) visit_from(s);

@@ -1,6 +1,6 @@
 // Direct solution of A x = b by block elimination from the leaves of a rod to its root, O(n) on chains and trees.
 //
-// Joints are eliminated in the reverse of a breadth-first order that starts at the held segments, so that the remaining
+// Joints are eliminated in the reverse of a depth-first order that starts at the held segments, so that the remaining
 // neighbours of an eliminated joint (its parent and its siblings) are coupled already: no block fills in, as in the
 // body-and-joint tree of Deul et al. 2018. Where joints close loops (rings, nets) a symbolic elimination finds what
 // fills in, in an order of minimum degree (elimination_order.hpp): a sparse Cholesky factorisation in blocks.
@@ -21,7 +21,7 @@
 
 namespace rodsweep {
 
-/// Joints of the rod in breadth-first order from the static segments (then from segment 0 of what they don't reach).
+/// Joints of the rod in depth-first order, branch by branch, from the static segments (then from segment 0 of what they don't reach).
 std::vector<int> root_to_leaf_order(const Rod& rod);
 
 class BlockFactor {

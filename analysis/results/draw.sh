@@ -22,7 +22,7 @@ done
 table summary forest
 table summary learned_collision
 figures spatial learned_collision --x scene.type
-for study in collision_falling collision_coiling collision_bundle collision_ring_chain knot; do
+for study in collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot; do
   table summary $study --by scene.contact.friction
 done
 figures long_term tree_long_term >"$out/tree_long_term.txt"

@@ -110,6 +110,31 @@ TEST_CASE("collisions never give kinetic energy, and keep linear momentum to rou
     }
 }
 
+TEST_CASE("rods that collide keep linear momentum, stay whole and give no energy") {
+  RodParameters p;
+  p.youngs_modulus_pa = 1e8;
+  p.torsion_modulus_pa = 4e7;
+  std::vector<Rod> rods;
+  for (int k = 0; k < 4; ++k) {
+    const Vector3 at(0.7 * std::cos(k * M_PI / 2), 0.03 * k, 0.7 * std::sin(k * M_PI / 2)), along(0.1, 0.5, 0.1 * k);
+    rods.push_back(test::straight_rod(at - along, at + along, 12, p));
+    for (Vector3& v : rods.back().velocity) v = -4 * at;
+  }
+  Touching t(contact_scene(rods, 0.3), 0.002);
+  const Vector3 momentum = test::linear_momentum(t.scene), angular = test::angular_momentum(t.scene);
+  const double start = test::kinetic_energy(t.scene);
+  CHECK(t.run(150) < 0.01);
+  const double size = start / 2;  // of momenta: the rods move at 2.8 m/s, less than a metre from the middle
+  CHECK((test::linear_momentum(t.scene) - momentum).norm() < 1e-10 * size);
+  CHECK((test::angular_momentum(t.scene) - angular).norm() < 0.02 * size);
+  double energy = test::kinetic_energy(t.scene);
+  for (const Rod& rod : t.scene.rods) {
+    energy += elastic_energy(rod);
+    CHECK(joint_gap(rod) < 1e-5);
+  }
+  CHECK(energy < 0.5 * start);
+}
+
 /// A rod shot at another one, `radii` per step, at an angle between them; whether it ended before it.
 bool stays_before(double angle_deg, double radii, double offset, int segments) {
   const double dt = 0.01, angle = angle_deg * M_PI / 180;
