@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace rodsweep {
@@ -24,6 +25,8 @@ Box swept_box(const CapsuleAxis& from, const CapsuleAxis& to, double beyond) {
   box.include(to.at(-1));
   return box.grown(beyond);
 }
+
+bool is_finite(const CapsuleAxis& axis) { return axis.centre.allFinite() && axis.half.allFinite(); }
 
 /// The direction from b to a, any that is at right angles to both where they meet.
 Vector3 direction(const Vector3& separation, const CapsuleAxis& a, const CapsuleAxis& b, double scale) {
@@ -48,8 +51,12 @@ ContactFinder::ContactFinder(const Scene& scene, double recovery)
     }
 }
 
-void ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
+bool ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
   bodies_.place(scene, free_);
+  if (!std::all_of(free_.begin(), free_.end(), is_finite)) {
+    contacts.clear();
+    return false;
+  }
   boxes_.resize(free_.size());
   reach_.resize(free_.size());
   for (std::size_t i = 0; i < free_.size(); ++i) {
@@ -72,7 +79,19 @@ void ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
       find_pair(a, pair->b, touched ? &last->normal : nullptr);
     }
   }
+  keep_impulses(contacts);
   std::swap(found_, contacts);
+  found_.reserve(contacts.capacity());  // of the two lists, neither is to grow alone in a later step
+  return true;
+}
+
+void ContactFinder::keep_impulses(const std::vector<Contact>& last) {
+  const auto key = [](const Contact& contact) { return std::tuple(contact.a, contact.b, contact.place); };
+  auto was = last.begin();
+  for (Contact& contact : found_) {
+    while (was != last.end() && key(*was) < key(contact)) ++was;
+    if (was != last.end() && key(*was) == key(contact)) contact.impulse = was->impulse;
+  }
 }
 
 void ContactFinder::find_pair(int a, int b, const Vector3* side) {

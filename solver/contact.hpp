@@ -31,7 +31,7 @@ struct Contact {
   double s;                  ///< on a's axis, unless closest
   Vector3 normal;            ///< n
   double allowed = 0;        ///< of the gap |x_a - x_b| - R, at most 0 [m]
-  Vector3 impulse{0, 0, 0};  ///< on a, so far in the step: force times dt_c^2 [kg m]
+  Vector3 impulse{0, 0, 0};  ///< on a, so far in the step, at first that of the last: force times dt_c^2 [kg m]
 };
 
 /// Where a contact's capsules are nearest, and the gap there along the contact's normal, which follows.
@@ -52,8 +52,9 @@ class ContactFinder {
   void remember(const Scene& scene) { bodies_.place(scene, start_); }
 
   /// To be called when the scene has moved on to p*. Replaces the contacts of the last step by those of this one,
-  /// sorted by bodies and place.
-  void find(const Scene& scene, std::vector<Contact>& contacts);
+  /// sorted by bodies and place; those that last keep their impulses. Returns false, and finds none, where p* is not
+  /// finite.
+  bool find(const Scene& scene, std::vector<Contact>& contacts);
 
   /// With the bodies' axes as they are now.
   Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const;
@@ -64,6 +65,7 @@ class ContactFinder {
   void find_below(int a, int half_space);
   bool nearer_beyond(int body, int other, double s, const Vector3& away, double time) const;
   void add(Contact contact, bool sided);
+  void keep_impulses(const std::vector<Contact>& last);
 
   struct Plane {
     Vector3 point, normal;

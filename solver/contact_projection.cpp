@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <tuple>
 
 #include "solver/rotation.hpp"
 
@@ -26,6 +25,8 @@ ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settin
   check_least("tolerance", settings.tolerance, 0);
   check_least("sweeps", settings.sweeps, 1);
   check_least("recovery", settings.recovery, 0);
+  if (settings.recovery > 1)
+    throw SceneError("recovery is " + std::to_string(settings.recovery) + "; must be at most 1");
 }
 
 void ContactProjection::start_step() {
@@ -35,19 +36,13 @@ void ContactProjection::start_step() {
     for (std::size_t s = 0; s < rod.segments.size(); ++s) old_.push_back({rod.position[s], rod.orientation[s]});
 }
 
-void ContactProjection::find() {
-  last_ = contacts_;
-  finder_.find(scene_, contacts_);
-  const auto key = [](const Contact& contact) { return std::tuple(contact.a, contact.b, contact.place); };
-  auto last = last_.begin();
-  for (Contact& contact : contacts_) {
-    while (last != last_.end() && key(*last) < key(contact)) ++last;
-    if (last != last_.end() && key(*last) == key(contact)) contact.impulse = last->impulse;
-  }
+bool ContactProjection::find() {
+  if (!finder_.find(scene_, contacts_)) return false;
   fresh_ = true;
   linear_.resize(contacts_.size());
   before_.resize(contacts_.size());
   swept_.resize(contacts_.size());
+  return true;
 }
 
 bool ContactProjection::project(double constraint_dt) {
@@ -56,13 +51,11 @@ bool ContactProjection::project(double constraint_dt) {
   const bool pressed = press(constraint_dt);
   restart(HUGE_VAL);
   for (int i = 0; i < settings_.sweeps; ++i) {
-    for (std::size_t c = 0; c < contacts_.size(); ++c) before_[c] = contacts_[c].impulse;
-    if (i == 0) swept_ = before_;
     const double moved = sweep();
+    if (i == 0) swept_ = before_;
     const bool converged = moved < settings_.tolerance;
     if (converged && i == 0 && !pressed) {
-      for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c].impulse = before_[c];
-      motion_.clear();
+      undo_sweep();
       return true;
     }
     const bool last = converged || i + 1 == settings_.sweeps;
@@ -76,15 +69,16 @@ bool ContactProjection::project(double constraint_dt) {
 
 // Contacts that last are pressed at once as they were in the last step. Returns whether that moves anything.
 bool ContactProjection::press(double constraint_dt) {
+  if (!fresh_) return false;
+  fresh_ = false;
   bool any = false;
-  for (std::size_t c = 0; c < contacts_.size() && fresh_; ++c) {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Contact& contact = contacts_[c];
-    if (contact.impulse.isZero(0)) continue;
     contact.impulse = linear_[c].law.admissible(contact.impulse);
+    if (contact.impulse.isZero(0)) continue;
     push(contact, linear_[c], contact.impulse);
     any = true;
   }
-  fresh_ = false;
   motion_.settle(constraint_dt);
   return any;
 }
@@ -96,7 +90,7 @@ void ContactProjection::linearise() {
     Linear& at = linear_[c];
     const Gap gap = finder_.follow(contact, axes_);
     const CapsuleAxis& a = axes_[static_cast<std::size_t>(contact.a)];
-    at.gap = gap.width - contact.allowed;
+    at.width = gap.width;
     at.arm_a = gap.middle - a.centre;
     at.slip = slip(contact.a, gap.middle);
     at.size = size(contact);
@@ -117,9 +111,11 @@ double ContactProjection::sweep() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Contact& contact = contacts_[c];
     const Linear& at = linear_[c];
+    before_[c] = contact.impulse;
     Vector3 moved = motion_.of(contact.a, at.arm_a);
     if (contact.b >= 0) moved -= motion_.of(contact.b, at.arm_b);
-    const Vector3 impulse = at.law.relaxed(contact.impulse, at.gap + contact.normal.dot(moved), at.slip + moved);
+    const double gap = at.width - contact.allowed + contact.normal.dot(moved);
+    const Vector3 impulse = at.law.relaxed(contact.impulse, gap, at.slip + moved);
     const Vector3 change = impulse - contact.impulse;
     if (change.isZero(0)) continue;
     most = std::max(most, change.norm() * at.law.normal_weight() / at.size);
@@ -127,6 +123,12 @@ double ContactProjection::sweep() {
     push(contact, at, change);
   }
   return most;
+}
+
+// The last one, none of which has settled.
+void ContactProjection::undo_sweep() {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c].impulse = before_[c];
+  motion_.clear();
 }
 
 void ContactProjection::restart(double moved) {
@@ -176,14 +178,14 @@ double ContactProjection::size(const Contact& contact) const {
   return contact.b < 0 ? radius : std::min(radius, finder_.bodies().body(contact.b).radius);
 }
 
-double ContactProjection::penetration() {
-  finder_.bodies().place(scene_, axes_);
-  double deepest = 0;
-  for (const Contact& contact : contacts_) {
-    Contact now = contact;
-    deepest = std::max(deepest, -finder_.follow(now, axes_).width / size(contact));
-  }
-  return deepest;
+ContactState ContactProjection::state() {
+  ContactState state;
+  if (contacts_.empty()) return state;
+  linearise();
+  for (const Linear& at : linear_) state.penetration = std::max(state.penetration, -at.width / at.size);
+  state.residual = sweep();
+  undo_sweep();
+  return state;
 }
 
 }  // namespace rodsweep

@@ -23,6 +23,12 @@
 
 namespace rodsweep {
 
+/// Relative to the smaller radius of two bodies; 0 without contacts.
+struct ContactState {
+  double penetration = 0;  ///< the deepest overlap
+  double residual = 0;     ///< the farthest that a contact wants to move its bodies; below the tolerance: converged
+};
+
 class ContactProjection {
  public:
   ContactProjection(Scene& scene, const ContactSettings& settings);
@@ -30,29 +36,30 @@ class ContactProjection {
   /// To be called before the scene leaves p.
   void start_step();
 
-  /// To be called at p*: finds the contacts of the step.
-  void find();
+  /// To be called at p*: finds the contacts of the step. Returns false where p* is not finite.
+  bool find();
 
   /// To be called after the rods' projection. Returns whether the contacts had converged: then nothing is moved.
   bool project(double constraint_dt);
 
   const std::vector<Contact>& contacts() const { return contacts_; }
 
-  /// The deepest overlap of two bodies in the current state, relative to the smaller radius of the two; 0 if none.
-  double penetration();
+  /// How the contacts of the step are met in the current state, which stays.
+  ContactState state();
 
  private:
   /// A contact at the current positions.
   struct Linear {
     CoulombContact law;
     Vector3 arm_a, arm_b;  ///< from the centres to the common point
-    double gap;            ///< less what is allowed
+    double width;          ///< of the gap [m]
     Vector3 slip;          ///< of a's material against b's at the common point, since the start of the step
     double size;           ///< that motions are relative to: the smaller radius
   };
   void linearise();
   bool press(double constraint_dt);
   double sweep();
+  void undo_sweep();
   void restart(double moved);
   void accelerate(double moved);
   void push(const Contact& contact, const Linear& at, const Vector3& impulse);
@@ -63,8 +70,8 @@ class ContactProjection {
   ContactSettings settings_;
   ContactFinder finder_;
   ContactMotion motion_;
-  std::vector<Contact> contacts_, last_;  ///< of this step and of the one before
-  bool fresh_ = false;                    ///< not projected yet
+  std::vector<Contact> contacts_;
+  bool fresh_ = false;  ///< not projected yet
   std::vector<Linear> linear_;
   std::vector<CapsuleAxis> axes_;
   struct OldPose {

@@ -29,9 +29,12 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
 StepReport TimeStepper::step(Projection& projection) {
   if (contact_) contact_->start_step();
   predict();
-  if (contact_) contact_->find();
-  const double dt_c = constraint_dt();
   StepReport report;
+  if (contact_ && !contact_->find()) {
+    report.outcome = SolveOutcome::not_a_number;
+    return report;
+  }
+  const double dt_c = constraint_dt();
   bool converged = false;
   for (int newton = 0; newton < settings_.newton_iterations && !converged; ++newton) {
     converged = true;
@@ -52,7 +55,9 @@ StepReport TimeStepper::step(Projection& projection) {
   }
   if (contact_) {
     report.contacts = static_cast<int>(contact_->contacts().size());
-    report.penetration = contact_->penetration();
+    const ContactState state = contact_->state();
+    report.penetration = state.penetration;
+    report.contact_residual = state.residual;
   }
   update_velocities();
   ++steps_;

@@ -26,10 +26,10 @@ struct StepSettings {
 };
 
 struct StepReport {
-  SolveOutcome outcome = SolveOutcome::converged;  ///< the first failure of a solve, else converged
+  SolveOutcome outcome = SolveOutcome::converged;  ///< the last failure of a solve, else converged
   int newton_iterations = 0;                       ///< solves used, the most of any rod, or those of the contacts
   int contacts = 0;                                ///< places where bodies are near each other
-  double penetration = 0;                          ///< the deepest overlap, relative to the radius
+  double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
 };
 
 /// dt_c, which turns compliances into alpha~ and multipliers into forces, of steps of dt.

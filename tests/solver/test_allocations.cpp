@@ -139,6 +139,24 @@ TEST_CASE("a step with contacts allocates nothing unless there are more of them 
   CHECK(allocations_of(scene, direct) == 0);
 }
 
+TEST_CASE("contacts allocate once, in the first step in which there are so many") {
+  Scene scene = build_scene(test::bending_rod(12, Clamp::free));
+  for (std::size_t s = 0; s < 12; ++s) {
+    scene.rods[0].position[s] = {static_cast<double>(s) / 6, 0.05, 0};
+    scene.rods[0].orientation[s] = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  }
+  scene.contact = ContactSettings{};
+  scene.obstacles = {HalfSpace{}};
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 4, 1e-9});
+  const int most = stepper.step(projection).contacts;
+  CHECK(most > 0);
+  const long before = test::allocations();
+  for (int step = 0; step < 3; ++step) CHECK(stepper.step(projection).contacts <= most);
+  CHECK(test::allocations() == before);
+}
+
 TEST_CASE("a step with CG allocates nothing, whatever the guess") {
   const auto make = [](const std::string& name, const Scene& scene) -> std::unique_ptr<InitialGuess> {
     if (name == "previous") return std::make_unique<ExtrapolationGuess>(scene, 4, 1);

@@ -208,6 +208,9 @@ TEST_CASE("contact settings and half-spaces that are none are refused") {
   Scene scene = contact_scene({capsule({0, 0, 0}, {0, 0, 1}, {0, 0, 0})}, -0.1);
   CHECK_THROWS_WITH(TimeStepper(scene, {}), "friction is -0.100000; must be at least 0 and finite");
   scene.contact->friction = 0;
+  scene.contact->recovery = 1.5;
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "recovery is 1.500000; must be at most 1");
+  scene.contact->recovery = 1;
   scene.obstacles = {HalfSpace{{0, 0, 0}, {0, 0, 0}}};
   CHECK_THROWS_WITH(TimeStepper(scene, {}), Catch::Contains("the normal must not be zero"));
 }
