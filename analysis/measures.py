@@ -149,9 +149,10 @@ class StepFigures:
     length_drift: np.ndarray        # largest magnitude
     joint_gap: np.ndarray           # largest
     penetration: np.ndarray         # deepest; NaN without contact
+    contact_residual: np.ndarray    # largest at the end of a step; NaN without contact
 
 
-LARGEST = ("newton_residual", "length_drift", "joint_gap", "penetration")
+LARGEST = ("newton_residual", "length_drift", "joint_gap", "penetration", "contact_residual")
 
 
 def step_figures(file, sims):

@@ -4,7 +4,7 @@
   CG ratio   CG iterations over those from the zero guess, summed over a simulation, mean over simulations
   speedups   time of zero-guess CG (and of the direct solve) over the time with a guess, at the job's tolerance:
              CG only, guess and CG, whole step; sums over a simulation, median over simulations
-  steps      Newton iterations, largest length drift, joint gap and penetration, over all steps of a simulation
+  steps      Newton iterations, largest length drift, joint gap, penetration and contact residual, over all steps
 
 A block per scene type and per value of any grid of the job outside `scene`; --by KEY splits them further. Intervals are
 95 % bootstrap intervals over simulations.
@@ -166,7 +166,8 @@ def direct_lines(file, sims, found):
 
 
 STEP_COLUMNS = {"newton_iterations": "Newton its/step", "newton_residual": "Newton residual",
-                "length_drift": "length drift", "joint_gap": "joint gap/length", "penetration": "penetration/radius"}
+                "length_drift": "length drift", "joint_gap": "joint gap/length", "penetration": "penetration/radius",
+                "contact_residual": "contact residual/radius"}
 
 
 def step_lines(file, found, guesses):

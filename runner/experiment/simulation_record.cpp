@@ -52,6 +52,7 @@ void record_step(TaskRecord& record, std::size_t step, const Scene& scene, const
   if (!scene.contact) return;
   record.contacts[step] = report.contacts;
   record.penetration[step] = report.penetration;
+  record.contact_residual[step] = report.contact_residual;
   record.deepest_penetration[0] = std::fmax(record.deepest_penetration[0], report.penetration);
 }
 

@@ -94,7 +94,7 @@ struct TaskRecord {
   std::vector<std::int16_t> newton_iterations;
   std::vector<double> step_newton_residual;
   std::vector<std::int32_t> contacts;
-  std::vector<double> penetration;
+  std::vector<double> penetration, contact_residual;
 
   // ---- /trajectories
   std::vector<double> position_m, orientation;             ///< [frame x segment, 3], [frame x segment, 4] (w, x, y, z)
@@ -219,6 +219,10 @@ void visit_columns(Record& r, Visit&& visit) {
   visit(Column{"/steps/penetration", R::contact_step, none, "1",
                "deepest overlap of two bodies after the step, over the smaller radius; NaN without contact"},
         r.penetration);
+  visit(Column{"/steps/contact_residual", R::contact_step, none, "1",
+               "farthest that a contact still wants to move its bodies after the step, over the smaller radius; those "
+               "below contact.tolerance have converged; NaN without contact"},
+        r.contact_residual);
 
   visit(Column{"/trajectories/position_m", R::frame_segment, xyz, "m", "segment centre"}, r.position_m);
   visit(Column{"/trajectories/orientation",

@@ -256,6 +256,7 @@ class Steps(Tables):
         np.testing.assert_allclose(figures.joint_gap, 2e-3)
         np.testing.assert_allclose(figures.newton_iterations, 3)
         self.assertTrue(np.isnan(figures.penetration).all())
+        self.assertTrue(np.isnan(figures.contact_residual).all())
 
     def test_penetration_of_the_simulations_that_have_contact(self):
         plant = synthetic.Plant()

@@ -127,11 +127,14 @@ TEST_CASE("contacts and the deepest penetration are recorded where rods touch, a
   CHECK(none.contacts == std::vector<std::int32_t>(10, -1));
   CHECK(std::isnan(none.penetration.back()));
   CHECK(std::isnan(none.deepest_penetration[0]));
+  CHECK(std::isnan(none.contact_residual.back()));
   CHECK(touching.contacts.front() == 0);
   CHECK(touching.penetration.front() == 0);
   CHECK(touching.contacts.back() > 0);
   CHECK(touching.deepest_penetration[0] == *std::max_element(touching.penetration.begin(), touching.penetration.end()));
   CHECK(touching.deepest_penetration[0] < 1e-2);
+  CHECK(touching.contact_residual.front() == 0);
+  CHECK(touching.contact_residual.back() < 1e-2);
   job["scene"]["contact"] = "none";
   CHECK(evaluated(job).contacts.empty());
 }

@@ -177,7 +177,7 @@ TEST_CASE("contacts have columns where rods touch in any task, also in the file 
   make_file(folder / "some.h5", plan, 2);
   make_file(folder / "alone.h5", plan.alone(0, 0), 1);
   make_file(folder / "none.h5", none, 1);
-  for (const char* path : {"/tasks/penetration", "/steps/contacts", "/steps/penetration"}) {
+  for (const char* path : {"/tasks/penetration", "/steps/contacts", "/steps/penetration", "/steps/contact_residual"}) {
     CHECK(holds(folder / "some.h5", path));
     CHECK(holds(folder / "alone.h5", path));
     CHECK_FALSE(holds(folder / "none.h5", path));
