@@ -19,8 +19,9 @@ class RodResponse {
  public:
   explicit RodResponse(const Rod& rod);
 
-  /// At the rod's positions. Multipliers start from zero. Where A is indefinite in rounding, so it is in the rod's next
-  /// projection, which says so.
+  /// At the rod's positions. Multipliers start from zero. Whether A is positive definite is for the rod's projection to
+  /// say, which has just solved with nearly the same one; Gauss-Seidel has none, and a response that is not finite then
+  /// shows in the state.
   void assemble(const Rod& rod, double dt);
 
   /// `motion`: dx and dtheta of every segment, as LinearSystem::displacements(); of static ones zero.
