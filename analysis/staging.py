@@ -16,6 +16,7 @@ VIEWS = {"front": (0, 4), "side": (90, 4), "top": (0, 89.9)}   # azimuth and ele
 TURN_DEG = 28           # of a chosen view, away from looking at the broad side
 GAP = 0.015             # between the lowest point and the floor, of the scene's extent
 WALL_RADII = 2.2        # radius of the plate that stands for a wall (a held segment without length), in rod radii
+HAIR = 1e-4             # by which a floor covers the plates of walls that stand on it, of the scene's extent
 GROUND_DEG = 10         # from the vertical: a wall that holds a rod this upright stands on the floor
 RODS = ("#2f6f9f", "#c8553d", "#4f8a5b", "#d9a03f", "#7a5c99", "#5aa5b5", "#a8475c", "#8a8f3c")
 HELD = "#4a4e54"
@@ -116,7 +117,7 @@ def floor_level(trajectory, frames, up, floor, extent, touched=(), still=()):
     lowest = min(float(np.min(points @ up - reach)) for points, reach in (*still, *ends))
     walls = (trajectory.length <= 0) & (trajectory.axes(frames[0]) @ up > np.cos(np.radians(GROUND_DEG)))
     under = np.where(walls, trajectory.centres(frames[0]) @ up, np.inf).min()
-    return under if under - radius.max() <= lowest else lowest - GAP * extent
+    return under + HAIR * extent if under - radius.max() <= lowest else lowest - GAP * extent
 
 
 def chosen_view(spread, low, high, up):

@@ -1,4 +1,4 @@
-"""Obstacles: which ones a task has, where they are in pictures, floors that belong to a scene."""
+"""Obstacles: which ones a task has, where they are in pictures, their surfaces; floors that belong to a scene."""
 
 import os
 import stat
@@ -11,6 +11,7 @@ import numpy as np
 import obstacles
 import povray
 import staging
+import surfaces
 import trajectories
 import trajectory
 from running import Scripts
@@ -77,7 +78,7 @@ class Obstacles(Scripts):
         self.plant({}, along="y", walls=1, rods=1)
         with SweepFile(self.path) as file:
             foot = trajectory.of_task(file, 0).centres(0)[0, 1]
-        self.assertEqual(self.staged().floor, foot)
+        self.assertAlmostEqual(self.staged().floor, foot, delta=1e-3)
         self.plant({}, along="x", walls=1, rods=1)
         self.assertLess(self.staged().floor, 0.9)
 
@@ -125,6 +126,24 @@ class Obstacles(Scripts):
         below = self.staged(view=(0, -30))
         self.assertIn(povray.GLASS, povray.obstacles(below))
         self.assertNotIn("plane", povray.surroundings(below))
+
+    def test_surfaces_enclose_the_volume_of_their_solid_and_face_outwards(self):
+        rng = np.random.default_rng(3)
+        for length in (0.0, 2.0):
+            start, along, radius = rng.normal(size=3), rng.normal(size=3), 0.7
+            end = start + length * along / np.linalg.norm(along)
+            points, triangles = surfaces.surface(obstacles.Capsule(start, end, radius), np.zeros(3), 5.0)
+            a, b, c = (points[triangles[:, k]] - start for k in range(3))
+            volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+            self.assertAlmostEqual(volume / (np.pi * radius ** 2 * (4 / 3 * radius + length)), 1, delta=0.03)
+            axis = np.clip((points - start) @ (end - start) / (length ** 2 or 1), 0, 1)[:, None] * (end - start)
+            np.testing.assert_allclose(np.linalg.norm(points - start - axis, axis=1), radius)
+        slope = obstacles.HalfSpace(np.array([0.0, 2, 0]), np.array([0.6, 0.8, 0]))
+        points, triangles = surfaces.joined([surfaces.surface(slope, np.ones(3), 4.0)] * 2)
+        np.testing.assert_allclose((points - slope.point) @ slope.normal, 0, atol=1e-12)
+        a, b, c = (points[triangles[:, k]] for k in range(3))
+        area = np.cross(b - a, c - a) @ slope.normal / 2
+        self.assertAlmostEqual(area.sum() / (2 * np.pi * (4 * obstacles.DISC) ** 2), 1, delta=0.01)
 
     def test_a_machine_that_is_too_busy_for_povray_is_asked_again(self):
         script = os.path.join(self.folder, "povray")
