@@ -70,7 +70,7 @@ studies: build
 	done
 	@analysis/results/draw.sh results
 
-# By task of jobs/pictures.json. What exists is not drawn again.
+# By task of jobs/pictures.json; a film of the forest would take as long as all of these. What exists is not drawn again.
 pictures = 0:helix:along 1:net:rod 2:ring:along 3:tree:radius 4:falling:rod 5:knot:along 6:drape:rod
 pictures: build
 	@$(call packages,pictures)
