@@ -21,7 +21,8 @@
 
 namespace rodsweep {
 
-/// Joints of the rod in depth-first order, branch by branch, from the static segments (then from segment 0 of what they don't reach).
+/// Joints of the rod in depth-first order, branch by branch, from the static segments (then from segment 0 of what they
+/// don't reach).
 std::vector<int> root_to_leaf_order(const Rod& rod);
 
 class BlockFactor {

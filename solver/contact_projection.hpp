@@ -7,11 +7,11 @@
 // iterated: a sweep in a fixed order takes every segment to be free, and the joints take back their part
 // (contact_motion.hpp). A rod is never freer than its pieces, so that both together are a step of a projected gradient
 // method with a safe metric, to which Nesterov's acceleration applies (APGD, Mazhar et al. 2015). Then everything moves
-// once. It leaves joints as closed as they were, but for the second order, which the next Newton iteration closes, keeps
-// linear momentum to rounding, and angular momentum as well as one rotation update does, to O(dtheta^2).
+// once. It leaves joints as closed as they were, but for the second order, which the next Newton iteration closes,
+// keeps linear momentum to rounding, and angular momentum as well as one rotation update does, to O(dtheta^2).
 //
-// Multipliers start from those of the last step where a contact lasts; a step's result depends on that start only as far
-// as it has not converged.
+// Multipliers start from those of the last step where a contact lasts; a step's result depends on that start only as
+// far as it has not converged.
 //
 // Allocates only when there are more contacts than ever before, when a rod is touched for the first time, and where the
 // broad phase searches anew.

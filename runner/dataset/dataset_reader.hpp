@@ -1,7 +1,7 @@
 // A finished data set, read simulation by simulation: what of it is in memory is the caller's choice.
 //
-// Simulations are numbered from 0 in the order of their samples, within a sample of their grid points, so that the first
-// and the last ones have something of every grid point; those that failed are left out. Throws FileError for a
+// Simulations are numbered from 0 in the order of their samples, within a sample of their grid points, so that the
+// first and the last ones have something of every grid point; those that failed are left out. Throws FileError for a
 // file that is missing, foreign, damaged, not a data set or not complete.
 #pragma once
 

@@ -116,7 +116,8 @@ std::vector<Key> training_keys() {
       text_key("data", "data set to learn from: the file of a job of kind \"dataset\"")
           .at_most(4000)
           .of_form(Key::Text::line),
-      integer_key("validation_simulations", "the last so many simulations, of the data set's last samples, are not learned from")
+      integer_key("validation_simulations",
+                  "the last so many simulations, of the data set's last samples, are not learned from")
           .at_least(1)
           .at_most(1000000)
           .defaults_to(100),

@@ -54,8 +54,9 @@ TEST_CASE("a stiff rod gives way to an impulse like a rigid body, a limp one lik
     p.stretch_compliance_per_j = stiff ? 1e-15 : 1e15;
     Rod rod = build_scene(p).rods.front();
     const Segment& segment = rod.segments.front();
-    const double mass = 11 * segment.mass, inertia = mass * (3 * segment.radius_m * segment.radius_m +
-                                                             121 * segment.length_m * segment.length_m) / 12;
+    const double mass = 11 * segment.mass,
+                 inertia =
+                     mass * (3 * segment.radius_m * segment.radius_m + 121 * segment.length_m * segment.length_m) / 12;
     const Vector3 along = (rod.position[10] - rod.position[0]).normalized(), push = along.unitOrthogonal();
     std::vector<Lane8> motion(11, Lane8{});
     for (int c = 0; c < 3; ++c) motion[0][c] = push[c] * segment.inverse_mass;
