@@ -70,14 +70,16 @@ studies: build
 	done
 	@analysis/results/draw.sh results
 
-# What exists is not drawn again.
+# By task of jobs/pictures.json; a film of the forest would take as long as all of these. What exists is not drawn again.
+pictures = 0:helix:along 1:net:rod 2:ring:along 3:tree:radius 4:falling:rod 5:knot:along 6:drape:rod
 pictures: build
 	@$(call packages,pictures)
-	@mkdir -p results; [ -e results/pictures.h5 ] && resume=--resume || resume=; \
+	@mkdir -p results/figures; [ -e results/pictures.h5 ] && resume=--resume || resume=; \
 	$(BUILD)/rodsweep run jobs/pictures.json -o results/pictures.h5 $$resume </dev/null
-	@for scene in helix net ring; do for film in gif mp4; do \
-	  [ -e results/figures/$$scene.$$film ] || $(PYTHON) analysis/render.py results/pictures.h5 --scene $$scene \
-	    --movie $$film --size 480x360 --colour along -o results/figures/$$scene.$$film; \
+	@for picture in $(pictures); do IFS=: read task name colour <<<$$picture; \
+	  for film in mp4 'gif --every 2 --rate 12'; do path=results/figures/$$name.$${film%% *}; \
+	    [ -e $$path ] || $(PYTHON) analysis/render.py results/pictures.h5 --task $$task --movie $$film --size 480x360 \
+	      --colour $$colour $$([ $$name != tree ] || echo --fine) -o $$path; \
 	done; done
 
 test: configure

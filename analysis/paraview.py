@@ -4,15 +4,21 @@
 Every frame is a set of segments' centres joined by lines, with orientation (w, x, y, z), radius, length, rod and
 whether they are held. Numbers are read from the HDF5 file, which stays as it is: keep the two together. Open the .xdmf
 with ParaView's "XDMF Reader" (its Xdmf3 readers fail on parts of datasets, which frames are). Extract Surface and Tube,
-there with Scalars "radius" and Vary Radius "By Absolute Scalar", show the rods as they are. The path is printed.
+there with Scalars "radius" and Vary Radius "By Absolute Scalar", show the rods as they are. Obstacles are a block of
+their own, "obstacles", of triangles: Extract Block tells them apart. The path is printed.
 """
 
 import os
 from xml.etree import ElementTree
 
+import numpy as np
+
 import commandline
 import joints
+import obstacles
 import outputs
+import staging
+import surfaces
 import trajectory
 from sweepfile import SweepFile
 
@@ -43,13 +49,14 @@ def main():
         outputs.check(path, options)
         reference = os.path.relpath(options.file, os.path.dirname(path) or ".")
         with outputs.whole(path) as part:
-            document(shown, reference).write(part, encoding="utf-8", xml_declaration=True)
+            document(shown, reference, obstacles.of_task(file, task)).write(part, encoding="utf-8", xml_declaration=True)
         print(path)
     return 0
 
 
-def document(shown, reference):
-    """The XDMF (version 2) of all frames; `reference`: path of the results file from where the XDMF is."""
+def document(shown, reference, touched=()):
+    """The XDMF (version 2) of all frames; `reference`: path of the results file from where the XDMF is; touched:
+    obstacles.of_task()."""
     root = ElementTree.Element("Xdmf", Version="2.0")
     domain = ElementTree.SubElement(root, "Domain")
     topology(domain, joints.pairs(shown), len(shown.length))
@@ -64,6 +71,11 @@ def document(shown, reference):
         rows.add(attribute(grid, "orientation", "Matrix"), "/trajectories/orientation", row)
         for name, column in CONSTANT.items():
             rows.add(attribute(grid, name, "Scalar"), f"{trajectory.SEGMENTS}/{column}", shown.first_segment)
+    if touched:
+        low, high, _ = staging.bounds(shown, range(shown.frames()))
+        parts = [surfaces.surface(obstacle, (low + high) / 2, float(np.linalg.norm(high - low)))
+                 for obstacle in touched]
+        solids(domain, *surfaces.joined(parts))
     ElementTree.indent(root, " ")
     return ElementTree.ElementTree(root)
 
@@ -77,9 +89,21 @@ def topology(parent, pairs, segments):
         pairs = [[segment] for segment in range(segments)]
         lines = ElementTree.SubElement(parent, "Topology", TopologyType="Polyvertex", NodesPerElement="1",
                                        NumberOfElements=str(segments))
-    item = ElementTree.SubElement(lines, "DataItem", Format="XML", NumberType="Int",
-                                  Dimensions=f"{len(pairs)} {len(pairs[0])}")
-    item.text = "\n" + "\n".join(" ".join(map(str, pair)) for pair in pairs) + "\n"
+    numbers(lines, pairs, NumberType="Int")
+
+
+def solids(domain, points, triangles):
+    """Triangles as a grid that stands still."""
+    grid = ElementTree.SubElement(domain, "Grid", Name="obstacles", GridType="Uniform")
+    faces = ElementTree.SubElement(grid, "Topology", TopologyType="Triangle", NumberOfElements=str(len(triangles)))
+    numbers(faces, triangles, NumberType="Int")
+    numbers(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"), points, NumberType="Float", Precision="8")
+
+
+def numbers(parent, rows, **kind):
+    """An array written out."""
+    item = ElementTree.SubElement(parent, "DataItem", Format="XML", Dimensions=text(len(rows), len(rows[0])), **kind)
+    item.text = "\n" + "\n".join(" ".join(f"{value:.9g}" for value in row) for row in rows) + "\n"
 
 
 def attribute(grid, name, kind):
@@ -106,8 +130,8 @@ class Rows:
         whole.text = f"{self.reference}:{path}"
 
 
-def text(*numbers):
-    return " ".join(map(str, numbers))
+def text(*values):
+    return " ".join(map(str, values))
 
 
 if __name__ == "__main__":

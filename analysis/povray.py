@@ -1,7 +1,8 @@
 """A frame as a scene for POV-Ray, and its picture.
 
-Segments are cylinders whose ends are spheres of the same radius; a held one without length is a plate. The floor is a
-disc that takes shadows and fades into the white background. Vectors are handed over as they are: POV-Ray's camera takes
+Segments are cylinders whose ends are spheres of the same radius, and so are obstacles; a held one without length is a
+plate. The floor is a disc that takes shadows and fades into the white background, a slope a disc with an edge, which is
+glass from behind. Vectors are handed over as they are: POV-Ray's camera takes
 right, up and direction in any handedness. The picture comes through a pipe; the scene is a temporary file, since
 POV-Ray cannot read one from a pipe.
 """
@@ -18,15 +19,19 @@ SETTINGS = ("-D", "-V", "-GA", "+O-", "+FN8", "-J")
 EDGES = {False: ("+A0.2", "+AM2", "+R2"), True: ("+A0.05", "+AM1", "+R3")}   # antialiasing; fine: three times slower
 LAMP = 0.4    # width of the lamp, of the scene's extent: how soft its shadows are
 PLATE = 0.3   # thickness of a wall's plate, in the radius of the sphere that holds it
+STONE = "pigment{srgb <0.80, 0.78, 0.74>} finish{ambient 0.14 diffuse 0.75}"
+GLASS = "pigment{srgbt <0.80, 0.78, 0.74, 0.8>} finish{ambient 0.14 diffuse 0.75} no_shadow"
+BUSY, TRIES = b"Timed out waiting for worker thread startup", 5   # what POV-Ray says on a machine with much to do
+SLAB = 0.02   # thickness of a slope's disc, of its radius
 
 
 def scene(trajectory, stage, colouring, frame):
     """The text of one frame. colouring: palette and numbers of staging.colours()."""
-    return surroundings(stage) + tubes(trajectory, *colouring, frame)
+    return surroundings(stage) + obstacles(stage) + tubes(trajectory, *colouring, frame)
 
 
 def surroundings(stage):
-    """Camera, lights, floor."""
+    """Camera, lights, and the floor unless it is seen from below."""
     seen, up = stage.camera, stage.up
     across, upwards = (2 * tangent for tangent in seen.tangents)
     lamp = stage.centre + stage.extent * (2.4 * up - 0.8 * seen.right - 0.6 * seen.forward)
@@ -41,7 +46,7 @@ light_source {{ {vector(lamp)} rgb 0.95 area_light {vector(wide * seen.right)}, 
   5, 5 adaptive 1 circular orient }}
 light_source {{ {vector(fill)} rgb 0.3 shadowless }}
 """
-    if stage.floor is None:
+    if stage.floor is None or seen.eye @ up < stage.floor:   # from below it would hide everything
         return text
     under = stage.centre + (stage.floor - stage.centre @ up) * up
     return text + f"""plane {{ {vector(up)}, 0
@@ -58,6 +63,22 @@ def turned_from_y(up):
     if abs(up[1]) > 0.9:
         return ""
     return "rotate 90*x" if abs(up[2]) > 0.9 else "rotate 90*z"
+
+
+def obstacles(stage):
+    """Balls, capsules and slopes."""
+    parts = []
+    for solid in stage.solids:
+        ends = [f"sphere{{{vector(end)},{number(solid.radius)}}}" for end in (solid.start, solid.end)]
+        body = f"cylinder{{{vector(solid.start)},{vector(solid.end)},{number(solid.radius)}}}"
+        parts.append(f"union{{{' '.join([*ends, body])} {STONE}}}\n" if (solid.start != solid.end).any() else
+                     f"object{{{ends[0]} {STONE}}}\n")
+    for slope in stage.slopes:
+        middle, radius = slope.disc(stage.centre, stage.extent)
+        behind = (stage.camera.eye - middle) @ slope.normal < 0
+        parts.append(f"cylinder{{{vector(middle - SLAB * radius * slope.normal)},{vector(middle)},{number(radius)} "
+                     f"{GLASS if behind else STONE}}}\n")
+    return "".join(parts)
 
 
 def tubes(trajectory, palette, colour, frame):
@@ -100,7 +121,10 @@ def picture(text, size, threads=1, fine=False):
         scene_file.flush()
         command = ["povray", *SETTINGS, *EDGES[fine], f"+I{scene_file.name}", f"+W{size[0]}", f"+H{size[1]}",
                    f"+WT{threads}"]
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+        for _ in range(TRIES):
+            done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+            if BUSY not in done.stderr:
+                break
     if done.returncode or not done.stdout.startswith(b"\x89PNG"):
         said = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if line.strip()]
         raise ToolError("povray failed: " + " ".join(said[-8:]))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Pictures and films of a recorded trajectory: segments as tubes of their radius, with soft shadows.
+"""Pictures and films of a recorded trajectory: segments as tubes of their radius, obstacles, soft shadows.
 
 Without --movie, a PNG of the last frame, of the frames of --frame, or of every N-th of --every N. The job must record
 frames (record.trajectory_every), or `rodsweep rerun FILE TASK` makes a file of one task that has them.
@@ -15,6 +15,7 @@ import numpy as np
 
 import commandline
 import movie
+import obstacles
 import outputs
 import povray
 import staging
@@ -48,7 +49,8 @@ def arguments():
     made.add_argument("--colour", choices=["rod", "along", "radius"], default="rod",
                       help="what colours tell: the rod (default), the place along it, or the radius")
     made.add_argument("--floor", metavar="HEIGHT", type=height, default="auto",
-                      help="height of the floor in m, or none (default: auto, a little under the lowest point)")
+                      help="height of the floor in m, or none (default: auto, the scene's own, else where trees "
+                           "stand, else a little under the lowest point)")
     made.add_argument("--fine", action="store_true", help="smooth edges of rods thinner than a pixel, three "
                                                           "times slower")
     made.add_argument("-j", "--jobs", metavar="J", type=whole_number, default=os.cpu_count() or 1,
@@ -74,7 +76,8 @@ def main():
         paths = names(options, task, frames)
         for path in paths:
             outputs.check(path, options)
-        stage = staging.staged(shown, frames, staging.upwards(file, task), options.view, options.size, options.floor)
+        stage = staging.staged(shown, frames, staging.upwards(file, task), options.view, options.size, options.floor,
+                               obstacles.of_task(file, task))
         draw = Drawing(shown, stage, staging.colours(shown, options.colour), options)
         for path in paths:
             os.makedirs(os.path.dirname(path) or ".", exist_ok=True)

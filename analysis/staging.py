@@ -9,12 +9,15 @@ import numpy as np
 from matplotlib import colormaps, colors
 
 import camera
+import obstacles
 from sweepfile import KeyNotFound
 
 VIEWS = {"front": (0, 4), "side": (90, 4), "top": (0, 89.9)}   # azimuth and elevation in degrees
 TURN_DEG = 28           # of a chosen view, away from looking at the broad side
 GAP = 0.015             # between the lowest point and the floor, of the scene's extent
 WALL_RADII = 2.2        # radius of the plate that stands for a wall (a held segment without length), in rod radii
+HAIR = 1e-4             # by which a floor covers the plates of walls that stand on it, of the scene's extent
+GROUND_DEG = 10         # from the vertical: a wall that holds a rod this upright stands on the floor
 RODS = ("#2f6f9f", "#c8553d", "#4f8a5b", "#d9a03f", "#7a5c99", "#5aa5b5", "#a8475c", "#8a8f3c")
 HELD = "#4a4e54"
 WOOD = colors.LinearSegmentedColormap.from_list("wood", ["#8fb648", "#6f8a3c", "#7a5d3b", "#5d4230"])   # thin to thick
@@ -28,6 +31,8 @@ class Stage:
     floor: float          # height along `up`; None: there is none
     centre: np.ndarray    # of the scene
     extent: float         # diagonal of its bounding box
+    solids: list          # Capsules among the obstacles
+    slopes: list          # HalfSpaces among them that are not level: of level ones the highest is the floor
 
 
 def upwards(file, task):
@@ -48,10 +53,35 @@ def drawn_radius(trajectory):
     return radius
 
 
-def staged(trajectory, frames, up, view, size, floor="auto"):
-    """A Stage that shows all segments in all of these frames, and their shadows on the floor.
+def staged(trajectory, frames, up, view, size, floor="auto", touched=()):
+    """A Stage that shows all segments in all of these frames, obstacles near them, and their shadows on the floor.
 
-    view: None, a name of VIEWS or (azimuth, elevation) in degrees; floor: "auto", "none" or a height [m]."""
+    view: None, a name of VIEWS or (azimuth, elevation) in degrees; floor: "auto", "none" or a height [m]; touched:
+    obstacles.of_task()."""
+    low, high, spread = bounds(trajectory, frames)
+    angles = VIEWS.get(view, view) if view else chosen_view(spread, low, high, up)
+    framing = camera.Framing(camera.direction(*angles, up), up, size)
+    solids = [obstacle for obstacle in touched if isinstance(obstacle, obstacles.Capsule)]
+    slopes = [obstacle for obstacle in touched if isinstance(obstacle, obstacles.HalfSpace) and
+              not obstacle.is_level(up)]
+    centre, extent = (low + high) / 2, float(np.linalg.norm(high - low))
+    still = [(solid.spheres(centre, extent), solid.radius) for solid in solids]
+    still += [(rim(slope, centre, extent), 0.0) for slope in slopes]
+    still = [(points, reach) for points, reach in still if len(points)]
+    for points, reach in still:
+        low, high = np.minimum(low, points.min(axis=0) - reach), np.maximum(high, points.max(axis=0) + reach)
+    level = floor_level(trajectory, frames, up, floor, extent, touched, still)
+    radius = drawn_radius(trajectory)
+    moving = ((points, radius) for frame in frames for points in trajectory.ends(frame))
+    for points, reach in (*still, *moving):
+        framing.add(points, reach)
+        if level is not None:
+            framing.add(points + (level - points @ up)[:, None] * up, reach)
+    return Stage(framing.camera(), up, level, centre, extent, solids, slopes)
+
+
+def bounds(trajectory, frames):
+    """Corners of the box around all segments in these frames, and the mean spread of their centres [3, 3]."""
     radius = drawn_radius(trajectory)[:, None]
     low, high, spread, count = np.full(3, np.inf), np.full(3, -np.inf), np.zeros((3, 3)), 0
     for frame in frames:
@@ -63,25 +93,31 @@ def staged(trajectory, frames, up, view, size, floor="auto"):
     if not np.isfinite(low).all() or not np.isfinite(high).all():
         raise KeyNotFound(f"task {trajectory.task} has positions that are not numbers in these frames: choose others "
                           "with --frame")
-    extent = float(np.linalg.norm(high - low))
-    level = floor_level(trajectory, frames, up, floor, extent)
-    angles = VIEWS.get(view, view) if view else chosen_view(spread / count, low, high, up)
-    framing = camera.Framing(camera.direction(*angles, up), up, size)
-    for frame in frames:
-        for points in trajectory.ends(frame):
-            framing.add(points, radius[:, 0])
-            if level is not None:
-                framing.add(points + (level - points @ up)[:, None] * up, radius[:, 0])
-    return Stage(framing.camera(), up, level, (low + high) / 2, extent)
+    return low, high, spread / count
 
 
-def floor_level(trajectory, frames, up, floor, extent):
-    """Height along `up`, or None."""
+def rim(slope, centre, extent):
+    """Points [.., 3] around the disc that a slope is shown as."""
+    middle, radius = slope.disc(centre, extent)
+    across, along = np.linalg.svd(slope.normal[None])[2][1:]
+    turn = np.linspace(0, 2 * np.pi, obstacles.PIECES)[:, None]
+    return middle + radius * (np.cos(turn) * across + np.sin(turn) * along)
+
+
+def floor_level(trajectory, frames, up, floor, extent, touched=(), still=()):
+    """Height along `up`, or None. By itself: that of the obstacles' floor; else where rods stand, if nothing is lower;
+    else a little under the lowest point. still: (points, radius) of what obstacles are drawn."""
     if floor != "auto":
         return None if floor == "none" else float(floor)
+    given = obstacles.floor(touched, up)
+    if given is not None:
+        return given
     radius = drawn_radius(trajectory)
-    lowest = min(float(np.min(points @ up - radius)) for frame in frames for points in trajectory.ends(frame))
-    return lowest - GAP * extent
+    ends = ((points, radius) for frame in frames for points in trajectory.ends(frame))
+    lowest = min(float(np.min(points @ up - reach)) for points, reach in (*still, *ends))
+    walls = (trajectory.length <= 0) & (trajectory.axes(frames[0]) @ up > np.cos(np.radians(GROUND_DEG)))
+    under = np.where(walls, trajectory.centres(frames[0]) @ up, np.inf).min()
+    return under + HAIR * extent if under - radius.max() <= lowest else lowest - GAP * extent
 
 
 def chosen_view(spread, low, high, up):

@@ -91,6 +91,23 @@ class Paraview(Scripts):
         self.assertEqual((lines.get("TopologyType"), lines.get("NumberOfElements")), ("Polyvertex", "6"))
         np.testing.assert_array_equal(lines.find("DataItem").text.split(), [str(k) for k in range(6)])
 
+    def test_obstacles_are_a_grid_that_stands_still(self):
+        self.plant()
+        with synthetic.h5py.File(self.path, "r+") as h5:
+            for name, value in {"contact.friction": 0.3, "obstacles[0].ball.centre_m": (1, 2, 3),
+                                "obstacles[0].ball.radius_m": 0.25, "obstacles[1].half_space.point_m": (0, -1, 0),
+                                "obstacles[1].half_space.normal": (0, 1, 0)}.items():
+                h5[f"tasks/parameters/scene.{name}"] = np.array([value] * 3, dtype=float)
+        root = self.document()
+        self.assertEqual(len(root.findall("Domain/Grid/Grid")), 4)
+        grid, = (grid for grid in root.findall("Domain/Grid") if grid.get("Name") == "obstacles")
+        triangles, points = (np.array(item.text.split(), dtype=float).reshape(-1, 3)
+                             for item in (grid.find("Topology/DataItem"), grid.find("Geometry/DataItem")))
+        self.assertEqual(grid.find("Topology").get("NumberOfElements"), str(len(triangles)))
+        self.assertEqual(set(triangles.ravel()), set(range(len(points))))
+        on_ball = np.isclose(np.linalg.norm(points - (1, 2, 3), axis=1), 0.25)
+        self.assertTrue(on_ball.any() and (~on_ball).any() and np.isclose(points[~on_ball, 1], -1).all())
+
     def test_mistakes_are_one_line_and_exit_code_2(self):
         self.write(scenes=("helix",), solves=False)
         self.refused("paraview.py", "sweep.h5", words="record.trajectory_every")

@@ -79,5 +79,38 @@ TEST_CASE("a capsule hung over a fixed one by friction stays, and slips off with
   }
 }
 
+/// How far a limp rod over a fixed capsule slips in half a second, its ends pulled down with 1 N and `ratio` N.
+double slip_of_rope(double friction, double ratio) {
+  RodParameters p;
+  p.radius_m = 0.01;
+  p.youngs_modulus_pa = 1e4;
+  p.torsion_modulus_pa = 1e4;
+  constexpr int arc = 48, leg = 10;
+  const double drum = 0.2, bent = (drum + p.radius_m) / std::cos(M_PI / (2 * arc)),
+               length = 2 * bent * std::sin(M_PI / (2 * arc));
+  std::vector<Vector3> vertices;
+  for (int i = leg; i > 0; --i) vertices.emplace_back(-bent, -i * length, 0);
+  for (int i = 0; i <= arc; ++i)
+    vertices.emplace_back(-bent * std::cos(i * M_PI / arc), bent * std::sin(i * M_PI / arc), 0);
+  for (int i = 1; i <= leg; ++i) vertices.emplace_back(bent, -i * length, 0);
+  const std::vector<SegmentSpec> segments = segments_through(vertices, p);
+  Scene scene = contact_scene({chain(segments, p, ratio)}, friction);
+  scene.obstacles = {Capsule{{0, 0, -1}, {0, 0, 1}, drum}};
+  scene.loads = {{0, 0, {0, -1, 0}}, {0, static_cast<int>(segments.size()) - 1, {0, -ratio, 0}}};
+  scene.damping_per_s = 2;
+  Touching t(scene, 0.002);
+  const double before = t.scene.rods[0].position.back().y();
+  CHECK(t.run(250) < 0.01);
+  return before - t.scene.rods[0].position.back().y();
+}
+
+TEST_CASE("a rope over half a drum holds a load of up to exp(mu pi) times the other (Euler 1769; Eytelwein 1808)") {
+  for (const double friction : {0.2, 0.4}) {
+    const double most = std::exp(friction * M_PI);
+    CHECK(std::abs(slip_of_rope(friction, 0.92 * most)) < 2e-3);
+    CHECK(slip_of_rope(friction, 1.05 * most) > 0.02);
+  }
+}
+
 }  // namespace
 }  // namespace rodsweep

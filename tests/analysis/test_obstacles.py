@@ -1,0 +1,159 @@
+"""Obstacles: which ones a task has, where they are in pictures, their surfaces; floors that belong to a scene."""
+
+import os
+import stat
+import unittest
+import unittest.mock
+
+import synthetic
+import numpy as np
+
+import obstacles
+import povray
+import staging
+import surfaces
+import trajectories
+import trajectory
+from running import Scripts
+from sweepfile import SweepFile
+from test_pictures import drawn
+
+UP = np.array([0.0, 1, 0])
+NONE = [np.nan] * 3
+
+
+class Obstacles(Scripts):
+    def plant(self, columns, scene="net", **settings):
+        """Three tasks with these parameters."""
+        self.write(scenes=(scene,), grid={"scene.segments": [6]}, samples=3, solves=False)
+        trajectories.plant(self.path, **settings)
+        with synthetic.h5py.File(self.path, "r+") as h5:
+            for name, values in {"contact.friction": [0.3] * 3, **columns}.items():
+                h5[f"tasks/parameters/scene.{name}"] = np.array(values, dtype=float)
+
+    def of(self, task):
+        with SweepFile(self.path) as file:
+            return obstacles.of_task(file, task)
+
+    def staged(self, frames=(0,), size=(240, 180), view=(20, 20)):
+        with SweepFile(self.path) as file:
+            return staging.staged(trajectory.of_task(file, 0), frames, UP, view, size,
+                                  touched=obstacles.of_task(file, 0))
+
+    def test_a_task_has_those_of_its_own_columns(self):
+        self.plant({"obstacles[0].ball.centre_m": [[0, -1, 0], [0, -2, 0], NONE],
+                    "obstacles[0].ball.radius_m": [0.2, 0.4, np.nan],
+                    "obstacles[0].half_space.point_m": [NONE, NONE, [0, -3, 0]],
+                    "obstacles[0].half_space.normal": [NONE, NONE, [0, 3, 4]],
+                    "obstacles[1].capsule.from_m": [NONE, [0, 0, 0], NONE],
+                    "obstacles[1].capsule.to_m": [NONE, [1, 0, 0], NONE],
+                    "obstacles[1].capsule.radius_m": [np.nan, 0.1, np.nan]})
+        ball, = self.of(0)
+        self.assertEqual((*ball.start, *ball.end, ball.radius), (0, -1, 0, 0, -1, 0, 0.2))
+        ball, capsule = self.of(1)
+        self.assertEqual((ball.start[1], ball.radius), (-2, 0.4))
+        self.assertEqual((*capsule.start, *capsule.end, capsule.radius), (0, 0, 0, 1, 0, 0, 0.1))
+        slope, = self.of(2)
+        np.testing.assert_allclose((*slope.point, *slope.normal), (0, -3, 0, 0, 0.6, 0.8))
+
+    def test_without_contact_there_are_none_and_two_scenes_have_a_floor(self):
+        ball = {"obstacles[0].ball.centre_m": [[0, -1, 0]] * 3, "obstacles[0].ball.radius_m": [1] * 3}
+        for scene, expected in (("coiling_rod", 2), ("falling_rods", 2), ("net", 1)):
+            self.plant({**ball, "contact.friction": [0.3, np.nan, 0]}, scene=scene)
+            self.assertEqual([len(self.of(task)) for task in range(3)], [expected, 0, expected])
+        self.write(solves=False)
+        self.assertEqual(self.of(0), [])
+
+    def test_the_highest_level_plane_is_the_floor(self):
+        self.plant({"obstacles[0].half_space.point_m": [[5, -2, 0]] * 3,
+                    "obstacles[0].half_space.normal": [[0, 2, 0]] * 3,
+                    "obstacles[1].half_space.point_m": [[0, 3, 0]] * 3,
+                    "obstacles[1].half_space.normal": [[0, -1, 0]] * 3})
+        stage = self.staged()
+        self.assertEqual((stage.floor, len(stage.slopes)), (-2, 1))
+        self.plant({}, scene="falling_rods")
+        self.assertEqual(self.staged().floor, 0)
+
+    def test_what_stands_upright_on_a_wall_stands_on_the_floor(self):
+        self.plant({}, along="y", walls=1, rods=1)
+        with SweepFile(self.path) as file:
+            foot = trajectory.of_task(file, 0).centres(0)[0, 1]
+        self.assertAlmostEqual(self.staged().floor, foot, delta=1e-3)
+        self.plant({}, along="x", walls=1, rods=1)
+        self.assertLess(self.staged().floor, 0.9)
+
+    def test_the_camera_sees_solids_near_the_rods_and_slopes(self):
+        self.plant({"obstacles[0].capsule.from_m": [[0, 0, 0]] * 3, "obstacles[0].capsule.to_m": [[0.5, 0.2, 0]] * 3,
+                    "obstacles[0].capsule.radius_m": [0.2] * 3,
+                    "obstacles[1].half_space.point_m": [[0, 0.5, 0]] * 3,
+                    "obstacles[1].half_space.normal": [[0.5, 1, 0]] * 3})
+        stage = self.staged()
+        solid, slope = stage.solids[0], stage.slopes[0]
+        rim = staging.rim(slope, stage.centre, stage.extent)
+        np.testing.assert_allclose((rim - slope.point) @ slope.normal, 0, atol=1e-12)
+        np.testing.assert_allclose(np.linalg.norm(rim - slope.disc(stage.centre, stage.extent)[0], axis=1),
+                                   obstacles.DISC * stage.extent)
+        shell = np.concatenate([end + solid.radius * np.concatenate([np.eye(3), -np.eye(3)])
+                                for end in (solid.start, solid.end)])
+        pixel, depth = stage.camera.project(np.concatenate([rim, shell]))
+        self.assertGreater(depth.min(), 0)
+        self.assertTrue((pixel > 0).all() and (pixel < (240, 180)).all())
+        self.assertLess(stage.floor, min(rim[:, 1].min(), shell[:, 1].min()))
+
+    def test_what_is_far_or_huge_does_not_move_the_camera(self):
+        self.plant({})
+        alone = self.staged()
+        self.plant({"obstacles[0].ball.centre_m": [[0, -200, 0]] * 3, "obstacles[0].ball.radius_m": [200] * 3,
+                    "obstacles[1].ball.centre_m": [[50, 0, 0]] * 3, "obstacles[1].ball.radius_m": [0.5] * 3})
+        beside = self.staged()
+        np.testing.assert_array_equal(beside.camera.eye, alone.camera.eye)
+        self.assertEqual(beside.floor, alone.floor)
+        self.assertEqual(povray.obstacles(beside).count("sphere{"), 2)
+
+    def test_a_ball_is_drawn_as_large_as_it_is_and_a_slope_is_glass_from_behind(self):
+        self.plant({"obstacles[0].ball.centre_m": [[0.1, 0.4, 0]] * 3, "obstacles[0].ball.radius_m": [0.3] * 3}, rods=1)
+        stage = self.staged(view="front")
+        with SweepFile(self.path) as file:
+            picture = drawn(trajectory.of_task(file, 0), stage)
+        centre, top, right = stage.camera.project([[0.1, 0.4, 0], [0.1, 0.7, 0], [0.4, 0.4, 0]])[0]
+        row = picture[int(centre[1]), :].max(axis=-1) < 235
+        self.assertLess(abs(row.sum() / 2 - (right[0] - centre[0])), 2.5)
+        red, green, blue = picture[int((centre[1] + top[1]) / 2), int(centre[0])]
+        self.assertTrue(red > green > blue)   # stone
+        self.plant({"obstacles[0].half_space.point_m": [[0, 0.5, 0]] * 3,
+                    "obstacles[0].half_space.normal": [[0.1, 1, 0]] * 3})
+        self.assertIn(povray.STONE, povray.obstacles(self.staged(view=(0, 20))))
+        below = self.staged(view=(0, -30))
+        self.assertIn(povray.GLASS, povray.obstacles(below))
+        self.assertNotIn("plane", povray.surroundings(below))
+
+    def test_surfaces_enclose_the_volume_of_their_solid_and_face_outwards(self):
+        rng = np.random.default_rng(3)
+        for length in (0.0, 2.0):
+            start, along, radius = rng.normal(size=3), rng.normal(size=3), 0.7
+            end = start + length * along / np.linalg.norm(along)
+            points, triangles = surfaces.surface(obstacles.Capsule(start, end, radius), np.zeros(3), 5.0)
+            a, b, c = (points[triangles[:, k]] - start for k in range(3))
+            volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+            self.assertAlmostEqual(volume / (np.pi * radius ** 2 * (4 / 3 * radius + length)), 1, delta=0.03)
+            axis = np.clip((points - start) @ (end - start) / (length ** 2 or 1), 0, 1)[:, None] * (end - start)
+            np.testing.assert_allclose(np.linalg.norm(points - start - axis, axis=1), radius)
+        slope = obstacles.HalfSpace(np.array([0.0, 2, 0]), np.array([0.6, 0.8, 0]))
+        points, triangles = surfaces.joined([surfaces.surface(slope, np.ones(3), 4.0)] * 2)
+        np.testing.assert_allclose((points - slope.point) @ slope.normal, 0, atol=1e-12)
+        a, b, c = (points[triangles[:, k]] for k in range(3))
+        area = np.cross(b - a, c - a) @ slope.normal / 2
+        self.assertAlmostEqual(area.sum() / (2 * np.pi * (4 * obstacles.DISC) ** 2), 1, delta=0.01)
+
+    def test_a_machine_that_is_too_busy_for_povray_is_asked_again(self):
+        script = os.path.join(self.folder, "povray")
+        with open(script, "w") as out:
+            out.write(f'#!/bin/sh\nif [ -e {self.folder}/asked ]; then printf "\\211PNG"; exit 0; fi\n'
+                      f': >{self.folder}/asked\necho "{povray.BUSY.decode()}" >&2\nexit 1\n')
+        os.chmod(script, os.stat(script).st_mode | stat.S_IXUSR)
+        with unittest.mock.patch.dict(os.environ, {"PATH": self.folder}):
+            self.assertEqual(povray.picture("", (3, 2)), b"\x89PNG")
+
+
+if __name__ == "__main__":
+    unittest.main()
