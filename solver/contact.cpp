@@ -8,9 +8,10 @@
 namespace rodsweep {
 namespace {
 
-constexpr double reach = 1.2;         ///< contacts begin at so many radii from either axis, and more for what moves
-constexpr double catching = 0.3;      ///< cosine: how much nearer the next segment must be
-constexpr double side_by_side = 0.1;  ///< of R: by how much less the distance may differ along the overlap
+constexpr double reach = 1.2;            ///< contacts begin at so many radii from either axis, and more for what moves
+constexpr double most_recovered = 0.01;  ///< of a penetration in a step, of the smaller radius
+constexpr double catching = 0.3;         ///< cosine: how much nearer the next segment must be
+constexpr double side_by_side = 0.1;     ///< of R: by how much less the distance may differ along the overlap
 
 std::vector<double> margins(const ContactBodies& bodies) {
   std::vector<double> out;
@@ -158,7 +159,9 @@ void ContactFinder::find_below(int a, int half_space) {
 void ContactFinder::add(Contact contact, bool sided) {
   Contact at_start = contact;
   if (!sided) at_start.normal.setZero();  // nothing is on the wrong side: what counts is the distance
-  contact.allowed = (1 - recovery_) * std::min(0.0, follow(at_start, start_).width);
+  const double width = std::min(0.0, follow(at_start, start_).width);
+  contact.allowed =
+      std::min((1 - recovery_) * width, width + most_recovered * bodies_.smaller_radius(contact.a, contact.b));
   found_.push_back(contact);
 }
 

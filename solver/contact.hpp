@@ -13,7 +13,8 @@
 // There is a contact where the axes can have come as near as 1.2 R; the rods' projection may move them into it.
 // Capsules that lie side by side have two, at the ends of their overlap, and so has a capsule on a half-space, at both
 // its ends. All others have one, at their closest points. What they penetrate at p is allowed for, but for a share that
-// is taken back (ContactSettings::recovery): a correction by a distance in one step is a velocity.
+// is taken back (ContactSettings::recovery), at most a hundredth of a radius in a step: what a step corrects by a
+// distance is a velocity that stays.
 #pragma once
 
 #include <vector>

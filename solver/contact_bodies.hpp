@@ -9,6 +9,7 @@
 // matter to each other. Throws SceneError where an obstacle is none.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "solver/broad_phase.hpp"
@@ -29,6 +30,11 @@ class ContactBodies {
 
   int count() const { return static_cast<int>(bodies_.size()); }
   const Body& body(int i) const { return bodies_[static_cast<std::size_t>(i)]; }
+
+  /// What motions of a contact are relative to; of `a` alone where b is a half-space, below 0.
+  double smaller_radius(int a, int b) const {
+    return b < 0 ? body(a).radius : std::min(body(a).radius, body(b).radius);
+  }
 
   /// Whether two bodies, a < b, are ever to be kept apart.
   bool matter(int a, int b) const;

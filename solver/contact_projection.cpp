@@ -94,7 +94,7 @@ void ContactProjection::linearise() {
     at.width = gap.width;
     at.arm_a = gap.middle - a.centre;
     at.slip = slip(contact.a, gap.middle);
-    at.size = size(contact);
+    at.size = finder_.bodies().smaller_radius(contact.a, contact.b);
     Matrix3 mobility = motion_.mobility(contact.a, at.arm_a, a);
     if (contact.b >= 0) {
       const CapsuleAxis& b = axes_[static_cast<std::size_t>(contact.b)];
@@ -172,11 +172,6 @@ Vector3 ContactProjection::slip(int body, const Vector3& point) const {
   const OldPose& old = old_[static_cast<std::size_t>(body)];
   const Vector3 arm = rod.orientation[s].conjugate() * (point - rod.position[s]);
   return point - (old.position + old.orientation * arm);
-}
-
-double ContactProjection::size(const Contact& contact) const {
-  const double radius = finder_.bodies().body(contact.a).radius;
-  return contact.b < 0 ? radius : std::min(radius, finder_.bodies().body(contact.b).radius);
 }
 
 ContactState ContactProjection::state() {

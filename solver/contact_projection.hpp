@@ -64,7 +64,6 @@ class ContactProjection {
   void accelerate(double moved);
   void push(const Contact& contact, const Linear& at, const Vector3& impulse);
   Vector3 slip(int body, const Vector3& point) const;
-  double size(const Contact& contact) const;
 
   Scene& scene_;
   ContactSettings settings_;

@@ -15,26 +15,29 @@ Spec rods_of(const Point& point) {
 
 std::vector<Key> contact_keys() {
   return {
-      object_key("contact", "rods touch each other, themselves and the floor, without rebound",
-                 {
-                     number_key("friction", "Coulomb's coefficient, at rest and sliding")
-                         .at_least(0)
-                         .at_most(100)
-                         .defaults_to(0.3),
-                     number_key("tolerance",
-                                "contacts have converged where none wants to move a segment by more, in its radii")
-                         .above(0)
-                         .at_most(1)
-                         .defaults_to(1e-5),
-                     integer_key("sweeps", "over all contacts after a projection of the rods, at most")
-                         .at_least(1)
-                         .at_most(10000)
-                         .defaults_to(100),
-                     number_key("recovery", "share of a penetration, left by earlier steps, that a step takes back")
-                         .at_least(0)
-                         .at_most(1)
-                         .defaults_to(0.2),
-                 })
+      object_key(
+          "contact", "rods touch each other, themselves and the floor, without rebound",
+          {
+              number_key("friction", "Coulomb's coefficient, at rest and sliding")
+                  .at_least(0)
+                  .at_most(100)
+                  .defaults_to(0.3),
+              number_key("tolerance",
+                         "contacts have converged where none wants to move a segment by more, in its radii")
+                  .above(0)
+                  .at_most(1)
+                  .defaults_to(1e-5),
+              integer_key("sweeps", "over all contacts after a projection of the rods, at most")
+                  .at_least(1)
+                  .at_most(10000)
+                  .defaults_to(100),
+              number_key(
+                  "recovery",
+                  "share of a penetration, left by earlier steps, that a step takes back, within 1 % of a radius")
+                  .at_least(0)
+                  .at_most(1)
+                  .defaults_to(0.2),
+          })
           .or_word("none")
           .defaults_to("none"),
       integer_key("rods", "number of rods").at_least(1).at_most(30000).only({"falling_rods", "bundle"}),

@@ -191,6 +191,17 @@ TEST_CASE("a rod that folds comes to lie on itself") {
   CHECK(nearest > 0.99);
 }
 
+TEST_CASE("rods that start inside each other part, slowly") {
+  for (const double distance : {1.6, 0.02}) {
+    Touching t(contact_scene({capsule({0, 0, -1}, {0, 0, 1}, {0, 0, 0}),
+                              capsule({distance * r, 0, -1}, {distance * r, 0, 1}, {0, 0, 0})}),
+               0.005);
+    t.run(250);
+    CHECK(test::nearest(t.scene) > 0.9999);
+    for (const Rod& rod : t.scene.rods) CHECK(rod.velocity[0].norm() < 0.02 * r / 0.005);
+  }
+}
+
 TEST_CASE("a scene in which nothing touches takes the same steps, bit for bit, with contact as without") {
   Scene with = test::moving_scene(12), without = with;
   with.contact = ContactSettings{};
