@@ -22,6 +22,7 @@ done
 table summary forest
 table summary learned_collision
 figures spatial learned_collision --x scene.type
+figures spatial knot --x scene.contact
 for study in collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot; do
   table summary $study --by scene.contact.friction
 done

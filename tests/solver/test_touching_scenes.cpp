@@ -103,7 +103,7 @@ TEST_CASE("a knot starts as a loose overhand knot of the length asked for, its s
   }
 }
 
-TEST_CASE("a knot that is pulled tightens and stays a knot, with contact alone", "[.long]") {
+TEST_CASE("a knot that is pulled tightens and stays a knot, with contact alone") {
   for (const bool contact : {true, false}) {
     Knot p = knot();
     if (!contact) p.contact.reset();
