@@ -1,9 +1,8 @@
 // What the value of a key that stands for many is called, in a column of the tasks over which it varies:
 //
 //   "none"                                    a word in place of an object: itself
-//   "friction 0.3", "friction 0.6, sweeps 9"  an object: its members that have no default or another value, at least
-//   the
-//                                             first; not those that are swept, which have columns of their own
+//   "friction 0.3", "friction 0.6, sweeps 9"  an object: its members without a default or with another value, at least
+//                                             the first; not those that are swept, which have columns of their own
 //   "half_space, ball", "none"                a list: its items by their kinds; none
 #pragma once
 
