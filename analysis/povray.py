@@ -2,9 +2,8 @@
 
 Segments are cylinders whose ends are spheres of the same radius, and so are obstacles; a held one without length is a
 plate. The floor is a disc that takes shadows and fades into the white background, a slope a disc with an edge, which is
-glass from behind. Vectors are handed over as they are: POV-Ray's camera takes
-right, up and direction in any handedness. The picture comes through a pipe; the scene is a temporary file, since
-POV-Ray cannot read one from a pipe.
+glass from behind. Vectors are handed over as they are: POV-Ray's camera takes right, up and direction in any
+handedness. The picture comes through a pipe; the scene is a temporary file, since POV-Ray cannot read one from a pipe.
 """
 
 import subprocess

@@ -1,7 +1,7 @@
 // The law of one contact, at one point of two bodies with the inverse effective mass W = J M^-1 J^T (3x3) there:
 //
-//   gap >= 0,  lambda_n >= 0,  gap lambda_n = 0;   |lambda_t| <= mu lambda_n;   slip = 0, or against lambda_t = mu
-//   lambda_n
+//   gap >= 0,  lambda_n >= 0,  gap lambda_n = 0
+//   |lambda_t| <= mu lambda_n;  the slip is 0, or against |lambda_t| = mu lambda_n
 //
 // A relaxation takes the normal part first, then friction for that (Jean 1999): the friction that stops the slip, where
 // the contact bears it, else a step of projected gradient descent, which the larger eigenvalue of W across the normal
