@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-FLOORED = ("falling_rods", "coiling_rod")   # scenes with a floor of their own (solver/scenes.cpp)
+FLOORED = ("falling_rods", "coiling_rod")   # scenes with a floor of their own (solver/scene/scenes.cpp)
 PIECES = 33       # spheres that stand for a capsule where one asks what is near
 LEVEL = 1e-9      # 1 - cosine of the angle up to which a plane is horizontal
 DISC = 0.5        # radius of the part of a plane that is shown, of the scene's extent

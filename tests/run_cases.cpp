@@ -1,5 +1,5 @@
 #define CATCH_CONFIG_RUNNER
-#include "run_cases.hpp"
+#include "tests/run_cases.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -15,10 +15,10 @@
 #include "runner/command/shared_job.hpp"
 #include "runner/command/sweep_run.hpp"
 #include "runner/command/training_run.hpp"
-#include "runner/dispatch/mpi_session.hpp"
 #include "runner/file/provenance.hpp"
+#include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
-#include "solver/petsc_session.hpp"
+#include "solver/linear/petsc_session.hpp"
 
 namespace rodsweep {
 

@@ -10,7 +10,7 @@
 
 #include "runner/job/key.hpp"
 #include "runner/job/nearest.hpp"
-#include "solver/outcome.hpp"
+#include "runner/job/task_outcome.hpp"
 
 namespace rodsweep {
 namespace {

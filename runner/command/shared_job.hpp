@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "runner/dispatch/mpi_session.hpp"
 #include "runner/job/job.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
 

@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "network/coping_net_guess.hpp"
-#include "network/example_builder.hpp"
+#include "network/guess/coping_net_guess.hpp"
+#include "network/training/example_builder.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/training_data.hpp"
 #include "runner/training/validation_ratio.hpp"
-#include "solver/stopwatch.hpp"
+#include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 namespace {

@@ -9,7 +9,7 @@
 #include "runner/job/training_job.hpp"
 #include "runner/terminal/progress_line.hpp"
 #include "runner/training/training.hpp"
-#include "solver/stopwatch.hpp"
+#include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "runner/command/exit_codes.hpp"
 #include "runner/command/sweep_run.hpp"
-#include "runner/dispatch/mpi_session.hpp"
 #include "runner/job/job.hpp"
+#include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
 
 namespace rodsweep {

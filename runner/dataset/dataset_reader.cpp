@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "runner/dataset/system_recording.hpp"
-#include "runner/file/checksum.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/stored_plan.hpp"
+#include "runner/job/checksum.hpp"
 #include "runner/terminal/text.hpp"
-#include "solver/time_step.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 namespace {

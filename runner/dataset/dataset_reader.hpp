@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "network/recorded_simulation.hpp"
+#include "network/encoding/recorded_simulation.hpp"
 #include "runner/file/task_reader.hpp"
 #include "runner/job/plan.hpp"
 

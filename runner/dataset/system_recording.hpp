@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "network/recorded_simulation.hpp"
+#include "network/encoding/recorded_simulation.hpp"
 #include "runner/file/record.hpp"
 
 namespace rodsweep {

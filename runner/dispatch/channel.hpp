@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "solver/outcome.hpp"
+#include "runner/job/task_outcome.hpp"
 
 namespace rodsweep {
 

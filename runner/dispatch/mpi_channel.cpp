@@ -1,6 +1,6 @@
 #include "runner/dispatch/mpi_channel.hpp"
 
-#include "runner/dispatch/mpi_session.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
 

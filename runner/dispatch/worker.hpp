@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "runner/dispatch/channel.hpp"
-#include "runner/experiment/evaluation.hpp"
+#include "runner/dispatch/stop_requested.hpp"
 
 namespace rodsweep {
 

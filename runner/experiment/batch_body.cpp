@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "runner/experiment/batched_evaluation.hpp"
-#include "solver/batched_rods.hpp"
+#include "solver/batch/batched_rods.hpp"
 
 namespace rodsweep {
 

@@ -10,8 +10,8 @@
 #include "runner/dataset/system_recording.hpp"
 #include "runner/experiment/simulation_record.hpp"
 #include "runner/experiment/solve_rows.hpp"
-#include "solver/batched_step.hpp"
-#include "solver/stopwatch.hpp"
+#include "solver/batch/batched_step.hpp"
+#include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 namespace {

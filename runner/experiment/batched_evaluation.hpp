@@ -1,4 +1,4 @@
-// Simulations of a data set, up to eight at once, one per SIMD lane (solver/batched_step.hpp).
+// Simulations of a data set, up to eight at once, one per SIMD lane (solver/batch/batched_step.hpp).
 //
 // A task's record is the same to the bit in every batch, also alone in one: what is simulated together is a matter of
 // speed only. Systems have no times of their own; a step's and a task's are its share of the batch's.

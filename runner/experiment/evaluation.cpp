@@ -9,8 +9,8 @@
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/experiment/projections.hpp"
 #include "runner/experiment/simulation_record.hpp"
-#include "solver/stopwatch.hpp"
-#include "solver/time_step.hpp"
+#include "solver/step/stopwatch.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 namespace {

@@ -2,15 +2,11 @@
 // Physics, iteration counts and everything outside /timing depend on the spec alone.
 #pragma once
 
-#include <functional>
-
+#include "runner/dispatch/stop_requested.hpp"
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
 
 namespace rodsweep {
-
-/// Asked between time steps; true abandons the task (its record must then be thrown away).
-using StopRequested = std::function<bool()>;
 
 /// Fills `record` (already prepared). Returns false if it was abandoned on request. A task that fails is a record with
 /// that outcome and whatever rows it reached; exceptions of the scene or the solver become TaskOutcome::error.

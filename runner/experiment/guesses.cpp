@@ -2,12 +2,12 @@
 
 #include <stdexcept>
 
-#include "network/coping_net_guess.hpp"
-#include "network/knn_guess.hpp"
+#include "network/guess/coping_net_guess.hpp"
+#include "network/guess/knn_guess.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/experiment/training_sets.hpp"
-#include "solver/subspace_guess.hpp"
-#include "solver/time_step.hpp"
+#include "solver/guess/subspace_guess.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "runner/job/task.hpp"
-#include "solver/initial_guess.hpp"
+#include "solver/guess/initial_guess.hpp"
 
 namespace rodsweep {
 

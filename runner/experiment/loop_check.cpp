@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "network/joint_forest.hpp"
+#include "network/graph/joint_forest.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/job/key_path.hpp"
 

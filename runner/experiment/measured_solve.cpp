@@ -7,8 +7,8 @@
 #include "runner/experiment/guesses.hpp"
 #include "runner/experiment/solve_rows.hpp"
 #include "runner/job/plan.hpp"
-#include "solver/rounding_level.hpp"
-#include "solver/stopwatch.hpp"
+#include "solver/linear/rounding_level.hpp"
+#include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 namespace {

@@ -14,8 +14,8 @@
 
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
-#include "solver/initial_guess.hpp"
-#include "solver/projection.hpp"
+#include "solver/guess/initial_guess.hpp"
+#include "solver/step/projection.hpp"
 
 namespace rodsweep {
 

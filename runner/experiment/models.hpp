@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "network/model.hpp"
+#include "network/processor/model.hpp"
 
 namespace rodsweep {
 

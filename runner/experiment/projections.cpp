@@ -2,7 +2,7 @@
 
 #include "runner/experiment/recorded_increments.hpp"
 #include "runner/experiment/recorded_iterations.hpp"
-#include "solver/xpbd_projection.hpp"
+#include "solver/step/xpbd_projection.hpp"
 
 namespace rodsweep {
 

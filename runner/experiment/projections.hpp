@@ -5,7 +5,7 @@
 
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
-#include "solver/projection.hpp"
+#include "solver/step/projection.hpp"
 
 namespace rodsweep {
 

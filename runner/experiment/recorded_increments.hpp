@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "network/end_to_end.hpp"
+#include "network/guess/end_to_end.hpp"
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
 

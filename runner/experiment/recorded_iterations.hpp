@@ -6,7 +6,7 @@
 
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
-#include "solver/gauss_seidel.hpp"
+#include "solver/step/gauss_seidel.hpp"
 
 namespace rodsweep {
 

@@ -5,7 +5,7 @@
 
 #include "runner/experiment/projections.hpp"
 #include "runner/file/state_rows.hpp"
-#include "solver/observables.hpp"
+#include "solver/step/observables.hpp"
 
 namespace rodsweep {
 namespace {

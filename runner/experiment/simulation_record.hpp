@@ -6,8 +6,8 @@
 
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
-#include "solver/scene.hpp"
-#include "solver/time_step.hpp"
+#include "solver/scene/scene.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 

@@ -1,6 +1,6 @@
 #include "runner/experiment/solve_rows.hpp"
 
-#include "solver/observables.hpp"
+#include "solver/step/observables.hpp"
 
 namespace rodsweep {
 

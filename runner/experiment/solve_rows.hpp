@@ -3,8 +3,8 @@
 
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
-#include "solver/linear_system.hpp"
-#include "solver/projection.hpp"
+#include "solver/linear/linear_system.hpp"
+#include "solver/step/projection.hpp"
 
 namespace rodsweep {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "network/knn.hpp"
+#include "network/guess/knn.hpp"
 
 namespace rodsweep {
 

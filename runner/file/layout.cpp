@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "runner/file/checksum.hpp"
+#include "runner/job/checksum.hpp"
 
 namespace rodsweep {
 namespace {

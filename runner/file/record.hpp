@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "runner/job/task.hpp"
-#include "solver/outcome.hpp"
+#include "runner/job/task_outcome.hpp"
 
 namespace rodsweep {
 

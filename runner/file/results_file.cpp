@@ -9,11 +9,11 @@
 #include <string_view>
 #include <utility>
 
-#include "runner/dispatch/mpi_session.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/task_checksum.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "solver/types.hpp"
+#include "solver/numbers/types.hpp"
 
 namespace rodsweep {
 

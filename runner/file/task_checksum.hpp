@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "runner/file/checksum.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/record.hpp"
+#include "runner/job/checksum.hpp"
 
 namespace rodsweep {
 

@@ -6,7 +6,7 @@
 
 #include "runner/job/key.hpp"
 #include "runner/job/sweep_space.hpp"
-#include "solver/scenes.hpp"
+#include "solver/scene/scenes.hpp"
 
 namespace rodsweep {
 

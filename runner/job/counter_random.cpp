@@ -1,6 +1,6 @@
 #include "runner/job/counter_random.hpp"
 
-#include "solver/split_mix.hpp"
+#include "solver/numbers/split_mix.hpp"
 
 namespace rodsweep {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "runner/file/checksum.hpp"
+#include "runner/job/checksum.hpp"
 #include "runner/job/job.hpp"
 
 namespace rodsweep {

@@ -9,7 +9,7 @@
 #include "runner/job/job.hpp"
 #include "runner/job/key.hpp"
 #include "runner/job/sweep_space.hpp"
-#include "solver/contact_settings.hpp"
+#include "solver/scene/contact_settings.hpp"
 
 namespace rodsweep {
 

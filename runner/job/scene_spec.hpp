@@ -3,7 +3,7 @@
 
 #include "runner/job/job.hpp"
 #include "runner/job/sweep_space.hpp"
-#include "solver/scenes.hpp"
+#include "solver/scene/scenes.hpp"
 
 namespace rodsweep {
 

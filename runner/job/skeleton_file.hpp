@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "solver/tree_skeleton.hpp"
+#include "solver/scene/tree_skeleton.hpp"
 
 namespace rodsweep {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "solver/conjugate_gradient.hpp"
-#include "solver/initial_guess.hpp"
-#include "solver/pbd_projection.hpp"
-#include "solver/scenes.hpp"
+#include "solver/guess/initial_guess.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/scene/scenes.hpp"
+#include "solver/step/pbd_projection.hpp"
 
 namespace rodsweep {
 

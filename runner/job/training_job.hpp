@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "network/coping_net_settings.hpp"
-#include "network/trainer.hpp"
+#include "network/encoding/coping_net_settings.hpp"
+#include "network/training/trainer.hpp"
 #include "runner/job/job.hpp"
 
 namespace rodsweep {

@@ -5,7 +5,7 @@
 
 #include "runner/job/key.hpp"
 #include "runner/job/sweep_space.hpp"
-#include "solver/tree_skeleton.hpp"
+#include "solver/scene/tree_skeleton.hpp"
 
 namespace rodsweep {
 

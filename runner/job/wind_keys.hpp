@@ -5,7 +5,7 @@
 
 #include "runner/job/key.hpp"
 #include "runner/job/sweep_space.hpp"
-#include "solver/wind.hpp"
+#include "solver/scene/wind.hpp"
 
 namespace rodsweep {
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "runner/job/task_outcome.hpp"
 #include "runner/terminal/progress_line.hpp"
-#include "solver/outcome.hpp"
 
 namespace rodsweep {
 

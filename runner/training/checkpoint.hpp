@@ -1,7 +1,7 @@
 // All that must be kept of a training to go on exactly, beside the model kept and the epochs so far.
 #pragma once
 
-#include "network/trainer.hpp"
+#include "network/training/trainer.hpp"
 
 namespace rodsweep {
 

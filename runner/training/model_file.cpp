@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "runner/file/checksum.hpp"
 #include "runner/file/hdf5.hpp"
+#include "runner/job/checksum.hpp"
 #include "runner/job/training_job.hpp"
 #include "runner/training/model_layout.hpp"
 
@@ -96,7 +96,7 @@ void write_scale(hid_t file, const std::string& folder, const Normalisation& sca
   const std::vector<hsize_t> extent{static_cast<hsize_t>(scale.mean.size())};
   const std::vector<float> mean(scale.mean.begin(), scale.mean.end());
   const std::vector<float> deviation(scale.deviation.begin(), scale.deviation.end());
-  write(file, folder + "mean", extent, mean, "", "in the unit of each feature (network/graph_encoding.hpp)");
+  write(file, folder + "mean", extent, mean, "", "in the unit of each feature (network/encoding/graph_encoding.hpp)");
   write(file, folder + "deviation", extent, deviation, "", "the network is given (feature - mean) / deviation");
 }
 

@@ -16,7 +16,7 @@
 #include <memory>
 #include <optional>
 
-#include "network/model.hpp"
+#include "network/processor/model.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/training/checkpoint.hpp"
 #include "runner/training/model_card.hpp"

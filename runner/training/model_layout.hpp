@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "network/model.hpp"
+#include "network/processor/model.hpp"
 #include "runner/training/model_card.hpp"
 
 namespace rodsweep {

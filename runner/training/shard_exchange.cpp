@@ -3,7 +3,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "runner/dispatch/mpi_session.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "network/base_guess.hpp"
-#include "network/coping_net_guess.hpp"
-#include "solver/stopwatch.hpp"
+#include "network/guess/base_guess.hpp"
+#include "network/guess/coping_net_guess.hpp"
+#include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 

@@ -7,8 +7,8 @@
 
 #include <memory>
 
-#include "network/model.hpp"
-#include "network/trainer.hpp"
+#include "network/processor/model.hpp"
+#include "network/training/trainer.hpp"
 #include "runner/training/checkpoint.hpp"
 #include "runner/training/model_card.hpp"
 #include "runner/training/shard_exchange.hpp"

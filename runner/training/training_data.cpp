@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "network/example_builder.hpp"
+#include "network/training/example_builder.hpp"
 
 namespace rodsweep {
 

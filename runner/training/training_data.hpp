@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "network/example.hpp"
-#include "network/feature_encoder.hpp"
-#include "network/recorded_simulation.hpp"
+#include "network/encoding/feature_encoder.hpp"
+#include "network/encoding/recorded_simulation.hpp"
+#include "network/training/example.hpp"
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/job/training_job.hpp"
 

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "runner/job/plan.hpp"
-#include "solver/conjugate_gradient.hpp"
-#include "solver/rounding_level.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/rounding_level.hpp"
 
 namespace rodsweep {
 namespace {

@@ -10,8 +10,8 @@
 #include <memory>
 #include <vector>
 
-#include "network/recorded_simulation.hpp"
-#include "solver/initial_guess.hpp"
+#include "network/encoding/recorded_simulation.hpp"
+#include "solver/guess/initial_guess.hpp"
 
 namespace rodsweep {
 

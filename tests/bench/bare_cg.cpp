@@ -1,4 +1,4 @@
-#include "bare_cg.hpp"
+#include "tests/bench/bare_cg.hpp"
 
 namespace rodsweep {
 

@@ -2,7 +2,7 @@
 // KSPCG with the true-residual norm, and nothing else.
 #pragma once
 
-#include "solver/block_matrix.hpp"
+#include "solver/linear/block_matrix.hpp"
 
 namespace rodsweep {
 

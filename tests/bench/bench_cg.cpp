@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <string>
 
-#include "bare_cg.hpp"
-#include "medians.hpp"
-#include "solver/conjugate_gradient.hpp"
-#include "solver/petsc_session.hpp"
-#include "solver/scenes.hpp"
-#include "solver/time_step.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/petsc_session.hpp"
+#include "solver/scene/scenes.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/bench/bare_cg.hpp"
+#include "tests/bench/medians.hpp"
 
 namespace {
 

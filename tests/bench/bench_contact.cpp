@@ -8,9 +8,9 @@
 #include <random>
 #include <string>
 
-#include "medians.hpp"
-#include "solver/contact_projection.hpp"
-#include "solver/scene_rods.hpp"
+#include "solver/contact/contact_projection.hpp"
+#include "solver/scene/scene_rods.hpp"
+#include "tests/bench/medians.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
-#include "runner/dispatch/mpi_session.hpp"
 #include "runner/dispatch/worker.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 int main(int argc, char** argv) {
   using namespace rodsweep;

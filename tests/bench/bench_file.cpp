@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <numeric>
 
-#include "runner/dispatch/mpi_session.hpp"
 #include "runner/experiment/evaluation.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/results_file.hpp"
+#include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/text.hpp"
-#include "solver/petsc_session.hpp"
+#include "solver/linear/petsc_session.hpp"
 
 namespace {
 

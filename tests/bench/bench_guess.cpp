@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <memory>
 
-#include "medians.hpp"
-#include "network/base_guess.hpp"
-#include "network/coping_net_guess.hpp"
-#include "network/sweeps_inference.hpp"
-#include "solver/scenes.hpp"
-#include "solver/time_step.hpp"
+#include "network/guess/base_guess.hpp"
+#include "network/guess/coping_net_guess.hpp"
+#include "network/processor/sweeps_inference.hpp"
+#include "solver/scene/scenes.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/bench/medians.hpp"
 
 namespace {
 

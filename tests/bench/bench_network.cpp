@@ -2,11 +2,11 @@
 #include <array>
 #include <cstdio>
 
-#include "medians.hpp"
-#include "network/graph_encoding.hpp"
-#include "network/message_passing.hpp"
-#include "network/product.hpp"
-#include "solver/scenes.hpp"
+#include "network/encoding/graph_encoding.hpp"
+#include "network/layers/product.hpp"
+#include "network/processor/message_passing.hpp"
+#include "solver/scene/scenes.hpp"
+#include "tests/bench/medians.hpp"
 
 namespace {
 

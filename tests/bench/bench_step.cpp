@@ -8,11 +8,11 @@
 #include <map>
 #include <string>
 
-#include "medians.hpp"
-#include "solver/batched_step.hpp"
-#include "solver/pbd_projection.hpp"
-#include "solver/scenes.hpp"
-#include "solver/xpbd_projection.hpp"
+#include "solver/batch/batched_step.hpp"
+#include "solver/scene/scenes.hpp"
+#include "solver/step/pbd_projection.hpp"
+#include "solver/step/xpbd_projection.hpp"
+#include "tests/bench/medians.hpp"
 
 namespace {
 

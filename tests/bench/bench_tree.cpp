@@ -9,13 +9,13 @@
 #include <optional>
 #include <string>
 
-#include "medians.hpp"
-#include "solver/conjugate_gradient.hpp"
-#include "solver/pbd_projection.hpp"
-#include "solver/petsc_session.hpp"
-#include "solver/scenes.hpp"
-#include "solver/time_step.hpp"
-#include "solver/xpbd_projection.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/petsc_session.hpp"
+#include "solver/scene/scenes.hpp"
+#include "solver/step/pbd_projection.hpp"
+#include "solver/step/time_step.hpp"
+#include "solver/step/xpbd_projection.hpp"
+#include "tests/bench/medians.hpp"
 
 namespace {
 

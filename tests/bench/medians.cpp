@@ -1,4 +1,4 @@
-#include "medians.hpp"
+#include "tests/bench/medians.hpp"
 
 #include <vector>
 

@@ -5,8 +5,8 @@
 
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
-#include "runner/dispatch/mpi_session.hpp"
 #include "runner/dispatch/worker.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 using namespace rodsweep;
 

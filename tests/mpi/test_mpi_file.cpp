@@ -1,9 +1,9 @@
 // One results file and several ranks: run in an empty folder that all ranks share.
 #include <catch2/catch.hpp>
 
-#include "file_examples.hpp"
-#include "runner/dispatch/mpi_session.hpp"
 #include "runner/file/inspect.hpp"
+#include "runner/mpi/mpi_session.hpp"
+#include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;

@@ -2,7 +2,7 @@
 // ranks.
 #include <catch2/catch.hpp>
 
-#include "runner/dispatch/mpi_session.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 using namespace rodsweep;
 

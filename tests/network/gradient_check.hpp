@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "network/tensor.hpp"
-#include "support.hpp"
+#include "network/layers/tensor.hpp"
+#include "tests/solver/support.hpp"
 
 namespace rodsweep::test {
 

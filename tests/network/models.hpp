@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "network/model.hpp"
+#include "network/processor/model.hpp"
 
 namespace rodsweep::test {
 

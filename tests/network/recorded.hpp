@@ -3,9 +3,9 @@
 
 #include <stdexcept>
 
-#include "network/example_builder.hpp"
-#include "solver/time_step.hpp"
-#include "support.hpp"
+#include "network/training/example_builder.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/solver/support.hpp"
 
 namespace rodsweep::test {
 

@@ -1,8 +1,8 @@
 // For tests of what reads data sets: their files, made by one process.
 #pragma once
 
-#include "file_examples.hpp"
 #include "runner/experiment/evaluation.hpp"
+#include "tests/runner/file_examples.hpp"
 
 namespace rodsweep {
 

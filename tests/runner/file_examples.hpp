@@ -11,10 +11,10 @@
 #include <random>
 #include <string>
 
-#include "job_examples.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/record.hpp"
 #include "runner/file/results_file.hpp"
+#include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
 

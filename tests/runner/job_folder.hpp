@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "job_examples.hpp"
+#include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
 

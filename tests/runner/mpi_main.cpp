@@ -1,6 +1,6 @@
 // All cases inside one MPI session: for what opens results files. Under mpirun every rank runs the same cases, and
 // the program fails if a rank does.
-#include "runner/dispatch/mpi_session.hpp"
+#include "runner/mpi/mpi_session.hpp"
 #include "tests/run_cases.hpp"
 
 int main(int argc, char** argv) {

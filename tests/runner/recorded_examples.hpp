@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "network/recorded_simulation.hpp"
-#include "solver/time_step.hpp"
+#include "network/encoding/recorded_simulation.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 

@@ -1,8 +1,8 @@
 // For tests of trainings: a toy job, its data set, and a training without files.
 #pragma once
 
-#include "data_set_examples.hpp"
 #include "runner/training/training.hpp"
+#include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {
 

@@ -1,4 +1,4 @@
-#include "allocations.hpp"
+#include "tests/solver/allocations.hpp"
 
 #include <cerrno>
 #include <cstddef>

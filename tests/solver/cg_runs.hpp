@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "solver/block_factor.hpp"
-#include "solver/conjugate_gradient.hpp"
-#include "solver/linear_system.hpp"
-#include "support.hpp"
+#include "solver/linear/block_factor.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/linear_system.hpp"
+#include "tests/solver/support.hpp"
 
 namespace rodsweep::test {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "solver/rotation.hpp"
-#include "solver/scenes.hpp"
-#include "solver/time_step.hpp"
+#include "solver/numbers/rotation.hpp"
+#include "solver/scene/scenes.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "solver/time_step.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep::test {
 

@@ -1,4 +1,4 @@
-#include "support.hpp"
+#include "tests/solver/support.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "solver/projection.hpp"
-#include "solver/rotation.hpp"
-#include "solver/time_step.hpp"
+#include "solver/numbers/rotation.hpp"
+#include "solver/step/projection.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep::test {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "solver/block_matrix.hpp"
-#include "solver/rod.hpp"
-#include "solver/scenes.hpp"
+#include "solver/linear/block_matrix.hpp"
+#include "solver/rod/rod.hpp"
+#include "solver/scene/scenes.hpp"
 
 namespace rodsweep::test {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "solver/contact_bodies.hpp"
-#include "solver/observables.hpp"
-#include "solver/scene_rods.hpp"
-#include "solver/time_step.hpp"
+#include "solver/contact/contact_bodies.hpp"
+#include "solver/scene/scene_rods.hpp"
+#include "solver/step/observables.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep::test {
 

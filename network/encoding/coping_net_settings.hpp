@@ -1,0 +1,31 @@
+// What a COPINGNet is made of, apart from its weights.
+#pragma once
+
+#include "network/encoding/graph_encoding.hpp"
+
+namespace rodsweep {
+
+/// The part between the features and the corrections.
+enum class Processor {
+  sweeps,          ///< two gated passes over the tree (network/processor/sweeps.hpp)
+  message_passing  ///< hops over the graph (network/processor/message_passing.hpp)
+};
+
+/// The guess that the network corrects: none (zero), quadratic extrapolation in time, or projection onto the last
+/// `base_size` solutions.
+enum class BaseGuess { none, extrapolation, pod };
+
+struct CopingNetSettings {
+  Encoding encoding = Encoding::system;
+  Processor processor = Processor::sweeps;
+  BaseGuess base = BaseGuess::pod;
+  int base_size = 10;    ///< pod
+  int latent = 32;       ///< width of hidden layers and states
+  int steps = 6;         ///< message_passing: hops
+  bool globals = false;  ///< message_passing: with a state of the whole graph
+  bool best_length =
+      true;            ///< the correction is scaled to what lowers the error most (network/training/energy_loss.hpp)
+  bool moves = false;  ///< message_passing: also predicts the segments' moves, for `end_to_end`
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,64 @@
+#include "network/encoding/feature_encoder.hpp"
+
+#include <numeric>
+
+namespace rodsweep {
+namespace {
+
+bool of_graphs(const CopingNetSettings& settings) { return settings.encoding != Encoding::system; }
+
+int sum(const std::vector<int>& sizes) { return std::accumulate(sizes.begin(), sizes.end(), 0); }
+
+/// Of a rod whose joints close a loop, A has no tree of couplings.
+SystemPattern pattern_of(const Topology& topology, const BlockMatrix& a) {
+  JointForest forest = topology.forest;
+  forest.order = topology.joint;
+  if (forest.parent.empty()) forest.parent.assign(topology.joint.size(), -1);
+  return system_pattern(forest, a);
+}
+
+}  // namespace
+
+std::vector<int> node_groups(const CopingNetSettings& settings) {
+  return of_graphs(settings) ? GraphEncoding::groups(settings.encoding).nodes : std::vector<int>{};
+}
+
+std::vector<int> edge_groups(const CopingNetSettings& settings) {
+  if (!of_graphs(settings)) return {SystemEncoding::size};
+  std::vector<int> groups = GraphEncoding::groups(settings.encoding).edges;
+  if (settings.base != BaseGuess::none) groups.insert(groups.end(), {3, 3});
+  return groups;
+}
+
+int node_features(const CopingNetSettings& settings) { return sum(node_groups(settings)); }
+int edge_features(const CopingNetSettings& settings) { return sum(edge_groups(settings)); }
+
+FeatureEncoder::FeatureEncoder(const CopingNetSettings& settings, const Rod& rod, const BlockMatrix& a)
+    : settings_(settings),
+      topology_(std::make_shared<const Topology>(rodsweep::topology(rod))),
+      pattern_(pattern_of(*topology_, a)) {
+  if (of_graphs(settings)) {
+    graph_ = std::make_unique<GraphEncoding>(settings.encoding, rod);
+    by_joint_.resize(GraphEncoding::edge_features(settings.encoding), rod.joint_count());
+  } else {
+    system_ = std::make_unique<SystemEncoding>(pattern_);
+    system_unit_.resize(a.unknowns());
+  }
+}
+
+void FeatureEncoder::encode(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& base,
+                            const VectorX& residual, Eigen::Ref<Tensor<float>> nodes, Eigen::Ref<Tensor<float>> edges) {
+  if (system_) {
+    system_->encode(system.matrix(), residual, edges, system_unit_);
+    return;
+  }
+  graph_->encode(rod, system, newton, dt_c, nodes, by_joint_);
+  const Eigen::Index own = by_joint_.rows();
+  for (Eigen::Index place = 0; place < edges.cols(); ++place) {
+    const int joint = topology_->joint[static_cast<std::size_t>(place)];
+    edges.col(place).head(own) = by_joint_.col(joint);
+    if (edges.rows() > own) edges.col(place).tail<6>() = base.segment<6>(6 * joint).cast<float>();
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,130 @@
+#include "network/encoding/graph_encoding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+namespace rodsweep {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double rigid_pa = 1e15;  // stands for the modulus of a joint without compliance
+
+/// Where the segments of a rod lie along it. Every connected piece has a root.
+struct ArcLength {
+  std::vector<double> distance;  ///< [m] from the root
+  std::vector<std::size_t> roots;
+
+  explicit ArcLength(const Rod& rod) : distance(rod.segments.size(), std::numeric_limits<double>::infinity()) {
+    for (const bool is_static : {true, false})
+      for (std::size_t s = 0; s < distance.size(); ++s)
+        if (rod.segments[s].is_static == is_static && std::isinf(distance[s])) {
+          roots.push_back(s);
+          distance[s] = 0;
+          spread(rod);
+        }
+  }
+
+ private:
+  void spread(const Rod& rod) {
+    for (bool shortened = true; shortened;) {
+      shortened = false;
+      for (const Joint& joint : rod.joints) {
+        double &a = distance[static_cast<std::size_t>(joint.a)], &b = distance[static_cast<std::size_t>(joint.b)];
+        const double nearer_a = std::min(a, b + joint.length), nearer_b = std::min(b, a + joint.length);
+        shortened = shortened || nearer_a < a || nearer_b < b;
+        a = nearer_a;
+        b = nearer_b;
+      }
+    }
+  }
+};
+
+/// Young's and torsion modulus [Pa] behind the bend-twist compliance. A wall may have no radius.
+Eigen::Vector2d moduli_of(const Rod& rod, const Joint& joint) {
+  const double r = std::max(rod.segments[static_cast<std::size_t>(joint.a)].radius_m,
+                            rod.segments[static_cast<std::size_t>(joint.b)].radius_m);
+  const double area_moment = pi * r * r * r * r / 4, bend = (joint.compliance[3] + joint.compliance[4]) / 2;
+  return {std::min(joint.length / (bend * area_moment), rigid_pa),
+          std::min(joint.length / (joint.compliance[5] * 2 * area_moment), rigid_pa)};
+}
+
+}  // namespace
+
+const GraphEncoding::Groups& GraphEncoding::groups(Encoding encoding) {
+  static const Groups deck{{3, 4, 1, 1, 1, 1, 1, 1, 1}, {3, 1, 1, 3, 3}};
+  static const Groups physics{{3, 4, 1, 1, 1, 1, 1, 1, 1, 3, 3}, {3, 1, 1, 3, 3, 3}};
+  if (encoding == Encoding::system) throw std::invalid_argument("the encoding `system` is not one of graphs");
+  return encoding == Encoding::deck ? deck : physics;
+}
+
+int GraphEncoding::node_features(Encoding encoding) {
+  const std::vector<int>& sizes = groups(encoding).nodes;
+  return std::accumulate(sizes.begin(), sizes.end(), 0);
+}
+
+int GraphEncoding::edge_features(Encoding encoding) {
+  const std::vector<int>& sizes = groups(encoding).edges;
+  return std::accumulate(sizes.begin(), sizes.end(), 0);
+}
+
+GraphEncoding::GraphEncoding(Encoding encoding, const Rod& rod)
+    : encoding_(encoding), constants_(7, rod.segment_count()), moduli_(2, rod.joint_count()) {
+  groups(encoding);  // refuses the others
+  const ArcLength arc(rod);
+  root_ = arc.roots.front();
+  const double farthest = *std::max_element(arc.distance.begin(), arc.distance.end());
+  std::vector<int> joints_at(rod.segments.size(), 0);
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    ++joints_at[static_cast<std::size_t>(joint.a)];
+    ++joints_at[static_cast<std::size_t>(joint.b)];
+    mean_joint_length_ += joint.length / rod.joint_count();
+    const Eigen::Array2d moduli = moduli_of(rod, joint);
+    moduli_.col(k) = (encoding == Encoding::deck ? moduli : moduli.log10()).cast<float>();
+  }
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    const Segment& segment = rod.segments[s];
+    const bool first = std::find(arc.roots.begin(), arc.roots.end(), s) != arc.roots.end();
+    const bool last = !first && joints_at[s] == 1;
+    const double alpha = farthest > 0 ? arc.distance[s] / farthest : 0;
+    Eigen::Matrix<double, 7, 1> column;
+    column << segment.radius_m, segment.density_kg_m3, segment.length_m, alpha, segment.is_static, first, last;
+    constants_.col(static_cast<Eigen::Index>(s)) = column.cast<float>();
+    total_length_ += segment.length_m;
+  }
+}
+
+void GraphEncoding::encode(const Rod& rod, const LinearSystem& system, int newton, double dt_c,
+                           Eigen::Ref<Tensor<float>> nodes, Eigen::Ref<Tensor<float>> edges) const {
+  const bool physics = encoding_ == Encoding::physics;
+  const Vector3 origin = physics ? rod.position[root_] : Vector3::Zero();
+  const double position_scale = physics ? 1 / total_length_ : 1, velocity_scale = dt_c / mean_joint_length_;
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    auto out = nodes.col(static_cast<Eigen::Index>(s));
+    const Quaternion& q = rod.orientation[s];
+    const double sign = q.w() < 0 ? -1 : 1;
+    out.segment<3>(0) = (position_scale * (rod.position[s] - origin)).cast<float>();
+    out.segment<4>(3) = (sign * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())).cast<float>();
+    out.segment<7>(7) = constants_.col(static_cast<Eigen::Index>(s));
+    if (!physics) continue;
+    out.segment<3>(14) = (velocity_scale * rod.velocity[s]).cast<float>();
+    out.segment<3>(17) = (dt_c * rod.angular_velocity[s]).cast<float>();
+  }
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    auto out = edges.col(column);
+    const Joint& joint = rod.joints[k];
+    const Vector3 rest = 2 * joint.rest.vec();                                                 // l Omega0
+    const Vector3 bend = system.linearization().constraint.segment<3>(6 * column + 3) + rest;  // l Omega
+    const Vector6 residual = system.rhs().segment<6>(6 * column);
+    out.segment<3>(0) = (physics ? bend : bend / joint.length).cast<float>();
+    out.segment<2>(3) = moduli_.col(column);
+    out.segment<6>(5) = (physics || newton > 0 ? residual : Vector6::Zero()).cast<float>();
+    if (physics) out.segment<3>(11) = rest.cast<float>();
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,24 @@
+#include "network/encoding/recorded_simulation.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace rodsweep {
+
+void restore(const RecordedSystem& system, Rod& rod) {
+  if (system.position.size() != rod.segments.size() || system.lambda.size() != rod.lambda.size())
+    throw std::invalid_argument("restore: a system of " + std::to_string(system.position.size()) + " segments and " +
+                                std::to_string(system.lambda.size() / 6) + " joints for a rod of " +
+                                std::to_string(rod.segment_count()) + " and " + std::to_string(rod.joint_count()));
+  rod.position = system.position;
+  rod.orientation = system.orientation;
+  rod.velocity = system.velocity;
+  rod.angular_velocity = system.angular_velocity;
+  rod.lambda = system.lambda;
+}
+
+Replay::Replay(const RecordedSimulation& simulation) : simulation_(simulation), scene_(simulation.scene) {
+  for (const Rod& rod : scene_.rods) systems_.emplace_back(rod);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,132 @@
+#include "network/encoding/scaled_system.hpp"
+
+namespace rodsweep {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+template <class T>
+using Block = Eigen::Map<const Eigen::Matrix<T, 6, 6>>;
+
+/// S_row * block * S_column.
+void write_scaled(const Block6& block, const double* row, const double* column, float* out) {
+  for (int c = 0; c < 6; ++c)
+    for (int r = 0; r < 6; ++r) out[6 * c + r] = static_cast<float>(row[r] * block.column[c][r] * column[c]);
+}
+
+/// S = diag(A)^-1/2.
+VectorX inverse_root_diagonal(const BlockMatrix& a) {
+  VectorX s(a.unknowns());
+  for (int i = 0; i < a.block_rows(); ++i)
+    for (int r = 0; r < 6; ++r) s[6 * i + r] = 1 / std::sqrt(a.blocks[at(a.diagonal(i))].column[r][r]);
+  return s;
+}
+
+}  // namespace
+
+SystemPattern system_pattern(const JointForest& forest, const BlockMatrix& a) {
+  SystemPattern out;
+  out.joint = forest.order;
+  std::vector<int> place(forest.order.size());
+  for (int i = 0; i < forest.size(); ++i) place[at(forest.order[at(i)])] = i;
+  for (int i = 0; i < forest.size(); ++i) {
+    const int row = forest.order[at(i)];
+    out.diagonal.push_back(a.diagonal(row));
+    out.to_parent.push_back(-1);
+    for (int k = a.row_begin(row); k < a.row_end(row); ++k) {
+      const int column = place[at(a.column(k))];
+      if (column >= i) continue;
+      if (column == forest.parent[at(i)]) out.to_parent.back() = static_cast<int>(out.couplings.size());
+      out.couplings.push_back({i, column, k});
+    }
+  }
+  return out;
+}
+
+double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& scale) {
+  double sum = 0;
+  for (int i = 0; i < a.block_rows(); ++i)
+    for (int r = 0; r < 6; ++r) {
+      const double d = a.blocks[at(a.diagonal(i))].column[r][r], value = residual[6 * i + r];
+      scale[6 * i + r] = 1 / std::sqrt(d);
+      sum += value * value / d;
+    }
+  const double rho = std::sqrt(sum / a.unknowns());
+  scale *= rho;
+  return rho;
+}
+
+ScaledSystem<float> scaled_system(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
+                                  const VectorX& error, double solution_energy) {
+  const auto places = static_cast<int>(pattern.joint.size());
+  const VectorX s = inverse_root_diagonal(a), scaled = s.cwiseProduct(residual);
+  const double rho2 = scaled.squaredNorm() / a.unknowns(), inverse_rho = rho2 > 0 ? 1 / std::sqrt(rho2) : 0;
+  ScaledSystem<float> out;
+  out.diagonal.resize(36, places);
+  out.residual.resize(6, places);
+  for (int i = 0; i < places; ++i) {
+    const int joint = pattern.joint[at(i)];
+    write_scaled(a.blocks[at(pattern.diagonal[at(i)])], &s[6 * joint], &s[6 * joint], out.diagonal.col(i).data());
+    out.residual.col(i) = (scaled.segment<6>(6 * joint) * inverse_rho).cast<float>();
+  }
+  out.coupling.resize(36, static_cast<Eigen::Index>(pattern.couplings.size()));
+  out.couplings = pattern.couplings;
+  for (std::size_t k = 0; k < out.couplings.size(); ++k) {
+    SystemPattern::Coupling& c = out.couplings[k];
+    write_scaled(a.blocks[at(c.block)], &s[6 * pattern.joint[at(c.row)]], &s[6 * pattern.joint[at(c.column)]],
+                 out.coupling.col(static_cast<Eigen::Index>(k)).data());
+    c.block = static_cast<int>(k);
+  }
+  out.first_place = {0, places};
+  out.base_energy = {error.dot(residual) * inverse_rho * inverse_rho};
+  out.solution_energy = {solution_energy * inverse_rho * inverse_rho};
+  return out;
+}
+
+template <class T>
+ScaledSystem<T> side_by_side(const std::vector<const ScaledSystem<float>*>& systems) {
+  Eigen::Index places = 0, couplings = 0;
+  for (const ScaledSystem<float>* one : systems) {
+    places += one->diagonal.cols();
+    couplings += one->coupling.cols();
+  }
+  ScaledSystem<T> out;
+  out.diagonal.resize(36, places);
+  out.coupling.resize(36, couplings);
+  out.residual.resize(6, places);
+  out.couplings.reserve(static_cast<std::size_t>(couplings));
+  out.first_place = {0};
+  Eigen::Index place = 0, coupling = 0;
+  for (const ScaledSystem<float>* one : systems) {
+    out.diagonal.middleCols(place, one->diagonal.cols()) = one->diagonal.cast<T>();
+    out.residual.middleCols(place, one->diagonal.cols()) = one->residual.cast<T>();
+    out.coupling.middleCols(coupling, one->coupling.cols()) = one->coupling.cast<T>();
+    for (const SystemPattern::Coupling& c : one->couplings)
+      out.couplings.push_back(
+          {c.row + static_cast<int>(place), c.column + static_cast<int>(place), c.block + static_cast<int>(coupling)});
+    place += one->diagonal.cols();
+    coupling += one->coupling.cols();
+    out.first_place.push_back(static_cast<int>(place));
+    out.base_energy.insert(out.base_energy.end(), one->base_energy.begin(), one->base_energy.end());
+    out.solution_energy.insert(out.solution_energy.end(), one->solution_energy.begin(), one->solution_energy.end());
+  }
+  return out;
+}
+
+template <class T>
+void multiply(const ScaledSystem<T>& a, const TensorIn<T>& x, Eigen::Ref<Tensor<T>> y) {
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    y.col(i).noalias() = Block<T>(a.diagonal.col(i).data()) * x.col(i).template head<6>();
+  for (const SystemPattern::Coupling& c : a.couplings) {
+    const Block<T> block(a.coupling.col(c.block).data());
+    y.col(c.row).noalias() += block * x.col(c.column).template head<6>();
+    y.col(c.column).noalias() += block.transpose() * x.col(c.row).template head<6>();
+  }
+}
+
+template ScaledSystem<float> side_by_side<float>(const std::vector<const ScaledSystem<float>*>&);
+template ScaledSystem<double> side_by_side<double>(const std::vector<const ScaledSystem<float>*>&);
+template void multiply<float>(const ScaledSystem<float>&, const TensorIn<float>&, Eigen::Ref<Tensor<float>>);
+template void multiply<double>(const ScaledSystem<double>&, const TensorIn<double>&, Eigen::Ref<Tensor<double>>);
+
+}  // namespace rodsweep

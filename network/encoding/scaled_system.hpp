@@ -1,0 +1,61 @@
+// The system of a correction without units, as single-precision training data.
+//
+// What is missing from a base guess x_base solves A d = r, r = b - A x_base. With S = diag(A)^-1/2 and rho the root
+// mean square of S r it becomes
+//   A^ d^ = r^,   A^ = S A S,   r^ = S r / rho,   d = rho S d^
+// where A^ has a unit diagonal, entries below one, and no unit; r^ has a root mean square of one. CG with Jacobi on A
+// is plain CG on A^. Blocks are in the places of a JointForest, a row of blocks per joint; of two coupled joints only
+// the block of the later place (row) and the earlier one (column) is stored.
+#pragma once
+
+#include <vector>
+
+#include "network/graph/joint_forest.hpp"
+#include "network/layers/tensor.hpp"
+#include "solver/linear/linear_system.hpp"
+
+namespace rodsweep {
+
+/// Which blocks of a rod's A are where; the same for all systems of the rod.
+struct SystemPattern {
+  struct Coupling {
+    int row, column;  ///< places, row > column
+    int block;        ///< in the BlockMatrix
+  };
+  std::vector<int> joint;           ///< of each place
+  std::vector<int> diagonal;        ///< block of each place
+  std::vector<Coupling> couplings;  ///< by row
+  std::vector<int> to_parent;       ///< index of each place's coupling to its parent, -1 at a root
+};
+
+SystemPattern system_pattern(const JointForest& forest, const BlockMatrix& a);
+
+/// One system, or several side by side.
+template <class T>
+struct ScaledSystem {
+  Tensor<T> diagonal;                              ///< [36, places] blocks of A^, column-major
+  Tensor<T> coupling;                              ///< [36, couplings]
+  std::vector<SystemPattern::Coupling> couplings;  ///< `block` counts columns of `coupling` here
+  Tensor<T> residual;                              ///< [6, places] r^
+  std::vector<int> first_place;                    ///< of each system, and the end
+  std::vector<double> base_energy,
+      solution_energy;  ///< per system: (x - x_base)^T A (x - x_base) and x^T A x, over rho^2
+
+  int systems() const { return static_cast<int>(base_energy.size()); }
+};
+
+/// Sets rho S per unknown, in the order of joints: d = scale * d^; returns rho. Zero where the residual is.
+double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& scale);
+
+/// From A, r, the solution of A x = b and b.
+ScaledSystem<float> scaled_system(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
+                                  const VectorX& error, double solution_energy);
+
+template <class T>
+ScaledSystem<T> side_by_side(const std::vector<const ScaledSystem<float>*>& systems);
+
+/// y = A^ x, [6, places].
+template <class T>
+void multiply(const ScaledSystem<T>& a, const TensorIn<T>& x, Eigen::Ref<Tensor<T>> y);
+
+}  // namespace rodsweep

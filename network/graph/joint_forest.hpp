@@ -1,0 +1,29 @@
+// The joints of rods as a forest, for recurrences that run from the tips to the roots and back.
+//
+// A joint's parent is the joint through which it hangs from a static segment (or, where nothing is static, from the
+// first segment). Joints are renumbered so that those of one depth are neighbours: one matrix product a level.
+#pragma once
+
+#include <vector>
+
+#include "solver/rod/rod.hpp"
+
+namespace rodsweep {
+
+/// Throws SceneError if the joints of a rod close a loop.
+struct JointForest {
+  std::vector<int> order;        ///< joint at each place (joints of several rods numbered on); by depth, then as given
+  std::vector<int> parent;       ///< place of each place's parent, -1 at a root
+  std::vector<int> level_begin;  ///< first place of each depth, and the end
+
+  int size() const { return static_cast<int>(order.size()); }
+  int levels() const { return static_cast<int>(level_begin.size()) - 1; }
+};
+
+/// Of one rod.
+JointForest joint_forest(const Rod& rod);
+
+/// Of several side by side: level by level.
+JointForest side_by_side(const std::vector<const JointForest*>& forests);
+
+}  // namespace rodsweep

@@ -1,0 +1,21 @@
+// How the joints of a rod, or of several side by side, hang together, for every kind of processor.
+//
+// Edges (joints) are numbered by places: of one rod, the places of its JointForest; of several, those of one rod after
+// those of the other. A rod whose joints close a loop has no forest; its places are its joints.
+#pragma once
+
+#include "network/graph/joint_forest.hpp"
+#include "network/graph/rod_graph.hpp"
+
+namespace rodsweep {
+
+struct Topology {
+  RodGraph graph;          ///< an edge per place
+  JointForest forest;      ///< levels of places: forest.order[i] is a place; empty where there is a loop
+  std::vector<int> joint;  ///< of one rod: the joint at each place
+};
+
+Topology topology(const Rod& rod);
+Topology side_by_side(const std::vector<const Topology*>& rods);
+
+}  // namespace rodsweep

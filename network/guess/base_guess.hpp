@@ -1,0 +1,13 @@
+// The guess that a COPINGNet corrects, made by name.
+#pragma once
+
+#include <memory>
+
+#include "network/encoding/coping_net_settings.hpp"
+#include "solver/guess/initial_guess.hpp"
+
+namespace rodsweep {
+
+std::unique_ptr<InitialGuess> base_guess(const CopingNetSettings& settings, const Scene& scene, int newton_iterations);
+
+}  // namespace rodsweep

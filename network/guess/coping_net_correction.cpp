@@ -1,0 +1,83 @@
+#include "network/guess/coping_net_correction.hpp"
+
+#include <cmath>
+
+namespace rodsweep {
+
+CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a)
+    : model_(std::move(model)),
+      encoder_(model_->net.settings(), rod, a),
+      nodes_(node_features(model_->net.settings()), rod.segment_count()),
+      edges_(edge_features(model_->net.settings()), rod.joint_count()),
+      y_edges_(6, rod.joint_count()),
+      y_nodes_(6, rod.segment_count()),
+      residual_(a.unknowns()),
+      d_(a.unknowns()),
+      ad_(a.unknowns()) {
+  const CopingNetSettings& settings = model_->net.settings();
+  if (settings.processor == Processor::sweeps && settings.encoding == Encoding::system &&
+      SweepsInference::supports(settings.latent))
+    sweeps_ = std::make_unique<SweepsInference>(model_->net.sweeps(), model_->net.parameters(), rod.joint_count());
+  if (settings.processor == Processor::sweeps && encoder_.topology().forest.order.empty())
+    throw SceneError("the joints close a loop: a network with sweeps needs trees, one with message passing does not");
+}
+
+bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, int newton, double dt_c,
+                                  Proposal& proposal, VectorX& x, std::vector<Lane8>* moves) {
+  if (proposal.nonzero) {
+    system.matrix().multiply(x.data(), residual_.data());
+    residual_ = system.rhs() - residual_;
+    ++proposal.products;
+  } else {
+    residual_ = system.rhs();
+  }
+  run(rod, system, newton, dt_c, x, moves != nullptr);
+  double length = 1;
+  if (model_->net.settings().best_length) {
+    system.matrix().multiply(d_.data(), ad_.data());
+    ++proposal.products;
+    const double energy = d_.dot(ad_);
+    length = energy == 0 ? 0 : d_.dot(residual_) / energy;
+  }
+  if (!std::isfinite(length) || !d_.allFinite() || (moves && !write(*moves))) return false;
+  x += length * d_;
+  proposal.nonzero = proposal.nonzero || length != 0;
+  return true;
+}
+
+/// Sets d_ and, on request, y_nodes_.
+void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x,
+                              bool with_moves) {
+  const Topology& topology = encoder_.topology();
+  const bool graphs = model_->net.settings().encoding != Encoding::system;
+  encoder_.encode(rod, system, newton, dt_c, x, residual_, nodes_, edges_);
+  if (graphs) {
+    model_->scales.nodes.apply(nodes_);
+    model_->scales.edges.apply(edges_);
+  }
+  if (sweeps_)
+    sweeps_->run(topology.forest, edges_, y_edges_);
+  else
+    model_->net.forward(topology, nodes_, edges_, tape_, y_edges_, with_moves ? &y_nodes_ : nullptr);
+  if (graphs) y_edges_.array().colwise() *= model_->scales.multipliers.deviation;
+  for (Eigen::Index place = 0; place < y_edges_.cols(); ++place) {
+    const Eigen::Index first = 6 * topology.joint[static_cast<std::size_t>(place)];
+    d_.segment<6>(first) = y_edges_.col(place).cast<double>();
+    if (!graphs) d_.segment<6>(first).array() *= encoder_.system_unit().segment<6>(first).array();
+  }
+}
+
+/// The network's answer for the segments; false where it is not finite.
+bool CopingNetCorrection::write(std::vector<Lane8>& moves) const {
+  const Eigen::ArrayXf& unit = model_->scales.moves.deviation;
+  moves.resize(static_cast<std::size_t>(y_nodes_.cols()));
+  bool finite = true;
+  for (Eigen::Index s = 0; s < y_nodes_.cols(); ++s) {
+    const Vector6 move = (y_nodes_.col(s).array() * unit).cast<double>();
+    moves[static_cast<std::size_t>(s)] = load6(move.data());
+    finite = finite && move.allFinite();
+  }
+  return finite;
+}
+
+}  // namespace rodsweep

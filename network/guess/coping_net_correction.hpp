@@ -1,0 +1,40 @@
+// What a COPINGNet adds to a base guess of one rod's linear system:
+//
+//   x = x_base + c d,   d = unit * y(features of the rod, A, r),   r = b - A x_base,
+//   c = d.r / d.A d with `best_length`, else 1
+// and, where the network predicts them, the segments' moves Delta p in metres and radians.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "network/processor/model.hpp"
+#include "network/processor/sweeps_inference.hpp"
+#include "solver/guess/initial_guess.hpp"
+
+namespace rodsweep {
+
+class CopingNetCorrection {
+ public:
+  /// `a`: the matrix of the rod's systems. Throws SceneError where sweeps meet joints that close a loop.
+  CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a);
+
+  /// Corrects x, which holds x_base, of the system assembled at the rod's state with dt_c; sets `moves`, per segment,
+  /// if given (models with settings.moves only). False, and x as it was, where the network's answer is not finite.
+  /// Adds its products with A to `proposal`, which is of x_base. Allocates nothing after a first call.
+  bool correct(const Rod& rod, const LinearSystem& system, int newton, double dt_c, Proposal& proposal, VectorX& x,
+               std::vector<Lane8>* moves);
+
+ private:
+  void run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x, bool with_moves);
+  bool write(std::vector<Lane8>& moves) const;
+
+  std::shared_ptr<const Model> model_;
+  FeatureEncoder encoder_;
+  std::unique_ptr<SweepsInference> sweeps_;
+  CopingNet<float>::Tape tape_;
+  Tensor<float> nodes_, edges_, y_edges_, y_nodes_;
+  VectorX residual_, d_, ad_;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,32 @@
+// COPINGNet as an initial guess: a base guess, and the network's correction of it
+// (network/guess/coping_net_correction.hpp).
+//
+// With `best_length` x0 is no worse than x_base in the energy norm, whatever the network says. A network that answers
+// with something that is not a number, or has nothing to correct, leaves x_base.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "network/guess/coping_net_correction.hpp"
+
+namespace rodsweep {
+
+class CopingNetGuess : public InitialGuess {
+ public:
+  /// Of the rods of the scene that the solves move: `deck` and `physics` read their state there. A rod's first
+  /// propose() throws SceneError where sweeps meet joints that close a loop.
+  CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, double dt_c, int newton_iterations);
+
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  void accept(const SolvePosition& at, const VectorX& solution) override { base_->accept(at, solution); }
+
+ private:
+  std::shared_ptr<const Model> model_;
+  const Scene& scene_;
+  double dt_c_;
+  std::unique_ptr<InitialGuess> base_;
+  std::vector<std::unique_ptr<CopingNetCorrection>> corrections_;  ///< made at a rod's first solve
+};
+
+}  // namespace rodsweep

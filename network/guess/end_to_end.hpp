@@ -1,0 +1,56 @@
+// A network instead of the solve ("end to end" on the deck): its increments move the rod, and nobody checks them.
+//
+// In every Newton iteration   lambda += Delta lambda,   x += Delta x,   q <- normalise(q + [0, Delta theta] q / 2)
+// on free segments; static ones stay. The system is assembled for the network's features and for Newton's test.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "network/guess/coping_net_correction.hpp"
+
+namespace rodsweep {
+
+/// One Newton iteration's increments without a solve.
+class IncrementSource {
+ public:
+  virtual ~IncrementSource() = default;
+  /// Sets Delta lambda and the segments' moves (dx in lanes 0..2, dtheta in lanes 3..5) for the system assembled at the
+  /// rod's state with dt_c. False where they are not finite.
+  virtual bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c,
+                       VectorX& delta_lambda, std::vector<Lane8>& moves) = 0;
+};
+
+/// Those of a COPINGNet: its base guess, which here hears of its own increments, and its correction of it. The moves
+/// are the network's where it predicts them (CopingNetSettings::moves), else M^-1 J^T Delta lambda.
+class CopingNetIncrements : public IncrementSource {
+ public:
+  CopingNetIncrements(std::shared_ptr<const Model> model, const Scene& scene, int newton_iterations);
+  bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, VectorX& delta_lambda,
+               std::vector<Lane8>& moves) override;
+
+ private:
+  std::shared_ptr<const Model> model_;
+  std::unique_ptr<InitialGuess> base_;
+  std::vector<std::unique_ptr<CopingNetCorrection>> corrections_;  ///< made at a rod's first iteration
+};
+
+class EndToEndProjection : public Projection {
+ public:
+  EndToEndProjection(const Scene& scene, std::unique_ptr<IncrementSource> source);
+
+  /// `converged` stands for "applied". `not_a_number`, and the rod as it was, where the residual, the increments or the
+  /// moves are not finite. Allocates nothing after a rod's first iterations.
+  ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override;
+
+ private:
+  struct RodBuffers {
+    LinearSystem system;
+    VectorX delta_lambda;
+    std::vector<Lane8> moves;
+  };
+  std::unique_ptr<IncrementSource> source_;
+  std::vector<RodBuffers> rods_;
+};
+
+}  // namespace rodsweep

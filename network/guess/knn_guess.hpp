@@ -1,0 +1,38 @@
+// k nearest neighbours as an initial guess, the deck's baseline (k = 3): the solutions of the most similar systems of a
+// training set, resampled to the rod's joints by arc length, averaged with the inverse of their distances as weights,
+// and brought from loads without units (network/guess/chain_profile.hpp) to this rod's sizes and time step. Not scaled
+// to what lowers the error most in the energy norm, as a COPINGNet's correction is: stiff components decide that
+// length, and more iterations to loose tolerances were measured with it than without.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "network/guess/knn.hpp"
+#include "solver/guess/initial_guess.hpp"
+
+namespace rodsweep {
+
+class KnnGuess : public InitialGuess {
+ public:
+  /// Of the rods of the scene that the solves move. Throws SceneError where one branches, std::invalid_argument where
+  /// there is not one neighbour.
+  KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, double dt_c, int neighbours);
+
+  /// Zero for Newton iterations that the training set has no systems of. Allocates nothing.
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  void accept(const SolvePosition&, const VectorX&) override {}
+
+ private:
+  struct RodBuffers {
+    ChainProfile profile;
+    Tensor<float> state, loads;
+  };
+  std::shared_ptr<const KnnSet> training_;
+  const Scene& scene_;
+  double dt_c_;
+  std::vector<RodBuffers> rods_;
+  KnnSet::Neighbours neighbours_;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,34 @@
+#include "network/layers/mlp.hpp"
+
+#include "network/layers/silu.hpp"
+
+namespace rodsweep {
+
+template <class T>
+Mlp<T>::Mlp(Parameters<T>& parameters, const std::string& name, int in, int hidden, int out, WeightSource& source,
+            double last_gain)
+    : first_(parameters, name + ".0", in, hidden, source),
+      second_(parameters, name + ".1", hidden, out, source, last_gain) {}
+
+template <class T>
+void Mlp<T>::forward(const Parameters<T>& p, const TensorIn<T>& x, Tape& tape, Tensor<T>& y) const {
+  tape.before.resize(first_.out(), x.cols());
+  first_.forward(p, x, tape.before);
+  tape.hidden = silu(tape.before.array());
+  y.resize(second_.out(), x.cols());
+  second_.forward(p, tape.hidden, y);
+}
+
+template <class T>
+void Mlp<T>::backward(const Parameters<T>& p, const TensorIn<T>& x, const Tape& tape, const TensorIn<T>& dy,
+                      Parameters<T>& gradient, Tensor<T>* dx) const {
+  Tensor<T> d = Tensor<T>::Zero(tape.hidden.rows(), tape.hidden.cols());
+  second_.backward(p, tape.hidden, dy, gradient, &d);
+  d.array() *= silu_derivative(tape.before.array());
+  first_.backward(p, x, d, gradient, dx);
+}
+
+template class Mlp<float>;
+template class Mlp<double>;
+
+}  // namespace rodsweep

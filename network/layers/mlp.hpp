@@ -1,0 +1,33 @@
+// Two layers with SiLU between them, y = W2 silu(W1 x + b1) + b2, silu(a) = a / (1 + exp(-a)).
+#pragma once
+
+#include "network/layers/linear.hpp"
+
+namespace rodsweep {
+
+template <class T>
+class Mlp {
+ public:
+  /// What backward() needs of forward(); reused from batch to batch.
+  struct Tape {
+    Tensor<T> before, hidden;  ///< W1 x + b1, and its silu
+  };
+
+  Mlp() = default;
+  Mlp(Parameters<T>& parameters, const std::string& name, int in, int hidden, int out, WeightSource& source,
+      double last_gain = 1);
+
+  int in() const { return first_.in(); }
+  int out() const { return second_.out(); }
+  const Linear<T>& first() const { return first_; }
+  const Linear<T>& second() const { return second_; }
+
+  void forward(const Parameters<T>& p, const TensorIn<T>& x, Tape& tape, Tensor<T>& y) const;
+  void backward(const Parameters<T>& p, const TensorIn<T>& x, const Tape& tape, const TensorIn<T>& dy,
+                Parameters<T>& gradient, Tensor<T>* dx) const;
+
+ private:
+  Linear<T> first_, second_;
+};
+
+}  // namespace rodsweep

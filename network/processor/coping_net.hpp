@@ -1,0 +1,46 @@
+// COPINGNet: from the features of segments and joints to corrections of the Lagrange multipliers, and moves of the
+// segments where they are asked for, by one of two processors (network/encoding/coping_net_settings.hpp).
+//
+// `sweeps` work on joints: the features of a joint's two segments are appended to its own.
+#pragma once
+
+#include "network/encoding/feature_encoder.hpp"
+#include "network/graph/topology.hpp"
+#include "network/processor/message_passing.hpp"
+#include "network/processor/sweeps.hpp"
+
+namespace rodsweep {
+
+template <class T>
+class CopingNet {
+ public:
+  struct Tape {
+    Tensor<T> ordered, y_ordered, dy_ordered;  ///< sweeps: by level
+    typename Sweeps<T>::Tape sweeps;
+    typename MessagePassing<T>::Tape messages;
+  };
+
+  CopingNet(const CopingNetSettings& settings, std::uint64_t seed);
+
+  const CopingNetSettings& settings() const { return settings_; }
+  Parameters<T>& parameters() { return parameters_; }
+  const Parameters<T>& parameters() const { return parameters_; }
+
+  /// nodes [node features, segments], edges [edge features, places] -> y_edges [6, places] and, if given, y_nodes
+  /// [6, segments].
+  void forward(const Topology& topology, const TensorIn<T>& nodes, const TensorIn<T>& edges, Tape& tape,
+               Tensor<T>& y_edges, Tensor<T>* y_nodes) const;
+  /// Adds to `gradient`.
+  void backward(const Topology& topology, const TensorIn<T>& nodes, const TensorIn<T>& edges, Tape& tape,
+                const TensorIn<T>& dy_edges, const Tensor<T>* dy_nodes, Parameters<T>& gradient) const;
+
+  const Sweeps<T>& sweeps() const { return sweeps_; }
+
+ private:
+  CopingNetSettings settings_;
+  Parameters<T> parameters_;
+  Sweeps<T> sweeps_;
+  MessagePassing<T> messages_;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,31 @@
+// Adam (Kingma & Ba 2015) on a flat array, with decoupled weight decay (Loshchilov & Hutter 2019).
+#pragma once
+
+#include <cstdint>
+
+#include "network/layers/tensor.hpp"
+
+namespace rodsweep {
+
+class Adam {
+ public:
+  struct Settings {
+    double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8, weight_decay = 0;
+  };
+  Adam(std::size_t size, const Settings& settings);
+
+  /// weights -= rate * (m / (1 - beta1^t) / (sqrt(v / (1 - beta2^t)) + epsilon) + weight_decay * weights)
+  const AlignedVector<float>& mean() const { return mean_; }
+  const AlignedVector<float>& square() const { return square_; }
+  /// Goes on from earlier moments after so many steps.
+  void restore(std::int64_t steps, const AlignedVector<float>& mean, const AlignedVector<float>& square);
+
+  void step(double rate, const AlignedVector<float>& gradient, AlignedVector<float>& weights);
+
+ private:
+  Settings settings_;
+  std::int64_t steps_ = 0;
+  AlignedVector<float> mean_, square_;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,105 @@
+#include "network/training/example_builder.hpp"
+
+#include <memory>
+
+#include "network/guess/base_guess.hpp"
+#include "solver/linear/rounding_level.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// What one rod needs again and again.
+struct RodExamples {
+  FeatureEncoder encoder;
+  VectorX base, residual, scale;
+  std::vector<Lane8> moves;
+
+  RodExamples(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system)
+      : encoder(settings, rod, system.matrix()),
+        base(VectorX::Zero(system.rhs().size())),
+        residual(base),
+        scale(base),
+        moves(rod.segments.size()) {}
+};
+
+/// `values` (six per joint) in the places of the topology.
+Tensor<float> by_place(const Topology& topology, const VectorX& values) {
+  Tensor<float> out(6, static_cast<Eigen::Index>(topology.joint.size()));
+  for (Eigen::Index place = 0; place < out.cols(); ++place)
+    out.col(place) = values.segment<6>(6 * topology.joint[static_cast<std::size_t>(place)]).cast<float>();
+  return out;
+}
+
+Example example_of(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system,
+                   const RecordedSystem& recorded, double dt_c, RodExamples& of) {
+  Example out;
+  out.topology = of.encoder.shared_topology();
+  out.nodes.resize(node_features(settings), rod.segment_count());
+  out.edges.resize(edge_features(settings), rod.joint_count());
+  of.encoder.encode(rod, system, recorded.at.newton, dt_c, of.base, of.residual, out.nodes, out.edges);
+  const VectorX error = recorded.solution - of.base;
+  out.system =
+      scaled_system(of.encoder.pattern(), system.matrix(), of.residual, error, recorded.solution.dot(system.rhs()));
+  correction_scale(system.matrix(), of.residual, of.scale);
+  if (settings.encoding == Encoding::system) {
+    out.unit = Tensor<float>::Ones(6, rod.joint_count());
+    out.edge_target = by_place(*out.topology, error.cwiseQuotient(of.scale));
+  } else {
+    out.unit = by_place(*out.topology, of.scale.cwiseInverse());
+    out.edge_target = by_place(*out.topology, error);
+  }
+  if (settings.moves) {
+    out.node_target.resize(6, rod.segment_count());
+    system.displacements(rod, recorded.solution, of.moves);
+    for (Eigen::Index s = 0; s < out.node_target.cols(); ++s)
+      for (int k = 0; k < 6; ++k) out.node_target(k, s) = static_cast<float>(of.moves[static_cast<std::size_t>(s)][k]);
+  } else {
+    out.node_target.resize(6, 0);
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_examples(const CopingNetSettings& settings, const RecordedSimulation& simulation, std::vector<Example>& out) {
+  Replay replay(simulation);
+  const Scene& scene = replay.scene();
+  const std::unique_ptr<InitialGuess> base = base_guess(settings, scene, simulation.newton_iterations);
+  std::vector<RodExamples> rods;
+  for (std::size_t r = 0; r < scene.rods.size(); ++r) rods.emplace_back(settings, scene.rods[r], replay.systems()[r]);
+  replay.run([&](const RecordedSystem& recorded, const Rod& rod, const LinearSystem& system) {
+    RodExamples& of = rods[static_cast<std::size_t>(recorded.at.rod)];
+    base->propose(system, recorded.at, of.base);
+    system.matrix().multiply(of.base.data(), of.residual.data());
+    of.residual = system.rhs() - of.residual;
+    if (of.residual.lpNorm<Eigen::Infinity>() > rounding_level)
+      out.push_back(example_of(settings, rod, system, recorded, simulation.constraint_dt_s, of));
+    base->accept(recorded.at, recorded.solution);
+  });
+}
+
+FeatureScales feature_scales(const CopingNetSettings& settings, const std::vector<Example>& examples) {
+  if (settings.encoding == Encoding::system) return {};
+  FeatureStatistics nodes(node_groups(settings)), edges(edge_groups(settings)), multipliers({3, 3}), moves({3, 3});
+  for (const Example& example : examples) {
+    nodes.accumulate(example.nodes);
+    edges.accumulate(example.edges);
+    multipliers.accumulate(example.edge_target);
+    if (settings.moves) moves.accumulate(example.node_target);
+  }
+  return {nodes.normalisation(), edges.normalisation(), multipliers.normalisation(),
+          settings.moves ? moves.normalisation() : Normalisation{}};
+}
+
+void normalise(const CopingNetSettings& settings, const FeatureScales& scales, std::vector<Example>& examples) {
+  if (settings.encoding == Encoding::system) return;
+  for (Example& example : examples) {
+    scales.nodes.apply(example.nodes);
+    scales.edges.apply(example.edges);
+    example.unit.array().colwise() *= scales.multipliers.deviation;
+    example.edge_target.array().colwise() /= scales.multipliers.deviation;
+    if (settings.moves) example.node_target.array().colwise() /= scales.moves.deviation;
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,128 @@
+#include "network/training/trainer.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "network/training/mse_loss.hpp"
+#include "solver/numbers/split_mix.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Number `index`, from 1, of the sequence of a seed: the source of permutations that are the same everywhere.
+std::uint64_t random_bits(std::uint64_t seed, std::uint64_t index) {
+  return split_mix(seed + (index - 1) * split_mix_increment);
+}
+
+}  // namespace
+
+Trainer::Trainer(CopingNet<float>& net, const std::vector<Example>& examples, const TrainingSettings& settings)
+    : net_(net),
+      examples_(examples),
+      settings_(settings),
+      order_(examples.size()),
+      adam_(net.parameters().values().size(), {0.9, 0.999, 1e-8, settings.weight_decay}),
+      energy_(settings.loss == LossKind::in_the_loop ? settings.cg_steps : 0, net.settings().best_length),
+      gradient_(net.parameters().zeros()) {
+  if (settings.shards < 1 || settings.batch % settings.shards != 0)
+    throw std::invalid_argument("Trainer: a batch of " + std::to_string(settings.batch) + " cannot be divided into " +
+                                std::to_string(settings.shards) + " equal shards");
+  steps_per_epoch_ = static_cast<std::int64_t>(examples.size()) / settings.batch;
+  if (steps_per_epoch_ == 0)
+    throw std::invalid_argument("Trainer: " + std::to_string(examples.size()) +
+                                " examples are less than one batch of " + std::to_string(settings.batch));
+  count_entries();
+}
+
+void Trainer::count_entries() {
+  double edges = 0, nodes = 0;
+  for (const Example& example : examples_) {
+    edges += static_cast<double>(example.edge_target.size());
+    nodes += static_cast<double>(example.node_target.size());
+  }
+  edge_entries_ = edges / static_cast<double>(examples_.size());
+  node_entries_ = nodes / static_cast<double>(examples_.size());
+}
+
+void Trainer::shuffle(std::int64_t epoch) {
+  if (epoch == shuffled_epoch_) return;
+  std::iota(order_.begin(), order_.end(), 0u);
+  const std::uint64_t key = random_bits(settings_.seed, static_cast<std::uint64_t>(epoch) + 1);
+  for (std::size_t i = order_.size() - 1; i > 0; --i)  // Fisher and Yates
+    std::swap(order_[i], order_[random_bits(key, i) % (i + 1)]);
+  shuffled_epoch_ = epoch;
+}
+
+void Trainer::compute(int shard, float* out) {
+  shuffle(step_ / steps_per_epoch_);
+  const auto size = static_cast<std::size_t>(settings_.batch / settings_.shards);
+  const std::size_t first =
+      static_cast<std::size_t>(step_ % steps_per_epoch_) * static_cast<std::size_t>(settings_.batch) +
+      static_cast<std::size_t>(shard) * size;
+  std::vector<const Example*> chosen;
+  for (std::size_t i = first; i < first + size; ++i) chosen.push_back(&examples_[order_[i]]);
+  std::fill(gradient_.values().begin(), gradient_.values().end(), 0.F);
+  out[0] = static_cast<float>(evaluate(chosen, &gradient_));
+  std::copy(gradient_.values().begin(), gradient_.values().end(), out + 1);
+}
+
+double Trainer::update(const std::vector<const float*>& shards) {
+  AlignedVector<float>& sum = gradient_.values();
+  std::fill(sum.begin(), sum.end(), 0.F);
+  double loss = 0, square = 0;
+  for (const float* shard : shards) {
+    loss += static_cast<double>(shard[0]);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += shard[1 + i];
+  }
+  for (const float g : sum) square += static_cast<double>(g) * static_cast<double>(g);
+  const double mean = 1.0 / settings_.batch, norm = mean * std::sqrt(square);
+  const auto factor = static_cast<float>(norm > settings_.clip ? mean * settings_.clip / norm : mean);
+  for (float& g : sum) g *= factor;
+
+  const double done = static_cast<double>(step_ + 1) / static_cast<double>(steps());
+  rate_ = settings_.rate * (done < settings_.warm_up
+                                ? done / settings_.warm_up
+                                : 0.5 * (1 + std::cos(pi * (done - settings_.warm_up) / (1 - settings_.warm_up))));
+  adam_.step(rate_, sum, net_.parameters().values());
+  ++step_;
+  return loss * mean;
+}
+
+double Trainer::loss(const std::vector<Example>& examples, std::size_t first, std::size_t count) {
+  std::vector<const Example*> chosen;
+  for (std::size_t i = first; i < first + count; ++i) chosen.push_back(&examples[i]);
+  return evaluate(chosen, nullptr);
+}
+
+/// The sum of losses; adds to the gradient if there is one.
+double Trainer::evaluate(const std::vector<const Example*>& examples, Parameters<float>* gradient) {
+  const Batch<float> batch = make_batch<float>(examples);
+  const bool moves = net_.settings().moves;
+  net_.forward(batch.topology, batch.nodes, batch.edges, tape_, y_, moves ? &y_nodes_ : nullptr);
+  double loss = 0;
+  if (settings_.loss == LossKind::mse) {
+    loss = mse_loss<float>(y_, batch.edge_target, edge_entries_, gradient ? &dy_ : nullptr);
+    if (moves) loss += mse_loss<float>(y_nodes_, batch.node_target, node_entries_, gradient ? &dy_nodes_ : nullptr);
+  } else {
+    if (moves && gradient) dy_nodes_.setZero(6, batch.nodes.cols());
+    d_ = batch.unit.cwiseProduct(y_);
+    loss = energy_(batch.systems, d_, gradient ? &dy_ : nullptr);
+    if (gradient) dy_.array() *= batch.unit.array();
+  }
+  if (gradient)
+    net_.backward(batch.topology, batch.nodes, batch.edges, tape_, dy_, moves ? &dy_nodes_ : nullptr, *gradient);
+  return loss;
+}
+
+Trainer::State Trainer::state() const { return {step_, adam_.mean(), adam_.square()}; }
+
+void Trainer::restore(const State& state) {
+  step_ = state.step;
+  adam_.restore(state.step, state.mean, state.square);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,84 @@
+// Trains a COPINGNet on examples: mini-batches in a fixed number of shards, whose gradients are summed in a fixed
+// order, so that any distribution of the shards over processes gives the same bits.
+//
+// Step t of an epoch takes the next `batch` examples of a permutation that depends on (seed, epoch) alone; its shards
+// are equal parts of it. Adam, its rate rising linearly over the first `warm_up` of all steps and falling along a
+// cosine to zero; the gradient's norm is clipped.
+#pragma once
+
+#include <cstdint>
+
+#include "network/processor/coping_net.hpp"
+#include "network/training/adam.hpp"
+#include "network/training/energy_loss.hpp"
+#include "network/training/example.hpp"
+
+namespace rodsweep {
+
+enum class LossKind {
+  mse,         ///< mean square of the outputs' errors
+  energy,      ///< energy norm of what the guess leaves
+  in_the_loop  ///< the same after `cg_steps` steps of CG
+};
+
+struct TrainingSettings {
+  LossKind loss = LossKind::energy;
+  int cg_steps = 4;  ///< in_the_loop
+  int epochs = 40;
+  int batch = 32;  ///< examples in a step
+  int shards = 4;  ///< of a step; a divisor of `batch`
+  double rate = 2e-3;
+  double warm_up = 0.02;  ///< of all steps
+  double weight_decay = 0;
+  double clip = 1;  ///< largest norm of the mean gradient
+  std::uint64_t seed = 0;
+};
+
+class Trainer {
+ public:
+  /// `net` and `examples` must outlive the trainer. Throws std::invalid_argument for settings that make no sense.
+  Trainer(CopingNet<float>& net, const std::vector<Example>& examples, const TrainingSettings& settings);
+
+  std::int64_t steps_per_epoch() const { return steps_per_epoch_; }
+  std::int64_t steps() const { return steps_per_epoch_ * settings_.epochs; }
+  std::int64_t step() const { return step_; }  ///< steps taken
+
+  /// What a shard contributes to the next step: its loss, then its gradient. `out` has shard_size() entries.
+  std::size_t shard_size() const { return 1 + net_.parameters().values().size(); }
+  void compute(int shard, float* out);
+  /// Takes the step from the contributions of all shards in order; its mean loss.
+  double update(const std::vector<const float*>& shards);
+
+  double rate() const { return rate_; }  ///< of the last step
+
+  /// Sum of the losses of `count` examples from `first` on, without gradients.
+  double loss(const std::vector<Example>& examples, std::size_t first, std::size_t count);
+
+  /// All that must be kept to go on exactly from here, beside the parameters.
+  struct State {
+    std::int64_t step = 0;
+    AlignedVector<float> mean, square;
+  };
+  State state() const;
+  void restore(const State& state);
+
+ private:
+  double evaluate(const std::vector<const Example*>& examples, Parameters<float>* gradient);
+  void shuffle(std::int64_t epoch);
+  void count_entries();
+
+  CopingNet<float>& net_;
+  const std::vector<Example>& examples_;
+  TrainingSettings settings_;
+  std::int64_t steps_per_epoch_ = 0, step_ = 0, shuffled_epoch_ = -1;
+  double rate_ = 0;
+  double edge_entries_ = 0, node_entries_ = 0;  ///< outputs of an example, on average: mse is per entry
+  std::vector<std::uint32_t> order_;
+  Adam adam_;
+  EnergyLoss<float> energy_;
+  Parameters<float> gradient_;
+  CopingNet<float>::Tape tape_;
+  Tensor<float> y_, y_nodes_, d_, dy_, dy_nodes_;
+};
+
+}  // namespace rodsweep

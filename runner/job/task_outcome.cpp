@@ -1,0 +1,19 @@
+#include "runner/job/task_outcome.hpp"
+
+namespace rodsweep {
+
+const char* to_string(TaskOutcome outcome) {
+  switch (outcome) {
+    case TaskOutcome::pending: return "pending";
+    case TaskOutcome::ok: return "ok";
+    case TaskOutcome::diverged: return "diverged";
+    case TaskOutcome::not_a_number: return "not_a_number";
+    case TaskOutcome::indefinite: return "indefinite";
+    case TaskOutcome::iteration_limit: return "iteration_limit";
+    case TaskOutcome::timed_out: return "timed_out";
+    case TaskOutcome::error: return "error";
+  }
+  return "unknown";
+}
+
+}  // namespace rodsweep

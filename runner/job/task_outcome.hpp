@@ -1,0 +1,22 @@
+// How a task ended. Failure is data: it reaches the user's file as the task's outcome.
+#pragma once
+
+#include <cstdint>
+
+namespace rodsweep {
+
+/// Stored in files (/tasks/outcome) by name.
+enum class TaskOutcome : std::int8_t {
+  pending = 0,          ///< not run yet
+  ok = 1,               ///< every step was taken
+  diverged = 2,         ///< the simulation blew up (joint gap beyond any meaning) or a solve diverged
+  not_a_number = 3,     ///< the state holds a NaN or infinity
+  indefinite = 4,       ///< the system matrix lost positive definiteness
+  iteration_limit = 5,  ///< the solve that advances the trajectory hit its cap on iterations
+  timed_out = 6,        ///< the task's time limit passed
+  error = 7,            ///< an exception; its text is the task's message
+};
+
+const char* to_string(TaskOutcome outcome);
+
+}  // namespace rodsweep

@@ -1,0 +1,93 @@
+#include "runner/mpi/mpi_session.hpp"
+
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <array>
+#include <thread>
+
+namespace rodsweep {
+
+void check_mpi(int code, const char* call) {
+  if (code == MPI_SUCCESS) return;
+  std::array<char, MPI_MAX_ERROR_STRING> text{};
+  int length = 0;
+  MPI_Error_string(code, text.data(), &length);
+  throw MpiError(fmt::format("{} failed: {}", call, text.data()));
+}
+
+MpiSession::MpiSession() {
+  check_mpi(MPI_Init(nullptr, nullptr), "MPI_Init");
+  // Set on the predefined communicators, so that those derived from them (HDF5's and PETSc's too) return their errors.
+  check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+  check_mpi(MPI_Comm_set_errhandler(MPI_COMM_SELF, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+  check_mpi(MPI_Comm_rank(MPI_COMM_WORLD, &rank_), "MPI_Comm_rank");
+  check_mpi(MPI_Comm_size(MPI_COMM_WORLD, &size_), "MPI_Comm_size");
+}
+
+MpiSession::~MpiSession() { MPI_Finalize(); }
+
+namespace {
+
+std::string broadcast_from(int root, std::string text, MPI_Comm comm) {
+  auto size = static_cast<unsigned long long>(text.size());
+  check_mpi(MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, root, comm), "MPI_Bcast");
+  text.resize(size);
+  check_mpi(MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, root, comm), "MPI_Bcast");
+  return text;
+}
+
+}  // namespace
+
+std::string broadcast(std::string text, MPI_Comm comm) { return broadcast_from(0, std::move(text), comm); }
+
+int broadcast(int value, MPI_Comm comm) {
+  check_mpi(MPI_Bcast(&value, 1, MPI_INT, 0, comm), "MPI_Bcast");
+  return value;
+}
+
+void collectively(MPI_Comm comm, const std::function<void()>& part) {
+  int rank = 0, size = 1;
+  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
+  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+
+  std::string text;
+  int failed = size;
+  try {
+    part();
+  } catch (const std::exception& error) {
+    text = rank == 0 ? error.what() : fmt::format("rank {}: {}", rank, error.what());
+    failed = rank;
+  }
+  int lowest = size;
+  check_mpi(MPI_Allreduce(&failed, &lowest, 1, MPI_INT, MPI_MIN, comm), "MPI_Allreduce");
+  if (lowest < size) throw CollectiveError(broadcast_from(lowest, std::move(text), comm));
+}
+
+Placement placement(MPI_Comm comm, Share share) {
+  int rank = 0, size = 1;
+  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
+  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+
+  MPI_Comm host = MPI_COMM_NULL;
+  check_mpi(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
+  cpu_set_t mine, ours;
+  CPU_ZERO(&mine);
+  if (sched_getaffinity(0, sizeof mine, &mine) != 0)  // mpirun may bind each rank to a core of its own
+    for (unsigned core = 0; core < std::thread::hardware_concurrency() && core < CPU_SETSIZE; ++core)
+      CPU_SET(core, &mine);
+  check_mpi(MPI_Allreduce(&mine, &ours, sizeof mine, MPI_BYTE, MPI_BOR, host), "MPI_Allreduce");
+
+  const int works = size == 1 || rank > 0 || share == Share::all_work;
+  int host_rank = 0, host_workers = 0;
+  check_mpi(MPI_Comm_rank(host, &host_rank), "MPI_Comm_rank");
+  check_mpi(MPI_Allreduce(&works, &host_workers, 1, MPI_INT, MPI_SUM, host), "MPI_Allreduce");
+  check_mpi(MPI_Comm_free(&host), "MPI_Comm_free");
+
+  const int host_cores = CPU_COUNT(&ours);
+  std::array<int, 3> part{works, host_rank == 0 ? host_cores : 0, host_workers > host_cores}, sum{};
+  check_mpi(MPI_Allreduce(part.data(), sum.data(), 3, MPI_INT, MPI_SUM, comm), "MPI_Allreduce");
+  return {sum[0], sum[1], sum[2] > 0};
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,124 @@
+#include "solver/batch/batched_rods.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "solver/step/time_step.hpp"
+
+namespace rodsweep {
+namespace {
+
+void check_alone(const Scene& scene, const std::string& name) {
+  if (scene.rods.size() != 1)
+    throw SceneError(name + " has " + std::to_string(scene.rods.size()) + " rods; must have one");
+  if (!scene.clamps.empty()) throw SceneError(name + " has a moving clamp; a batched step knows none");
+  if (!scene.loads.empty()) throw SceneError(name + " has a point load; a batched step knows none");
+  if (scene.contact) throw SceneError(name + " has contact; a batched step knows none");
+  if (scene.wind) throw SceneError(name + " has wind; a batched step knows none");
+  const Rod& rod = scene.rods.front();
+  if (rod.joint_count() != rod.segment_count() - 1)
+    throw SceneError(name + " has " + std::to_string(rod.joint_count()) + " joints for " +
+                     std::to_string(rod.segment_count()) + " segments; a chain has one less");
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    if (joint.a != k || joint.b != k + 1)
+      throw SceneError(name + ": joint " + std::to_string(k) + " joins segments " + std::to_string(joint.a) + " and " +
+                       std::to_string(joint.b) + "; in a chain it joins " + std::to_string(k) + " and " +
+                       std::to_string(k + 1));
+    if (rod.segments[static_cast<std::size_t>(k)].is_static && rod.segments[static_cast<std::size_t>(k) + 1].is_static)
+      throw SceneError(name + ": joint " + std::to_string(k) +
+                       " joins two static segments; remove it or free one of them");
+    if (joint.axial_excess != 0)
+      throw SceneError(name + ": joint " + std::to_string(k) +
+                       " stretches more easily or less along the rod than across; a batched step knows one stretch");
+  }
+}
+
+void check_equal(const Rod& first, const Rod& rod, const std::string& name) {
+  if (rod.segment_count() != first.segment_count())
+    throw SceneError(name + " has " + std::to_string(rod.segment_count()) + " segments; the first one has " +
+                     std::to_string(first.segment_count()));
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    if (rod.segments[s].is_static != first.segments[s].is_static)
+      throw SceneError(name + ": segment " + std::to_string(s) + " is " +
+                       (rod.segments[s].is_static ? "static" : "free") + "; that of the first one is not");
+}
+
+void put(LaneVector& out, int lane, const Vector3& v) {
+  out.x[lane] = v.x();
+  out.y[lane] = v.y();
+  out.z[lane] = v.z();
+}
+
+void put(LaneQuaternion& out, int lane, const Quaternion& q) {
+  out.w[lane] = q.w();
+  out.x[lane] = q.x();
+  out.y[lane] = q.y();
+  out.z[lane] = q.z();
+}
+
+Vector3 lane_of(const LaneVector& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
+Quaternion lane_of(const LaneQuaternion& q, int lane) { return {q.w[lane], q.x[lane], q.y[lane], q.z[lane]}; }
+
+void put(BatchedSegment& out, int lane, const Rod& rod, std::size_t s) {
+  const Segment& segment = rod.segments[s];
+  out.is_static = segment.is_static;
+  out.inverse_mass[lane] = segment.inverse_mass;
+  out.inverse_inertia_transverse[lane] = segment.inverse_inertia_transverse;
+  out.inverse_inertia_excess[lane] = segment.inverse_inertia_axial - segment.inverse_inertia_transverse;
+  out.inertia_excess[lane] = segment.inertia_axial - segment.inertia_transverse;
+  put(out.position, lane, rod.position[s]);
+  put(out.velocity, lane, rod.velocity[s]);
+  put(out.angular_velocity, lane, rod.angular_velocity[s]);
+  put(out.orientation, lane, rod.orientation[s]);
+}
+
+void put(BatchedJoint& out, int lane, const Rod& rod, std::size_t k, double dt) {
+  const Joint& joint = rod.joints[k];
+  put(out.arm_a, lane, joint.arm_a / joint.length);
+  put(out.arm_b, lane, joint.arm_b / joint.length);
+  out.inverse_length[lane] = 1 / joint.length;
+  put(out.rest, lane, joint.rest);
+  for (int row = 0; row < 6; ++row) {
+    out.compliance[row][lane] = joint.compliance[row] / (dt * dt);
+    out.lambda[row][lane] = rod.lambda[static_cast<Eigen::Index>(6 * k) + row];
+  }
+}
+
+}  // namespace
+
+BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double dt) : rods(static_cast<int>(scenes.size())) {
+  if (scenes.empty() || rods > lanes)
+    throw SceneError("a batch of " + std::to_string(scenes.size()) + " scenes; must be from 1 to " +
+                     std::to_string(lanes));
+  for (int r = 0; r < rods; ++r) {
+    const std::string name = "scene " + std::to_string(r) + " of a batch";
+    check_alone(scenes[static_cast<std::size_t>(r)], name);
+    check_equal(scenes.front().rods.front(), scenes[static_cast<std::size_t>(r)].rods.front(), name);
+  }
+  segments.resize(scenes.front().rods.front().segments.size());
+  joints.resize(segments.size() - 1);
+  for (int lane = 0; lane < lanes; ++lane) {
+    const Scene& scene = scenes[static_cast<std::size_t>(std::min(lane, rods - 1))];
+    const double dt_c = constraint_dt(scene, dt);
+    for (std::size_t s = 0; s < segments.size(); ++s) put(segments[s], lane, scene.rods.front(), s);
+    for (std::size_t k = 0; k < joints.size(); ++k) put(joints[k], lane, scene.rods.front(), k, dt_c);
+    put(gravity, lane, scene.gravity_m_s2);
+    damping[lane] = 1 / (1 + scene.damping_per_s * dt);
+  }
+}
+
+void BatchedRods::write(int lane, Scene& scene) const {
+  Rod& rod = scene.rods.front();
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const BatchedSegment& segment = segments[s];
+    rod.position[s] = lane_of(segment.position, lane);
+    rod.velocity[s] = lane_of(segment.velocity, lane);
+    rod.angular_velocity[s] = lane_of(segment.angular_velocity, lane);
+    rod.orientation[s] = lane_of(segment.orientation, lane);
+  }
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    for (int row = 0; row < 6; ++row) rod.lambda[static_cast<Eigen::Index>(6 * k) + row] = joints[k].lambda[row][lane];
+}
+
+}  // namespace rodsweep

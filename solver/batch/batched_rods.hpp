@@ -1,0 +1,53 @@
+// Up to eight equal chains side by side, rod r in lane r of every number: the state of the batched step.
+//
+// Equal means: as many segments, joint k between segments k and k + 1, the same segments static. Everything else
+// (sizes, moduli, rest shapes, states, gravity, damping) is each rod's own. Lanes beyond the last rod repeat it, so
+// that they hold harmless numbers.
+#pragma once
+
+#include <vector>
+
+#include "solver/batch/lane_blocks.hpp"
+#include "solver/numbers/lane_math.hpp"
+#include "solver/scene/scene.hpp"
+
+namespace rodsweep {
+
+struct BatchedSegment {
+  bool is_static;
+  Lane8 inverse_mass, inverse_inertia_transverse;
+  Lane8 inverse_inertia_excess;  ///< axial minus transverse: M^-1 turns by i_t I + excess t t^T, t the axis
+  Lane8 inertia_excess;
+  LaneVector position, velocity, angular_velocity;
+  LaneQuaternion orientation;
+  LaneVector old_position;  ///< at the start of the step
+  LaneQuaternion old_orientation;
+};
+
+struct BatchedJoint {
+  LaneVector arm_a, arm_b;  ///< divided by l
+  Lane8 inverse_length;     ///< 1/l [1/m]
+  LaneVector6 compliance;   ///< alpha~ [1/(kg m^2)]
+  LaneQuaternion rest;
+  LaneVector6 lambda;
+};
+
+struct BatchedRods {
+  static constexpr int lanes = 8;
+
+  /// From the states of scenes of one rod each, for steps of dt. Throws SceneError: fewer than one or more than eight
+  /// scenes, rods that are not equal chains, a joint between static segments or of physical stretch, moving
+  /// clamps or point loads.
+  BatchedRods(const std::vector<Scene>& scenes, double dt);
+
+  /// Writes the state of rod `lane` into its scene.
+  void write(int lane, Scene& scene) const;
+
+  int rods;
+  std::vector<BatchedSegment> segments;
+  std::vector<BatchedJoint> joints;
+  LaneVector gravity;
+  Lane8 damping;  ///< 1 / (1 + c dt)
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,55 @@
+// The time step of time_step.hpp with the direct solve, for up to eight equal chains at once, one per lane: what makes
+// data generation fast. Each rod goes as it would alone, to rounding, and to the bit as it would in any other batch: a
+// lane that has converged is left as it is while the others iterate, and one whose solve fails is left as it is for
+// good. Nothing allocates after construction.
+#pragma once
+
+#include <vector>
+
+#include "solver/batch/batched_system.hpp"
+#include "solver/step/time_step.hpp"
+
+namespace rodsweep {
+
+class BatchedStepper {
+ public:
+  /// Copies the scenes' rods; what it refuses is told by BatchedRods.
+  BatchedStepper(const std::vector<Scene>& scenes, const StepSettings& settings);
+
+  /// Advances by dt all rods whose steps have not failed. One report per rod; a failed one repeats its outcome.
+  const std::vector<StepReport>& step();
+
+  // The same in parts, for those who look at the systems: begin(); solve() for as long as linearize() is true; end().
+  void begin();
+  bool linearize();  ///< the system at the rods' positions; false once no rod iterates on
+  void solve();      ///< and move the rods
+  const std::vector<StepReport>& end();
+
+  /// Between linearize() and the next: is this one of the rods whose system is solved?
+  bool iterates(int rod) const { return running_[rod] != 0; }
+  const BatchedSystem& system() const { return system_; }
+
+  /// This rod goes no further.
+  void abandon(int rod) { sound_[rod] = 0; }
+
+  int steps_taken(int rod) const { return steps_[static_cast<std::size_t>(rod)]; }
+
+  /// Writes the state of a rod and its time into the scene that it came from, or an equal one.
+  void write(int rod, Scene& scene) const;
+
+ private:
+  void predict();
+  void update_velocities();
+
+  StepSettings settings_;
+  BatchedRods rods_;
+  BatchedSystem system_;
+  LaneMask sound_;    ///< rods whose steps have not failed
+  LaneMask running_;  ///< of them, those that have not converged in this step
+  int newton_ = 0;    ///< solves of this step
+  std::vector<double> start_time_s_;
+  std::vector<int> steps_;
+  std::vector<StepReport> reports_;
+};
+
+}  // namespace rodsweep

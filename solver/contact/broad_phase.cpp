@@ -1,0 +1,54 @@
+#include "solver/contact/broad_phase.hpp"
+
+#include <algorithm>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
+#include <utility>
+
+namespace rodsweep {
+namespace {
+
+namespace geometry = boost::geometry;
+using Corner = geometry::model::point<double, 3, geometry::cs::cartesian>;
+using Region = geometry::model::box<Corner>;
+using Tree = geometry::index::rtree<std::pair<Region, int>, geometry::index::linear<16>>;
+
+Region region(const Box& box) {
+  return {{box.low.x(), box.low.y(), box.low.z()}, {box.high.x(), box.high.y(), box.high.z()}};
+}
+
+}  // namespace
+
+BroadPhase::BroadPhase(std::vector<double> margins, std::function<bool(int, int)> matters)
+    : margins_(std::move(margins)), matters_(std::move(matters)) {}
+
+const std::vector<Pair>& BroadPhase::pairs(const std::vector<Box>& boxes) {
+  bool inside = kept_.size() == boxes.size();
+  for (std::size_t i = 0; inside && i < boxes.size(); ++i) inside = kept_[i].contains(boxes[i]);
+  if (inside) return pairs_;
+  kept_.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) kept_[i] = boxes[i].grown(margins_[i]);
+  search();
+  return pairs_;
+}
+
+void BroadPhase::search() {
+  ++searches_;
+  std::vector<std::pair<Region, int>> values;
+  values.reserve(kept_.size());
+  for (std::size_t i = 0; i < kept_.size(); ++i) values.emplace_back(region(kept_[i]), static_cast<int>(i));
+  const Tree tree(values.begin(), values.end());
+  pairs_.clear();
+  for (const auto& [box, a] : values) {
+    const auto first = static_cast<std::ptrdiff_t>(pairs_.size());
+    tree.query(geometry::index::intersects(box),
+               boost::make_function_output_iterator([this, a = a](const std::pair<Region, int>& found) {
+                 if (found.second > a && matters_(a, found.second)) pairs_.push_back({a, found.second});
+               }));
+    std::sort(pairs_.begin() + first, pairs_.end(), [](const Pair& p, const Pair& q) { return p.b < q.b; });
+  }
+}
+
+}  // namespace rodsweep

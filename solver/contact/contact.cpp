@@ -1,0 +1,190 @@
+#include "solver/contact/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace rodsweep {
+namespace {
+
+constexpr double reach = 1.2;            ///< contacts begin at so many radii from either axis, and more for what moves
+constexpr double most_recovered = 0.01;  ///< of a penetration in a step, of the smaller radius
+constexpr double catching = 0.3;         ///< cosine: how much nearer the next segment must be
+constexpr double side_by_side = 0.1;     ///< of R: by how much less the distance may differ along the overlap
+
+std::vector<double> margins(const ContactBodies& bodies) {
+  std::vector<double> out;
+  for (int i = 0; i < bodies.count(); ++i) out.push_back(bodies.body(i).radius / 2);
+  return out;
+}
+
+Box swept_box(const CapsuleAxis& from, const CapsuleAxis& to, double beyond) {
+  Box box{from.at(1), from.at(1)};
+  box.include(from.at(-1));
+  box.include(to.at(1));
+  box.include(to.at(-1));
+  return box.grown(beyond);
+}
+
+bool is_finite(const CapsuleAxis& axis) { return axis.centre.allFinite() && axis.half.allFinite(); }
+
+/// The direction from b to a, any that is at right angles to both where they meet.
+Vector3 direction(const Vector3& separation, const CapsuleAxis& a, const CapsuleAxis& b, double scale) {
+  const double distance = separation.norm();
+  if (distance > 1e-9 * scale) return separation / distance;
+  const Vector3 across = a.half.cross(b.half);
+  if (across.norm() > 1e-9 * scale * scale) return across.normalized();
+  return (a.half.isZero() ? b.half : a.half).unitOrthogonal();
+}
+
+}  // namespace
+
+ContactFinder::ContactFinder(const Scene& scene, double recovery)
+    : bodies_(scene),
+      broad_phase_(margins(bodies_), [this](int a, int b) { return bodies_.matter(a, b); }),
+      recovery_(recovery) {
+  for (const Obstacle& obstacle : scene.obstacles)
+    if (const auto* half_space = std::get_if<HalfSpace>(&obstacle)) {
+      if (!half_space->point_m.allFinite() || !(half_space->normal.norm() > 0) || !half_space->normal.allFinite())
+        throw SceneError("an obstacle's half-space needs a finite point and normal; the normal must not be zero");
+      planes_.push_back({half_space->point_m, half_space->normal.normalized()});
+    }
+}
+
+bool ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
+  bodies_.place(scene, free_);
+  if (!std::all_of(free_.begin(), free_.end(), is_finite)) {
+    contacts.clear();
+    return false;
+  }
+  boxes_.resize(free_.size());
+  reach_.resize(free_.size());
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const double radius = bodies_.body(static_cast<int>(i)).radius;
+    const double motion = (free_[i].centre - start_[i].centre).norm() + (free_[i].half - start_[i].half).norm();
+    reach_[i] = reach * radius + std::min(motion, 2 * radius);
+    boxes_[i] = swept_box(start_[i], free_[i], reach_[i]);
+  }
+
+  found_.clear();
+  auto last = contacts.begin();
+  const std::vector<Pair>& pairs = broad_phase_.pairs(boxes_);
+  auto pair = pairs.begin();
+  for (int a = 0; a < bodies_.count(); ++a) {
+    if (bodies_.body(a).inverse_mass > 0)
+      for (int plane = static_cast<int>(planes_.size()) - 1; plane >= 0; --plane) find_below(a, plane);
+    for (; pair != pairs.end() && pair->a == a; ++pair) {
+      while (last != contacts.end() && std::pair(last->a, last->b) < std::pair(a, pair->b)) ++last;
+      const bool touched = last != contacts.end() && last->a == a && last->b == pair->b;
+      find_pair(a, pair->b, touched ? &last->normal : nullptr);
+    }
+  }
+  keep_impulses(contacts);
+  std::swap(found_, contacts);
+  found_.reserve(contacts.capacity());  // of the two lists, neither is to grow alone in a later step
+  return true;
+}
+
+void ContactFinder::keep_impulses(const std::vector<Contact>& last) {
+  const auto key = [](const Contact& contact) { return std::tuple(contact.a, contact.b, contact.place); };
+  auto was = last.begin();
+  for (Contact& contact : found_) {
+    while (was != last.end() && key(*was) < key(contact)) ++was;
+    if (was != last.end() && key(*was) == key(contact)) contact.impulse = was->impulse;
+  }
+}
+
+void ContactFinder::find_pair(int a, int b, const Vector3* side) {
+  const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+  const double contact_distance = bodies_.body(a).radius + bodies_.body(b).radius;
+  const CapsuleAxis &a_start = start_[ia], &b_start = start_[ib], &a_free = free_[ia], &b_free = free_[ib];
+  const double motion = relative_motion(a_start, a_free, b_start, b_free);
+  const Vector3 ends = separation(a_free, b_free);
+  const double at_end = ends.norm();
+  const double near = reach_[ia] + reach_[ib];
+  if (at_end - motion > near) return;
+  const Vector3 starts = separation(a_start, b_start);
+  const double at_start = starts.norm();
+  if (at_start + at_end - motion > 2 * near) return;
+
+  double when = 1;
+  Vector3 normal = direction(ends, a_free, b_free, contact_distance);
+  const bool crossed = side && at_start < contact_distance && side->dot(starts) < 0;
+  if (crossed) {
+    normal = *side;
+  } else if (motion >= at_start) {
+    if (const auto time = first_touch(a_start, a_free, b_start, b_free, std::min(contact_distance, at_start))) {
+      const CapsuleAxis a_then = between(a_start, a_free, *time), b_then = between(b_start, b_free, *time);
+      normal = direction(separation(a_then, b_then), a_then, b_then, contact_distance);
+      when = *time;
+    }
+  }
+  const Overlap beside = overlap(a_free, b_free);
+  const double length = (beside.high - beside.low) * a_free.half.norm();
+  const double slope = a_free.half.cross(b_free.half).norm();
+  if (beside.low < beside.high && length > contact_distance / 5 &&
+      length * slope < side_by_side * contact_distance * a_free.half.norm() * b_free.half.norm()) {
+    add({a, b, Contact::Place::low, beside.low, normal}, crossed);
+    add({a, b, Contact::Place::high, beside.high, normal}, crossed);
+  } else {
+    const AxisPoints at = closest_points(between(a_start, a_free, when), between(b_start, b_free, when));
+    if (!crossed && (nearer_beyond(a, b, at.s, normal, when) || nearer_beyond(b, a, at.t, -normal, when))) return;
+    add({a, b, Contact::Place::closest, 0, normal}, crossed);
+  }
+}
+
+bool ContactFinder::nearer_beyond(int body, int other, double s, const Vector3& away, double time) const {
+  if (std::abs(s) < 1) return false;
+  for (const ContactBodies::Next& next : bodies_.next(body)) {
+    const auto i = static_cast<std::size_t>(next.body);
+    if (!bodies_.matter(std::min(next.body, other), std::max(next.body, other))) continue;
+    if (next.end * s > 0 && next.into * away.dot(between(start_[i], free_[i], time).half.normalized()) < -catching)
+      return true;
+  }
+  return false;
+}
+
+void ContactFinder::find_below(int a, int half_space) {
+  const Plane& plane = planes_[static_cast<std::size_t>(half_space)];
+  const auto ia = static_cast<std::size_t>(a);
+  for (const auto place : {Contact::Place::low, Contact::Place::high}) {
+    const double s = place == Contact::Place::low ? -1 : 1;
+    const double height =
+        std::min(plane.normal.dot(start_[ia].at(s) - plane.point), plane.normal.dot(free_[ia].at(s) - plane.point));
+    if (height < reach_[ia]) add({a, -1 - half_space, place, s, plane.normal}, true);
+  }
+}
+
+void ContactFinder::add(Contact contact, bool sided) {
+  Contact at_start = contact;
+  if (!sided) at_start.normal.setZero();  // nothing is on the wrong side: what counts is the distance
+  const double width = std::min(0.0, follow(at_start, start_).width);
+  contact.allowed =
+      std::min((1 - recovery_) * width, width + most_recovered * bodies_.smaller_radius(contact.a, contact.b));
+  found_.push_back(contact);
+}
+
+Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const {
+  const CapsuleAxis& a = axes[static_cast<std::size_t>(contact.a)];
+  const double radius = bodies_.body(contact.a).radius;
+  if (contact.b < 0) {
+    const Plane& plane = planes_[static_cast<std::size_t>(-1 - contact.b)];
+    const Vector3 end = a.at(contact.s);
+    const double width = plane.normal.dot(end - plane.point) - radius;
+    return {width, end - (radius + width / 2) * plane.normal};
+  }
+  const CapsuleAxis& b = axes[static_cast<std::size_t>(contact.b)];
+  const double other_radius = bodies_.body(contact.b).radius;
+  const AxisPoints at = contact.place == Contact::Place::closest
+                            ? closest_points(a, b)
+                            : AxisPoints{contact.s, closest_point(b, a.at(contact.s))};
+  const Vector3 on_a = a.at(at.s), on_b = b.at(at.t), between = on_a - on_b;
+  const double distance = between.norm();
+  if (distance > 1e-9 * (radius + other_radius) && contact.normal.dot(between) >= 0)
+    contact.normal = between / distance;
+  const Vector3 surface_a = on_a - radius * contact.normal, surface_b = on_b + other_radius * contact.normal;
+  return {contact.normal.dot(between) - radius - other_radius, (surface_a + surface_b) / 2};
+}
+
+}  // namespace rodsweep

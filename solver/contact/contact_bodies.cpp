@@ -1,0 +1,132 @@
+#include "solver/contact/contact_bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <string>
+#include <utility>
+
+#include "solver/numbers/rotation.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double half_pi = 1.57079632679489661923;
+
+}  // namespace
+
+ContactBodies::ContactBodies(const Scene& scene) {
+  for (std::size_t r = 0; r < scene.rods.size(); ++r) {
+    const Rod& rod = scene.rods[r];
+    const int first = count();
+    for (int s = 0; s < rod.segment_count(); ++s) {
+      const Segment& segment = rod.segments[static_cast<std::size_t>(s)];
+      bodies_.push_back({static_cast<int>(r), s, segment.radius_m, segment.length_m / 2, segment.inverse_mass,
+                         segment.inverse_inertia_transverse, segment.inverse_inertia_axial});
+    }
+    excluded_.resize(bodies_.size());
+    next_.resize(bodies_.size());
+    connect(rod, first);
+    exclude_neighbours(rod, first);
+  }
+  for (const Obstacle& obstacle : scene.obstacles) add(obstacle);
+  next_.resize(bodies_.size());
+}
+
+void ContactBodies::connect(const Rod& rod, int first_body) {
+  const auto place = [&rod](int segment, const Vector3& arm) {  // -1, 0, 1: first end, in between, last end
+    const double quarter = rod.segments[static_cast<std::size_t>(segment)].length_m / 4;
+    return arm.z() > quarter ? 1 : arm.z() < -quarter ? -1 : 0;
+  };
+  const auto connect = [&](int from, int end, int to, int there) {
+    if (end == 0) return;
+    for (const int into : {-1, 1})
+      if (there != into) next_[static_cast<std::size_t>(first_body + from)].push_back({end, first_body + to, into});
+  };
+  for (const Joint& joint : rod.joints) {
+    const int on_a = place(joint.a, joint.arm_a), on_b = place(joint.b, joint.arm_b);
+    connect(joint.a, on_a, joint.b, on_b);
+    connect(joint.b, on_b, joint.a, on_a);
+  }
+}
+
+void ContactBodies::add(const Obstacle& obstacle) {
+  const auto add = [this](const Vector3& from, const Vector3& to, double radius) {
+    if (!from.allFinite() || !to.allFinite()) throw SceneError("an obstacle's place is not finite");
+    if (!(radius > 0) || !std::isfinite(radius))
+      throw SceneError("an obstacle's radius is " + std::to_string(radius) + "; must be positive and finite");
+    bodies_.push_back({-1, -1, radius, (to - from).norm() / 2, 0, 0, 0});
+    obstacles_.push_back({(from + to) / 2, (to - from) / 2});
+  };
+  if (const auto* ball = std::get_if<Ball>(&obstacle)) add(ball->centre_m, ball->centre_m, ball->radius_m);
+  if (const auto* capsule = std::get_if<Capsule>(&obstacle)) add(capsule->from_m, capsule->to_m, capsule->radius_m);
+}
+
+// Shortest ways (Dijkstra) over the joints from each segment, no farther than the widest pair needs.
+void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
+  struct Place {
+    int joint;
+    Vector3 arm;  ///< on the segment
+  };
+  std::vector<std::vector<Place>> joints_of(rod.segments.size());
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    joints_of[static_cast<std::size_t>(joint.a)].push_back({k, joint.arm_a});
+    joints_of[static_cast<std::size_t>(joint.b)].push_back({k, joint.arm_b});
+  }
+  double widest = 0;
+  for (const Segment& segment : rod.segments) widest = std::max(widest, segment.radius_m);
+
+  using Way = std::pair<double, int>;  // length, joint
+  std::priority_queue<Way, std::vector<Way>, std::greater<>> open;
+  std::vector<double> length(rod.joints.size(), HUGE_VAL);
+  std::vector<int> reached;
+  for (int start = 0; start < rod.segment_count(); ++start) {
+    const double radius = rod.segments[static_cast<std::size_t>(start)].radius_m;
+    const auto arrive = [&](int joint, double way) {
+      double& known = length[static_cast<std::size_t>(joint)];
+      if (way >= half_pi * (radius + widest) || way >= known) return;
+      if (known == HUGE_VAL) reached.push_back(joint);
+      known = way;
+      open.push({way, joint});
+    };
+    for (const Place& place : joints_of[static_cast<std::size_t>(start)]) arrive(place.joint, 0);
+    std::vector<int>& excluded = excluded_[static_cast<std::size_t>(first_body + start)];
+    while (!open.empty()) {
+      const auto [way, through] = open.top();
+      open.pop();
+      if (way > length[static_cast<std::size_t>(through)]) continue;
+      const Joint& joint = rod.joints[static_cast<std::size_t>(through)];
+      for (const auto& [segment, arm] : {std::pair{joint.a, joint.arm_a}, std::pair{joint.b, joint.arm_b}}) {
+        const double touching = half_pi * (radius + rod.segments[static_cast<std::size_t>(segment)].radius_m);
+        if (segment > start && way < touching) excluded.push_back(first_body + segment);
+        for (const Place& place : joints_of[static_cast<std::size_t>(segment)])
+          arrive(place.joint, way + (place.arm - arm).norm());
+      }
+    }
+    std::sort(excluded.begin(), excluded.end());
+    excluded.erase(std::unique(excluded.begin(), excluded.end()), excluded.end());
+    for (const int joint : reached) length[static_cast<std::size_t>(joint)] = HUGE_VAL;
+    reached.clear();
+  }
+}
+
+bool ContactBodies::matter(int a, int b) const {
+  const Body &one = body(a), &other = body(b);
+  if (one.inverse_mass == 0 && other.inverse_mass == 0) return false;
+  if (one.radius == 0 || other.radius == 0) return false;
+  if (one.rod < 0) return true;
+  const std::vector<int>& excluded = excluded_[static_cast<std::size_t>(a)];
+  return !std::binary_search(excluded.begin(), excluded.end(), b);
+}
+
+void ContactBodies::place(const Scene& scene, std::vector<CapsuleAxis>& axes) const {
+  axes.resize(bodies_.size());
+  auto out = axes.begin();
+  for (const Rod& rod : scene.rods)
+    for (std::size_t s = 0; s < rod.segments.size(); ++s)
+      *out++ = {rod.position[s], rod.segments[s].length_m / 2 * director(rod.orientation[s])};
+  std::copy(obstacles_.begin(), obstacles_.end(), out);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,64 @@
+// Everything in a scene that may touch, one list: the segments of all rods, then the balls and capsules that stand in
+// their way. A segment is a capsule: its axis is as long as the segment, with a half sphere of its radius beyond either
+// end. A segment without radius (an exact wall) touches nothing.
+//
+// Two segments of a rod matter to each other only if the way between them along the axes of the rod, from joint to
+// joint, is at least (pi / 2) (r_a + r_b): nearer ones could touch only where the rod is bent more tightly than its own
+// radius. That excludes those that a joint joins and all that meet in one point, and where segments are shorter than
+// they are wide also the next but one and so on, whose capsules overlap in a straight rod. Two static bodies never
+// matter to each other. Throws SceneError where an obstacle is none.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/contact/broad_phase.hpp"
+#include "solver/contact/capsule_distance.hpp"
+#include "solver/scene/scene.hpp"
+
+namespace rodsweep {
+
+struct Body {
+  int rod, segment;  ///< -1 of an obstacle
+  double radius, half_length;
+  double inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;  ///< zero when static
+};
+
+class ContactBodies {
+ public:
+  explicit ContactBodies(const Scene& scene);
+
+  int count() const { return static_cast<int>(bodies_.size()); }
+  const Body& body(int i) const { return bodies_[static_cast<std::size_t>(i)]; }
+
+  /// What motions of a contact are relative to; of `a` alone where b is a half-space, below 0.
+  double smaller_radius(int a, int b) const {
+    return b < 0 ? body(a).radius : std::min(body(a).radius, body(b).radius);
+  }
+
+  /// Whether two bodies, a < b, are ever to be kept apart.
+  bool matter(int a, int b) const;
+
+  /// Where a rod goes on at an end of a segment: its next segment, and the direction into that along its axis.
+  struct Next {
+    int end;   ///< of the segment: -1 or 1
+    int body;  ///< the next
+    int into;  ///< -1 or 1
+  };
+  const std::vector<Next>& next(int i) const { return next_[static_cast<std::size_t>(i)]; }
+
+  /// Axes in the current state of the scene, one for each body.
+  void place(const Scene& scene, std::vector<CapsuleAxis>& axes) const;
+
+ private:
+  void add(const Obstacle& obstacle);
+  void connect(const Rod& rod, int first_body);
+  void exclude_neighbours(const Rod& rod, int first_body);
+
+  std::vector<Body> bodies_;
+  std::vector<CapsuleAxis> obstacles_;
+  std::vector<std::vector<Next>> next_;     ///< of every body
+  std::vector<std::vector<int>> excluded_;  ///< of every segment, the later ones that it cannot touch, sorted
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,86 @@
+#include "solver/contact/contact_motion.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace rodsweep {
+
+ContactMotion::ContactMotion(Scene& scene, const ContactBodies& bodies)
+    : scene_(scene),
+      bodies_(bodies),
+      motion_(static_cast<std::size_t>(bodies.count()), Lane8{}),
+      settled_(static_cast<std::size_t>(bodies.count()), Lane8{}) {
+  int first_body = 0;
+  for (const Rod& rod : scene.rods) {
+    rods_.push_back({first_body});
+    first_body += rod.segment_count();
+  }
+}
+
+// I^-1 m of an axisymmetric segment.
+Vector3 ContactMotion::turn(int body, const Vector3& moment, const CapsuleAxis& axis) const {
+  const Body& of = bodies_.body(body);
+  const Vector3 along = axis.half / of.half_length;
+  return of.inverse_inertia_transverse * moment +
+         (of.inverse_inertia_axial - of.inverse_inertia_transverse) * along.dot(moment) * along;
+}
+
+Matrix3 ContactMotion::mobility(int body, const Vector3& arm, const CapsuleAxis& axis) const {
+  Matrix3 w = Matrix3::Zero();
+  if (bodies_.body(body).inverse_mass == 0) return w;
+  for (int c = 0; c < 3; ++c) w.col(c) = turn(body, arm.cross(Vector3::Unit(c)), axis).cross(arm);
+  w.diagonal().array() += bodies_.body(body).inverse_mass;
+  return w;
+}
+
+void ContactMotion::push(int body, const Vector3& arm, const Vector3& impulse, const CapsuleAxis& axis) {
+  const Body& of = bodies_.body(body);
+  if (of.inverse_mass == 0) return;
+  const Vector3 dx = of.inverse_mass * impulse, dtheta = turn(body, arm.cross(impulse), axis);
+  motion_[static_cast<std::size_t>(body)] += Lane8{dx.x(), dx.y(), dx.z(), dtheta.x(), dtheta.y(), dtheta.z(), 0, 0};
+  rods_[static_cast<std::size_t>(of.rod)].pushed = true;
+}
+
+Vector3 ContactMotion::of(int body, const Vector3& arm) const {
+  const Lane8& motion = motion_[static_cast<std::size_t>(body)];
+  return Vector3(motion[0], motion[1], motion[2]) + Vector3(motion[3], motion[4], motion[5]).cross(arm);
+}
+
+void ContactMotion::settle(double constraint_dt) {
+  for (std::size_t r = 0; r < rods_.size(); ++r) {
+    Coupled& coupled = rods_[r];
+    if (!coupled.pushed) continue;
+    const Rod& rod = scene_.rods[r];
+    if (!coupled.response) coupled.response.emplace(rod);
+    if (!coupled.assembled) coupled.response->assemble(rod, constraint_dt);
+    coupled.assembled = true;
+    coupled.pushed = false;
+    Lane8* motion = motion_.data() + coupled.first_body;
+    Lane8* settled = settled_.data() + coupled.first_body;
+    for (int s = 0; s < rod.segment_count(); ++s) motion[s] -= settled[s];
+    coupled.response->respond(rod, motion);
+    for (int s = 0; s < rod.segment_count(); ++s) motion[s] = settled[s] += motion[s];
+  }
+}
+
+void ContactMotion::apply() {
+  for (std::size_t r = 0; r < rods_.size(); ++r) {
+    Coupled& coupled = rods_[r];
+    if (!coupled.assembled) continue;
+    coupled.assembled = false;
+    Rod& rod = scene_.rods[r];
+    rod.lambda += coupled.response->multipliers();
+    for (int s = 0; s < rod.segment_count(); ++s) {
+      const auto body = static_cast<std::size_t>(coupled.first_body + s);
+      move(rod, static_cast<std::size_t>(s), settled_[body]);
+      motion_[body] = settled_[body] = Lane8{};
+    }
+  }
+}
+
+void ContactMotion::clear() {
+  std::fill(motion_.begin(), motion_.end(), Lane8{});
+  for (Coupled& coupled : rods_) coupled.pushed = false;
+}
+
+}  // namespace rodsweep

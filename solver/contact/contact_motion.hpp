@@ -1,0 +1,51 @@
+// How bodies move under the impulses of their contacts, within one Newton iteration and to first order. A push moves a
+// segment as if it were free; settle() has the joints of its rod take back their part (rod_response.hpp); in the end
+// every segment moves once, x += dx, q <- rotated(q, dtheta), and lambda += dlambda. Obstacles and static segments
+// stay.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solver/contact/contact_bodies.hpp"
+#include "solver/contact/rod_response.hpp"
+
+namespace rodsweep {
+
+class ContactMotion {
+ public:
+  ContactMotion(Scene& scene, const ContactBodies& bodies);
+
+  /// W of a body's point, `arm` from its centre: what an impulse there moves the point by [1/kg].
+  Matrix3 mobility(int body, const Vector3& arm, const CapsuleAxis& axis) const;
+
+  /// An impulse at a body's point: force times dt_c^2 [kg m].
+  void push(int body, const Vector3& arm, const Vector3& impulse, const CapsuleAxis& axis);
+
+  /// Of a body's point.
+  Vector3 of(int body, const Vector3& arm) const;
+
+  void settle(double constraint_dt);
+
+  /// What has settled, once: afterwards nothing is in motion.
+  void apply();
+
+  /// Forgets all pushes since nothing was in motion; none of them has settled.
+  void clear();
+
+ private:
+  struct Coupled {
+    int first_body;
+    std::optional<RodResponse> response{};  ///< once it was touched
+    bool pushed = false, assembled = false;
+  };
+  Vector3 turn(int body, const Vector3& moment, const CapsuleAxis& axis) const;
+
+  Scene& scene_;
+  const ContactBodies& bodies_;
+  std::vector<Coupled> rods_;
+  std::vector<Lane8> motion_;   ///< of every body: dx in lanes 0..2, dtheta in lanes 3..5
+  std::vector<Lane8> settled_;  ///< what the joints have left of it
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,187 @@
+#include "solver/contact/contact_projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "solver/numbers/rotation.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double worse = 1.5;  ///< than the best since the last restart
+
+void check_least(const char* what, double value, double least) {
+  if (!(value >= least) || !std::isfinite(value))
+    throw SceneError(std::string(what) + " is " + std::to_string(value) + "; must be at least " +
+                     std::to_string(static_cast<int>(least)) + " and finite");
+}
+
+}  // namespace
+
+ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settings)
+    : scene_(scene), settings_(settings), finder_(scene, settings.recovery), motion_(scene, finder_.bodies()) {
+  check_least("friction", settings.friction, 0);
+  check_least("tolerance", settings.tolerance, 0);
+  if (settings.tolerance == 0) throw SceneError("tolerance is 0, which nothing reaches; must be positive");
+  check_least("sweeps", settings.sweeps, 1);
+  check_least("recovery", settings.recovery, 0);
+  if (settings.recovery > 1)
+    throw SceneError("recovery is " + std::to_string(settings.recovery) + "; must be at most 1");
+}
+
+void ContactProjection::start_step() {
+  finder_.remember(scene_);
+  old_.clear();
+  for (const Rod& rod : scene_.rods)
+    for (std::size_t s = 0; s < rod.segments.size(); ++s) old_.push_back({rod.position[s], rod.orientation[s]});
+}
+
+bool ContactProjection::find() {
+  if (!finder_.find(scene_, contacts_)) return false;
+  fresh_ = true;
+  linear_.resize(contacts_.size());
+  before_.resize(contacts_.size());
+  swept_.resize(contacts_.size());
+  return true;
+}
+
+bool ContactProjection::project(double constraint_dt) {
+  if (contacts_.empty()) return true;
+  linearise();
+  const bool pressed = press(constraint_dt);
+  restart(HUGE_VAL);
+  for (int i = 0; i < settings_.sweeps; ++i) {
+    const double moved = sweep();
+    if (i == 0) swept_ = before_;
+    const bool converged = moved < settings_.tolerance;
+    if (converged && i == 0 && !pressed) {
+      undo_sweep();
+      return true;
+    }
+    const bool last = converged || i + 1 == settings_.sweeps;
+    if (!last) accelerate(moved);
+    motion_.settle(constraint_dt);
+    if (last) break;
+  }
+  motion_.apply();
+  return false;
+}
+
+// Contacts that last are pressed at once as they were in the last step. Returns whether that moves anything.
+bool ContactProjection::press(double constraint_dt) {
+  if (!fresh_) return false;
+  fresh_ = false;
+  bool any = false;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Contact& contact = contacts_[c];
+    contact.impulse = linear_[c].law.admissible(contact.impulse);
+    if (contact.impulse.isZero(0)) continue;
+    push(contact, linear_[c], contact.impulse);
+    any = true;
+  }
+  motion_.settle(constraint_dt);
+  return any;
+}
+
+void ContactProjection::linearise() {
+  finder_.bodies().place(scene_, axes_);
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Contact& contact = contacts_[c];
+    Linear& at = linear_[c];
+    const Gap gap = finder_.follow(contact, axes_);
+    const CapsuleAxis& a = axes_[static_cast<std::size_t>(contact.a)];
+    at.width = gap.width;
+    at.arm_a = gap.middle - a.centre;
+    at.slip = slip(contact.a, gap.middle);
+    at.size = finder_.bodies().smaller_radius(contact.a, contact.b);
+    Matrix3 mobility = motion_.mobility(contact.a, at.arm_a, a);
+    if (contact.b >= 0) {
+      const CapsuleAxis& b = axes_[static_cast<std::size_t>(contact.b)];
+      at.arm_b = gap.middle - b.centre;
+      at.slip -= slip(contact.b, gap.middle);
+      mobility += motion_.mobility(contact.b, at.arm_b, b);
+    }
+    at.law = CoulombContact(contact.normal, mobility, settings_.friction);
+  }
+}
+
+// Returns the largest motion that a contact asked for, relative to its segments' radius.
+double ContactProjection::sweep() {
+  double most = 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Contact& contact = contacts_[c];
+    const Linear& at = linear_[c];
+    before_[c] = contact.impulse;
+    Vector3 moved = motion_.of(contact.a, at.arm_a);
+    if (contact.b >= 0) moved -= motion_.of(contact.b, at.arm_b);
+    const double gap = at.width - contact.allowed + contact.normal.dot(moved);
+    const Vector3 impulse = at.law.relaxed(contact.impulse, gap, at.slip + moved);
+    const Vector3 change = impulse - contact.impulse;
+    if (change.isZero(0)) continue;
+    most = std::max(most, change.norm() * at.law.normal_weight() / at.size);
+    contact.impulse = impulse;
+    push(contact, at, change);
+  }
+  return most;
+}
+
+// The last one, none of which has settled.
+void ContactProjection::undo_sweep() {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c].impulse = before_[c];
+  motion_.clear();
+}
+
+void ContactProjection::restart(double moved) {
+  momentum_ = 1;
+  least_moved_ = moved;
+}
+
+// Onwards along the last way, unless the sweep went back against it (adaptive restart, O'Donoghue & Candes 2015), or
+// contacts are worse off than before: friction is no gradient, and can keep an accelerated iteration going in circles.
+void ContactProjection::accelerate(double moved) {
+  double against = 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Vector3& now = contacts_[c].impulse;
+    against += linear_[c].law.normal_weight() * (before_[c] - now).dot(now - swept_[c]);
+  }
+  if (against > 0 || moved > worse * least_moved_) restart(moved);
+  least_moved_ = std::min(least_moved_, moved);
+  const double next = (1 + std::sqrt(1 + 4 * momentum_ * momentum_)) / 2, beta = (momentum_ - 1) / next;
+  momentum_ = next;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Contact& contact = contacts_[c];
+    const Vector3 now = contact.impulse;
+    contact.impulse = linear_[c].law.admissible(now + beta * (now - swept_[c]));
+    push(contact, linear_[c], contact.impulse - now);
+    swept_[c] = now;
+  }
+}
+
+void ContactProjection::push(const Contact& contact, const Linear& at, const Vector3& impulse) {
+  motion_.push(contact.a, at.arm_a, impulse, axes_[static_cast<std::size_t>(contact.a)]);
+  if (contact.b >= 0) motion_.push(contact.b, at.arm_b, -impulse, axes_[static_cast<std::size_t>(contact.b)]);
+}
+
+// How far the body's material at a point has come since the start of the step.
+Vector3 ContactProjection::slip(int body, const Vector3& point) const {
+  const Body& of = finder_.bodies().body(body);
+  if (of.rod < 0) return Vector3::Zero();
+  const Rod& rod = scene_.rods[static_cast<std::size_t>(of.rod)];
+  const auto s = static_cast<std::size_t>(of.segment);
+  const OldPose& old = old_[static_cast<std::size_t>(body)];
+  const Vector3 arm = rod.orientation[s].conjugate() * (point - rod.position[s]);
+  return point - (old.position + old.orientation * arm);
+}
+
+ContactState ContactProjection::state() {
+  ContactState state;
+  if (contacts_.empty()) return state;
+  linearise();
+  for (const Linear& at : linear_) state.penetration = std::max(state.penetration, -at.width / at.size);
+  state.residual = sweep();
+  undo_sweep();
+  return state;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,87 @@
+// Contacts within a time step, as complementarity with Coulomb friction (coulomb_contact.hpp), solved by projected
+// Gauss-Seidel (Jean 1999) on accumulated multipliers (XPBD, Macklin et al. 2016), after the projection of the rods.
+// Gaps count from what is allowed (contact.hpp), slips from the start of the step.
+//
+// Once a Newton iteration the contacts are linearised at the current positions: normal, gap, and one common point
+// midway between the surfaces, at which equal and opposite impulses act on both segments. Then the multipliers are
+// iterated: a sweep in a fixed order takes every segment to be free, and the joints take back their part
+// (contact_motion.hpp). A rod is never freer than its pieces, so that both together are a step of a projected gradient
+// method with a safe metric, to which Nesterov's acceleration applies (APGD, Mazhar et al. 2015). Then everything moves
+// once. It leaves joints as closed as they were, but for the second order, which the next Newton iteration closes,
+// keeps linear momentum to rounding, and angular momentum as well as one rotation update does, to O(dtheta^2).
+//
+// Multipliers start from those of the last step where a contact lasts; a step's result depends on that start only as
+// far as it has not converged.
+//
+// Allocates only when there are more contacts than ever before, when a rod is touched for the first time, and where the
+// broad phase searches anew.
+#pragma once
+
+#include "solver/contact/contact.hpp"
+#include "solver/contact/contact_motion.hpp"
+#include "solver/contact/coulomb_contact.hpp"
+
+namespace rodsweep {
+
+/// Relative to the smaller radius of two bodies; 0 without contacts.
+struct ContactState {
+  double penetration = 0;  ///< the deepest overlap
+  double residual = 0;     ///< the farthest that a contact wants to move its bodies; below the tolerance: converged
+};
+
+class ContactProjection {
+ public:
+  ContactProjection(Scene& scene, const ContactSettings& settings);
+
+  /// To be called before the scene leaves p.
+  void start_step();
+
+  /// To be called at p*: finds the contacts of the step. Returns false where p* is not finite.
+  bool find();
+
+  /// To be called after the rods' projection. Returns whether the contacts had converged: then nothing is moved.
+  bool project(double constraint_dt);
+
+  const std::vector<Contact>& contacts() const { return contacts_; }
+
+  /// How the contacts of the step are met in the current state, which stays.
+  ContactState state();
+
+ private:
+  /// A contact at the current positions.
+  struct Linear {
+    CoulombContact law;
+    Vector3 arm_a, arm_b;  ///< from the centres to the common point
+    double width;          ///< of the gap [m]
+    Vector3 slip;          ///< of a's material against b's at the common point, since the start of the step
+    double size;           ///< that motions are relative to: the smaller radius
+  };
+  void linearise();
+  bool press(double constraint_dt);
+  double sweep();
+  void undo_sweep();
+  void restart(double moved);
+  void accelerate(double moved);
+  void push(const Contact& contact, const Linear& at, const Vector3& impulse);
+  Vector3 slip(int body, const Vector3& point) const;
+
+  Scene& scene_;
+  ContactSettings settings_;
+  ContactFinder finder_;
+  ContactMotion motion_;
+  std::vector<Contact> contacts_;
+  bool fresh_ = false;  ///< not projected yet
+  std::vector<Linear> linear_;
+  std::vector<CapsuleAxis> axes_;
+  struct OldPose {
+    Vector3 position;
+    Quaternion orientation;
+  };
+  std::vector<OldPose> old_;     ///< of every segment at p
+  std::vector<Vector3> before_;  ///< impulses before the sweep
+  std::vector<Vector3> swept_;   ///< impulses after the last sweep
+  double momentum_ = 1;          ///< Nesterov's t
+  double least_moved_ = 0;       ///< by a sweep since its last restart
+};
+
+}  // namespace rodsweep

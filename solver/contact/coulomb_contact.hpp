@@ -1,0 +1,40 @@
+// The law of one contact, at one point of two bodies with the inverse effective mass W = J M^-1 J^T (3x3) there:
+//
+//   gap >= 0,  lambda_n >= 0,  gap lambda_n = 0
+//   |lambda_t| <= mu lambda_n;  the slip is 0, or against |lambda_t| = mu lambda_n
+//
+// A relaxation takes the normal part first, then friction for that (Jean 1999): the friction that stops the slip, where
+// the contact bears it, else a step of projected gradient descent, which the larger eigenvalue of W across the normal
+// makes safe in every direction, however much more easily a body rolls than it slides.
+#pragma once
+
+#include "solver/numbers/types.hpp"
+
+namespace rodsweep {
+
+class CoulombContact {
+ public:
+  CoulombContact() = default;
+  /// `normal`: unit; `mobility`: W [1/kg]; `friction`: mu.
+  CoulombContact(const Vector3& normal, const Matrix3& mobility, double friction);
+
+  /// From the impulse so far, and from the gap (negative: overlap) and slip that this leaves.
+  Vector3 relaxed(const Vector3& impulse, double gap, const Vector3& slip) const;
+
+  /// The nearest in the friction cone along its axis: the normal part, and what friction it bears.
+  Vector3 admissible(const Vector3& impulse) const;
+
+  /// n . W n [1/kg]
+  double normal_weight() const { return normal_weight_; }
+
+ private:
+  Vector3 across(const Vector3& v) const { return v - normal_.dot(v) * normal_; }
+
+  Vector3 normal_{0, 0, 0};
+  double friction_ = 0;
+  double normal_weight_ = 0;
+  double sliding_weight_ = 0;  ///< the larger eigenvalue of W across the normal [1/kg]
+  Matrix3 stick_;              ///< the inverse of W across the normal [kg]
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,41 @@
+// How a rod as a whole gives way to impulses on its segments, to first order: what its joints leave of the motions that
+// the segments would take on their own.
+//
+//   A dlambda = -J u,   u <- u + M^-1 J^T dlambda,   A = J M^-1 J^T + alpha~
+//
+// so that the constraints and their multipliers stay as consistent as they were, J u + alpha~ dlambda = 0. With
+// u = M^-1 f this is H f, H = M^-1 - M^-1 J^T A^-1 J M^-1, which is at most M^-1: a rod is never freer than its pieces.
+// A response costs O(n) on chains and trees, with the factor of A kept. Nothing allocates after the first assembly.
+#pragma once
+
+#include <vector>
+
+#include "solver/linear/block_factor.hpp"
+#include "solver/linear/linear_system.hpp"
+
+namespace rodsweep {
+
+class RodResponse {
+ public:
+  explicit RodResponse(const Rod& rod);
+
+  /// At the rod's positions. Multipliers start from zero. Whether A is positive definite is for the rod's projection to
+  /// say, which has just solved with nearly the same one; Gauss-Seidel has none, and a response that is not finite then
+  /// shows in the state.
+  void assemble(const Rod& rod, double dt);
+
+  /// `motion`: dx and dtheta of every segment, as LinearSystem::displacements(); of static ones zero.
+  void respond(const Rod& rod, Lane8* motion);
+
+  /// dlambda of all responses since the assembly.
+  const VectorX& multipliers() const { return multipliers_; }
+
+ private:
+  LinearSystem system_;
+  BlockFactor factor_;
+  VectorX change_;  ///< J u, then -dlambda
+  VectorX multipliers_;
+  std::vector<Lane8> taken_back_;
+};
+
+}  // namespace rodsweep

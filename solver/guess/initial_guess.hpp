@@ -1,0 +1,97 @@
+// Initial guesses for the CG solve of A dlambda = b, behind one interface.
+//
+// propose() writes x0 before a solve, accept() is told the solution after it. Sequences are kept per (rod, Newton
+// iteration): a history guess of Newton iteration j extrapolates the solutions of iteration j of the last steps,
+//   previous  x1,      linear  2 x1 - x2,      quadratic  3 x1 - 3 x2 + x3        (x1 the newest),
+// and falls back to fewer terms, in the end to zero, where consecutive steps have no solution at that iteration.
+// A learned guess is one more implementation of this interface.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "solver/linear/block_factor.hpp"
+#include "solver/linear/linear_system.hpp"
+#include "solver/step/projection.hpp"
+
+namespace rodsweep {
+
+struct Proposal {
+  bool nonzero = false;  ///< false: x0 is zero
+  int products = 0;      ///< products with A that the guess itself took
+};
+
+class InitialGuess {
+ public:
+  virtual ~InitialGuess() = default;
+  /// Writes x0. Calling it again for the same system gives the same x0.
+  virtual Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) = 0;
+  /// The solution of the system last proposed for.
+  virtual void accept(const SolvePosition& at, const VectorX& solution) = 0;
+};
+
+/// Always zero: the denominator of every ratio.
+class ZeroGuess : public InitialGuess {
+ public:
+  Proposal propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
+    x0.setZero();
+    return {};
+  }
+  void accept(const SolvePosition&, const VectorX&) override {}
+};
+
+/// Polynomial extrapolation in time through the last `terms` solutions: 1 previous, 2 linear, 3 quadratic.
+class ExtrapolationGuess : public InitialGuess {
+ public:
+  ExtrapolationGuess(const Scene& scene, int newton_iterations, int terms);
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  void accept(const SolvePosition& at, const VectorX& solution) override;
+
+ private:
+  /// The last solutions of one (rod, Newton iteration), as a ring.
+  struct History {
+    std::vector<VectorX> solutions;
+    int newest = -1;
+    int consecutive = 0;  ///< how many of the last steps, without a gap, are stored
+    int last_step = -2;
+  };
+  History& history(const SolvePosition& at);
+  int terms_, newton_iterations_;
+  std::vector<History> histories_;
+};
+
+/// The exact solution plus a random error e of given relative A-norm, ||e||_A = error ||x||_A: what a guess of known
+/// quality would save. It solves the system itself, so its time means nothing.
+class OracleGuess : public InitialGuess {
+ public:
+  /// With w of independent standard normal entries: white, e ~ w; smooth, e ~ A^-1 w, dominated by the modes of the
+  /// smallest eigenvalues, which vary slowly along the rod and which CG finds last.
+  enum class Error { white, smooth };
+  OracleGuess(const Scene& scene, double error, Error kind, std::uint64_t seed);
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  void accept(const SolvePosition&, const VectorX&) override {}
+
+ private:
+  std::vector<BlockFactor> factors_;  ///< per rod
+  double error_;
+  Error kind_;
+  std::uint64_t seed_;
+  std::vector<VectorX> noise_, scratch_;  ///< per rod
+};
+
+/// Uses another guess only where sqrt(r^T D^-1 r) of r = b - A x0 is below `threshold` times that of b, D the diagonal
+/// of A (the natural norm of Jacobi-preconditioned CG); else zero.
+class GuardedGuess : public InitialGuess {
+ public:
+  GuardedGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, double threshold);
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  void accept(const SolvePosition& at, const VectorX& solution) override { inner_->accept(at, solution); }
+
+ private:
+  std::unique_ptr<InitialGuess> inner_;
+  double threshold_;
+  std::vector<VectorX> scratch_;  ///< per rod
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,43 @@
+// A symmetric matrix of 6x6 blocks in compressed block rows: a block row and column per joint.
+//
+// Both triangles are stored: a product reads each block once, in order, and needs no transposed kernel.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "solver/numbers/lanes.hpp"
+
+namespace rodsweep {
+
+class BlockMatrix {
+ public:
+  BlockMatrix() = default;
+  /// The pattern: `couplings` are pairs of block rows, in any order and repeated or not; diagonals are always present.
+  BlockMatrix(int block_rows, const std::vector<std::pair<int, int>>& couplings);
+
+  int block_rows() const { return static_cast<int>(diagonal_.size()); }
+  int unknowns() const { return 6 * block_rows(); }
+  int block_count() const { return static_cast<int>(blocks.size()); }
+
+  int row_begin(int row) const { return row_start_[static_cast<std::size_t>(row)]; }
+  int row_end(int row) const { return row_start_[static_cast<std::size_t>(row) + 1]; }
+  int column(int block) const { return columns_[static_cast<std::size_t>(block)]; }
+  int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
+  int find(int row, int column) const;  ///< index of the block, -1 where there is none
+
+  /// y = A x. `x` and `y` hold unknowns() doubles and don't overlap.
+  void multiply(const double* x, double* y) const;
+
+  Eigen::MatrixXd dense() const;
+
+  std::vector<Block6> blocks;  ///< columns of each block, in row order
+
+ private:
+  std::vector<int> row_start_{0}, columns_, diagonal_;
+};
+
+/// x^T A x; `scratch` holds A x afterwards.
+double energy_norm_squared(const BlockMatrix& a, const VectorX& x, VectorX& scratch);
+
+}  // namespace rodsweep

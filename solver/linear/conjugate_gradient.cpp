@@ -1,0 +1,240 @@
+#include "solver/linear/conjugate_gradient.hpp"
+
+#include <petscksp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "solver/linear/petsc_check.hpp"
+#include "solver/linear/petsc_operator.hpp"
+#include "solver/linear/petsc_vector.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double divergence_limit = 1e30;
+
+/// What the convergence test compares with.
+struct Target {
+  double tolerance = 0;
+  double reference = 0;
+};
+
+PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReason* reason, void* context) {
+  const Target& target = *static_cast<const Target*>(context);
+  *reason = KSP_CONVERGED_ITERATING;
+  if (!std::isfinite(norm))
+    *reason = KSP_DIVERGED_NANORINF;
+  else if (norm <= target.tolerance * target.reference)
+    *reason = KSP_CONVERGED_RTOL;
+  else if (norm > divergence_limit * target.reference)
+    *reason = KSP_DIVERGED_DTOL;
+  return 0;
+}
+
+SolveOutcome outcome_of(KSPConvergedReason reason) {
+  switch (reason) {
+    case KSP_CONVERGED_RTOL: return SolveOutcome::converged;
+    case KSP_DIVERGED_ITS: return SolveOutcome::iteration_limit;
+    case KSP_DIVERGED_NANORINF: return SolveOutcome::not_a_number;
+    case KSP_DIVERGED_INDEFINITE_MAT:
+    case KSP_DIVERGED_INDEFINITE_PC:
+    case KSP_DIVERGED_PC_FAILED: return SolveOutcome::indefinite;
+    default: return reason > 0 ? SolveOutcome::converged : SolveOutcome::diverged;
+  }
+}
+
+PCType pc_type(Preconditioner p) {
+  switch (p) {
+    case Preconditioner::none: return PCNONE;
+    case Preconditioner::jacobi: return PCJACOBI;
+    case Preconditioner::point_block_jacobi: return PCPBJACOBI;
+    case Preconditioner::icc: return PCICC;
+    case Preconditioner::cholesky:
+    case Preconditioner::lagged_cholesky: return PCCHOLESKY;
+  }
+  return PCNONE;
+}
+
+/// Whether it works on a copy of the upper blocks.
+bool factorises(Preconditioner p) {
+  return p == Preconditioner::icc || p == Preconditioner::cholesky || p == Preconditioner::lagged_cholesky;
+}
+
+}  // namespace
+
+struct ConjugateGradient::Impl {
+  const BlockMatrix& a;
+  BlockOperator op;
+  CgSettings settings;
+  Mat product = nullptr;
+  Mat entries = nullptr;  ///< copy of the blocks for preconditioners that factorise; else null
+  KSP ksp = nullptr;
+  Vec b = nullptr, x = nullptr, scratch = nullptr;
+  Target target;
+  bool stale = true;  ///< the preconditioner is of older entries
+  std::vector<PetscReal> history_buffer;
+  std::vector<double> history;
+
+  Impl(const BlockMatrix& matrix, const CgSettings& s);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void create_entries(bool symmetric);
+  void copy_entries();
+  void refresh();
+};
+
+ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : a(matrix), op{matrix}, settings(s) {
+  const PetscInt n = a.unknowns();
+  if (settings.max_iterations <= 0)
+    settings.max_iterations = std::min(10 * n, int{std::numeric_limits<std::int16_t>::max()});
+
+  product = create_operator(op);
+  b = create_vector(n);
+  x = create_vector(n);
+  scratch = create_vector(n);
+
+  if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
+  if (factorises(settings.preconditioner)) create_entries(true);
+
+  PC pc = nullptr;
+  petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
+  petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");
+  petsc_check(KSPSetNormType(ksp, settings.norm == Norm::natural ? KSP_NORM_NATURAL : KSP_NORM_UNPRECONDITIONED),
+              "KSPSetNormType");
+  petsc_check(KSPGetPC(ksp, &pc), "KSPGetPC");
+  petsc_check(PCSetType(pc, pc_type(settings.preconditioner)), "PCSetType");
+  petsc_check(KSPSetOperators(ksp, product, entries ? entries : product), "KSPSetOperators");
+  petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, settings.max_iterations), "KSPSetTolerances");
+  petsc_check(KSPSetConvergenceTest(ksp, test_convergence, &target, nullptr), "KSPSetConvergenceTest");
+}
+
+ConjugateGradient::Impl::~Impl() {
+  // A destructor cannot report; PETSc prints what it has to say.
+  KSPDestroy(&ksp);
+  MatDestroy(&entries);
+  MatDestroy(&product);
+  VecDestroy(&scratch);
+  VecDestroy(&x);
+  VecDestroy(&b);
+}
+
+void ConjugateGradient::Impl::create_entries(bool symmetric) {
+  std::vector<PetscInt> start{0}, columns;
+  for (int row = 0; row < a.block_rows(); ++row) {
+    for (int k = a.row_begin(row); k < a.row_end(row); ++k)
+      if (!symmetric || a.column(k) >= row) columns.push_back(a.column(k));
+    start.push_back(static_cast<PetscInt>(columns.size()));
+  }
+  const PetscInt n = a.unknowns();
+  petsc_check(MatCreate(PETSC_COMM_SELF, &entries), "MatCreate");
+  petsc_check(MatSetSizes(entries, n, n, n, n), "MatSetSizes");
+  petsc_check(MatSetType(entries, symmetric ? MATSEQSBAIJ : MATSEQBAIJ), "MatSetType");
+  if (symmetric)
+    petsc_check(MatSeqSBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
+                "MatSeqSBAIJSetPreallocationCSR");
+  else
+    petsc_check(MatSeqBAIJSetPreallocationCSR(entries, 6, start.data(), columns.data(), nullptr),
+                "MatSeqBAIJSetPreallocationCSR");
+  use_our_vectors(entries);
+}
+
+void ConjugateGradient::Impl::refresh() {
+  if (!stale) return;
+  stale = false;
+  if (entries) copy_entries();
+  // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
+  Mat changed = entries ? entries : product;
+  petsc_check(MatAssemblyBegin(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
+  petsc_check(MatAssemblyEnd(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
+}
+
+void ConjugateGradient::Impl::copy_entries() {
+  // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper ones.
+  const bool symmetric = factorises(settings.preconditioner);
+  PetscScalar* out = nullptr;
+  petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out), "MatSeqBAIJGetArray");
+  PetscScalar* at = out;
+  for (int row = 0; row < a.block_rows(); ++row)
+    for (int k = a.row_begin(row); k < a.row_end(row); ++k) {
+      if (symmetric && a.column(k) < row) continue;
+      for (const Lane8& column : a.blocks[static_cast<std::size_t>(k)].column)
+        store6(std::exchange(at, at + 6), column);
+    }
+  petsc_check(symmetric ? MatSeqSBAIJRestoreArray(entries, &out) : MatSeqBAIJRestoreArray(entries, &out),
+              "MatSeqBAIJRestoreArray");
+}
+
+ConjugateGradient::ConjugateGradient(const BlockMatrix& a, const CgSettings& settings)
+    : impl_(std::make_unique<Impl>(a, settings)) {}
+ConjugateGradient::~ConjugateGradient() = default;
+ConjugateGradient::ConjugateGradient(ConjugateGradient&&) noexcept = default;
+ConjugateGradient& ConjugateGradient::operator=(ConjugateGradient&&) noexcept = default;
+
+void ConjugateGradient::matrix_changed() { impl_->stale = true; }
+
+CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, bool nonzero, double tolerance, double reference) {
+  Impl& s = *impl_;
+  s.refresh();
+  s.target = {tolerance, reference};
+  copy(b, s.b);
+  if (nonzero) copy(x, s.x);
+  s.op.products = 0;
+  petsc_check(KSPSetInitialGuessNonzero(s.ksp, nonzero ? PETSC_TRUE : PETSC_FALSE), "KSPSetInitialGuessNonzero");
+  petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
+  copy(s.x, x);
+
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  petsc_check(KSPGetConvergedReason(s.ksp, &reason), "KSPGetConvergedReason");
+  petsc_check(KSPGetIterationNumber(s.ksp, &iterations), "KSPGetIterationNumber");
+  if (!s.history_buffer.empty()) {
+    const PetscReal* norms = nullptr;
+    PetscInt count = 0;
+    petsc_check(KSPGetResidualHistory(s.ksp, &norms, &count), "KSPGetResidualHistory");
+    s.history.assign(norms, norms + count);
+  }
+  return {outcome_of(reason), static_cast<int>(iterations), s.op.products};
+}
+
+double ConjugateGradient::norm_of(const VectorX& b) {
+  Impl& s = *impl_;
+  if (s.settings.norm == Norm::true_residual) return b.norm();
+  s.refresh();
+  copy(b, s.b);
+  PC pc = nullptr;
+  PetscScalar square = 0;
+  petsc_check(KSPSetUp(s.ksp), "KSPSetUp");
+  petsc_check(KSPGetPC(s.ksp, &pc), "KSPGetPC");
+  petsc_check(PCApply(pc, s.b, s.scratch), "PCApply");
+  petsc_check(VecDot(s.b, s.scratch, &square), "VecDot");
+  return std::sqrt(square);
+}
+
+void ConjugateGradient::record_history(bool on) {
+  Impl& s = *impl_;
+  s.history.clear();
+  s.history.reserve(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);
+  s.history_buffer.resize(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);
+  petsc_check(KSPSetResidualHistory(s.ksp, on ? s.history_buffer.data() : nullptr,
+                                    static_cast<PetscInt>(s.history_buffer.size()), PETSC_TRUE),
+              "KSPSetResidualHistory");
+}
+
+const std::vector<double>& ConjugateGradient::history() const { return impl_->history; }
+
+void iterations_to(const std::vector<double>& history, double reference, const std::vector<double>& tolerances,
+                   std::int16_t* out) {
+  for (std::size_t t = 0; t < tolerances.size(); ++t) {
+    out[t] = -1;
+    for (std::size_t i = 0; i < history.size() && out[t] < 0; ++i)
+      if (history[i] <= tolerances[t] * reference) out[t] = static_cast<std::int16_t>(i);
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,129 @@
+#include "solver/linear/linear_system.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "solver/linear/axial_compliance.hpp"
+#include "solver/numbers/rotation.hpp"
+#include "solver/rod/joint_kernels.hpp"
+
+namespace rodsweep {
+
+LinearSystem::LinearSystem(const Rod& rod)
+    : linearization_(rod),
+      rhs_(VectorX::Zero(6 * rod.joint_count())),
+      axial_joints_(axial_joints(rod)),
+      displacements_(rod.segments.size()) {
+  refuse_static_joints(rod);  // their rows would be alpha~ alone, and must not be singular
+  std::vector<std::vector<Side>> by_segment(rod.segments.size());
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    for (const bool is_b : {false, true}) {
+      const std::size_t segment = static_cast<std::size_t>(is_b ? joint.b : joint.a);
+      if (!rod.segments[segment].is_static) by_segment[segment].push_back({k, is_b});
+    }
+  }
+  std::vector<std::pair<int, int>> couplings;
+  side_start_.push_back(0);
+  for (const std::vector<Side>& sides : by_segment) {
+    for (const Side& u : sides)
+      for (const Side& v : sides) couplings.emplace_back(u.joint, v.joint);
+    sides_.insert(sides_.end(), sides.begin(), sides.end());
+    side_start_.push_back(static_cast<int>(sides_.size()));
+  }
+  matrix_ = BlockMatrix(rod.joint_count(), couplings);
+
+  std::vector<bool> written(matrix_.blocks.size(), false);
+  for (const std::vector<Side>& sides : by_segment)
+    for (const Side& u : sides)
+      for (const Side& v : sides) {
+        const int block = matrix_.find(u.joint, v.joint);
+        contributions_.push_back({block, !written[static_cast<std::size_t>(block)]});
+        written[static_cast<std::size_t>(block)] = true;
+      }
+}
+
+void LinearSystem::assemble(const Rod& rod, double dt) {
+  const double inverse_dt2 = 1 / (dt * dt);
+  linearize(rod, linearization_);
+  assemble_matrix(rod, inverse_dt2);
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
+    rhs_.segment<6>(row) = -linearization_.constraint.segment<6>(row) -
+                           inverse_dt2 * rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
+  }
+  add_axial_compliance(rod, linearization_, axial_joints_, inverse_dt2, matrix_, rhs_);
+}
+
+void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
+  const Contribution* next = contributions_.data();
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    const Segment& segment = rod.segments[s];
+    for (int u = side_start_[s]; u < side_start_[s + 1]; ++u) {
+      const Side& side_u = sides_[static_cast<std::size_t>(u)];
+      const JointJacobian& jacobian_u = linearization_.joints[static_cast<std::size_t>(side_u.joint)];
+      const TurnedColumns turned(side_u.is_b ? jacobian_u.rotation_b : jacobian_u.rotation_a, segment,
+                                 linearization_.axis[s]);
+
+      for (int v = side_start_[s]; v < side_start_[s + 1]; ++v, ++next) {
+        const Side& side_v = sides_[static_cast<std::size_t>(v)];
+        const JointJacobian& jacobian_v = linearization_.joints[static_cast<std::size_t>(side_v.joint)];
+        const Lane8* k = side_v.is_b ? jacobian_v.rotation_b : jacobian_v.rotation_a;
+        const double sign = side_u.is_b == side_v.is_b ? 1 : -1;
+        const double linear = sign * segment.inverse_mass * jacobian_u.inverse_length * jacobian_v.inverse_length;
+
+        Block6& block = matrix_.blocks[static_cast<std::size_t>(next->block)];
+        Lane8 product[6];
+        for (int c = 0; c < 6; ++c) product[c] = turned.times(k, c);
+        for (int c = 0; c < 3; ++c) product[c] += unit_lane[c] * linear;
+        if (!next->first) {
+          for (int c = 0; c < 6; ++c) block.column[c] += product[c];
+          continue;
+        }
+        if (side_u.joint == side_v.joint) {
+          const Vector6& alpha = rod.joints[static_cast<std::size_t>(side_u.joint)].compliance;
+          for (int c = 0; c < 6; ++c) product[c] += unit_lane[c] * (inverse_dt2 * alpha[c]);
+        }
+        for (int c = 0; c < 6; ++c) block.column[c] = product[c];
+      }
+    }
+  }
+}
+
+void LinearSystem::displacements(const Rod& rod, const VectorX& delta_lambda, std::vector<Lane8>& out) const {
+  out.assign(rod.segments.size(), Lane8{});
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Joint& joint = rod.joints[k];
+    Lane8 on_a, on_b;
+    impulses(linearization_.joints[k], load6(delta_lambda.data() + 6 * k), on_a, on_b);
+    out[static_cast<std::size_t>(joint.a)] += on_a;
+    out[static_cast<std::size_t>(joint.b)] += on_b;
+  }
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    out[s] = motion(rod.segments[s], linearization_.axis[s], out[s]);
+}
+
+void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
+  displacements(rod, delta_lambda, displacements_);
+  move(rod, displacements_, delta_lambda);
+}
+
+void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda) {
+  rod.lambda += delta_lambda;
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) move(rod, s, displacements[s]);
+}
+
+void move(Rod& rod, std::size_t segment, const Lane8& displacement) {
+  if (rod.segments[segment].is_static) return;
+  const Lane8& d = displacement;
+  rod.position[segment] += Vector3(d[0], d[1], d[2]);
+  rod.orientation[segment] = rotated(rod.orientation[segment], Vector3(d[3], d[4], d[5]));
+}
+
+double LinearSystem::newton_residual() const {
+  // maxCoeff() does not promise to see a NaN; the sum does.
+  if (rhs_.size() == 0) return 0;  // a single segment has nothing to satisfy
+  return std::isfinite(rhs_.sum()) ? rhs_.lpNorm<Eigen::Infinity>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,64 @@
+// The linear system of one Newton iteration on one rod, and the update that its solution makes:
+//
+//   A dlambda = b,   A = J M^-1 J^T + alpha~,   b = -C - alpha~ lambda,   alpha~ = alpha / dt^2
+//   dx = M^-1 J^T dlambda,   lambda += dlambda,   x += dx,   q <- normalise(q + [0, dtheta] q / 2)
+//
+// (Deul et al. 2018; Shao et al. 2021.) A is symmetric positive definite, with one 6x6 block row per joint coupled to
+// all joints that share a dynamic segment with it; siblings at a branching couple too. Nothing allocates after
+// construction.
+#pragma once
+
+#include "solver/linear/block_matrix.hpp"
+#include "solver/rod/linearization.hpp"
+
+namespace rodsweep {
+
+class LinearSystem {
+ public:
+  explicit LinearSystem(const Rod& rod);
+
+  /// Evaluates A and b at the rod's positions and multipliers.
+  void assemble(const Rod& rod, double dt);
+
+  /// M^-1 J^T dlambda, per segment: dx in lanes 0..2, dtheta in lanes 3..5, zero where static.
+  void displacements(const Rod& rod, const VectorX& delta_lambda, std::vector<Lane8>& out) const;
+
+  /// Moves the rod by the solution of the assembled system.
+  void apply(Rod& rod, const VectorX& delta_lambda);
+
+  const BlockMatrix& matrix() const { return matrix_; }
+  const VectorX& rhs() const { return rhs_; }
+  const Linearization& linearization() const { return linearization_; }
+  /// max |C + alpha~ lambda|, the residual that Newton drives to zero; NaN when any entry is.
+  double newton_residual() const;
+
+ private:
+  /// One end of a joint on a segment.
+  struct Side {
+    int joint;
+    bool is_b;
+  };
+  /// The 6x6 product of two sides on one segment: where it goes, and whether it is the first to go there.
+  struct Contribution {
+    int block;
+    bool first;
+  };
+  void assemble_matrix(const Rod& rod, double inverse_dt2);
+
+  Linearization linearization_;
+  BlockMatrix matrix_;
+  VectorX rhs_;
+  std::vector<std::size_t> axial_joints_;  ///< see axial_compliance.hpp
+  std::vector<int> side_start_;  ///< sides of segment i: side_start_[i] .. side_start_[i + 1]; none for static ones
+  std::vector<Side> sides_;
+  std::vector<Contribution> contributions_;  ///< in the order in which assemble_matrix() visits them
+  std::vector<Lane8> displacements_;
+};
+
+/// Moves a free segment by dx (lanes 0..2) and dtheta (lanes 3..5); a static one stays.
+void move(Rod& rod, std::size_t segment, const Lane8& displacement);
+
+/// The update: lambda += dlambda, and every free segment by its displacement.
+void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda);
+
+}  // namespace rodsweep

@@ -1,0 +1,20 @@
+// The one check for PETSc calls. Included by sources only: PETSc stays out of the solver's headers.
+#pragma once
+
+#include <petscsys.h>
+
+#include <string>
+
+#include "solver/linear/petsc_error.hpp"
+
+namespace rodsweep {
+
+inline void petsc_check(PetscErrorCode code, const char* call) {
+  if (code == 0) return;
+  const char* text = nullptr;
+  PetscErrorMessage(code, &text, nullptr);
+  throw PetscError(std::string(call) + " failed with PETSc error " + std::to_string(code) +
+                   (text ? std::string(": ") + text : ""));
+}
+
+}  // namespace rodsweep

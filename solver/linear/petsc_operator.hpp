@@ -1,0 +1,22 @@
+// A BlockMatrix as a PETSc matrix that is nothing but its product and its diagonal.
+//
+// It is a matrix class of its own rather than a MATSHELL, which looks up its context by name and asks for scalings and
+// shifts in every product: as much work as the product itself on short rods.
+#pragma once
+
+#include <petscmat.h>
+
+#include "solver/linear/block_matrix.hpp"
+
+namespace rodsweep {
+
+/// What the matrix stands for; outlives it.
+struct BlockOperator {
+  const BlockMatrix& a;
+  int products = 0;  ///< made so far
+};
+
+/// A matrix whose product is that of `op`. Changed entries are told by MatAssemblyBegin() and MatAssemblyEnd().
+Mat create_operator(BlockOperator& op);
+
+}  // namespace rodsweep

@@ -1,0 +1,115 @@
+// Vectors and quaternions of eight rods at once, rod r in lane r: the arithmetic of the batched step.
+//
+// The rotation maps are those of rotation.hpp.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "solver/numbers/lanes.hpp"
+
+namespace rodsweep {
+
+using LaneMask = decltype(Lane8{} < Lane8{});  ///< every bit of a lane set, or none
+
+struct LaneVector {
+  Lane8 x, y, z;
+};
+
+struct LaneQuaternion {
+  Lane8 w, x, y, z;
+};
+
+inline LaneVector operator+(const LaneVector& a, const LaneVector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline LaneVector operator-(const LaneVector& a, const LaneVector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline LaneVector operator-(const LaneVector& a) { return {-a.x, -a.y, -a.z}; }
+inline LaneVector operator*(const Lane8& s, const LaneVector& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Lane8 dot(const LaneVector& a, const LaneVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline LaneVector cross(const LaneVector& a, const LaneVector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// Per lane `where` ? a : b; what is not chosen may be NaN.
+inline LaneVector select(const LaneMask& where, const LaneVector& a, const LaneVector& b) {
+  return {where ? a.x : b.x, where ? a.y : b.y, where ? a.z : b.z};
+}
+inline LaneQuaternion select(const LaneMask& where, const LaneQuaternion& a, const LaneQuaternion& b) {
+  return {where ? a.w : b.w, where ? a.x : b.x, where ? a.y : b.y, where ? a.z : b.z};
+}
+
+inline bool any(const LaneMask& mask) {
+  bool out = false;
+  for (int lane = 0; lane < 8; ++lane) out |= mask[lane] != 0;
+  return out;
+}
+
+inline Lane8 absolute(const Lane8& value) { return value < 0 ? -value : value; }
+inline Lane8 larger(const Lane8& a, const Lane8& b) { return a < b ? b : a; }
+
+/// cos(2 pi t), to 1e-13: the sine of a quarter less the distance to the next whole number, by its series.
+inline Lane8 cosine_of_turns(const Lane8& t) {
+  constexpr double whole = 0x1.8p52;  // what is added to it has no fraction
+  constexpr double pi = 3.14159265358979323846;
+  const Lane8 angle = 2 * pi * (0.25 - absolute(t - ((t + whole) - whole)));
+  Lane8 sum{};
+  for (int n = 19; n > 1; n -= 2) sum = -angle * angle / (n * (n - 1)) * (1 + sum);
+  return angle * (1 + sum);
+}
+
+inline Lane8 square_root(Lane8 value) {
+  Eigen::Map<Eigen::Array<double, 8, 1>, Eigen::Aligned64> entries(reinterpret_cast<double*>(&value));
+  entries = entries.sqrt();
+  return value;
+}
+
+inline Lane8 dot(const LaneQuaternion& a, const LaneQuaternion& b) {
+  return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline LaneQuaternion operator*(const Lane8& s, const LaneQuaternion& q) {
+  return {s * q.w, s * q.x, s * q.y, s * q.z};
+}
+
+/// q or -q, whichever is in the hemisphere of `pole`.
+inline LaneQuaternion in_hemisphere_of(const LaneQuaternion& pole, const LaneQuaternion& q) {
+  return (dot(pole, q) < 0 ? broadcast(-1) : broadcast(1)) * q;
+}
+
+/// conj(a) b.
+inline LaneQuaternion relative(const LaneQuaternion& a, const LaneQuaternion& b) {
+  return {dot(a, b), a.w * b.x - a.x * b.w - a.y * b.z + a.z * b.y, a.w * b.y - a.y * b.w - a.z * b.x + a.x * b.z,
+          a.w * b.z - a.z * b.w - a.x * b.y + a.y * b.x};
+}
+
+/// normalise(q + [0, theta] q / 2).
+inline LaneQuaternion rotated(const LaneQuaternion& q, const LaneVector& theta) {
+  const LaneVector h = broadcast(0.5) * theta;
+  const LaneQuaternion turned = {q.w - h.x * q.x - h.y * q.y - h.z * q.z, q.x + h.x * q.w + h.y * q.z - h.z * q.y,
+                                 q.y + h.y * q.w + h.z * q.x - h.x * q.z, q.z + h.z * q.w + h.x * q.y - h.y * q.x};
+  return 1 / square_root(dot(turned, turned)) * turned;
+}
+
+/// 2 Im(d) / Re(d), d = q conj(q_old).
+inline LaneVector rotation(const LaneQuaternion& q, const LaneQuaternion& old) {
+  const LaneVector imaginary = {q.x * old.w - q.w * old.x - q.y * old.z + q.z * old.y,
+                                q.y * old.w - q.w * old.y - q.z * old.x + q.x * old.z,
+                                q.z * old.w - q.w * old.z - q.x * old.y + q.y * old.x};
+  return 2 / dot(q, old) * imaginary;
+}
+
+/// The columns of R(q), the segment's axes in the world.
+struct LaneFrame {
+  LaneVector x, y, z;
+};
+
+inline LaneVector director(const LaneQuaternion& q) {
+  return {2 * (q.x * q.z + q.w * q.y), 2 * (q.y * q.z - q.w * q.x), 1 - 2 * (q.x * q.x + q.y * q.y)};
+}
+
+inline LaneFrame frame(const LaneQuaternion& q) {
+  return {{1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y + q.w * q.z), 2 * (q.x * q.z - q.w * q.y)},
+          {2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x)},
+          director(q)};
+}
+
+inline LaneVector operator*(const LaneFrame& r, const LaneVector& v) { return v.x * r.x + v.y * r.y + v.z * r.z; }
+
+}  // namespace rodsweep

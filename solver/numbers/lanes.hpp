@@ -1,0 +1,49 @@
+// Eight doubles that the processor handles as one: the vector type behind the 6x6 block kernels.
+//
+// A column (or row) of a 6x6 block is one Lane8: six entries and two spare lanes. GCC and Clang lower the type to one
+// AVX-512 register, two AVX or four SSE ones, so the same source is portable and fast.
+#pragma once
+
+#include <cstring>
+
+#include "solver/numbers/types.hpp"
+
+namespace rodsweep {
+
+using Lane8 = double __attribute__((vector_size(64)));
+using Lane4 = double __attribute__((vector_size(32)));  ///< a vector or quaternion
+
+/// A 6x6 block: six columns (or six rows, where said so) of six entries, padded to eight.
+struct Block6 {
+  Lane8 column[6];
+};
+
+inline Lane8 broadcast(double value) { return Lane8{value, value, value, value, value, value, value, value}; }
+
+/// Lane i is one, the others zero.
+inline constexpr Lane8 unit_lane[6] = {{1, 0, 0, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0},
+                                       {0, 0, 0, 1, 0, 0, 0, 0}, {0, 0, 0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1, 0, 0}};
+
+/// Six doubles from memory, the spare lanes zero.
+inline Lane8 load6(const double* from) { return Lane8{from[0], from[1], from[2], from[3], from[4], from[5], 0, 0}; }
+
+inline void store6(double* to, const Lane8& value) { std::memcpy(to, &value, 6 * sizeof(double)); }
+
+/// Lane r of the result is the sum over all lanes of v[r], r < 6; the spare lanes are zero.
+inline Lane8 sum_lanes(const Lane8 (&v)[6]) {
+  // Three levels of pairwise sums, each halving the number of vectors and joining their partial sums.
+  const auto pair = [](const Lane8& a, const Lane8& b) {
+    return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
+           __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  };
+  const Lane8 v01 = pair(v[0], v[1]), v23 = pair(v[2], v[3]), v45 = pair(v[4], v[5]);
+  const Lane8 v0123 = __builtin_shufflevector(v01, v23, 0, 1, 8, 9, 4, 5, 12, 13) +
+                      __builtin_shufflevector(v01, v23, 2, 3, 10, 11, 6, 7, 14, 15);
+  const Lane8 zero{};
+  const Lane8 v45zz = __builtin_shufflevector(v45, zero, 0, 1, 8, 8, 4, 5, 8, 8) +
+                      __builtin_shufflevector(v45, zero, 2, 3, 8, 8, 6, 7, 8, 8);
+  return __builtin_shufflevector(v0123, v45zz, 0, 1, 2, 3, 8, 9, 10, 11) +
+         __builtin_shufflevector(v0123, v45zz, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+}  // namespace rodsweep

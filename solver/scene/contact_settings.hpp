@@ -1,0 +1,38 @@
+// What rods touch besides each other, and how.
+#pragma once
+
+#include <variant>
+
+#include "solver/numbers/types.hpp"
+
+namespace rodsweep {
+
+/// All points x with (x - point).normal <= 0 are solid. The normal need not be of unit length.
+struct HalfSpace {
+  Vector3 point_m{0, 0, 0};
+  Vector3 normal{0, 1, 0};
+};
+
+struct Ball {
+  Vector3 centre_m{0, 0, 0};
+  double radius_m = 1;
+};
+
+/// All points nearer than the radius to the line between two points.
+struct Capsule {
+  Vector3 from_m{0, 0, 0}, to_m{0, 0, 1};
+  double radius_m = 1;
+};
+
+/// Solid, and at rest.
+using Obstacle = std::variant<HalfSpace, Ball, Capsule>;
+
+struct ContactSettings {
+  double friction = 0.3;    ///< Coulomb's coefficient mu, at rest and sliding
+  double tolerance = 1e-5;  ///< contacts have converged where none wants to move its segments by more, in their radii
+  int sweeps = 100;         ///< over all contacts after a projection of the rods, at most
+  double recovery =
+      0.2;  ///< share of a penetration, left by earlier steps, that a step takes back, within 1 % of a radius
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <cmath>
+
+#include "solver/scene/scene_rods.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double depth = 1.2;  // of the crossings
+constexpr double aside = 0.5;  // by which the ends pass each other
+constexpr double leading = 4;  // length of the straight ends
+
+/// A trefoil, (sin t + 2 sin 2t, cos t - 2 cos 2t, -depth sin 3t), opened at (0, -3, 0), where it runs along x.
+Vector3 trefoil(double t) {
+  const double u = t / pi - 2, level = 1 - std::pow(u, 8);  // the ends run level
+  return {std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t),
+          -depth * std::sin(3 * t) * level - aside * u};
+}
+
+/// The whole curve, finely.
+std::vector<Vector3> fine_knot() {
+  constexpr int pieces = 2000;
+  std::vector<Vector3> curve{trefoil(pi) - Vector3(leading, 0, 0)};
+  for (int i = 0; i <= pieces; ++i) curve.push_back(trefoil(pi * (1 + 2.0 * i / pieces)));
+  curve.push_back(trefoil(3 * pi) + Vector3(leading, 0, 0));
+  return curve;
+}
+
+double length(const std::vector<Vector3>& curve) {
+  double sum = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i) sum += (curve[i] - curve[i - 1]).norm();
+  return sum;
+}
+
+/// Vertices at equal distances along the curve, which becomes `length_m` long.
+std::vector<Vector3> cut(const std::vector<Vector3>& curve, int pieces, double length_m) {
+  const double whole = length(curve);
+  std::vector<Vector3> vertices{curve.front()};
+  double gone = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    const double step = (curve[i] - curve[i - 1]).norm();
+    while (static_cast<int>(vertices.size()) < pieces &&
+           gone + step >= whole * static_cast<double>(vertices.size()) / pieces) {
+      const double part = (whole * static_cast<double>(vertices.size()) / pieces - gone) / step;
+      vertices.push_back(curve[i - 1] + part * (curve[i] - curve[i - 1]));
+    }
+    gone += step;
+  }
+  vertices.push_back(curve.back());
+  for (Vector3& vertex : vertices) vertex *= length_m / whole;
+  return vertices;
+}
+
+}  // namespace
+
+double loose_knot_radii() {
+  // Strands cross at a distance of at least two radii and a tenth.
+  static const double radii = [] {
+    constexpr int pieces = 400;
+    const std::vector<Vector3> curve = cut(fine_knot(), pieces, 1);
+    double nearest = 1;
+    for (std::size_t i = 0; i < curve.size(); ++i)
+      for (std::size_t j = i + pieces / 10; j < curve.size(); ++j)
+        nearest = std::min(nearest, (curve[i] - curve[j]).norm());
+    return 2.1 / nearest;
+  }();
+  return radii;
+}
+
+Rod build_rod(const Knot& p) {
+  std::vector<SegmentSpec> segments = segments_through(cut(fine_knot(), p.segments, p.length_m), p);
+  segments.front().is_static = segments.back().is_static = true;
+  const Section section = circular_section(p.radius_m, p.youngs_modulus_pa, p.torsion_modulus_pa);
+  const double tightest = 4 * section.bending_x_nm2 / (p.radius_m * p.radius_m);  // EI / (2 r)^2, and as much again
+  return chain(segments, p, weight(segments, p) + tightest, true);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,103 @@
+#include "solver/scene/scene_rods.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rodsweep {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double standard_gravity = 9.81;
+
+/// A rod whose joints lie on `vertices`.
+Rod rod_through(const std::vector<Vector3>& vertices, const OpenRod& p) {
+  std::vector<SegmentSpec> segments = segments_through(vertices, p);
+  segments.front().is_static = p.clamp == Clamp::segment;
+  if (p.clamp == Clamp::wall) {
+    SegmentSpec wall;
+    wall.position_m = vertices.front();
+    wall.orientation = segments.front().orientation;
+    wall.is_static = true;
+    segments.insert(segments.begin(), wall);
+  }
+  return chain(segments, p, weight(segments, p) + p.tip_force_n.norm());
+}
+
+}  // namespace
+
+std::vector<SegmentSpec> segments_through(const std::vector<Vector3>& vertices, const RodParameters& p) {
+  std::vector<SegmentSpec> segments;
+  Quaternion orientation = Quaternion::Identity();
+  for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
+    const Vector3 chord = vertices[i + 1] - vertices[i];
+    const Vector3 before = orientation * Vector3::UnitZ();
+    orientation = (Quaternion::FromTwoVectors(before, chord) * orientation).normalized();
+    segments.push_back(segment_at(vertices[i] + chord / 2, orientation, chord.norm(), p));
+  }
+  return segments;
+}
+
+Rod chain(const std::vector<SegmentSpec>& segments, const RodParameters& p, double force_n, bool straight) {
+  std::vector<JointSpec> joints;
+  for (int b = 1; b < static_cast<int>(segments.size()); ++b) {
+    joints.push_back(joint_between(segments, b - 1, b, p, force_n));
+    if (straight) joints.back().rest = Quaternion::Identity();
+  }
+  return Rod(segments, joints);
+}
+
+SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, double length_m, const RodParameters& p) {
+  SegmentSpec s;
+  s.position_m = centre;
+  s.orientation = orientation;
+  s.length_m = length_m;
+  s.radius_m = p.radius_m;
+  s.density_kg_m3 = p.density_kg_m3;
+  return s;
+}
+
+JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p,
+                        double force_n) {
+  const double length_a = segments[static_cast<std::size_t>(a)].length_m;
+  const double length_b = segments[static_cast<std::size_t>(b)].length_m;
+  const double length = (length_a + length_b) / 2;
+  const Section section = circular_section(p.radius_m, p.youngs_modulus_pa, p.torsion_modulus_pa);
+  const bool physical = p.stretch == Stretch::physical;
+  JointSpec joint;
+  joint.a = a;
+  joint.b = b;
+  joint.arm_a_m = Vector3(0, 0, length_a / 2);
+  joint.arm_b_m = Vector3(0, 0, -length_b / 2);
+  joint.compliance_per_j =
+      joint_compliance(length, section,
+                       physical ? shear_compliance(length, section)
+                                : p.stretch_compliance_per_j.value_or(inextensible_compliance(length, force_n)));
+  if (physical) joint.axial_excess_per_j = axial_excess(length, section);
+  return joint;
+}
+
+double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p) {
+  double mass = 0;
+  for (const SegmentSpec& s : segments) mass += s.density_kg_m3 * pi * s.radius_m * s.radius_m * s.length_m;
+  return mass * std::max(p.gravity_m_s2.norm(), standard_gravity);
+}
+
+Rod build_rod(const BendingRod& p) {
+  const double angle = p.initial_angle_deg * pi / 180;
+  const Vector3 along = p.length_m / p.segments * Vector3(std::cos(angle), std::sin(angle), 0);
+  std::vector<Vector3> vertices;
+  for (int i = 0; i <= p.segments; ++i) vertices.push_back(i * along);
+  return rod_through(vertices, p);
+}
+
+Rod build_rod(const Helix& p) {
+  std::vector<Vector3> vertices;
+  for (int i = 0; i <= p.segments; ++i) {
+    const double fraction = static_cast<double>(i) / p.segments;
+    const double t = 2 * pi * p.windings * fraction;
+    vertices.emplace_back(p.helix_radius_m * std::cos(t), -p.helix_height_m * fraction, p.helix_radius_m * std::sin(t));
+  }
+  return rod_through(vertices, p);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,170 @@
+// The scenes that jobs name, from a handful of parameters: the deck's bending rod and hanging helix, a ring, a net,
+// trees, and rods that touch each other.
+//
+// Bending rod: straight and at rest, its first end at the origin, pointing along +x raised by `initial_angle_deg`
+// towards +y; gravity bends it. Helix: joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi
+// windings], so its axis is vertical (y) and it hangs from its first segment; the rest shape is the initial shape.
+// Ring: a closed regular polygon in the vertical xy-plane below the origin, the middle of its first and topmost side;
+// naturally straight or circular, and twisted by a total angle before its ends were joined. Net: `rows` rods along x
+// and `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where rods cross, the
+// centres of their segments are joined at the angle that they have there, with the stiffness EI / l about every axis.
+//
+// Tree: grown (tree_skeleton.hpp) or from a skeleton, a segment for every edge, standing on the ground by an exact
+// clamp (a static segment of zero length at the root). Both moduli of an edge of radius r are those of the widest edge
+// at the ground times (r / its radius)^`modulus_exponent`. A joint is half of one edge and half of the next behind each
+// other; where it rests bent by an angle theta, it is softer by cos(theta / 2)^2 about the axis of that bend, since its
+// constraint measures so much of it. An "inextensible" joint is made to hold the weight above it. The shape is that
+// without load: trees have grown against gravity, and sag a little under it at first. Forest: trees of one shape and as
+// many seeds on a grid along x and z, the first one near the origin, each off its place by up to half of `jitter`
+// spacings along both; a rod each.
+//
+// Every scene may have contact (contact.hpp); these are made for it. Falling rods: horizontal ones, each `height_m`
+// above the one below or the floor y = 0, turned against it by `turn_deg`. Coiling rod: a vertical one, straight but
+// for a hundredth of a turn of a helix as wide as itself, whose lower end is `height_m` above the floor y = 0; its
+// first and topmost segment is held and goes down at `feed_m_s`. Knot: an overhand knot, loose at first (an opened
+// trefoil between straight ends along x), of a rod that is naturally straight; its end segments are held and go apart
+// along x, each at `pull_m_s`. Ring chain: naturally circular rings, each hanging through the one above at right angles
+// to it, the first one from its first segment. Bundle: rods in hexagonal packing, a tenth of a radius apart, that hang
+// from their first segments, splayed by up to `initial_angle_deg` outwards.
+//
+// Clamps: `segment` holds the whole first segment (free length L - L/N); `wall` adds a static segment of zero length at
+// the first end and a first joint of half length, an exact clamp (not of a ring); `free` holds nothing.
+// Throws SceneError when a scene cannot be built (bounds are in the message).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "solver/numbers/types.hpp"
+#include "solver/scene/scene.hpp"
+#include "solver/scene/tree_skeleton.hpp"
+
+namespace rodsweep {
+
+enum class Clamp { segment, wall, free };
+
+enum class Stretch {
+  inextensible,  ///< see inextensible_compliance()
+  physical       ///< EA along the rod, kappa G A across it, see Section
+};
+
+/// What all scenes share. SI units.
+struct RodParameters {
+  double radius_m = 0.05;
+  double density_kg_m3 = 1000;
+  double youngs_modulus_pa = 1e5;
+  double torsion_modulus_pa = 1e6;
+  Vector3 gravity_m_s2{0, -9.81, 0};
+  double damping_per_s = 0;
+  Stretch stretch = Stretch::inextensible;
+  std::optional<double> stretch_compliance_per_j;  ///< of the three stretch-shear rows [1/J], in place of `stretch`
+  std::optional<WindParameters> wind;
+  std::optional<ContactSettings> contact;
+  std::vector<Obstacle> obstacles;  ///< besides a scene's own floor
+};
+
+/// Rods with two ends.
+struct OpenRod : RodParameters {
+  int segments = 30;
+  Clamp clamp = Clamp::segment;
+  Vector3 tip_force_n{0, 0, 0};
+};
+
+struct BendingRod : OpenRod {
+  double length_m = 2;
+  double initial_angle_deg = 0;
+};
+
+struct Helix : OpenRod {
+  double helix_radius_m = 0.5;
+  double helix_height_m = 0.5;
+  double windings = 2.5;
+};
+
+struct Ring : RodParameters {
+  enum class RestShape { straight, circle };
+  int segments = 30;
+  Clamp clamp = Clamp::segment;
+  double length_m = 2;  ///< circumference
+  double twist_deg = 0;
+  RestShape rest_shape = RestShape::straight;
+};
+
+struct Net : RodParameters {
+  /// The first segments of all rods along z; the first and last ones of the outermost two; nothing.
+  enum class Held { side, corners, free };
+  int rows = 5, columns = 5;
+  int segments = 1;  ///< from one crossing to the next
+  double mesh_m = 0.2;
+  Held held = Held::corners;
+};
+
+struct Tree : RodParameters {  ///< radius and moduli: those of the trunk at the ground
+  TreeShape shape;
+  double modulus_exponent = 0;
+};
+
+struct Forest : Tree {
+  int rows = 3, columns = 3;  ///< along z and x
+  double spacing_m = 3;
+  double jitter = 0.5;
+};
+
+struct SkeletonTree : RodParameters {  ///< radii are the skeleton's
+  std::shared_ptr<const Skeleton> skeleton;
+  double modulus_exponent = 0;
+};
+
+struct FallingRods : RodParameters {
+  int rods = 8;
+  int segments = 10;
+  double length_m = 1;
+  double height_m = 0.2;
+  double turn_deg = 50;
+};
+
+struct CoilingRod : RodParameters {
+  int segments = 60;
+  double length_m = 2;
+  double height_m = 0.1;
+  double feed_m_s = 1;
+};
+
+struct Knot : RodParameters {
+  int segments = 80;
+  double length_m = 5;
+  double pull_m_s = 0.2;
+};
+
+struct RingChain : RodParameters {
+  int rings = 5;
+  int segments = 16;    ///< of each
+  double length_m = 2;  ///< circumference
+};
+
+struct Bundle : RodParameters {
+  int rods = 100;
+  int segments = 10;
+  double length_m = 1;
+  double initial_angle_deg = 20;
+};
+
+using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Tree, Forest, SkeletonTree, FallingRods, CoilingRod, Knot,
+                               RingChain, Bundle>;
+
+/// The scene's rod where it is one with two ends, else null.
+const OpenRod* open_rod(const SceneSpec& spec);
+
+/// Throws SceneError where parameters do not fit together; build_scene() does so too.
+void validate(const SceneSpec& spec);
+
+Scene build_scene(const SceneSpec& spec);
+
+// Of the scene without building it: what a plan needs.
+int segment_count(const SceneSpec& spec);  ///< graph nodes
+int joint_count(const SceneSpec& spec);    ///< graph edges
+int rod_count(const SceneSpec& spec);
+
+}  // namespace rodsweep

@@ -1,0 +1,65 @@
+// The skeleton of a tree: nodes with parents, and how one is grown from a few numbers.
+//
+// An edge leads to every node but the root, as a cylinder of the node's radius (as in SWC files: Cannon et al. 1998).
+// Growth: a trunk along +y; every branch of `segments` edges ends in `branches` new ones, `length_ratio` as long,
+// `depth` times over:
+//   edges = segments (1 + b + ... + b^depth)
+// A child leaves at branching_angle_deg, give or take up to angle_spread_deg, in a direction around its parent that
+// goes on by the golden angle from child to child (phyllotaxis), or at random. Radii follow the pipe model (Shinozaki
+// et al. 1964; Leonardo's rule at exponent 2): of the edge below a branching and those above it,
+//   r^e = sum of r_i^e,   so r_i = r b^(-1/e);
+// within a branch they fall linearly from its first edge to `taper` times that at its last. Lengths in m.
+// Throws SceneError, which names what is out of bounds.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/numbers/types.hpp"
+
+namespace rodsweep {
+
+struct SkeletonNode {
+  int parent = -1;  ///< a node before this one; -1 of the root alone, which is the first
+  Vector3 position_m{0, 0, 0};
+  double radius_m = 0;  ///< of the edge from the parent
+};
+
+using Skeleton = std::vector<SkeletonNode>;
+
+/// What makes a skeleton none of a rod, at the first such node.
+struct SkeletonFault {
+  int node;
+  std::string text;
+};
+
+/// Radii that are not positive, edges without length, and such as turn back onto the one below (those from the root:
+/// onto its first) by more than 160 degrees: the constraint of a joint ends at 180.
+std::optional<SkeletonFault> fault(const Skeleton& skeleton);
+
+struct TreeShape {
+  enum class Phyllotaxis { golden, random };
+  int depth = 4;        ///< branchings between the ground and a twig
+  int branches = 3;     ///< at each
+  int segments = 4;     ///< of each branch, and of the trunk
+  double length_m = 1;  ///< of the trunk
+  double length_ratio = 0.75;
+  double taper = 1;
+  double pipe_exponent = 2;
+  double branching_angle_deg = 35, angle_spread_deg = 10;
+  Phyllotaxis phyllotaxis = Phyllotaxis::golden;
+  std::uint64_t seed = 0;  ///< of angles and directions
+};
+
+/// Throws SceneError where a value is out of bounds.
+void validate(const TreeShape& shape);
+
+int edge_count(const TreeShape& shape);
+
+/// Branch by branch, each as a whole before the next; parents come first. The root is the origin. `radius_m`: of the
+/// trunk at the ground.
+Skeleton grow(const TreeShape& shape, double radius_m);
+
+}  // namespace rodsweep

@@ -1,0 +1,134 @@
+#include "solver/step/observables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/linear/axial_compliance.hpp"
+#include "solver/numbers/rotation.hpp"
+#include "solver/rod/linearization.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// The joint's shared point as its side on a (or b) sees it.
+Vector3 point_on_a(const Rod& rod, const Joint& j) {
+  const std::size_t a = static_cast<std::size_t>(j.a);
+  return rod.position[a] + rod.orientation[a] * j.arm_a;
+}
+Vector3 point_on_b(const Rod& rod, const Joint& j) {
+  const std::size_t b = static_cast<std::size_t>(j.b);
+  return rod.position[b] + rod.orientation[b] * j.arm_b;
+}
+
+/// I w of an axisymmetric segment, world frame.
+Vector3 spin_momentum(const Rod& rod, std::size_t s) {
+  const Segment& segment = rod.segments[s];
+  const Vector3 axis = director(rod.orientation[s]);
+  const Vector3& w = rod.angular_velocity[s];
+  return segment.inertia_transverse * w + (segment.inertia_axial - segment.inertia_transverse) * axis.dot(w) * axis;
+}
+
+}  // namespace
+
+double rod_length(const Rod& rod) {
+  // Each segment's ends: the midpoints of the joints there, or its own end where no joint is.
+  const std::size_t n = rod.segments.size();
+  std::vector<Vector3> tail(n), head(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    const Vector3 half = rod.segments[s].length_m / 2 * director(rod.orientation[s]);
+    tail[s] = rod.position[s] - half;
+    head[s] = rod.position[s] + half;
+  }
+  const auto move_end = [&](int segment, const Vector3& arm, const Vector3& to) {
+    const std::size_t s = static_cast<std::size_t>(segment);
+    if (std::abs(arm.z()) < rod.segments[s].length_m / 4) return;  // nearer to the centre than to an end
+    (arm.z() < 0 ? tail[s] : head[s]) = to;
+  };
+  for (const Joint& j : rod.joints) {
+    const Vector3 midpoint = (point_on_a(rod, j) + point_on_b(rod, j)) / 2;
+    move_end(j.a, j.arm_a, midpoint);
+    move_end(j.b, j.arm_b, midpoint);
+  }
+  double length = 0;
+  for (std::size_t s = 0; s < n; ++s)
+    if (rod.segments[s].length_m > 0) length += (head[s] - tail[s]).norm();
+  return length;
+}
+
+double joint_gap(const Rod& rod) {
+  double worst = 0;
+  for (const Joint& j : rod.joints)
+    worst = std::max(worst, (point_on_a(rod, j) - point_on_b(rod, j)).norm() / j.length);
+  return worst;
+}
+
+double newton_residual(const Rod& rod, double constraint_dt) {
+  Linearization at(rod);
+  linearize(rod, at);
+  double worst = 0;
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
+    Vector6 yielding = rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
+    yielding.head<3>() += axial_compliance(rod, at, k) * rod.lambda.segment<3>(row);
+    const Vector6 residual = at.constraint.segment<6>(row) + yielding / (constraint_dt * constraint_dt);
+    if (!residual.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    worst = std::max(worst, residual.lpNorm<Eigen::Infinity>());
+  }
+  return worst;
+}
+
+double elastic_energy(const Rod& rod) {
+  Linearization at(rod);
+  linearize(rod, at);
+  double energy = 0;
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    energy += stretch_energy(rod, at, k);
+    for (int row = 3; row < 6; ++row) {
+      const double c = at.constraint[static_cast<Eigen::Index>(6 * k) + row];
+      const double alpha = rod.joints[k].compliance[row];
+      if (alpha > 0) energy += c * c / alpha / 2;
+    }
+  }
+  return energy;
+}
+
+double kinetic_energy(const Rod& rod) {
+  double energy = 0;
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    if (rod.segments[s].is_static) continue;
+    energy += rod.segments[s].mass * rod.velocity[s].squaredNorm() / 2;
+    energy += rod.angular_velocity[s].dot(spin_momentum(rod, s)) / 2;
+  }
+  return energy;
+}
+
+double gravitational_energy(const Rod& rod, const Vector3& gravity_m_s2) {
+  double energy = 0;
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    if (!rod.segments[s].is_static) energy -= rod.segments[s].mass * gravity_m_s2.dot(rod.position[s]);
+  return energy;
+}
+
+Vector3 linear_momentum(const Rod& rod) {
+  Vector3 total = Vector3::Zero();
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    if (!rod.segments[s].is_static) total += rod.segments[s].mass * rod.velocity[s];
+  return total;
+}
+
+Vector3 angular_momentum(const Rod& rod) {
+  Vector3 total = Vector3::Zero();
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    if (!rod.segments[s].is_static)
+      total += rod.segments[s].mass * rod.position[s].cross(rod.velocity[s]) + spin_momentum(rod, s);
+  return total;
+}
+
+bool is_finite(const Rod& rod) {
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    if (!rod.position[s].allFinite() || !rod.orientation[s].coeffs().allFinite()) return false;
+  return true;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,57 @@
+#include "solver/step/pbd_projection.hpp"
+
+#include "solver/numbers/rotation.hpp"
+
+namespace rodsweep {
+namespace {
+
+void turn(Rod& rod, std::size_t segment, const Vector3& theta) {
+  if (!rod.segments[segment].is_static) rod.orientation[segment] = rotated(rod.orientation[segment], theta);
+}
+
+/// Returns C_s as it was.
+Vector3 correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
+  const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+  const Segment &segment_a = rod.segments[a], &segment_b = rod.segments[b];
+  const Vector3 rho_a = rod.orientation[a] * joint.arm_a, rho_b = rod.orientation[b] * joint.arm_b;
+  const Vector3 gap = rod.position[a] + rho_a - rod.position[b] - rho_b;
+  const double turn_a = segment_a.inverse_inertia_transverse, turn_b = segment_b.inverse_inertia_transverse;
+  const double yielding = segment_a.inverse_mass + segment_b.inverse_mass + turn_a * joint.arm_a.squaredNorm() +
+                          turn_b * joint.arm_b.squaredNorm();
+  const Vector3 mu = -stiffness / yielding * gap;
+  rod.position[a] += segment_a.inverse_mass * mu;
+  rod.position[b] -= segment_b.inverse_mass * mu;
+  turn(rod, a, turn_a * rho_a.cross(mu));
+  turn(rod, b, -turn_b * rho_b.cross(mu));
+  return gap / joint.length;
+}
+
+/// Returns C_b as it was.
+Vector3 correct_bend_twist(Rod& rod, const Joint& joint, double stiffness) {
+  const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+  Quaternion d = rod.orientation[a].conjugate() * rod.orientation[b];
+  if (d.dot(joint.rest) < 0) d.coeffs() = -d.coeffs();
+  const Vector3 bend = 2 * (d.vec() - joint.rest.vec());
+  const double turn_a = rod.segments[a].inverse_inertia_transverse, turn_b = rod.segments[b].inverse_inertia_transverse;
+  const Vector3 torque =
+      stiffness / (turn_a + turn_b) * (rod.orientation[a] * Vector3(d.w() * bend + d.vec().cross(bend)));
+  turn(rod, a, turn_a * torque);
+  turn(rod, b, -turn_b * torque);
+  return bend;
+}
+
+}  // namespace
+
+GaussSeidelProjection::Iteration PbdProjection::iterate(Rod& rod, const std::vector<int>& order, double) const {
+  Iteration iteration;
+  for (const int joint_index : order) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(joint_index)];
+    Vector6 met;
+    met.head<3>() = correct_stretch_shear(rod, joint, stiffness_.stretch);
+    met.tail<3>() = correct_bend_twist(rod, joint, stiffness_.bending);
+    iteration.meet(met);
+  }
+  return iteration;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,37 @@
+#include "solver/step/projection.hpp"
+
+#include "solver/step/stopwatch.hpp"
+
+namespace rodsweep {
+
+LinearProjection::LinearProjection(const Scene& scene, LinearSolve& solve) : solve_(solve) {
+  for (const Rod& rod : scene.rods) {
+    systems_.emplace_back(rod);
+    delta_lambda_.push_back(VectorX::Zero(6 * rod.joint_count()));
+  }
+}
+
+ProjectionReport LinearProjection::project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) {
+  LinearSystem& system = systems_[static_cast<std::size_t>(at.rod)];
+  VectorX& delta_lambda = delta_lambda_[static_cast<std::size_t>(at.rod)];
+  const Stopwatch watch;
+  system.assemble(rod, dt);
+  const double assemble_s = watch.seconds();
+
+  ProjectionReport report{SolveOutcome::not_run, system.newton_residual()};
+  if (report.newton_residual < newton_tolerance) return report;
+  report.outcome = solve_.solve(system, at, assemble_s, delta_lambda);
+  if (report.outcome == SolveOutcome::converged || report.outcome == SolveOutcome::iteration_limit)
+    system.apply(rod, delta_lambda);
+  return report;
+}
+
+DirectSolve::DirectSolve(const Scene& scene) {
+  for (const Rod& rod : scene.rods) factors_.emplace_back(LinearSystem(rod).matrix(), root_to_leaf_order(rod));
+}
+
+SolveOutcome DirectSolve::solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda) {
+  return factors_[static_cast<std::size_t>(at.rod)].solve(system.matrix(), system.rhs(), delta_lambda);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,69 @@
+// What happens to one rod in one Newton iteration of the time step, behind one interface.
+//
+// Projection moves a rod towards its constraints. LinearProjection is the family that assembles A dlambda = b, has a
+// LinearSolve solve it and applies the result: the direct solve, CG, and the paired evaluation that tries many guesses
+// on the same system. Virtual calls are per solve, never per segment.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/linear/block_factor.hpp"
+#include "solver/linear/linear_system.hpp"
+#include "solver/linear/solve_outcome.hpp"
+#include "solver/scene/scene.hpp"
+
+namespace rodsweep {
+
+/// Where in a simulation a solve stands.
+struct SolvePosition {
+  int step = 0;    ///< time step, from 0
+  int newton = 0;  ///< Newton iteration, from 0
+  int rod = 0;     ///< rod of the scene
+};
+
+struct ProjectionReport {
+  SolveOutcome outcome = SolveOutcome::not_run;
+  double newton_residual = 0;  ///< max |C + alpha~ lambda| before the projection
+};
+
+class Projection {
+ public:
+  virtual ~Projection() = default;
+  /// Projects unless the residual is below `newton_tolerance` already (outcome not_run).
+  virtual ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) = 0;
+};
+
+class LinearSolve {
+ public:
+  virtual ~LinearSolve() = default;
+  /// Solves the assembled system. `assemble_s`: wall time that its assembly took [s]. Non-convergence is an outcome.
+  virtual SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                             VectorX& delta_lambda) = 0;
+};
+
+class LinearProjection : public Projection {
+ public:
+  LinearProjection(const Scene& scene, LinearSolve& solve);
+  ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override;
+
+  const LinearSystem& system(int rod) const { return systems_[static_cast<std::size_t>(rod)]; }
+
+ private:
+  std::vector<LinearSystem> systems_;
+  std::vector<VectorX> delta_lambda_;
+  LinearSolve& solve_;
+};
+
+/// Deul et al.: the exact solution by block elimination.
+class DirectSolve : public LinearSolve {
+ public:
+  explicit DirectSolve(const Scene& scene);
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override;
+
+ private:
+  std::vector<BlockFactor> factors_;
+};
+
+}  // namespace rodsweep

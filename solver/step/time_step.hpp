@@ -1,0 +1,66 @@
+// One time step of position-based Cosserat rods, the deck's algorithm (Shao et al. 2021; Deul et al. 2018):
+//
+//   v* = (v + dt a_ext) / (1 + c dt),  w* = (w + dt I^-1 (tau - w x I w)) / (1 + c dt)       explicit gyroscopic term
+//   x* = x + dt v*,  q* = normalise(q + dt [0, w*] q / 2);  held segments go to their pose at the end of the step
+//   contacts, if the scene has any, are found from x and x*
+//   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance, then the contacts
+//   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
+//   v = (x - x_old) / dt,  w = (2 / dt) Im(d) / Re(d),  d = q conj(q_old)
+// a_ext: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
+// allocates after construction, but for contacts (contact_projection.hpp).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/contact/contact_projection.hpp"
+#include "solver/scene/scene.hpp"
+#include "solver/step/projection.hpp"
+
+namespace rodsweep {
+
+struct StepSettings {
+  double dt = 0.02;                ///< [s]
+  int newton_iterations = 6;       ///< at most
+  double newton_tolerance = 1e-9;  ///< on max |C + alpha~ lambda|
+};
+
+struct StepReport {
+  SolveOutcome outcome = SolveOutcome::converged;  ///< the last failure of a solve, else converged
+  int newton_iterations = 0;                       ///< solves used, the most of any rod, or those of the contacts
+  int contacts = 0;                                ///< places where bodies are near each other
+  double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
+};
+
+/// dt_c, which turns compliances into alpha~ and multipliers into forces, of steps of dt.
+double constraint_dt(const Scene& scene, double dt);
+
+class TimeStepper {
+ public:
+  TimeStepper(Scene& scene, const StepSettings& settings);
+
+  /// Advances the scene by dt. After a failed solve the step ends there: the rods are not to be trusted.
+  StepReport step(Projection& projection);
+
+  int steps_taken() const { return steps_; }
+
+  double constraint_dt() const { return rodsweep::constraint_dt(scene_, settings_.dt); }
+
+ private:
+  void predict();
+  void update_velocities();
+
+  Scene& scene_;
+  StepSettings settings_;
+  double start_time_s_;
+  int steps_ = 0;
+  struct OldPose {
+    std::vector<Vector3> position;
+    std::vector<Quaternion> orientation;
+    std::vector<Vector3> force, torque;  ///< of the point loads, per segment
+  };
+  std::vector<OldPose> old_;
+  std::unique_ptr<ContactProjection> contact_;  ///< null in a scene without
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,196 @@
+// Features of nodes and edges: values by hand, and which of them move with the rod.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "network/encoding/graph_encoding.hpp"
+#include "solver/numbers/rotation.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double dt = 0.02;
+constexpr double pi = 3.14159265358979323846;
+
+struct Encoded {
+  Tensor<float> nodes, edges;
+};
+
+Encoded encoded(Encoding encoding, const Rod& rod, int newton = 0) {
+  const GraphEncoding encode(encoding, rod);
+  LinearSystem system(rod);
+  system.assemble(rod, dt);
+  Encoded out{Tensor<float>(GraphEncoding::node_features(encoding), rod.segment_count()),
+              Tensor<float>(GraphEncoding::edge_features(encoding), rod.joint_count())};
+  encode.encode(rod, system, newton, dt, out.nodes, out.edges);
+  return out;
+}
+
+/// About x, so that a segment along z turns towards -y.
+Quaternion about_x(double angle) { return {std::cos(angle / 2), std::sin(angle / 2), 0, 0}; }
+
+/// Three segments of 1 m, 1 m and 2 m along +z, hung by the first and bent about x by 0.3 and -0.2; the first joint is
+/// straight at rest, the second bent by 0.1. Y = 2e5 Pa, T = 3e6 Pa.
+Rod bent_rod() {
+  const double length[] = {1, 1, 2}, angle[] = {0, 0.3, 0.1};
+  std::vector<SegmentSpec> segments(3);
+  std::vector<JointSpec> joints(2);
+  Vector3 end(0, 5, 0);
+  for (int i = 0; i < 3; ++i) {
+    SegmentSpec& s = segments[std::size_t(i)];
+    s.orientation = about_x(angle[i]);
+    s.position_m = end + s.orientation * Vector3(0, 0, length[i] / 2);
+    end += s.orientation * Vector3(0, 0, length[i]);
+    s.length_m = length[i];
+    s.radius_m = 0.05;
+    s.density_kg_m3 = 1000;
+    s.is_static = i == 0;
+  }
+  for (int k = 0; k < 2; ++k) {
+    JointSpec& joint = joints[std::size_t(k)];
+    joint.a = k;
+    joint.b = k + 1;
+    joint.arm_a_m = {0, 0, length[k] / 2};
+    joint.arm_b_m = {0, 0, -length[k + 1] / 2};
+    joint.compliance_per_j = joint_compliance((length[k] + length[k + 1]) / 2, 0.05, 2e5, 3e6, 1e-6);
+    joint.rest = about_x(k == 0 ? 0 : 0.1);
+  }
+  Rod rod(segments, joints);
+  rod.orientation[1].coeffs() = -rod.orientation[1].coeffs();  // the same rotation, from the other hemisphere
+  rod.velocity[2] = {1, 2, 3};
+  rod.angular_velocity[2] = {4, 5, 6};
+  return rod;
+}
+
+void check_column(const Tensor<float>& features, int column, const std::vector<double>& expected) {
+  CAPTURE(column);
+  REQUIRE(features.rows() == static_cast<int>(expected.size()));
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CAPTURE(i);
+    CHECK(features(static_cast<int>(i), column) == Approx(expected[i]).epsilon(1e-5).margin(1e-7));
+  }
+}
+
+// Hand computation. Centres: (0, 5, .5); end of the first (0, 5, 1), direction of the second (0, -sin .3, cos .3);
+// its end, then the third's direction (0, -sin .1, cos .1), half of 2 m on. Bends: l C_b = 2 sin(angle / 2).
+const double y1 = 5 - 0.5 * std::sin(0.3), z1 = 1 + 0.5 * std::cos(0.3);
+const double y2 = 5 - std::sin(0.3) - std::sin(0.1), z2 = 1 + std::cos(0.3) + std::cos(0.1);
+const double bend0 = 2 * std::sin(0.15), bend1 = 2 * std::sin(-0.1), rest1 = 2 * std::sin(0.05);
+
+TEST_CASE("deck: a bent rod of three segments, by hand") {
+  const Encoded e = encoded(Encoding::deck, bent_rod());
+  check_column(e.nodes, 0, {0, 5, .5, 1, 0, 0, 0, .05, 1000, 1, 0, 1, 1, 0});
+  check_column(e.nodes, 1, {0, y1, z1, std::cos(.15), std::sin(.15), 0, 0, .05, 1000, 1, 0.4, 0, 0, 0});
+  check_column(e.nodes, 2, {0, y2, z2, std::cos(.05), std::sin(.05), 0, 0, .05, 1000, 2, 1, 0, 0, 1});
+  check_column(e.edges, 0, {bend0 / 1, 0, 0, 2e5, 3e6, 0, 0, 0, 0, 0, 0});
+  check_column(e.edges, 1, {bend1 / 1.5, 0, 0, 2e5, 3e6, 0, 0, 0, 0, 0, 0});
+}
+
+TEST_CASE("deck: from the second Newton iteration on, edges have -C - alpha~ lambda") {
+  Rod rod = bent_rod();
+  rod.lambda[9] = 1e-3;
+  const Encoded e = encoded(Encoding::deck, rod, 1);
+  const double compliance = 1.5 / (2e5 * pi * std::pow(0.05, 4) / 4) / (dt * dt);
+  CHECK(e.edges.col(0).tail<6>().norm() == Approx(bend0));
+  CHECK(e.edges(8, 0) == Approx(-bend0));
+  CHECK(e.edges(8, 1) == Approx(-(bend1 - rest1) - compliance * 1e-3));
+}
+
+TEST_CASE("physics: the same rod in natural units, by hand") {
+  const Encoded e = encoded(Encoding::physics, bent_rod());
+  const double L = 4, l = 1.25;  // total length, mean joint length
+  check_column(e.nodes, 0, {0, 0, 0, 1, 0, 0, 0, .05, 1000, 1, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0});
+  check_column(e.nodes, 2,
+               {0, (y2 - 5) / L, (z2 - .5) / L, std::cos(.05), std::sin(.05), 0,      0,     .05, 1000, 2, 1, 0, 0,
+                1, 1 * dt / l,   2 * dt / l,    3 * dt / l,    4 * dt,        5 * dt, 6 * dt});
+  check_column(e.edges, 0, {bend0, 0, 0, std::log10(2e5), std::log10(3e6), 0, 0, 0, -bend0, 0, 0, 0, 0, 0});
+  check_column(e.edges, 1, {bend1, 0, 0, std::log10(2e5), std::log10(3e6), 0, 0, 0, rest1 - bend1, 0, 0, rest1, 0, 0});
+}
+
+/// The rod moved and turned about the vertical, y, velocities with it.
+Rod moved(Rod rod, const Vector3& shift, double angle) {
+  const Quaternion turn(Eigen::AngleAxisd(angle, Vector3::UnitY()));
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    rod.position[s] = turn * rod.position[s] + shift;
+    rod.orientation[s] = turn * rod.orientation[s];
+    rod.velocity[s] = turn * rod.velocity[s];
+    rod.angular_velocity[s] = turn * rod.angular_velocity[s];
+  }
+  return rod;
+}
+
+/// Features that differ by more than rounding in some column.
+std::vector<int> changed(const Tensor<float>& a, const Tensor<float>& b) {
+  std::vector<int> out;
+  for (int i = 0; i < a.rows(); ++i)
+    if ((a.row(i) - b.row(i)).cwiseAbs().maxCoeff() > 1e-5F * (1 + a.row(i).cwiseAbs().maxCoeff())) out.push_back(i);
+  return out;
+}
+
+TEST_CASE("a shifted rod differs in the deck's positions only, and in nothing of physics") {
+  Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
+  for (Vector3& v : rod.velocity) v = {1, 2, 3};
+  const Rod shifted = moved(rod, {1, -2, 3}, 0);
+  CHECK(changed(encoded(Encoding::deck, rod, 1).nodes, encoded(Encoding::deck, shifted, 1).nodes) ==
+        std::vector<int>{0, 1, 2});
+  CHECK(changed(encoded(Encoding::deck, rod, 1).edges, encoded(Encoding::deck, shifted, 1).edges).empty());
+  CHECK(changed(encoded(Encoding::physics, rod).nodes, encoded(Encoding::physics, shifted).nodes).empty());
+  CHECK(changed(encoded(Encoding::physics, rod).edges, encoded(Encoding::physics, shifted).edges).empty());
+}
+
+TEST_CASE(
+    "turned about the vertical, a rod differs in world vectors across it and its rotations, not in what is local") {
+  Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
+  for (std::size_t s = 1; s < rod.segments.size(); ++s) {
+    rod.velocity[s] = {1, 2, 3};
+    rod.angular_velocity[s] = {3, 1, 2};
+  }
+  const Rod turned = moved(rod, {0, 0, 0}, 0.7);
+  CHECK(changed(encoded(Encoding::deck, rod).nodes, encoded(Encoding::deck, turned).nodes) ==
+        std::vector<int>{0, 2, 3, 4, 5, 6});
+  CHECK(changed(encoded(Encoding::deck, rod).edges, encoded(Encoding::deck, turned).edges).empty());
+  CHECK(changed(encoded(Encoding::physics, rod).nodes, encoded(Encoding::physics, turned).nodes) ==
+        std::vector<int>{0, 2, 3, 4, 5, 6, 14, 16, 17, 19});
+  // The stretch-shear residual is a world vector, the bend-twist one is not.
+  CHECK(changed(encoded(Encoding::physics, rod).edges, encoded(Encoding::physics, turned).edges) ==
+        std::vector<int>{5, 7});
+}
+
+TEST_CASE("alpha and the flags count from the static segment, along branches and around loops") {
+  const Encoded chain = encoded(Encoding::deck, test::random_rod(test::chain(4), {3}, 1));
+  CHECK(chain.nodes.row(13) == Eigen::RowVector4f(1, 0, 0, 0));  // last
+  CHECK(chain.nodes.row(12) == Eigen::RowVector4f(0, 0, 0, 1));  // first
+  CHECK(chain.nodes.row(11) == Eigen::RowVector4f(0, 0, 0, 1));  // fixed
+  CHECK(chain.nodes(10, 0) == 1);
+  CHECK(chain.nodes(10, 3) == 0);
+  for (int i = 1; i < 4; ++i) CHECK(chain.nodes(10, i) < chain.nodes(10, i - 1));
+
+  const Encoded tree = encoded(Encoding::deck, test::random_rod(test::tree(2, 2), {}, 1));
+  CHECK(tree.nodes.row(11).isZero());
+  CHECK(tree.nodes.row(12).sum() == 1);
+  CHECK(tree.nodes.row(13).sum() == 4);
+  CHECK(tree.nodes(10, 0) == 0);
+  CHECK(tree.nodes.row(10).maxCoeff() == 1);
+
+  const Encoded ring = encoded(Encoding::deck, test::random_rod(test::ring(5), {0}, 1));
+  CHECK(ring.nodes.row(13).isZero());
+  CHECK(ring.nodes(10, 1) < ring.nodes(10, 2));
+  CHECK(ring.nodes(10, 4) < ring.nodes(10, 3));
+}
+
+TEST_CASE("a wall without radius and a joint without compliance have finite moduli") {
+  const Scene scene = build_scene(test::bending_rod(4, Clamp::wall));
+  const Encoded e = encoded(Encoding::physics, scene.rods.front());
+  CHECK(e.nodes.allFinite());
+  CHECK(e.edges(3, 0) == Approx(e.edges(3, 1)));
+  Rod rigid = scene.rods.front();
+  rigid.joints[0].compliance.setZero();
+  CHECK(encoded(Encoding::physics, rigid).edges(3, 0) == 15);
+}
+
+TEST_CASE("the system's encoding is not one of graphs") {
+  CHECK_THROWS_AS(GraphEncoding(Encoding::system, bent_rod()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace rodsweep

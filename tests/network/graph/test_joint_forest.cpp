@@ -1,0 +1,64 @@
+// Joints as a forest: parents, depths, loops.
+#include <catch2/catch.hpp>
+
+#include "network/graph/joint_forest.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+TEST_CASE("a chain held at its first segment has one joint a level, each hanging from the one before") {
+  const JointForest forest = joint_forest(test::random_rod(test::chain(5), {0}, 1));
+  CHECK(forest.order == std::vector<int>{0, 1, 2, 3});
+  CHECK(forest.parent == std::vector<int>{-1, 0, 1, 2});
+  CHECK(forest.level_begin == std::vector<int>{0, 1, 2, 3, 4});
+}
+
+TEST_CASE("a chain held at its last segment hangs the other way round") {
+  const JointForest forest = joint_forest(test::random_rod(test::chain(5), {4}, 1));
+  CHECK(forest.order == std::vector<int>{3, 2, 1, 0});
+  CHECK(forest.parent == std::vector<int>{-1, 0, 1, 2});
+}
+
+TEST_CASE("a chain held at both ends is one tree") {
+  const JointForest forest = joint_forest(test::random_rod(test::chain(5), {0, 4}, 1));
+  CHECK(forest.parent == std::vector<int>{-1, 0, 1, 2});
+}
+
+TEST_CASE("a chain held in the middle is two trees, since nothing couples through a static segment") {
+  const JointForest forest = joint_forest(test::random_rod(test::chain(5), {2}, 1));
+  CHECK(forest.levels() == 2);
+  CHECK(forest.order == std::vector<int>{1, 2, 0, 3});
+  CHECK(forest.parent == std::vector<int>{-1, -1, 0, 1});
+}
+
+TEST_CASE("siblings share a parent, and a free tree's first joints are roots") {
+  const JointForest held = joint_forest(test::random_rod(test::tree(2, 2), {0}, 1));
+  CHECK(held.level_begin == std::vector<int>{0, 2, 6});
+  CHECK(held.parent == std::vector<int>{-1, -1, 0, 0, 1, 1});
+  CHECK(joint_forest(test::random_rod(test::tree(2, 2), {}, 1)).parent == held.parent);
+}
+
+TEST_CASE("a loop is refused, except through a static segment, which couples nothing") {
+  CHECK_THROWS_WITH(joint_forest(test::random_rod(test::ring(6), {}, 1)),
+                    Catch::Contains("closes a loop: sweeps need trees, message_passing does not"));
+  CHECK(joint_forest(test::random_rod(test::ring(6), {0}, 1)).parent == std::vector<int>{-1, 0, 1, 2, 3, 4});
+  CHECK_THROWS_AS(joint_forest(test::random_rod(test::net(3, 3), {0}, 1)), SceneError);
+}
+
+TEST_CASE("side by side, forests keep their parents and share levels") {
+  const JointForest tree = joint_forest(test::random_rod(test::tree(2, 2), {0}, 1));
+  const JointForest chain = joint_forest(test::random_rod(test::chain(4), {0}, 2));
+  const JointForest both = side_by_side({&chain, &tree});
+  CHECK(both.size() == 9);
+  CHECK(both.level_begin == std::vector<int>{0, 3, 8, 9});
+  for (int i = 0; i < both.size(); ++i) {
+    const int joint = both.order[static_cast<std::size_t>(i)], up = both.parent[static_cast<std::size_t>(i)];
+    const JointForest& own = joint < 3 ? chain : tree;
+    const int first = joint < 3 ? 0 : 3, expected = own.parent[static_cast<std::size_t>(joint - first)];
+    CHECK((up < 0 ? -1 : both.order[static_cast<std::size_t>(up)]) == (expected < 0 ? -1 : expected + first));
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,153 @@
+// COPINGNet as an initial guess, in moving simulations: what it may never do, and what it costs.
+#include <catch2/catch.hpp>
+#include <functional>
+#include <limits>
+
+#include "network/guess/base_guess.hpp"
+#include "network/guess/coping_net_guess.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/network/models.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// Direct solves, with a look at every system before the guesses hear of its solution.
+class Watched : public LinearSolve {
+ public:
+  using Look = std::function<void(const LinearSystem&, const SolvePosition&, const VectorX& solution)>;
+  Watched(const Scene& scene, Look look) : direct_(scene), look_(std::move(look)) {}
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override {
+    const SolveOutcome outcome = direct_.solve(system, at, assemble_s, delta_lambda);
+    look_(system, at, delta_lambda);
+    return outcome;
+  }
+
+ private:
+  DirectSolve direct_;
+  Look look_;
+};
+
+void simulate(Scene& scene, int steps, const Watched::Look& look) {
+  Watched solve(scene, look);
+  LinearProjection projection(scene, solve);
+  TimeStepper stepper(scene, {0.02, 2, 0});
+  for (int step = 0; step < steps; ++step) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
+}
+
+double energy_error(const LinearSystem& system, const VectorX& x, const VectorX& solution) {
+  VectorX scratch(x.size());
+  return energy_norm_squared(system.matrix(), x - solution, scratch);
+}
+
+TEST_CASE("with the best length the guess is never worse than its base in the energy norm") {
+  for (CopingNetSettings settings : test::kinds_of_networks()) {
+    CAPTURE(static_cast<int>(settings.encoding), static_cast<int>(settings.processor), static_cast<int>(settings.base));
+    Scene scene = build_scene(test::bending_rod(8));
+    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 2);
+    const auto base = base_guess(settings, scene, 2);
+    int better = 0;
+    simulate(scene, 4, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
+      VectorX x0(solution.size()), alone(solution.size());
+      const Proposal without = base->propose(system, at, alone);
+      const Proposal with = guess.propose(system, at, x0);
+      CHECK(with.products == without.products + (without.nonzero ? 1 : 0) + 1);
+      const double before = energy_error(system, alone, solution), after = energy_error(system, x0, solution);
+      CHECK(after <= before * (1 + 1e-6) + 1e-24);
+      better += after < 0.999 * before;
+      VectorX again(solution.size());
+      guess.propose(system, at, again);
+      CHECK(again == x0);
+      guess.accept(at, solution);
+      base->accept(at, solution);
+    });
+    CHECK(better > 0);
+  }
+}
+
+TEST_CASE("weights that are not numbers leave the base guess") {
+  CopingNetSettings settings;
+  settings.latent = 16;
+  const auto model = test::random_model(settings);
+  std::fill(model->net.parameters().values().begin(), model->net.parameters().values().end(),
+            std::numeric_limits<float>::quiet_NaN());
+  Scene scene = build_scene(test::bending_rod(6));
+  CopingNetGuess guess(model, scene, 0.02, 2);
+  const auto base = base_guess(settings, scene, 2);
+  simulate(scene, 3, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
+    VectorX x0(solution.size()), alone(solution.size());
+    base->propose(system, at, alone);
+    guess.propose(system, at, x0);
+    CHECK(x0 == alone);
+    guess.accept(at, solution);
+    base->accept(at, solution);
+  });
+}
+
+TEST_CASE("a right-hand side of zero is answered with zero") {
+  Scene scene = build_scene(test::bending_rod(5));
+  scene.gravity_m_s2.setZero();
+  for (const CopingNetSettings& settings : test::kinds_of_networks()) {
+    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1);
+    LinearSystem system(scene.rods.front());
+    system.assemble(scene.rods.front(), 0.02);
+    VectorX x0(system.rhs().size());
+    guess.propose(system, {}, x0);
+    CHECK(x0.allFinite());
+    CHECK(x0.norm() < 1e-12);
+  }
+}
+
+TEST_CASE("joints that close a loop go through message passing, and are refused by sweeps") {
+  Scene scene;
+  scene.rods.push_back(test::random_rod(test::ring(6), {}, 3));
+  LinearSystem system(scene.rods.front());
+  system.assemble(scene.rods.front(), 0.02);
+  VectorX x0(system.rhs().size());
+  for (const CopingNetSettings& settings : test::kinds_of_networks()) {
+    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1);
+    if (settings.processor == Processor::message_passing) {
+      guess.propose(system, {}, x0);
+      CHECK(x0.allFinite());
+      CHECK(x0.norm() > 0);
+    } else {
+      CHECK_THROWS_WITH(guess.propose(system, {}, x0), Catch::Contains("close a loop"));
+    }
+  }
+}
+
+TEST_CASE("the joints' order does not matter") {
+  // A tree whose joints are numbered otherwise: the same corrections, in the other order.
+  const test::Edges edges = test::tree(2, 2);
+  test::Edges reversed(edges.rbegin(), edges.rend());
+  const Rod rod = test::random_rod(edges, {0}, 5);
+  std::vector<SegmentSpec> segments;
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    segments.push_back({rod.position[s], rod.orientation[s], rod.segments[s].length_m, rod.segments[s].radius_m,
+                        rod.segments[s].density_kg_m3, rod.segments[s].is_static});
+  std::vector<JointSpec> joints;
+  for (auto joint = rod.joints.rbegin(); joint != rod.joints.rend(); ++joint)
+    joints.push_back({joint->a, joint->b, joint->arm_a, joint->arm_b, joint->compliance, joint->rest});
+  Rod other(segments, joints);
+  const int count = rod.joint_count();
+  for (int j = 0; j < count; ++j) other.lambda.segment<6>(6 * (count - 1 - j)) = rod.lambda.segment<6>(6 * j);
+  for (const CopingNetSettings& settings : test::kinds_of_networks()) {
+    const auto model = test::random_model(settings);
+    const auto guess_of = [&](const Rod& one) {
+      Scene scene;
+      scene.rods.push_back(one);
+      LinearSystem system(one);
+      system.assemble(one, 0.02);
+      VectorX x0(system.rhs().size());
+      CopingNetGuess(model, scene, 0.02, 1).propose(system, {}, x0);
+      return x0;
+    };
+    const VectorX x = guess_of(rod), y = guess_of(other);
+    for (int j = 0; j < count; ++j)
+      CHECK((x.segment<6>(6 * j) - y.segment<6>(6 * (count - 1 - j))).norm() < 1e-4 * x.norm());
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,158 @@
+// Nearest neighbours: who is found, how their solutions are put together, and what it costs.
+#include <catch2/catch.hpp>
+
+#include "network/guess/knn_guess.hpp"
+#include "tests/network/recorded.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+std::shared_ptr<const KnnSet> set_of(const std::vector<RecordedSimulation>& simulations) {
+  auto set = std::make_shared<KnnSet>();
+  for (const RecordedSimulation& simulation : simulations) set->add(simulation);
+  set->finish();
+  return set;
+}
+
+/// What the guess says where a recorded system was solved, at a rod of `scene` in that state.
+VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const RecordedSystem& where, int k,
+                 double dt = 0.02, Proposal* proposal = nullptr) {
+  Rod& rod = scene.rods[0];
+  restore(where, rod);
+  LinearSystem system(rod);
+  system.assemble(rod, dt);
+  VectorX x0(system.rhs().size());
+  const Proposal made = KnnGuess(set, scene, dt, k).propose(system, where.at, x0);
+  if (proposal) *proposal = made;
+  return x0;
+}
+
+/// A straight rod at rest whose velocity and solution are planted.
+RecordedSystem planted(const Rod& rod, const Vector3& velocity, const VectorX& solution) {
+  return {{},
+          rod.position,
+          rod.orientation,
+          std::vector<Vector3>(rod.segments.size(), velocity),
+          rod.angular_velocity,
+          VectorX::Zero(rod.lambda.size()),
+          solution};
+}
+
+TEST_CASE("a system of the training set is its own nearest neighbour and is answered with its solution") {
+  BendingRod other = test::bending_rod(7);
+  other.length_m *= 1.3;
+  const std::vector<RecordedSimulation> simulations{test::recorded_simulation(build_scene(test::bending_rod(9)), 12, 2),
+                                                    test::recorded_simulation(build_scene(other), 12, 2)};
+  const auto set = set_of(simulations);
+  CHECK(set->size(0) == 24);
+  for (const RecordedSimulation& simulation : simulations)
+    for (const RecordedSystem& system : simulation.systems) {
+      const double norm = system.solution.norm();
+      CHECK((guess_at(set, simulation.scene, system, 1) - system.solution).norm() < 1e-6 * norm);
+      CHECK((guess_at(set, simulation.scene, system, 3) - system.solution).norm() < 1e-3 * norm);
+    }
+}
+
+TEST_CASE("neighbours weigh by the inverse of their distance") {
+  const Scene scene = build_scene(test::bending_rod(5));
+  test::Random random(1);
+  const VectorX near = random.entries(24), far = random.entries(24);
+  const Vector3 u(0.1, 0.2, -0.3);
+  RecordedSimulation simulation{scene, 0.02, 0.02, 1, {}};
+  simulation.systems = {planted(scene.rods[0], Vector3::Zero(), near), planted(scene.rods[0], 3 * u, far)};
+  const RecordedSystem between = planted(scene.rods[0], u, near);
+  const auto set = set_of({simulation});
+  for (const int k : {2, 5}) {  // no more than there are
+    const VectorX x0 = guess_at(set, scene, between, k);
+    CHECK((x0 - (2 * near + far) / 3).norm() < 1e-5 * x0.norm());
+  }
+  CHECK((guess_at(set, scene, between, 1) - near).norm() < 1e-5 * near.norm());
+}
+
+TEST_CASE("twice as many segments in the same pose are given the same forces and torques") {
+  const Scene coarse = build_scene(test::bending_rod(8, Clamp::wall)),
+              fine = build_scene(test::bending_rod(16, Clamp::wall));
+  const double length = 8 * coarse.rods[0].segments[1].length_m, dt = 0.02;
+  const auto multipliers = [&](const Rod& rod, double step) {  // of loads that are linear along the rod
+    VectorX out(6 * rod.joint_count());
+    for (int k = 0; k < rod.joint_count(); ++k) {
+      const double left = 1 - k * rod.segments[1].length_m / length, scale = step * step;
+      out.segment<3>(6 * k) = Vector3(1, 20 * left, 3) * scale * rod.joints[static_cast<std::size_t>(k)].length;
+      out.segment<3>(6 * k + 3) = Vector3(5 * left, 0, -left) * scale;
+    }
+    return out;
+  };
+  RecordedSimulation simulation{coarse, dt, dt, 1, {}};
+  simulation.systems = {planted(coarse.rods[0], Vector3::Zero(), multipliers(coarse.rods[0], dt))};
+  const auto set = set_of({simulation});
+  for (const double step : {dt, dt / 2}) {
+    const VectorX expected = multipliers(fine.rods[0], step);
+    const VectorX x0 = guess_at(set, fine, planted(fine.rods[0], Vector3::Zero(), expected), 3, step);
+    CHECK((x0 - expected).norm() < 1e-5 * expected.norm());
+  }
+}
+
+TEST_CASE("the tree finds what a look at every system finds") {
+  std::vector<RecordedSimulation> simulations;
+  for (const int segments : {6, 8, 11, 14})
+    simulations.push_back(test::recorded_simulation(build_scene(test::bending_rod(segments)), 20, 1));
+  const auto set = set_of(simulations);
+  const RecordedSimulation unseen = test::recorded_simulation(build_scene(test::bending_rod(9)), 20, 1);
+  Rod rod = unseen.scene.rods[0];
+  const ChainProfile profile(rod, unseen.scene.gravity_m_s2);
+  LinearSystem system(rod);
+  Tensor<float> state(ChainProfile::state_size, rod.joint_count());
+  for (const RecordedSystem& one : unseen.systems) {
+    restore(one, rod);
+    system.assemble(rod, unseen.constraint_dt_s);
+    profile.state(rod, system, unseen.constraint_dt_s, state);
+    KnnSet::Neighbours few{std::vector<std::uint32_t>(3), std::vector<float>(3)};
+    KnnSet::Neighbours all{std::vector<std::uint32_t>(100), std::vector<float>(100)};
+    CHECK(set->nearest(0, KnnSet::query(profile, state), few) == 3);
+    CHECK(set->nearest(0, KnnSet::query(profile, state), all) == set->size(0));
+    CHECK(set->size(0) == 80);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(few.system[i] == all.system[i]);
+      CHECK(few.distance[i] == all.distance[i]);
+    }
+  }
+}
+
+TEST_CASE("a Newton iteration without training data is answered with zero") {
+  const RecordedSimulation simulation = test::recorded_simulation(build_scene(test::bending_rod(6)), 3, 1);
+  RecordedSystem later = simulation.systems.back();
+  later.at.newton = 1;
+  Proposal proposal{true, 7};
+  const VectorX x0 = guess_at(set_of({simulation}), simulation.scene, later, 3, 0.02, &proposal);
+  CHECK(x0.norm() == 0);
+  CHECK(!proposal.nonzero);
+  CHECK(proposal.products == 0);
+}
+
+TEST_CASE("an unseen rod of the training set's kind is guessed roughly right") {
+  std::vector<RecordedSimulation> simulations;
+  for (const double length : {1.0, 1.2, 1.4, 1.6, 1.8, 2.0}) {
+    BendingRod rod = test::bending_rod(10);
+    rod.length_m = length;
+    simulations.push_back(test::recorded_simulation(build_scene(rod), 15, 1));
+  }
+  BendingRod rod = test::bending_rod(17);
+  rod.length_m = 1.5;
+  const RecordedSimulation unseen = test::recorded_simulation(build_scene(rod), 15, 1);
+  const auto set = set_of(simulations);
+  double error = 0, norm = 0;
+  for (const RecordedSystem& system : unseen.systems) {
+    error += (guess_at(set, unseen.scene, system, 3) - system.solution).squaredNorm();
+    norm += system.solution.squaredNorm();
+  }
+  CHECK(error < 0.1 * norm);
+}
+
+TEST_CASE("no neighbours is not a number of neighbours") {
+  const RecordedSimulation simulation = test::recorded_simulation(build_scene(test::bending_rod(4)), 1);
+  CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0.02, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,44 @@
+// The product of narrow layers against Eigen's, for every shape of tile.
+#include "network/layers/product.hpp"
+#include "tests/network/gradient_check.hpp"
+
+namespace rodsweep {
+namespace {
+
+using namespace test;
+
+TEMPLATE_TEST_CASE("W x + b is Eigen's, whatever the numbers of rows, items and inputs", "", float, double) {
+  for (const int rows : {1, 6, 8, 15, 16, 17, 31, 48, 64, 96, 150})
+    for (const int items : {1, 2, 3, 5, 8, 13, 50})
+      for (const int depth : {1, 2, 5, 33}) {
+        CAPTURE(rows, items, depth);
+        // Parts of larger matrices, so that columns have gaps; the weights end where their memory does.
+        const Tensor<TestType> whole = random_matrix(rows + 3, depth, 1).cast<TestType>();
+        const Tensor<TestType> inputs = random_matrix(depth + 2, items, 2).cast<TestType>();
+        const Tensor<TestType> bias = random_matrix(rows, 1, 3).cast<TestType>();
+        const auto weight = whole.bottomRows(rows);
+        const auto x = inputs.topRows(depth);
+        Tensor<TestType> y = Tensor<TestType>::Constant(rows + 4, items, 7);
+        const double tolerance = 1e-6 * depth;
+        multiply<TestType>(weight, bias.data(), x, y.middleRows(2, rows));
+        Tensor<TestType> expected = weight * x;
+        CHECK((y.middleRows(2, rows) - (expected.colwise() + bias.col(0))).cwiseAbs().maxCoeff() < tolerance);
+        CHECK((y.topRows(2).array() == 7).all());
+        CHECK((y.bottomRows(2).array() == 7).all());
+        multiply<TestType>(weight, nullptr, x, y.middleRows(2, rows));
+        CHECK((y.middleRows(2, rows) - expected).cwiseAbs().maxCoeff() < tolerance);
+      }
+}
+
+TEST_CASE("an item's product has the same bits alone and among others") {
+  const Tensor<float> weight = random_matrix(38, 20, 1).cast<float>(), x = random_matrix(20, 15, 2).cast<float>();
+  Tensor<float> all(38, 15), one(38, 1);
+  multiply<float>(weight, nullptr, x, all);
+  for (int i = 0; i < 15; ++i) {
+    multiply<float>(weight, nullptr, x.col(i), one);
+    CHECK(one == all.col(i));
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,188 @@
+// Training: that it learns, and that its bits depend on nothing but its settings.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "network/training/trainer.hpp"
+#include "tests/network/models.hpp"
+#include "tests/network/recorded.hpp"
+
+namespace rodsweep {
+namespace {
+
+using namespace test;
+
+TrainingSettings small_training() {
+  TrainingSettings settings;
+  settings.epochs = 4;
+  settings.batch = 8;
+  settings.shards = 4;
+  settings.seed = 5;
+  return settings;
+}
+
+CopingNetSettings small_network(Processor processor = Processor::sweeps) {
+  CopingNetSettings settings;
+  settings.processor = processor;
+  settings.base = BaseGuess::none;
+  settings.latent = 8;
+  settings.steps = 2;
+  return settings;
+}
+
+/// One step, its shards computed in the order of `ranks` that take turns; its loss.
+double step(Trainer& trainer, int shards, int ranks = 1) {
+  std::vector<std::vector<float>> contributions(static_cast<std::size_t>(shards));
+  for (int rank = ranks - 1; rank >= 0; --rank)
+    for (int shard = rank; shard < shards; shard += ranks) {
+      auto& out = contributions[static_cast<std::size_t>(shard)];
+      out.resize(trainer.shard_size());
+      trainer.compute(shard, out.data());
+    }
+  std::vector<const float*> in_order;
+  for (const auto& contribution : contributions) in_order.push_back(contribution.data());
+  return trainer.update(in_order);
+}
+
+double mean_loss(Trainer& trainer, const std::vector<Example>& examples) {
+  return trainer.loss(examples, 0, examples.size()) / static_cast<double>(examples.size());
+}
+
+TEST_CASE("a few examples are learned by heart, with every processor and loss") {
+  struct Case {
+    Processor processor;
+    LossKind loss;
+    double left;  ///< of the loss
+  };
+  for (const Case& of :
+       {Case{Processor::sweeps, LossKind::energy, 0.15}, Case{Processor::sweeps, LossKind::mse, 0.05},
+        Case{Processor::sweeps, LossKind::in_the_loop, 0.5}, Case{Processor::message_passing, LossKind::energy, 0.15},
+        Case{Processor::message_passing, LossKind::mse, 0.05}}) {
+    CAPTURE(static_cast<int>(of.processor), static_cast<int>(of.loss));
+    const Examples data = sample_examples(small_network(of.processor), 1, 4);
+    TrainingSettings settings = small_training();
+    settings.loss = of.loss;
+    settings.epochs = 300;
+    settings.shards = 1;
+    settings.rate = 0.02;
+    CopingNet<float> net(small_network(of.processor), 1);
+    Trainer trainer(net, data.examples, settings);
+    REQUIRE(data.examples.size() == 8);
+    const double before = mean_loss(trainer, data.examples);
+    while (trainer.step() < trainer.steps()) step(trainer, 1);
+    CHECK(mean_loss(trainer, data.examples) < of.left * before);
+  }
+}
+
+TEST_CASE("the moves of segments are learned beside the multipliers") {
+  CopingNetSettings network = small_network(Processor::message_passing);
+  network.encoding = Encoding::deck;
+  network.moves = true;
+  const Examples data = sample_examples(network, 1, 4);
+  TrainingSettings settings = small_training();
+  settings.loss = LossKind::mse;
+  settings.epochs = 300;
+  settings.shards = 1;
+  settings.rate = 0.02;
+  CopingNet<float> net(network, 1);
+  Trainer trainer(net, data.examples, settings);
+  const double before = mean_loss(trainer, data.examples);
+  while (trainer.step() < trainer.steps()) step(trainer, 1);
+  CHECK(mean_loss(trainer, data.examples) < 0.05 * before);
+}
+
+TEST_CASE("weights have the same bits however the shards are divided among ranks") {
+  for (const Processor processor : {Processor::sweeps, Processor::message_passing}) {
+    const Examples data = sample_examples(small_network(processor), 3, 4);
+    AlignedVector<float> first;
+    for (const int ranks : {1, 2, 3, 4, 9}) {
+      CAPTURE(static_cast<int>(processor), ranks);
+      CopingNet<float> net(small_network(processor), 1);
+      Trainer trainer(net, data.examples, small_training());
+      while (trainer.step() < trainer.steps()) step(trainer, 4, ranks);
+      if (first.empty()) first = net.parameters().values();
+      CHECK(net.parameters().values() == first);
+    }
+  }
+}
+
+TEST_CASE("a trainer restored in the middle goes on to the same bits") {
+  const Examples data = sample_examples(small_network(), 3, 4);
+  CopingNet<float> whole(small_network(), 1);
+  Trainer through(whole, data.examples, small_training());
+  REQUIRE(through.steps_per_epoch() == 3);
+  while (through.step() < through.steps()) step(through, 4);
+
+  for (const std::int64_t stop : {1, 3, 7}) {
+    CAPTURE(stop);
+    CopingNet<float> before(small_network(), 1), after(small_network(), 2);
+    Trainer interrupted(before, data.examples, small_training());
+    while (interrupted.step() < stop) step(interrupted, 4);
+    after.parameters().values() = before.parameters().values();
+    Trainer restored(after, data.examples, small_training());
+    restored.restore(interrupted.state());
+    CHECK(restored.step() == stop);
+    while (restored.step() < restored.steps()) step(restored, 4);
+    CHECK(after.parameters().values() == whole.parameters().values());
+  }
+}
+
+TEST_CASE("every example is seen once in an epoch, in another order in the next and with another seed") {
+  const CopingNetSettings network = small_network();
+  std::vector<Example> examples = sample_examples(network, 3, 4).examples;
+  TrainingSettings settings = small_training();
+  settings.batch = settings.shards = 1;
+  settings.rate = 1e-30;  // a loss names its example
+  const auto losses = [&](std::uint64_t seed) {
+    settings.seed = seed;
+    CopingNet<float> net(network, 1);
+    Trainer trainer(net, examples, settings);
+    std::vector<std::vector<double>> by_epoch(2);
+    for (auto& epoch : by_epoch)
+      for (std::size_t i = 0; i < examples.size(); ++i) epoch.push_back(step(trainer, 1));
+    return by_epoch;
+  };
+  const auto epochs = losses(5);
+  CHECK(epochs[0] != epochs[1]);
+  CHECK(losses(6)[0] != epochs[0]);
+  CHECK(losses(5) == epochs);
+  const auto sorted = [](std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values;
+  };
+  CHECK(sorted(epochs[0]) == sorted(epochs[1]));
+}
+
+TEST_CASE("the rate rises to its peak and falls to zero") {
+  const Examples data = sample_examples(small_network(), 3, 4);
+  TrainingSettings settings = small_training();
+  settings.epochs = 20;
+  settings.warm_up = 0.25;
+  CopingNet<float> net(small_network(), 1);
+  Trainer trainer(net, data.examples, settings);
+  std::vector<double> rates;
+  while (trainer.step() < trainer.steps()) {
+    step(trainer, 4);
+    rates.push_back(trainer.rate());
+  }
+  const std::size_t peak = rates.size() / 4 - 1;
+  CHECK(rates[0] == Approx(settings.rate / (static_cast<double>(peak) + 1)));
+  CHECK(rates[peak] == Approx(settings.rate));
+  CHECK(std::is_sorted(rates.begin(), rates.begin() + static_cast<std::ptrdiff_t>(peak) + 1));
+  CHECK(std::is_sorted(rates.rbegin(), rates.rend() - static_cast<std::ptrdiff_t>(peak)));
+  CHECK(rates.back() == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("settings that make no sense are refused") {
+  const Examples data = sample_examples(small_network(), 1, 4);
+  CopingNet<float> net(small_network(), 1);
+  TrainingSettings settings = small_training();
+  settings.shards = 3;
+  CHECK_THROWS_WITH(Trainer(net, data.examples, settings),
+                    "Trainer: a batch of 8 cannot be divided into 3 equal shards");
+  settings.shards = 4;
+  settings.batch = 12;
+  CHECK_THROWS_WITH(Trainer(net, data.examples, settings), "Trainer: 8 examples are less than one batch of 12");
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,65 @@
+// Core-hours from probes, with an evaluation whose time is known.
+#include <catch2/catch.hpp>
+
+#include "runner/command/plan_estimate.hpp"
+#include "tests/runner/job_examples.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+/// Pretends to take `seconds_per_cost` for every unit of Task::cost of the steps asked for.
+Evaluate taking(double seconds_per_cost) {
+  return [=](const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
+    record.outcome = TaskOutcome::ok;
+    record.steps_done[0] = spec.time.steps;
+    record.elapsed_s[0] = seconds_per_cost * task.segments * spec.time.steps * spec.time.newton_iterations;
+    return true;
+  };
+}
+
+double all_cost(const Plan& plan) {
+  double cost = 0;
+  for (const Task& task : plan.tasks()) cost += task.cost;
+  return cost;
+}
+
+}  // namespace
+
+TEST_CASE("the cheapest, the median and the dearest task are tried") {
+  const Plan plan = plan_of(with("/scene/segments", R"({"grid": [50, 10, 20, 30, 40]})"));
+  const auto probes = probe(plan, taking(1e-9));
+  REQUIRE(probes.size() == 3);
+  CHECK(probes[0].task == 1);
+  CHECK(probes[1].task == 3);
+  CHECK(probes[2].task == 0);
+}
+
+TEST_CASE("a plan of one task is tried once") { CHECK(probe(plan_of(small_job()), taking(1e-9)).size() == 1); }
+
+TEST_CASE("when time is proportional to cost the estimate is exact, also from truncated tasks") {
+  const double seconds_per_cost = GENERATE(1e-9, 1e-3);
+  const Plan plan = plan_of(with("/time/steps", "1000", with("/scene/segments", R"({"grid": [10, 20, 30, 40]})")));
+  const auto probes = probe(plan, taking(seconds_per_cost));
+  CHECK(core_seconds(plan, probes) == Approx(seconds_per_cost * all_cost(plan)));
+  if (seconds_per_cost > 1e-6) {
+    CHECK(probes.back().steps < 1000);
+    CHECK(probes.back().of_steps == 1000);
+  } else {
+    CHECK(probes.back().steps == 1000);
+  }
+}
+
+TEST_CASE("a probe that fails says so and is extrapolated from the steps that it took") {
+  const Plan plan = plan_of(with("/time/steps", "100"));
+  const auto probes = probe(plan, [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) {
+    record.outcome = TaskOutcome::diverged;
+    record.message = "joint gap 12";
+    record.steps_done[0] = 2;
+    record.elapsed_s[0] = 0.5;
+    return true;
+  });
+  CHECK(probes.at(0).outcome == TaskOutcome::diverged);
+  CHECK(probes.at(0).message == "joint gap 12");
+  CHECK(probes.at(0).seconds == Approx(25));
+}

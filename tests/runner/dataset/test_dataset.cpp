@@ -1,0 +1,198 @@
+// Data sets in files: what is read back, and which files are refused.
+#include <catch2/catch.hpp>
+
+#include "runner/dataset/dataset_reader.hpp"
+#include "runner/file/pack.hpp"
+#include "tests/runner/data_set_examples.hpp"
+#include "tests/runner/recorded_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+namespace fs = std::filesystem;
+
+/// Three rods of different sizes.
+Json ragged_job() {
+  Json job = data_job();
+  job["samples"] = 3;
+  job["seed"] = 4;
+  job["scene"]["segments"] = {{"integer", {4, 12}}};
+  job["scene"]["damping_per_s"] = 0.5;
+  return job;
+}
+
+/// Two trees in the wind.
+Json forest_job() {
+  Json job = data_job();
+  job["scene"] = Json::parse(R"({"type": "forest", "rows": 1, "columns": 2, "spacing_m": 3, "depth": 2, "branches": 2,
+      "segments": 2, "length_m": 1, "radius_m": 0.05, "density_kg_m3": 800, "youngs_modulus_pa": 1e7,
+      "torsion_modulus_pa": 1e7, "wind": {"mean_m_s": [9, 0, 0], "turbulence_m_s": 2}})");
+  return job;
+}
+
+std::string refusal_of(const fs::path& path) {
+  return message_of<FileError>([&] { DatasetReader reader(path); });
+}
+
+std::vector<std::string> paths(const Plan& plan) {
+  std::vector<std::string> result;
+  for (const Field& field : layout(plan, plan.parameters())) result.push_back(field.path);
+  return result;
+}
+
+bool has(const std::vector<std::string>& all, const std::string& path) {
+  return std::find(all.begin(), all.end(), path) != all.end();
+}
+
+TEST_CASE("a data set's file has the systems and no axis of guesses, a sweep's no systems") {
+  const std::vector<std::string> data = paths(plan_of(ragged_job())), sweep = paths(plan_of(small_job()));
+  for (const char* path : {"/systems/step", "/systems/segments/position_m", "/systems/joints/solution",
+                           "/tasks/first_system", "/tasks/system_joints"}) {
+    CHECK(has(data, path));
+    CHECK_FALSE(has(sweep, path));
+  }
+  for (const char* path : {"/axes/guess", "/tasks/iterations_sum", "/solves/iterations"}) {
+    CHECK_FALSE(has(data, path));
+    CHECK(has(sweep, path));
+  }
+  CHECK(has(data, "/solves/newton_residual"));
+  CHECK(has(data, "/steps/joint_gap"));
+}
+
+TEST_CASE("every system of a file gives the A and b of the simulation again, bit for bit") {
+  const TemporaryFolder folder;
+  Json loaded = ragged_job();
+  loaded["scene"]["tip_force_n"] = {0, 0.1, 0};  // evaluated alone, by the same steps as below
+  for (const auto& [systems, scenes] :
+       {std::pair("first", loaded), std::pair("all", loaded), std::pair("all", forest_job())}) {
+    Json job = scenes;
+    job["record"] = {{"systems", systems}, {"solves", "summary"}};
+    const fs::path path = folder / (systems + job["scene"]["type"].get<std::string>() + ".h5");
+    const Plan plan = make_data_set(path, job);
+    const DatasetReader data(path);
+    REQUIRE(data.size() == plan.size());
+    CHECK(data.note().empty());
+    for (std::int64_t i = 0; i < data.size(); ++i) {
+      const RecordedSimulation simulation = data.read(i);
+      CHECK(data.task(i).sample == i);
+      CHECK(simulation.step_s == 0.02);
+      CHECK(simulation.newton_iterations == 3);
+      Scene scene = build_scene(plan.spec(i).scene);
+      SolveProbe probe(scene);
+      LinearProjection projection(scene, probe);
+      TimeStepper stepper(scene, {0.02, 3, plan.spec(i).time.newton_tolerance});
+      for (int step = 0; step < 4; ++step) stepper.step(projection);
+      CHECK(simulation.constraint_dt_s == stepper.constraint_dt());
+      check_same(simulation.systems, simulation.scene, simulation.constraint_dt_s,
+                 probe.first_iterations(systems == std::string("first") ? 1 : 3));
+    }
+  }
+}
+
+TEST_CASE("simulations are of different sizes, and a range of them is read") {
+  const TemporaryFolder folder;
+  const Plan plan = make_data_set(folder / "a.h5", ragged_job());
+  const DatasetReader data(folder / "a.h5");
+  const std::vector<RecordedSimulation> last = data.read(1, 2);
+  REQUIRE(last.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Task& task = plan.task(static_cast<std::int64_t>(i) + 1);
+    CHECK(last[i].scene.rods.front().segment_count() == task.segments);
+    CHECK(last[i].systems.size() == 4);
+  }
+  CHECK(plan.task(1).segments != plan.task(2).segments);
+  CHECK(data.plan().task(1).segments == plan.task(1).segments);
+}
+
+TEST_CASE("the first and the last simulations have something of every grid point") {
+  const TemporaryFolder folder;
+  Json job = ragged_job();
+  job["scene"]["length_m"] = {{"grid", {1, 2}}};
+  make_data_set(folder / "a.h5", job);
+  const DatasetReader data(folder / "a.h5");
+  REQUIRE(data.size() == 6);
+  std::vector<std::int64_t> tasks;
+  for (std::int64_t i = 0; i < 6; ++i) tasks.push_back(data.task(i).index);
+  CHECK(tasks == std::vector<std::int64_t>{0, 3, 1, 4, 2, 5});
+}
+
+TEST_CASE("failed simulations are left out with a note") {
+  const TemporaryFolder folder;
+  make_data_set(folder / "a.h5", ragged_job(), 2);
+  const DatasetReader data(folder / "a.h5");
+  CHECK(data.size() == 2);
+  CHECK(data.note() == "1 of 3 simulations of " + (folder / "a.h5").native() +
+                           " failed and are left out (the first: task 2, diverged: step 2: too bad)");
+  make_data_set(folder / "none.h5", ragged_job(), 0);
+  CHECK_THAT(refusal_of(folder / "none.h5"), Contains("holds no simulation that can be used: all 3 failed"));
+}
+
+TEST_CASE("the hash is that of the data: the same for the same job, another for another") {
+  const TemporaryFolder folder;
+  make_data_set(folder / "a.h5", ragged_job());
+  make_data_set(folder / "again.h5", ragged_job());
+  Json other = ragged_job();
+  other["seed"] = 5;
+  make_data_set(folder / "other.h5", other);
+  pack_results(folder / "a.h5", folder / "packed.h5");
+  const std::string hash = DatasetReader(folder / "a.h5").hash();
+  CHECK(hash.size() == 16);
+  CHECK(DatasetReader(folder / "again.h5").hash() == hash);
+  CHECK(DatasetReader(folder / "packed.h5").hash() == hash);
+  CHECK(DatasetReader(folder / "other.h5").hash() != hash);
+}
+
+TEST_CASE("a packed copy is read like the original") {
+  const TemporaryFolder folder;
+  make_data_set(folder / "a.h5", ragged_job());
+  pack_results(folder / "a.h5", folder / "packed.h5");
+  const RecordedSimulation a = DatasetReader(folder / "a.h5").read(1), b = DatasetReader(folder / "packed.h5").read(1);
+  REQUIRE(a.systems.size() == b.systems.size());
+  for (std::size_t i = 0; i < a.systems.size(); ++i) {
+    CHECK(a.systems[i].position == b.systems[i].position);
+    CHECK(a.systems[i].solution == b.systems[i].solution);
+  }
+}
+
+TEST_CASE("what is no finished data set is refused with what to do") {
+  const TemporaryFolder folder;
+  CHECK_THAT(refusal_of(folder / "none.h5"), EndsWith("none.h5: there is no such file"));
+  std::ofstream(folder / "notes.txt") << "hello";
+  CHECK_THAT(refusal_of(folder / "notes.txt"), EndsWith("is not an HDF5 file"));
+
+  Json sweep = small_job();
+  sweep["time"]["steps"] = 1;
+  make_data_set(folder / "sweep.h5", sweep);
+  CHECK_THAT(refusal_of(folder / "sweep.h5"),
+             EndsWith("holds the results of a sweep, not a data set: give the file of a job of kind \"dataset\""));
+
+  ResultsFile::create(folder / "task.h5", plan_of(ragged_job()).alone(1, 1), test_provenance(), MPI_COMM_SELF).close();
+  CHECK_THAT(refusal_of(folder / "task.h5"),
+             EndsWith("holds one task of a data set, made by `rodsweep rerun`: give the file of the data set"));
+
+  make_data_set(folder / "part.h5", ragged_job(), 1, true);
+  CHECK_THAT(refusal_of(folder / "part.h5"),
+             Contains("is not complete: 2 of 3 simulations are missing; finish it with: rodsweep run ") &&
+                 EndsWith("-o " + (folder / "part.h5").native() + " --resume"));
+}
+
+TEST_CASE("a damaged simulation is refused, the others are read") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.h5";
+  const Plan plan = make_data_set(path, ragged_job());
+  {
+    const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
+    const auto row = static_cast<hsize_t>(plan.task(1).first_system_joint);
+    const std::vector<double> wrong(6, 0.5);
+    hdf5::RowDataset(file.id(), "/systems/joints/solution").write(hdf5::type_of<double>(), row, 1, wrong.data());
+  }
+  const DatasetReader data(path);
+  CHECK(data.read(0).systems.size() == 4);
+  CHECK_THAT(message_of<FileError>([&] { data.read(1); }),
+             Contains("is damaged: the data of task 1 are not what was written"));
+}
+
+}  // namespace
+}  // namespace rodsweep

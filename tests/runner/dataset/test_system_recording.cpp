@@ -1,0 +1,78 @@
+// Systems written into a record and read back: A and b assembled again, against those that were solved.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "runner/dataset/system_recording.hpp"
+#include "runner/experiment/evaluation.hpp"
+#include "tests/runner/job_examples.hpp"
+#include "tests/runner/recorded_examples.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+TaskRecord evaluated(const Plan& plan) {
+  TaskRecord record;
+  record.prepare(plan.task(0), axis_sizes(plan));
+  REQUIRE(evaluate(plan.task(0), plan.spec(0), record, [] { return false; }));
+  REQUIRE(record.outcome == TaskOutcome::ok);
+  return record;
+}
+
+TEST_CASE("A, b, velocities and solution of a tree and a chain of another size come back to the last bit") {
+  constexpr int steps = 3, iterations = 2;
+  Scene scene;
+  scene.damping_per_s = 2;  // so that the constraints' dt is not the step
+  scene.rods = {test::random_rod(test::tree(2, 2), {0}, 1), test::random_rod(test::chain(4), {}, 2)};
+  const Scene start = scene;
+  Task task;
+  task.systems = steps * iterations * 2;
+  task.system_segments = steps * iterations * (7 + 4);
+  task.system_joints = steps * iterations * (6 + 3);
+  TaskRecord record;
+  record.prepare(task, {});
+
+  SolveProbe probe(scene);
+  RecordingSolve recording(scene, iterations, probe, record);
+  LinearProjection projection(scene, recording);
+  TimeStepper stepper(scene, {0.01, iterations + 1, 0});
+  for (int step = 0; step < steps; ++step) stepper.step(projection);
+
+  const std::vector<RecordedSystem> systems = recorded_systems(record, start, iterations);
+  CHECK(systems.size() == steps * iterations * 2);
+  check_same(systems, start, stepper.constraint_dt(), probe.first_iterations(iterations));
+}
+
+TEST_CASE("a data set's record has the first system of every step, or all") {
+  Json job = data_job();
+  job["time"]["newton_tolerance"] = 0;  // so that all iterations are needed
+  const TaskRecord first = evaluated(plan_of(job));
+  CHECK(first.system_step == std::vector<std::int32_t>{0, 1, 2, 3});
+  CHECK(first.system_newton == std::vector<std::int16_t>{0, 0, 0, 0});
+  CHECK(first.system_rod == std::vector<std::int16_t>{0, 0, 0, 0});
+  CHECK(first.system_velocity_m_s.front() == 0);  // at the start of the first step
+  job["record"] = {{"systems", "all"}};
+  const TaskRecord all = evaluated(plan_of(job));
+  REQUIRE(all.system_step.size() == 4 * 3);
+  CHECK(all.system_step[5] == 1);
+  CHECK(all.system_newton[5] == 2);
+  const std::size_t segments = 10;
+  for (std::size_t step = 0; step < 4; ++step)
+    for (std::size_t i = 0; i < 3 * segments; ++i)
+      CHECK(first.system_position_m[3 * segments * step + i] == all.system_position_m[9 * segments * step + i]);
+}
+
+TEST_CASE("Newton iterations that were not needed stay marked and are not read") {
+  Json job = data_job();
+  job["scene"]["gravity_m_s2"] = {0, 0, 0};  // nothing to solve for
+  job["record"] = {{"systems", "all"}};
+  const Plan plan = plan_of(job);
+  const TaskRecord record = evaluated(plan);
+  CHECK(record.system_step == std::vector<std::int32_t>(4 * 3, -1));
+  CHECK(std::isnan(record.system_position_m.back()));
+  CHECK(std::isnan(record.system_solution.front()));
+  CHECK(recorded_systems(record, build_scene(plan.spec(0).scene), 3).empty());
+}
+
+}  // namespace
+}  // namespace rodsweep

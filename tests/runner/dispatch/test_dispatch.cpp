@@ -1,0 +1,199 @@
+// Master and workers over the network in memory.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <map>
+#include <memory>
+#include <random>
+
+#include "tests/runner/dispatch_examples.hpp"
+
+using namespace rodsweep;
+using namespace rodsweep::examples;
+
+namespace {
+
+int no_signal() { return 0; }
+
+TaskResult succeed(std::int64_t, const StopRequested&) { return {TaskOutcome::ok, ""}; }
+
+/// Steps master and workers in a random order until the master is finished, then lets the workers leave.
+void play(Sweep& sweep, std::vector<std::unique_ptr<Worker>>& workers, unsigned seed) {
+  std::mt19937 random(seed);
+  for (bool finished = false; !finished;) {
+    const auto turn = random() % (workers.size() + 1);
+    if (turn == 0)
+      finished = sweep.master.step() == Master::Step::finished;
+    else
+      workers[turn - 1]->step();
+  }
+  for (auto& worker : workers) REQUIRE(worker->step() == Worker::Step::finished);
+}
+
+}  // namespace
+
+TEST_CASE("tasks are handed out longest first, ties by number") {
+  Sweep sweep(1, tasks_of_cost({1, 5, 3, 5, 2}));
+  std::vector<std::int64_t> order;
+  Worker worker(
+      sweep.network[1],
+      [&](std::int64_t task, const StopRequested&) {
+        order.push_back(task);
+        return TaskResult{TaskOutcome::ok, ""};
+      },
+      no_signal);
+  while (sweep.master.step() != Master::Step::finished) worker.step();
+  CHECK(order == std::vector<std::int64_t>{1, 3, 2, 4, 0});
+}
+
+TEST_CASE("every task is run exactly once, whatever the order in which ranks get their turns") {
+  const unsigned seed = GENERATE(1u, 2u, 3u, 4u, 5u);
+  std::mt19937 random(seed);
+  std::vector<double> costs(300);
+  for (double& cost : costs) cost = std::exp(std::normal_distribution<double>()(random));
+  Sweep sweep(4, tasks_of_cost(costs));
+  std::map<std::int64_t, int> runs;
+  std::vector<std::unique_ptr<Worker>> workers;
+  for (int rank = 1; rank <= 4; ++rank)
+    workers.push_back(std::make_unique<Worker>(
+        sweep.network[rank],
+        [&](std::int64_t task, const StopRequested&) {
+          ++runs[task];
+          return TaskResult{TaskOutcome::ok, ""};
+        },
+        no_signal));
+  play(sweep, workers, seed);
+  CHECK(runs.size() == 300);
+  CHECK(std::all_of(runs.begin(), runs.end(), [](const auto& run) { return run.second == 1; }));
+  CHECK(sweep.master.dispatch().left == 0);
+  CHECK(sweep.master.dispatch().finished[static_cast<std::size_t>(TaskOutcome::ok)] == 300);
+}
+
+TEST_CASE("failed tasks are counted by outcome and the sweep goes on") {
+  Sweep sweep(2, tasks_of_cost(std::vector<double>(30, 1.0)));
+  const TaskBody body = [](std::int64_t task, const StopRequested&) -> TaskResult {
+    if (task % 10 == 3) return {TaskOutcome::diverged, "joint gap 12 at step 4"};
+    if (task == 7) return {TaskOutcome::error, std::string(1000, 'x')};
+    return {TaskOutcome::ok, ""};
+  };
+  std::vector<std::unique_ptr<Worker>> workers;
+  for (int rank = 1; rank <= 2; ++rank)
+    workers.push_back(std::make_unique<Worker>(sweep.network[rank], body, no_signal));
+  play(sweep, workers, 1);
+  const Dispatch& dispatch = sweep.master.dispatch();
+  CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::ok)] == 26);
+  CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::diverged)] == 3);
+  CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::error)] == 1);
+  REQUIRE(dispatch.failures.size() == 4);
+  for (const auto& failure : dispatch.failures) {
+    if (failure.task == 7)
+      CHECK(failure.message == std::string(199, 'x'));
+    else
+      CHECK(failure.message == "joint gap 12 at step 4");
+  }
+}
+
+TEST_CASE("the order of reports makes no difference") {
+  const auto run = [](unsigned seed) {
+    Sweep sweep(3, tasks_of_cost({9, 8, 7, 6, 5, 4, 3, 2, 1}));
+    std::mt19937 random(seed);
+    std::vector<Inbox> inboxes;
+    for (int rank = 1; rank <= 3; ++rank) inboxes.emplace_back(sweep.network[rank]);
+    std::vector<std::pair<std::size_t, std::int64_t>> running;
+    while (sweep.master.step() != Master::Step::finished) {
+      for (std::size_t i = 0; i < inboxes.size(); ++i)
+        for (const std::int64_t task : inboxes[i].assigned()) running.emplace_back(i, task);
+      std::shuffle(running.begin(), running.end(), random);
+      const auto [rank, task] = running.back();
+      running.pop_back();
+      inboxes[rank].report(task, task == 4 ? TaskOutcome::error : TaskOutcome::ok);
+    }
+    return sweep.master.dispatch();
+  };
+  const Dispatch one = run(1), other = run(2);
+  CHECK(one.finished == other.finished);
+  CHECK(one.left == other.left);
+  CHECK(one.busy_s == other.busy_s);
+  REQUIRE(one.failures.size() == 1);
+  CHECK(one.failures.front().task == other.failures.front().task);
+}
+
+TEST_CASE("without tasks the workers are dismissed at once") {
+  Sweep sweep(2, {});
+  REQUIRE(sweep.master.step() == Master::Step::finished);
+  Worker worker(sweep.network[2], succeed, no_signal);
+  CHECK(worker.step() == Worker::Step::finished);
+}
+
+TEST_CASE("only the tasks given are run, so a resumed sweep skips what is done") {
+  Sweep sweep(1, {{4, 1.0}, {9, 2.0}});
+  std::vector<std::int64_t> order;
+  Worker worker(
+      sweep.network[1],
+      [&](std::int64_t task, const StopRequested&) {
+        order.push_back(task);
+        return TaskResult{TaskOutcome::ok, ""};
+      },
+      no_signal);
+  while (sweep.master.step() != Master::Step::finished) worker.step();
+  CHECK(order == std::vector<std::int64_t>{9, 4});
+}
+
+TEST_CASE("a report of a task that the worker does not have is a protocol error") {
+  Sweep sweep(2, tasks_of_cost({2, 1}));
+  sweep.master.step();
+  Inbox(sweep.network[1]).report(1);
+  CHECK_THROWS_WITH(sweep.master.step(), "rank 1 reports task 1, which it does not have");
+}
+
+TEST_CASE("a message of the wrong kind is a protocol error") {
+  Sweep sweep(1, tasks_of_cost({1}));
+  sweep.network[1].send(0, Finish{});
+  CHECK_THROWS_AS(sweep.master.step(), ProtocolError);
+}
+
+TEST_CASE("what a worker's body throws ends the worker") {
+  Sweep sweep(1, tasks_of_cost({1}));
+  Worker worker(
+      sweep.network[1],
+      [](std::int64_t, const StopRequested&) -> TaskResult { throw std::runtime_error("no space left on device"); },
+      no_signal);
+  sweep.master.step();
+  CHECK_THROWS_WITH(worker.step(), "no space left on device");
+}
+
+TEST_CASE("tasks of a batch are handed out together, eight at most and all of one batch") {
+  std::vector<PendingTask> tasks;
+  for (std::int64_t i = 0; i < 11; ++i) tasks.push_back({i, 5, i % 5 == 0 ? 1 : 0});  // 0, 5, 10 are of batch 1
+  tasks.push_back({11, 9, 1});                                                        // so is this, of another cost
+  tasks.push_back({12, 1, -1});
+  tasks.push_back({13, 1, -1});
+  Sweep sweep(1, tasks);
+  Inbox inbox(sweep.network[1]);
+  std::vector<std::vector<std::int64_t>> assigned;
+  while (sweep.master.step() != Master::Step::finished) {
+    assigned.push_back(inbox.assigned());
+    for (const std::int64_t task : assigned.back()) inbox.report(task);
+  }
+  CHECK(assigned == std::vector<std::vector<std::int64_t>>{{11}, {1, 2, 3, 4, 6, 7, 8, 9}, {0, 5, 10}, {12}, {13}});
+  CHECK(sweep.master.dispatch().left == 0);
+}
+
+TEST_CASE("a worker runs an assignment at once and reports each of its tasks") {
+  Sweep sweep(1, {{0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {3, 1, -1}});
+  std::vector<std::size_t> sizes;
+  const BatchBody body = [&](const std::vector<std::int64_t>& tasks, const StopRequested&) {
+    sizes.push_back(tasks.size());
+    std::vector<TaskResult> results(tasks.size(), {TaskOutcome::ok, ""});
+    if (tasks.size() == 3) results[1] = {TaskOutcome::diverged, "joint gap 12"};
+    return results;
+  };
+  Worker worker(sweep.network[1], body, no_signal);
+  while (sweep.master.step() != Master::Step::finished) worker.step();
+  CHECK(sizes == std::vector<std::size_t>{1, 3});
+  const Dispatch& dispatch = sweep.master.dispatch();
+  CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::ok)] == 3);
+  REQUIRE(dispatch.failures.size() == 1);
+  CHECK(dispatch.failures.front().task == 1);
+  CHECK(dispatch.failures.front().message == "joint gap 12");
+}

@@ -1,0 +1,100 @@
+// When a worker may hold a second task in its hand: simulated time, workers that take as long as tasks cost.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <deque>
+#include <random>
+
+#include "tests/runner/dispatch_examples.hpp"
+
+using namespace rodsweep;
+using namespace rodsweep::examples;
+
+namespace {
+
+struct Played {
+  double end = 0;  ///< when the last task was finished
+  double work = 0;
+  std::int64_t waits = 0;        ///< times a worker with an empty hand had to wait for the master
+  double idle_beside_hoard = 0;  ///< time in which a worker idled while a task waited in another's hand
+};
+
+/// Plays the sweep event by event; `seconds` tells how long a task really takes.
+Played play(int workers, const std::vector<PendingTask>& tasks, const std::vector<double>& seconds) {
+  Sweep sweep(workers, tasks);
+  struct Rank {
+    Inbox inbox;
+    std::deque<std::int64_t> hand;  // the first one runs
+    double end = 0;
+  };
+  std::vector<Rank> ranks;
+  for (int rank = 1; rank <= workers; ++rank) ranks.push_back({Inbox(sweep.network[rank]), {}, 0});
+
+  Played played;
+  for (double now = 0;;) {
+    const bool finished = sweep.master.step() == Master::Step::finished;
+    int idle = 0, hoarded = 0;
+    for (Rank& rank : ranks) {
+      const bool was_idle = rank.hand.empty();
+      for (const std::int64_t task : rank.inbox.assigned()) rank.hand.push_back(task);
+      if (was_idle && !rank.hand.empty()) {
+        rank.end = now + seconds[static_cast<std::size_t>(rank.hand.front())];
+        ++played.waits;
+      }
+      idle += rank.hand.empty();
+      hoarded += rank.hand.size() > 1;
+    }
+    if (finished) {
+      played.end = now;
+      return played;
+    }
+    Rank* next = nullptr;
+    for (Rank& rank : ranks)
+      if (!rank.hand.empty() && (next == nullptr || rank.end < next->end)) next = &rank;
+    if (idle > 0 && hoarded > 0) played.idle_beside_hoard += next->end - now;
+    now = next->end;
+    const std::int64_t task = next->hand.front();
+    next->hand.pop_front();
+    played.work += seconds[static_cast<std::size_t>(task)];
+    next->inbox.report(task);
+    if (!next->hand.empty()) next->end = now + seconds[static_cast<std::size_t>(next->hand.front())];
+  }
+}
+
+}  // namespace
+
+TEST_CASE("equal tasks: a worker finds its next task in its hand, except in the first and the last round") {
+  const std::vector<double> costs(1000, 1.0);
+  const Played played = play(4, tasks_of_cost(costs), costs);
+  CHECK(played.end == 250);
+  CHECK(played.waits <= 4 * 7);
+}
+
+TEST_CASE("the last long tasks are shared out, not held in hand") {
+  const std::vector<double> costs(8, 100.0);
+  const Played played = play(4, tasks_of_cost(costs), costs);
+  CHECK(played.end == 200);
+  CHECK(played.idle_beside_hoard == 0);
+}
+
+TEST_CASE("a long first task does not keep a short one waiting in the same hand") {
+  std::vector<double> costs(41, 1.0);
+  costs[0] = 20;
+  const Played played = play(3, tasks_of_cost(costs), costs);
+  CHECK(played.end == 20);
+  CHECK(played.idle_beside_hoard == 0);
+}
+
+TEST_CASE("no worker idles beside a task in another's hand, though costs are wrong by up to a factor of 1.4") {
+  const unsigned seed = GENERATE(1u, 2u, 3u, 4u, 5u, 6u);
+  const int workers = GENERATE(2, 5, 16);
+  std::mt19937 random(seed);
+  std::vector<double> costs(200), seconds(200);
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    costs[i] = std::exp(std::normal_distribution<double>(0, 1.5)(random));
+    seconds[i] = costs[i] * std::uniform_real_distribution<double>(1, 1.4)(random);
+  }
+  const Played played = play(workers, tasks_of_cost(costs), seconds);
+  CHECK(played.idle_beside_hoard == 0);
+  const double longest = *std::max_element(seconds.begin(), seconds.end());
+  CHECK(played.end <= played.work / workers + longest);
+}

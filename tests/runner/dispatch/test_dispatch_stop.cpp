@@ -1,0 +1,111 @@
+// Signals: what runs is abandoned, what is in hand comes back, nothing more is handed out, everybody leaves.
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "runner/dispatch/stop_signal.hpp"
+#include "tests/runner/dispatch_examples.hpp"
+
+using namespace rodsweep;
+using namespace rodsweep::examples;
+
+TEST_CASE("a signal to the master stops the sweep, and every task is accounted for") {
+  Sweep sweep(2, tasks_of_cost(std::vector<double>(100, 1.0)));
+  Inbox one(sweep.network[1]), two(sweep.network[2]);
+  sweep.master.step();
+  const auto ones = one.assigned(), twos = two.assigned();
+  REQUIRE(ones.size() == 2);
+  REQUIRE(twos.size() == 2);
+
+  sweep.signal = SIGTERM;
+  one.report(ones[0]);  // finished just before
+  CHECK(sweep.master.step() == Master::Step::worked);
+  CHECK(one.assigned().empty());
+  CHECK(two.assigned().empty());
+  CHECK(one.stops == 1);
+  CHECK(two.stops == 1);
+
+  one.report(ones[1], TaskOutcome::pending);
+  two.report(twos[0], TaskOutcome::pending);
+  CHECK(sweep.master.step() == Master::Step::worked);
+  two.report(twos[1], TaskOutcome::pending);
+  CHECK(sweep.master.step() == Master::Step::finished);
+  one.assigned();
+  CHECK(one.finishes == 1);
+  CHECK(one.stops == 1);
+  CHECK(sweep.master.dispatch().signal == SIGTERM);
+  CHECK(sweep.master.dispatch().left == 99);
+}
+
+TEST_CASE("a signal to a worker stops the whole sweep") {
+  Sweep sweep(2, tasks_of_cost(std::vector<double>(100, 1.0)));
+  int signal = 0;
+  std::int64_t completed = 0;
+  const TaskBody body = [&](std::int64_t, const StopRequested& stop) -> TaskResult {
+    if (completed == 5) signal = SIGUSR1;
+    if (stop()) return {};
+    ++completed;
+    return {TaskOutcome::ok, ""};
+  };
+  Worker signalled(sweep.network[1], body, [&] { return signal; });
+  Worker other(sweep.network[2], body, [] { return 0; });
+  while (sweep.master.step() != Master::Step::finished) {
+    signalled.step();
+    other.step();
+  }
+  CHECK(signalled.step() == Worker::Step::finished);
+  CHECK(other.step() == Worker::Step::finished);
+  CHECK(sweep.master.dispatch().signal == SIGUSR1);
+  CHECK(sweep.master.dispatch().left == 100 - completed);
+  CHECK(completed < 10);
+}
+
+TEST_CASE("a running task hears between two time steps that the sweep stops") {
+  Sweep sweep(1, tasks_of_cost({1, 1, 1}));
+  int steps = 0;
+  Worker worker(
+      sweep.network[1],
+      [&](std::int64_t, const StopRequested& stop) -> TaskResult {
+        for (; !stop(); ++steps)
+          if (steps == 3) sweep.network[0].send(1, Stop{});
+        return {};
+      },
+      [] { return 0; });
+  sweep.master.step();
+  worker.step();
+  CHECK(steps >= 3);
+  sweep.signal = SIGINT;
+  CHECK(sweep.master.step() == Master::Step::finished);
+  CHECK(sweep.master.dispatch().left == 3);
+}
+
+TEST_CASE("a lone rank keeps its master alive while a task runs") {
+  Sweep sweep(1, tasks_of_cost({1, 1}));
+  int steps = 0;
+  Worker worker(
+      sweep.network[1],
+      [&](std::int64_t, const StopRequested& stop) -> TaskResult {
+        sweep.signal = SIGTERM;
+        while (!stop()) ++steps;
+        return {};
+      },
+      [] { return 0; }, [&] { sweep.master.step(); });
+  while (sweep.master.step() != Master::Step::finished) worker.step();
+  CHECK(sweep.master.dispatch().left == 2);
+}
+
+TEST_CASE("a stop signal is noted, a second one changes nothing, and the old handler returns") {
+  struct sigaction before {
+  }, after{};
+  sigaction(SIGUSR1, nullptr, &before);
+  {
+    const StopSignal signal;
+    CHECK(signal.received() == 0);
+    raise(SIGUSR1);
+    CHECK(signal.received() == SIGUSR1);
+    raise(SIGTERM);
+    CHECK(signal.received() == SIGUSR1);
+  }
+  sigaction(SIGUSR1, nullptr, &after);
+  CHECK(after.sa_handler == before.sa_handler);
+  CHECK(StopSignal().received() == 0);
+}

@@ -1,0 +1,141 @@
+// Nearest neighbours and a network instead of the solve, from their files, in whole tasks.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "runner/experiment/evaluation.hpp"
+#include "runner/experiment/training_sets.hpp"
+#include "runner/training/model_file.hpp"
+#include "tests/runner/file_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_data(const fs::path& path, const Json& job) {
+  const Plan plan = plan_of(job);
+  ResultsFile file = ResultsFile::create(path, plan, test_provenance(), MPI_COMM_SELF);
+  for (const Task& task : plan.tasks()) {
+    TaskRecord record;
+    record.prepare(task, axis_sizes(plan));
+    evaluate(task, plan.spec(task.index), record, [] { return false; });
+    file.write(task, record);
+  }
+  file.close();
+}
+
+/// A network of random weights times `factor`.
+void write_model(const fs::path& path, float factor) {
+  CopingNetSettings settings;
+  settings.base = BaseGuess::none;
+  settings.latent = 16;
+  settings.best_length = false;
+  Model model{CopingNet<float>(settings, 1), {}};
+  for (float& weight : model.net.parameters().values()) weight *= factor;
+  ModelCard card;
+  card.name = "planted";
+  card.starts.push_back({test_provenance(), "", 0});
+  card.planned_epochs = card.best_epoch = 1;
+  card.epochs.push_back({1, 1, 1e-3, 0});
+  card.ending = Ending::complete;
+  ModelFile(path, false).save(card, model, std::nullopt);
+}
+
+/// The records of a job in `folder`.
+std::vector<TaskRecord> evaluated(const TemporaryFolder& folder, const Json& job) {
+  const Plan plan(parse_job(job.dump(), folder / "job.json"));
+  std::vector<TaskRecord> records;
+  for (const Task& task : plan.tasks()) {
+    records.emplace_back().prepare(task, axis_sizes(plan));
+    REQUIRE(evaluate(task, plan.spec(task.index), records.back(), [] { return false; }));
+  }
+  return records;
+}
+
+Json instead_of_the_solve(const std::string& model) {
+  Json job = without("/guesses", with("/solve", R"({"method": "end_to_end", "model": ")" + model + "\"}"));
+  job["evaluation"] = "closed_loop";
+  return job;
+}
+
+TEST_CASE("nearest neighbours know the simulations of their own data set, the first of which are enough") {
+  const TemporaryFolder folder;
+  Json data = data_job();
+  write_data(folder / "data.h5", data);
+  Json job = without("/record", data);
+  job["kind"] = "sweep";
+  job["guesses"] = Json::parse(R"(["zero", {"knn": {"data": "data.h5", "k": 1}},
+                                   {"knn": {"data": "data.h5", "simulations": 1}}])");
+  const TaskRecord record = evaluated(folder, job).front();
+  REQUIRE(record.outcome == TaskOutcome::ok);
+  for (const std::size_t t : {0, 1, 2, 3}) {
+    CHECK(record.counted.iterations[t] > 0);
+    CHECK(record.counted.cg_ratio[8 + t] == 0);
+    CHECK(record.counted.cg_ratio[16 + t] < 0.5);
+  }
+  CHECK(shared_knn_set(folder / "data.h5", 0) == shared_knn_set(folder / "data.h5", 0));
+  CHECK(shared_knn_set(folder / "data.h5", 1)->size(0) == data["time"]["steps"]);
+}
+
+TEST_CASE("a file that is no data set makes the task an error that says so") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "data.h5") << "not HDF5";
+  const auto records = evaluated(folder, with("/guesses", R"(["zero", {"knn": {"data": "data.h5"}}])"));
+  CHECK(records.front().outcome == TaskOutcome::error);
+  CHECK_THAT(records.front().message, Catch::Contains("data.h5"));
+}
+
+TEST_CASE("a network that says nothing lets the rod fall apart, which is data: rows without iterations") {
+  const TemporaryFolder folder;
+  write_model(folder / "silent.h5", 0);
+  const TaskRecord record = evaluated(folder, instead_of_the_solve("silent.h5")).front();
+  CHECK(record.outcome == TaskOutcome::ok);
+  CHECK(record.joint_gap.back() > record.joint_gap.front());
+  CHECK(record.joint_gap.front() > 0.001);
+  CHECK(record.step.front() == 0);
+  CHECK(record.newton.front() == 0);
+  CHECK(record.newton_residual.front() > 0);
+  CHECK(record.rhs_norm.front() > 0);
+  CHECK(record.iterations.empty());
+  CHECK(std::isnan(record.assemble_s.front()));
+  CHECK(record.rest_s.front() > 0);
+}
+
+TEST_CASE("a network moves every tree of a forest instead of the solve") {
+  const TemporaryFolder folder;
+  write_model(folder / "quiet.h5", 0.01F);
+  Json job = instead_of_the_solve("quiet.h5");
+  job["scene"] = forest_scene();
+  const TaskRecord record = evaluated(folder, job).front();
+  CHECK(record.outcome == TaskOutcome::ok);
+  CHECK(record.joint_gap.back() > record.joint_gap.front());
+  for (std::size_t rod = 0; rod < 2; ++rod) {
+    CHECK(record.rod[rod] == static_cast<int>(rod));
+    CHECK(record.newton_residual[rod] > 0);
+  }
+}
+
+TEST_CASE("a network whose answer is no number ends its task, and only that") {
+  const TemporaryFolder folder;
+  write_model(folder / "broken.h5", 1e30F);
+  Json job = instead_of_the_solve("broken.h5");
+  job["solve"] = {{"grid", {job["solve"], {{"method", "direct"}}}}};
+  const std::vector<TaskRecord> records = evaluated(folder, job);
+  CHECK(records[0].outcome == TaskOutcome::not_a_number);
+  CHECK_THAT(records[0].message, Catch::Contains("step 0: the network's answer is"));
+  CHECK(records[0].steps_done.front() == 0);
+  CHECK(records[1].outcome == TaskOutcome::ok);
+}
+
+TEST_CASE("a network that blows up is a simulation that diverged") {
+  const TemporaryFolder folder;
+  write_model(folder / "wild.h5", 10);
+  Json job = instead_of_the_solve("wild.h5");
+  job["time"]["steps"] = 200;
+  const TaskRecord record = evaluated(folder, job).front();
+  CHECK((record.outcome == TaskOutcome::diverged || record.outcome == TaskOutcome::not_a_number));
+  CHECK(record.steps_done.front() < 200);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,161 @@
+// One task evaluated: what its record says of guesses with a history, of solves that miss a tolerance, of the motion.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "runner/experiment/evaluation.hpp"
+#include "tests/runner/job_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr int steps = 5;
+constexpr std::size_t tolerances = 8;
+
+Json job_with(const std::string& guesses, const std::string& solve = "{}") {
+  Json job = with("/guesses", guesses, with("/solve", solve));
+  job["time"]["steps"] = steps;
+  return job;
+}
+
+TaskRecord evaluated(const Json& job, std::int64_t task = 0) {
+  const Plan plan = plan_of(job);
+  TaskRecord record;
+  record.prepare(plan.task(task), axis_sizes(plan));
+  REQUIRE(evaluate(plan.task(task), plan.spec(task), record, [] { return false; }));
+  return record;
+}
+
+TEST_CASE("a guess with a history starts from the steps before, from the second step on") {
+  const TaskRecord r = evaluated(job_with(R"(["zero", "previous"])"));
+  int with_history = 0;
+  for (std::size_t row = 0; row < r.newton.size(); ++row) {
+    if (r.newton[row] < 0) continue;
+    CHECK(r.initial_residual[2 * row] == Approx(1));
+    if (r.step[row] == 0) {
+      CHECK(r.initial_residual[2 * row + 1] == Approx(1));
+      CHECK(r.start_matvecs[2 * row + 1] == 0);
+    } else if (r.newton[row] == 0) {
+      CHECK(std::abs(r.initial_residual[2 * row + 1] - 1) > 1e-6);
+      CHECK(r.start_matvecs[2 * row + 1] == 1);
+      ++with_history;
+    }
+  }
+  CHECK(with_history == steps - 1);
+}
+
+TEST_CASE("a solve that misses a tolerance counts the iterations that it spent, and as unreached") {
+  const TaskRecord r = evaluated(job_with(R"(["zero"])", R"({"preconditioner": "none", "max_iterations": 2})"));
+  CHECK(r.outcome == TaskOutcome::ok);  // the direct solve advances the rod
+  std::int64_t solves = 0;
+  for (std::size_t row = 0; row < r.newton.size(); ++row) {
+    if (r.newton[row] < 0) continue;
+    ++solves;
+    CHECK(r.reason[row] == static_cast<std::int8_t>(SolveOutcome::iteration_limit));
+    CHECK(r.iterations[row * tolerances + tolerances - 1] == -1);
+  }
+  CHECK(r.counted_all.iterations.back() == 2 * solves);
+  CHECK(r.counted_all.unreached.back() == solves);
+  CHECK(r.counted.iterations.back() == 2 * steps);
+  CHECK(r.counted.unreached.back() == steps);
+  CHECK(evaluated(job_with(R"(["zero"])")).counted_all.unreached.back() == 0);
+}
+
+TEST_CASE("a system that is solved to rounding already takes no iteration, and is recorded as such") {
+  Json job = job_with(R"(["zero", "previous"])");
+  job["scene"]["gravity_m_s2"] = {0, 0, 0};
+  job["time"]["newton_tolerance"] = 0;
+  const TaskRecord r = evaluated(job);
+  CHECK(r.newton[0] == 0);
+  for (std::size_t guess = 0; guess < 2; ++guess) {
+    CHECK(r.reason[guess] == static_cast<std::int8_t>(SolveOutcome::zero_rhs));
+    CHECK(r.iterations[guess * tolerances + tolerances - 1] == 0);
+    CHECK(std::isnan(r.counted_all.cg_ratio[guess * tolerances]));
+  }
+}
+
+TEST_CASE("steps and frames of a falling rod have its times, energies, length and poses") {
+  Json job = job_with(R"(["zero"])");
+  job["record"] = {{"trajectory_every", 2}};
+  const TaskRecord r = evaluated(job);
+  CHECK(r.steps_done[0] == steps);
+  for (std::size_t step = 0; step < steps; ++step) {
+    CHECK(r.time_s[step] == Approx(0.02 * static_cast<double>(step + 1)));
+    CHECK(std::abs(r.length_drift[step]) < 1e-3);
+    CHECK(r.kinetic_energy_j[step] > 0);
+    CHECK(r.elastic_energy_j[step] > 0);
+    CHECK(r.potential_energy_j[step] < 0);
+    CHECK(r.step_newton_residual[step] > 0);
+    CHECK(r.step_newton_residual[step] < 1e-9);
+    CHECK(r.momentum_kg_m_s[3 * step + 1] < 0);
+    CHECK(std::abs(r.momentum_kg_m_s[3 * step + 2]) < 1e-9);
+    CHECK(r.angular_momentum_kg_m2_s[3 * step + 2] < 0);
+  }
+  CHECK(r.frame_time_s == std::vector<double>{0, 0.04, 0.08});
+  CHECK(r.first_row == std::vector<std::int64_t>{0, 10, 20});
+  const double half = std::sqrt(0.5);  // local z along x: a quarter turn about y, (w, x, y, z)
+  const double along_x[] = {half, 0, half, 0};
+  for (std::size_t i = 0; i < 4; ++i) CHECK(r.orientation[i] == Approx(along_x[i]).margin(1e-12));
+  CHECK(r.position_m[3 * 9] == Approx(1.9));  // the last of ten segments of a rod of 2 m
+  CHECK(r.position_m[3 * 29 + 1] < r.position_m[3 * 19 + 1]);
+}
+
+TEST_CASE("a recorded trajectory says how long, thick and free its segments are, rod after rod") {
+  Json job = job_with(R"(["zero"])");
+  job["scene"]["clamp"] = "wall";
+  CHECK(evaluated(job).segment_radius_m.empty());
+  job["record"] = {{"trajectory_every", 2}};
+  const TaskRecord r = evaluated(job);
+  std::vector<double> lengths(11, 0.2), radii(11, 0.05);  // a rod of 2 m, ten segments
+  lengths[0] = radii[0] = 0;                              // and its wall
+  REQUIRE(r.segment_length_m.size() == lengths.size());
+  for (std::size_t i = 0; i < lengths.size(); ++i) CHECK(r.segment_length_m[i] == Approx(lengths[i]).margin(1e-15));
+  CHECK(r.segment_radius_m == radii);
+  CHECK(r.segment_rod == std::vector<std::int16_t>(11, 0));
+  std::vector<std::int8_t> held(11, 0);
+  held[0] = 1;
+  CHECK(r.segment_static == held);
+}
+
+TEST_CASE("contacts and the deepest penetration are recorded where rods touch, and are not there where they cannot") {
+  Json job = job_with(R"(["zero"])");
+  job["scene"] = Json::parse(R"({"type": "falling_rods", "rods": 1, "segments": 4, "length_m": 1, "height_m": 0.11,
+                                 "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6,
+                                 "torsion_modulus_pa": 1e6, "contact": {"grid": ["none", {}]}})");
+  job["time"]["steps"] = 10;  // 6 cm of air take 0.11 s
+  const TaskRecord none = evaluated(job, 0), touching = evaluated(job, 1);
+  CHECK(none.contacts == std::vector<std::int32_t>(10, -1));
+  CHECK(std::isnan(none.penetration.back()));
+  CHECK(std::isnan(none.deepest_penetration[0]));
+  CHECK(std::isnan(none.contact_residual.back()));
+  CHECK(touching.contacts.front() == 0);
+  CHECK(touching.penetration.front() == 0);
+  CHECK(touching.contacts.back() > 0);
+  CHECK(touching.deepest_penetration[0] == *std::max_element(touching.penetration.begin(), touching.penetration.end()));
+  CHECK(touching.deepest_penetration[0] < 1e-2);
+  CHECK(touching.contact_residual.front() == 0);
+  CHECK(touching.contact_residual.back() < 1e-2);
+  job["scene"]["contact"] = "none";
+  CHECK(evaluated(job).contacts.empty());
+}
+
+TEST_CASE("a rod that blows up and a task out of time end with what was done") {
+  Json wild = job_with(R"(["zero"])");
+  wild["scene"]["tip_force_n"] = {0, 1e12, 0};
+  wild["time"]["newton_iterations"] = 1;
+  const TaskRecord blown = evaluated(wild);
+  CHECK(blown.outcome == TaskOutcome::diverged);
+  CHECK_THAT(blown.message, Catch::Matchers::Contains("step 0: a joint is open by"));
+  CHECK(blown.steps_done[0] == 1);
+  CHECK(std::isnan(blown.time_s[1]));
+
+  Json slow = job_with(R"(["zero"])");
+  slow["task_time_limit_s"] = 1e-9;
+  const TaskRecord late = evaluated(slow);
+  CHECK(late.outcome == TaskOutcome::timed_out);
+  CHECK_THAT(late.message, Catch::Matchers::Contains("task_time_limit_s"));
+  CHECK(late.steps_done[0] == 0);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,84 @@
+// Whole tasks that Gauss-Seidel advances: what their records hold, beside the direct solve's.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "runner/experiment/evaluation.hpp"
+#include "tests/runner/job_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+TaskRecord evaluated(const std::string& solve, Json job = small_job()) {
+  job.erase("guesses");
+  job["evaluation"] = "closed_loop";
+  job["solve"] = Json::parse(solve);
+  const Plan plan = plan_of(job);
+  TaskRecord record;
+  record.prepare(plan.tasks().front(), axis_sizes(plan));
+  REQUIRE(evaluate(plan.tasks().front(), plan.spec(0), record, [] { return false; }));
+  return record;
+}
+
+TEST_CASE("a task of xpbd holds the residual of every iteration, and the state and time of every step") {
+  const TaskRecord record = evaluated(R"({"method": "xpbd", "iterations": 30})");
+  REQUIRE(record.outcome == TaskOutcome::ok);
+  REQUIRE(record.newton_residual.size() == 10 * 30);
+  for (std::size_t row = 0; row < record.newton.size(); ++row) {
+    CHECK(record.step[row] == static_cast<int>(row) / 30);
+    CHECK(record.newton[row] == static_cast<int>(row) % 30);
+  }
+  for (std::size_t step = 0; step < 10; ++step) {
+    CHECK(record.newton_residual[30 * step + 29] < record.newton_residual[30 * step]);
+    CHECK(record.newton_iterations[step] == 30);
+    CHECK(record.rest_s[step] > 0);
+    CHECK(record.joint_gap[step] > 0);
+  }
+  CHECK(std::isnan(record.rhs_norm.front()));
+  CHECK(std::isnan(record.assemble_s.front()));
+  CHECK(record.iterations.empty());
+}
+
+TEST_CASE("xpbd with many iterations takes the steps of the direct solve, pbd does not") {
+  Json job = small_job();
+  job["time"] = {{"step_s", 0.002}, {"steps", 5}, {"newton_tolerance", 1e-12}};
+  const TaskRecord direct = evaluated(R"({"method": "direct"})", job);
+  const TaskRecord xpbd = evaluated(R"({"method": "xpbd", "iterations": 10000})", job);
+  const TaskRecord pbd = evaluated(R"({"method": "pbd", "iterations": 100})", job);
+  for (std::size_t step = 0; step < 5; ++step) {
+    CHECK(xpbd.newton_iterations[step] < 10000);
+    CHECK(xpbd.step_newton_residual[step] < 1e-12);
+    CHECK(xpbd.kinetic_energy_j[step] == Approx(direct.kinetic_energy_j[step]).epsilon(1e-4));
+    CHECK(pbd.kinetic_energy_j[step] < 0.9 * direct.kinetic_energy_j[step]);
+  }
+}
+
+TEST_CASE("every tree of a forest takes the steps of the direct solve under xpbd, and sags under pbd too") {
+  Json job = small_job();
+  job["scene"] = forest_scene();
+  job["time"] = {{"step_s", 0.002}, {"steps", 5}, {"newton_tolerance", 1e-10}};
+  const TaskRecord direct = evaluated(R"({"method": "direct"})", job);
+  const TaskRecord xpbd = evaluated(R"({"method": "xpbd", "iterations": 3000})", job);
+  const TaskRecord pbd = evaluated(R"({"method": "pbd", "iterations": 20})", job);
+  REQUIRE(direct.outcome == TaskOutcome::ok);
+  REQUIRE(xpbd.outcome == TaskOutcome::ok);
+  REQUIRE(pbd.outcome == TaskOutcome::ok);
+  for (std::size_t step = 0; step < 5; ++step) {
+    CHECK(xpbd.kinetic_energy_j[step] == Approx(direct.kinetic_energy_j[step]).epsilon(1e-3));
+    CHECK(pbd.kinetic_energy_j[step] > 0);
+    CHECK(pbd.joint_gap[step] < 1e-2);
+  }
+  for (std::size_t rod = 0; rod < 2; ++rod) {
+    CHECK(pbd.rod[rod] == static_cast<int>(rod));
+    CHECK(pbd.newton_residual[rod] > 0);
+  }
+}
+
+TEST_CASE("summaries of Gauss-Seidel have steps and no rows of iterations") {
+  const TaskRecord record = evaluated(R"({"method": "pbd"})", with("/record", R"({"solves": "summary"})"));
+  CHECK(record.outcome == TaskOutcome::ok);
+  CHECK(record.newton_residual.empty());
+  CHECK(record.step_newton_residual.back() > 0);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,85 @@
+// What goes wrong in a task is an outcome that is written; what goes wrong in writing is not.
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "runner/experiment/task_body.hpp"
+#include "tests/runner/job_examples.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+bool never() { return false; }
+
+struct Written {
+  std::int64_t task;
+  TaskOutcome outcome;
+  std::string message;
+  std::int32_t steps_done;
+};
+
+struct Writer {
+  std::vector<Written> rows;
+  WriteRecord writes() {
+    return [this](const Task& task, const TaskRecord& record) {
+      rows.push_back({task.index, record.outcome, record.message, record.steps_done.at(0)});
+    };
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a record that was filled is written and its outcome returned") {
+  const Plan plan = plan_of(small_job());
+  Writer writer;
+  TaskBody body = task_body(
+      plan,
+      [](const Task&, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
+        record.outcome = TaskOutcome::diverged;
+        record.message = "joint gap 12";
+        record.steps_done[0] = spec.time.steps;
+        return true;
+      },
+      writer.writes());
+  const TaskResult result = body(0, never);
+  CHECK(result.outcome == TaskOutcome::diverged);
+  CHECK(result.message == "joint gap 12");
+  REQUIRE(writer.rows.size() == 1);
+  CHECK(writer.rows[0].outcome == TaskOutcome::diverged);
+  CHECK(writer.rows[0].steps_done == 10);
+}
+
+TEST_CASE("a task that throws is an error with its message, written with sentinels") {
+  const Plan plan = plan_of(small_job());
+  Writer writer;
+  TaskBody body = task_body(
+      plan,
+      [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) -> bool {
+        record.steps_done[0] = 3;
+        throw std::runtime_error("the matrix has no diagonal");
+      },
+      writer.writes());
+  CHECK(body(0, never).outcome == TaskOutcome::error);
+  REQUIRE(writer.rows.size() == 1);
+  CHECK(writer.rows[0].outcome == TaskOutcome::error);
+  CHECK(writer.rows[0].message == "the matrix has no diagonal");
+  CHECK(writer.rows[0].steps_done == -1);
+}
+
+TEST_CASE("an abandoned task is not written") {
+  const Plan plan = plan_of(small_job());
+  Writer writer;
+  TaskBody body = task_body(
+      plan, [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested& stop) { return !stop(); },
+      writer.writes());
+  CHECK(body(0, [] { return true; }).outcome == TaskOutcome::pending);
+  CHECK(writer.rows.empty());
+}
+
+TEST_CASE("a failing write is no outcome of the task") {
+  const Plan plan = plan_of(small_job());
+  TaskBody body = task_body(
+      plan, [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested&) { return true; },
+      [](const Task&, const TaskRecord&) { throw std::runtime_error("no space left on device"); });
+  CHECK_THROWS_WITH(body(0, never), "no space left on device");
+}

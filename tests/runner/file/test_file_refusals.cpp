@@ -1,0 +1,223 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "runner/file/hdf5.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/layout.hpp"
+#include "tests/runner/file_examples.hpp"
+
+using namespace rodsweep;
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string creation_refusal(const fs::path& path, const Plan& plan, const FreeSpace& space = free_bytes) {
+  return message_of<FileError>([&] { ResultsFile::create(path, plan, test_provenance(), MPI_COMM_SELF, space); });
+}
+
+std::string resume_refusal(const fs::path& path, const Plan& plan) {
+  const std::string before = fs::is_regular_file(path) ? bytes_of(path) : "";
+  const std::string text =
+      message_of<FileError>([&] { ResultsFile::resume(path, plan, test_provenance(), MPI_COMM_SELF); });
+  const bool untouched = !fs::is_regular_file(path) || bytes_of(path) == before;
+  CHECK(untouched == !text.empty());
+  return text;
+}
+
+std::string inspect_refusal(const fs::path& path) {
+  return message_of<FileError>([&] { inspect(path); });
+}
+
+std::size_t entries(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("a file that exists is refused, untouched, with the two ways on") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.h5") << "precious";
+  const std::string path = (folder / "a.h5").native();
+  CHECK(creation_refusal(path, plan_of(full_job())) ==
+        path +
+            " exists already and is never overwritten: continue it with --resume, or name another file with -o FILE");
+  CHECK(bytes_of(path) == "precious");
+  CHECK(entries(folder.path()) == 1);
+}
+
+TEST_CASE("a dangling link counts as a file that exists") {
+  const TemporaryFolder folder;
+  fs::create_symlink(folder / "nowhere", folder / "a.h5");
+  CHECK_THAT(creation_refusal(folder / "a.h5", plan_of(full_job())), Contains("exists already"));
+}
+
+TEST_CASE("a file that appears while ours is being made is not replaced") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.h5";
+  const std::string text = creation_refusal(path, plan_of(full_job()), [&](const fs::path& where) {
+    std::ofstream(path) << "another's";
+    return free_bytes(where);
+  });
+  CHECK_THAT(text, Contains("exists already and is never overwritten"));
+  CHECK(bytes_of(path) == "another's");
+  CHECK(entries(folder.path()) == 1);
+}
+
+TEST_CASE("a disk that is too full is refused before anything is created") {
+  const TemporaryFolder folder;
+  const std::string text =
+      creation_refusal(folder / "a.h5", plan_of(full_job()), [](const fs::path&) { return std::uintmax_t{12345}; });
+  CHECK_THAT(text, StartsWith((folder / "a.h5").native() + " needs ") &&
+                       Contains("kB, but only 12.3 kB are free in " + folder.path().native()) && Contains("-o FILE") &&
+                       Contains("record.solves"));
+  CHECK(entries(folder.path()) == 0);
+}
+
+TEST_CASE("a folder that cannot be made or written is refused") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "file") << "x";
+  CHECK_THAT(creation_refusal(folder / "file/a.h5", plan_of(full_job())),
+             Contains("cannot be created: its folder cannot be made") && Contains("Not a directory"));
+  CHECK(creation_refusal(folder / "new/folder/a.h5", plan_of(full_job())) == "");
+  CHECK(fs::exists(folder / "new/folder/a.h5"));
+}
+
+TEST_CASE("a path that the system or MPI-IO cannot take is refused with the reason") {
+  const TemporaryFolder folder;
+  CHECK_THAT(creation_refusal(folder / (std::string(300, 'a') + ".h5"), plan_of(full_job())),
+             Contains("this path has") && Contains("and 230 is the most that MPI-IO takes") && Contains("-o FILE"));
+  const fs::path longest = folder / (std::string(200 - folder.path().native().size(), 'b') + "/" + "c/d/e/f/g/h.h5");
+  CHECK(creation_refusal(longest, plan_of(full_job())) == "");
+  CHECK(fs::exists(longest));
+  CHECK_THAT(resume_refusal(folder / std::string(231, 'a'), plan_of(full_job())), Contains("230 is the most"));
+  std::error_code error;
+  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec, error);
+  if (geteuid() != 0) {  // root may write everywhere
+    const std::string text = creation_refusal(folder / "a.h5", plan_of(full_job()));
+    CHECK(text == (folder / "a.h5").native() + " cannot be created: Permission denied");
+  }
+  fs::permissions(folder.path(), fs::perms::owner_all, error);
+}
+
+TEST_CASE("what is not a results file is refused with what it is") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "text.h5") << "no HDF5 at all";
+  { hdf5::create_file(folder / "foreign.h5"); }
+  std::ofstream(folder / "empty.h5");
+  const Plan plan = plan_of(full_job());
+  for (const auto& refusal : {+[](const fs::path&path, const Plan&p) { return resume_refusal(path, p); },
+                              +[](const fs::path&path, const Plan&) { return inspect_refusal(path); }}) {
+    const auto text = [&](const std::string& name) {
+      std::string message = refusal(folder / name, plan);
+      REQUIRE_THAT(message, StartsWith((folder / name).native()));
+      return message.substr((folder / name).native().size());
+    };
+    CHECK(text("missing.h5") == ": there is no such file");
+    CHECK(text("text.h5") == " is not an HDF5 file");
+    CHECK(text("empty.h5") == " is not an HDF5 file");
+    CHECK(text("foreign.h5") == " is an HDF5 file, but not one of rodsweep's results");
+    CHECK(text("") == " is not a file");
+  }
+}
+
+TEST_CASE("a truncated results file is refused as damaged") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "a.h5", plan, 2);
+  fs::resize_file(folder / "a.h5", fs::file_size(folder / "a.h5") / 2);
+  CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("a.h5 is damaged or incomplete") && Contains("truncated file"));
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan), Contains("a.h5 is damaged or incomplete"));
+}
+
+TEST_CASE("a results file without one of its datasets is refused by name") {
+  const TemporaryFolder folder;
+  make_file(folder / "a.h5", plan_of(full_job()), 2);
+  {
+    const hdf5::File file = hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR);
+    REQUIRE(H5Ldelete(file.id(), "/tasks/state", H5P_DEFAULT) >= 0);
+  }
+  CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("damaged or incomplete") && Contains("/tasks/state"));
+}
+
+TEST_CASE("a state byte that is neither 0 nor 1 is damage") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "a.h5", plan, 2);
+  hdf5::write_row<std::uint8_t>(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/tasks/state", 4, 7);
+  CHECK_THAT(inspect_refusal(folder / "a.h5"), EndsWith("/tasks/state of task 4 is 7, neither 0 nor 1"));
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan), EndsWith("/tasks/state of task 4 is 7, neither 0 nor 1"));
+}
+
+TEST_CASE("a file of another schema version is refused with both versions") {
+  const TemporaryFolder folder;
+  make_file(folder / "a.h5", plan_of(full_job()), 0);
+  {
+    const hdf5::File file = hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR);
+    REQUIRE(H5Adelete(file.id(), "schema_version") >= 0);
+    hdf5::write_attribute(file.id(), "schema_version", 99);
+  }
+  CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("has schema version 99, and this rodsweep knows version 1"));
+}
+
+TEST_CASE("resume with another job is refused with the line that differs") {
+  const TemporaryFolder folder;
+  const auto plan_of_text = [](const std::string& text) { return Plan(parse_job(text, "other.json")); };
+  const std::string job = full_job().dump(2);
+  make_file(folder / "a.h5", plan_of_text(job), 3);
+  std::string other = job;
+  other.replace(other.find("\"seed\": 3"), 9, "\"seed\": 4");
+  const std::string text = resume_refusal(folder / "a.h5", plan_of_text(other));
+  CHECK_THAT(text, Contains("a.h5 holds the results of another job than other.json; they differ first in line") &&
+                       Contains("other.json:   \"seed\": 4") && Contains("a.h5:   \"seed\": 3") &&
+                       Contains("/job/text") && Contains("-o FILE"));
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan_of_text(job + "\n\n")), Contains("(end)"));
+}
+
+TEST_CASE("resume with a program that expands the job differently is refused with the difference") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  const fs::path path = folder / "a.h5";
+  make_file(path, plan, 3);
+  const std::string length = "/tasks/parameters/scene.length_m";
+  auto lengths = hdf5::read_all<double>(hdf5::open_file(path, H5F_ACC_RDONLY).id(), length);
+
+  SECTION("another value of a parameter") {
+    lengths[4] *= 1.001;
+    hdf5::write_all(hdf5::open_file(path, H5F_ACC_RDWR).id(), length, lengths);
+    CHECK_THAT(resume_refusal(path, plan), Contains("expands it differently (revision " + source_revision() + ")") &&
+                                               Contains("scene.length_m of task 4 is"));
+  }
+  SECTION("last digits of a parameter do not matter") {
+    lengths[4] *= 1 + 1e-14;
+    hdf5::write_all(hdf5::open_file(path, H5F_ACC_RDWR).id(), length, lengths);
+    CHECK(resume_refusal(path, plan) == "");
+  }
+  SECTION("another list of tasks") {
+    {
+      const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
+      const hdf5::Object job(H5Oopen(file.id(), "/job", H5P_DEFAULT));
+      REQUIRE(H5Adelete(job.id(), "plan_hash") >= 0);
+      hdf5::write_attribute(job.id(), "plan_hash", "0123456789abcdef");
+    }
+    CHECK_THAT(resume_refusal(path, plan), Contains("its list of tasks is another"));
+  }
+}
+
+TEST_CASE("a sweep does not go on with another file under a name in its job") {
+  const TemporaryFolder folder;
+  const auto plan = [&] {
+    const Json job = with("/guesses", R"(["zero", {"knn": {"data": "data.h5"}}])", full_job());
+    return Plan(parse_job(job.dump(), folder / "job.json"));
+  };
+  std::ofstream(folder / "data.h5") << "systems";
+  make_file(folder / "a.h5", plan(), 3);
+  CHECK(resume_refusal(folder / "a.h5", plan()) == "");
+  std::ofstream(folder / "data.h5") << "other systems";
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan()), Contains("the files that the job names have changed"));
+}

@@ -1,0 +1,195 @@
+#include <catch2/catch.hpp>
+
+#include "runner/file/hdf5.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/layout.hpp"
+#include "tests/runner/file_examples.hpp"
+
+using namespace rodsweep;
+using Catch::Matchers::Contains;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+ResultsFile resume(const fs::path& path, const Plan& plan) {
+  return ResultsFile::resume(path, plan, test_provenance(), MPI_COMM_SELF);
+}
+
+void flip_bit(const fs::path& path, const std::string& dataset, std::size_t byte) {
+  const haddr_t offset =
+      H5Dget_offset(hdf5::open_dataset(hdf5::open_file(path, H5F_ACC_RDONLY).id(), dataset).id()) + byte;
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(offset));
+  const char changed = static_cast<char>(file.get() ^ 4);
+  file.seekp(static_cast<std::streamoff>(offset));
+  file.put(changed);
+}
+
+}  // namespace
+
+TEST_CASE("a resumed file knows what is done and is the same in the end as one written at once") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "whole.h5", plan, plan.size());
+  make_file(folder / "parts.h5", plan, 2);
+  {
+    ResultsFile file = resume(folder / "parts.h5", plan);
+    CHECK(file.done() == std::vector<std::uint8_t>{1, 1, 0, 0, 0, 0});
+    CHECK(file.attempt() == 1);
+    CHECK(file.note() == "");
+    file.write(plan.task(5), synthetic_record(plan, 5));
+  }  // without close(): as good
+  {
+    ResultsFile file = resume(folder / "parts.h5", plan);
+    CHECK(file.done() == std::vector<std::uint8_t>{1, 1, 0, 0, 0, 1});
+    for (const std::int64_t i : {4, 3, 2}) file.write(plan.task(i), synthetic_record(plan, i));
+  }
+  const bool same = reproducible_bytes(folder / "parts.h5", plan) == reproducible_bytes(folder / "whole.h5", plan);
+  CHECK(same);
+  const FileSummary summary = inspect(folder / "parts.h5");
+  REQUIRE(summary.runs.size() == 3);
+  CHECK(summary.runs[0].tasks == 2);
+  CHECK(summary.runs[1].tasks == 1);
+  CHECK(summary.runs[2].tasks == 3);
+}
+
+TEST_CASE("a complete task is never written again") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "a.h5", plan, 2);
+  const auto before = reproducible_bytes(folder / "a.h5", plan);
+  ResultsFile file = resume(folder / "a.h5", plan);
+  CHECK_THAT(message_of<std::logic_error>([&] { file.write(plan.task(1), synthetic_record(plan, 0)); }),
+             Contains("task 1 is complete") && Contains("must not be written again"));
+  const bool untouched = reproducible_bytes(folder / "a.h5", plan) == before;
+  CHECK(untouched);
+}
+
+TEST_CASE("a sweep can be resumed more often than /runs has rows, and says so") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "a.h5", plan, 0);
+  hdf5::write_texts(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/runs/begin",
+                    std::vector<std::string>(run_rows, "2025-01-01T00:00:00Z"));
+  ResultsFile file = resume(folder / "a.h5", plan);
+  CHECK(file.attempt() == run_rows - 1);
+  CHECK_THAT(file.note(), Contains("was started 64 times before") && Contains("/runs"));
+  const FileSummary summary = inspect(folder / "a.h5");
+  CHECK(summary.runs.size() == run_rows);
+  CHECK(summary.runs.back().provenance.begin_utc != "2025-01-01T00:00:00Z");
+}
+
+TEST_CASE("status can be read while the sweep writes") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  ResultsFile file = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
+  FileSummary summary = inspect(folder / "a.h5");
+  CHECK(summary.job_name == "small");
+  CHECK(summary.job_text == plan.job().text);
+  CHECK(summary.tasks == 6);
+  CHECK(summary.pending == 6);
+  CHECK(summary.guesses == std::vector<std::string>{"zero", "previous"});
+  REQUIRE(summary.runs.size() == 1);
+  CHECK(summary.runs[0].exit_code == -1);
+  CHECK(summary.runs[0].end_utc == "");
+
+  file.write(plan.task(0), synthetic_record(plan, 0));
+  TaskRecord failed = synthetic_record(plan, 4);
+  failed.outcome = TaskOutcome::diverged;
+  failed.message = "joint gap of 3 lengths at step 2";
+  failed.elapsed_s = {std::numeric_limits<double>::quiet_NaN()};
+  file.write(plan.task(4), failed);
+  file.end_run("2025-01-02T03:04:05Z", 4);
+  summary = inspect(folder / "a.h5");
+  CHECK(summary.done == 2);
+  CHECK(summary.failed == 1);
+  CHECK(summary.pending == 4);
+  CHECK(summary.done_by_outcome == std::map<std::string, std::int64_t>{{"ok", 1}, {"diverged", 1}});
+  REQUIRE(summary.failures.size() == 1);
+  CHECK(summary.failures[0].index == 4);
+  CHECK(summary.failures[0].outcome == "diverged");
+  CHECK(summary.failures[0].message == "joint gap of 3 lengths at step 2");
+
+  const RunRow& run = summary.runs.at(0);
+  CHECK(run.end_utc == "2025-01-02T03:04:05Z");
+  CHECK(run.exit_code == 4);
+  CHECK(run.tasks == 2);
+  CHECK(run.task_seconds == synthetic_record(plan, 0).elapsed_s.at(0));
+  CHECK(run.provenance.ranks == 2);
+  CHECK(run.provenance.host == host_name());
+  CHECK(run.provenance.user_command == "rodsweep run job.json");
+  CHECK(run.provenance.revision == source_revision());
+  CHECK(run.provenance.versions == library_versions());
+}
+
+TEST_CASE("a long message is cut, not refused") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  ResultsFile file = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
+  TaskRecord record = synthetic_record(plan, 0);
+  record.outcome = TaskOutcome::error;
+  record.message = std::string(1000, 'x');
+  file.write(plan.task(0), record);
+  CHECK(inspect(folder / "a.h5").failures.at(0).message == std::string(message_bytes, 'x'));
+  CHECK(verify(folder / "a.h5").damaged.empty());
+}
+
+TEST_CASE("verification finds one flipped bit in the data of a complete task") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  const fs::path path = folder / "a.h5";
+  make_file(path, plan, 4);
+  CHECK(verify(path).checked == 4);
+  CHECK(verify(path).damaged.empty());
+
+  const AxisSizes sizes = axis_sizes(plan);
+  const auto first_byte = [&](const Task& task, std::int64_t width_bytes) {
+    return static_cast<std::size_t>(task.first_solve * width_bytes);
+  };
+  SECTION("in a row of a solve") {
+    flip_bit(path, "/solves/iterations", first_byte(plan.task(2), sizes.guesses * sizes.tolerances * 2) + 5);
+    CHECK(verify(path).damaged == std::vector<std::int64_t>{2});
+  }
+  SECTION("in the message") {
+    flip_bit(path, "/tasks/message", 3 * message_bytes);
+    CHECK(verify(path).damaged == std::vector<std::int64_t>{3});
+  }
+  SECTION("in the checksum itself") {
+    flip_bit(path, "/tasks/checksum", 0);
+    CHECK(verify(path).damaged == std::vector<std::int64_t>{0});
+  }
+  SECTION("not in a pending task, nor in times") {
+    flip_bit(path, "/solves/iterations", first_byte(plan.task(4), sizes.guesses * sizes.tolerances * 2));
+    flip_bit(path, "/timing/solves/cg_s", 0);
+    CHECK(verify(path).damaged.empty());
+  }
+}
+
+TEST_CASE("two records that differ in one value have different checksums") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  const auto checksum = [&](const std::string& name, const TaskRecord& record) {
+    {
+      ResultsFile file = ResultsFile::create(folder / name, plan, test_provenance(), MPI_COMM_SELF);
+      file.write(plan.task(0), record);
+    }
+    return hdf5::read_all<std::uint64_t>(hdf5::open_file(folder / name, H5F_ACC_RDONLY).id(), "/tasks/checksum").at(0);
+  };
+  TaskRecord record = synthetic_record(plan, 0);
+  const std::uint64_t first = checksum("a.h5", record);
+  record.elapsed_s[0] += 1;
+  CHECK(checksum("b.h5", record) == first);
+  record.length_drift[1] += 1e-16 + record.length_drift[1] * 1e-15;
+  CHECK(checksum("c.h5", record) != first);
+}
+
+TEST_CASE("provenance tells when, where and with what") {
+  const Provenance here = provenance_of_this_process("rodsweep run a.json");
+  CHECK_THAT(here.begin_utc, Catch::Matchers::Matches("20\\d\\d-\\d\\d-\\d\\dT\\d\\d:\\d\\d:\\d\\dZ"));
+  CHECK_FALSE(here.host.empty());
+  CHECK_FALSE(here.revision.empty());
+  for (const char* part : {"rodsweep ", "MPI", "PETSc 3.", "HDF5 1.", "Eigen 3.", "++ "}) {
+    CHECK_THAT(here.versions, Contains(part));
+  }
+}

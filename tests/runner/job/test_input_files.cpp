@@ -1,0 +1,69 @@
+// Files that a job names: found beside the job, refused with a reason, part of what a task is.
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "tests/runner/job_folder.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+Json learned(const std::string& model) {
+  return with("/guesses", R"(["zero", {"copingnet": {"model": ")" + model + R"("}}])");
+}
+
+TEST_CASE("a model is found beside the job, whatever the current folder, and names its guess") {
+  const JobFolder folder;
+  folder.write("models/bending.h5", "weights");
+  const Plan plan(folder.job(learned("models/bending.h5")));
+  CHECK(plan.guess_labels().back() == "copingnet bending");
+  CHECK(fs::equivalent(plan.spec(0).guesses.back().model, folder.path() / "models/bending.h5"));
+}
+
+TEST_CASE("a file that cannot be read is refused with key, path and reason") {
+  const JobFolder folder;
+  CHECK(folder.refusal(learned("models/none.h5")) ==
+        (folder.path() / "job.json").native() + ": guesses[1].copingnet.model: \"models/none.h5\" is not allowed: " +
+            (folder.path() / "models/none.h5").native() +
+            " cannot be read: No such file or directory; the path is relative to the job file's folder");
+  CHECK_THAT(folder.refusal(learned("models")), Catch::Contains("is a folder"));
+  CHECK_THAT(folder.refusal(learned("")), Catch::Contains("must be the path of a file"));
+}
+
+TEST_CASE("a file that is missing may come from a job beside, and may be missing in a job that is only looked at") {
+  const JobFolder folder;
+  folder.write("data.json", "{}");
+  CHECK_THAT(folder.refusal(learned("../results/data.h5")),
+             Catch::Contains("is not there; does " + (folder.path() / "data.json").native() + " make it?"));
+  const Job job = parse_job(learned("none.h5").dump(), folder.path() / "job.json", MissingFiles::accepted);
+  CHECK(job.files.at("none.h5").hash.empty());
+}
+
+TEST_CASE("what a task is depends on what its files hold, not on their names") {
+  const JobFolder folder;
+  folder.write("a.h5", "weights");
+  folder.write("b.h5", "weights");
+  const auto identity = [&](const char* model) { return Plan(folder.job(learned(model))).identity(0); };
+  const TaskIdentity before = identity("a.h5");
+  CHECK(identity("b.h5").guesses == before.guesses);
+  folder.write("a.h5", "other weights");
+  CHECK(identity("a.h5").guesses != before.guesses);
+  CHECK(identity("a.h5").guesses.front() == before.guesses.front());
+  CHECK(identity("a.h5").trajectory == before.trajectory);
+}
+
+TEST_CASE("models can be swept") {
+  const JobFolder folder;
+  folder.write("a.h5", "one");
+  folder.write("b.h5", "two");
+  const Plan plan(folder.job(
+      with("/guesses", R"(["zero", {"copingnet": {"model": {"grid": ["a.h5", "b.h5"]}, "label": "learned"}}])")));
+  REQUIRE(plan.size() == 2);
+  CHECK(plan.spec(0).guesses[1].model.filename() == "a.h5");
+  CHECK(plan.spec(1).guesses[1].model.filename() == "b.h5");
+}
+
+}  // namespace
+}  // namespace rodsweep

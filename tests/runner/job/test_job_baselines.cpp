@@ -1,0 +1,101 @@
+// Jobs with the baselines that need files: nearest neighbours as a guess, a network instead of the solve.
+#include <catch2/catch.hpp>
+
+#include "tests/runner/job_folder.hpp"
+
+namespace rodsweep {
+namespace {
+
+Json neighbours(const std::string& parameters) { return with("/guesses", R"(["zero", {"knn": )" + parameters + "}]"); }
+
+Json end_to_end(const std::string& solve) {
+  Json job = without("/guesses", with("/solve", solve));
+  job["evaluation"] = "closed_loop";
+  return job;
+}
+
+TEST_CASE("nearest neighbours are named by how many they are, and read from beside the job") {
+  const JobFolder folder;
+  folder.write("data.h5", "systems");
+  const Plan plan(folder.job(neighbours(R"({"data": "data.h5", "simulations": 256})")));
+  CHECK(plan.guess_labels().back() == "knn 3");
+  const GuessSpec guess = plan.spec(0).guesses.back();
+  CHECK(guess.kind == GuessSpec::Kind::knn);
+  CHECK(guess.neighbours == 3);
+  CHECK(guess.simulations == 256);
+  CHECK(std::filesystem::equivalent(guess.data, folder.path() / "data.h5"));
+  const Plan five(folder.job(neighbours(R"({"k": 5, "data": "data.h5"})")));
+  CHECK(five.guess_labels().back() == "knn 5");
+  CHECK(five.spec(0).guesses.back().simulations == 0);
+}
+
+TEST_CASE("what nearest neighbours are depends on what their data set holds") {
+  const JobFolder folder;
+  folder.write("data.h5", "systems");
+  const auto identity = [&] { return Plan(folder.job(neighbours(R"({"data": "data.h5"})"))).identity(0); };
+  const TaskIdentity before = identity();
+  folder.write("data.h5", "other systems");
+  CHECK(identity().guesses.back() != before.guesses.back());
+  CHECK(identity().trajectory == before.trajectory);
+}
+
+TEST_CASE("nearest neighbours without data, or with none, are refused") {
+  const JobFolder folder;
+  CHECK_THAT(folder.refusal(neighbours("{}")), Catch::Contains("guesses[1].knn.data: missing"));
+  CHECK_THAT(folder.refusal(neighbours(R"({"data": "none.h5"})")), Catch::Contains("cannot be read"));
+  folder.write("data.h5", "systems");
+  CHECK_THAT(folder.refusal(neighbours(R"({"data": "data.h5", "k": 0})")),
+             Catch::Contains("guesses[1].knn.k: 0 is not allowed"));
+  CHECK_THAT(folder.refusal(neighbours(R"({"data": "data.h5", "neighbours": 4})")),
+             Catch::Contains("did you mean \"k\"?"));
+}
+
+TEST_CASE("a network instead of the solve has a trajectory of its own and no guesses") {
+  const JobFolder folder;
+  folder.write("net.h5", "weights");
+  const Plan plan(folder.job(end_to_end(R"({"method": "end_to_end", "model": "net.h5"})")));
+  REQUIRE(plan.size() == 1);
+  const TaskSpec spec = plan.spec(0);
+  CHECK(spec.solve.method == Method::end_to_end);
+  CHECK(std::filesystem::equivalent(spec.solve.model, folder.path() / "net.h5"));
+  CHECK(spec.guesses.empty());
+  CHECK(spec.own_guess == -1);
+
+  const std::string before = plan.identity(0).trajectory;
+  folder.write("net.h5", "other weights");
+  CHECK(Plan(folder.job(end_to_end(R"({"method": "end_to_end", "model": "net.h5"})"))).identity(0).trajectory !=
+        before);
+}
+
+TEST_CASE("networks, cg and the direct solve stand side by side in one closed loop") {
+  const JobFolder folder;
+  folder.write("net.h5", "weights");
+  Json job = with("/solve", R"({"grid": [{"method": "end_to_end", "model": "net.h5"}, {"method": "direct"}, {}]})");
+  job["evaluation"] = "closed_loop";
+  const Plan plan(folder.job(job));
+  const auto labels = static_cast<std::int64_t>(plan.guess_labels().size());
+  REQUIRE(plan.size() == 2 + labels);
+  CHECK(plan.spec(0).solve.method == Method::end_to_end);
+  CHECK(plan.spec(1).solve.method == Method::direct);
+  CHECK(plan.spec(2).solve.method == Method::cg);
+}
+
+TEST_CASE("a network instead of the solve is refused without a model, among guesses and in a paired evaluation") {
+  const JobFolder folder;
+  folder.write("net.h5", "weights");
+  const std::string named = R"({"method": "end_to_end", "model": "net.h5"})";
+  CHECK_THAT(folder.refusal(end_to_end(R"({"method": "end_to_end"})")),
+             Catch::Contains("solve.model: missing: model file of a train job"));
+  CHECK_THAT(folder.refusal(end_to_end(R"({"method": {"grid": ["direct", "end_to_end"]}})")),
+             Catch::Contains("solve.model: missing"));
+  CHECK_THAT(folder.refusal(with("/solve", R"({"model": "net.h5"})")),
+             Catch::Contains("solve.model: this key belongs to solve.method \"end_to_end\", not to \"cg\""));
+  CHECK_THAT(folder.refusal(with("/evaluation", "\"closed_loop\"", with("/solve", named))),
+             Catch::Contains("only solve.method \"cg\" uses initial guesses"));
+  CHECK_THAT(folder.refusal(with("/evaluation", "\"paired\"", end_to_end(named))),
+             Catch::Contains("solve.method: \"end_to_end\" is not allowed with evaluation \"paired\"") &&
+                 Catch::Contains("\"closed_loop\""));
+}
+
+}  // namespace
+}  // namespace rodsweep

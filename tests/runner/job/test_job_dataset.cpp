@@ -1,0 +1,75 @@
+// Jobs of kind "dataset": their keys, their plan, and where their systems stand in the file.
+#include <catch2/catch.hpp>
+
+#include "runner/file/record.hpp"
+#include "tests/runner/job_examples.hpp"
+
+using namespace rodsweep;
+
+TEST_CASE("a data set has no keys of guesses and solves: they are refused with what to do") {
+  CHECK(refusal(data_job()).empty());
+  const auto refused = [](const std::string& key, const std::string& value) {
+    return refusal(with("/" + key, value, data_job())) ==
+           "job.json: " + key +
+               ": this key belongs to kind \"sweep\", not to \"dataset\"; only a sweep tries guesses: remove this key";
+  };
+  CHECK(refused("solve", R"({"method": "direct"})"));
+  CHECK(refused("guesses", R"(["zero"])"));
+  CHECK(refused("evaluation", R"("paired")"));
+  CHECK(refusal(with("/record", R"({"norms": "one"})", data_job())) ==
+        "job.json: record.norms: this key belongs to kind \"sweep\", not to \"dataset\"; only a sweep tries guesses: "
+        "remove this key");
+}
+
+TEST_CASE("record.systems is a data set's and no sweep's") {
+  CHECK(refusal(with("/record", R"({"systems": "all"})", data_job())).empty());
+  CHECK(refusal(with("/record", R"({"systems": "none"})", data_job())) ==
+        "job.json: record.systems: \"none\" is not allowed; must be one of \"first\", \"all\"");
+  CHECK(refusal(with("/record", R"({"systems": "all"})")) ==
+        "job.json: record.systems: this key belongs to kind \"dataset\", not to \"sweep\"; make the simulations a job "
+        "of that kind");
+  CHECK(refusal(with("/record", R"({"system": "all"})", data_job())) ==
+        "job.json: record.system: unknown key; did you mean \"systems\"?");
+}
+
+TEST_CASE("a data set is simulated with the direct solve and no guesses") {
+  const Plan plan = plan_of(data_job());
+  const TaskSpec spec = plan.spec(0);
+  CHECK(spec.solve.method == Method::direct);
+  CHECK(spec.guesses.empty());
+  CHECK(spec.own_guess == -1);
+  CHECK(spec.record.solves);
+  CHECK(spec.record.systems == RecordedSystems::first);
+  CHECK(plan.guess_labels().empty());
+  CHECK(plan_of(small_job()).spec(0).record.systems == RecordedSystems::none);
+}
+
+TEST_CASE("rows of systems follow task by task, as many as their rods have segments and joints") {
+  Json job = data_job();
+  job["scene"]["segments"] = grid({4, 7});
+  for (const std::int64_t iterations : {1, 3}) {
+    job["record"] = {{"systems", iterations == 1 ? "first" : "all"}};
+    const Plan plan = plan_of(job);
+    const std::int64_t systems = 4 * iterations;
+    CHECK(plan.task(0).systems == systems);
+    CHECK(plan.task(1).first_system == systems);
+    CHECK(plan.task(1).first_system_segment == systems * 4);
+    CHECK(plan.task(1).first_system_joint == systems * 3);
+    CHECK(plan.system_rows() == 2 * systems);
+    CHECK(plan.system_segment_rows() == systems * (4 + 7));
+    CHECK(plan.system_joint_rows() == systems * (3 + 6));
+    CHECK(rows_of(plan.task(1), Rows::system_joint).count == systems * 6);
+
+    const Plan alone = plan.alone(1, 1);
+    CHECK(alone.task(0).first_system_segment == 0);
+    CHECK(alone.system_segment_rows() == systems * 7);
+  }
+}
+
+TEST_CASE("a data set of more rows than any disk holds is refused") {
+  Json job = data_job();
+  job["scene"]["segments"] = 1000000;
+  job["time"] = {{"step_s", 0.02}, {"steps", 10000000}, {"newton_iterations", 1000}};
+  job["record"] = {{"systems", "all"}, {"solves", "summary"}};
+  CHECK_THAT(refusal(job), Catch::Matchers::Contains("this job is too large"));
+}

@@ -1,0 +1,75 @@
+// Jobs with Gauss-Seidel in the place of linear solves.
+#include <catch2/catch.hpp>
+
+#include "tests/runner/job_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Catch::Contains;
+
+Json by(const std::string& solve) {
+  return with("/evaluation", "\"closed_loop\"", with("/solve", solve, without("/guesses")));
+}
+
+TEST_CASE("pbd and xpbd count their own iterations, in a trajectory without guesses") {
+  Json job = by(R"({"grid": [{"method": "xpbd", "iterations": 30}, {"method": "pbd", "stretch_stiffness": 0.9},
+                             {"method": "direct"}]})");
+  job["time"]["newton_iterations"] = 4;
+  const Plan plan = plan_of(job);
+  REQUIRE(plan.size() == 3);
+  CHECK(plan.spec(0).solve.method == Method::xpbd);
+  CHECK(plan.spec(0).time.newton_iterations == 30);
+  CHECK(plan.tasks()[0].solves == 30 * plan.tasks()[0].steps);
+  CHECK(plan.spec(1).solve.method == Method::pbd);
+  CHECK(plan.spec(1).time.newton_iterations == 20);
+  CHECK(plan.spec(1).solve.stiffness.stretch == 0.9);
+  CHECK(plan.spec(1).solve.stiffness.bending == 1);
+  CHECK(plan.spec(2).time.newton_iterations == 4);
+  CHECK(plan.tasks()[2].solves == 4 * plan.tasks()[2].steps);
+  for (const Task& task : plan.tasks()) {
+    CHECK(task.own_guess == -1);
+    CHECK(plan.spec(task.index).guesses.empty());
+  }
+  CHECK(plan.tasks()[0].cost == 7.5 * plan.tasks()[2].cost);
+}
+
+TEST_CASE("iterations and stiffness are part of what a trajectory is") {
+  const auto trajectory = [](const std::string& solve) { return plan_of(by(solve)).identity(0).trajectory; };
+  CHECK(trajectory(R"({"method": "xpbd"})") == trajectory(R"({"method": "xpbd", "iterations": 20})"));
+  CHECK(trajectory(R"({"method": "xpbd"})") != trajectory(R"({"method": "xpbd", "iterations": 21})"));
+  CHECK(trajectory(R"({"method": "pbd"})") != trajectory(R"({"method": "pbd", "bending_stiffness": 0.5})"));
+}
+
+TEST_CASE("keys of Gauss-Seidel are refused out of bounds and with other methods") {
+  CHECK(refusal(by(R"({"method": "xpbd", "iterations": 0})")) ==
+        "job.json: solve.iterations: 0 is not allowed; must be an integer from 1 to 10000");
+  CHECK(refusal(by(R"({"method": "pbd", "stretch_stiffness": 1.5})")) ==
+        "job.json: solve.stretch_stiffness: 1.5 is not allowed; must be a number from 0 to 1");
+  CHECK(refusal(by(R"({"method": "pbd", "bending_stiffness": -1})")) ==
+        "job.json: solve.bending_stiffness: -1 is not allowed; must be a number from 0 to 1");
+  CHECK(refusal(with("/solve", R"({"iterations": 5})")) ==
+        "job.json: solve.iterations: this key belongs to solve.method \"xpbd\" or \"pbd\", not to \"cg\"; cg has "
+        "max_iterations, Newton time.newton_iterations");
+  CHECK(refusal(by(R"({"method": "xpbd", "stretch_stiffness": 1})")) ==
+        "job.json: solve.stretch_stiffness: this key belongs to solve.method \"pbd\", not to \"xpbd\"; moduli and "
+        "stretch_compliance_per_j of the scene say how stiff a rod is");
+  CHECK(refusal(by(R"({"method": "xpbd", "bending_stiffness": 1})")) ==
+        "job.json: solve.bending_stiffness: this key belongs to solve.method \"pbd\", not to \"xpbd\"; moduli of the "
+        "scene say how stiff a rod is");
+}
+
+TEST_CASE("Gauss-Seidel is refused where the direct solve advances the rod, and with guesses") {
+  for (const std::string method : {"pbd", "xpbd"}) {
+    const std::string solve = R"({"method": ")" + method + "\"}";
+    CHECK(
+        refusal(with("/solve", solve, without("/guesses"))) ==
+        "job.json: solve.method: \"" + method +
+            "\" is not allowed with evaluation \"paired\", in which the direct solve advances the rod: what stands in "
+            "its place has a trajectory of its own; must be with \"closed_loop\"");
+    CHECK_THAT(refusal(with("/solve", solve)), Contains("only solve.method \"cg\" uses initial guesses"));
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep

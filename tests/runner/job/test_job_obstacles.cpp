@@ -1,0 +1,104 @@
+// Obstacles in jobs: what they become, how they are swept, and what is refused before anything runs.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "tests/runner/job_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Catch::StartsWith;
+
+/// The small job with contact and these obstacles.
+Json job_with(const std::string& obstacles) {
+  return with("/scene/obstacles", obstacles, with("/scene/contact", R"({"friction": 0.3})"));
+}
+
+Scene scene_of(const Plan& plan, std::int64_t task = 0) { return build_scene(plan.spec(task).scene); }
+
+std::vector<std::string> texts(const Plan& plan, const std::string& path) {
+  for (const ParameterColumn& column : plan.parameters())
+    if (column.path == path) return std::get<std::vector<std::string>>(column.values);
+  return {};
+}
+
+TEST_CASE("obstacles of every kind stand in the scene, beside its own floor") {
+  CHECK(scene_of(plan_of(small_job())).obstacles.empty());
+  const std::string three = R"([{"half_space": {"point_m": [0, -3, 0], "normal": [1, 2, 0]}},
+                                {"ball": {"centre_m": [0, -1, 0], "radius_m": 0.2}},
+                                {"capsule": {"from_m": [0, 0, 1], "to_m": [1, 0, 1], "radius_m": 0.1}}])";
+  const Scene rod = scene_of(plan_of(job_with(three)));
+  REQUIRE(rod.obstacles.size() == 3);
+  CHECK(std::get<HalfSpace>(rod.obstacles[0]).point_m == Vector3(0, -3, 0));
+  CHECK(std::get<HalfSpace>(rod.obstacles[0]).normal == Vector3(1, 2, 0));
+  CHECK(std::get<Ball>(rod.obstacles[1]).centre_m == Vector3(0, -1, 0));
+  CHECK(std::get<Ball>(rod.obstacles[1]).radius_m == 0.2);
+  CHECK(std::get<Capsule>(rod.obstacles[2]).from_m == Vector3(0, 0, 1));
+  CHECK(std::get<Capsule>(rod.obstacles[2]).to_m == Vector3(1, 0, 1));
+  CHECK(std::get<Capsule>(rod.obstacles[2]).radius_m == 0.1);
+
+  Json falling = with("/scene/type", "\"falling_rods\"", job_with(R"([{"half_space": {}}])"));
+  falling["scene"]["rods"] = 2;
+  falling["scene"]["height_m"] = 0.3;
+  const Scene heap = scene_of(plan_of(falling));
+  REQUIRE(heap.obstacles.size() == 2);
+  CHECK(std::get<HalfSpace>(heap.obstacles[0]).normal == Vector3(0, 1, 0));
+}
+
+TEST_CASE("values of obstacles, whole ones and whole lists of them are swept") {
+  Json drawn = job_with(R"([{"ball": {"centre_m": [0, {"uniform": [-2, -1]}, 0], "radius_m": {"grid": [0.1, 0.2]}}}])");
+  drawn["samples"] = 3;
+  const Plan balls = plan_of(drawn);
+  REQUIRE(balls.size() == 6);
+  const Ball ball = std::get<Ball>(scene_of(balls, 4).obstacles.at(0));
+  CHECK(ball.radius_m == 0.2);
+  CHECK(ball.centre_m.y() < -1);
+  CHECK(ball.centre_m.y() == std::get<Ball>(scene_of(balls, 1).obstacles.at(0)).centre_m.y());
+  CHECK(texts(balls, "scene.obstacles").empty());
+
+  const std::string bar = R"({"capsule": {"from_m": [1, -1, -1], "to_m": [1, -1, 1], "radius_m": 0.1}})";
+  const Plan lists = plan_of(job_with(R"({"grid": [[], [{"half_space": {}}], [{"half_space": {}}, )" + bar + "]]}"));
+  CHECK(scene_of(lists, 0).obstacles.empty());
+  CHECK(scene_of(lists, 2).obstacles.size() == 2);
+  CHECK(texts(lists, "scene.obstacles") == std::vector<std::string>{"none", "half_space", "half_space, capsule"});
+
+  const Plan kinds = plan_of(job_with(R"([{"grid": [{"half_space": {}}, )" + bar + "]}]"));
+  CHECK(std::holds_alternative<HalfSpace>(scene_of(kinds, 0).obstacles.at(0)));
+  CHECK(std::holds_alternative<Capsule>(scene_of(kinds, 1).obstacles.at(0)));
+  CHECK(texts(kinds, "scene.obstacles[0]") == std::vector<std::string>{"half_space", "capsule"});
+}
+
+TEST_CASE("obstacles that nothing can touch are refused, but not where contact is swept") {
+  const std::string advice =
+      ": rods pass through all obstacles without \"contact\"; give the scene \"contact\": {\"friction\": 0.3}, or "
+      "remove this key";
+  const Json untouched = with("/scene/obstacles", R"([{"half_space": {}}])");
+  CHECK(refusal(untouched) == "job.json: scene.obstacles" + advice);
+  CHECK(refusal(with("/scene/obstacles", R"({"grid": [[], [{"half_space": {}}]]})")) ==
+        "job.json: scene.obstacles" + advice);
+  Json scenes = small_job();
+  scenes["scene"] = grid({bending_scene(), untouched["scene"]});
+  CHECK(refusal(scenes) == "job.json: scene.grid[1].obstacles" + advice);
+  CHECK(refusal(with("/scene/obstacles", "[]")).empty());
+  CHECK(refusal(with("/scene/contact", R"({"grid": ["none", {}]})", untouched)).empty());
+}
+
+TEST_CASE("obstacles that are none are refused with what is wrong") {
+  CHECK(refusal(job_with(R"({"ball": {"centre_m": [0, 0, 0], "radius_m": 1}})")) ==
+        "job.json: scene.obstacles: {\"ball\":{\"centre_m\":[0,0,0],\"radius_m\":1}} is not allowed; must be a list "
+        "[...], of which each is an object {...} with one of \"half_space\", \"ball\", \"capsule\"");
+  CHECK(refusal(job_with(R"([{"bal": {"centre_m": [0, 0, 0], "radius_m": 1}}])")) ==
+        "job.json: scene.obstacles[0].bal: unknown key; did you mean \"ball\"?");
+  CHECK_THAT(refusal(job_with(R"([{"half_space": {}, "ball": {}}])")),
+             StartsWith("job.json: scene.obstacles[0]: {\"half_space\":{},\"ball\":{}} is not allowed; must be an "
+                        "object {...} with one of"));
+  CHECK_THAT(refusal(job_with(R"([{"half_space": {}}, {"ball": {"centre_m": [0, 0, 0]}}])")),
+             StartsWith("job.json: scene.obstacles[1].ball.radius_m: missing"));
+  CHECK_THAT(refusal(job_with(R"([{"ball": {"centre_m": [0, 0, 0], "radius_m": 0}}])")),
+             StartsWith("job.json: scene.obstacles[0].ball.radius_m: 0 is not allowed"));
+  CHECK(refusal(job_with(R"([{"half_space": {"normal": [0, 0, 0]}}])")) ==
+        "job.json: scene.obstacles[0].half_space.normal: [0, 0, 0] is not allowed; must have a direction");
+}
+
+}  // namespace
+}  // namespace rodsweep

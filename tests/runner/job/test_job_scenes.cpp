@@ -1,0 +1,153 @@
+// Rings, nets and physical stretch in jobs: what they become, and what is refused before anything runs.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "runner/experiment/loop_check.hpp"
+#include "tests/runner/job_examples.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+Json job_with_scene(const std::string& scene) {
+  Json job = small_job();
+  job["scene"] = Json::parse(scene);
+  return job;
+}
+
+Json ring_job() {
+  return job_with_scene(R"({"type": "ring", "segments": 12, "length_m": 3, "radius_m": 0.05, "density_kg_m3": 1000,
+                            "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
+}
+
+Json net_job() {
+  return job_with_scene(R"({"type": "net", "rows": 3, "columns": 4, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05,
+                            "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
+}
+
+/// What check_loops() says of a job, "" if nothing.
+std::string refusal_of_loops(const Json& job) {
+  try {
+    check_loops(plan_of(job));
+  } catch (const JobError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Json guess_of_model(Json job) {
+  job["guesses"].push_back({{"copingnet", {{"model", RODSWEEP_JOBS "/../network/pretrained/bending.h5"}}}});
+  return job;
+}
+
+}  // namespace
+
+TEST_CASE("a ring's keys and their defaults become a ring") {
+  const Plan plan = plan_of(with("/scene/twist_deg", R"({"grid": [0, 720]})", ring_job()));
+  const Ring plain = std::get<Ring>(plan.spec(0).scene), twisted = std::get<Ring>(plan.spec(1).scene);
+  CHECK(plain.segments == 12);
+  CHECK(plain.length_m == 3);
+  CHECK(plain.twist_deg == 0);
+  CHECK(twisted.twist_deg == 720);
+  CHECK(plain.clamp == Clamp::segment);
+  CHECK(plain.rest_shape == Ring::RestShape::straight);
+  CHECK(plain.gravity_m_s2 == Vector3(0, -9.81, 0));
+  CHECK(std::get<Ring>(plan_of(with("/scene/rest_shape", "\"circle\"", ring_job())).spec(0).scene).rest_shape ==
+        Ring::RestShape::circle);
+  CHECK(plan.task(0).segments == 12);
+  CHECK(plan.task(0).joints == 12);
+}
+
+TEST_CASE("a net's keys and their defaults become a net, whose joints the plan counts") {
+  const Plan plan = plan_of(net_job());
+  const Net net = std::get<Net>(plan.spec(0).scene);
+  CHECK(net.rows == 3);
+  CHECK(net.columns == 4);
+  CHECK(net.segments == 2);
+  CHECK(net.mesh_m == 0.5);
+  CHECK(net.held == Net::Held::corners);
+  CHECK(plan.task(0).segments == 41);
+  CHECK(plan.task(0).joints == 46);
+  CHECK(std::get<Net>(plan_of(with("/scene/held", "\"side\"", net_job())).spec(0).scene).held == Net::Held::side);
+}
+
+TEST_CASE("rods stretch physically where the job says so") {
+  const Plan plan = plan_of(with("/scene/stretch", R"({"grid": ["inextensible", "physical"]})"));
+  CHECK(std::get<BendingRod>(plan.spec(0).scene).stretch == Stretch::inextensible);
+  CHECK(std::get<BendingRod>(plan.spec(1).scene).stretch == Stretch::physical);
+  CHECK(refusal(with("/scene/stretch_compliance_per_j", "1e-6", with("/scene/stretch", "\"physical\""))) ==
+        "job.json: scene: stretch is physical, but stretch_compliance_per_j is given too; must be one of them");
+}
+
+TEST_CASE("scenes whose values do not fit together are refused with what is wrong") {
+  CHECK(refusal(with("/scene/segments", "2", ring_job())) ==
+        "job.json: scene: segments is 2; must be at least 3: fewer do not close a ring");
+  CHECK(refusal(with("/scene/clamp", "\"wall\"", ring_job())) ==
+        "job.json: scene: a ring has no end that the clamp \"wall\" could hold");
+  CHECK(refusal(with("/scene/rows", "1", net_job())) == "job.json: scene: rows is 1; must be at least 2");
+  CHECK(
+      refusal(with("/scene/clamp", "\"free\"", net_job())) ==
+      "job.json: scene.clamp: this key belongs to scene.type \"bending_rod\" or \"helix\" or \"ring\", not to \"net\"; "
+      "a net is \"held\", trees stand on the ground");
+}
+
+TEST_CASE("guesses that need rods without loops are refused before anything runs") {
+  const Json knn = {{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}};  // the data are not read yet
+  Json ring = ring_job(), rod = small_job();
+  ring["guesses"].push_back(knn);
+  rod["guesses"].push_back(knn);
+  CHECK(refusal_of_loops(ring) ==
+        "job.json: guesses[2]: \"knn\" is not allowed on rods with loops; must be another guess; the joints of the 12 "
+        "segments of task 0 close a loop");
+  CHECK(refusal_of_loops(rod).empty());
+
+  CHECK(refusal_of_loops(guess_of_model(ring_job())).empty());  // held, it hangs as two chains that meet
+  CHECK(refusal_of_loops(guess_of_model(with("/scene/clamp", "\"free\"", ring_job()))) ==
+        "job.json: guesses[2]: a network with \"sweeps\" is not allowed on rods with loops; must be one with "
+        "\"message_passing\"; the joints of the 12 segments of task 0 close a loop");
+  CHECK(refusal_of_loops(guess_of_model(net_job())) ==
+        "job.json: guesses[2]: a network with \"sweeps\" is not allowed on rods with loops; must be one with "
+        "\"message_passing\"; the joints of the 41 segments of task 0 close a loop");
+  Json guarded = net_job();
+  guarded["guesses"].push_back(
+      {{"guarded", {{"threshold", 1}, {"guess", guess_of_model(Json{{"guesses", Json::array()}})["guesses"][0]}}}});
+  CHECK_THAT(refusal_of_loops(guarded), Catch::StartsWith("job.json: guesses[2]: a network with \"sweeps\""));
+}
+
+TEST_CASE("contact is a key of every scene, and none where it is not asked for") {
+  CHECK_FALSE(std::get<Net>(plan_of(net_job()).spec(0).scene).contact);
+  const Plan plan = plan_of(with("/scene/contact", R"({"grid": ["none", {"friction": 0.6, "sweeps": 9}]})", net_job()));
+  REQUIRE(plan.size() == 2);
+  CHECK_FALSE(std::get<Net>(plan.spec(0).scene).contact);
+  const auto contact = std::get<Net>(plan.spec(1).scene).contact;
+  REQUIRE(contact);
+  CHECK(contact->friction == 0.6);
+  CHECK(contact->sweeps == 9);
+  CHECK(contact->tolerance == ContactSettings{}.tolerance);
+  CHECK_THAT(refusal(with("/scene/contact", R"({"friction": -1})", net_job())),
+             Catch::StartsWith("job.json: scene.contact.friction: -1 is not allowed"));
+}
+
+TEST_CASE("the scenes that are made for contact are read from their keys, and count all their rods") {
+  const std::string material =
+      R"("radius_m": 0.01, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})";
+  const auto plan = [&](const std::string& keys) { return plan_of(job_with_scene("{" + keys + ", " + material)); };
+  const Plan falling =
+      plan(R"("type": "falling_rods", "rods": 3, "segments": 5, "length_m": 1, "height_m": 0.3, "turn_deg": 70)");
+  const FallingRods rods = std::get<FallingRods>(falling.spec(0).scene);
+  CHECK(rods.height_m == 0.3);
+  CHECK(rods.turn_deg == 70);
+  CHECK(rods.radius_m == 0.01);
+  CHECK(falling.task(0).segments == 15);
+  CHECK(falling.task(0).joints == 12);
+  CHECK(falling.task(0).solves % (3 * falling.task(0).steps) == 0);
+  const Plan coiling = plan(R"("type": "coiling_rod", "segments": 9, "length_m": 1, "height_m": 0.3, "feed_m_s": 2)");
+  CHECK(std::get<CoilingRod>(coiling.spec(0).scene).feed_m_s == 2);
+  const Plan knot = plan(R"("type": "knot", "segments": 40, "length_m": 1, "pull_m_s": 0.3)");
+  CHECK(std::get<Knot>(knot.spec(0).scene).pull_m_s == 0.3);
+  const Plan rings = plan(R"("type": "ring_chain", "rings": 4, "segments": 10, "length_m": 1)");
+  CHECK(rings.task(0).joints == 40);
+  const Plan bundle = plan(R"("type": "bundle", "rods": 7, "segments": 4, "length_m": 1, "initial_angle_deg": 30)");
+  CHECK(std::get<Bundle>(bundle.spec(0).scene).initial_angle_deg == 30);
+  CHECK(bundle.task(0).segments == 28);
+}

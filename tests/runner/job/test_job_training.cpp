@@ -1,0 +1,137 @@
+// Jobs of kind "train": their keys, what they mean, and what is refused.
+#include <catch2/catch.hpp>
+
+#include "runner/job/training_job.hpp"
+#include "tests/runner/job_examples.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+TrainingJob training_of(const Json& job) { return training_job(job_of(job)); }
+
+/// Refusal of the training job with that value.
+std::string refused(const std::string& pointer, const std::string& value) {
+  Json job = train_job();
+  job["network"] = Json::object();
+  job["training"] = Json::object();
+  return refusal(with(pointer, value, job));
+}
+
+}  // namespace
+
+TEST_CASE("the least that a training says is where its data are") {
+  const TrainingJob job = training_of(train_job());
+  CHECK(job.data == "data.h5");
+  CHECK(job.validation_simulations == 100);
+  CHECK(job.network.encoding == Encoding::system);
+  CHECK(job.network.processor == Processor::sweeps);
+  CHECK(job.network.base == BaseGuess::pod);
+  CHECK(job.network.best_length);
+  CHECK(job.training.loss == LossKind::energy);
+  CHECK(job.patience_epochs == 0);
+  CHECK(refusal(without("/data", train_job())) ==
+        "job.json: data: missing: data set to learn from: the file of a job of kind \"dataset\", a text of 1 to 4000 "
+        "characters on one line");
+}
+
+TEST_CASE("data are looked for beside the job") {
+  const Job job = parse_job(with("/data", R"("../results/data.h5")", train_job()).dump(), "jobs/train.json");
+  CHECK(training_job(job).data == "results/data.h5");
+  const Job absolute = parse_job(with("/data", R"("/data.h5")", train_job()).dump(), "jobs/train.json");
+  CHECK(training_job(absolute).data == "/data.h5");
+}
+
+TEST_CASE("every key of a training arrives where it belongs") {
+  Json values = train_job();
+  values["seed"] = 7;
+  values["validation_simulations"] = 3;
+  values["network"] = Json::parse(R"({"encoding": "deck", "processor": "message_passing", "base": "extrapolation",
+      "base_size": 4, "latent": 16, "steps": 2, "globals": true, "best_length": false, "moves": true})");
+  values["training"] = Json::parse(R"({"loss": "mse", "epochs": 5, "batch": 12, "shards": 3, "rate": 0.01,
+      "warm_up": 0.1, "weight_decay": 0.2, "clip": 0.5, "patience_epochs": 4, "ratio_every_epochs": 2,
+      "ratio_simulations": 6})");
+  const TrainingJob job = training_of(values);
+  CHECK(job.validation_simulations == 3);
+  CHECK(job.network.encoding == Encoding::deck);
+  CHECK(job.network.processor == Processor::message_passing);
+  CHECK(job.network.base == BaseGuess::extrapolation);
+  CHECK(job.network.base_size == 4);
+  CHECK(job.network.latent == 16);
+  CHECK(job.network.steps == 2);
+  CHECK(job.network.globals);
+  CHECK_FALSE(job.network.best_length);
+  CHECK(job.network.moves);
+  CHECK(job.training.loss == LossKind::mse);
+  CHECK(job.training.epochs == 5);
+  CHECK(job.training.batch == 12);
+  CHECK(job.training.shards == 3);
+  CHECK(job.training.rate == 0.01);
+  CHECK(job.training.warm_up == 0.1);
+  CHECK(job.training.weight_decay == 0.2);
+  CHECK(job.training.clip == 0.5);
+  CHECK(job.training.seed == 7);
+  CHECK(job.patience_epochs == 4);
+  CHECK(job.ratio_every_epochs == 2);
+  CHECK(job.ratio_simulations == 6);
+}
+
+TEST_CASE("nothing of a training is swept") {
+  const char* text = ": this key cannot be swept; a job trains one model; write another job for another";
+  CHECK(refused("/training/rate", R"({"grid": [0.1, 0.2]})") == std::string("job.json: training.rate") + text);
+  CHECK(refused("/network", R"({"grid": [{}, {"latent": 16}]})") == std::string("job.json: network") + text);
+  CHECK(refused("/data", R"({"grid": ["a.h5", "b.h5"]})") == std::string("job.json: data") + text);
+}
+
+TEST_CASE("keys of simulations are refused with where a training has its own from, and the reverse") {
+  CHECK(refusal(with("/scene", bending_scene().dump(), train_job())) ==
+        "job.json: scene: this key belongs to kind \"sweep\" or \"dataset\", not to \"train\"; a training learns from "
+        "the simulations in \"data\": remove this key");
+  CHECK(refusal(with("/guesses", R"(["zero"])", train_job())) ==
+        "job.json: guesses: this key belongs to kind \"sweep\", not to \"train\"; only a sweep tries guesses: remove "
+        "this key");
+  CHECK(refusal(with("/network", "{}")) == "job.json: network: this key belongs to kind \"train\", not to \"sweep\"");
+}
+
+TEST_CASE("misspelt and impossible values of a training are refused") {
+  CHECK(refused("/training/epoch", "3") == "job.json: training.epoch: unknown key; did you mean \"epochs\"?");
+  CHECK(refused("/training/lr", "3") == "job.json: training.lr: unknown key; did you mean \"rate\"?");
+  CHECK(refused("/training/rate", "0") ==
+        "job.json: training.rate: 0 is not allowed; must be a number above 0 and at most 1");
+  CHECK(refused("/training/epochs", "0") ==
+        "job.json: training.epochs: 0 is not allowed; must be an integer from 1 to 1000000");
+  CHECK(refused("/network/best_length", "1") ==
+        "job.json: network.best_length: 1 is not allowed; must be true or false");
+  CHECK(refused("/network/encoding", "\"decks\"") ==
+        "job.json: network.encoding: \"decks\" is not allowed; must be one of \"deck\", \"physics\", \"system\"; did "
+        "you mean \"deck\"?");
+}
+
+TEST_CASE("keys that the network or the loss has no use for are refused, also where its kind is the default") {
+  CHECK(refused("/network/moves", "true") ==
+        "job.json: network.moves: this key belongs to network.processor \"message_passing\", not to \"sweeps\"; "
+        "sweeps work on joints alone");
+  CHECK(refused("/network", R"({"processor": "sweeps", "steps": 3})") ==
+        "job.json: network.steps: this key belongs to network.processor \"message_passing\", not to \"sweeps\"");
+  CHECK(refused("/training/cg_steps", "3") ==
+        "job.json: training.cg_steps: this key belongs to training.loss \"in_the_loop\", not to \"energy\"");
+}
+
+TEST_CASE("values that do not go together are refused") {
+  CHECK(refused("/training/shards", "5") ==
+        "job.json: training.shards: 5 is not allowed; must be a divisor of training.batch, 16");
+  CHECK(refused("/network", R"({"processor": "message_passing", "moves": true})") ==
+        "job.json: network.moves: true is not allowed with training.loss \"energy\", which teaches the network nothing "
+        "of moves; use \"mse\" or remove this key");
+}
+
+TEST_CASE("the settings of every kind of network are the same after a round trip") {
+  for (const char* text : {"{}", R"({"encoding": "physics", "base": "none", "latent": 8, "best_length": false})",
+                           R"({"processor": "message_passing", "steps": 1, "globals": true})"}) {
+    const Json values = job_of(with("/network", text, train_job())).values["network"];
+    const Json written = network_json(network_settings(values));
+    CHECK(network_json(network_settings(written)) == written);
+    CHECK(written.size() == values.size());
+    for (const auto& [key, value] : written.items()) CHECK(values[key] == value);
+  }
+}

@@ -1,0 +1,190 @@
+// Trees, skeletons from files and wind in jobs: what they become, and what is refused before anything runs.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "runner/experiment/loop_check.hpp"
+#include "runner/job/skeleton_file.hpp"
+#include "tests/runner/job_folder.hpp"
+
+namespace rodsweep {
+namespace {
+
+Json job_with_scene(const std::string& scene) {
+  Json job = small_job();
+  job["scene"] = Json::parse(scene);
+  return job;
+}
+
+Json tree_job(const std::string& type = "tree", const std::string& more = "") {
+  return job_with_scene(R"({"type": ")" + type + R"(", "depth": 2, "branches": 3, "segments": 2, "length_m": 2,
+                            "radius_m": 0.1, "density_kg_m3": 800, "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 1e8)" +
+                        more + "}");
+}
+
+Json skeleton_job(const std::string& more = "") {
+  return job_with_scene(R"({"type": "skeleton", "skeleton": "plum.swc", "density_kg_m3": 800, "youngs_modulus_pa": 1e9,
+                            "torsion_modulus_pa": 1e8)" +
+                        more + "}");
+}
+
+constexpr const char* plum = R"(# a plum, in centimetres, z up
+7 0 10 0 0 3 -1
+8 0 10 0 50 3 7   # the trunk
+
+2 0 30 0 90 2 8
+3 0 -10 20 90 2 8
+)";
+
+std::string refusal_of_skeleton(const std::string& text) {
+  try {
+    parse_skeleton(text, "plum.swc");
+  } catch (const SkeletonError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("a tree's keys and their defaults become a tree, whose segments the plan counts") {
+  const Plan plan = plan_of(tree_job());
+  const Tree tree = std::get<Tree>(plan.spec(0).scene);
+  CHECK(tree.shape.depth == 2);
+  CHECK(tree.shape.branches == 3);
+  CHECK(tree.shape.segments == 2);
+  CHECK(tree.shape.length_m == 2);
+  CHECK(tree.radius_m == 0.1);
+  CHECK(tree.shape.length_ratio == 0.75);
+  CHECK(tree.shape.taper == 1);
+  CHECK(tree.shape.pipe_exponent == 2);
+  CHECK(tree.shape.branching_angle_deg == 35);
+  CHECK(tree.shape.angle_spread_deg == 10);
+  CHECK(tree.shape.phyllotaxis == TreeShape::Phyllotaxis::golden);
+  CHECK(tree.modulus_exponent == 0);
+  CHECK_FALSE(tree.wind);
+  CHECK(plan.task(0).segments == 27);
+  CHECK(plan.task(0).joints == 26);
+  const Tree random = std::get<Tree>(
+      plan_of(tree_job("tree", R"(, "phyllotaxis": "random", "tree_seed": 9, "modulus_exponent": 0.5)")).spec(0).scene);
+  CHECK(random.shape.phyllotaxis == TreeShape::Phyllotaxis::random);
+  CHECK(random.shape.seed == 9);
+  CHECK(random.modulus_exponent == 0.5);
+}
+
+TEST_CASE("a forest has rows of solves and systems for every tree") {
+  const Plan plan = plan_of(tree_job("forest", R"(, "rows": 2, "columns": 3, "spacing_m": 4)"));
+  const Forest forest = std::get<Forest>(plan.spec(0).scene);
+  CHECK(forest.jitter == 0.5);
+  CHECK(plan.task(0).segments == 6 * 27);
+  CHECK(plan.task(0).joints == 6 * 26);
+  CHECK(plan.task(0).solves == 10 * 6 * 6);
+  Json data = data_job();
+  data["scene"] = tree_job("forest", R"(, "rows": 1, "columns": 2, "spacing_m": 4)")["scene"];
+  const Plan systems = plan_of(data);
+  CHECK(systems.task(0).systems == 4 * 2);
+  CHECK(systems.task(0).system_segments == 4 * 2 * 27);
+  CHECK(systems.task(0).system_joints == 4 * 2 * 26);
+}
+
+TEST_CASE("wind blows on any scene, and may be one value of a grid with none") {
+  const Plan plan = plan_of(
+      with("/scene/wind", R"({"grid": ["none", {"mean_m_s": [{"grid": [3, 5]}, 0, 1], "gust_strength": 0.3}]})"));
+  REQUIRE(plan.size() == 3);
+  CHECK_FALSE(std::get<BendingRod>(plan.spec(0).scene).wind);
+  const auto wind = std::get<BendingRod>(plan.spec(2).scene).wind;
+  REQUIRE(wind);
+  CHECK(wind->mean_m_s == Vector3(5, 0, 1));
+  CHECK(wind->gust_strength == 0.3);
+  CHECK(wind->turbulence_modes == 16);
+  CHECK(wind->drag_coefficient == 1.2);
+  CHECK(plan.identity(0).trajectory != plan.identity(1).trajectory);
+  CHECK(build_scene(plan.spec(1).scene).wind);
+  CHECK(plan_of(with("/scene/wind", "\"none\"")).identity(0).trajectory == plan_of(small_job()).identity(0).trajectory);
+}
+
+TEST_CASE("winds and trees that a job cannot mean are refused with what is allowed") {
+  CHECK(refusal(with("/scene/wind", "\"calm\"")) ==
+        "job.json: scene.wind: \"calm\" is not allowed; must be an object {...}, or \"none\"");
+  CHECK(refusal(with("/scene/wind", R"({"mean_m_s": [1, 0, 0], "gusts": 1})")) ==
+        "job.json: scene.wind.gusts: unknown key; allowed here: \"mean_m_s\", \"gust_strength\", \"gust_period_s\", "
+        "\"turbulence_m_s\", \"turbulence_length_m\", \"turbulence_modes\", \"seed\", \"profile_exponent\", "
+        "\"reference_height_m\", \"air_density_kg_m3\", \"drag_coefficient\", \"friction_coefficient\"");
+  CHECK(
+      refusal(with("/scene/wind", "{}")) ==
+      "job.json: scene.wind.mean_m_s: missing: mean velocity [m/s], three numbers [x, y, z], each from -1000 to 1000");
+  CHECK(refusal(tree_job("tree", R"(, "taper": 0)")) ==
+        "job.json: scene.taper: 0 is not allowed; must be a number above 0 and at most 1");
+  CHECK(refusal(with("/scene/segments", "1", tree_job("tree", R"(, "taper": 0.5)"))) ==
+        "job.json: scene: taper is 0.5; must be 1 where a branch is one segment");
+  CHECK(refusal(with("/scene/depth", "20", tree_job())) ==
+        "job.json: scene: number of segments of a tree is 1.04604e+10; must be at most 1e7");
+  CHECK(refusal(tree_job("tree", R"(, "clamp": "free")")) ==
+        "job.json: scene.clamp: this key belongs to scene.type \"bending_rod\" or \"helix\" or \"ring\", not to "
+        "\"tree\"; a net is \"held\", trees stand on the ground");
+}
+
+TEST_CASE("a skeleton is found beside the job; units, axis and root are brought to the scene's") {
+  const JobFolder folder;
+  folder.write("plum.swc", plum);
+  const Plan plan(folder.job(skeleton_job(R"(, "skeleton_unit_m": 0.01, "skeleton_up": "z")")));
+  CHECK(plan.task(0).segments == 4);
+  CHECK(plan.task(0).joints == 3);
+  const Skeleton skeleton = *std::get<SkeletonTree>(plan.spec(0).scene).skeleton;
+  CHECK(skeleton[0].position_m.norm() == 0);
+  CHECK((skeleton[1].position_m - Vector3(0, 0.5, 0)).norm() < 1e-15);
+  CHECK((skeleton[3].position_m - Vector3(-0.2, 0.9, -0.2)).norm() < 1e-15);
+  CHECK(skeleton[2].parent == 1);
+  CHECK(skeleton[2].radius_m == Approx(0.02).epsilon(1e-15));
+  const Rod rod = build_scene(plan.spec(0).scene).rods.front();
+  CHECK(rod.segments[1].radius_m == Approx(0.03).epsilon(1e-15));
+
+  const TaskIdentity before = plan.identity(0);
+  folder.write("plum.swc", (std::string(plum) + "4 0 0 0 150 1 3\n").c_str());
+  const Plan grown(folder.job(skeleton_job(R"(, "skeleton_unit_m": 0.01, "skeleton_up": "z")")));
+  CHECK(grown.identity(0).trajectory != before.trajectory);
+  CHECK(grown.task(0).segments == 5);
+}
+
+TEST_CASE("a skeleton that is none is refused with file, line, value and bound") {
+  CHECK(refusal_of_skeleton(plum).empty());
+  CHECK(refusal_of_skeleton("") == "plum.swc:0: 0 nodes; must be at least 2");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1 0 1\n") ==
+        "plum.swc:2: 6 values; must be the 7 of SWC: id type x y z radius parent");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1m 0 1 1\n") == "plum.swc:2: y is \"1m\"; must be a finite number");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 nan 0 1 1\n") ==
+        "plum.swc:2: y is \"nan\"; must be a finite number");
+  CHECK(refusal_of_skeleton("1.5 0 0 0 0 1 -1\n") == "plum.swc:1: id is \"1.5\"; must be an integer");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 0\n") == "plum.swc:1: parent is 0; must be -1, since this is the first node");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1 0 1 3\n3 0 0 2 0 1 1\n") ==
+        "plum.swc:2: parent is 3; must be the id of a line above, or -1 of the first node alone");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1 0 1 -1\n") ==
+        "plum.swc:2: parent is -1; must be the id of a line above, or -1 of the first node alone");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n1 0 0 1 0 1 1\n") == "plum.swc:2: id is 1, as in line 1; must be another");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n\n2 0 0 1 0 0 1\n") == "plum.swc:3: radius is 0; must be positive");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 0 0 1 1\n") ==
+        "plum.swc:2: stands where its parent does; must be elsewhere");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1 0 1 1\n3 0 0 0.5 0 1 2\n") ==
+        "plum.swc:3: turns back onto the edge below by 180 degrees; must be at most 160");
+  const JobFolder folder;
+  folder.write("plum.swc", "1 0 0 0\n");
+  CHECK(folder.refusal(skeleton_job()) == (folder.path() / "job.json").native() +
+                                              ": scene.skeleton: " + (folder.path() / "plum.swc").native() +
+                                              ":1: 4 values; must be the 7 of SWC: id type x y z radius parent");
+}
+
+TEST_CASE("nearest neighbours are refused on a tree, but not on a trunk") {
+  const auto refusal_of_neighbours = [](Json job) -> std::string {
+    job["guesses"].push_back({{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}});  // the data are not read yet
+    try {
+      check_loops(plan_of(job));
+    } catch (const JobError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(refusal_of_neighbours(tree_job()) ==
+        "job.json: guesses[2]: \"knn\" is not allowed on rods that branch; must be another guess; the joints of the 27 "
+        "segments of task 0 form a tree");
+  CHECK(refusal_of_neighbours(with("/scene/depth", "0", tree_job())).empty());
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,289 @@
+// Model files: what is read is what was written, and what is no model is refused.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "runner/file/hdf5.hpp"
+#include "runner/job/training_job.hpp"
+#include "runner/training/model_file.hpp"
+#include "tests/network/models.hpp"
+#include "tests/runner/file_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+namespace fs = std::filesystem;
+
+ModelCard some_card() {
+  ModelCard card;
+  card.name = "net";
+  card.job_text = train_job().dump();
+  card.data_path = "/data/bending.h5";
+  card.data_hash = "0123456789abcdef";
+  card.training_simulations = 256;
+  card.validation_simulations = 100;
+  card.training_examples = 12800;
+  card.validation_examples = 5000;
+  card.planned_epochs = 5;
+  card.epochs = {{0.5, 0.6, 1e-3, 2.5, ValidationRatio::unmeasured()}, {0.4, 0.55, 2e-3, 2.25, {0.1, 0.2, 0.3, 0.4}}};
+  card.best_epoch = 2;
+  card.ending = Ending::early;
+  card.message = "enough";
+  card.cg_ratio = {0.1, 0.2, 0.3, 0.4};
+  card.base_cg_ratio = {0.5, 0.6, 0.7, 0.8};
+  card.ratio_simulations = 50;
+  card.starts = {{test_provenance(), "2025-11-21T16:05:09Z", 4}, {test_provenance(), "", -1}};
+  for (TrainingStart& start : card.starts) start.provenance.begin_utc = "2026-01-02T03:04:05Z";  // not now
+  card.starts[1].provenance.oversubscribed = true;
+  return card;
+}
+
+/// A model all of whose numbers differ.
+std::shared_ptr<Model> some_model(const CopingNetSettings& settings, unsigned seed = 1) {
+  const std::shared_ptr<Model> model = test::random_model(settings, seed);
+  const auto vary = [&](Normalisation& scale) {
+    for (Eigen::Index i = 0; i < scale.mean.size(); ++i) {
+      scale.mean[i] = 0.1F * static_cast<float>(i);
+      scale.deviation[i] = 1 + 0.01F * static_cast<float>(i);
+    }
+  };
+  for (Normalisation* scale :
+       {&model->scales.nodes, &model->scales.edges, &model->scales.multipliers, &model->scales.moves})
+    vary(*scale);
+  return model;
+}
+
+fs::path save(const fs::path& path, const Model& model, const ModelCard& card = some_card(),
+              const std::optional<Checkpoint>& checkpoint = std::nullopt) {
+  ModelFile(path, false).save(card, model, checkpoint);
+  return path;
+}
+
+void check_same(const ModelCard& a, const ModelCard& b) {
+  CHECK(a.name == b.name);
+  CHECK(a.job_text == b.job_text);
+  CHECK(a.data_path == b.data_path);
+  CHECK(a.data_hash == b.data_hash);
+  CHECK(a.training_simulations == b.training_simulations);
+  CHECK(a.validation_simulations == b.validation_simulations);
+  CHECK(a.training_examples == b.training_examples);
+  CHECK(a.validation_examples == b.validation_examples);
+  CHECK(a.planned_epochs == b.planned_epochs);
+  CHECK(a.best_epoch == b.best_epoch);
+  CHECK(a.ending == b.ending);
+  CHECK(a.message == b.message);
+  CHECK(a.cg_ratio == b.cg_ratio);
+  CHECK(a.base_cg_ratio == b.base_cg_ratio);
+  CHECK(a.ratio_simulations == b.ratio_simulations);
+  REQUIRE(a.epochs.size() == b.epochs.size());
+  for (std::size_t i = 0; i < a.epochs.size(); ++i) {
+    CHECK(a.epochs[i].training_loss == b.epochs[i].training_loss);
+    CHECK(a.epochs[i].validation_loss == b.epochs[i].validation_loss);
+    CHECK(a.epochs[i].rate == b.epochs[i].rate);
+    CHECK(a.epochs[i].seconds == b.epochs[i].seconds);
+    CHECK(std::isnan(a.epochs[i].cg_ratio[3]) == std::isnan(b.epochs[i].cg_ratio[3]));
+  }
+  CHECK(a.epochs.back().cg_ratio == b.epochs.back().cg_ratio);
+  REQUIRE(a.starts.size() == b.starts.size());
+  for (std::size_t i = 0; i < a.starts.size(); ++i) {
+    CHECK(a.starts[i].end_utc == b.starts[i].end_utc);
+    CHECK(a.starts[i].exit_code == b.starts[i].exit_code);
+    CHECK(a.starts[i].provenance.begin_utc == b.starts[i].provenance.begin_utc);
+    CHECK(a.starts[i].provenance.versions == b.starts[i].provenance.versions);
+    CHECK(a.starts[i].provenance.ranks == b.starts[i].provenance.ranks);
+    CHECK(a.starts[i].provenance.oversubscribed == b.starts[i].provenance.oversubscribed);
+  }
+}
+
+bool same(const Normalisation& a, const Normalisation& b) {
+  return a.mean.size() == b.mean.size() && (a.mean == b.mean).all() && (a.deviation == b.deviation).all();
+}
+
+TEST_CASE("a model of every kind is read as it was written") {
+  const TemporaryFolder folder;
+  std::vector<CopingNetSettings> kinds = test::kinds_of_networks();
+  kinds.push_back(kinds[2]);
+  kinds.back().processor = Processor::message_passing;
+  kinds.back().encoding = Encoding::deck;
+  kinds.back().globals = kinds.back().moves = true;
+  kinds.back().best_length = false;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    CAPTURE(i);
+    const auto model = some_model(kinds[i]);
+    const StoredModel read = read_model(save(folder / fmt::format("{}.h5", i), *model));
+    CHECK(read.model->net.parameters().values() == model->net.parameters().values());
+    CHECK(network_json(read.model->net.settings()) == network_json(kinds[i]));
+    CHECK(model_hash(*read.model) == model_hash(*model));
+    if (kinds[i].encoding != Encoding::system) {
+      CHECK(same(read.model->scales.nodes, model->scales.nodes));
+      CHECK(same(read.model->scales.edges, model->scales.edges));
+      CHECK(same(read.model->scales.multipliers, model->scales.multipliers));
+      if (kinds[i].moves) CHECK(same(read.model->scales.moves, model->scales.moves));
+    }
+    CHECK_FALSE(read.checkpoint);
+    check_same(read.card, some_card());
+  }
+}
+
+TEST_CASE("models that say something else have another hash") {
+  CopingNetSettings settings;
+  settings.encoding = Encoding::deck;
+  const auto model = some_model(settings);
+  const std::string hash = model_hash(*model);
+  CHECK(hash.size() == 16);
+  CHECK(model_hash(*some_model(settings)) == hash);
+  model->scales.edges.deviation[3] *= 1.5F;
+  CHECK(model_hash(*model) != hash);
+  CHECK(model_hash(*some_model(settings, 2)) != hash);
+  settings.best_length = false;
+  CHECK(model_hash(*some_model(settings)) != hash);
+}
+
+TEST_CASE("a model of twenty thousand parameters is small, and a checkpoint is read as it was written") {
+  const TemporaryFolder folder;
+  const auto model = some_model({});
+  CHECK(model->net.parameters().values().size() > 19000);
+  CHECK(fs::file_size(save(folder / "small.h5", *model)) < 200000);
+
+  ModelCard card = some_card();
+  card.ending = Ending::none;
+  Checkpoint checkpoint;
+  checkpoint.weights = some_model({}, 2)->net.parameters().values();
+  checkpoint.optimiser = {17, some_model({}, 3)->net.parameters().values(),
+                          some_model({}, 4)->net.parameters().values()};
+  checkpoint.epoch_loss = 0.1;
+  checkpoint.epoch_seconds = 0.2;
+  const StoredModel read = read_training(save(folder / "large.h5", *model, card, checkpoint));
+  REQUIRE(read.checkpoint);
+  CHECK(read.checkpoint->weights == checkpoint.weights);
+  CHECK(read.checkpoint->optimiser.step == 17);
+  CHECK(read.checkpoint->optimiser.mean == checkpoint.optimiser.mean);
+  CHECK(read.checkpoint->optimiser.square == checkpoint.optimiser.square);
+  CHECK(read.checkpoint->epoch_loss == 0.1);
+  CHECK(read.checkpoint->epoch_seconds == 0.2);
+  CHECK(read.card.ending == Ending::none);
+}
+
+TEST_CASE("an earlier state of the file is replaced, another file never") {
+  const TemporaryFolder folder;
+  const auto model = some_model({}), other = some_model({}, 2);
+  ModelFile file(folder / "model.h5", false);
+  file.save(some_card(), *model, std::nullopt);
+  file.save(some_card(), *other, std::nullopt);
+  CHECK(model_hash(*read_model(folder / "model.h5").model) == model_hash(*other));
+  ModelFile(folder / "model.h5", true).save(some_card(), *model, std::nullopt);
+  CHECK(model_hash(*read_model(folder / "model.h5").model) == model_hash(*model));
+  CHECK_THAT(message_of<FileError>([&] { file.save(some_card(), *other, std::nullopt); }),
+             EndsWith("was replaced by another program meanwhile, and is left as it is"));
+  CHECK_THAT(message_of<FileError>([&] { save(folder / "model.h5", *other); }), Contains("exists already"));
+  CHECK(model_hash(*read_model(folder / "model.h5").model) == model_hash(*model));
+  CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // nothing unfinished is left
+}
+
+std::string refusal_of(const fs::path& path) {
+  return message_of<FileError>([&] { read_model(path); });
+}
+
+/// A file of a small model, changed by `change`.
+template <class Change>
+std::string refusal_after(Change&& change) {
+  const TemporaryFolder folder;
+  CopingNetSettings settings;
+  settings.encoding = Encoding::deck;
+  settings.latent = 8;
+  const fs::path path = save(folder / "model.h5", *some_model(settings));
+  {
+    const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
+    change(file.id());
+  }
+  const std::string text = refusal_of(path);
+  CHECK_THAT(text, Catch::Matchers::StartsWith(path.native()));
+  return text;
+}
+
+void replace_weights(hid_t file, hsize_t rows, hsize_t columns) {
+  H5Ldelete(file, "/model/weights/encode.bias", H5P_DEFAULT);
+  hdf5::create_dataset(file, "/model/weights/encode.bias", H5T_NATIVE_FLOAT, {rows, columns});
+  hdf5::write_all(file, "/model/weights/encode.bias", std::vector<float>(rows * columns, 0.5F));
+}
+
+void set_text_attribute(hid_t file, const char* object, const char* name, const char* text) {
+  H5Adelete_by_name(file, object, name, H5P_DEFAULT);
+  hdf5::write_attribute(hdf5::Object(H5Oopen(file, object, H5P_DEFAULT)).id(), name, text);
+}
+
+TEST_CASE("files that are no models are refused") {
+  const TemporaryFolder folder;
+  CHECK_THAT(refusal_of(folder / "nowhere.h5"), EndsWith("there is no such file"));
+  std::ofstream(folder / "text.h5") << "no HDF5 at all";
+  CHECK_THAT(refusal_of(folder / "text.h5"), EndsWith("is not an HDF5 file"));
+  make_file(folder / "results.h5", plan_of(full_job()), 1);
+  CHECK_THAT(refusal_of(folder / "results.h5"),
+             EndsWith("holds the results of a sweep, not a model: give the file of a job of kind \"train\""));
+  hdf5::create_file(folder / "foreign.h5");
+  CHECK_THAT(refusal_of(folder / "foreign.h5"), EndsWith("is an HDF5 file, but not one of rodsweep's models"));
+  const fs::path model = save(folder / "model.h5", *some_model({}));
+  CHECK(is_model_file(model));
+  CHECK_FALSE(is_model_file(folder / "results.h5"));
+  for (const double part : {0.1, 0.5, 0.9}) {
+    fs::copy_file(model, folder / "cut.h5", fs::copy_options::overwrite_existing);
+    fs::resize_file(folder / "cut.h5", static_cast<std::uintmax_t>(part * static_cast<double>(fs::file_size(model))));
+    CHECK_THAT(refusal_of(folder / "cut.h5"), Contains("cut.h5 is damaged or incomplete"));
+  }
+}
+
+TEST_CASE("weights that cannot be are refused") {
+  CHECK_THAT(refusal_after([](hid_t file) { replace_weights(file, 8, 2); }),
+             EndsWith("/model/weights/encode.bias has the shape [8, 2], not [8, 1]"));
+  CHECK_THAT(refusal_after([](hid_t file) { replace_weights(file, 8, 1); }),
+             EndsWith("the model is not what was written: it has another hash"));
+  CHECK_THAT(refusal_after([](hid_t file) {
+               hdf5::write_all(file, "/model/weights/encode.bias",
+                               std::vector<float>(8, std::numeric_limits<float>::quiet_NaN()));
+             }),
+             EndsWith("/model/weights/encode.bias holds something that is not a finite number"));
+  CHECK_THAT(refusal_after([](hid_t file) { H5Ldelete(file, "/model/weights/encode.bias", H5P_DEFAULT); }),
+             Contains("encode.bias"));
+  CHECK_THAT(refusal_after(
+                 [](hid_t file) { hdf5::write_all(file, "/model/scales/edges/deviation", std::vector<float>(17, 0)); }),
+             EndsWith("/model/scales/edges/deviation is not above 0 everywhere"));
+}
+
+TEST_CASE("settings and cards that cannot be are refused") {
+  CHECK_THAT(refusal_after([](hid_t file) {
+               H5Ldelete(file, "/model/settings", H5P_DEFAULT);
+               hdf5::create_dataset(file, "/model/settings", hdf5::text_type(20).id(), {1});
+               hdf5::write_texts(file, "/model/settings", {R"({"latent": 100000})"});
+             }),
+             Contains("/model/settings.latent: 100000 is not allowed"));
+  CHECK_THAT(refusal_after([](hid_t file) { set_text_attribute(file, "/training", "ending", "tired"); }),
+             EndsWith("the training is said to have ended \"tired\""));
+  CHECK_THAT(refusal_after([](hid_t file) {
+               H5Adelete_by_name(file, "/training", "best_epoch", H5P_DEFAULT);
+               hdf5::write_attribute(hdf5::Object(H5Oopen(file, "/training", H5P_DEFAULT)).id(), "best_epoch", 3);
+             }),
+             EndsWith("the best epoch is said to be 3 of 2"));
+  CHECK_THAT(refusal_after([](hid_t file) {
+               H5Adelete(file, "schema_version");
+               hdf5::write_attribute(file, "schema_version", model_schema_version + 1);
+             }),
+             Contains("has schema version 2, and this rodsweep knows version 1 only"));
+}
+
+TEST_CASE("a training of which no epoch has ended has no model to use, but can be looked at") {
+  const TemporaryFolder folder;
+  ModelCard card = some_card();
+  card.epochs.clear();
+  card.best_epoch = 0;
+  card.ending = Ending::none;
+  const fs::path path = save(folder / "begun.h5", *some_model({}), card);
+  CHECK_THAT(refusal_of(path), EndsWith("holds no trained model yet: no epoch of its training has ended"));
+  CHECK(read_training(path).card.epochs.empty());
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,63 @@
+// CG ratios on recorded simulations are those that a sweep measures.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "runner/dataset/dataset_reader.hpp"
+#include "runner/experiment/guesses.hpp"
+#include "runner/training/validation_ratio.hpp"
+#include "tests/runner/data_set_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+Json rods(const char* kind) {
+  Json job = with("/kind", kind);
+  job["samples"] = 3;
+  job["scene"]["length_m"] = uniform(1, 4);
+  job["guesses"] = {"zero", "quadratic", {{"pod", {{"size", 3}}}}};
+  return job;
+}
+
+TEST_CASE("the CG ratio of a guess on recorded simulations is that of a paired sweep") {
+  const TemporaryFolder folder;
+  for (const char* systems : {"first", "all"}) {
+    Json data = without("/guesses", rods("\"dataset\""));
+    data["record"] = {{"systems", systems}};
+    const auto path = folder / (std::string(systems) + ".h5");
+    make_data_set(path, data);
+    const DatasetReader reader(path);
+    const ValidationRatio ratios(reader.read(0, reader.size()));
+    REQUIRE(ratios.simulations() == 3);
+
+    const Plan sweep = plan_of(rods("\"sweep\""));
+    for (const Task& task : sweep.tasks()) {
+      TaskRecord record;
+      record.prepare(task, axis_sizes(sweep));
+      const TaskSpec spec = sweep.spec(task.index);
+      evaluate(task, spec, record, [] { return false; });
+      for (std::size_t g = 0; g < 3; ++g) {
+        CAPTURE(systems, task.index, g);
+        const auto measured = ratios.measure(
+            static_cast<std::size_t>(task.index),
+            [&](const Scene& scene, const RecordedSimulation&) { return make_guess(spec.guesses[g], spec, scene); });
+        for (std::size_t t = 0; t < ValidationRatio::tolerance_count; ++t)
+          CHECK(measured[t] == record.counted.cg_ratio[g * tolerance_ladder().size() + t]);
+        if (g > 0) CHECK(measured[1] < 1);
+      }
+    }
+  }
+}
+
+TEST_CASE("a rod at rest has no ratio") {
+  Json job = data_job();
+  job["scene"]["gravity_m_s2"] = {0, 0, 0};
+  const TemporaryFolder folder;
+  make_data_set(folder / "rest.h5", job);
+  const ValidationRatio ratios(DatasetReader(folder / "rest.h5").read(0, 1));
+  const auto none =
+      ratios.measure(0, [](const Scene&, const RecordedSimulation&) { return std::make_unique<ZeroGuess>(); });
+  for (const double ratio : none) CHECK(std::isnan(ratio));
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,333 @@
+// A batch of equal chains steps as each of them would alone.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solver/batch/batched_step.hpp"
+#include "solver/step/observables.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+const StepSettings settings{0.02, 6, 1e-9};
+
+Scene bending_scene(int segments, int variant, Clamp clamp = Clamp::segment) {
+  BendingRod rod = test::bending_rod(segments, clamp);
+  rod.length_m = 1 + 0.3 * variant;
+  rod.radius_m = 0.04 + 0.002 * variant;
+  rod.density_kg_m3 = 800 + 50 * variant;
+  rod.initial_angle_deg = 6 * variant;
+  rod.youngs_modulus_pa = 1e5 * (1 + variant);
+  rod.damping_per_s = 0.2 * variant;
+  rod.gravity_m_s2 = {0.1 * variant, -9.81, 0.2};
+  return build_scene(rod);
+}
+
+Scene helix_scene(int segments, int variant) {
+  Helix helix;
+  helix.segments = segments;
+  helix.helix_radius_m = 0.4 + 0.02 * variant;
+  helix.windings = 2 + 0.1 * variant;
+  helix.youngs_modulus_pa = 1e6;
+  helix.torsion_modulus_pa = 1e5 * (1 + variant);
+  return build_scene(helix);
+}
+
+/// A scene with random everything; see random_rod().
+Scene random_scene(int segments, const std::vector<int>& held, unsigned seed) {
+  Scene scene;
+  scene.rods.push_back(test::random_rod(test::chain(segments), held, seed));
+  return scene;
+}
+
+/// The largest distance of positions [m], and of orientations as quaternions up to sign.
+double distance(const Rod& a, const Rod& b) {
+  double out = 0;
+  for (std::size_t s = 0; s < a.position.size(); ++s) {
+    out = std::max(out, (a.position[s] - b.position[s]).norm());
+    out = std::max(out, 1 - std::abs(a.orientation[s].dot(b.orientation[s])));
+  }
+  return out;
+}
+
+double velocity_distance(const Rod& a, const Rod& b) {
+  double out = 0;
+  for (std::size_t s = 0; s < a.position.size(); ++s)
+    out =
+        std::max({out, (a.velocity[s] - b.velocity[s]).norm(), (a.angular_velocity[s] - b.angular_velocity[s]).norm()});
+  return out;
+}
+
+bool same_bits(const Rod& a, const Rod& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+  };
+  return same(a.position, b.position) && same(a.velocity, b.velocity) && same(a.orientation, b.orientation) &&
+         same(a.angular_velocity, b.angular_velocity) && same(a.lambda, b.lambda);
+}
+
+/// One scene stepped alone.
+struct Alone {
+  explicit Alone(const Scene& initial, const StepSettings& s = settings)
+      : scene(initial), direct(scene), projection(scene, direct), stepper(scene, s) {}
+  Alone(const Alone&) = delete;
+  Alone& operator=(const Alone&) = delete;
+  StepReport step() { return stepper.step(projection); }
+
+  Scene scene;
+  DirectSolve direct;
+  LinearProjection projection;
+  TimeStepper stepper;
+};
+
+/// Steps the scenes together and alone; checks all reports, then states and times.
+void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepSettings& s = settings) {
+  std::vector<std::unique_ptr<Alone>> alone;
+  for (const Scene& scene : scenes) alone.push_back(std::make_unique<Alone>(scene, s));
+  BatchedStepper batch(scenes, s);
+  for (int i = 0; i < steps; ++i) {
+    const std::vector<StepReport>& reports = batch.step();
+    REQUIRE(reports.size() == scenes.size());
+    for (std::size_t r = 0; r < scenes.size(); ++r) {
+      CAPTURE(i, r);
+      const StepReport expected = alone[r]->step();
+      CHECK(reports[r].outcome == expected.outcome);
+      CHECK(reports[r].newton_iterations == expected.newton_iterations);
+    }
+  }
+  for (std::size_t r = 0; r < scenes.size(); ++r) {
+    CAPTURE(r);
+    const Rod& expected = alone[r]->scene.rods.front();
+    batch.write(static_cast<int>(r), scenes[r]);
+    const Rod& rod = scenes[r].rods.front();
+    CHECK(distance(rod, expected) < bound);
+    CHECK(velocity_distance(rod, expected) < bound / s.dt);
+    CHECK((rod.lambda - expected.lambda).norm() <= 1e3 * bound * expected.lambda.norm());
+    CHECK(scenes[r].time_s == alone[r]->scene.time_s);
+    CHECK(batch.steps_taken(static_cast<int>(r)) == steps);
+  }
+}
+
+TEST_CASE("bending rods of different parameters step together as alone") {
+  std::vector<Scene> scenes;
+  for (int r = 0; r < 8; ++r) scenes.push_back(bending_scene(30, r));
+  check_equal(scenes, 50, 1e-10);
+}
+
+TEST_CASE("helices of different parameters step together as alone") {
+  std::vector<Scene> scenes;
+  for (int r = 0; r < 8; ++r) scenes.push_back(helix_scene(45, r));
+  check_equal(scenes, 50, 1e-10);
+}
+
+TEST_CASE("batches of fewer than eight rods, of two segments and of one") {
+  const int rods = GENERATE(1, 3, 7);
+  const Clamp clamp = GENERATE(Clamp::segment, Clamp::wall, Clamp::free);
+  for (const int segments : {1, 2, 5}) {
+    if (segments == 1 && clamp == Clamp::segment) continue;
+    CAPTURE(rods, segments);
+    std::vector<Scene> scenes;
+    for (int r = 0; r < rods; ++r) scenes.push_back(bending_scene(segments, r, clamp));
+    check_equal(scenes, 50, 1e-11);
+  }
+}
+
+TEST_CASE("any arms, rest rotations, compliances and held segments") {
+  const std::vector<int> held = GENERATE(std::vector<int>{}, std::vector<int>{0}, std::vector<int>{6},
+                                         std::vector<int>{0, 6}, std::vector<int>{3});
+  std::vector<Scene> scenes;
+  for (unsigned r = 0; r < 8; ++r) scenes.push_back(random_scene(7, held, 10 + r));
+  check_equal(scenes, 1, 1e-9, {1e-3, 3, 1e-9});
+}
+
+TEST_CASE("a rod that has converged waits, unchanged, for those that have not") {
+  // So coarse a tolerance that another iteration would show.
+  const StepSettings coarse{0.02, 6, 1e-3};
+  std::vector<Scene> scenes;
+  for (int r = 0; r < 8; ++r) scenes.push_back(bending_scene(10, r));
+  scenes[3].gravity_m_s2.setZero();
+  check_equal(scenes, 10, 1e-11, coarse);
+
+  BatchedStepper batch(scenes, coarse);
+  const std::vector<StepReport>& reports = batch.step();
+  CHECK(reports[3].newton_iterations == 0);
+  CHECK(reports[0].newton_iterations > 0);
+}
+
+TEST_CASE("a rod that blows up does not disturb the others, and stays where it failed") {
+  std::vector<Scene> scenes;
+  for (int r = 0; r < 5; ++r) scenes.push_back(bending_scene(10, r));
+  BatchedStepper good(scenes, settings);
+
+  const double infinite = std::numeric_limits<double>::infinity();
+  const bool turning = GENERATE(true, false);
+  (turning ? scenes[2].rods[0].angular_velocity : scenes[2].rods[0].velocity)[5].x() = infinite;
+  const SolveOutcome expected = turning ? SolveOutcome::indefinite : SolveOutcome::not_a_number;
+  CHECK(Alone(scenes[2]).step().outcome == expected);
+
+  BatchedStepper batch(scenes, settings);
+  for (int i = 0; i < 10; ++i) {
+    good.step();
+    const std::vector<StepReport>& reports = batch.step();
+    for (int r = 0; r < 5; ++r) CHECK(reports[r].outcome == (r == 2 ? expected : SolveOutcome::converged));
+    CHECK(reports[2].newton_iterations == (i == 0 ? 1 : 0));
+  }
+  for (const int r : {0, 1, 3, 4}) {
+    CAPTURE(r);
+    Scene reference = scenes[r];
+    batch.write(r, scenes[r]);
+    good.write(r, reference);
+    CHECK(same_bits(scenes[r].rods.front(), reference.rods.front()));
+  }
+  batch.write(2, scenes[2]);
+  CHECK(scenes[2].time_s == 0);
+  CHECK(batch.steps_taken(2) == 0);
+  CHECK(batch.steps_taken(0) == 10);
+}
+
+TEST_CASE("a step goes on from whatever state and time a scene has") {
+  Scene scene = test::moving_scene(10, 8);
+  scene.time_s = 3;
+  Alone alone(scene);
+  BatchedStepper batch({scene}, settings);
+  for (int i = 0; i < 5; ++i) {
+    alone.step();
+    batch.step();
+  }
+  batch.write(0, scene);
+  CHECK(distance(scene.rods.front(), alone.scene.rods.front()) < 1e-12);
+  CHECK(scene.time_s == alone.scene.time_s);
+}
+
+TEST_CASE("a step in parts shows every rod's system as the linear system of it alone has it") {
+  std::vector<Scene> scenes;
+  for (int r = 0; r < 3; ++r) scenes.push_back(bending_scene(8, r));
+  BatchedStepper batch(scenes, settings), whole(scenes, settings);
+  const auto scene_of = [&](int rod) {
+    Scene scene = scenes[static_cast<std::size_t>(rod)];
+    batch.write(rod, scene);
+    return scene;
+  };
+  for (int step = 0; step < 3; ++step) {
+    batch.begin();
+    int solves = 0;
+    while (batch.linearize()) {
+      std::vector<VectorX> exact(3);
+      for (int rod = 0; rod < 3; ++rod) {
+        if (!batch.iterates(rod)) continue;
+        const Scene scene = scene_of(rod);
+        LinearSystem system(scene.rods.front());
+        system.assemble(scene.rods.front(), constraint_dt(scene, settings.dt));
+        const BatchedLinearization& seen = batch.system().linearization();
+        CHECK(seen.residual[rod] == Approx(system.newton_residual()).margin(1e-14));
+        CHECK(std::sqrt(seen.squared_norm[rod]) == Approx(system.rhs().norm()).margin(1e-14));
+        CHECK(std::sqrt(seen.squared_gap[rod]) == Approx(joint_gap(scene.rods.front())).margin(1e-14));
+        exact[static_cast<std::size_t>(rod)].resize(system.rhs().size());
+        BlockFactor(system.matrix(), root_to_leaf_order(scene.rods.front()))
+            .solve(system.matrix(), system.rhs(), exact[static_cast<std::size_t>(rod)]);
+      }
+      batch.solve();
+      ++solves;
+      for (int rod = 0; rod < 3; ++rod) {
+        VectorX& expected = exact[static_cast<std::size_t>(rod)];
+        if (!batch.iterates(rod) || expected.size() == 0) continue;
+        VectorX solution(expected.size());
+        batch.system().write_solution(rod, solution.data());
+        CHECK((solution - expected).norm() < 1e-9 * expected.norm() + 1e-14);
+      }
+    }
+    batch.end();
+    whole.step();
+    CHECK(solves > 1);
+  }
+  for (int rod = 0; rod < 3; ++rod) {
+    Scene expected = scenes[static_cast<std::size_t>(rod)];
+    whole.write(rod, expected);
+    CHECK(same_bits(scene_of(rod).rods.front(), expected.rods.front()));
+  }
+}
+
+TEST_CASE("a rod that is abandoned stays where it is, the others go on") {
+  std::vector<Scene> scenes{bending_scene(6, 0), bending_scene(6, 1)};
+  BatchedStepper batch(scenes, settings), other({scenes[1]}, settings);
+  batch.step();
+  other.step();
+  Scene left = scenes[0], after = scenes[0];
+  batch.write(0, left);
+  batch.abandon(0);
+  for (int step = 0; step < 3; ++step) {
+    batch.step();
+    other.step();
+  }
+  batch.write(0, after);
+  CHECK(same_bits(left.rods.front(), after.rods.front()));
+  CHECK(batch.steps_taken(0) == 1);
+  Scene alone = scenes[1];
+  batch.write(1, scenes[1]);
+  other.write(0, alone);
+  CHECK(same_bits(scenes[1].rods.front(), alone.rods.front()));
+}
+
+TEST_CASE("what a batch cannot hold is refused") {
+  std::vector<Scene> scenes{bending_scene(5, 0), bending_scene(5, 1)};
+  std::string expected;
+  SECTION("no scene") {
+    scenes.clear();
+    expected = "a batch of 0 scenes; must be from 1 to 8";
+  }
+  SECTION("too many scenes") {
+    scenes.assign(9, scenes.front());
+    expected = "a batch of 9 scenes; must be from 1 to 8";
+  }
+  SECTION("two rods in a scene") {
+    scenes[1].rods.push_back(scenes[1].rods.front());
+    expected = "scene 1 of a batch has 2 rods; must have one";
+  }
+  SECTION("a moving clamp") {
+    const Rod& rod = scenes[0].rods[0];
+    const Pose pose{rod.position[0], rod.orientation[0]};
+    scenes[0].clamps.push_back({0, 0, [pose](double) { return pose; }});
+    expected = "scene 0 of a batch has a moving clamp; a batched step knows none";
+  }
+  SECTION("a point load") {
+    scenes[1].loads.push_back({0, 4, {1, 0, 0}});
+    expected = "scene 1 of a batch has a point load; a batched step knows none";
+  }
+  SECTION("different numbers of segments") {
+    scenes[1] = bending_scene(6, 0);
+    expected = "scene 1 of a batch has 6 segments; the first one has 5";
+  }
+  SECTION("different held segments") {
+    scenes[1] = bending_scene(5, 0, Clamp::free);
+    expected = "scene 1 of a batch: segment 0 is free; that of the first one is not";
+  }
+  SECTION("a loop") {
+    scenes[1].rods[0] = test::random_rod(test::ring(5), {0}, 1);
+    expected = "scene 1 of a batch has 5 joints for 5 segments; a chain has one less";
+  }
+  SECTION("a tree") {
+    scenes[1].rods[0] = test::random_rod({{0, 1}, {1, 2}, {1, 3}, {3, 4}}, {0}, 1);
+    expected = "scene 1 of a batch: joint 2 joins segments 1 and 3; in a chain it joins 2 and 3";
+  }
+  SECTION("a joint of two held segments") {
+    scenes[0].rods[0] = test::random_rod(test::chain(5), {1, 2}, 1);
+    expected = "scene 0 of a batch: joint 1 joins two static segments; remove it or free one of them";
+  }
+  SECTION("physical stretch") {
+    scenes[1].rods[0].joints[2].axial_excess = -1e-7;
+    expected =
+        "scene 1 of a batch: joint 2 stretches more easily or less along the rod than across; a batched step "
+        "knows one stretch";
+  }
+  CHECK_THROWS_WITH(BatchedStepper(scenes, settings), expected);
+  CHECK_THROWS_AS(BatchedStepper(scenes, settings), SceneError);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,130 @@
+// Pairs of boxes against brute force, what is kept between steps, and which segments of a rod can touch.
+#include <catch2/catch.hpp>
+#include <set>
+#include <utility>
+
+#include "solver/contact/contact_bodies.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+std::vector<Box> random_boxes(int count, unsigned seed) {
+  test::Random random(seed);
+  std::vector<Box> boxes;
+  for (int i = 0; i < count; ++i) {
+    const Vector3 at = random.vector(2);
+    boxes.push_back({at, at + random.uniform(0.01, 0.5) * (Vector3::Ones() + random.vector(0.9))});
+  }
+  return boxes;
+}
+
+std::set<std::pair<int, int>> set_of(const std::vector<Pair>& pairs) {
+  std::set<std::pair<int, int>> out;
+  for (const Pair& pair : pairs) out.emplace(pair.a, pair.b);
+  return out;
+}
+
+/// Of all pairs but those of two odd numbers.
+bool matters(int a, int b) { return a % 2 == 0 || b % 2 == 0; }
+std::set<std::pair<int, int>> searched(const std::vector<Box>& boxes, double margin) {
+  std::set<std::pair<int, int>> out;
+  for (int a = 0; a < static_cast<int>(boxes.size()); ++a)
+    for (int b = a + 1; b < static_cast<int>(boxes.size()); ++b)
+      if (matters(a, b) && boxes[a].grown(margin).meets(boxes[b].grown(margin))) out.emplace(a, b);
+  return out;
+}
+
+TEST_CASE("the pairs of boxes that meet are those of brute force, sorted") {
+  for (const int count : {0, 1, 2, 50, 400}) {
+    const std::vector<Box> boxes = random_boxes(count, 3);
+    BroadPhase broad_phase(std::vector<double>(boxes.size(), 0.0), matters);
+    const std::vector<Pair>& pairs = broad_phase.pairs(boxes);
+    CHECK(set_of(pairs) == searched(boxes, 0));
+    CHECK(set_of(pairs).size() == pairs.size());
+    for (std::size_t i = 1; i < pairs.size(); ++i)
+      CHECK(std::pair(pairs[i - 1].a, pairs[i - 1].b) < std::pair(pairs[i].a, pairs[i].b));
+  }
+}
+
+TEST_CASE("pairs are searched anew only when a box has left its margin, and none is missed meanwhile") {
+  std::vector<Box> boxes = random_boxes(200, 4);
+  const std::vector<Box> start = boxes;
+  BroadPhase broad_phase(std::vector<double>(boxes.size(), 0.1), matters);
+  CHECK(set_of(broad_phase.pairs(boxes)) == searched(boxes, 0.1));
+  test::Random random(5);
+  for (int step = 0; step < 20; ++step) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const Vector3 by = random.vector(0.09);
+      boxes[i] = {start[i].low + by, start[i].high + by};
+    }
+    const auto kept = set_of(broad_phase.pairs(boxes));
+    for (const auto& pair : searched(boxes, 0)) CHECK(kept.count(pair) == 1);
+  }
+  CHECK(broad_phase.searches() == 1);
+  boxes[7].high.x() = start[7].high.x() + 0.11;
+  broad_phase.pairs(boxes);
+  CHECK(broad_phase.searches() == 2);
+}
+
+/// How many segments from segment 0 the first is that can touch it, of a straight rod of such segments.
+int first_that_matters(double segment_length_m, double radius_m) {
+  BendingRod p;
+  p.segments = 40;
+  p.length_m = 40 * segment_length_m;
+  p.radius_m = radius_m;
+  const ContactBodies bodies(build_scene(p));
+  int s = 1;
+  while (s < 40 && !bodies.matter(0, s)) ++s;
+  return s;
+}
+
+TEST_CASE("segments less than pi radii apart along their rod never touch") {
+  CHECK(first_that_matters(1, 0.1) == 2);      // only joint neighbours are excluded
+  CHECK(first_that_matters(1, 0.31) == 2);     // one segment between: 1 > 0.97
+  CHECK(first_that_matters(1, 0.33) == 3);     // 1 < 1.04
+  CHECK(first_that_matters(0.05, 0.05) == 5);  // three between: 3 < pi, but not four
+}
+
+TEST_CASE("static pairs and segments without radius never touch; branches that leave one point do not either") {
+  Scene scene = build_scene(test::bending_rod(10, Clamp::wall));
+  scene.obstacles.push_back(Ball{});
+  scene.obstacles.push_back(Capsule{});
+  const ContactBodies bodies(scene);
+  REQUIRE(bodies.count() == 13);
+  CHECK_FALSE(bodies.matter(0, 9));    // the wall has no radius
+  CHECK_FALSE(bodies.matter(11, 12));  // two obstacles
+  CHECK(bodies.matter(3, 11));
+  CHECK(bodies.matter(2, 9));
+
+  std::vector<SegmentSpec> segments(3);
+  for (SegmentSpec& s : segments) {
+    s.length_m = 1;
+    s.radius_m = 0.05;
+    s.density_kg_m3 = 1000;
+  }
+  std::vector<JointSpec> joints(2);
+  for (int k = 0; k < 2; ++k) {
+    joints[k].a = 0;
+    joints[k].b = k + 1;
+    joints[k].arm_a_m = {0, 0, 0.5};
+    joints[k].arm_b_m = {0, 0, -0.5};
+  }
+  Scene fork;
+  fork.rods.emplace_back(segments, joints);
+  CHECK_FALSE(ContactBodies(fork).matter(1, 2));
+  joints[1].arm_a_m = {0, 0, 0.3};
+  fork.rods = {Rod(segments, joints)};
+  CHECK(ContactBodies(fork).matter(1, 2));
+}
+
+TEST_CASE("obstacles that are none are refused") {
+  Scene scene = build_scene(test::bending_rod(3));
+  scene.obstacles = {Ball{{0, 0, 0}, 0}};
+  CHECK_THROWS_WITH(ContactBodies(scene), "an obstacle's radius is 0.000000; must be positive and finite");
+  scene.obstacles = {Ball{{0, NAN, 0}, 1}};
+  CHECK_THROWS_WITH(ContactBodies(scene), "an obstacle's place is not finite");
+}
+
+}  // namespace
+}  // namespace rodsweep

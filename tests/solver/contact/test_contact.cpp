@@ -1,0 +1,233 @@
+// Collisions: impulses of rigid bodies, momentum, energy, and that nothing passes through anything.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/numbers/rotation.hpp"
+#include "tests/solver/support.hpp"
+#include "tests/solver/touching.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::capsule;
+using test::contact_scene;
+using test::Touching;
+
+constexpr double r = 0.05;  // of RodParameters
+
+/// For closed forms.
+Scene exact(Scene scene) {
+  scene.contact->tolerance = 1e-9;
+  return scene;
+}
+
+TEST_CASE("two rods that meet head-on go on together, with their common momentum") {
+  RodParameters heavy;
+  heavy.density_kg_m3 = 3000;
+  Touching t(exact(contact_scene({capsule({0, 0, -1}, {0, 0, 1}, {2, 0, 0}, heavy),
+                                  capsule({2.5 * r, 0, -1}, {2.5 * r, 0, 1}, {-1, 0, 0})})),
+             0.01);
+  const Vector3 momentum = test::linear_momentum(t.scene);
+  t.run(5);
+  for (const Rod& rod : t.scene.rods) {
+    CHECK((rod.velocity[0] - Vector3((3 * 2 - 1) / 4.0, 0, 0)).norm() < 1e-6);
+    CHECK(rod.angular_velocity[0].norm() < 1e-6);
+  }
+  CHECK((test::linear_momentum(t.scene) - momentum).norm() < 1e-12 * momentum.norm());
+  CHECK(test::nearest(t.scene) == Approx(1).epsilon(1e-6));
+}
+
+/// One step of a capsule along y, which meets one along z at a distance `arm` from its centre while they touch.
+Scene after_impact(double arm, double dt) {
+  Touching t(exact(contact_scene({capsule({0, -0.5, arm}, {0, 0.5, arm}, {1, 0, 0}),
+                                  capsule({2 * r, 0, -1}, {2 * r, 0, 1}, {0, 0, 0})})),
+             dt);
+  t.step();
+  return t.scene;
+}
+
+TEST_CASE("an off-centre impact gives the impulse of rigid bodies, to first order in the step") {
+  for (const double arm : {0.3, 0.8}) {
+    const auto error = [&](double dt) {
+      const Scene scene = after_impact(arm, dt);
+      const Segment &one = scene.rods[0].segments[0], &other = scene.rods[1].segments[0];
+      const double impulse = 1 / (1 / one.mass + 1 / other.mass + arm * arm / other.inertia_transverse);
+      return (scene.rods[0].velocity[0] - Vector3(1 - impulse / one.mass, 0, 0)).norm() +
+             (scene.rods[1].velocity[0] - Vector3(impulse / other.mass, 0, 0)).norm() +
+             (scene.rods[1].angular_velocity[0] - Vector3(0, arm * impulse / other.inertia_transverse, 0)).norm();
+    };
+    CHECK(error(1e-3) < 2e-3);
+    CHECK(error(5e-4) < 0.6 * error(1e-3));
+  }
+}
+
+TEST_CASE("an impact keeps angular momentum to first order in the step, with friction too") {
+  const auto lost = [](double dt) {
+    Scene scene = contact_scene({capsule({0, -0.5, 0.4}, {0, 0.5, 0.3}, {1, 0.5, 0.4}),
+                                 capsule({2.05 * r, 0.1, -1}, {2.05 * r, 0, 1}, {0, 0, 0})},
+                                0.5);
+    scene.rods[1].angular_velocity[0] = {0.3, 0.2, 0.5};
+    Touching t(scene, dt);
+    const Vector3 before = test::angular_momentum(t.scene), linear = test::linear_momentum(t.scene);
+    t.run(static_cast<int>(std::lround(0.02 / dt)));
+    CHECK((test::linear_momentum(t.scene) - linear).norm() < 1e-12 * linear.norm());
+    CHECK((t.scene.rods[0].velocity[0] - Vector3(1, 0.5, 0.4)).norm() > 0.1);
+    return (test::angular_momentum(t.scene) - before).norm() / before.norm();
+  };
+  CHECK(lost(1e-3) < 4e-3);
+  CHECK(lost(5e-4) < 0.6 * lost(1e-3));
+}
+
+/// Capsules in a box of 1 m, all on their way to its middle.
+Scene swarm(unsigned seed, double friction) {
+  test::Random random(seed);
+  std::vector<Rod> rods;
+  while (rods.size() < 12) {
+    const Vector3 at = random.vector(0.5), half = random.vector(0.15);
+    rods.push_back(capsule(at - half, at + half, -4 * at));
+    rods.back().angular_velocity[0] = random.vector(3);
+    if (test::nearest(contact_scene(rods)) < 1) rods.pop_back();
+  }
+  return contact_scene(rods, friction);
+}
+
+TEST_CASE("collisions never give kinetic energy, and keep linear momentum to rounding") {
+  for (const double friction : {0.0, 0.4})
+    for (const unsigned seed : {1u, 2u, 3u}) {
+      Touching t(swarm(seed, friction), 0.005);
+      const Vector3 momentum = test::linear_momentum(t.scene);
+      const double start = test::kinetic_energy(t.scene);
+      double energy = start;
+      for (int i = 0; i < 80; ++i) {
+        const StepReport report = t.step();
+        CHECK(report.penetration < 0.01);
+        const double now = test::kinetic_energy(t.scene);
+        CHECK(now < energy + 1e-3 * start);  // one step integrates rotation to first order
+        energy = now;
+      }
+      CHECK(energy < 0.5 * start);
+      CHECK((test::linear_momentum(t.scene) - momentum).norm() < 1e-11);
+    }
+}
+
+TEST_CASE("rods that collide keep linear momentum, stay whole and give no energy") {
+  RodParameters p;
+  p.youngs_modulus_pa = 1e8;
+  p.torsion_modulus_pa = 4e7;
+  std::vector<Rod> rods;
+  for (int k = 0; k < 4; ++k) {
+    const Vector3 at(0.7 * std::cos(k * M_PI / 2), 0.03 * k, 0.7 * std::sin(k * M_PI / 2)), along(0.1, 0.5, 0.1 * k);
+    rods.push_back(test::straight_rod(at - along, at + along, 12, p));
+    for (Vector3& v : rods.back().velocity) v = -4 * at;
+  }
+  Touching t(contact_scene(rods, 0.3), 0.002);
+  const Vector3 momentum = test::linear_momentum(t.scene), angular = test::angular_momentum(t.scene);
+  const double start = test::kinetic_energy(t.scene);
+  CHECK(t.run(150) < 0.01);
+  const double size = start / 2;  // of momenta: the rods move at 2.8 m/s, less than a metre from the middle
+  CHECK((test::linear_momentum(t.scene) - momentum).norm() < 1e-10 * size);
+  CHECK((test::angular_momentum(t.scene) - angular).norm() < 0.02 * size);
+  double energy = test::kinetic_energy(t.scene);
+  for (const Rod& rod : t.scene.rods) {
+    energy += elastic_energy(rod);
+    CHECK(joint_gap(rod) < 1e-5);
+  }
+  CHECK(energy < 0.5 * start);
+}
+
+/// A rod shot at another one, `radii` per step, at an angle between them; whether it ended before it.
+bool stays_before(double angle_deg, double radii, double offset, int segments) {
+  const double dt = 0.01, angle = angle_deg * M_PI / 180;
+  const Vector3 along(0, std::sin(angle), std::cos(angle));
+  RodParameters p;
+  p.youngs_modulus_pa = 1e6;
+  Rod target = test::straight_rod({0, 0, -0.5}, {0, 0, 0.5}, segments, p);
+  Rod bullet = test::straight_rod(Vector3(-7.3 * r, 0, offset) - along / 2, Vector3(-7.3 * r, 0, offset) + along / 2,
+                                  segments, p);
+  for (Vector3& v : bullet.velocity) v = {radii * r / dt, 0, 0};
+  Touching t(contact_scene({bullet, target}, 0.2), dt);
+  const auto crossed = [&t] {  // the sides of two long rods that cross near their middles
+    for (std::size_t a = 0; a < t.scene.rods[0].segments.size(); ++a)
+      for (std::size_t b = 0; b < t.scene.rods[1].segments.size(); ++b) {
+        const Rod &one = t.scene.rods[0], &other = t.scene.rods[1];
+        const Vector3 between =
+            separation({one.position[a], one.segments[a].length_m / 2 * director(one.orientation[a])},
+                       {other.position[b], other.segments[b].length_m / 2 * director(other.orientation[b])});
+        if (between.norm() < 3 * r && between.x() > 0.5 * between.norm()) return true;
+      }
+    return false;
+  };
+  const int flight = static_cast<int>(std::ceil(5.3 / radii));
+  for (int i = 0; i < flight + 3; ++i) {  // later they may well turn about each other
+    t.step();
+    if (crossed()) return false;
+  }
+  return linear_momentum(t.scene.rods[1]).x() > 0;  // it did hit
+}
+
+TEST_CASE("a rod shot at another at one radius per step, and faster, never passes through") {
+  for (const int segments : {1, 8, 20})
+    for (const double angle : {0.0, 1.0, 10.0, 30.0, 45.0, 90.0})
+      for (const double radii : {1.0, 1.7, 9.0}) {
+        if (segments > 1 && radii > 2) continue;  // soft rods are torn up by such impacts
+        INFO(segments << " segments at " << angle << " degrees, " << radii << " radii per step");
+        CHECK(stays_before(angle, radii, 0.06, segments));
+      }
+}
+
+TEST_CASE("a rod that folds comes to lie on itself") {
+  RodParameters p;
+  p.youngs_modulus_pa = 1e4;
+  Rod rod = test::straight_rod({0, 0, -0.9}, {0, 0, 0.9}, 18, p);
+  for (int s = 0; s < 18; ++s) rod.velocity[s] = {0.5 * std::pow(rod.position[s].z() / 0.9, 2) * 12, 0, 0};
+  for (int s = 0; s < 18; ++s) rod.velocity[s].z() = -6 * rod.position[s].z();
+  Touching t(contact_scene({rod}, 0.2), 0.01);
+  double nearest = HUGE_VAL;
+  for (int i = 0; i < 60; ++i) {
+    t.step();
+    nearest = std::min(nearest, test::nearest(t.scene));
+  }
+  CHECK(nearest < 1.001);  // it did touch itself
+  CHECK(nearest > 0.99);
+}
+
+TEST_CASE("rods that start inside each other part, slowly") {
+  for (const double distance : {1.6, 0.02}) {
+    Touching t(contact_scene({capsule({0, 0, -1}, {0, 0, 1}, {0, 0, 0}),
+                              capsule({distance * r, 0, -1}, {distance * r, 0, 1}, {0, 0, 0})}),
+               0.005);
+    t.run(250);
+    CHECK(test::nearest(t.scene) > 0.9999);
+    for (const Rod& rod : t.scene.rods) CHECK(rod.velocity[0].norm() < 0.02 * r / 0.005);
+  }
+}
+
+TEST_CASE("a scene in which nothing touches takes the same steps, bit for bit, with contact as without") {
+  Scene with = test::moving_scene(12), without = with;
+  with.contact = ContactSettings{};
+  with.obstacles = {Ball{{5, 5, 5}, 1}, HalfSpace{{0, -9, 0}, {0, 1, 0}}};
+  Touching a(with, 0.02), b(without, 0.02);
+  CHECK(a.run(10) == 0);
+  b.run(10);
+  for (int s = 0; s < 12; ++s) {
+    CHECK(a.scene.rods[0].position[s] == b.scene.rods[0].position[s]);
+    CHECK(a.scene.rods[0].orientation[s].coeffs() == b.scene.rods[0].orientation[s].coeffs());
+  }
+}
+
+TEST_CASE("contact settings and half-spaces that are none are refused") {
+  Scene scene = contact_scene({capsule({0, 0, 0}, {0, 0, 1}, {0, 0, 0})}, -0.1);
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "friction is -0.100000; must be at least 0 and finite");
+  scene.contact->friction = 0;
+  scene.contact->recovery = 1.5;
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "recovery is 1.500000; must be at most 1");
+  scene.contact->recovery = 1;
+  scene.contact->tolerance = 0;
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "tolerance is 0, which nothing reaches; must be positive");
+  scene.contact->tolerance = 1e-5;
+  scene.obstacles = {HalfSpace{{0, 0, 0}, {0, 0, 0}}};
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), Catch::Contains("the normal must not be zero"));
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,116 @@
+// Coulomb friction against closed forms: slopes, rolling, spinning down.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/solver/touching.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::capsule;
+using test::contact_scene;
+using test::Touching;
+
+constexpr double r = 0.05, g = 9.81, dt = 0.005;
+
+/// A capsule on the plane y = 0 that is tilted down towards +x, after 40 steps from rest.
+Scene on_slope(double slope, double friction, const Vector3& axis) {
+  const Vector3 at(0, r, 0);
+  Scene scene = contact_scene({capsule(at - axis, at + axis, {0, 0, 0})}, friction,
+                              g * Vector3(std::sin(slope), -std::cos(slope), 0));
+  scene.obstacles = {HalfSpace{}};
+  Touching t(scene, dt);
+  CHECK(t.run(40) < 1e-4);
+  return t.scene;
+}
+
+TEST_CASE("along a slope a capsule slides with g (sin - mu cos) above the angle of friction, and stays below it") {
+  for (const double friction : {0.2, 0.5}) {
+    const double limit = std::atan(friction);
+    for (const double beyond : {0.02, 0.1, 0.3}) {
+      const double slope = limit + beyond;
+      const Scene scene = on_slope(slope, friction, {0.5, 0, 0});
+      const double acceleration = g * (std::sin(slope) - friction * std::cos(slope));
+      CHECK(scene.rods[0].velocity[0].x() == Approx(40 * dt * acceleration).epsilon(2e-3));
+    }
+    for (const double below : {0.02, 0.1}) {
+      const Scene scene = on_slope(limit - below, friction, {0.5, 0, 0});
+      CHECK(scene.rods[0].velocity[0].norm() < 1e-4);
+      CHECK(std::abs(scene.rods[0].position[0].x()) < 1e-5);
+    }
+  }
+}
+
+TEST_CASE("across a slope a capsule rolls with 2/3 g sin, and slides when friction is less than a third of the slope") {
+  const double slope = 0.4;
+  const Scene rolling = on_slope(slope, 0.5, {0, 0, 0.5});
+  const double speed = 40 * dt * g * std::sin(slope) * 2 / 3;
+  CHECK(rolling.rods[0].velocity[0].x() == Approx(speed).epsilon(5e-3));
+  CHECK(rolling.rods[0].angular_velocity[0].z() == Approx(-speed / r).epsilon(5e-3));
+  const double friction = std::tan(slope) / 3 * 0.5;
+  const Scene sliding = on_slope(slope, friction, {0, 0, 0.5});
+  CHECK(sliding.rods[0].velocity[0].x() ==
+        Approx(40 * dt * g * (std::sin(slope) - friction * std::cos(slope))).epsilon(5e-3));
+}
+
+TEST_CASE("without friction a slope only carries") {
+  const Scene scene = on_slope(0.3, 0, {0.5, 0, 0});
+  CHECK(scene.rods[0].velocity[0].x() == Approx(40 * dt * g * std::sin(0.3)).epsilon(1e-6));
+}
+
+TEST_CASE("a capsule slides on a plane for v^2 / (2 mu g)") {
+  Scene scene = contact_scene({capsule({-0.5, r, 0}, {0.5, r, 0}, {1, 0, 0})}, 0.4, {0, -g, 0});
+  scene.obstacles = {HalfSpace{}};
+  Touching t(scene, 0.002);
+  t.run(200);
+  CHECK(t.scene.rods[0].velocity[0].norm() < 1e-4);
+  CHECK(t.scene.rods[0].position[0].x() == Approx(1 / (2 * 0.4 * g)).epsilon(0.02));
+}
+
+TEST_CASE("a capsule hung over a fixed one by friction stays, and slips off without") {
+  for (const bool rough : {true, false}) {
+    Scene scene = contact_scene({capsule({-0.5, 2 * r, 0.1}, {0.5, 2 * r, 0.1}, {0, 0, 0})}, rough ? 0.5 : 0.0,
+                                g * Vector3(0.2, -1, 0).normalized());
+    for (const double x : {-0.3, 0.3}) scene.obstacles.push_back(Capsule{{x, 0, -1}, {x, 0, 1}, r});
+    Touching t(scene, 0.005);
+    t.run(60);
+    CHECK((std::abs(t.scene.rods[0].position[0].x()) < 1e-4) == rough);
+    CHECK(test::nearest(t.scene) > 0.9999);
+  }
+}
+
+/// How far a limp rod over a fixed capsule slips in half a second, its ends pulled down with 1 N and `ratio` N.
+double slip_of_rope(double friction, double ratio) {
+  RodParameters p;
+  p.radius_m = 0.01;
+  p.youngs_modulus_pa = 1e4;
+  p.torsion_modulus_pa = 1e4;
+  constexpr int arc = 48, leg = 10;
+  const double drum = 0.2, bent = (drum + p.radius_m) / std::cos(M_PI / (2 * arc)),
+               length = 2 * bent * std::sin(M_PI / (2 * arc));
+  std::vector<Vector3> vertices;
+  for (int i = leg; i > 0; --i) vertices.emplace_back(-bent, -i * length, 0);
+  for (int i = 0; i <= arc; ++i)
+    vertices.emplace_back(-bent * std::cos(i * M_PI / arc), bent * std::sin(i * M_PI / arc), 0);
+  for (int i = 1; i <= leg; ++i) vertices.emplace_back(bent, -i * length, 0);
+  const std::vector<SegmentSpec> segments = segments_through(vertices, p);
+  Scene scene = contact_scene({chain(segments, p, ratio)}, friction);
+  scene.obstacles = {Capsule{{0, 0, -1}, {0, 0, 1}, drum}};
+  scene.loads = {{0, 0, {0, -1, 0}}, {0, static_cast<int>(segments.size()) - 1, {0, -ratio, 0}}};
+  scene.damping_per_s = 2;
+  Touching t(scene, 0.002);
+  const double before = t.scene.rods[0].position.back().y();
+  CHECK(t.run(250) < 0.01);
+  return before - t.scene.rods[0].position.back().y();
+}
+
+TEST_CASE("a rope over half a drum holds a load of up to exp(mu pi) times the other (Euler 1769; Eytelwein 1808)") {
+  for (const double friction : {0.2, 0.4}) {
+    const double most = std::exp(friction * M_PI);
+    CHECK(std::abs(slip_of_rope(friction, 0.92 * most)) < 2e-3);
+    CHECK(slip_of_rope(friction, 1.05 * most) > 0.02);
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,106 @@
+// Rods at rest on each other and on obstacles: no deeper than 1 % of the radius.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/solver/touching.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::contact_scene;
+using test::straight_rod;
+using test::Touching;
+
+RodParameters material(double youngs_modulus_pa) {
+  RodParameters p;
+  p.radius_m = 0.02;
+  p.youngs_modulus_pa = youngs_modulus_pa;
+  p.torsion_modulus_pa = youngs_modulus_pa / 2.6;
+  return p;
+}
+
+/// Layers of three parallel rods on a floor, each at right angles to the one below.
+Scene stack(int layers, int segments, double youngs_modulus_pa) {
+  const RodParameters p = material(youngs_modulus_pa);
+  const double r = p.radius_m;
+  std::vector<Rod> rods;
+  for (int layer = 0; layer < layers; ++layer)
+    for (int k = 0; k < 3; ++k) {
+      const double y = r + 2 * r * layer, at = 0.2 + 0.3 * k;
+      rods.push_back(layer % 2 ? straight_rod({at, y, 0}, {at, y, 1}, segments, p)
+                               : straight_rod({0, y, at}, {1, y, at}, segments, p));
+    }
+  Scene scene = contact_scene(rods, 0.3, {0, -9.81, 0});
+  scene.obstacles = {HalfSpace{}};
+  return scene;
+}
+
+TEST_CASE("a stack of rods comes to rest and does not sink in") {
+  for (const double youngs_modulus_pa : {1e8, 1e9}) {
+    INFO("E = " << youngs_modulus_pa);
+    Touching t(stack(3, 10, youngs_modulus_pa), 0.01);
+    t.run(40);
+    const Scene settled = t.scene;
+    CHECK(t.run(40) < 0.01);
+    for (std::size_t rod = 0; rod < settled.rods.size(); ++rod)  // they may roll, since nothing resists that
+      for (std::size_t s = 0; s < 10; ++s)
+        CHECK(std::abs(t.scene.rods[rod].position[s].y() - settled.rods[rod].position[s].y()) < 0.02 * 0.02);
+    for (const Rod& rod : t.scene.rods)
+      for (const Vector3& v : rod.velocity) CHECK(std::abs(v.y()) < 0.01);
+  }
+}
+
+TEST_CASE("two Newton iterations still keep a stack from sinking in") {
+  Touching t(stack(3, 10, 1e7), 0.01, 2);
+  t.run(60);
+  CHECK(t.run(40) < 0.01);
+}
+
+TEST_CASE("a pile of parallel rods between walls rests with line contacts") {
+  const RodParameters p = material(1e7);
+  const double r = p.radius_m;
+  std::vector<Rod> rods;
+  for (int layer = 0; layer < 3; ++layer)
+    for (int k = 0; k < 3 - layer; ++k) {
+      const double y = r + std::sqrt(3) * r * layer, z = 2 * r * k + r * layer;
+      rods.push_back(straight_rod({0, y, z}, {1, y, z}, 6, p));
+    }
+  Scene scene = contact_scene(rods, 0.3, {0, -9.81, 0});
+  scene.obstacles = {HalfSpace{}, HalfSpace{{0, 0, -r}, {0, 0, 1}}, HalfSpace{{0, 0, 5 * r}, {0, 0, -1}}};
+  Touching t(scene, 0.01);
+  t.run(30);
+  CHECK(t.run(30) < 0.01);
+  for (std::size_t rod = 0; rod < rods.size(); ++rod)
+    CHECK((t.scene.rods[rod].position[0] - rods[rod].position[0]).norm() < 0.01 * r);
+}
+
+TEST_CASE("a beam on two supports bends between them and sinks into neither") {
+  const RodParameters p = material(1e8);
+  const double r = p.radius_m;
+  Scene scene = contact_scene({straight_rod({0, 2 * r, 0}, {1, 2 * r, 0}, 30, p)}, 0.3, {0, -9.81, 0});
+  for (const double x : {0.1, 0.9}) scene.obstacles.push_back(Capsule{{x, 0, -1}, {x, 0, 1}, r});
+  scene.damping_per_s = 5;
+  Touching t(scene, 0.01);
+  t.run(150);
+  CHECK(t.run(20) < 0.01);
+  // 5 q L^4 / 384 EI of the span, less what the overhanging ends lift: q a^2 / 2 L^2 / 8 EI.
+  const double area = M_PI * r * r, ei = 1e8 * M_PI * std::pow(r, 4) / 4, q = 1000 * 9.81 * area;
+  const double sag = q / ei * (5 * std::pow(0.8, 4) / 384 - 0.1 * 0.1 / 2 * 0.8 * 0.8 / 8);
+  const Rod& rod = t.scene.rods[0];
+  CHECK(2 * r - (rod.position[14].y() + rod.position[15].y()) / 2 == Approx(sag).epsilon(0.05));
+}
+
+TEST_CASE("a rod draped over a ball hangs on it") {
+  const RodParameters p = material(1e6);
+  Scene scene = contact_scene({straight_rod({-0.5, 0.32, 0}, {0.5, 0.32, 0}, 20, p)}, 0.5, {0, -9.81, 0});
+  scene.obstacles = {Ball{{0, 0, 0}, 0.3}};
+  scene.damping_per_s = 2;
+  Touching t(scene, 0.01);
+  CHECK(t.run(80) < 0.02);
+  CHECK(test::nearest(t.scene) > 0.999);
+  CHECK(t.scene.rods[0].position[0].y() < 0.2);
+  CHECK(t.scene.rods[0].position[10].y() == Approx(0.32).epsilon(0.01));
+}
+
+}  // namespace
+}  // namespace rodsweep

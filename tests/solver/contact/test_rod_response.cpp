@@ -1,0 +1,76 @@
+// How rods give way to impulses, against dense algebra and rigid bodies.
+#include <catch2/catch.hpp>
+
+#include "solver/contact/rod_response.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::MatrixX;
+
+constexpr double dt = 0.01;
+
+std::vector<Lane8> lanes(const VectorX& v) {
+  std::vector<Lane8> out;
+  for (Eigen::Index i = 0; i < v.size(); i += 6) out.push_back(load6(v.data() + i));
+  return out;
+}
+
+VectorX entries(const std::vector<Lane8>& lanes) {
+  VectorX out(6 * static_cast<Eigen::Index>(lanes.size()));
+  for (std::size_t i = 0; i < lanes.size(); ++i) store6(out.data() + 6 * i, lanes[i]);
+  return out;
+}
+
+TEST_CASE("a response is that of dense algebra, on any graph, and responses add up") {
+  const std::vector<std::pair<test::Edges, std::vector<int>>> graphs{
+      {test::chain(12), {}}, {test::chain(9), {0, 8}}, {test::tree(3, 3), {0}}, {test::ring(9), {}}};
+  for (const auto& [edges, held] : graphs) {
+    const Rod rod = test::random_rod(edges, held, 1);
+    const test::DenseSystem dense = test::dense_system(rod, dt);
+    RodResponse response(rod);
+    response.assemble(rod, dt);
+    VectorX multipliers = VectorX::Zero(6 * rod.joint_count());
+    for (const unsigned seed : {2U, 3U}) {
+      const VectorX motion = dense.inverse_mass * test::Random(seed).entries(6 * rod.segment_count());
+      const VectorX back = -test::dense_solve(dense.a, dense.jacobian * motion);
+      const VectorX expected = motion + dense.inverse_mass * dense.jacobian.transpose() * back;
+      multipliers += back;
+      std::vector<Lane8> moved = lanes(motion);
+      response.respond(rod, moved.data());
+      CHECK((entries(moved) - expected).norm() < 1e-7 * motion.norm());  // differences make the dense Jacobian
+      CHECK((response.multipliers() - multipliers).norm() < 1e-6 * multipliers.norm());
+    }
+  }
+}
+
+TEST_CASE("a stiff rod gives way to an impulse like a rigid body, a limp one like its segment alone") {
+  BendingRod p = test::bending_rod(11, Clamp::free);
+  p.density_kg_m3 = 1000;
+  p.initial_angle_deg = 0;
+  for (const bool stiff : {true, false}) {
+    p.youngs_modulus_pa = p.torsion_modulus_pa = stiff ? 1e15 : 1e-9;
+    p.stretch_compliance_per_j = stiff ? 1e-15 : 1e15;
+    Rod rod = build_scene(p).rods.front();
+    const Segment& segment = rod.segments.front();
+    const double mass = 11 * segment.mass,
+                 inertia =
+                     mass * (3 * segment.radius_m * segment.radius_m + 121 * segment.length_m * segment.length_m) / 12;
+    const Vector3 along = (rod.position[10] - rod.position[0]).normalized(), push = along.unitOrthogonal();
+    std::vector<Lane8> motion(11, Lane8{});
+    for (int c = 0; c < 3; ++c) motion[0][c] = push[c] * segment.inverse_mass;
+    RodResponse response(rod);
+    response.assemble(rod, dt);
+    response.respond(rod, motion.data());
+    const double arm = (rod.position[5] - rod.position[0]).norm();
+    Vector3 momentum = Vector3::Zero();
+    for (const Lane8& moved : motion) momentum += segment.mass * Vector3(moved[0], moved[1], moved[2]);
+    CHECK((momentum - push).norm() < 1e-6);
+    const double moved = Vector3(motion[0][0], motion[0][1], motion[0][2]).dot(push);
+    CHECK(moved == Approx(stiff ? 1 / mass + arm * arm / inertia : segment.inverse_mass).epsilon(1e-5));
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,269 @@
+// The guesses: what each proposes, when it falls back to zero, and that none remembers what it should not.
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "solver/guess/initial_guess.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::MatrixX;
+
+constexpr auto white = OracleGuess::Error::white, smooth = OracleGuess::Error::smooth;
+
+/// Two rods of different size, and the assembled systems of both.
+struct TwoRods {
+  Scene scene;
+  std::vector<LinearSystem> systems;
+
+  TwoRods() {
+    scene.rods = {test::random_rod(test::chain(6), {0}, 1), test::random_rod(test::tree(2, 2), {0}, 2)};
+    for (const Rod& rod : scene.rods) {
+      systems.emplace_back(rod);
+      systems.back().assemble(rod, 0.02);
+    }
+  }
+  int size(int rod) const { return systems[rod].matrix().unknowns(); }
+  VectorX exact(int rod) {
+    VectorX out = VectorX::Zero(size(rod));
+    DirectSolve direct(scene);
+    REQUIRE(direct.solve(systems[rod], {0, 0, rod}, 0, out) == SolveOutcome::converged);
+    return out;
+  }
+};
+
+struct Proposed : Proposal {
+  VectorX x0;
+};
+
+Proposed propose(InitialGuess& guess, TwoRods& rods, const SolvePosition& at) {
+  VectorX x0 = VectorX::Constant(rods.size(at.rod), 123);  // what x0 held must not matter
+  const Proposal proposal = guess.propose(rods.systems[at.rod], at, x0);
+  return {proposal, x0};
+}
+
+/// A solution that is a polynomial in the step, in numbers that floating point holds exactly.
+VectorX polynomial(int size, int degree, int step) {
+  VectorX out(size);
+  for (int i = 0; i < size; ++i)
+    out[i] = 3 * i - 20 + (degree > 0 ? (i - 7) * step : 0) + (degree > 1 ? (5 - i) * step * step : 0);
+  return out;
+}
+
+TEST_CASE("the zero guess is zero") {
+  TwoRods rods;
+  ZeroGuess guess;
+  guess.accept({0, 0, 0}, VectorX::Ones(rods.size(0)));
+  const Proposed proposed = propose(guess, rods, {1, 0, 0});
+  CHECK_FALSE(proposed.nonzero);
+  CHECK(proposed.x0.isZero(0));
+}
+
+TEST_CASE("previous, linear and quadratic reproduce sequences of their degree exactly") {
+  for (const int terms : {1, 2, 3}) {
+    TwoRods rods;
+    ExtrapolationGuess guess(rods.scene, 1, terms);
+    for (int step = 0; step < 12; ++step) {
+      const VectorX solution = polynomial(rods.size(0), terms - 1, step);
+      const Proposed proposed = propose(guess, rods, {step, 0, 0});
+      INFO(terms << " terms, step " << step);
+      CHECK(proposed.nonzero == (step > 0));
+      if (step == 0) CHECK(proposed.x0.isZero(0));
+      if (step >= terms) CHECK(proposed.x0 == solution);
+      guess.accept({step, 0, 0}, solution);
+    }
+  }
+}
+
+TEST_CASE("with less history than terms, fewer terms are used") {
+  TwoRods rods;
+  ExtrapolationGuess guess(rods.scene, 1, 3);
+  const VectorX x[] = {polynomial(rods.size(0), 2, 0), polynomial(rods.size(0), 2, 1), polynomial(rods.size(0), 2, 2)};
+  guess.accept({0, 0, 0}, x[0]);
+  CHECK(propose(guess, rods, {1, 0, 0}).x0 == x[0]);
+  guess.accept({1, 0, 0}, x[1]);
+  CHECK(propose(guess, rods, {2, 0, 0}).x0 == 2 * x[1] - x[0]);
+  guess.accept({2, 0, 0}, x[2]);
+  CHECK(propose(guess, rods, {3, 0, 0}).x0 == 3 * x[2] - 3 * x[1] + x[0]);
+}
+
+TEST_CASE("a gap in the steps makes history start again") {
+  TwoRods rods;
+  ExtrapolationGuess guess(rods.scene, 1, 3);
+  for (int step = 0; step < 5; ++step) guess.accept({step, 0, 0}, polynomial(rods.size(0), 2, step));
+  const Proposed after_gap = propose(guess, rods, {6, 0, 0});
+  CHECK_FALSE(after_gap.nonzero);
+  CHECK(after_gap.x0.isZero(0));
+  const VectorX new_start = polynomial(rods.size(0), 0, 0), next = polynomial(rods.size(0), 2, 9);
+  guess.accept({6, 0, 0}, new_start);
+  CHECK(propose(guess, rods, {7, 0, 0}).x0 == new_start);
+  guess.accept({7, 0, 0}, next);
+  CHECK(propose(guess, rods, {8, 0, 0}).x0 == 2 * next - new_start);
+}
+
+TEST_CASE("every Newton iteration of every rod has a history of its own") {
+  TwoRods rods;
+  ExtrapolationGuess guess(rods.scene, 3, 2);
+  const auto solution = [&](int step, int newton, int rod) {
+    return VectorX::Constant(rods.size(rod), 100 * rod + 10 * newton + (newton + 1) * step).eval();
+  };
+  for (int step = 0; step < 4; ++step)
+    for (int newton = 0; newton < 3; ++newton)
+      for (const int rod : {0, 1}) {
+        if (newton == 2 && step == 2) continue;  // Newton was done early in one step
+        const Proposed proposed = propose(guess, rods, {step, newton, rod});
+        INFO("step " << step << ", Newton " << newton << ", rod " << rod);
+        if (newton == 2 && step == 3)
+          CHECK_FALSE(proposed.nonzero);
+        else if (step >= 2)
+          CHECK(proposed.x0 == solution(step, newton, rod));
+        guess.accept({step, newton, rod}, solution(step, newton, rod));
+      }
+}
+
+TEST_CASE("proposing does not change what is proposed next") {
+  TwoRods rods;
+  ExtrapolationGuess guess(rods.scene, 1, 3);
+  for (int step = 0; step < 3; ++step) guess.accept({step, 0, 0}, polynomial(rods.size(0), 2, step));
+  const VectorX first = propose(guess, rods, {3, 0, 0}).x0;
+  CHECK(propose(guess, rods, {3, 0, 0}).x0 == first);
+}
+
+TEST_CASE("the oracle's error has the requested size in the energy norm") {
+  TwoRods rods;
+  for (const double error : {1e-6, 0.1, 1.0, 10.0})
+    for (const int rod : {0, 1}) {
+      OracleGuess guess(rods.scene, error, white, 7);
+      const Proposed proposed = propose(guess, rods, {3, 1, rod});
+      CHECK(proposed.nonzero);
+      const double measured = test::energy_error(rods.systems[rod].matrix().dense(), proposed.x0, rods.exact(rod));
+      CHECK(measured == Approx(error).epsilon(error < 1e-3 ? 1e-7 : 1e-10));  // x itself is known to about 1e-13
+    }
+  OracleGuess perfect(rods.scene, 0, white, 7);
+  CHECK(propose(perfect, rods, {0, 0, 0}).x0 == rods.exact(0));
+}
+
+TEST_CASE("the oracle's error depends on the seed and the position, and on nothing else") {
+  TwoRods rods;
+  OracleGuess guess(rods.scene, 0.1, white, 7), late(rods.scene, 0.1, white, 7), other_seed(rods.scene, 0.1, white, 8);
+  OracleGuess high_seed(rods.scene, 0.1, white, 7 + (std::uint64_t{1} << 32));
+  const SolvePosition at{4, 1, 0};
+  const VectorX expected = propose(guess, rods, at).x0;
+  for (int step = 0; step < 4; ++step) {
+    propose(late, rods, {step, 0, 1});
+    late.accept({step, 0, 1}, rods.exact(1));
+  }
+  CHECK(propose(late, rods, at).x0 == expected);
+  CHECK(propose(guess, rods, at).x0 == expected);
+  CHECK(propose(other_seed, rods, at).x0 != expected);
+  CHECK(propose(high_seed, rods, at).x0 != expected);
+  CHECK(propose(guess, rods, {5, 1, 0}).x0 != expected);
+  CHECK(propose(guess, rods, {4, 2, 0}).x0 != expected);
+  CHECK(propose(guess, rods, {1, 4, 0}).x0 != expected);
+}
+
+TEST_CASE("the oracle's error is white: as likely up as down in every entry") {
+  TwoRods rods;
+  OracleGuess guess(rods.scene, 0.5, white, 1);
+  const VectorX exact = rods.exact(0);
+  VectorX mean = VectorX::Zero(exact.size()), square = mean;
+  const int draws = 400;
+  for (int step = 0; step < draws; ++step) {
+    const VectorX e = propose(guess, rods, {step, 0, 0}).x0 - exact;
+    mean += e / draws;
+    square += e.cwiseAbs2() / draws;
+  }
+  const VectorX deviations = mean.cwiseQuotient((square / draws).cwiseSqrt());  // of the mean, in standard errors
+  CHECK(deviations.lpNorm<Eigen::Infinity>() < 5);
+  CHECK(square.maxCoeff() < 2 * square.minCoeff());
+}
+
+TEST_CASE("the oracle's smooth error has the requested size too, and is that of the modes that CG finds last") {
+  TwoRods rods;
+  const MatrixX a = rods.systems[0].matrix().dense();
+  const VectorX exact = rods.exact(0);
+  const auto rayleigh = [&](OracleGuess::Error kind) {
+    OracleGuess guess(rods.scene, 0.1, kind, 7);
+    const VectorX e = propose(guess, rods, {3, 1, 0}).x0 - exact;
+    CHECK(test::energy_error(a, exact + e, exact) == Approx(0.1).epsilon(1e-9));
+    return e.dot(a * e) / e.squaredNorm();
+  };
+  const double lowest = Eigen::SelfAdjointEigenSolver<MatrixX>(a).eigenvalues().minCoeff();
+  CHECK(rayleigh(smooth) < 10 * lowest);
+  CHECK(rayleigh(white) > 100 * lowest);
+}
+
+TEST_CASE("the oracle proposes zero where the system cannot be solved") {
+  TwoRods rods;
+  Rod& broken = rods.scene.rods[0];
+  broken.position[2].x() = std::numeric_limits<double>::quiet_NaN();
+  rods.systems[0].assemble(broken, 0.02);
+  OracleGuess guess(rods.scene, 0.1, white, 7);
+  const Proposed proposed = propose(guess, rods, {0, 0, 0});
+  CHECK_FALSE(proposed.nonzero);
+  CHECK(proposed.x0.isZero(0));
+}
+
+/// Proposes a given vector and notes what it is told.
+class Fixed : public InitialGuess {
+ public:
+  explicit Fixed(VectorX x, VectorX* told = nullptr) : x_(std::move(x)), told_(told) {}
+  Proposal propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
+    x0 = x_;
+    return {!x_.isZero(0), 3};
+  }
+  void accept(const SolvePosition&, const VectorX& solution) override { *told_ = solution; }
+
+ private:
+  VectorX x_;
+  VectorX* told_;
+};
+
+TEST_CASE("guarded passes a guess on just below its threshold and replaces it by zero just above") {
+  TwoRods rods;
+  const BlockMatrix& a = rods.systems[0].matrix();
+  const VectorX& b = rods.systems[0].rhs();
+  const VectorX x0 = 0.7 * rods.exact(0) + 1e-4 * test::Random(1).entries(rods.size(0)).cwiseProduct(rods.exact(0));
+  const MatrixX dense = a.dense();
+  const VectorX r = b - dense * x0;
+  const double ratio = std::sqrt(r.dot(r.cwiseQuotient(dense.diagonal())) / b.dot(b.cwiseQuotient(dense.diagonal())));
+  REQUIRE(ratio > 0.1);
+
+  GuardedGuess above(rods.scene, std::make_unique<Fixed>(x0), ratio * (1 + 1e-9));
+  const Proposed kept = propose(above, rods, {0, 0, 0});
+  CHECK(kept.nonzero);
+  CHECK(kept.products == 4);  // the inner guess's, and one for the residual
+  CHECK(kept.x0 == x0);
+  GuardedGuess below(rods.scene, std::make_unique<Fixed>(x0), ratio * (1 - 1e-9));
+  const Proposed rejected = propose(below, rods, {0, 0, 0});
+  CHECK_FALSE(rejected.nonzero);
+  CHECK(rejected.x0.isZero(0));
+}
+
+TEST_CASE("guarded rejects a guess that is not a number and passes a zero one on as zero") {
+  TwoRods rods;
+  VectorX bad = rods.exact(0);
+  bad[3] = std::numeric_limits<double>::quiet_NaN();
+  GuardedGuess guard(rods.scene, std::make_unique<Fixed>(bad), 1e9);
+  CHECK_FALSE(propose(guard, rods, {0, 0, 0}).nonzero);
+  CHECK(propose(guard, rods, {0, 0, 0}).x0.isZero(0));
+  GuardedGuess of_zero(rods.scene, std::make_unique<Fixed>(VectorX::Zero(rods.size(0))), 1e9);
+  CHECK_FALSE(propose(of_zero, rods, {0, 0, 0}).nonzero);
+}
+
+TEST_CASE("guarded tells its inner guess the solution, whether or not it was used") {
+  TwoRods rods;
+  VectorX told;
+  GuardedGuess guard(rods.scene, std::make_unique<Fixed>(rods.exact(0), &told), 0);
+  CHECK_FALSE(propose(guard, rods, {0, 0, 0}).nonzero);
+  guard.accept({0, 0, 0}, rods.exact(0));
+  CHECK(told == rods.exact(0));
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,167 @@
+// Projected guesses: optimal within the span of earlier solutions, for the current matrix.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/guess/subspace_guess.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Window = SubspaceGuess::Window;
+using test::MatrixX;
+
+Scene scene_of(const Rod& rod) {
+  Scene scene;
+  scene.rods.push_back(rod);
+  return scene;
+}
+
+/// One rod, and its assembled system.
+struct OneRod {
+  Scene scene;
+  LinearSystem system;
+
+  OneRod() : scene(scene_of(test::random_rod(test::tree(2, 3), {0}, 1))), system(scene.rods[0]) {
+    system.assemble(scene.rods[0], 0.02);
+  }
+  int size() const { return system.matrix().unknowns(); }
+  VectorX exact() const {
+    VectorX out = VectorX::Zero(size());
+    DirectSolve direct(scene);
+    REQUIRE(direct.solve(system, {}, 0, out) == SolveOutcome::converged);
+    return out;
+  }
+  /// e^T A v / (|e|_A |v|_A) with e the error of x0.
+  double error_along(const VectorX& x0, const VectorX& v) const {
+    const MatrixX a = system.matrix().dense();
+    const VectorX e = x0 - exact();
+    return e.dot(a * v) / std::sqrt(e.dot(a * e) * v.dot(a * v));
+  }
+};
+
+TEST_CASE("without history a projected guess is zero, at no cost") {
+  OneRod one;
+  SubspaceGuess guess(one.scene, 1, 3, Window::sliding);
+  VectorX x0 = VectorX::Ones(one.size());
+  const Proposal proposal = guess.propose(one.system, {0, 0, 0}, x0);
+  CHECK_FALSE(proposal.nonzero);
+  CHECK(proposal.products == 0);
+  CHECK(x0.isZero(0));
+}
+
+TEST_CASE(
+    "the error of a projected guess is orthogonal in energy to every stored solution, whatever matrix they were of") {
+  OneRod one;
+  for (const Window window : {Window::restarted, Window::sliding}) {
+    SubspaceGuess guess(one.scene, 1, 4, window);
+    test::Random random(3);
+    VectorX x0 = VectorX::Zero(one.size());
+    std::vector<VectorX> stored;
+    for (int step = 0; step < 4; ++step) {
+      stored.push_back(one.exact() + 3 * random.entries(one.size()).cwiseProduct(one.exact()));
+      guess.accept({step, 0, 0}, stored.back());
+      const Proposal proposal = guess.propose(one.system, {step + 1, 0, 0}, x0);
+      CHECK(proposal.nonzero);
+      CHECK(proposal.products == step + 1);
+      for (const VectorX& v : stored) CHECK(std::abs(one.error_along(x0, v)) < 1e-10);
+    }
+  }
+}
+
+TEST_CASE("a solution within the span is found, also where stored solutions are nearly the same") {
+  OneRod one;
+  SubspaceGuess guess(one.scene, 1, 3, Window::sliding);
+  const VectorX other = test::Random(5).entries(one.size());
+  VectorX x0 = VectorX::Zero(one.size());
+  guess.accept({0, 0, 0}, one.exact() + other);
+  guess.accept({1, 0, 0}, other);
+  guess.accept({2, 0, 0}, other * (1 + 1e-15));
+  REQUIRE(guess.propose(one.system, {3, 0, 0}, x0).nonzero);
+  CHECK(test::energy_error(one.system.matrix().dense(), x0, one.exact()) < 1e-6);
+}
+
+TEST_CASE("fischer starts again with the newest solution when full, pod forgets the oldest") {
+  OneRod one;
+  test::Random random(7);
+  std::vector<VectorX> stored;
+  SubspaceGuess fischer(one.scene, 1, 3, Window::restarted), pod(one.scene, 1, 3, Window::sliding);
+  for (int step = 0; step < 4; ++step) {
+    stored.push_back(random.entries(one.size()));
+    fischer.accept({step, 0, 0}, stored.back());
+    pod.accept({step, 0, 0}, stored.back());
+  }
+  VectorX x0 = VectorX::Zero(one.size());
+  CHECK(fischer.propose(one.system, {4, 0, 0}, x0).products == 1);
+  CHECK(std::abs(one.error_along(x0, stored[3])) < 1e-10);
+  CHECK(std::abs(one.error_along(x0, stored[2])) > 1e-6);
+  CHECK(pod.propose(one.system, {4, 0, 0}, x0).products == 3);
+  for (const int kept : {1, 2, 3}) CHECK(std::abs(one.error_along(x0, stored[kept])) < 1e-10);
+  CHECK(std::abs(one.error_along(x0, stored[0])) > 1e-6);
+}
+
+TEST_CASE("a step without a solution starts a projected guess's history again") {
+  OneRod one;
+  SubspaceGuess guess(one.scene, 2, 3, Window::sliding);
+  VectorX x0 = VectorX::Zero(one.size());
+  for (const int step : {0, 1}) guess.accept({step, 1, 0}, VectorX::Ones(one.size()));
+  CHECK(guess.propose(one.system, {2, 1, 0}, x0).products == 2);
+  CHECK(guess.propose(one.system, {2, 0, 0}, x0).products == 0);  // the other Newton iteration has had none
+  CHECK(guess.propose(one.system, {3, 1, 0}, x0).products == 0);
+  guess.accept({3, 1, 0}, VectorX::Ones(one.size()));
+  CHECK(guess.propose(one.system, {4, 1, 0}, x0).products == 1);
+}
+
+/// Solves directly and notes how far off each guess was.
+class Compare : public LinearSolve {
+ public:
+  explicit Compare(const Scene& scene)
+      : direct_(scene),
+        fischer(scene, 6, 8, Window::restarted),
+        pod(scene, 6, 8, Window::sliding),
+        previous(scene, 6, 1) {}
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& x) override {
+    const SolveOutcome outcome = direct_.solve(system, at, 0, x);
+    VectorX x0 = x;
+    InitialGuess* const guesses[] = {&fischer, &pod, &previous};
+    for (int g = 0; g < 3; ++g) {
+      guesses[g]->propose(system, at, x0);
+      if (at.newton == 0) error[g].push_back(test::energy_error(system.matrix().dense(), x0, x));
+      guesses[g]->accept(at, x);
+    }
+    return outcome;
+  }
+  std::vector<double> error[3];
+
+ private:
+  DirectSolve direct_;
+  SubspaceGuess fischer, pod;
+  ExtrapolationGuess previous;
+};
+
+TEST_CASE("fischer and pod beat zero on a slowly changing rod, and pod never loses to previous") {
+  BendingRod rod;
+  rod.segments = 12;
+  rod.length_m = 2;
+  rod.radius_m = 0.05;
+  rod.density_kg_m3 = 1000;
+  rod.youngs_modulus_pa = rod.torsion_modulus_pa = 1e6;
+  Scene scene = build_scene(rod);
+  Compare compare(scene);
+  LinearProjection projection(scene, compare);
+  TimeStepper stepper(scene, {0.002, 6, 1e-9});
+  for (int step = 0; step < 40; ++step) stepper.step(projection);
+  double fischer = 0, pod = 0;
+  for (std::size_t k = 20; k < 40; ++k) {
+    fischer += compare.error[0][k] / 20;
+    pod += compare.error[1][k] / 20;
+    CHECK(compare.error[1][k] <= compare.error[2][k] * (1 + 1e-9));
+  }
+  CHECK(fischer < 0.1);  // zero's is 1
+  CHECK(pod < 0.02);
+  CHECK(pod < fischer);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,187 @@
+// Physical stretching and shearing: A and b, energy, closed forms of a pulled and of a sheared rod.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "solver/linear/linear_system.hpp"
+#include "solver/step/observables.hpp"
+#include "solver/step/xpbd_projection.hpp"
+#include "tests/solver/simulation.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Weightless, held by a wall, along +x.
+BendingRod rod_of(int segments, double youngs_modulus, double torsion_modulus, Stretch stretch) {
+  BendingRod p;
+  p.segments = segments;
+  p.clamp = Clamp::wall;
+  p.youngs_modulus_pa = youngs_modulus;
+  p.torsion_modulus_pa = torsion_modulus;
+  p.stretch = stretch;
+  p.gravity_m_s2.setZero();
+  return p;
+}
+
+/// Where its tip comes to rest under a force on its last segment's centre, which turns no segment in the prediction.
+Vector3 settled_tip(const BendingRod& p, const Vector3& force) {
+  Scene scene = build_scene(p);
+  scene.loads.push_back({0, scene.rods.front().segment_count() - 1, force, Vector3::Zero(), Vector3::Zero()});
+  Simulation simulation(std::move(scene), 1);
+  simulation.relax(1e-11);
+  return tip(simulation.rod());
+}
+
+TEST_CASE("Timoshenko's shear coefficient is that of the Poisson number, kept within 0 and 1/2") {
+  CHECK(shear_coefficient(2.6, 1) == Approx(10.14 / 10.96).epsilon(1e-12));  // nu = 0.3
+  CHECK(shear_coefficient(2, 1) == Approx(6.0 / 7));
+  CHECK(shear_coefficient(1e4, 1e6) == Approx(6.0 / 7));
+  CHECK(shear_coefficient(3, 1) == Approx(13.5 / 14));
+  CHECK(shear_coefficient(1e9, 1e4) == Approx(13.5 / 14));
+}
+
+TEST_CASE("sections are those of ellipses, a circle's among them") {
+  const Section s = elliptic_section(0.03, 0.01, 5e6, 2e6), c = circular_section(0.02, 5e6, 2e6);
+  CHECK(s.bending_x_nm2 == Approx(5e6 * pi * 0.03 * 1e-6 / 4));
+  CHECK(s.bending_y_nm2 == Approx(5e6 * pi * 0.01 * 27e-6 / 4));
+  CHECK(s.torsion_nm2 == Approx(2e6 * pi * 27e-6 * 1e-6 / (9e-4 + 1e-4)));
+  CHECK(s.axial_n == Approx(5e6 * pi * 3e-4));
+  CHECK(s.shear_n == Approx(shear_coefficient(5e6, 2e6) * 2e6 * pi * 3e-4));
+  const Section e = elliptic_section(0.02, 0.02, 5e6, 2e6);
+  CHECK(e.bending_x_nm2 == Approx(c.bending_x_nm2).epsilon(1e-14));
+  CHECK(e.torsion_nm2 == Approx(c.torsion_nm2).epsilon(1e-14));
+  CHECK(e.shear_n == Approx(c.shear_n).epsilon(1e-14));
+}
+
+TEST_CASE("physical stretch adds its own compliance along the rod to A, and takes its yielding from b") {
+  Helix p;
+  p.segments = 12;
+  p.stretch = Stretch::physical;
+  Rod rod = build_scene(p).rods.front();
+  rod.lambda = test::Random(1).entries(6 * rod.joint_count());
+  Rod isotropic = rod;
+  for (Joint& joint : isotropic.joints) joint.axial_excess = 0;
+  LinearSystem with(rod), without(isotropic);
+  const double dt = 0.01;
+  with.assemble(rod, dt);
+  without.assemble(isotropic, dt);
+  const test::MatrixX more = with.matrix().dense() - without.matrix().dense();
+  test::MatrixX expected = test::MatrixX::Zero(more.rows(), more.cols());
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Vector3 t =
+        (director(rod.orientation[rod.joints[k].a]) + director(rod.orientation[rod.joints[k].b])).normalized();
+    expected.block<3, 3>(6 * k, 6 * k) = rod.joints[k].axial_excess / (dt * dt) * t * t.transpose();
+  }
+  REQUIRE(expected.norm() > 1e-6);
+  CHECK((more - expected).norm() < 1e-12 * with.matrix().dense().norm());
+  CHECK((with.rhs() - without.rhs() + expected * rod.lambda).norm() < 1e-12 * with.rhs().norm());
+  CHECK(newton_residual(rod, dt) == Approx(with.newton_residual()).epsilon(1e-12));
+}
+
+TEST_CASE("elastic energy of physical stretch is EA and kappa G A times half the squared strains") {
+  BendingRod p = rod_of(2, 3e6, 1e6, Stretch::physical);
+  p.clamp = Clamp::free;
+  Rod rod = build_scene(p).rods.front();  // joint length 1
+  const double area = pi * 0.0025;
+  rod.position[1] += Vector3(3e-3, 0, 0);
+  CHECK(elastic_energy(rod) == Approx(3e6 * area * 9e-6 / 2).epsilon(1e-10));
+  rod.position[1] += Vector3(-3e-3, 0, 4e-3);
+  CHECK(elastic_energy(rod) == Approx(shear_coefficient(3e6, 1e6) * 1e6 * area * 16e-6 / 2).epsilon(1e-10));
+}
+
+TEST_CASE("a pulled rod stretches by F L / EA, but for half a segment at its end that is rigid") {
+  const double e = 1e7, area = pi * 0.0025, force = 1e-3 * e * area;
+  for (const int n : {1, 5, 40}) {
+    const double law =
+        force / (e * area) * (2 - 1.0 / n);  // joints: half a segment's length at the wall, then one each
+    const Vector3 end = settled_tip(rod_of(n, e, 4e6, Stretch::physical), force * Vector3::UnitX());
+    CHECK(end.x() - 2 == Approx(law).epsilon(1e-8));
+    CHECK(std::abs(end.y()) + std::abs(end.z()) < 1e-10);
+  }
+}
+
+TEST_CASE("a rod under its own weight stretches by w L^2 / 2 EA") {
+  BendingRod p = rod_of(40, 1e7, 4e6, Stretch::physical);
+  p.initial_angle_deg = -90;
+  p.gravity_m_s2 = Vector3(0, -9.81, 0);
+  Simulation simulation(build_scene(p), 1);
+  simulation.relax(1e-11);
+  // Joint k carries n - k segments over the length l, that of the wall over l / 2: sum = w L^2 / 2 EA exactly.
+  const double law = 1000 * 9.81 * 4 / 2 / 1e7;
+  CHECK(-tip(simulation.rod()).y() - 2 == Approx(law).epsilon(1e-6));
+}
+
+TEST_CASE("a transverse force shears a rod by F L / kappa G A beyond its bending") {
+  const double e = 1e8, g = 2e6, area = pi * 0.0025, stiffness = shear_coefficient(e, g) * g * area;
+  const double force = 1e-4 * stiffness;
+  for (const int n : {5, 20}) {
+    const Vector3 pushed = settled_tip(rod_of(n, e, g, Stretch::physical), force * Vector3::UnitY());
+    const Vector3 bent = settled_tip(rod_of(n, e, g, Stretch::inextensible), force * Vector3::UnitY());
+    CHECK(pushed.y() - bent.y() == Approx(force * (2 - 1.0 / n) / stiffness).epsilon(2e-3));
+  }
+}
+
+TEST_CASE(
+    "a free rod that stretches physically keeps its linear momentum; its spin drifts with the step and the strain") {
+  const auto drift = [](Stretch stretch) {
+    BendingRod p = rod_of(10, 1e7, 4e6, stretch);
+    p.clamp = Clamp::free;
+    Scene scene = build_scene(p);
+    Rod& rod = scene.rods.front();
+    const Vector3 spin(0.3, 1, 2);
+    for (int s = 0; s < 10; ++s) {
+      rod.angular_velocity[s] = spin;
+      rod.velocity[s] = spin.cross(rod.position[s]) + Vector3(1, 2, 3);
+    }
+    const Vector3 momentum = linear_momentum(rod), turning = angular_momentum(rod);
+    Simulation simulation(std::move(scene), 1e-3);
+    simulation.run(500);
+    CHECK((linear_momentum(simulation.rod()) - momentum).norm() < 1e-11 * momentum.norm());
+    return (angular_momentum(simulation.rod()) - turning).norm() / turning.norm();
+  };
+  CHECK(drift(Stretch::physical) < 2 * drift(Stretch::inextensible) + 1e-4);
+}
+
+TEST_CASE("xpbd stretches physically too: it leaves the residual of Newton's fixed point") {
+  BendingRod p = test::bending_rod(5);
+  p.stretch = Stretch::physical;
+  Scene scene = build_scene(p);
+  XpbdProjection projection(scene);
+  TimeStepper stepper(scene, {0.01, 5000, 1e-12});
+  for (int i = 0; i < 5; ++i) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
+  CHECK(newton_residual(scene.rods.front(), stepper.constraint_dt()) < 1e-11);
+  CHECK(joint_gap(scene.rods.front()) > 1e-4);
+}
+
+TEST_CASE("impossible axial compliances are refused with value and bound") {
+  const auto refusal = [](double excess, double row) {
+    SegmentSpec s;
+    s.length_m = 1;
+    s.radius_m = 0.1;
+    s.density_kg_m3 = 1;
+    JointSpec joint;
+    joint.b = 1;
+    joint.compliance_per_j << 1e-3, 1e-3, row, 1, 1, 1;
+    joint.axial_excess_per_j = excess;
+    try {
+      Rod({s, s}, {joint});
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  CHECK(refusal(-1e-3, 1e-3) == "accepted");
+  CHECK(refusal(0, 2e-3) == "accepted");
+  CHECK(refusal(-2e-3, 1e-3) ==
+        "joint 0: axial excess is -0.002; must be finite and at least minus the stretch-shear compliance");
+  CHECK(refusal(std::numeric_limits<double>::infinity(), 1e-3) ==
+        "joint 0: axial excess is inf; must be finite and at least minus the stretch-shear compliance");
+  CHECK(refusal(1e-4, 2e-3) ==
+        "joint 0: axial excess is 0.0001; must be 0 unless the stretch-shear compliances are equal");
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,164 @@
+// KSPCG as instrumented here: solutions, preconditioners, histories and iteration counts.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "tests/solver/cg_runs.hpp"
+
+namespace rodsweep {
+namespace {
+
+using namespace test;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST_CASE("CG, the direct solve and a dense Cholesky agree in residual and energy error") {
+  const std::pair<const char*, Case> cases[] = {
+      {"chain", moving_chain()},
+      {"tree", Case(random_rod(tree(2, 3), {0}, 2))},
+      {"ring", Case(random_rod(ring(8), {0}, 3))},
+  };
+  for (const auto& [graph, c] : cases) {
+    const MatrixX a = c.a().dense();
+    const VectorX dense = dense_solve(a, c.b());
+    CHECK(energy_error(a, c.exact, dense) < 1e-10);
+    CHECK((c.b() - a * c.exact).norm() < 1e-10 * c.b().norm());
+    for (const Preconditioner p : preconditioners)
+      for (const Norm norm : norms) {
+        INFO(graph << ", " << name(p) << ", " << (norm == Norm::natural ? "natural" : "true residual"));
+        const Run solved = run(c.a(), {p, norm, 0}, c.b(), 1e-13);
+        CHECK(solved.report.outcome == SolveOutcome::converged);
+        CHECK(energy_error(a, solved.x, dense) < 1e-10);
+        CHECK((c.b() - a * solved.x).norm() < 1e-10 * c.b().norm());
+      }
+  }
+}
+
+TEST_CASE("incomplete and complete Cholesky are exact on a chain: one iteration, where Jacobi needs many") {
+  const Case c = moving_chain(30);
+  for (const Preconditioner p : {Preconditioner::icc, Preconditioner::cholesky})
+    CHECK(run(c.a(), {p, Norm::true_residual, 0}, c.b(), 1e-8).report.iterations == 1);
+  CHECK(run(c.a(), {Preconditioner::jacobi, Norm::true_residual, 0}, c.b(), 1e-8).report.iterations > 30);
+}
+
+TEST_CASE("complete Cholesky is exact on a net, where incomplete is not") {
+  const Case c(random_rod(net(4, 4), {0}, 3));
+  CHECK(run(c.a(), {Preconditioner::cholesky, Norm::true_residual, 0}, c.b(), 1e-8).report.iterations == 1);
+  CHECK(run(c.a(), {Preconditioner::icc, Norm::true_residual, 0}, c.b(), 1e-8).report.iterations > 1);
+}
+
+TEST_CASE("Jacobi preconditioners divide by the diagonal and by its 6x6 blocks") {
+  // From zero, the first iterate is along P^-1 b.
+  const Case c = moving_chain();
+  const MatrixX a = c.a().dense();
+  MatrixX blocks = MatrixX::Zero(a.rows(), a.cols());
+  for (int k = 0; k < c.a().block_rows(); ++k) blocks.block<6, 6>(6 * k, 6 * k) = a.block<6, 6>(6 * k, 6 * k);
+  const std::pair<Preconditioner, VectorX> expected[] = {
+      {Preconditioner::none, c.b()},
+      {Preconditioner::jacobi, c.b().cwiseQuotient(a.diagonal())},
+      {Preconditioner::point_block_jacobi, dense_solve(blocks, c.b())},
+  };
+  for (const auto& [p, direction] : expected) {
+    INFO(name(p));
+    const Run once = run(c.a(), {p, Norm::true_residual, 1}, c.b(), 0);
+    CHECK((once.x.normalized() - direction.normalized()).norm() < 1e-10);
+    ConjugateGradient cg(c.a(), {p, Norm::natural, 0});
+    CHECK(cg.norm_of(c.b()) == Approx(std::sqrt(c.b().dot(direction))).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("the history starts at the norm of b, ends at the test, and has an entry per iteration") {
+  const Case c = moving_chain();
+  for (const Preconditioner p : preconditioners)
+    for (const Norm norm : norms) {
+      INFO(name(p));
+      ConjugateGradient cg(c.a(), {p, norm, 0});
+      const double reference = cg.norm_of(c.b());
+      const Run solved = run(cg, c.b(), 1e-6);
+      REQUIRE(solved.history.size() == static_cast<std::size_t>(solved.report.iterations) + 1);
+      CHECK(solved.history.front() == Approx(reference).epsilon(1e-13));
+      CHECK(solved.history.back() <= 1e-6 * reference);
+      for (std::size_t i = 0; i + 1 < solved.history.size(); ++i) CHECK(solved.history[i] > 1e-6 * reference);
+    }
+  ConjugateGradient cg(c.a(), {});
+  CHECK(cg.norm_of(c.b()) == c.b().norm());
+}
+
+TEST_CASE("the recorded norm is that of b - A x") {
+  const Case c = moving_chain();
+  for (const int iterations : {1, 5, 20}) {
+    const Run stopped = run(c.a(), {Preconditioner::jacobi, Norm::true_residual, iterations}, c.b(), 0);
+    const double residual = (c.b() - c.a().dense() * stopped.x).norm();
+    CHECK(stopped.history.back() == Approx(residual).epsilon(1e-9));
+    // the natural norm, of the same iterate
+    const Run natural = run(c.a(), {Preconditioner::jacobi, Norm::natural, iterations}, c.b(), 0);
+    const VectorX r = c.b() - c.a().dense() * natural.x;
+    CHECK(natural.history.back() ==
+          Approx(std::sqrt(r.dot(r.cwiseQuotient(c.a().dense().diagonal().eval())))).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("the energy error falls in every iteration") {
+  const Case c = moving_chain();
+  const MatrixX a = c.a().dense();
+  double before = 1;
+  for (int iterations = 1; iterations <= 30; ++iterations) {
+    const double error =
+        energy_error(a, run(c.a(), {Preconditioner::jacobi, Norm::true_residual, iterations}, c.b(), 0).x, c.exact);
+    REQUIRE(error < before);
+    before = error;
+  }
+}
+
+TEST_CASE("iterations_to finds the first entry at or below each tolerance, and -1 where there is none") {
+  const std::vector<double> history = {2, 1, 1.5, 0.4, 0.5, 0.1};
+  const std::vector<double> tolerances = {1, 0.5, 0.4, 0.25, 0.2, 0.05, 0.049};
+  std::array<std::int16_t, 7> out{};
+  iterations_to(history, 2, tolerances, out.data());
+  CHECK(out == std::array<std::int16_t, 7>{0, 1, 3, 3, 3, 5, -1});
+  iterations_to({}, 2, tolerances, out.data());
+  CHECK(out == std::array<std::int16_t, 7>{-1, -1, -1, -1, -1, -1, -1});
+  iterations_to({nan, nan}, 1, {1}, out.data());
+  CHECK(out[0] == -1);
+}
+
+TEST_CASE("one tight solve counts what separate solves to each tolerance would need") {
+  const Case c = moving_chain();
+  const std::vector<double> tolerances = {1e-1, 1e-2, 1e-3, 1e-5, 1e-8};
+  std::array<std::int16_t, 5> counted{};
+  const Run tight = run(c.a(), {}, c.b(), 1e-8);
+  iterations_to(tight.history, c.b().norm(), tolerances, counted.data());
+  for (std::size_t t = 0; t < tolerances.size(); ++t) {
+    CHECK(run(c.a(), {}, c.b(), tolerances[t]).report.iterations == counted[t]);
+    if (t > 0) CHECK(counted[t] >= counted[t - 1]);
+  }
+}
+
+TEST_CASE("an exact guess takes no iteration") {
+  const Case c = moving_chain();
+  for (const Preconditioner p : preconditioners) {
+    ConjugateGradient cg(c.a(), {p, Norm::true_residual, 0});
+    const Run solved = run(cg, c.b(), 1e-8, &c.exact);
+    CHECK(solved.report.outcome == SolveOutcome::converged);
+    CHECK(solved.report.iterations == 0);
+    CHECK(solved.x == c.exact);
+  }
+}
+
+TEST_CASE("the test stays relative to b with a guess, even one whose residual starts far above b") {
+  const Case c = moving_chain();
+  const VectorX poor = 1e4 * Random(1).entries(c.a().unknowns()).cwiseProduct(c.exact.cwiseAbs());
+  for (const Norm norm : norms) {
+    ConjugateGradient cg(c.a(), {Preconditioner::jacobi, norm, 0});
+    const double reference = cg.norm_of(c.b());
+    const Run solved = run(cg, c.b(), 1e-6, &poor);
+    CHECK(solved.history.front() > 100 * reference);
+    CHECK(solved.report.outcome == SolveOutcome::converged);
+    CHECK(solved.history.back() <= 1e-6 * reference);
+    if (norm == Norm::true_residual) CHECK((c.b() - c.a().dense() * solved.x).norm() < 1.01e-6 * reference);
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep

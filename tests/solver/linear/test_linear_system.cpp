@@ -1,0 +1,155 @@
+// A, b and the update against dense matrices built from finite differences and world inertia tensors.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "solver/linear/linear_system.hpp"
+#include "solver/numbers/rotation.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::DenseSystem;
+using test::Edges;
+using test::MatrixX;
+
+struct Graph {
+  const char* name;
+  Edges edges;
+  std::vector<int> held;
+};
+
+const std::vector<Graph>& graphs() {
+  static const std::vector<Graph> all = {
+      {"two free segments", test::chain(2), {}},
+      {"chain held at its first segment", test::chain(7), {0}},
+      {"chain held at its last segment", test::chain(7), {6}},
+      {"chain held in the middle and at both ends", test::chain(9), {0, 4, 8}},
+      {"tree with three children each", test::tree(2, 3), {}},
+      {"tree held at the root", test::tree(2, 3), {0}},
+      {"tree held at a branching and a leaf", test::tree(3, 2), {1, 14}},
+      {"ring", test::ring(6), {}},
+      {"held ring", test::ring(6), {2}},
+      {"net", test::net(3, 3), {0, 8}},
+      {"two joints between the same segments", {{0, 1}, {1, 0}, {1, 2}}, {}},
+  };
+  return all;
+}
+
+constexpr double dt = 0.013;
+
+TEST_CASE("A is J M^-1 J^T + alpha / dt^2 and b is -C - alpha lambda / dt^2, on any graph") {
+  for (const Graph& graph : graphs())
+    for (unsigned seed = 0; seed < 3; ++seed) {
+      INFO(graph.name << ", seed " << seed);
+      const Rod rod = test::random_rod(graph.edges, graph.held, seed);
+      LinearSystem system(rod);
+      system.assemble(rod, dt);
+      const DenseSystem expected = test::dense_system(rod, dt);
+      CHECK(test::scaled_difference(system.matrix().dense(), expected.a) < 1e-9);
+      CHECK((system.rhs() - expected.b).lpNorm<Eigen::Infinity>() < 1e-12);
+    }
+}
+
+TEST_CASE("A is symmetric to rounding and positive definite") {
+  for (const Graph& graph : graphs()) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 17);
+    LinearSystem system(rod);
+    system.assemble(rod, dt);
+    const MatrixX a = system.matrix().dense();
+    CHECK(test::scaled_difference(a, a.transpose()) < 1e-14);
+    CHECK(test::smallest_scaled_eigenvalue(a) > 1e-9);
+  }
+}
+
+TEST_CASE("A of an unbranched rod needs no compliance to be positive definite") {
+  Rod rod = test::random_rod(test::chain(6), {0}, 2);
+  for (Joint& joint : rod.joints) joint.compliance.setZero();
+  LinearSystem system(rod);
+  system.assemble(rod, dt);
+  CHECK(test::smallest_scaled_eigenvalue(system.matrix().dense()) > 1e-9);
+}
+
+TEST_CASE("two joints have a block exactly where they share a segment that can move") {
+  for (const Graph& graph : graphs()) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
+    const LinearSystem system(rod);
+    const auto moves = [&](int s) { return !rod.segments[s].is_static; };
+    for (int i = 0; i < rod.joint_count(); ++i)
+      for (int j = 0; j < rod.joint_count(); ++j) {
+        const Joint &u = rod.joints[i], &v = rod.joints[j];
+        const bool share = (moves(u.a) && (u.a == v.a || u.a == v.b)) || (moves(u.b) && (u.b == v.a || u.b == v.b));
+        CHECK((system.matrix().find(i, j) >= 0) == share);
+      }
+  }
+}
+
+TEST_CASE("assembling again writes the same bits, whatever was assembled between") {
+  const Rod rod = test::random_rod(test::tree(2, 3), {0}, 4), other = test::random_rod(test::tree(2, 3), {0}, 5);
+  LinearSystem system(rod);
+  system.assemble(rod, dt);
+  const MatrixX first = system.matrix().dense();
+  const VectorX rhs = system.rhs();
+  system.assemble(other, 2 * dt);
+  REQUIRE(system.matrix().dense() != first);
+  system.assemble(rod, dt);
+  CHECK(system.matrix().dense() == first);
+  CHECK(system.rhs() == rhs);
+}
+
+TEST_CASE("applying a solution moves the rod by M^-1 J^T dlambda and adds to its multipliers") {
+  for (const Graph& graph : graphs()) {
+    INFO(graph.name);
+    const Rod before = test::random_rod(graph.edges, graph.held, 23);
+    Rod rod = before;
+    LinearSystem system(rod);
+    system.assemble(rod, dt);
+    const DenseSystem dense = test::dense_system(rod, dt);
+    for (int again = 0; again < 2; ++again) {  // the second must not remember the first one's impulses
+      rod = before;
+      const VectorX dl = 1e-3 * test::Random(30 + again).entries(6 * rod.joint_count());
+      system.apply(rod, dl);
+      const VectorX moved = dense.inverse_mass * dense.jacobian.transpose() * dl;
+      std::vector<Lane8> displacements;
+      system.displacements(before, dl, displacements);
+      double worst = 0, worst_displacement = 0;
+      for (int s = 0; s < rod.segment_count(); ++s) {
+        for (int i = 0; i < 6; ++i)
+          worst_displacement =
+              std::max(worst_displacement, std::abs(displacements[std::size_t(s)][i] - moved[6 * s + i]));
+        const Vector3 shift = moved.segment<3>(6 * s), turn = moved.segment<3>(6 * s + 3);
+        worst = std::max(worst, (rod.position[s] - before.position[s] - shift).norm());
+        worst = std::max(worst, (rod.orientation[s].coeffs() - rotated(before.orientation[s], turn).coeffs()).norm());
+      }
+      REQUIRE(moved.lpNorm<Eigen::Infinity>() > 1e-3);
+      CHECK(worst < 1e-10);
+      CHECK(worst_displacement < 1e-10 * moved.lpNorm<Eigen::Infinity>());
+      CHECK((rod.lambda - before.lambda - dl).norm() < 1e-17);
+    }
+  }
+}
+
+TEST_CASE("static segments are not moved, not by a bit") {
+  const Rod before = test::random_rod(test::chain(9), {0, 4, 8}, 6);
+  Rod rod = before;
+  LinearSystem system(rod);
+  system.assemble(rod, dt);
+  system.apply(rod, test::Random(1).entries(6 * rod.joint_count()));
+  for (const int s : {0, 4, 8}) {
+    CHECK(rod.position[s] == before.position[s]);
+    CHECK(rod.orientation[s].coeffs() == before.orientation[s].coeffs());
+  }
+  CHECK(rod.position[1] != before.position[1]);
+}
+
+TEST_CASE("a joint between two static segments is refused by number") {
+  const Rod rod = test::random_rod(test::chain(5), {2, 3}, 1);
+  CHECK_THROWS_WITH(LinearSystem(rod), "joint 2 joins two static segments; remove it or free one of them");
+  CHECK_THROWS_AS(LinearSystem(rod), SceneError);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,157 @@
+// Constraints and Jacobians against central differences, and what rigid motion does to them.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "solver/linear/linear_system.hpp"
+#include "solver/numbers/rotation.hpp"
+#include "solver/step/observables.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::MatrixX;
+using test::Random;
+
+/// J of one joint as linearize() gives it, 6 x 12: x_a, theta_a, x_b, theta_b.
+MatrixX jacobian_of(const JointJacobian& j) {
+  MatrixX out = MatrixX::Zero(6, 12);
+  for (int c = 0; c < 3; ++c) {
+    out(c, c) = j.inverse_length;
+    out(c, 6 + c) = -j.inverse_length;
+    for (int r = 0; r < 6; ++r) {
+      out(r, 3 + c) = j.rotation_a[c][r];
+      out(r, 9 + c) = j.rotation_b[c][r];
+    }
+  }
+  return out;
+}
+
+Linearization linearized(const Rod& rod) {
+  Linearization out(rod);
+  linearize(rod, out);
+  return out;
+}
+
+void move_rigidly(Rod& rod, const Quaternion& turn, const Vector3& shift) {
+  for (int s = 0; s < rod.segment_count(); ++s) {
+    rod.position[s] = turn * rod.position[s] + shift;
+    rod.orientation[s] = turn * rod.orientation[s];
+  }
+}
+
+TEST_CASE("constraints are the joint gap and the Darboux vector's change, both dimensionless") {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Rod rod = test::random_rod(test::chain(6), {0}, seed);
+    CHECK((linearized(rod).constraint - test::constraint(rod)).lpNorm<Eigen::Infinity>() < 1e-13);
+  }
+}
+
+TEST_CASE("Jacobians equal central differences of the constraints under the Newton update") {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const Rod rod = test::random_rod({{0, 1}}, {}, seed);
+    const MatrixX expected = test::dense_system(rod, 0.01).jacobian;
+    CHECK((jacobian_of(linearized(rod).joints[0]) - expected).cwiseAbs().maxCoeff() < 1e-8);
+  }
+}
+
+TEST_CASE("a quaternion and its negative give the same constraints and Jacobians") {
+  const Rod rod = test::random_rod({{0, 1}}, {}, 7);
+  const Linearization expected = linearized(rod);
+  for (const int segment : {0, 1}) {
+    Rod flipped = rod;
+    flipped.orientation[segment].coeffs() *= -1;
+    const Linearization at = linearized(flipped);
+    CHECK((at.constraint - expected.constraint).norm() == 0);
+    CHECK((jacobian_of(at.joints[0]) - jacobian_of(expected.joints[0])).norm() == 0);
+  }
+}
+
+TEST_CASE("bending by more than half a turn of the rest rotation is measured the short way round") {
+  // Relative turns of 2 pi - 0.2 and of -0.2 are the same pose, and must give the same small constraint.
+  Rod rod = build_scene(test::bending_rod(2, Clamp::free)).rods.front();
+  rod.orientation[1] = rod.orientation[0] * Eigen::AngleAxisd(2 * 3.14159265358979323846 - 0.2, Vector3::UnitX());
+  const VectorX c = linearized(rod).constraint;
+  CHECK(c[3] == Approx(-2 * std::sin(0.1)).epsilon(1e-12));
+  CHECK(std::abs(c[4]) < 1e-15);
+}
+
+TEST_CASE("rigid motion of a rod leaves bend-twist as it is and only turns stretch-shear") {
+  Random random(11);
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Rod rod = test::random_rod(test::tree(2, 3), {0}, seed);
+    const VectorX before = linearized(rod).constraint;
+    const Quaternion turn = random.quaternion();
+    move_rigidly(rod, turn, random.vector(10));
+    const VectorX after = linearized(rod).constraint;
+    for (int k = 0; k < rod.joint_count(); ++k) {
+      const Vector3 stretch = before.segment<3>(6 * k);
+      CHECK((after.segment<3>(6 * k) - turn * stretch).norm() < 1e-12);
+      CHECK((after.segment<3>(6 * k + 3) - before.segment<3>(6 * k + 3)).norm() < 1e-14);
+    }
+  }
+}
+
+TEST_CASE("rigid motion of a rod at rest produces no constraint") {
+  Random random(12);
+  for (int i = 0; i < 20; ++i) {
+    Rod rod = build_scene(Helix{}).rods.front();
+    move_rigidly(rod, random.quaternion(), random.vector(3));
+    CHECK(linearized(rod).constraint.lpNorm<Eigen::Infinity>() < 1e-13);
+  }
+}
+
+TEST_CASE("an infinitesimal rigid motion is in the null space of every Jacobian") {
+  const Rod rod = build_scene(Helix{}).rods.front();
+  const Linearization at = linearized(rod);
+  const Vector3 shift(0.3, -1, 2), spin(1, 0.5, -0.7);
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    VectorX motion(12);
+    motion.segment<3>(0) = shift + spin.cross(rod.position[rod.joints[k].a]);
+    motion.segment<3>(6) = shift + spin.cross(rod.position[rod.joints[k].b]);
+    motion.segment<3>(3) = motion.segment<3>(9) = spin;
+    CHECK((jacobian_of(at.joints[k]) * motion).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("the linearization knows every segment's direction") {
+  const Rod rod = test::random_rod(test::chain(5), {}, 3);
+  const Linearization at = linearized(rod);
+  for (int s = 0; s < rod.segment_count(); ++s)
+    CHECK((at.axis[s] - rod.orientation[s] * Vector3::UnitZ()).norm() < 1e-15);
+}
+
+TEST_CASE("the Newton residual is the largest |C + alpha~ lambda|") {
+  const double dt = 0.01;
+  const Rod rod = test::random_rod(test::tree(2, 2), {0}, 5);
+  LinearSystem system(rod);
+  system.assemble(rod, dt);
+  const double expected = test::dense_system(rod, dt).b.lpNorm<Eigen::Infinity>();
+  CHECK(system.newton_residual() == Approx(expected).epsilon(1e-13));
+  CHECK(newton_residual(rod, dt) == Approx(expected).epsilon(1e-13));
+}
+
+TEST_CASE("a NaN or infinity anywhere in the state makes the Newton residual NaN") {
+  const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity());
+  for (int s = 0; s < 6; ++s)
+    for (const bool in_orientation : {false, true}) {
+      Rod rod = test::random_rod(test::chain(6), {}, 9);
+      (in_orientation ? rod.orientation[s].x() : rod.position[s].y()) = bad;
+      LinearSystem system(rod);
+      system.assemble(rod, 0.01);
+      CHECK(std::isnan(system.newton_residual()));
+      CHECK(std::isnan(newton_residual(rod, 0.01)));
+    }
+}
+
+TEST_CASE("a single segment has nothing to satisfy") {
+  const Rod rod = build_scene(test::bending_rod(1, Clamp::free)).rods.front();
+  LinearSystem system(rod);
+  system.assemble(rod, 0.01);
+  CHECK(system.newton_residual() == 0);
+  CHECK(newton_residual(rod, 0.01) == 0);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,268 @@
+// Rods and scenes: masses, geometry, rest states, compliances, refusals.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "solver/numbers/rotation.hpp"
+#include "solver/rod/linearization.hpp"
+#include "solver/step/observables.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+SegmentSpec good_segment() {
+  SegmentSpec s;
+  s.length_m = 0.2;
+  s.radius_m = 0.05;
+  s.density_kg_m3 = 1000;
+  return s;
+}
+
+JointSpec good_joint() {
+  JointSpec j;
+  j.a = 0;
+  j.b = 1;
+  return j;
+}
+
+/// The segments with one changed.
+template <class Change>
+std::string refusal_of_segment(Change change) {
+  std::vector<SegmentSpec> segments(3, good_segment());
+  change(segments[1]);
+  try {
+    Rod(segments, {});
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+template <class Change>
+std::string refusal_of_joint(Change change) {
+  JointSpec joint = good_joint();
+  change(joint);
+  try {
+    Rod({good_segment(), good_segment(), good_segment()}, {good_joint(), joint});
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST_CASE("a segment is a solid cylinder") {
+  const Rod rod({good_segment()}, {});
+  const Segment& s = rod.segments[0];
+  const double mass = 1000 * pi * 0.0025 * 0.2;
+  CHECK(s.mass == Approx(mass).epsilon(1e-14));
+  CHECK(s.inertia_transverse == Approx(mass * (3 * 0.0025 + 0.04) / 12).epsilon(1e-14));
+  CHECK(s.inertia_axial == Approx(mass * 0.0025 / 2).epsilon(1e-14));
+  CHECK(s.inverse_mass * s.mass == Approx(1));
+  CHECK(s.inverse_inertia_transverse * s.inertia_transverse == Approx(1));
+  CHECK(s.inverse_inertia_axial * s.inertia_axial == Approx(1));
+}
+
+TEST_CASE("a static segment cannot be moved, and may have neither size nor mass") {
+  SegmentSpec wall;
+  wall.is_static = true;
+  const Rod rod({wall, good_segment()}, {good_joint()});
+  CHECK(rod.segments[0].inverse_mass == 0);
+  CHECK(rod.segments[0].inverse_inertia_transverse == 0);
+  CHECK(rod.segments[0].inverse_inertia_axial == 0);
+  CHECK(rod.joints[0].length == Approx(0.1));
+}
+
+TEST_CASE("the rest rotation is the initial one unless given, with a real part of at least zero") {
+  SegmentSpec a = good_segment(), b = good_segment();
+  a.orientation = Quaternion(Eigen::AngleAxisd(0.4, Vector3::UnitX()));
+  b.orientation = Quaternion(Eigen::AngleAxisd(1.1, Vector3::UnitX()));
+  b.orientation.coeffs() *= -1;
+  const Rod rod({a, b}, {good_joint()});
+  const Quaternion expected(Eigen::AngleAxisd(0.7, Vector3::UnitX()));
+  CHECK((rod.joints[0].rest.coeffs() - expected.coeffs()).norm() < 1e-15);
+  JointSpec straight = good_joint();
+  straight.rest = Quaternion(-1, 0, 0, 0);
+  CHECK((Rod({a, b}, {straight}).joints[0].rest.coeffs() - Quaternion::Identity().coeffs()).norm() == 0);
+}
+
+TEST_CASE("compliances are l / EI, l / EI and l / GJ of a circular cross-section") {
+  const Vector6 alpha = joint_compliance(0.1, 0.02, 3e6, 2e6, 7e-5);
+  const double r4 = std::pow(0.02, 4);
+  for (int row = 0; row < 3; ++row) CHECK(alpha[row] == 7e-5);
+  CHECK(alpha[3] == Approx(0.1 / (3e6 * pi * r4 / 4)).epsilon(1e-14));
+  CHECK(alpha[4] == alpha[3]);
+  CHECK(alpha[5] == Approx(0.1 / (2e6 * pi * r4 / 2)).epsilon(1e-14));
+}
+
+TEST_CASE("the inextensible compliance opens a joint by 1e-7 of its length under its force") {
+  // alpha l F in units of l
+  CHECK(inextensible_compliance(0.1, 50) * 0.1 * 50 == Approx(1e-7).epsilon(1e-14));
+}
+
+TEST_CASE("impossible segments are refused with quantity, value and bound") {
+  using S = SegmentSpec;
+  CHECK(refusal_of_segment([](S& s) { s.length_m = 0; }) ==
+        "segment 1: length_m is 0; must be positive and finite (zero only when static)");
+  CHECK(refusal_of_segment([](S& s) { s.length_m = -0.5; }) ==
+        "segment 1: length_m is -0.5; must be positive and finite (zero only when static)");
+  CHECK(refusal_of_segment([](S& s) { s.length_m = infinity; }) ==
+        "segment 1: length_m is inf; must be positive and finite (zero only when static)");
+  CHECK(refusal_of_segment([](S& s) {
+          s.length_m = nan;
+          s.is_static = true;
+        }) == "segment 1: length_m is nan; must be positive and finite (zero only when static)");
+  CHECK(refusal_of_segment([](S& s) { s.radius_m = -1e-9; }) ==
+        "segment 1: radius_m is -1e-09; must be positive and finite");
+  CHECK(refusal_of_segment([](S& s) { s.density_kg_m3 = 0; }) ==
+        "segment 1: density_kg_m3 is 0; must be positive and finite");
+  CHECK(refusal_of_segment([](S& s) { s.position_m.y() = nan; }) == "segment 1: position is not finite");
+  CHECK(refusal_of_segment([](S& s) { s.orientation = Quaternion(2, 0, 0, 0); }) ==
+        "segment 1: orientation norm is 2; must be 1");
+  CHECK(refusal_of_segment([](S& s) { s.radius_m = 1e-200; }) ==
+        "segment 1: mass is 0; must be large enough to be inverted");
+  CHECK(refusal_of_segment([](S&) {}) == "accepted");
+  CHECK_THROWS_WITH(Rod({}, {}), "a rod needs at least one segment");
+}
+
+TEST_CASE("impossible joints are refused with quantity, value and bound") {
+  using J = JointSpec;
+  CHECK(refusal_of_joint([](J& j) { j.a = 3; }) == "joint 1: segment a is 3; must be from 0 to 2");
+  CHECK(refusal_of_joint([](J& j) { j.b = -1; }) == "joint 1: segment b is -1; must be from 0 to 2");
+  CHECK(refusal_of_joint([](J& j) { j.b = 0; }) == "joint 1: segment b is 0; must be different from segment a");
+  CHECK(refusal_of_joint([](J& j) { j.compliance_per_j[4] = -1; }) ==
+        "joint 1: compliance of row 4 is -1; must be finite and at least 0");
+  CHECK(refusal_of_joint([](J& j) { j.compliance_per_j[0] = infinity; }) ==
+        "joint 1: compliance of row 0 is inf; must be finite and at least 0");
+  CHECK(refusal_of_joint([](J& j) { j.arm_b_m.z() = nan; }) == "joint 1: an arm is not finite");
+  CHECK(refusal_of_joint([](J& j) { j.rest = Quaternion(0, 0, 0, 0); }) ==
+        "joint 1: norm of the rest rotation is 0; must be 1");
+  CHECK(refusal_of_joint([](J&) {}) == "accepted");
+  SegmentSpec wall;
+  wall.is_static = true;
+  CHECK_THROWS_WITH(Rod({wall, wall}, {good_joint()}),
+                    "joint 0: length is 0; must be positive: two zero-length segments meet");
+}
+
+TEST_CASE("a bending rod runs from the origin at its angle, straight and at rest") {
+  for (const Clamp clamp : {Clamp::segment, Clamp::wall, Clamp::free}) {
+    BendingRod spec = test::bending_rod(7, clamp);
+    spec.length_m = 3;
+    spec.initial_angle_deg = 30;
+    const Scene scene = build_scene(spec);
+    const Rod& rod = scene.rods.front();
+    REQUIRE(rod.segment_count() == segment_count(spec));
+    REQUIRE(rod.joint_count() == rod.segment_count() - 1);
+    const Vector3 along(std::sqrt(3) / 2, 0.5, 0);
+    for (int s = 0; s < rod.segment_count(); ++s) {
+      const int i = clamp == Clamp::wall ? s - 1 : s;
+      const double at = i < 0 ? 0 : (i + 0.5) * 3 / 7;
+      CHECK((rod.position[s] - at * along).norm() < 1e-14);
+      CHECK((director(rod.orientation[s]) - along).norm() < 1e-14);
+      CHECK(rod.segments[s].length_m == Approx(i < 0 ? 0 : 3.0 / 7));
+      CHECK(rod.segments[s].is_static == (s == 0 && clamp != Clamp::free));
+      CHECK(rod.velocity[s].norm() + rod.angular_velocity[s].norm() == 0);
+    }
+    CHECK(rod_length(rod) == Approx(3).epsilon(1e-13));
+    CHECK(rod.joints[0].length == Approx(clamp == Clamp::wall ? 3.0 / 14 : 3.0 / 7));
+  }
+}
+
+TEST_CASE("a helix has its joints on the curve and hangs from its first end") {
+  for (const Clamp clamp : {Clamp::segment, Clamp::wall, Clamp::free}) {
+    Helix spec;
+    spec.segments = 45;
+    spec.clamp = clamp;
+    spec.helix_radius_m = 0.45;
+    spec.helix_height_m = 0.6;
+    spec.windings = 2.25;
+    const Scene scene = build_scene(spec);
+    const Rod& rod = scene.rods.front();
+    REQUIRE(rod.segment_count() == segment_count(spec));
+    for (int k = 0; k < rod.joint_count(); ++k) {
+      const Joint& joint = rod.joints[k];
+      const int vertex = clamp == Clamp::wall ? k : k + 1;
+      const double t = 2 * pi * spec.windings * vertex / spec.segments;
+      const Vector3 on_curve(0.45 * std::cos(t), -0.6 * vertex / spec.segments, 0.45 * std::sin(t));
+      CHECK((rod.position[joint.a] + rod.orientation[joint.a] * joint.arm_a - on_curve).norm() < 1e-12);
+      CHECK((rod.position[joint.b] + rod.orientation[joint.b] * joint.arm_b - on_curve).norm() < 1e-12);
+    }
+    CHECK(rod.position.front().y() > rod.position.back().y());
+  }
+}
+
+TEST_CASE("scenes start with no constraint violated") {
+  Helix helix;
+  const SceneSpec specs[] = {test::bending_rod(2), test::bending_rod(40, Clamp::wall), helix};
+  for (const SceneSpec& spec : specs) {
+    const Rod rod = build_scene(spec).rods.front();
+    Linearization at(rod);
+    linearize(rod, at);
+    CHECK(at.constraint.lpNorm<Eigen::Infinity>() < 1e-13);
+  }
+}
+
+TEST_CASE("frames along a helix are parallel-transported: no joint twists about its segment") {
+  const Rod rod = build_scene(Helix{}).rods.front();
+  for (const Joint& joint : rod.joints) {
+    const Vector3 axis = joint.rest.vec();
+    CHECK(std::abs(axis.z()) < 1e-14);
+    CHECK(axis.norm() > 0.01);
+  }
+}
+
+TEST_CASE("scenes carry their gravity, damping, tip force and stretch compliance") {
+  BendingRod spec = test::bending_rod(5);
+  spec.gravity_m_s2 = {1, 2, 3};
+  spec.damping_per_s = 0.7;
+  spec.tip_force_n = {0, -4, 0};
+  spec.stretch_compliance_per_j = 3e-5;
+  const Scene scene = build_scene(spec);
+  CHECK(scene.gravity_m_s2 == Vector3(1, 2, 3));
+  CHECK(scene.damping_per_s == 0.7);
+  REQUIRE(scene.loads.size() == 1);
+  CHECK(scene.loads[0].segment == 4);
+  CHECK(scene.loads[0].force_n == Vector3(0, -4, 0));
+  CHECK((scene.loads[0].arm_m - Vector3(0, 0, 0.2)).norm() < 1e-15);  // at the tip: half a segment of 2 m / 5
+  CHECK(scene.rods[0].joints[2].compliance[1] == 3e-5);
+  CHECK(build_scene(test::bending_rod(5)).loads.empty());
+}
+
+TEST_CASE("the default stretch compliance is that of the rod's weight and tip force") {
+  BendingRod spec = test::bending_rod(5);
+  const double weight = 1000 * pi * 0.0025 * 2 * 9.81, l = 0.4;
+  CHECK(build_scene(spec).rods[0].joints[1].compliance[0] == Approx(1e-7 / (l * weight)).epsilon(1e-12));
+  spec.tip_force_n = {0, 0, 300};
+  CHECK(build_scene(spec).rods[0].joints[1].compliance[0] == Approx(1e-7 / (l * (weight + 300))).epsilon(1e-12));
+}
+
+TEST_CASE("scenes with too few segments are refused") {
+  CHECK_THROWS_WITH(build_scene(test::bending_rod(1)),
+                    "segments is 1; must be at least 2: the clamp \"segment\" holds the first one");
+  CHECK_THROWS_WITH(build_scene(test::bending_rod(0, Clamp::wall)), "segments is 0; must be at least 1");
+  Helix helix;
+  helix.segments = -3;
+  helix.clamp = Clamp::free;
+  CHECK_THROWS_WITH(build_scene(helix), "segments is -3; must be at least 1");
+  CHECK_THROWS_AS(build_scene(helix), SceneError);
+}
+
+TEST_CASE("scenes of impossible rods are refused by what is wrong with them") {
+  BendingRod spec = test::bending_rod(3);
+  spec.radius_m = 0;
+  CHECK_THROWS_WITH(build_scene(spec), "segment 1: radius_m is 0; must be positive and finite");
+  spec = test::bending_rod(3);
+  spec.length_m = 0;
+  CHECK_THROWS_WITH(build_scene(spec), Catch::Contains("length_m is 0; must be positive"));
+  spec = test::bending_rod(3);
+  spec.youngs_modulus_pa = 0;
+  CHECK_THROWS_WITH(build_scene(spec), "joint 0: compliance of row 3 is inf; must be finite and at least 0");
+}
+
+}  // namespace
+}  // namespace rodsweep

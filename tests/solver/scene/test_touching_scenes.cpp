@@ -1,0 +1,245 @@
+// Scenes made for contact: geometry, and that they do what they are named for. The knot stays one.
+#include <Eigen/LU>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/numbers/rotation.hpp"
+#include "tests/solver/support.hpp"
+#include "tests/solver/touching.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// The determinant of a knot, from the crossings of a closed polygon seen along z: 1 of the unknot, 3 of a trefoil. A
+/// row for every crossing: 2 for the arc above, -1 for the two that end below it; any one row and column left out.
+long knot_determinant(const std::vector<Vector3>& polygon) {
+  struct Passing {
+    double place;  // along the polygon
+    int crossing;
+    bool below;
+  };
+  std::vector<Passing> passings;
+  int crossings = 0;
+  const std::size_t n = polygon.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 2; j < n; ++j) {
+      const Vector3 a = polygon[i], u = polygon[(i + 1) % n] - a, b = polygon[j], v = polygon[(j + 1) % n] - b;
+      const double det = u.x() * v.y() - u.y() * v.x();
+      if (det == 0 || (i == 0 && j == n - 1)) continue;
+      const Vector3 c = b - a;
+      const double s = (c.x() * v.y() - c.y() * v.x()) / det, t = (c.x() * u.y() - c.y() * u.x()) / det;
+      if (s < 0 || s >= 1 || t < 0 || t >= 1) continue;
+      const bool a_below = a.z() + s * u.z() < b.z() + t * v.z();
+      passings.push_back({static_cast<double>(i) + s, crossings, a_below});
+      passings.push_back({static_cast<double>(j) + t, crossings++, !a_below});
+    }
+  if (crossings < 2) return 1;
+  std::sort(passings.begin(), passings.end(), [](const Passing& p, const Passing& q) { return p.place < q.place; });
+  test::MatrixX colours = test::MatrixX::Zero(crossings, crossings);
+  int arc = 0;
+  for (const Passing& passing : passings) {
+    if (!passing.below) {
+      colours(passing.crossing, arc) += 2;
+      continue;
+    }
+    colours(passing.crossing, arc) -= 1;
+    arc = (arc + 1) % crossings;
+    colours(passing.crossing, arc) -= 1;
+  }
+  const Eigen::Index m = crossings - 1;
+  return std::lround(std::abs(colours.topLeftCorner(m, m).fullPivLu().determinant()));
+}
+
+/// A rod's axis, closed far around its ends, which point to -x and x; seen from a direction of no symmetry.
+std::vector<Vector3> closed_up(const Rod& rod) {
+  std::vector<Vector3> polygon;
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    polygon.push_back(rod.position[s] - rod.segments[s].length_m / 2 * director(rod.orientation[s]));
+  polygon.emplace_back(rod.position.back() + Vector3(50, 0.1, 0));
+  polygon.emplace_back(0, 100, 0.3);
+  polygon.emplace_back(rod.position.front() + Vector3(-50, 0.2, 0));
+  const Quaternion turn(Eigen::AngleAxisd(0.3, Vector3(1, 2, 0.5).normalized()));
+  for (Vector3& vertex : polygon) vertex = turn * vertex;
+  return polygon;
+}
+
+Knot knot() {
+  Knot p;
+  p.segments = 60;
+  p.length_m = 2;
+  p.radius_m = 0.015;
+  p.youngs_modulus_pa = 1e5;
+  p.torsion_modulus_pa = 4e4;
+  p.gravity_m_s2.setZero();
+  p.damping_per_s = 5;
+  p.pull_m_s = 0.5;
+  p.contact = ContactSettings{};
+  return p;
+}
+
+TEST_CASE("the determinant tells a trefoil from a circle, also one that is drawn with crossings") {
+  std::vector<Vector3> trefoil, twisted;
+  for (int i = 0; i < 60; ++i) {
+    const double t = (i + 0.1) * M_PI / 30;
+    trefoil.emplace_back(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t), -std::sin(3 * t));
+    twisted.emplace_back(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t), std::sin(t));
+  }
+  CHECK(knot_determinant(trefoil) == 3);
+  CHECK(knot_determinant(twisted) == 1);
+}
+
+TEST_CASE("a knot starts as a loose overhand knot of the length asked for, its strands apart") {
+  const Scene scene = build_scene(knot());
+  const Rod& rod = scene.rods.front();
+  CHECK(rod.segment_count() == 60);
+  CHECK(rod_length(rod) == Approx(2).epsilon(0.01));
+  CHECK(joint_gap(rod) < 1e-12);
+  CHECK(knot_determinant(closed_up(rod)) == 3);
+  CHECK(test::nearest(scene) > 1.02);
+  for (const std::size_t end : {std::size_t{0}, rod.segments.size() - 1}) {
+    CHECK(rod.segments[end].is_static);
+    CHECK(director(rod.orientation[end]).x() > 0.95);
+  }
+}
+
+TEST_CASE("a knot that is pulled tightens and stays a knot, with contact alone") {
+  for (const bool contact : {true, false}) {
+    Knot p = knot();
+    if (!contact) p.contact.reset();
+    test::Touching t(build_scene(p), 0.005);
+    const auto span = [&t] { return (t.scene.rods[0].position.back() - t.scene.rods[0].position.front()).norm(); };
+    double nearest = HUGE_VAL;
+    int steps = 0;
+    for (; steps < 400 && span() < (contact ? 1.55 : 1.9); ++steps) {
+      t.step();
+      if (contact) nearest = std::min(nearest, test::nearest(t.scene));
+    }
+    CHECK(steps < 400);
+    CHECK(knot_determinant(closed_up(t.scene.rods[0])) == (contact ? 3 : 1));
+    if (contact) CHECK(nearest > 0.99);
+    if (contact) CHECK(joint_gap(t.scene.rods[0]) < 1e-4);
+    if (contact) CHECK(nearest < 1.001);
+  }
+}
+
+TEST_CASE("falling rods heap up on the floor") {
+  FallingRods p;
+  p.rods = 4;
+  p.segments = 5;
+  p.radius_m = 0.03;
+  p.youngs_modulus_pa = 1e6;
+  p.contact = ContactSettings{};
+  Scene start = build_scene(p);
+  CHECK(start.rods.size() == 4);
+  CHECK(start.rods[1].position[2].y() - start.rods[0].position[2].y() == Approx(0.2));
+  test::Touching t(start, 0.01);
+  CHECK(t.run(100) < 0.01);
+  double top = 0;
+  for (const Rod& rod : t.scene.rods) CHECK(joint_gap(rod) < 1e-5);
+  for (const Rod& rod : t.scene.rods)
+    for (const Vector3& at : rod.position) {
+      CHECK(at.y() > 0.99 * 0.03);
+      top = std::max(top, at.y());
+    }
+  CHECK(top > 0.1);  // they lie on each other
+  CHECK(top < 0.4);
+}
+
+TEST_CASE("a rod fed onto the floor coils there") {
+  CoilingRod p;
+  p.segments = 30;
+  p.length_m = 1;
+  p.radius_m = 0.01;
+  p.youngs_modulus_pa = 1e5;
+  p.torsion_modulus_pa = 4e4;
+  p.contact = ContactSettings{};
+  test::Touching t(build_scene(p), 0.005);
+  CHECK(t.run(160) < 0.01);
+  const Rod& rod = t.scene.rods[0];
+  CHECK(joint_gap(rod) < 1e-3);
+  CHECK(rod.position[0].y() == Approx(1.11 - 1.0 / 60 - 0.8).epsilon(1e-6));
+  int lying = 0;
+  for (const Vector3& at : rod.position) {
+    CHECK(at.y() > 0.0099);
+    lying += at.y() < 0.05;
+  }
+  CHECK(lying > 12);
+  CHECK(test::nearest(t.scene) > 0.99);
+}
+
+TEST_CASE("the rings of a chain are linked, hang in each other and stay so") {
+  RingChain p;
+  p.rings = 3;
+  p.length_m = 1;
+  p.segments = 12;
+  p.radius_m = 0.02;
+  p.youngs_modulus_pa = 1e7;
+  p.contact = ContactSettings{};
+  Scene start = build_scene(p);
+  CHECK(test::nearest(start) > 1);
+  CHECK(segment_count(p) == 36);
+  test::Touching t(start, 0.01);
+  CHECK(t.run(80) < 0.01);
+  for (int ring = 1; ring < 3; ++ring)  // the top of each is still well above the bottom of the one before
+    CHECK(t.scene.rods[ring].position[0].y() > t.scene.rods[ring - 1].position[6].y());
+  CHECK(t.scene.rods[2].position[6].y() < -0.6);
+}
+
+TEST_CASE("the rods of a bundle swing together and touch") {
+  Bundle p;
+  p.rods = 7;
+  p.segments = 6;
+  p.radius_m = 0.02;
+  p.youngs_modulus_pa = 1e6;
+  p.contact = ContactSettings{};
+  Scene start = build_scene(p);
+  CHECK(test::nearest(start) > 1.02);
+  test::Touching t(start, 0.01);
+  int touching = 0;
+  double nearest = HUGE_VAL;
+  for (int i = 0; i < 80; ++i) {
+    touching = std::max(touching, t.step().contacts);
+    nearest = std::min(nearest, test::nearest(t.scene));
+  }
+  CHECK(touching > 12);
+  CHECK(nearest > 0.99);
+  CHECK(nearest < 1.001);
+}
+
+TEST_CASE("the counts of scenes of several rods are those of what is built") {
+  RingChain rings;
+  rings.radius_m = 0.02;
+  for (const SceneSpec& spec :
+       {SceneSpec(FallingRods{}), SceneSpec(CoilingRod{}), SceneSpec(knot()), SceneSpec(rings), SceneSpec(Bundle{})}) {
+    const Scene scene = build_scene(spec);
+    int segments = 0, joints = 0;
+    for (const Rod& rod : scene.rods) {
+      segments += rod.segment_count();
+      joints += rod.joint_count();
+    }
+    CHECK(segment_count(spec) == segments);
+    CHECK(joint_count(spec) == joints);
+    CHECK(rod_count(spec) == static_cast<int>(scene.rods.size()));
+  }
+}
+
+TEST_CASE("scenes that could only start with rods inside each other are refused") {
+  FallingRods flat;
+  flat.height_m = 0.09;
+  CHECK_THROWS_WITH(build_scene(flat), "height_m is 0.090000; must be at least 2 radius_m, or the rods overlap");
+  Knot thick = knot();
+  thick.radius_m = 0.1;
+  CHECK_THROWS_WITH(build_scene(thick), Catch::StartsWith("length_m is 2.000000; must be at least ") &&
+                                            Catch::EndsWith(" for a loose knot of this radius_m"));
+  RingChain narrow;
+  narrow.length_m = 1;
+  narrow.radius_m = 0.03;
+  CHECK_THROWS_WITH(build_scene(narrow), Catch::Contains("must be at least 1.200000 for rings of this radius_m"));
+  Bundle crossed;
+  crossed.initial_angle_deg = -1;
+  CHECK_THROWS_WITH(build_scene(crossed), Catch::Contains("must be from 0 to 90 for a bundle"));
+}
+
+}  // namespace
+}  // namespace rodsweep

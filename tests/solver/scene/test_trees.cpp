@@ -1,0 +1,264 @@
+// Trees: how many segments, which radii and directions, their joints, their statics and symmetry, forests, refusals.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "solver/rod/linearization.hpp"
+#include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double golden_angle_deg = 137.50776405003785;
+
+TreeShape shape(int depth, int branches, int segments) {
+  TreeShape p;
+  p.depth = depth;
+  p.branches = branches;
+  p.segments = segments;
+  return p;
+}
+
+Tree tree(int depth, int branches, int segments) {
+  Tree p;
+  p.shape = shape(depth, branches, segments);
+  p.youngs_modulus_pa = 1e9;
+  p.torsion_modulus_pa = 4e8;
+  return p;
+}
+
+double second_moment(double radius) { return pi * std::pow(radius, 4) / 4; }
+
+std::vector<std::vector<int>> children_of(const Skeleton& skeleton) {
+  std::vector<std::vector<int>> children(skeleton.size());
+  for (int i = 1; i < static_cast<int>(skeleton.size()); ++i)
+    children[static_cast<std::size_t>(skeleton[static_cast<std::size_t>(i)].parent)].push_back(i);
+  return children;
+}
+
+Vector3 edge(const Skeleton& skeleton, int node) {
+  const SkeletonNode& at = skeleton[static_cast<std::size_t>(node)];
+  return at.position_m - skeleton[static_cast<std::size_t>(at.parent)].position_m;
+}
+
+bool same_bits(const Skeleton& one, const Skeleton& other) {
+  if (one.size() != other.size()) return false;
+  for (std::size_t i = 0; i < one.size(); ++i)
+    if (one[i].position_m != other[i].position_m || one[i].radius_m != other[i].radius_m) return false;
+  return true;
+}
+
+std::string refusal(const SceneSpec& spec) {
+  try {
+    build_scene(spec);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("a tree has segments (1 + b + ... + b^depth) edges, and a rod of it one segment more, the ground") {
+  const std::map<std::vector<int>, int> counts{{{0, 3, 5}, 5}, {{3, 1, 2}, 8}, {{4, 3, 2}, 242}, {{6, 2, 8}, 1016}};
+  for (const auto& [p, edges] : counts) {
+    const Tree spec = tree(p[0], p[1], p[2]);
+    CHECK(edge_count(spec.shape) == edges);
+    CHECK(static_cast<int>(grow(spec.shape, 0.05).size()) == edges + 1);
+    const Rod rod = build_scene(spec).rods.front();
+    CHECK(rod.segment_count() == edges + 1);
+    CHECK(rod.joint_count() == edges);
+    CHECK(segment_count(spec) == rod.segment_count());
+    CHECK(joint_count(spec) == rod.joint_count());
+    CHECK(rod.segments[0].is_static);
+    CHECK(rod.segments[0].length_m == 0);
+  }
+}
+
+TEST_CASE("the pipe model holds at every branching, for any exponent and taper") {
+  for (const double exponent : {2.0, 2.5, 3.0})
+    for (const double taper : {1.0, 0.6}) {
+      TreeShape p = shape(4, 3, 3);
+      p.pipe_exponent = exponent;
+      p.taper = taper;
+      const Skeleton skeleton = grow(p, 0.1);
+      const auto children = children_of(skeleton);
+      int branchings = 0;
+      for (std::size_t i = 1; i < skeleton.size(); ++i) {
+        if (children[i].size() < 2) continue;
+        double sum = 0;
+        for (const int child : children[i])
+          sum += std::pow(skeleton[static_cast<std::size_t>(child)].radius_m, exponent);
+        CHECK(sum == Approx(std::pow(skeleton[i].radius_m, exponent)).epsilon(1e-12));
+        ++branchings;
+      }
+      CHECK(branchings == 1 + 3 + 9 + 27);
+      CHECK(skeleton[1].radius_m == 0.1);
+      CHECK(skeleton[3].radius_m == Approx(0.1 * taper).epsilon(1e-15));
+    }
+}
+
+TEST_CASE("branches leave at the angle, are as long as they should be, and go around by the golden angle") {
+  TreeShape p = shape(3, 3, 2);
+  p.length_m = 2;
+  p.length_ratio = 0.7;
+  p.branching_angle_deg = 40;
+  p.angle_spread_deg = 0;
+  const Skeleton skeleton = grow(p, 0.1);
+  const auto children = children_of(skeleton);
+  CHECK((edge(skeleton, 1) - Vector3(0, 1, 0)).norm() < 1e-15);
+  for (int i = 2; i < static_cast<int>(skeleton.size()); ++i) {
+    const bool leaves = children[static_cast<std::size_t>(skeleton[static_cast<std::size_t>(i)].parent)].size() > 1;
+    const Vector3 before = edge(skeleton, skeleton[static_cast<std::size_t>(i)].parent), after = edge(skeleton, i);
+    CHECK(after.norm() / before.norm() == Approx(leaves ? 0.7 : 1).epsilon(1e-12));
+    CHECK(after.dot(before) / (after.norm() * before.norm()) ==
+          Approx(std::cos(leaves ? 40 * pi / 180 : 0)).epsilon(1e-9));
+  }
+  const std::vector<int>& at_top = children[2];
+  REQUIRE(at_top.size() == 3);
+  for (std::size_t k = 1; k < 3; ++k) {
+    const Vector3 one = edge(skeleton, at_top[k - 1]), next = edge(skeleton, at_top[k]);
+    const double around =
+        std::acos((one.x() * next.x() + one.z() * next.z()) / (one.x() * one.x() + one.z() * one.z()));
+    CHECK(around * 180 / pi == Approx(golden_angle_deg).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("the same seed grows the same bits, another seed another tree") {
+  for (const auto phyllotaxis : {TreeShape::Phyllotaxis::golden, TreeShape::Phyllotaxis::random}) {
+    TreeShape p = shape(4, 3, 2), other = p;
+    p.phyllotaxis = other.phyllotaxis = phyllotaxis;
+    other.seed = 1;
+    CHECK(same_bits(grow(p, 0.1), grow(p, 0.1)));
+    CHECK_FALSE(same_bits(grow(p, 0.1), grow(other, 0.1)));
+  }
+}
+
+TEST_CASE("a tree starts unstrained, and its joints are half of one edge behind half of the next") {
+  Tree p = tree(3, 2, 3);
+  p.shape.taper = 0.7;
+  p.modulus_exponent = 0.5;
+  const Rod rod = build_scene(p).rods.front();
+  Linearization at(rod);
+  linearize(rod, at);
+  CHECK(at.constraint.norm() < 1e-13);
+  const auto modulus = [&](const Segment& s) { return 1e9 * std::sqrt(s.radius_m / p.radius_m); };
+  for (const Joint& joint : rod.joints) {
+    const Segment &a = rod.segments[static_cast<std::size_t>(joint.a)],
+                  &b = rod.segments[static_cast<std::size_t>(joint.b)];
+    double bending = b.length_m / 2 / (modulus(b) * second_moment(b.radius_m));
+    if (a.length_m > 0) bending += a.length_m / 2 / (modulus(a) * second_moment(a.radius_m));
+    CHECK(joint.compliance[3] == Approx(bending).epsilon(1e-12));
+    CHECK(joint.compliance[4] == Approx(bending).epsilon(1e-12));
+    CHECK(joint.compliance[5] == Approx(bending * 1e9 / (2 * 4e8)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("an inextensible joint of a tree is made for the weight above it, a physical one for its two sections") {
+  Tree p = tree(2, 3, 2);
+  const Rod rod = build_scene(p).rods.front();
+  double mass = 0;
+  for (const Segment& s : rod.segments) mass += s.mass;
+  const Joint &lowest = rod.joints.front(), &last = rod.joints.back();
+  CHECK(lowest.compliance[0] == Approx(inextensible_compliance(lowest.length, 9.81 * mass)).epsilon(1e-12));
+  CHECK(last.compliance[0] ==
+        Approx(inextensible_compliance(last.length, 9.81 * rod.segments.back().mass)).epsilon(1e-12));
+  p.stretch = Stretch::physical;
+  p.shape.taper = 0.5;
+  const Joint thinning = build_scene(p).rods.front().joints[1];
+  const double l = p.shape.length_m / 2, thick = pi * 0.05 * 0.05, thin = thick / 4;
+  CHECK(thinning.compliance[0] + thinning.axial_excess ==
+        Approx((l / 2 / (1e9 * thick) + l / 2 / (1e9 * thin)) / (l * l)).epsilon(1e-12));
+}
+
+TEST_CASE("a tree without branches is a tapered cantilever: its tip sinks as the beam equation says") {
+  Tree p = tree(0, 3, 64);
+  p.radius_m = 0.02;
+  p.shape.taper = 0.4;
+  p.modulus_exponent = 1;
+  p.gravity_m_s2 = {9.81, 0, 0};  // the trunk stands along y
+  p.youngs_modulus_pa = 1e10;
+  Simulation simulation(build_scene(p), 0.3);
+  simulation.relax();
+  // E I y'' = M, M(s) the moment of the weight beyond s; radii are linear in s through the middles of the edges.
+  const int n = 64, steps = 6400;
+  const double h = 1.0 / steps;
+  const auto radius = [&](double s) { return p.radius_m * (1 - (1 - p.shape.taper) * (s * n - 0.5) / (n - 1)); };
+  double shear = 0, moment = 0, sag = 0;  // from the tip down: the tip moves by curvature times its distance
+  for (int i = steps - 1; i >= 0; --i) {
+    const double s = (i + 0.5) * h, load = 1000 * 9.81 * pi * std::pow(radius(s), 2);
+    moment += h * (shear + h * load / 2);
+    shear += h * load;
+    const double stiffness = 1e10 * radius(s) / p.radius_m * second_moment(radius(s));
+    sag += h * (1 - s) * moment / stiffness;
+  }
+  CHECK(tip(simulation.rod()).x() == Approx(sag).epsilon(1e-3));
+  CHECK(sag < 0.01);
+}
+
+TEST_CASE("a symmetric tree moves symmetrically") {
+  Skeleton skeleton{{-1, {0, 0, 0}, 0.05}, {0, {0, 0.5, 0}, 0.05}};
+  for (const double side : {1.0, -1.0}) {
+    int below = 1;
+    for (int i = 1; i <= 5; ++i) {
+      skeleton.push_back({below, {0.15 * i * side, 0.5 + 0.2 * i, 0}, 0.03});
+      below = static_cast<int>(skeleton.size()) - 1;
+    }
+  }
+  SkeletonTree p;
+  p.skeleton = std::make_shared<const Skeleton>(skeleton);
+  p.youngs_modulus_pa = 1e6;
+  Simulation simulation(build_scene(p), 0.01);
+  simulation.run(100);
+  const Rod& rod = simulation.rod();
+  const Vector3 mirror(-1, 1, 1);
+  for (int i = 2; i < 7; ++i) {
+    CHECK((rod.position[i] - mirror.cwiseProduct(rod.position[i + 5])).norm() < 1e-9);
+    CHECK(rod.segments[i].radius_m == 0.03);
+  }
+  CHECK((rod.position[6] - Vector3(0.675, 1.4, 0)).norm() > 0.01);  // it did move
+}
+
+TEST_CASE(
+    "a forest is a tree for every place of the grid, each of its own seed, off its place by less than the jitter") {
+  Forest p;
+  p.shape = shape(2, 2, 2);
+  p.rows = 2;
+  p.columns = 3;
+  p.spacing_m = 4;
+  p.jitter = 0.3;
+  const Scene scene = build_scene(p);
+  REQUIRE(scene.rods.size() == 6);
+  CHECK(rod_count(p) == 6);
+  CHECK(segment_count(p) == 6 * scene.rods[0].segment_count());
+  CHECK(joint_count(p) == 6 * scene.rods[0].joint_count());
+  for (int i = 0; i < 6; ++i) {
+    const Vector3 base = scene.rods[static_cast<std::size_t>(i)].position[0], place(4 * (i % 3), 0, 4 * (i / 3));
+    CHECK((base - place).cwiseAbs().maxCoeff() <= 0.3 * 4 / 2);
+    CHECK(base.y() == 0);
+    for (int j = 0; j < i; ++j) {
+      const Rod &one = scene.rods[static_cast<std::size_t>(i)], &other = scene.rods[static_cast<std::size_t>(j)];
+      CHECK((one.position.back() - one.position[0] - other.position.back() + other.position[0]).norm() > 1e-3);
+    }
+  }
+}
+
+TEST_CASE("trees that cannot grow are refused with quantity, value and bound") {
+  Tree p = tree(2, 2, 1);
+  p.shape.taper = 0.5;
+  CHECK(refusal(p) == "taper is 0.5; must be 1 where a branch is one segment");
+  p = tree(2, 2, 2);
+  p.shape.branching_angle_deg = 145;
+  CHECK(refusal(p) == "branching_angle_deg with angle_spread_deg is 155; must be at most 150");
+  CHECK(refusal(tree(30, 3, 2)) == "number of segments of a tree is 6.17673e+14; must be at most 1e7");
+  SkeletonTree folded;
+  folded.skeleton =
+      std::make_shared<const Skeleton>(Skeleton{{-1, {0, 0, 0}, 0.1}, {0, {0, 1, 0}, 0.1}, {1, {0.1, 0.2, 0}, 0.1}});
+  CHECK(refusal(folded) ==
+        "node 2 of a skeleton: turns back onto the edge below by 172.875 degrees; must be at most 160");
+  folded.skeleton = std::make_shared<const Skeleton>(Skeleton{{-1, {0, 0, 0}, 0.1}, {0, {0, 0, 0}, 0.1}});
+  CHECK(refusal(folded) == "node 1 of a skeleton: stands where its parent does; must be elsewhere");
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,206 @@
+// After its first steps, a time step asks for no memory: not in our code, not in Eigen, not in PETSc.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solver/batch/batched_step.hpp"
+#include "solver/guess/initial_guess.hpp"
+#include "solver/guess/subspace_guess.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/step/pbd_projection.hpp"
+#include "solver/step/time_step.hpp"
+#include "solver/step/xpbd_projection.hpp"
+#include "tests/solver/allocations.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// CG from a guess, with its history recorded, as the paired evaluation and closed loops use it.
+class CgSolve : public LinearSolve {
+ public:
+  CgSolve(const CgSettings& settings, std::unique_ptr<InitialGuess> guess)
+      : settings_(settings), guess_(std::move(guess)) {}
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda) override {
+    if (!cg_) {
+      cg_ = std::make_unique<ConjugateGradient>(system.matrix(), settings_);
+      cg_->record_history(true);
+    }
+    cg_->matrix_changed();
+    ++calls;
+    const bool nonzero = guess_->propose(system, at, delta_lambda).nonzero;
+    const CgReport report = cg_->solve(system.rhs(), delta_lambda, nonzero, 1e-6, cg_->norm_of(system.rhs()));
+    guess_->accept(at, delta_lambda);
+    return report.outcome;
+  }
+  int calls = 0;
+
+ private:
+  CgSettings settings_;
+  std::unique_ptr<InitialGuess> guess_;
+  std::unique_ptr<ConjugateGradient> cg_;
+};
+
+/// Allocations of ten steps after five.
+long allocations_of(Scene& scene, Projection& projection) {
+  TimeStepper stepper(scene, {0.02, 4, 1e-9});
+  long before = 0;
+  for (int step = 0; step < 15; ++step) {
+    if (step == 5) before = test::allocations();
+    const StepReport report = stepper.step(projection);
+    if (report.outcome != SolveOutcome::converged) return -1;
+  }
+  return test::allocations() - before;
+}
+
+long allocations_of(Scene& scene, LinearSolve& solve) {
+  LinearProjection projection(scene, solve);
+  return allocations_of(scene, projection);
+}
+
+Scene loaded_scene() {
+  BendingRod spec = test::bending_rod(12);
+  spec.tip_force_n = {0, 1, 1};
+  spec.damping_per_s = 0.1;
+  WindParameters wind;
+  wind.turbulence_m_s = 1;
+  spec.wind = wind;
+  Scene scene = build_scene(spec);
+  const Pose start{scene.rods[0].position[0], scene.rods[0].orientation[0]};
+  scene.clamps.push_back({0, 0, [start](double t) {
+                            return Pose{start.position + Vector3(0, 0, 0.1 * t), start.orientation};
+                          }});
+  return scene;
+}
+
+TEST_CASE("the count sees new, malloc, calloc, realloc and aligned memory") {
+  long before = test::allocations();
+  const auto counted = [&before] {
+    const long now = test::allocations(), since = now - before;
+    before = now;
+    return since;
+  };
+  void* volatile p = std::malloc(100);
+  CHECK(counted() >= 1);
+  p = std::realloc(p, 100000);
+  CHECK(counted() >= 1);
+  std::free(p);
+  p = std::calloc(3, 100);
+  std::free(p);
+  CHECK(counted() >= 1);
+  p = std::aligned_alloc(64, 128);
+  std::free(p);
+  CHECK(counted() >= 1);
+  { const std::vector<double> v(100); }
+  CHECK(counted() >= 1);
+  { const VectorX v = VectorX::Zero(100); }
+  CHECK(counted() >= 1);
+}
+
+TEST_CASE("the count sees PETSc") {
+  const Scene scene = loaded_scene();
+  LinearSystem system(scene.rods[0]);
+  const long before = test::allocations();
+  const ConjugateGradient cg(system.matrix(), {});
+  CHECK(test::allocations() - before > 10);  // only one of them is ours
+}
+
+TEST_CASE("a step with the direct solve allocates nothing") {
+  Scene scene = loaded_scene();
+  DirectSolve direct(scene);
+  CHECK(allocations_of(scene, direct) == 0);
+}
+
+TEST_CASE("a batched step allocates nothing") {
+  BatchedStepper batch({test::moving_scene(12), test::moving_scene(12, 3)}, {0.02, 4, 1e-9});
+  const long before = test::allocations();
+  for (int step = 0; step < 10; ++step) batch.step();
+  CHECK(test::allocations() == before);
+}
+
+TEST_CASE("a step with Gauss-Seidel allocates nothing") {
+  Scene scene = loaded_scene();
+  XpbdProjection xpbd(scene);
+  CHECK(allocations_of(scene, xpbd) == 0);
+  PbdProjection pbd(scene, {0.9, 0.5});
+  CHECK(allocations_of(scene, pbd) == 0);
+}
+
+TEST_CASE("a step with contacts allocates nothing unless there are more of them or the broad phase searches anew") {
+  Scene scene = build_scene(test::bending_rod(12, Clamp::free));
+  for (Vector3& position : scene.rods[0].position) position.y() = 0.05;
+  for (Quaternion& orientation : scene.rods[0].orientation)
+    orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  scene.contact = ContactSettings{};
+  scene.obstacles = {HalfSpace{}, Ball{{0, -9, 0}, 8.9}};
+  DirectSolve direct(scene);
+  CHECK(allocations_of(scene, direct) == 0);
+}
+
+TEST_CASE("contacts allocate once, in the first step in which there are so many") {
+  Scene scene = build_scene(test::bending_rod(12, Clamp::free));
+  for (std::size_t s = 0; s < 12; ++s) {
+    scene.rods[0].position[s] = {static_cast<double>(s) / 6, 0.05, 0};
+    scene.rods[0].orientation[s] = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  }
+  scene.contact = ContactSettings{};
+  scene.obstacles = {HalfSpace{}};
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 4, 1e-9});
+  const int most = stepper.step(projection).contacts;
+  CHECK(most > 0);
+  const long before = test::allocations();
+  for (int step = 0; step < 3; ++step) CHECK(stepper.step(projection).contacts <= most);
+  CHECK(test::allocations() == before);
+}
+
+TEST_CASE("a step with CG allocates nothing, whatever the guess") {
+  const auto make = [](const std::string& name, const Scene& scene) -> std::unique_ptr<InitialGuess> {
+    if (name == "previous") return std::make_unique<ExtrapolationGuess>(scene, 4, 1);
+    if (name == "linear") return std::make_unique<ExtrapolationGuess>(scene, 4, 2);
+    if (name == "quadratic") return std::make_unique<ExtrapolationGuess>(scene, 4, 3);
+    if (name == "oracle") return std::make_unique<OracleGuess>(scene, 0.1, OracleGuess::Error::smooth, 7);
+    if (name == "fischer") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::restarted);
+    if (name == "pod") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding);
+    if (name == "guarded")
+      return std::make_unique<GuardedGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 3), 0.5);
+    return std::make_unique<ZeroGuess>();
+  };
+  for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod"}) {
+    INFO(guess);
+    Scene scene = loaded_scene();
+    CgSolve solve({}, make(guess, scene));
+    CHECK(allocations_of(scene, solve) == 0);
+  }
+}
+
+TEST_CASE("a step with CG allocates nothing, whatever the norm and the preconditioner that does not factorise") {
+  for (const Norm norm : {Norm::true_residual, Norm::natural})
+    for (const Preconditioner p : {Preconditioner::none, Preconditioner::jacobi, Preconditioner::point_block_jacobi}) {
+      INFO("preconditioner " << static_cast<int>(p) << ", norm " << static_cast<int>(norm));
+      Scene scene = loaded_scene();
+      CgSolve solve({p, norm, 0}, std::make_unique<ZeroGuess>());
+      CHECK(allocations_of(scene, solve) == 0);
+    }
+}
+
+TEST_CASE("icc and cholesky cost PETSc's three work arrays per factorisation, and nothing of ours") {
+  for (const Preconditioner p : {Preconditioner::icc, Preconditioner::cholesky}) {
+    Scene scene = loaded_scene();
+    CgSolve solve({p, Norm::true_residual, 0}, std::make_unique<ZeroGuess>());
+    LinearProjection projection(scene, solve);
+    TimeStepper stepper(scene, {0.02, 4, 1e-9});
+    for (int step = 0; step < 5; ++step) stepper.step(projection);
+    const long before = test::allocations();
+    solve.calls = 0;
+    for (int step = 0; step < 10; ++step) stepper.step(projection);
+    REQUIRE(solve.calls > 10);
+    CHECK(test::allocations() - before <= 3 * solve.calls);
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,121 @@
+// Numerical care: signs of quaternions, segments shorter than thick, moduli far off, both ends held.
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// The scene's rod built again with every second quaternion negated, which is the same orientation.
+Scene with_signs_flipped(Scene scene) {
+  Rod& rod = scene.rods.front();
+  for (std::size_t s = 0; s < rod.orientation.size(); s += 2) rod.orientation[s].coeffs() *= -1;
+  return scene;
+}
+
+/// Straight along +x, `held` at its first segment and, if asked, at its last one, with this stretch compliance.
+Rod straight_rod(int n, bool both_ends, double stretch) {
+  BendingRod p = test::bending_rod(n);
+  p.initial_angle_deg = 0;
+  p.stretch_compliance_per_j = stretch;
+  Rod rod = build_scene(p).rods.front();
+  if (!both_ends) return rod;
+  Segment& last = rod.segments.back();
+  last.is_static = true;
+  last.inverse_mass = last.inverse_inertia_transverse = last.inverse_inertia_axial = 0;
+  return rod;
+}
+
+double condition_number(const Rod& rod, double dt) {
+  LinearSystem system(rod);
+  system.assemble(rod, dt);
+  const VectorX values =
+      Eigen::SelfAdjointEigenSolver<test::MatrixX>(system.matrix().dense(), Eigen::EigenvaluesOnly).eigenvalues();
+  return values.maxCoeff() / values.minCoeff();
+}
+
+TEST_CASE("neighbouring quaternions in opposite hemispheres give the same motion, bit for bit") {
+  Ring ring;
+  ring.segments = 10;
+  for (const SceneSpec& spec : {SceneSpec(test::bending_rod(9)), SceneSpec(Helix{}), SceneSpec(ring)}) {
+    const Scene scene = build_scene(spec);
+    Simulation plain(scene, 0.02), flipped(with_signs_flipped(scene), 0.02);
+    plain.run(30);
+    flipped.run(30);
+    CHECK(plain.rod().position == flipped.rod().position);
+    CHECK(plain.rod().angular_velocity == flipped.rod().angular_velocity);
+    CHECK(plain.rod().lambda == flipped.rod().lambda);
+  }
+}
+
+TEST_CASE("a rod whose segments are shorter than thick sags as any other") {
+  BendingRod p = test::bending_rod(100, Clamp::wall);
+  p.initial_angle_deg = 0;
+  p.length_m = 2;
+  p.radius_m = 0.1;  // segments of 0.02 m
+  p.youngs_modulus_pa = 1e9;
+  p.gravity_m_s2 /= 30;
+  Simulation simulation(build_scene(p), 1);
+  simulation.relax();
+  const double law = 1000 * 9.81 / 30 * 16 / (8 * 1e9 * 0.01 / 4) * (1 + 1e-4);  // w L^4 / 8 EI, I / A = r^2 / 4
+  CHECK(-tip(simulation.rod()).y() == Approx(law).epsilon(1e-3));
+}
+
+TEST_CASE("moduli from 1 Pa to 1e15 Pa keep rods together and Newton converging") {
+  for (const double modulus : {1.0, 1e3, 1e9, 1e12, 1e15})
+    for (const Stretch stretch : {Stretch::inextensible, Stretch::physical}) {
+      if (stretch == Stretch::physical && modulus < 1e6) continue;  // its own weight tears such a rod apart
+      BendingRod p = test::bending_rod(12);
+      p.youngs_modulus_pa = p.torsion_modulus_pa = modulus;
+      p.stretch = stretch;
+      Scene scene = build_scene(p);
+      DirectSolve direct(scene);
+      LinearProjection projection(scene, direct);
+      TimeStepper stepper(scene, {0.02, 20, 1e-9});
+      INFO("modulus " << modulus << (stretch == Stretch::physical ? ", physical" : ""));
+      for (int i = 0; i < 100; ++i) {
+        const StepReport report = stepper.step(projection);
+        REQUIRE(report.outcome == SolveOutcome::converged);
+        REQUIRE(newton_residual(scene.rods.front(), stepper.constraint_dt()) < 1e-8);
+      }
+      CHECK(is_finite(scene.rods.front()));
+      CHECK(joint_gap(scene.rods.front()) < 1e-4);
+      if (modulus >= 1e12)  // all but rigid
+        CHECK((tip(scene.rods.front()) - tip(build_scene(p).rods.front())).norm() < 1e-4);
+    }
+}
+
+TEST_CASE(
+    "the condition number of a rod held at both ends grows with the inverse compliance, of an open one it does not") {
+  const double dt = 0.02;
+  const auto growth = [&](bool both) {
+    return condition_number(straight_rod(10, both, 1e-10), dt) / condition_number(straight_rod(10, both, 1e-9), dt);
+  };
+  CHECK(growth(true) == Approx(10).epsilon(0.1));
+  CHECK(growth(false) == Approx(1).epsilon(0.01));
+}
+
+TEST_CASE("a rod held at both ends is solved to rounding for its condition number, and sags") {
+  const Rod rod = straight_rod(20, true, 1e-9);
+  Scene scene;
+  scene.rods.push_back(rod);
+  scene.damping_per_s = 20;
+  Simulation simulation(scene, 0.02);
+  simulation.run(200);
+  CHECK(simulation.rod().position[10].y() < -1e-3);
+  LinearSystem system(simulation.rod());
+  simulation.rod().velocity[5] += Vector3(0.1, 0.2, 0.3);
+  simulation.rod().position[5] += Vector3(1e-4, 2e-4, 0);
+  system.assemble(simulation.rod(), 0.02);
+  BlockFactor factor(system.matrix(), root_to_leaf_order(simulation.rod()));
+  VectorX x(system.rhs().size());
+  REQUIRE(factor.solve(system.matrix(), system.rhs(), x) == SolveOutcome::converged);
+  CHECK((system.matrix().dense() * x - system.rhs()).norm() < 1e-9 * system.rhs().norm());
+}
+
+}  // namespace
+}  // namespace rodsweep

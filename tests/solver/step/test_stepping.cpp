@@ -1,0 +1,249 @@
+// How a time step runs its solves: Newton's convergence, limits, failures, several rods, and what it refuses.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "solver/step/observables.hpp"
+#include "tests/solver/stepping.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// Solves directly, but reports something else at one position.
+class Failing : public LinearSolve {
+ public:
+  Failing(const Scene& scene, SolvePosition where, SolveOutcome outcome)
+      : direct_(scene), where_(where), outcome_(outcome) {}
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override {
+    ++calls;
+    const SolveOutcome direct = direct_.solve(system, at, assemble_s, delta_lambda);
+    return at.step == where_.step && at.newton == where_.newton && at.rod == where_.rod ? outcome_ : direct;
+  }
+  int calls = 0;
+
+ private:
+  DirectSolve direct_;
+  SolvePosition where_;
+  SolveOutcome outcome_;
+};
+
+TEST_CASE("Newton converges quadratically to its floor") {
+  Scene scene = test::moving_scene(10, 5);
+  for (Vector3& v : scene.rods[0].velocity) v *= 3;  // a hard step
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  test::Recorder recorder(projection);
+  TimeStepper stepper(scene, {0.04, 12, 0});
+  stepper.step(recorder);
+  const std::vector<double> residual = recorder.residuals();
+  REQUIRE(residual.size() == 12);
+  CAPTURE(residual);
+  REQUIRE(residual.front() > 0.1);
+  CHECK(residual.back() < 1e-13);
+  int squared = 0;
+  for (std::size_t i = 0; i + 1 < residual.size(); ++i)
+    if (residual[i] < 0.3) {
+      CHECK(residual[i + 1] < 3 * residual[i] * residual[i] + 1e-13);
+      squared += residual[i] > 1e-7;  // where the square is above the floor
+    }
+  CHECK(squared >= 3);
+}
+
+TEST_CASE("Newton ends below its tolerance, and the step says how many solves that took") {
+  Scene scene = test::moving_scene(10);
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  test::Recorder recorder(projection);
+  TimeStepper stepper(scene, {0.02, 20, 1e-6});
+  const StepReport report = stepper.step(recorder);
+  REQUIRE(recorder.reports.size() >= 3);
+  REQUIRE(recorder.reports.size() < 20);
+  CHECK(report.outcome == SolveOutcome::converged);
+  CHECK(report.newton_iterations == static_cast<int>(recorder.reports.size()) - 1);
+  for (std::size_t i = 0; i + 1 < recorder.reports.size(); ++i) {
+    CHECK(recorder.reports[i].outcome == SolveOutcome::converged);
+    CHECK(recorder.reports[i].newton_residual >= 1e-6);
+  }
+  CHECK(recorder.reports.back().outcome == SolveOutcome::not_run);
+  CHECK(recorder.reports.back().newton_residual < 1e-6);
+}
+
+TEST_CASE("Newton ends at its limit") {
+  Scene scene = test::moving_scene(10);
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  test::Recorder recorder(projection);
+  TimeStepper stepper(scene, {0.02, 2, 0});
+  for (int step = 0; step < 3; ++step) CHECK(stepper.step(recorder).newton_iterations == 2);
+  REQUIRE(recorder.positions.size() == 6);
+  for (int i = 0; i < 6; ++i) {
+    CHECK(recorder.positions[i].step == i / 2);
+    CHECK(recorder.positions[i].newton == i % 2);
+    CHECK(recorder.positions[i].rod == 0);
+  }
+}
+
+TEST_CASE("a scene at rest needs no solve") {
+  BendingRod spec = test::bending_rod(5);
+  spec.gravity_m_s2.setZero();
+  Scene scene = build_scene(spec);
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 6, 1e-9});
+  const StepReport report = stepper.step(projection);
+  CHECK(report.outcome == SolveOutcome::converged);
+  CHECK(report.newton_iterations == 0);
+  CHECK(kinetic_energy(scene.rods[0]) < 1e-25);
+}
+
+TEST_CASE("multipliers start from zero in every step and end as the forces that hold the joints") {
+  // A rod at rest under gravity: the first joint carries the weight of all that is free, J^T lambda / dt_c^2.
+  BendingRod spec = test::bending_rod(6);
+  spec.damping_per_s = 40;
+  spec.youngs_modulus_pa = 1e8;
+  Scene scene = build_scene(spec);
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 8, 1e-12});
+  const double dt_c = stepper.constraint_dt();
+  for (int i = 0; i < 1000; ++i) stepper.step(projection);
+  const Rod& rod = scene.rods[0];
+  REQUIRE(kinetic_energy(rod) < 1e-18);
+  const Vector3 force = rod.lambda.head<3>() / rod.joints[0].length / (dt_c * dt_c);  // on segment a
+  const Vector3 weight = 5 * rod.segments[1].mass * scene.gravity_m_s2;
+  CHECK((force - weight).norm() < 1e-6 * weight.norm());
+}
+
+TEST_CASE("a step leaves less than Newton's tolerance, with drag and without") {
+  for (const double damping : {0.0, 30.0}) {
+    BendingRod spec = test::bending_rod(6);
+    spec.damping_per_s = damping;
+    Scene scene = build_scene(spec);
+    DirectSolve direct(scene);
+    LinearProjection projection(scene, direct);
+    TimeStepper stepper(scene, {0.02, 20, 1e-10});
+    for (int i = 0; i < 5; ++i) {
+      stepper.step(projection);
+      CHECK(newton_residual(scene.rods[0], stepper.constraint_dt()) < 1e-10);
+    }
+    if (damping > 0) CHECK(newton_residual(scene.rods[0], 0.02) > 1e-4);
+  }
+}
+
+TEST_CASE("a failed solve ends the step and is reported") {
+  for (const SolveOutcome failure : {SolveOutcome::diverged, SolveOutcome::indefinite, SolveOutcome::not_a_number}) {
+    Scene scene = test::moving_scene(6);
+    const double time = scene.time_s;
+    Failing failing(scene, {1, 2, 0}, failure);
+    LinearProjection projection(scene, failing);
+    TimeStepper stepper(scene, {0.02, 6, 0});
+    CHECK(stepper.step(projection).outcome == SolveOutcome::converged);
+    failing.calls = 0;
+    const StepReport report = stepper.step(projection);
+    INFO(to_string(failure));
+    CHECK(report.outcome == failure);
+    CHECK(report.newton_iterations == 3);
+    CHECK(failing.calls == 3);
+    CHECK(stepper.steps_taken() == 1);
+    CHECK(scene.time_s == time + 0.02);
+  }
+}
+
+TEST_CASE("a solve that hits its iteration limit is applied and reported, and the step goes on") {
+  Scene scene = test::moving_scene(6), expected = scene;
+  Failing limited(scene, {0, 1, 0}, SolveOutcome::iteration_limit);
+  LinearProjection projection(scene, limited);
+  TimeStepper stepper(scene, {0.02, 6, 0});
+  CHECK(stepper.step(projection).outcome == SolveOutcome::iteration_limit);
+  CHECK(stepper.steps_taken() == 1);
+  CHECK(stepper.step(projection).outcome == SolveOutcome::converged);
+
+  DirectSolve direct(expected);
+  LinearProjection direct_projection(expected, direct);
+  TimeStepper direct_stepper(expected, {0.02, 6, 0});
+  for (int i = 0; i < 2; ++i) direct_stepper.step(direct_projection);
+  CHECK(scene.rods[0].position == expected.rods[0].position);
+}
+
+TEST_CASE("a NaN in the state is reported by the step") {
+  Scene scene = test::moving_scene(6);
+  scene.rods[0].velocity[3].y() = std::numeric_limits<double>::quiet_NaN();
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 6, 1e-9});
+  const SolveOutcome outcome = stepper.step(projection).outcome;
+  INFO(to_string(outcome));
+  CHECK((outcome == SolveOutcome::not_a_number || outcome == SolveOutcome::indefinite));
+}
+
+TEST_CASE("rods of one scene move as each would alone") {
+  BendingRod first = test::bending_rod(6), second = test::bending_rod(9, Clamp::wall);
+  second.initial_angle_deg = 70;
+  Scene both = build_scene(first);
+  both.rods.push_back(build_scene(second).rods.front());
+  const auto simulate = [](Scene& scene) {
+    DirectSolve direct(scene);
+    LinearProjection projection(scene, direct);
+    TimeStepper stepper(scene, {0.02, 6, 0});
+    for (int i = 0; i < 10; ++i) stepper.step(projection);
+  };
+  Scene alone[] = {build_scene(first), build_scene(second)};
+  simulate(both);
+  for (const int r : {0, 1}) {
+    simulate(alone[r]);
+    CHECK(both.rods[r].position == alone[r].rods[0].position);
+    CHECK(both.rods[r].velocity == alone[r].rods[0].velocity);
+  }
+}
+
+TEST_CASE("the same scene gives the same bits every time") {
+  Scene first = test::moving_scene(20), second = test::moving_scene(20);
+  CHECK(first.rods[0].position == second.rods[0].position);
+  CHECK(first.rods[0].angular_velocity == second.rods[0].angular_velocity);
+}
+
+TEST_CASE("time is a multiple of the step, not a sum of steps") {
+  BendingRod spec = test::bending_rod(1, Clamp::free);
+  Scene scene = build_scene(spec);
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.1, 1, 0});
+  for (int i = 0; i < 10; ++i) stepper.step(projection);
+  CHECK(scene.time_s == 10 * 0.1);
+  CHECK(stepper.steps_taken() == 10);
+}
+
+TEST_CASE("outcomes keep the numbers and names that files hold") {
+  const char* const solves[] = {"not_run",  "converged",  "zero_rhs",    "iteration_limit",
+                                "diverged", "indefinite", "not_a_number"};
+  for (int i = 0; i < 7; ++i) CHECK(to_string(static_cast<SolveOutcome>(i)) == std::string(solves[i]));
+  const char* const tasks[] = {"pending",         "ok",        "diverged", "not_a_number", "indefinite",
+                               "iteration_limit", "timed_out", "error"};
+  for (int i = 0; i < 8; ++i) CHECK(to_string(static_cast<TaskOutcome>(i)) == std::string(tasks[i]));
+}
+
+TEST_CASE("loads and clamps on segments that do not exist, and clamps on free ones, are refused") {
+  const Scene good = build_scene(test::bending_rod(4));
+  const auto still = [](double) { return Pose{Vector3::Zero(), Quaternion::Identity()}; };
+  Scene scene = good;
+  scene.loads.push_back({0, 4, {}, {}, {}});
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "a point load refers to segment 4 of rod 0, which the scene does not have");
+  scene = good;
+  scene.loads.push_back({1, 0, {}, {}, {}});
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "a point load refers to segment 0 of rod 1, which the scene does not have");
+  scene = good;
+  scene.clamps.push_back({0, -1, still});
+  CHECK_THROWS_WITH(TimeStepper(scene, {}),
+                    "a moving clamp refers to segment -1 of rod 0, which the scene does not have");
+  scene = good;
+  scene.clamps.push_back({0, 2, still});
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "a moving clamp needs a static segment; segment 2 is free");
+  CHECK_THROWS_AS(TimeStepper(scene, {}), SceneError);
+}
+
+}  // namespace
+}  // namespace rodsweep

@@ -1,0 +1,324 @@
+// The time step's mechanics: free bodies and rods against closed forms, and measured orders.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/numbers/rotation.hpp"
+#include "solver/step/observables.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::Random;
+
+/// A scene advanced by direct solves.
+struct Simulation {
+  Scene scene;
+  DirectSolve direct;
+  LinearProjection projection;
+  TimeStepper stepper;
+
+  Simulation(const Scene& s, double dt, int newton_iterations = 8)
+      : scene(s), direct(scene), projection(scene, direct), stepper(scene, {dt, newton_iterations, 1e-13}) {}
+  Rod& rod() { return scene.rods.front(); }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
+  }
+};
+
+/// One free cylinder without gravity.
+Scene free_body(double length = 0.4, double radius = 0.1) {
+  SegmentSpec s;
+  s.position_m = {0.3, -0.2, 0.5};
+  s.orientation = Quaternion(0.4, 0.1, -0.7, 0.3).normalized();
+  s.length_m = length;
+  s.radius_m = radius;
+  s.density_kg_m3 = 800;
+  Scene scene;
+  scene.gravity_m_s2.setZero();
+  scene.rods.push_back(Rod({s}, {}));
+  return scene;
+}
+
+/// A free rod without gravity that bends, twists, flies and turns.
+Scene free_rod() {
+  BendingRod spec = test::bending_rod(10, Clamp::free);
+  spec.gravity_m_s2.setZero();
+  Scene scene = build_scene(spec);
+  Rod& rod = scene.rods.front();
+  for (int s = 0; s < rod.segment_count(); ++s) {
+    // A rigid motion and a bending one that is compatible with the joints to first order.
+    const Vector3 spin = Vector3(0.5, 1, -2) + 2 * std::sin(0.7 * s) * Vector3(0, 1, 1);
+    rod.angular_velocity[s] = spin;
+    rod.velocity[s] = Vector3(1, 2, 3) + Vector3(0.5, 1, -2).cross(rod.position[s]);
+  }
+  return scene;
+}
+
+TEST_CASE("free fall is -g dt^2 n (n + 1) / 2 after n steps") {
+  for (const int segments : {1, 5}) {
+    BendingRod spec = test::bending_rod(segments, Clamp::free);
+    spec.gravity_m_s2 = {1, -9.81, 2};
+    const double dt = 0.01;
+    Simulation sim(build_scene(spec), dt);
+    const std::vector<Vector3> start = sim.rod().position;
+    for (int n = 1; n <= 100; ++n) {
+      sim.run(1);
+      const Vector3 fall = spec.gravity_m_s2 * (dt * dt * n * (n + 1) / 2);
+      for (int s = 0; s < segments; ++s)
+        REQUIRE((sim.rod().position[s] - start[s] - fall).norm() <= 1e-12 * (fall.norm() + start[s].norm()));
+    }
+    CHECK((sim.rod().velocity[0] - spec.gravity_m_s2 * 100 * dt).norm() < 1e-11);
+    CHECK(sim.scene.time_s == Approx(1).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("a free rod keeps its linear momentum") {
+  Simulation sim(free_rod(), 0.005);
+  const Vector3 before = linear_momentum(sim.rod());
+  double elastic = 0;
+  for (int i = 0; i < 100; ++i) {
+    sim.run(1);
+    elastic = std::max(elastic, elastic_energy(sim.rod()));
+  }
+  REQUIRE(elastic > 1e-3);  // it does bend
+  CHECK((linear_momentum(sim.rod()) - before).norm() < 1e-12 * before.norm());
+}
+
+TEST_CASE("a free rod's angular momentum drifts with the first order of the step") {
+  double drift[3];
+  for (int i = 0; i < 3; ++i) {
+    const int steps = 50 << i;
+    Simulation sim(free_rod(), 0.1 / steps);
+    const Vector3 before = angular_momentum(sim.rod());
+    sim.run(steps);
+    drift[i] = (angular_momentum(sim.rod()) - before).norm() / before.norm();
+  }
+  CAPTURE(drift[0], drift[1], drift[2]);
+  CHECK(drift[2] < 0.02);
+  CHECK(std::log2(drift[0] / drift[1]) == Approx(1).margin(0.2));
+  CHECK(std::log2(drift[1] / drift[2]) == Approx(1).margin(0.15));
+}
+
+TEST_CASE("a body spinning about a principal axis keeps its spin, whatever the step") {
+  for (const double dt : {0.001, 0.1})
+    for (const bool axial : {true, false}) {
+      Simulation sim(free_body(), dt);
+      const Vector3 axis = sim.rod().orientation[0] * (axial ? Vector3::UnitZ() : Vector3::UnitX());
+      sim.rod().angular_velocity[0] = 5 * axis;
+      sim.run(50);
+      CHECK((sim.rod().angular_velocity[0] - 5 * axis).norm() < 1e-11);
+      // Turned by 2 atan(w dt / 2) a step.
+      const double angle = 50 * 2 * std::atan(5 * dt / 2);
+      const Quaternion expected = Eigen::AngleAxisd(angle, axis) * free_body().rods[0].orientation[0];
+      CHECK(sim.rod().orientation[0].angularDistance(expected) < 1e-7);
+    }
+}
+
+TEST_CASE("a torque-free top precesses about its angular momentum at |L| / I_t, with an error of first order") {
+  double error[3];
+  for (int i = 0; i < 3; ++i) {
+    const int steps = 100 << i;
+    const double duration = 0.5;
+    Simulation sim(free_body(), duration / steps);
+    Rod& rod = sim.rod();
+    const Vector3 axis = director(rod.orientation[0]), across = rod.orientation[0] * Vector3::UnitX();
+    rod.angular_velocity[0] = 6 * axis + 2 * across;
+    const Vector3 spin = angular_momentum(rod);  // at rest: no orbital part
+    const double rate = spin.norm() / rod.segments[0].inertia_transverse;
+    REQUIRE(rate * duration > 1);
+    sim.run(steps);
+    const Vector3 expected = Eigen::AngleAxisd(rate * duration, spin.normalized()) * axis;
+    error[i] = (director(rod.orientation[0]) - expected).norm();
+  }
+  CAPTURE(error[0], error[1], error[2]);
+  CHECK(error[2] < 0.02);
+  CHECK(std::log2(error[0] / error[1]) == Approx(1).margin(0.15));
+  CHECK(std::log2(error[1] / error[2]) == Approx(1).margin(0.1));
+}
+
+TEST_CASE("a bending rod's error is of first order in the step") {
+  Vector3 tip[4];
+  for (int i = 0; i < 4; ++i) {
+    const int steps = 40 << i;
+    Simulation sim(build_scene(test::bending_rod(10)), 0.2 / steps);
+    sim.run(steps);
+    tip[i] = sim.rod().position.back();
+  }
+  const double d0 = (tip[1] - tip[0]).norm(), d1 = (tip[2] - tip[1]).norm(), d2 = (tip[3] - tip[2]).norm();
+  CAPTURE(d0, d1, d2);
+  REQUIRE(d2 > 1e-8);
+  CHECK(std::log2(d0 / d1) == Approx(1).margin(0.1));
+  CHECK(std::log2(d1 / d2) == Approx(1).margin(0.1));
+}
+
+TEST_CASE("drag slows a free body by (1 + c dt)^-n, in flight and in spin") {
+  Scene scene = free_body();
+  scene.damping_per_s = 3;
+  const double dt = 0.05;
+  Simulation sim(scene, dt);
+  const Vector3 v0(1, -2, 3), w0 = 4 * director(sim.rod().orientation[0]);
+  sim.rod().velocity[0] = v0;
+  sim.rod().angular_velocity[0] = w0;
+  for (int n = 1; n <= 30; ++n) {
+    sim.run(1);
+    const double left = std::pow(1 + 3 * dt, -n);
+    REQUIRE((sim.rod().velocity[0] - left * v0).norm() < 1e-12);
+    REQUIRE((sim.rod().angular_velocity[0] - left * w0).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("drag does not shift where a rod comes to rest") {
+  Vector3 tip[2];
+  int i = 0;
+  for (const double damping : {5.0, 15.0}) {
+    BendingRod spec = test::bending_rod(6);
+    spec.youngs_modulus_pa = 5e7;
+    spec.damping_per_s = damping;
+    Simulation sim(build_scene(spec), 0.02);
+    sim.run(1500);
+    REQUIRE(kinetic_energy(sim.rod()) < 1e-14);
+    tip[i++] = sim.rod().position.back();
+  }
+  CHECK((tip[0] - tip[1]).norm() < 1e-9);
+  CHECK((tip[0] - build_scene(test::bending_rod(6)).rods[0].position.back()).norm() > 1e-4);
+}
+
+TEST_CASE("a force on a free body gives it F / m, and a torque I^-1 tau") {
+  const double dt = 0.01;
+  Scene scene = free_body();
+  const Vector3 force(3, -1, 2), torque(0.1, 0.2, -0.3);
+  scene.loads.push_back({0, 0, force, torque, Vector3::Zero()});
+  Simulation sim(scene, dt);
+  const Segment& segment = sim.rod().segments[0];
+  const Matrix3 r = sim.rod().orientation[0].toRotationMatrix();
+  const Vector3 inverse(segment.inverse_inertia_transverse, segment.inverse_inertia_transverse,
+                        segment.inverse_inertia_axial);
+  sim.run(1);
+  CHECK((sim.rod().velocity[0] - dt * force / segment.mass).norm() < 1e-12);
+  const Vector3 expected = dt * (r * inverse.asDiagonal() * r.transpose() * torque);
+  CHECK((sim.rod().angular_velocity[0] - expected).norm() < 1e-12 * (1 + expected.norm()));
+  sim.run(9);
+  CHECK((sim.rod().velocity[0] - 10 * dt * force / segment.mass).norm() < 1e-12);
+}
+
+TEST_CASE("a force off the centre turns the body by arm x F, and loads on one segment add up") {
+  const double dt = 0.01;
+  const Vector3 force(3, -1, 2), torque(0.1, 0.2, -0.3), arm(0.05, 0, 0.2);
+  Scene one = free_body(), two = free_body();
+  const Vector3 world_arm = one.rods[0].orientation[0] * arm;
+  one.loads.push_back({0, 0, force, torque + world_arm.cross(force), Vector3::Zero()});
+  two.loads.push_back({0, 0, force / 2, torque, 2 * arm});
+  two.loads.push_back({0, 0, force / 2, Vector3::Zero(), Vector3::Zero()});
+  Simulation expected(one, dt), added(two, dt);
+  expected.run(1);
+  added.run(1);
+  CHECK((added.rod().velocity[0] - expected.rod().velocity[0]).norm() < 1e-12);
+  CHECK((added.rod().angular_velocity[0] - expected.rod().angular_velocity[0]).norm() < 1e-11);
+  REQUIRE(expected.rod().angular_velocity[0].norm() > 1e-3);
+}
+
+TEST_CASE("opposite forces at the ends of a rod stretch it by alpha l^2 F a joint, and nothing else") {
+  BendingRod spec = test::bending_rod(5, Clamp::free);
+  spec.gravity_m_s2.setZero();
+  spec.stretch_compliance_per_j = 1e-4;
+  spec.damping_per_s = 50;
+  Scene scene = build_scene(spec);
+  const double l = spec.length_m / 5, f = 7;
+  const Vector3 along = director(scene.rods[0].orientation[0]);
+  scene.loads.push_back({0, 0, -f * along, Vector3::Zero(), Vector3::Zero()});
+  scene.loads.push_back({0, 4, f * along, Vector3::Zero(), Vector3::Zero()});
+  Simulation sim(scene, 0.02);
+  sim.run(2000);
+  REQUIRE(kinetic_energy(sim.rod()) < 1e-20);
+  // C = alpha l F in units of l: the gap is alpha l^2 F.
+  CHECK(joint_gap(sim.rod()) == Approx(1e-4 * l * f).epsilon(1e-6));
+  CHECK(rod_length(sim.rod()) - 2 == Approx(4 * 1e-4 * l * l * f).epsilon(1e-6));
+}
+
+TEST_CASE("a moving clamp is where its pose says at the end of every step, and the rod follows") {
+  const double dt = 0.01;
+  Scene scene = build_scene(test::bending_rod(6));
+  const Pose start{scene.rods[0].position[0], scene.rods[0].orientation[0]};
+  scene.time_s = 2;
+  const auto pose = [start](double t) {
+    Pose p;
+    p.position = start.position + Vector3(0.5 * (t - 2) * (t - 2), 0.1 * std::sin(5 * (t - 2)), 0);
+    p.orientation = Eigen::AngleAxisd(t - 2, Vector3::UnitY()) * start.orientation;
+    return p;
+  };
+  scene.clamps.push_back({0, 0, [pose](double t) {
+                            Pose p = pose(t);
+                            p.orientation.coeffs() *= 3;  // normalised by the step
+                            return p;
+                          }});
+  Simulation sim(scene, dt);
+  Vector3 before = start.position;
+  for (int n = 1; n <= 50; ++n) {
+    sim.run(1);
+    const Pose now = pose(2 + n * dt);
+    REQUIRE(sim.scene.time_s == 2 + n * dt);
+    REQUIRE((sim.rod().position[0] - now.position).norm() == 0);
+    REQUIRE(sim.rod().orientation[0].angularDistance(now.orientation) < 1e-7);
+    REQUIRE((sim.rod().velocity[0] - (now.position - before) / dt).norm() < 1e-12);
+    REQUIRE(joint_gap(sim.rod()) < 1e-5);
+    before = now.position;
+  }
+  CHECK((sim.rod().position.back() - scene.rods[0].position.back()).norm() > 0.1);
+}
+
+TEST_CASE("a clamp that turns steadily turns a straight rod rigidly") {
+  BendingRod spec = test::bending_rod(4);
+  spec.gravity_m_s2.setZero();
+  spec.initial_angle_deg = 0;
+  Scene scene = build_scene(spec);
+  Rod& rod = scene.rods[0];
+  // About the rod's own axis: no inertial force bends it.
+  const Quaternion start = rod.orientation[0];
+  for (Vector3& w : rod.angular_velocity) w = Vector3(2, 0, 0);
+  const double dt = 0.01, angle = 2 * std::atan(2 * dt / 2);
+  scene.clamps.push_back({0, 0, [start, angle](double t) {
+                            return Pose{{0.25, 0, 0}, Eigen::AngleAxisd(angle * t / 0.01, Vector3::UnitX()) * start};
+                          }});
+  Simulation sim(scene, dt);
+  sim.run(50);
+  for (int s = 0; s < 4; ++s) {
+    CHECK((sim.rod().angular_velocity[s] - Vector3(2, 0, 0)).norm() < 1e-9);
+    CHECK((sim.rod().position[s] - scene.rods[0].position[s]).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("static segments without a moving clamp stay, with no velocity") {
+  Simulation sim(build_scene(test::bending_rod(5)), 0.02);
+  const Vector3 position = sim.rod().position[0];
+  const Quaternion orientation = sim.rod().orientation[0];
+  sim.run(20);
+  CHECK(sim.rod().position[0] == position);
+  CHECK(sim.rod().orientation[0].coeffs() == orientation.coeffs());
+  CHECK(sim.rod().velocity[0].norm() == 0);
+  CHECK(sim.rod().angular_velocity[0].norm() < 1e-13);  // q times its conjugate is 1 to rounding
+  CHECK(sim.rod().velocity[4].norm() > 0.1);
+}
+
+TEST_CASE("rods of one or two segments move under every clamp") {
+  for (const Clamp clamp : {Clamp::segment, Clamp::wall, Clamp::free})
+    for (const int segments : {1, 2}) {
+      if (clamp == Clamp::segment && segments == 1) continue;
+      INFO("clamp " << static_cast<int>(clamp) << ", " << segments << " segments");
+      BendingRod spec = test::bending_rod(segments, clamp);
+      spec.tip_force_n = {0, 0, 5};
+      Simulation sim(build_scene(spec), 0.01);
+      const Vector3 start = sim.rod().position.back();
+      sim.run(40);
+      CHECK(is_finite(sim.rod()));
+      CHECK(joint_gap(sim.rod()) < 1e-5);
+      CHECK(rod_length(sim.rod()) == Approx(2).epsilon(1e-5));
+      CHECK((sim.rod().position.back() - start).z() > 1e-4);
+      CHECK((sim.rod().position.back() - start).y() < -1e-3);
+    }
+}
+
+}  // namespace
+}  // namespace rodsweep

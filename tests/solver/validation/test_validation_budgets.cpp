@@ -1,0 +1,114 @@
+// What the time step makes of energy and momenta over long runs: implicit Euler dissipates in the first order of the
+// step, never gains, and leaves linear momentum alone.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+double energy(const Scene& scene) {
+  const Rod& rod = scene.rods.front();
+  return kinetic_energy(rod) + gravitational_energy(rod, scene.gravity_m_s2) + elastic_energy(rod);
+}
+
+/// A stiff short rod that swings from its clamp.
+Scene swinging_rod() {
+  BendingRod p;
+  p.segments = 6;
+  p.length_m = 1;
+  p.youngs_modulus_pa = 1e6;
+  return build_scene(p);
+}
+
+/// Energy lost in half a second, over the energy that moves.
+double dissipation(double dt) {
+  Simulation simulation(swinging_rod(), dt);
+  const double start = energy(simulation.scene);
+  double largest = 0;
+  for (int i = 0; i < static_cast<int>(std::lround(0.5 / dt)); ++i) {
+    simulation.step();
+    largest = std::max(largest, kinetic_energy(simulation.rod()));
+  }
+  return (start - energy(simulation.scene)) / largest;
+}
+
+/// Free and weightless, bent, turning and flying.
+Scene tumbling(Scene scene) {
+  scene.gravity_m_s2.setZero();
+  Rod& rod = scene.rods.front();
+  const Vector3 spin(0.4, -0.3, 1), centre = rod.position[rod.position.size() / 2];
+  for (std::size_t s = 0; s < rod.position.size(); ++s) {
+    rod.angular_velocity[s] = spin;
+    rod.velocity[s] = Vector3(0.1, 0.2, -0.3) + spin.cross(rod.position[s] - centre);
+    rod.velocity[s].z() += 0.3 * std::sin(0.9 * static_cast<double>(s));
+  }
+  return scene;
+}
+
+Scene tumbling_rod() {
+  BendingRod p;
+  p.segments = 8;
+  p.clamp = Clamp::free;
+  return tumbling(build_scene(p));
+}
+
+Scene tumbling_ring() {
+  Ring p;
+  p.segments = 12;
+  p.clamp = Clamp::free;
+  return tumbling(build_scene(p));
+}
+
+}  // namespace
+
+TEST_CASE("A swinging rod loses energy in proportion to the step") {
+  const double coarse = dissipation(1e-3), middle = dissipation(5e-4), fine = dissipation(2.5e-4);
+  CAPTURE(coarse, middle, fine);
+  CHECK(fine > 0);
+  CHECK(coarse < 0.3);
+  CHECK(std::log2(coarse / middle) == Approx(1).margin(0.15));
+  CHECK(std::log2(middle / fine) == Approx(1).margin(0.1));
+}
+
+TEST_CASE("Energy never grows by itself, in an open rod or a closed one") {
+  for (const Scene& scene : {swinging_rod(), tumbling_rod(), tumbling_ring()}) {
+    Simulation simulation(scene, 5e-3);
+    double before = energy(simulation.scene);
+    const double scale = kinetic_energy(scene.rods.front()) + std::abs(before);
+    for (int i = 0; i < 400; ++i) {
+      simulation.step();
+      const double now = energy(simulation.scene);
+      REQUIRE(now < before + 1e-5 * scale);
+      before = now;
+    }
+  }
+}
+
+TEST_CASE("Ten thousand steps leave linear momentum, unit quaternions and closed joints as they are") {
+  for (const Scene& scene : {tumbling_rod(), tumbling_ring()}) {
+    Simulation simulation(scene, 5e-3, 6);
+    const Vector3 before = linear_momentum(simulation.rod());
+    simulation.run(10000);
+    CHECK((linear_momentum(simulation.rod()) - before).norm() < 1e-10 * before.norm());
+    for (const Quaternion& q : simulation.rod().orientation) CHECK(std::abs(q.norm() - 1) < 1e-14);
+    CHECK(joint_gap(simulation.rod()) < 1e-5);
+  }
+}
+
+TEST_CASE("Over ten seconds a free rod's angular momentum drifts in proportion to the step", "[.long]") {
+  const auto drift = [](double dt) {
+    Simulation simulation(tumbling_rod(), dt, 6);
+    const Vector3 before = angular_momentum(simulation.rod());
+    simulation.run(static_cast<int>(std::lround(10 / dt)));
+    return (angular_momentum(simulation.rod()) - before).norm() / before.norm();
+  };
+  const double coarse = drift(1e-3), fine = drift(5e-4);
+  CAPTURE(coarse, fine);
+  CHECK(fine < 0.02);
+  CHECK(std::log2(coarse / fine) == Approx(1).margin(0.25));
+}

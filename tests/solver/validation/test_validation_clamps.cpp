@@ -1,0 +1,111 @@
+// A straight rod held at both ends, one of which is turned by a moving clamp: pure bending and pure torsion. Both ends
+// are static segments; after the turn the rod relaxes (see simulation.hpp). No gravity.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/rod/linearization.hpp"
+#include "tests/solver/simulation.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr int count = 20;
+constexpr double segment_length = 0.1, radius = 0.05, youngs_modulus = 1e7, torsion_modulus = 4e6;
+constexpr double turning_time = 10, step = 0.5;
+
+/// Along +x, both end segments static.
+Rod rod_held_at_both_ends() {
+  std::vector<SegmentSpec> segments;
+  std::vector<JointSpec> joints;
+  for (int i = 0; i < count; ++i) {
+    SegmentSpec s;
+    s.position_m = Vector3((i + 0.5) * segment_length, 0, 0);
+    s.orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+    s.length_m = segment_length;
+    s.radius_m = radius;
+    s.density_kg_m3 = 1000;
+    s.is_static = i == 0 || i == count - 1;
+    segments.push_back(s);
+    if (i == 0) continue;
+    JointSpec j;
+    j.a = i - 1;
+    j.b = i;
+    j.arm_a_m = Vector3(0, 0, segment_length / 2);
+    j.arm_b_m = -j.arm_a_m;
+    j.compliance_per_j = joint_compliance(segment_length, radius, youngs_modulus, torsion_modulus,
+                                          inextensible_compliance(segment_length, 100));
+    joints.push_back(j);
+  }
+  return Rod(segments, joints);
+}
+
+/// Turns the last segment as `pose_at` (of the angle) says, up to `angle`, and relaxes.
+template <typename PoseAt>
+Rod turned(double angle, const PoseAt& pose_at) {
+  Scene scene;
+  scene.gravity_m_s2.setZero();
+  scene.rods.push_back(rod_held_at_both_ends());
+  scene.clamps.push_back(
+      {0, count - 1, [&](double time) { return pose_at(angle * std::min(1.0, time / turning_time)); }});
+  Simulation simulation(std::move(scene), step);
+  for (int i = 0; i < static_cast<int>(turning_time / step); ++i) simulation.relax_once();
+  simulation.relax(1e-12);
+  return simulation.rod();
+}
+
+/// conj(q_a) q_b as a rotation vector, a's frame.
+Vector3 joint_turn(const Rod& rod, const Joint& j) {
+  const Eigen::AngleAxisd turn(rod.orientation[static_cast<std::size_t>(j.a)].conjugate() *
+                               rod.orientation[static_cast<std::size_t>(j.b)]);
+  return turn.angle() * turn.axis();
+}
+
+}  // namespace
+
+TEST_CASE("A rod bent by its end turns by the same angle in every joint") {
+  const double angle = GENERATE(0.3, pi / 2, pi);
+  const Quaternion along_x = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  // The end of a polygon of equal sides and equal turns.
+  const auto end_of_polygon = [&](double total) {
+    Vector3 vertex(0, 0, 0), side(0, 0, 0);
+    for (int i = 0; i < count; ++i) {
+      const double heading = total * i / (count - 1);
+      side = segment_length * Vector3(std::cos(heading), std::sin(heading), 0);
+      vertex += side;
+    }
+    return Pose{vertex - side / 2, Quaternion(Eigen::AngleAxisd(total, Vector3::UnitZ())) * along_x};
+  };
+  const Rod rod = turned(angle, end_of_polygon);
+  for (const Joint& j : rod.joints) {
+    const Vector3 turn = rod.orientation[static_cast<std::size_t>(j.a)] * joint_turn(rod, j);
+    CHECK((turn - angle / (count - 1) * Vector3::UnitZ()).norm() < 1e-8);
+  }
+}
+
+TEST_CASE("A rod twisted by its end has uniform twist and the torque of its joints") {
+  const double angle = GENERATE(0.3, 2.0);
+  const Rod straight = rod_held_at_both_ends();
+  const auto twisted_end = [&](double total) {
+    return Pose{straight.position.back(),
+                Quaternion(Eigen::AngleAxisd(total, Vector3::UnitX())) * straight.orientation.back()};
+  };
+  const Rod rod = turned(angle, twisted_end);
+  const double joint_angle = angle / (count - 1);
+  const double second_moment = pi * std::pow(radius, 4) / 2, free_length = (count - 1) * segment_length;
+  const double torque = torsion_modulus * second_moment / segment_length * std::sin(joint_angle);
+  Linearization at(rod);
+  linearize(rod, at);
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    CHECK((joint_turn(rod, rod.joints[k]) - joint_angle * Vector3::UnitZ()).norm() < 1e-8);
+    // J^T lambda / dt^2 is what the joint does to its second segment: it holds back the turn.
+    Vector3 on_b(0, 0, 0);
+    for (int c = 0; c < 3; ++c)
+      for (int row = 0; row < 6; ++row)
+        on_b[c] += at.joints[k].rotation_b[c][row] * rod.lambda[static_cast<Eigen::Index>(6 * k) + row] / (step * step);
+    CHECK((on_b + torque * Vector3::UnitX()).norm() < 1e-8 * torque);
+    CHECK(-on_b.x() ==
+          Approx(torsion_modulus * second_moment * angle / free_length).epsilon(joint_angle * joint_angle));
+  }
+}

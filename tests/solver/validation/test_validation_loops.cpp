@@ -1,0 +1,204 @@
+// Rods that close: Michell's instability of a twisted ring, and rings and nets that hold their weight.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+
+#include "solver/rod/linearization.hpp"
+#include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double michell_deg = 360 * 1.7320508075688772;  // 2 pi sqrt(3) of a total twist, where EI = GJ
+
+/// Free, weightless, naturally straight, EI = GJ.
+Ring isotropic_ring(int segments, double twist_deg) {
+  Ring p;
+  p.segments = segments;
+  p.length_m = 2 * pi;
+  p.radius_m = 0.05;
+  p.clamp = Clamp::free;
+  p.youngs_modulus_pa = 1e7;
+  p.torsion_modulus_pa = 5e6;
+  p.gravity_m_s2.setZero();
+  p.twist_deg = twist_deg;
+  return p;
+}
+
+double out_of_plane(const Rod& rod) {
+  double square = 0;
+  for (const Vector3& x : rod.position) square += x.z() * x.z();
+  return std::sqrt(square / static_cast<double>(rod.position.size()));
+}
+
+/// The ring with its segments moved out of its plane by `amplitude` cos 2 theta, the mode that goes unstable first.
+Scene disturbed_ring(int segments, double twist_deg, double amplitude) {
+  Scene scene = build_scene(isotropic_ring(segments, twist_deg));
+  Rod& rod = scene.rods.front();
+  for (int s = 0; s < segments; ++s)
+    rod.position[static_cast<std::size_t>(s)].z() = amplitude * std::cos(4 * pi * s / segments);
+  return scene;
+}
+
+/// Where dt^2 k / m of that mode is about 0.1: Newton leaves out how forces turn with the rod, and larger steps feel
+/// it.
+constexpr double overdamped_step = 0.05;
+
+/// Rate at which a small disturbance grows in overdamped steps of dt: a mode of stiffness k and mass m is multiplied by
+/// 1 / (1 + dt^2 k / m) in each, and this is -dt^2 k / m. Zero where the planar ring loses its stability.
+double growth(int segments, double twist_deg) {
+  Simulation simulation(disturbed_ring(segments, twist_deg, 1e-5), overdamped_step);
+  for (int i = 0; i < 100; ++i) simulation.relax_once();  // until the mode is alone
+  const double before = out_of_plane(simulation.rod());
+  for (int i = 0; i < 20; ++i) simulation.relax_once();
+  return 1 - std::pow(before / out_of_plane(simulation.rod()), 1.0 / 20);
+}
+
+/// The twist at which growth() is zero, over Michell's: a secant from both sides.
+double critical_twist(int segments) {
+  double low = 0.97, high = 1.03, at_low = growth(segments, low * michell_deg),
+         at_high = growth(segments, high * michell_deg);
+  REQUIRE(at_low < 0);
+  REQUIRE(at_high > 0);
+  for (int i = 0; i < 3; ++i) {
+    const double next = low - at_low * (high - low) / (at_high - at_low),
+                 at_next = growth(segments, next * michell_deg);
+    (at_next < 0 ? low : high) = next;
+    (at_next < 0 ? at_low : at_high) = at_next;
+  }
+  return low - at_low * (high - low) / (at_high - at_low);
+}
+
+/// What the joints do to the static segments: minus the sum of the forces by which these hold the rod.
+Vector3 force_on_held(const Rod& rod, double constraint_dt) {
+  Vector3 total = Vector3::Zero();
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Joint& joint = rod.joints[k];
+    const Vector3 force = rod.lambda.segment<3>(static_cast<Eigen::Index>(6 * k)) / joint.length;
+    if (rod.segments[static_cast<std::size_t>(joint.a)].is_static) total += force;
+    if (rod.segments[static_cast<std::size_t>(joint.b)].is_static) total -= force;
+  }
+  return total / (constraint_dt * constraint_dt);
+}
+
+double potential_energy(const Scene& scene) {
+  return gravitational_energy(scene.rods.front(), scene.gravity_m_s2) + elastic_energy(scene.rods.front());
+}
+
+/// Its rods stretch: taut and inextensible they would pull so hard that only steps of a millisecond come to rest.
+Net small_net() {
+  Net p;
+  p.rows = p.columns = 5;
+  p.youngs_modulus_pa = p.torsion_modulus_pa = 1e8;
+  p.radius_m = 0.02;
+  p.stretch = Stretch::physical;
+  return p;
+}
+
+constexpr double settling_step = 0.01;
+
+/// The scene after drag has brought it to rest.
+std::unique_ptr<Simulation> settle(Scene scene) {
+  scene.damping_per_s = 25;
+  auto simulation = std::make_unique<Simulation>(std::move(scene), settling_step);
+  double moving = 1;
+  for (int i = 0; i < 60 && moving > 1e-16; ++i) {
+    simulation->run(50);
+    moving = kinetic_energy(simulation->rod());
+  }
+  REQUIRE(moving <= 1e-16);
+  return simulation;
+}
+
+Vector3 free_weight(const Scene& scene) {
+  double mass = 0;
+  for (const Segment& s : scene.rods.front().segments)
+    if (!s.is_static) mass += s.mass;
+  return mass * scene.gravity_m_s2;
+}
+
+}  // namespace
+
+TEST_CASE("A twisted ring stays planar below Michell's twist of 2 pi sqrt 3 and writhes above it") {
+  Simulation below(disturbed_ring(40, 0.9 * michell_deg, 1e-3), overdamped_step);
+  for (int i = 0; i < 600; ++i) below.relax_once();
+  CHECK(out_of_plane(below.rod()) < 1e-5);
+
+  Simulation above(disturbed_ring(40, 1.1 * michell_deg, 1e-3), overdamped_step);
+  for (int i = 0; i < 600; ++i) above.relax_once();
+  CHECK(out_of_plane(above.rod()) > 0.1);  // of a radius of 1
+  CHECK(joint_gap(above.rod()) < 1e-5);
+}
+
+TEST_CASE("Michell's twist is reached with an error of second order in 1/N", "[.long]") {
+  const double coarse = critical_twist(24) - 1, fine = critical_twist(48) - 1;
+  CAPTURE(coarse, fine);
+  CHECK(std::abs(fine) < 3e-3);
+  CHECK(std::log2(coarse / fine) == Approx(2).margin(0.15));
+}
+
+TEST_CASE("A naturally circular ring without load keeps its shape to the bit's order") {
+  Ring p = isotropic_ring(30, 0);
+  p.rest_shape = Ring::RestShape::circle;
+  p.clamp = Clamp::segment;
+  Scene scene = build_scene(p);
+  const Rod start = scene.rods.front();
+  Simulation simulation(std::move(scene), 0.02);
+  simulation.run(200);
+  for (std::size_t s = 0; s < start.position.size(); ++s)
+    CHECK((simulation.rod().position[s] - start.position[s]).norm() < 1e-12);
+}
+
+TEST_CASE("A straight rod bent into a ring is in equilibrium, wherever it is cut") {
+  Ring p = isotropic_ring(30, 0);
+  Simulation simulation(build_scene(p), 0.5);
+  CHECK(simulation.relax_once() < 1e-9);
+  // Bent by theta in every joint: elastic energy N (EI / l) (2 sin(theta / 2))^2 / 2, close to EI / (2 R^2) times 2 pi
+  // R.
+  const double stiffness = 1e7 * pi * std::pow(0.05, 4) / 4, turn = 2 * pi / 30;
+  CHECK(elastic_energy(simulation.rod()) ==
+        Approx(30 * stiffness / turn * std::pow(2 * std::sin(turn / 2), 2) / 2).epsilon(1e-9));
+}
+
+TEST_CASE("A hanging ring and hanging nets settle, and what holds them carries their weight") {
+  Ring ring;
+  ring.segments = 24;
+  ring.youngs_modulus_pa = ring.torsion_modulus_pa = 1e6;
+  ring.rest_shape = Ring::RestShape::circle;
+  Net side = small_net();
+  side.held = Net::Held::side;
+  for (const SceneSpec& spec : {SceneSpec(ring), SceneSpec(small_net()), SceneSpec(side)}) {
+    Scene scene = build_scene(spec);
+    const double before = potential_energy(scene);
+    const std::unique_ptr<Simulation> settled = settle(scene);
+    const Rod& rod = settled->rod();
+    const Vector3 weight = free_weight(scene);
+    CHECK((force_on_held(rod, constraint_dt(settled->scene, settling_step)) - weight).norm() < 1e-5 * weight.norm());
+    const double energy = potential_energy(settled->scene);
+    CHECK(energy < before);
+    CHECK(joint_gap(rod) < 1e-3);
+    // The least energy near by: a disturbance adds to it and is forgotten.
+    Scene disturbed = settled->scene;
+    for (std::size_t s = 0; s < rod.position.size(); ++s)
+      if (!rod.segments[s].is_static)
+        disturbed.rods.front().velocity[s].z() = 0.2 * std::sin(3.0 * static_cast<double>(s));
+    CHECK(potential_energy(settle(disturbed)->scene) == Approx(energy).epsilon(1e-7));
+  }
+}
+
+TEST_CASE("A net held at its corners sags symmetrically") {
+  const std::unique_ptr<Simulation> settled = settle(build_scene(small_net()));
+  // Rods along x, row by row: the crossing (row, column) of a net with one segment a mesh.
+  const auto height = [&](int row, int column) {
+    return settled->rod().position[static_cast<std::size_t>(5 * row + column)].y();
+  };
+  CHECK(height(2, 2) < -1e-3);
+  for (int r = 0; r < 5; ++r)
+    for (int c = 0; c < 5; ++c) {
+      CHECK(height(r, c) == Approx(height(4 - r, c)).epsilon(1e-3).margin(1e-9));
+      CHECK(height(r, c) == Approx(height(r, 4 - c)).epsilon(1e-3).margin(1e-9));
+    }
+}

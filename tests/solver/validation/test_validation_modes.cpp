@@ -1,0 +1,176 @@
+// Small vibrations: frequencies and decay of a clamped-free beam and of a hanging rope, mode by mode.
+//
+// A mode is started by its velocities and watched through its own shape. Implicit Euler turns exp(i w dt) into
+// 1 / (1 - i w dt): the frequency seen is atan(w dt) / dt, and a step keeps (1 + w^2 dt^2)^-1/2 of the amplitude.
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <complex>
+
+#include "tests/solver/simulation.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Gives a straight wall-clamped rod the transverse velocities `at_vertices` (in `direction`), segments moving rigidly.
+void set_transverse_velocity(Rod& rod, const VectorX& at_vertices, const Vector3& direction) {
+  for (std::size_t s = 1; s < rod.segments.size(); ++s) {
+    const double before = at_vertices[static_cast<Eigen::Index>(s) - 1],
+                 after = at_vertices[static_cast<Eigen::Index>(s)];
+    rod.velocity[s] = (before + after) / 2 * direction;
+    rod.angular_velocity[s] =
+        (after - before) / rod.segments[s].length_m * director(rod.orientation[s]).cross(direction);
+  }
+}
+
+/// exp of the mean phase and logarithm of amplitude per step of a sampled oscillation y'' ~ -w^2 y: the least-squares
+/// fit of y(k + 1) - 2 Re(z) y(k) + |z|^2 y(k - 1) = 0 to every `stride`-th sample.
+std::complex<double> factor_per_step(const std::vector<double>& samples, std::size_t stride) {
+  const std::size_t rows = samples.size() - 2 * stride;
+  Eigen::MatrixX2d known(rows, 2);
+  VectorX next(rows);
+  for (std::size_t k = 0; k < rows; ++k) {
+    const Eigen::Index row = static_cast<Eigen::Index>(k);
+    known(row, 0) = samples[k + stride];
+    known(row, 1) = -samples[k];
+    next[row] = samples[k + 2 * stride];
+  }
+  const Eigen::Vector2d fit = known.colPivHouseholderQr().solve(next);
+  const double size = std::sqrt(fit[1]);
+  return std::polar(std::pow(size, 1.0 / static_cast<double>(stride)),
+                    std::acos(fit[0] / (2 * size)) / static_cast<double>(stride));
+}
+
+/// The factor per step of a mode: `cycles` periods of about `frequency` from a small start in its shape.
+std::complex<double> mode_factor(Scene scene, const VectorX& shape, const Vector3& direction, double frequency,
+                                 double dt, double cycles) {
+  const double amplitude = 1e-5;  // of the displacement [m]; small enough for linearity to 1e-9
+  Rod& start = scene.rods.front();
+  set_transverse_velocity(start, amplitude * frequency / shape.lpNorm<Eigen::Infinity>() * shape, direction);
+  const std::vector<Vector3> weight = start.velocity, rest = start.position;
+  Simulation simulation(std::move(scene), dt);
+  const double period = 2 * pi / (frequency * dt);  // in steps
+  std::vector<double> samples;
+  for (int i = 0; i < static_cast<int>(cycles * period); ++i) {
+    simulation.step();
+    double sum = 0;
+    for (std::size_t s = 1; s < rest.size(); ++s) sum += weight[s].dot(simulation.rod().position[s] - rest[s]);
+    samples.push_back(sum);
+  }
+  return factor_per_step(samples, static_cast<std::size_t>(std::max(1.0, period / 5)));
+}
+
+BendingRod beam(int segments) {
+  BendingRod p;
+  p.segments = segments;
+  p.clamp = Clamp::wall;
+  p.youngs_modulus_pa = p.torsion_modulus_pa = 1e9;
+  p.gravity_m_s2.setZero();
+  return p;
+}
+
+/// Clamped-free Euler-Bernoulli mode k at the vertices, and beta L.
+constexpr double beta_length[] = {1.875104, 4.694091, 7.854757};
+
+VectorX beam_mode(int k, int segments) {
+  const double b = beta_length[k];
+  const double sigma = (std::cosh(b) + std::cos(b)) / (std::sinh(b) + std::sin(b));
+  VectorX shape(segments + 1);
+  for (int i = 0; i <= segments; ++i) {
+    const double x = b * i / segments;
+    shape[i] = std::cosh(x) - std::cos(x) - sigma * (std::sinh(x) - std::sin(x));
+  }
+  return shape;
+}
+
+double beam_frequency(const BendingRod& p, int k) {
+  const double second_moment = pi * std::pow(p.radius_m, 4) / 4, area = pi * p.radius_m * p.radius_m;
+  return std::pow(beta_length[k] / p.length_m, 2) *
+         std::sqrt(p.youngs_modulus_pa * second_moment / (p.density_kg_m3 * area));
+}
+
+struct Modes {
+  VectorX frequency;      ///< [rad/s], ascending
+  Eigen::MatrixXd shape;  ///< deflections at the vertices, a column per mode
+};
+
+/// Plane modes of a chain of N rigid cylinders on a wall, EI/l in its joints and 2 EI/l in the wall's; the unknowns are
+/// the segments' angles, so that the joints hold exactly.
+Modes chain_modes(const BendingRod& p) {
+  const int n = p.segments;
+  const double l = p.length_m / n, area = pi * p.radius_m * p.radius_m, mass = p.density_kg_m3 * area * l;
+  const double inertia = mass * (3 * p.radius_m * p.radius_m + l * l) / 12;
+  const double joint = p.youngs_modulus_pa * pi * std::pow(p.radius_m, 4) / 4 / l;
+  Eigen::MatrixXd vertices = Eigen::MatrixXd::Zero(n + 1, n), stiffness = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i) vertices.row(i + 1) = vertices.row(i) + l * Eigen::MatrixXd::Identity(n, n).row(i);
+  const Eigen::MatrixXd centres = (vertices.topRows(n) + vertices.bottomRows(n)) / 2;
+  const Eigen::MatrixXd masses = mass * centres.transpose() * centres + inertia * Eigen::MatrixXd::Identity(n, n);
+  stiffness(0, 0) = 2 * joint;
+  for (int i = 1; i < n; ++i) {
+    stiffness(i - 1, i - 1) += joint;
+    stiffness(i, i) += joint;
+    stiffness(i - 1, i) = stiffness(i, i - 1) = -joint;
+  }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(stiffness, masses);
+  return {eigen.eigenvalues().cwiseSqrt(), vertices * eigen.eigenvectors()};
+}
+
+}  // namespace
+
+TEST_CASE("A clamped-free beam vibrates at Euler and Bernoulli's first frequency") {
+  const int n = GENERATE(50, 100);
+  const double dt = 5e-4;
+  const BendingRod p = beam(n);
+  const double w = beam_frequency(p, 0);
+  CHECK(w / (2 * pi) == Approx(3.49745).epsilon(1e-5));
+  const std::complex<double> z = mode_factor(build_scene(p), beam_mode(0, n), Vector3::UnitY(), w, dt, 1);
+  CHECK(std::arg(z) / dt == Approx(std::atan(w * dt) / dt).epsilon(1e-3));
+}
+
+TEST_CASE("The modes of a clamped-free chain have the frequencies and the decay of its discrete eigenproblem") {
+  const int k = GENERATE(0, 1, 2);
+  const double dt = GENERATE(5e-4, 2e-3);
+  const BendingRod p = beam(50);
+  const Modes modes = chain_modes(p);
+  const double w = modes.frequency[k];
+  const std::complex<double> z = mode_factor(build_scene(p), modes.shape.col(k), Vector3::UnitZ(), w, dt, 1);
+  CHECK(std::arg(z) / dt == Approx(std::atan(w * dt) / dt).epsilon(1e-4));
+  CHECK(-std::log(std::abs(z)) == Approx(std::log1p(w * w * dt * dt) / 2).epsilon(1e-4));
+}
+
+TEST_CASE("A finely divided beam has the first frequency that rotary inertia gives it", "[.long]") {
+  const double dt = 5e-4;
+  const auto frequency = [&](int n) {
+    const BendingRod p = beam(n);
+    const double w = beam_frequency(p, 0);
+    return std::tan(std::arg(mode_factor(build_scene(p), beam_mode(0, n), Vector3::UnitY(), w, dt, 2))) / dt / w;
+  };
+  const double limit = (4 * frequency(200) - frequency(100)) / 3;  // without the error in 1/N^2
+  // Rayleigh: -(1/2) (I / A) times the integral of phi'^2 over that of phi^2, 4.6478 / L^2 in mode 1.
+  const BendingRod p = beam(200);
+  CHECK(limit == Approx(1 - 4.6478 / 2 * std::pow(p.radius_m / (2 * p.length_m), 2)).epsilon(5e-6));
+}
+
+TEST_CASE("A rod without bending stiffness swings as a hanging rope") {
+  struct Case {
+    double frequency, bessel_root;
+  };
+  const Case c = GENERATE(Case{1.202413, 2.404826}, Case{2.760039, 5.520078});
+  const int n = 50;
+  BendingRod p;
+  p.segments = n;
+  p.clamp = Clamp::wall;
+  p.radius_m = 0.01;
+  p.initial_angle_deg = -90;
+  p.youngs_modulus_pa = p.torsion_modulus_pa = 1;  // EI / w L^3 = 2.5e-10
+  const double w = c.frequency * std::sqrt(9.81 / p.length_m);
+  VectorX shape(n + 1);  // J0(j0k sqrt(s / L)), s from the free end
+  for (int i = 0; i <= n; ++i)
+    shape[i] = std::cyl_bessel_j(0, c.bessel_root * std::sqrt(1 - static_cast<double>(i) / n));
+  const double dt = 1e-3;
+  const std::complex<double> z = mode_factor(build_scene(p), shape, Vector3::UnitX(), w, dt, 1);
+  CHECK(std::arg(z) / dt == Approx(w).epsilon(5e-3));
+}

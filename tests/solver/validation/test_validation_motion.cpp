@@ -1,0 +1,147 @@
+// Motion against what every discretisation of this kind must keep: free fall, momenta, first order in dt, Newton's
+// quadratic convergence.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// As the deck's bending rods: N = 20, 2 m, r = 0.05 m, held by its first segment, falling from 20 degrees.
+BendingRod deck_rod() {
+  BendingRod p;
+  p.segments = 20;
+  p.youngs_modulus_pa = 1e5;
+  p.initial_angle_deg = 20;
+  return p;
+}
+
+/// A free rod in the void, bending in two planes, spinning and drifting; its segments' velocities fit together.
+Scene tumbling_rod() {
+  BendingRod p = deck_rod();
+  p.clamp = Clamp::free;
+  p.gravity_m_s2.setZero();
+  Scene scene = build_scene(p);
+  Rod& rod = scene.rods.front();
+  const Vector3 axis = director(rod.orientation.front());
+  const auto vertex_velocity = [&](double s) -> Vector3 {  // s in [0, 1] along the rod
+    return Vector3(0.3, -0.2, 0.1) + axis.cross(Vector3(0.7 * std::sin(pi * s), 0.5 * s * s, 1.5 * s - 0.4));
+  };
+  const double n = static_cast<double>(rod.segments.size());
+  for (std::size_t i = 0; i < rod.segments.size(); ++i) {
+    const double start = static_cast<double>(i) / n, end = static_cast<double>(i + 1) / n;
+    const Vector3 before = vertex_velocity(start), after = vertex_velocity(end);
+    rod.velocity[i] = (before + after) / 2;
+    rod.angular_velocity[i] = axis.cross(after - before) / rod.segments[i].length_m + 2 * axis;
+  }
+  return scene;
+}
+
+/// Change of the angular momentum of the tumbling rod in half a second, relative.
+double angular_momentum_drift(double dt) {
+  Simulation simulation(tumbling_rod(), dt);
+  const Vector3 before = angular_momentum(simulation.rod());
+  simulation.run(static_cast<int>(std::lround(0.5 / dt)));
+  return (angular_momentum(simulation.rod()) - before).norm() / before.norm();
+}
+
+std::vector<Vector3> deck_rod_after(double time, double dt) {
+  Simulation simulation(build_scene(deck_rod()), dt);
+  simulation.run(static_cast<int>(std::lround(time / dt)));
+  return simulation.rod().position;
+}
+
+double distance(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum);
+}
+
+/// Passes everything on and keeps the residuals that Newton saw.
+class Listening : public Projection {
+ public:
+  explicit Listening(Projection& inner) : inner_(inner) {}
+  ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override {
+    const ProjectionReport report = inner_.project(rod, at, dt, newton_tolerance);
+    residuals.push_back(report.newton_residual);
+    return report;
+  }
+  std::vector<double> residuals;
+
+ private:
+  Projection& inner_;
+};
+
+}  // namespace
+
+TEST_CASE("A free rod falls by the sum that the steps make of gravity") {
+  BendingRod p = deck_rod();
+  p.clamp = Clamp::free;
+  const double dt = 0.02;
+  const int steps = 100;
+  Simulation simulation(build_scene(p), dt);
+  const std::vector<Vector3> start = simulation.rod().position;
+  const std::vector<Quaternion> orientation = simulation.rod().orientation;
+  for (int n = 1; n <= steps; ++n) {
+    simulation.step();
+    const Vector3 fall(0, -9.81 * dt * dt * n * (n + 1) / 2, 0);
+    double worst = 0, turned = 0;
+    for (std::size_t s = 0; s < start.size(); ++s) {
+      worst = std::max(worst, (simulation.rod().position[s] - start[s] - fall).norm());
+      turned = std::max(turned, rotation(simulation.rod().orientation[s], orientation[s]).norm());
+    }
+    REQUIRE(worst <= 1e-12 * std::max(1.0, fall.norm()));
+    REQUIRE(turned < 1e-12);
+  }
+}
+
+TEST_CASE("A free rod without gravity keeps its linear momentum, and its angular momentum to the order of the step") {
+  Simulation simulation(tumbling_rod(), 0.01);
+  const Vector3 before = linear_momentum(simulation.rod());
+  simulation.run(100);
+  CHECK(elastic_energy(simulation.rod()) > 1e-3);  // it did bend
+  CHECK((linear_momentum(simulation.rod()) - before).norm() < 1e-12 * before.norm());
+
+  const double coarse = angular_momentum_drift(4e-3), fine = angular_momentum_drift(2e-3);
+  CHECK(coarse < 1e-3);
+  CHECK(std::log2(coarse / fine) == Approx(1).margin(0.1));
+}
+
+TEST_CASE("The time step is of first order") {
+  const double dt = 2e-3, time = 0.4;
+  const auto coarse = deck_rod_after(time, dt), middle = deck_rod_after(time, dt / 2),
+             fine = deck_rod_after(time, dt / 4);
+  CHECK(std::log2(distance(coarse, middle) / distance(middle, fine)) == Approx(1.0).margin(0.1));
+}
+
+TEST_CASE("Newton's residual falls quadratically to the floor of rounding") {
+  BendingRod p = deck_rod();
+  p.youngs_modulus_pa = 1e4;  // a hard one: six solves
+  Scene scene = build_scene(p);
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  Listening listening(projection);
+  TimeStepper stepper(scene, {0.02, 9, 0});
+  const double floor = 2 * std::numeric_limits<double>::epsilon() * p.segments;  // of the order of eps L / l
+  int quadratic = 0;
+  for (int step = 0; step < 25; ++step) {
+    listening.residuals.clear();
+    stepper.step(listening);
+    const std::vector<double>& r = listening.residuals;
+    REQUIRE(r.size() == 9);
+    for (std::size_t k = 1; k + 1 < r.size(); ++k) {
+      if (r[k] > 3e-3) continue;  // not yet where the quadratic term rules
+      CHECK(r[k + 1] < 30 * r[k] * r[k] + floor);
+      if (r[k + 1] > floor) ++quadratic;
+    }
+    CHECK(r.back() < floor);
+  }
+  CHECK(quadratic > 30);  // iterations that showed it, above the floor
+}

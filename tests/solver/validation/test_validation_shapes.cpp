@@ -1,0 +1,105 @@
+// Rest shapes that are curved, and cross-sections that are not round: closed forms and invariances.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+/// A wall-clamped straight rod of n segments along +x whose joints have this section and this rest turn for each length
+/// of a joint (radians per metre, local frame). Local x lies along `local_x`.
+Rod rod_with(int n, double length, const Section& section, const Vector3& rest_curvature,
+             const Vector3& local_x = Vector3::UnitY()) {
+  Matrix3 frame;
+  frame << local_x, Vector3::UnitX().cross(local_x), Vector3::UnitX();
+  std::vector<SegmentSpec> segments(1);
+  segments[0].orientation = Quaternion(frame);
+  segments[0].is_static = true;
+  std::vector<JointSpec> joints;
+  const double l = length / n;
+  for (int i = 0; i < n; ++i) {
+    SegmentSpec s;
+    s.position_m = Vector3((i + 0.5) * l, 0, 0);
+    s.orientation = Quaternion(frame);
+    s.length_m = l;
+    s.radius_m = 0.05;
+    s.density_kg_m3 = 1000;
+    segments.push_back(s);
+    JointSpec j;
+    j.a = i;
+    j.b = i + 1;
+    j.arm_a_m = Vector3(0, 0, i == 0 ? 0 : l / 2);
+    j.arm_b_m = Vector3(0, 0, -l / 2);
+    const double joint_length = i == 0 ? l / 2 : l;
+    j.compliance_per_j = joint_compliance(joint_length, section, inextensible_compliance(joint_length, 1000));
+    const double turn = rest_curvature.norm() * joint_length;
+    j.rest = turn > 0 ? Quaternion(Eigen::AngleAxisd(turn, rest_curvature.normalized())) : Quaternion::Identity();
+    joints.push_back(j);
+  }
+  return Rod(segments, joints);
+}
+
+Scene scene_of(const Rod& rod, const Vector3& gravity) {
+  Scene scene;
+  scene.rods.push_back(rod);
+  scene.gravity_m_s2 = gravity;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("A straight rod with a curved rest shape curls into an arc of that curvature, and stays there") {
+  const double curvature = 0.9, l = 2.0 / 20;
+  const Section section = circular_section(0.05, 1e7, 4e6);
+  Simulation simulation(scene_of(rod_with(20, 2, section, {curvature, 0, 0}), Vector3::Zero()), 0.05);
+  simulation.relax(1e-12);
+  const Rod arc = simulation.rod();
+  CHECK(elastic_energy(arc) < 1e-12);
+  for (std::size_t s = 2; s < arc.position.size(); ++s) {
+    const double turn = std::acos(director(arc.orientation[s]).dot(director(arc.orientation[s - 1])));
+    CHECK(turn == Approx(curvature * l).epsilon(1e-6));
+    CHECK(director(arc.orientation[s]).dot(arc.orientation[0] * Vector3::UnitX()) == Approx(0).margin(1e-9));  // plane
+  }
+  simulation.run(100);
+  for (std::size_t s = 0; s < arc.position.size(); ++s)
+    CHECK((simulation.rod().position[s] - arc.position[s]).norm() < 1e-10);
+}
+
+TEST_CASE("A cantilever of an elliptic cross-section sags by the EI about the axis that it bends about") {
+  const Section flat = elliptic_section(0.08, 0.02, 1e9, 4e8);
+  const int n = 40;
+  const double length = 2, area = 3.14159265358979323846 * 0.05 * 0.05;  // of the segments' mass
+  const double w = 1000 * area * 9.81 / 30, law = 1 + 1.0 / (n * n);
+  struct Case {
+    Vector3 local_x;
+    double bending_nm2;
+  };
+  for (const Case& c : {Case{Vector3::UnitZ(), flat.bending_x_nm2}, Case{Vector3::UnitY(), flat.bending_y_nm2}}) {
+    Simulation simulation(scene_of(rod_with(n, length, flat, Vector3::Zero(), c.local_x), Vector3(0, -9.81 / 30, 0)),
+                          1);
+    simulation.relax();
+    CHECK(-tip(simulation.rod()).y() == Approx(w * std::pow(length, 4) / (8 * c.bending_nm2) * law).epsilon(1e-3));
+    CHECK(std::abs(tip(simulation.rod()).z()) < 1e-9);
+  }
+}
+
+TEST_CASE("A cantilever whose axes are askew to its weight sags sideways too, as unsymmetric bending says") {
+  const Section flat = elliptic_section(0.08, 0.04, 1e9, 4e8);
+  const double area = 3.14159265358979323846 * 0.05 * 0.05, w = 1000 * area * 9.81 / 300, length = 2;
+  const int n = 40;
+  const double law = 1 + 1.0 / (n * n);
+  const double angle = 0.5;  // of local x from +z, about the rod
+  const Vector3 local_x(0, std::sin(angle), std::cos(angle)), local_y = Vector3::UnitX().cross(local_x);
+  Simulation simulation(scene_of(rod_with(n, length, flat, Vector3::Zero(), local_x), Vector3(0, -9.81 / 300, 0)), 1);
+  simulation.relax();
+  // A load along local y bends about local x and the other way round; the rod deflects in the load's direction.
+  const Vector3 load = w * std::pow(length, 4) / 8 * law * -Vector3::UnitY();
+  const Vector3 expected =
+      load.dot(local_y) / flat.bending_x_nm2 * local_y + load.dot(local_x) / flat.bending_y_nm2 * local_x;
+  REQUIRE(std::abs(expected.z()) > 0.1 * std::abs(expected.y()));
+  CHECK(tip(simulation.rod()).y() == Approx(expected.y()).epsilon(1e-3));
+  CHECK(tip(simulation.rod()).z() == Approx(expected.z()).epsilon(1e-3));
+}
