@@ -83,3 +83,9 @@ TEST_CASE("a failing write is no outcome of the task") {
       [](const Task&, const TaskRecord&) { throw std::runtime_error("no space left on device"); });
   CHECK_THROWS_WITH(body(0, never), "no space left on device");
 }
+
+TEST_CASE("outcomes of tasks keep the numbers and names that files hold") {
+  const char* const names[] = {"pending",         "ok",        "diverged", "not_a_number", "indefinite",
+                               "iteration_limit", "timed_out", "error"};
+  for (int i = 0; i < 8; ++i) CHECK(to_string(static_cast<TaskOutcome>(i)) == std::string(names[i]));
+}
