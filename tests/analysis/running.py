@@ -11,7 +11,7 @@ import unittest
 import unittest.mock
 
 import synthetic
-import commandline
+from reading import commandline
 
 
 class Scripts(unittest.TestCase):
@@ -31,12 +31,14 @@ class Scripts(unittest.TestCase):
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error), \
                 unittest.mock.patch.object(sys, "argv", [name, *arguments]):
             os.chdir(self.folder)
+            left = 0
             try:
-                with self.assertRaises(SystemExit) as left:
-                    commandline.run(name, script.main)
+                commandline.run(script.main)
+            except SystemExit as stop:
+                left = stop.code
             finally:
                 os.chdir(here)
-        self.assertEqual(left.exception.code or 0, code, error.getvalue())
+        self.assertEqual(left, code, error.getvalue())
         return types.SimpleNamespace(stdout=out.getvalue(), stderr=error.getvalue())
 
     def refused(self, name, *arguments, words):

@@ -7,13 +7,12 @@ import tempfile
 import unittest
 
 import synthetic
-import figures
-import timings
+from drawing import figures, style
+from reading import timings
+from reading.sweepfile import SweepFile
 import numpy as np
 import spatial
-import style
 from matplotlib import colors, pyplot
-from sweepfile import SweepFile
 
 
 class Drawn(unittest.TestCase):

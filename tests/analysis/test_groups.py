@@ -5,10 +5,10 @@ import tempfile
 import unittest
 
 import synthetic
-import groups
-import measures
+from reading import groups, measures
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 import numpy as np
-from sweepfile import KeyNotFound, SweepFile
 
 
 class Groups(unittest.TestCase):

@@ -3,7 +3,7 @@
 import unittest
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
-import intervals
+from reading import intervals
 import numpy as np
 
 

@@ -8,7 +8,7 @@ import unittest
 import synthetic
 import h5py
 import loss
-import modelfile
+from reading import modelfile
 import numpy as np
 from matplotlib import pyplot
 from running import Scripts

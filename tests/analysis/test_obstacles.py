@@ -8,14 +8,11 @@ import unittest.mock
 import synthetic
 import numpy as np
 
-import obstacles
-import povray
-import staging
-import surfaces
+from drawing import povray, staging, surfaces
+from reading import obstacles, trajectory
+from reading.sweepfile import SweepFile
 import trajectories
-import trajectory
 from running import Scripts
-from sweepfile import SweepFile
 from test_pictures import drawn
 
 UP = np.array([0.0, 1, 0])

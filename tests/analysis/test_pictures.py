@@ -13,14 +13,11 @@ import synthetic  # noqa: F401  (makes analysis/ importable)
 import numpy as np
 from PIL import Image
 
-import camera
-import movie
-import povray
-import staging
+from drawing import camera, movie, povray, staging
+from reading import trajectory
+from reading.sweepfile import SweepFile
 import trajectories
-import trajectory
 from running import Scripts
-from sweepfile import SweepFile
 
 NUMBER = r"-?[\d.]+(?:e[-+]?\d+)?"
 

@@ -9,10 +9,10 @@ sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "analysis
 import h5py
 import numpy as np
 
-import accuracy
+from reading import accuracy
+from reading.sweepfile import SweepFile
 import running
 import solvers
-from sweepfile import SweepFile
 
 WAYS = [("direct", 20, -1), ("direct", 2, -1), ("xpbd", 6, 50), ("pbd", 6, 5)]   # method, newton, iterations
 OFF = (0, 1e-5, 1e-3, 0.2)        # from the reference, in rod lengths

@@ -7,19 +7,13 @@ import os
 import unittest
 
 import synthetic
-import along_time
-import envelopes
-import groups
-import heat
+from reading import along_time, envelopes, groups, heat, intervals, measures, newton_levels
+from reading.sweepfile import SweepFile
 import heatmap
-import intervals
 import long_term
-import measures
-import newton_levels
 import numpy as np
 import temporal
 from running import Scripts
-from sweepfile import SweepFile
 
 EVERYTHING = {"select": [], "scene": None, "guess": None, "tolerance": None, "newton": "first", "width": "174"}
 
