@@ -5,10 +5,10 @@ import tempfile
 import unittest
 
 import synthetic
+import numpy as np
 from reading import groups, measures
 from reading.errors import KeyNotFound
 from reading.sweepfile import SweepFile
-import numpy as np
 
 
 class Groups(unittest.TestCase):

@@ -1,7 +1,6 @@
 """Imports of analysis/ run one way, scripts, drawing, reading, and without circles; numbers need no program to draw."""
 
 import ast
-import os
 import subprocess
 import sys
 import tempfile

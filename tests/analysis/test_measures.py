@@ -6,9 +6,9 @@ import unittest
 
 import synthetic
 import h5py
+import numpy as np
 from reading import measures, timings
 from reading.sweepfile import SweepFile
-import numpy as np
 
 
 class Tables(unittest.TestCase):

@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 import synthetic
 import numpy as np
 
+import trajectories
 from reading import joints, trajectory
 from reading.sweepfile import SweepFile
-import trajectories
 from running import Scripts
 
 
