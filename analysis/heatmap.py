@@ -94,8 +94,6 @@ def chosen(file, options):
         raise KeyNotFound(f"no guess is left to compare with zero among {', '.join(file.guesses)}")
     if not measure.of_guess:
         guesses = shown.guesses[:1]
-        if shown.sims.closed_loop and not measure.ladder:
-            shown.guesses = commandline.chosen_guesses(file, options)
     return shown, tolerances, guesses
 
 
