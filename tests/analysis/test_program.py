@@ -41,8 +41,8 @@ class Program(unittest.TestCase):
                            stdin=subprocess.DEVNULL)
         return results
 
-    def script(self, name, *arguments, files=False):
-        done = run(name, *arguments, files=files)
+    def script(self, name, *arguments):
+        done = run(name, *arguments)
         self.assertEqual(done.code, 0, done.stderr)
         return done.stdout
 
@@ -92,7 +92,7 @@ class Program(unittest.TestCase):
 
     def test_a_paired_sweep_has_its_figures_and_table(self):
         path = self.run_job("paired")
-        self.assertEqual(len(self.script("spatial.py", path, "--scene", "helix", files=True).split()), 6)
+        self.assertEqual(len(self.script("spatial.py", path).split()), 6)
         said = self.script("summary.py", path)
         for words in ("6 of 6 tasks ok, none failed", "Bending rod, n = 4", "Helix, n = 2", "oracle",
                       "preconditioner jacobi", "Solved to tolerance 1e-2", "joint gap/length"):
