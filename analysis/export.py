@@ -18,10 +18,10 @@ import sys
 
 import numpy as np
 
-import commandline
-import outputs
-import tidy
-from sweepfile import KeyNotFound, SweepFile
+from drawing import outputs
+from reading import commandline, tidy
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/export.py results/demo.h5 -o demo.csv
@@ -58,7 +58,7 @@ def main():
                           commandline.chosen_tolerances(file, options))
         if options.list:
             print("\n".join(table.names))
-            return 0
+            return
         names = [name.strip() for name in options.columns.split(",")] if options.columns else table.default_names()
         tests = tidy.conditions(options.where)
         table.check(names + [column for column, _ in tests])
@@ -66,7 +66,6 @@ def main():
             count = write(out, table, names, tests)
         if options.output:
             print(f"{count} rows: {options.output}")
-    return 0
 
 
 @contextlib.contextmanager
@@ -99,4 +98,4 @@ def write(out, table, names, tests):
 
 
 if __name__ == "__main__":
-    commandline.run("export.py", main)
+    commandline.run(main)

@@ -16,21 +16,15 @@ the best of the guesses, and its name; the oracle, which knows the solution, onl
 printed.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from matplotlib import colors
 from matplotlib.cm import ScalarMappable
 from matplotlib.patches import Rectangle
 
-import commandline
-import groups
-import heat
-import layout
-import measures
-import study
-import style
-from sweepfile import KeyNotFound, SweepFile
+from drawing import layout, study, style
+from reading import commandline, groups, heat, measures, texts
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/heatmap.py results/step_size.h5 --x time.step_s --y tolerance
@@ -38,14 +32,6 @@ EXAMPLES = """examples:
   analysis/heatmap.py results/stiffness.h5 --x scene.segments --y tolerance --guess quadratic
   analysis/heatmap.py results/step_size.h5 --x time.step_s --y solve.preconditioner --measure iterations"""
 MOST_PANELS = 12
-
-
-@dataclass
-class Study(study.Study):
-    pooled: str     # which simulations stand for others
-
-    def about(self):
-        return super().about(self.pooled)
 
 
 def arguments():
@@ -73,8 +59,7 @@ def main():
         alone = heat.MEASURES[options.measure].ladder and heat.LADDER not in (options.x, options.y)
         study.save(file, options, {f"heatmap-{options.measure}": page},
                    ["-".join(names), "each" if options.each else "",
-                    commandline.tolerance_label(file.tolerances[tolerances[0]]) if alone else ""])
-    return 0
+                    texts.tolerance_label(file.tolerances[tolerances[0]]) if alone else ""])
 
 
 def chosen(file, options):
@@ -87,20 +72,18 @@ def chosen(file, options):
         raise KeyNotFound(f"--measure {options.measure} has one value at the job's tolerance, not one for each of the "
                           "ladder: sweep solve.tolerance in the job and give that as an axis")
     if measure.of_guess or measure.ladder:
-        shown = study.of_guesses(file, options, needs_zero=True)
+        shown = study.of_guesses(file, options)
     else:
-        shown = study.of_tasks(file, commandline.chosen_tasks(file, options), commandline.chosen_guesses(file, options),
-                               options)
+        shown = study.of_tasks(file, options)
     for key in (options.x, options.y):
         if key != heat.LADDER:
             shown.sims = shown.sims.subset(groups.applicable(file, shown.sims, key))
-    pooled = ""
     if laddered and not shown.sims.closed_loop and "solve.tolerance" in file.parameters:
         # Counts to the whole ladder do not depend on the tolerance of the timed solves of a paired sweep.
         timed = file.parameters["solve.tolerance"].values[shown.sims.any_task]
         if (timed != timed[0]).any():
             shown.sims = shown.sims.subset(timed == timed.min())
-            pooled = "counts do not depend on solve.tolerance, tasks of one value shown"
+            shown.left_out = "counts do not depend on solve.tolerance, tasks of one value shown"
     tolerances = commandline.chosen_tolerances(file, options) if measure.ladder else [0]
     if measure.ladder and not laddered:
         if len(tolerances) > 1 and options.tolerance:
@@ -111,9 +94,7 @@ def chosen(file, options):
         raise KeyNotFound(f"no guess is left to compare with zero among {', '.join(file.guesses)}")
     if not measure.of_guess:
         guesses = shown.guesses[:1]
-        if shown.sims.closed_loop and not measure.ladder:
-            shown.guesses = commandline.chosen_guesses(file, options)
-    return Study(**vars(shown), pooled=pooled), tolerances, guesses
+    return shown, tolerances, guesses
 
 
 def figure(shown, options, planes, guesses, tolerances):
@@ -122,7 +103,7 @@ def figure(shown, options, planes, guesses, tolerances):
     wide = max(len(plane.x.index) for plane in planes)
     columns = layout.even_columns(len(planes), most_columns(shown.width_mm, planes))
     lead = max(len(text) for plane in planes for text in (plane.y.text if plane.y.categorical else
-                                                         map(style.number_text, plane.y.position)))
+                                                         map(texts.number_text, plane.y.position)))
     left = 8 + 1.25 * lead
     cell_mm = ((shown.width_mm - 2 - columns * left) / columns) / wide
     height = tall * min(max(8.5, 0.5 * cell_mm), 14)
@@ -153,7 +134,7 @@ def most_columns(width_mm, planes):
 def heading(measure, options, file, tolerances):
     text = measure.label[0].upper() + measure.label[1:]
     if measure.ladder and heat.LADDER not in (options.x, options.y):
-        text += f" at tolerance {commandline.tolerance_label(file.tolerances[tolerances[0]])}"
+        text += f" at tolerance {texts.tolerance_label(file.tolerances[tolerances[0]])}"
     return text
 
 
@@ -214,7 +195,7 @@ def draw(axes, plane, file, measure, norm, colormap, with_names, cell_mm):
             axes.text(x + 0.5, y + 0.27, name, ha="center", va="center", color=ink,
                       fontsize=min(5.5, 2.83 * cell_mm / (0.62 * max(4, len(name)))))
     for axis, points in ((axes.xaxis, plane.x), (axes.yaxis, plane.y)):
-        text = points.text if points.categorical else [style.number_text(value) for value in points.position]
+        text = points.text if points.categorical else [texts.number_text(value) for value in points.position]
         axis.set_ticks(np.arange(len(text)) + 0.5, text)
         axis.set_tick_params(length=0)
     for spine in axes.spines.values():
@@ -227,8 +208,8 @@ def cell_text(value):
         return f"{value:.2f}"
     if 10 <= value < 1000:
         return f"{value:.0f}" if value >= 100 else f"{value:.1f}"
-    return style.number_text(float(f"{value:.1e}"))
+    return texts.number_text(float(f"{value:.1e}"))
 
 
 if __name__ == "__main__":
-    commandline.run("heatmap.py", main)
+    commandline.run(main)

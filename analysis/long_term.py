@@ -13,17 +13,11 @@ table.
 import sys
 
 import numpy as np
-from matplotlib.lines import Line2D
 
-import commandline
-import envelopes
-import groups
-import history_table
-import layout
-import measures
-import study
-import style
-from sweepfile import KeyNotFound, SweepFile
+from drawing import layout, study
+from reading import commandline, envelopes, groups, history_table, measures, texts
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/long_term.py results/long_term.h5
@@ -62,19 +56,17 @@ def main():
         series = [methods(shown, panel) for panel in panels]
         if options.csv:
             history_table.write_csv(sys.stdout, panels, series, found, shown.sims, file.ok)
-            return 0
+            return
         print("\n".join(history_table.lines(panels, series, found, shown.sims, file.ok, begin)) + "\n")
         study.save(file, options, {"long-term": figure(shown, panels, series, found, options)},
                    ["log-time" if options.log_time else ""])
-    return 0
 
 
 def make_study(file, options):
     """All tasks that were chosen, with and without guesses, those that failed too."""
     if not envelopes.recorded(file):
         raise KeyNotFound(f"{file.path} has no rows of steps (/steps): nothing is known of the runs")
-    chosen = commandline.chosen_tasks(file, options)
-    return study.of_tasks(file, chosen, commandline.chosen_guesses(file, options), options, failed_too=True)
+    return study.of_tasks(file, options, failed_too=True)
 
 
 def methods(shown, panel):
@@ -85,21 +77,16 @@ def methods(shown, panel):
         rows = panel.index[sims.own[panel.index] & (sims.task[panel.index, g] >= 0)]
         if len(rows):
             found[file.guesses[g]] = (shown.style(g), sims.task[rows, g], rows)
-    rows = panel.index[~sims.own[panel.index]]
-    names = measures.without_guess(file, sims.any_task[rows])
-    for name, look in style.guess_styles(np.unique(names)[::-1]).items():
-        found[name] = (look, sims.any_task[rows[names == name]], rows[names == name])
-    return found
+    return found | shown.methods_without_guess(panel, reverse=True)
 
 
 def figure(shown, panels, series, found, options):
     names = [name for name in PANELS if name in found.low]
-    labels = {label: s for methods_of in series for label, (s, _, _) in methods_of.items()}
-    handles = [Line2D([], [], label=label, **s.line()) for label, s in labels.items()]
-    counts = commandline.range_text([len(rows) for methods_of in series for _, _, rows in methods_of.values()])
+    counts = texts.range_text([len(rows) for methods_of in series for _, _, rows in methods_of.values()])
     buckets = len(found.edges) - 1
     steps = int(found.edges[-1])
-    times = [_time(shown.file, shown.sims.any_task[panel.index], found.edges) for panel in panels]
+    middle = (found.edges[:-1] + found.edges[1:] + 1) / 2
+    times = [shown.time_axis(shown.sims.any_task[panel.index], middle) for panel in panels]
     notes = [f"{steps} steps in {buckets} stretches. Lines: median over {counts} simulations of the largest value in a "
              "stretch (energy: of the middle of its range, relative to the first step). Bands: smallest to largest of "
              "all simulations, for length drift of these largest values. Crosses with black edges: simulations that "
@@ -109,7 +96,7 @@ def figure(shown, panels, series, found, options):
     if max(map(len, titles)) > (shown.width_mm - 13) / columns / 1.2:    # a character has about 1.2 mm
         titles = [title.replace(", ", "\n") for title in titles]
     page = layout.Page(shown.width_mm, [PANELS[name][0] for name in names], len(panels), columns,
-                       26, handles, notes + [shown.about()], left_mm=13,
+                       26, study.handles(series), notes + [shown.about()], left_mm=13,
                        panel_titles_mm=1 + 2.6 * max(title.count("\n") + bool(title) for title in titles))
     scales = [_scales(found, methods_of, shown) for methods_of in series]
     for name, row in zip(names, page.axes):
@@ -127,13 +114,6 @@ def figure(shown, panels, series, found, options):
             page.label_y(axes, k, "")
     page.label_x(len(names) - 1, times[0][1])
     return page
-
-
-def _time(file, tasks, edges):
-    """Middle of every bucket, in seconds where the simulations share one step size."""
-    middle = (edges[:-1] + edges[1:] + 1) / 2
-    sizes = set(file.parameters["time.step_s"].values[tasks]) if "time.step_s" in file.parameters else set()
-    return (middle * sizes.pop(), "simulated time (s)") if len(sizes) == 1 else (middle, "time step")
 
 
 def _scales(found, methods_of, shown):
@@ -203,7 +183,7 @@ def _scale_y(axes, scale, values, well):
         axes.axhline(0, color="#888888", linewidth=0.5, zorder=1)
         axes.set_ylim(1.4 * low if low < 0 else -0.1 * linear, 1.4 * high if high > 0 else 0.1 * linear)
         ticks = _symlog_ticks(linear, low, high)
-        axes.set_yticks(ticks, [style.number_text(t) for t in ticks])
+        axes.set_yticks(ticks, [texts.number_text(t) for t in ticks])
         axes.yaxis.set_minor_locator(layout.NullLocator())
 
 
@@ -216,4 +196,4 @@ def _symlog_ticks(linear, low, high):
 
 
 if __name__ == "__main__":
-    commandline.run("long_term.py", main)
+    commandline.run(main)

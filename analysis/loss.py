@@ -16,11 +16,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
 
-import commandline
-import layout
-import modelfile
-import style
-import study
+from drawing import layout, study, style
+from reading import commandline, modelfile, texts
 
 EXAMPLES = """examples:
   analysis/loss.py results/train_bending.h5
@@ -32,6 +29,7 @@ def arguments():
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("files", nargs="+", metavar="MODEL", help="model file of `rodsweep run` with a job of kind \"train\"")
     study.add_figure_arguments(made)
+    made.set_defaults(scene=None, newton="first")
     return made.parse_args()
 
 
@@ -39,14 +37,8 @@ def main():
     options = arguments()
     trainings = [modelfile.read(path) for path in options.files]
     print("\n".join(table(trainings)) + "\n")
-    first = trainings[0].path
-    stem = os.path.splitext(os.path.basename(first))[0]
-    if len(trainings) > 1:
-        stem += f"-and-{len(trainings) - 1}-more"
-    folder = options.output or os.path.join(os.path.dirname(first), "figures")
-    width = "" if options.width == "174" else f"-{options.width}mm"
-    print("\n".join(figure(trainings, style.WIDTHS_MM[options.width]).save(folder, f"{stem}-loss{width}")))
-    return 0
+    name = f"and-{len(trainings) - 1}-more-loss" if len(trainings) > 1 else "loss"
+    study.save(trainings[0], options, {name: figure(trainings, style.WIDTHS_MM[options.width])})
 
 
 def labels(trainings):
@@ -58,12 +50,12 @@ def labels(trainings):
 def table(trainings):
     tolerances = trainings[0].tolerances
     rows = [["", "epochs", "kept", "validation loss", "seconds"] +
-            [f"CG ratio at {commandline.tolerance_label(t)}" for t in tolerances]]
+            [f"CG ratio at {texts.tolerance_label(t)}" for t in tolerances]]
     for label, t in zip(labels(trainings), trainings):
         rows.append([label + ("" if t.ended else " (has not ended)"), str(len(t.epochs)), str(t.best_epoch),
                      f"{t.best_loss:.4g}", f"{t.seconds:.0f}"] + ratio_texts(t.kept_ratio))
         rows.append(["  its base guess alone", "", "", "", ""] + ratio_texts(t.base_ratio))
-    return commandline.aligned(rows)
+    return texts.aligned(rows)
 
 
 def ratio_texts(ratios):
@@ -89,7 +81,7 @@ def figure(trainings, width_mm):
     for training, look in zip(trainings, looks):
         rate.plot(training.epochs, training.rate, color=look.colour)
     rate.set_title("step size")
-    rate.yaxis.set_major_formatter(FuncFormatter(lambda value, _: style.number_text(value)))
+    rate.yaxis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
     rate.yaxis.set_major_locator(MaxNLocator(3))
     rate.set_ylim(0, 1.08 * max(t.rate.max() for t in trainings))
     last = max(t.epochs[-1] for t in trainings)
@@ -101,7 +93,7 @@ def figure(trainings, width_mm):
 
 
 def about(trainings):
-    counts = commandline.range_text([t.simulations for t in trainings])
+    counts = texts.range_text([t.simulations for t in trainings])
     text = (f"CG ratio: iterations from the network's guess over those from zero, first Newton iterations (j = 0), jacobi, "
             f"true residual; mean over {counts} validation simulations. Stars, dots: the model kept, of the epoch with the "
             "least validation loss.")
@@ -118,7 +110,7 @@ def _losses(axes, trainings, looks):
     values = np.concatenate([v for t in trainings for v in (t.training_loss, t.validation_loss)])
     ticks = layout.log_ticks(values.min() / 1.2, values.max() * 1.2)
     axes.set_ylim(values.min() / 1.2, values.max() * 1.2)
-    axes.set_yticks(ticks, labels=[style.number_text(tick) for tick in ticks])
+    axes.set_yticks(ticks, labels=[texts.number_text(tick) for tick in ticks])
     axes.yaxis.set_minor_locator(NullLocator())
     axes.set_title("loss of validation and training")
 
@@ -137,4 +129,4 @@ def _ratios(axes, k, trainings, looks):
 
 
 if __name__ == "__main__":
-    commandline.run("loss.py", main)
+    commandline.run(main)

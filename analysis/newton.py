@@ -13,15 +13,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-import commandline
-import groups
-import intervals
-import layout
-import measures
-import newton_levels
-import study
-import style
-from sweepfile import KeyNotFound, SweepFile
+from drawing import layout, study, style
+from reading import commandline, groups, intervals, newton_levels, texts
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/newton.py results/newton.h5
@@ -45,8 +40,7 @@ def main():
         if "newton_residual" not in newton_levels.quantities(file):
             raise KeyNotFound(f"{file.path} has no rows of single solves (record.solves is \"summary\"): nothing is "
                               "known of single Newton iterations")
-        chosen = commandline.chosen_tasks(file, options)
-        shown = study.of_tasks(file, chosen, commandline.chosen_guesses(file, options), options)
+        shown = study.of_tasks(file, options)
         panels = groups.with_direct(shown.sims, groups.panels(file, shown.sims, AXES, most=None))
         found = newton_levels.levels(file, shown.sims.tasks())
         series = [methods(shown, panel) for panel in panels]
@@ -54,7 +48,6 @@ def main():
                    for ways in series]
         print("\n".join(table(panels, medians, options.floor)) + "\n")
         study.save(file, options, {"newton": figure(shown, panels, series, medians, found, options.floor)})
-    return 0
 
 
 def methods(shown, panel):
@@ -68,15 +61,11 @@ def methods(shown, panel):
         values = tolerance.values[sims.task[rows, g]] if tolerance else np.zeros(len(rows))
         for value in sorted(set(values.tolist()), reverse=True):
             of_value = rows[values == value]
-            label = (f"CG to {commandline.tolerance_label(value)}" if tolerance else "CG") + (
+            label = (f"CG to {texts.tolerance_label(value)}" if tolerance else "CG") + (
                 f", {file.guesses[g]}" if len(shown.guesses) > 1 else "")
             ways.append((label, sims.task[of_value, g], of_value))
     found = {label: (look, tasks, rows) for look, (label, tasks, rows) in zip(style.series_styles(len(ways)), ways)}
-    rows = panel.index[~own]
-    names = measures.without_guess(file, sims.any_task[rows])
-    for name, look in style.guess_styles(np.unique(names)).items():
-        found[name] = (look, sims.any_task[rows[names == name]], rows[names == name])
-    return found
+    return found | shown.methods_without_guess(panel)
 
 
 def estimates(found, sims, tasks, rows):
@@ -95,15 +84,14 @@ def table(panels, medians, floor):
             values = e["newton_residual"].value[:, 1]
             order = newton_levels.orders(values, floor)
             rows.append([f"  {method}"] +
-                        [style.number_text(float(f"{v:.1e}")) if np.isfinite(v) else "-" for v in values])
+                        [texts.number_text(float(f"{v:.1e}")) if np.isfinite(v) else "-" for v in values])
             rows.append(["    order"] + [f"{o:.2f}" if np.isfinite(o) else "-" for o in order])
-        lines += [""] + commandline.aligned(rows)
+        lines += [""] + texts.aligned(rows)
     return lines
 
 
 def figure(shown, panels, series, medians, found, floor):
-    labels = {label: s for ways in series for label, (s, _, _) in ways.items()}
-    handles = [Line2D([], [], label=label, **s.line()) for label, s in labels.items()]
+    handles = study.handles(series)
     handles += [Line2D([], [], color="#888888", linewidth=0.8, linestyle=dash, label=f"slope {order}")
                 for order, dash in GUIDES.items()]
     names = list(found.values)
@@ -133,9 +121,9 @@ def _levels(axes, name, ways, e, found):
         values = e[method][name]
         j = np.arange(len(values.value))
         centre = values[:, 1]
-        bars = np.nan_to_num(np.stack([centre.value - centre.low, centre.high - centre.value]).clip(min=0))
+        bars = style.whiskers(centre.value, centre.low, centre.high)
         axes.fill_between(j, values.value[:, 0], values.value[:, 2], color=look.colour, alpha=0.13, linewidth=0)
-        axes.errorbar(j, centre.value, yerr=bars, elinewidth=0.7, capsize=1.1, capthick=0.7, **look.line())
+        axes.errorbar(j, centre.value, yerr=bars, **style.WHISKERS, **look.line())
         largest = found.values[name][found.rows(tasks)][:, :, 3]
         worst = np.fmax.reduce(largest)
         axes.plot(j, worst, linestyle="", marker=".", markersize=2.5, color=look.colour)
@@ -174,4 +162,4 @@ def _order(axes, ways, e, floor):
 
 
 if __name__ == "__main__":
-    commandline.run("newton.py", main)
+    commandline.run(main)

@@ -13,14 +13,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-import commandline
-import joints
-import obstacles
-import outputs
-import staging
-import surfaces
-import trajectory
-from sweepfile import SweepFile
+from drawing import outputs, staging, surfaces
+from reading import commandline, joints, obstacles, trajectory
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/paraview.py results/net.h5
@@ -32,8 +27,7 @@ CONSTANT = {"radius": "radius_m", "length": "length_m", "rod": "rod", "static": 
 
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    made.add_argument("--task", metavar="N", type=int, help="this task (default: the first that --scene, --select and "
-                                                            "--guess leave)")
+    trajectory.add_task_argument(made)
     made.add_argument("-o", "--output", metavar="FILE", help="file to write (default: NAME-taskN.xdmf beside the file)")
     outputs.add_force(made)
     return made.parse_args()
@@ -42,16 +36,14 @@ def arguments():
 def main():
     options = arguments()
     with SweepFile(options.file) as file:
-        trajectory.recorded(file)
-        task = trajectory.chosen_task(file, options)
-        shown = trajectory.of_task(file, task)
-        path = options.output or f"{os.path.splitext(options.file)[0]}-task{task}.xdmf"
+        shown = trajectory.chosen(file, options)
+        path = options.output or f"{os.path.splitext(options.file)[0]}-task{shown.task}.xdmf"
         outputs.check(path, options)
         reference = os.path.relpath(options.file, os.path.dirname(path) or ".")
         with outputs.whole(path) as part:
-            document(shown, reference, obstacles.of_task(file, task)).write(part, encoding="utf-8", xml_declaration=True)
+            touched = obstacles.of_task(file, shown.task)
+            document(shown, reference, touched).write(part, encoding="utf-8", xml_declaration=True)
         print(path)
-    return 0
 
 
 def document(shown, reference, touched=()):
@@ -135,4 +127,4 @@ def text(*values):
 
 
 if __name__ == "__main__":
-    commandline.run("paraview.py", main)
+    commandline.run(main)

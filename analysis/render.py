@@ -13,15 +13,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-import commandline
-import movie
-import obstacles
-import outputs
-import povray
-import staging
-import tools
-import trajectory
-from sweepfile import KeyNotFound, SweepFile
+from drawing import movie, outputs, povray, staging, tools
+from reading import commandline, obstacles, trajectory
+from reading.commandline import whole_number
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/render.py results/net.h5
@@ -33,8 +29,7 @@ SAMPLES = 4   # small pictures from which a GIF takes its colours
 
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
-    made.add_argument("--task", metavar="N", type=int, help="this task (default: the first that --scene, --select and "
-                                                            "--guess leave)")
+    trajectory.add_task_argument(made)
     made.add_argument("-o", "--output", metavar="PATH", help="file of one still or of a film, folder of several stills "
                                                              "(default: in figures/ beside the file)")
     which = made.add_mutually_exclusive_group()
@@ -69,15 +64,13 @@ def main():
     if options.movie == "mp4":
         tools.needed("ffmpeg", "which --movie mp4 needs (gif does not)")
     with SweepFile(options.file) as file:
-        trajectory.recorded(file)
-        task = trajectory.chosen_task(file, options)
-        shown = trajectory.of_task(file, task)
+        shown = trajectory.chosen(file, options)
         frames = chosen_frames(shown, options)
-        paths = names(options, task, frames)
+        paths = names(options, shown.task, frames)
         for path in paths:
             outputs.check(path, options)
-        stage = staging.staged(shown, frames, staging.upwards(file, task), options.view, options.size, options.floor,
-                               obstacles.of_task(file, task))
+        stage = staging.staged(shown, frames, staging.upwards(file, shown.task), options.view, options.size,
+                               options.floor, obstacles.of_task(file, shown.task))
         draw = Drawing(shown, stage, staging.colours(shown, options.colour), options)
         for path in paths:
             os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
@@ -88,7 +81,6 @@ def main():
                 with outputs.whole(path) as part, open(part, "wb") as out:
                     out.write(picture)
         print("\n".join(paths))
-    return 0
 
 
 class Drawing:
@@ -98,26 +90,19 @@ class Drawing:
         self.shown, self.stage, self.colouring = shown, stage, colouring
         self.size, self.jobs, self.fine = options.size, options.jobs, options.fine
 
-    def picture(self, frame, threads=1, shrink=1):
-        size = tuple(max(1, side // shrink) for side in self.size)
-        return povray.picture(self.text(frame), size, threads, self.fine)
-
-    def pictures(self, frames):
+    def pictures(self, frames, shrink=1):
         """In order; `jobs` are drawn at a time, and no more are kept."""
-        if len(frames) == 1:
-            yield self.picture(frames[0], self.jobs)
-            return
+        size = tuple(max(1, side // shrink) for side in self.size)
+        threads = self.jobs if len(frames) == 1 else 1
         with ThreadPoolExecutor(self.jobs) as pool:
             waiting = deque()
             for frame in frames:
-                waiting.append(pool.submit(povray.picture, self.text(frame), self.size, fine=self.fine))
+                text = povray.scene(self.shown, self.stage, self.colouring, frame)
+                waiting.append(pool.submit(povray.picture, text, size, threads, self.fine))
                 if len(waiting) > self.jobs:
                     yield waiting.popleft().result()
             while waiting:
                 yield waiting.popleft().result()
-
-    def text(self, frame):
-        return povray.scene(self.shown, self.stage, self.colouring, frame)
 
 
 def write_movie(draw, frames, path, options):
@@ -126,8 +111,7 @@ def write_movie(draw, frames, path, options):
             movie.write_mp4(part, draw.pictures(frames), options.rate)
         else:
             some = frames[np.unique(np.linspace(0, len(frames) - 1, SAMPLES).astype(int))]
-            movie.write_gif(part, draw.pictures(frames), options.rate,
-                            [draw.picture(frame, options.jobs, shrink=2) for frame in some])
+            movie.write_gif(part, draw.pictures(frames), options.rate, list(draw.pictures(some, shrink=2)))
 
 
 def chosen_frames(shown, options):
@@ -153,13 +137,6 @@ def names(options, task, frames):
     return [os.path.join(options.output or folder, f"{stem}-frame{frame:04d}.png") for frame in frames]
 
 
-def whole_number(text):
-    value = int(text)
-    if value < 1:
-        raise ValueError
-    return value
-
-
 def pixels(text):
     size = tuple(whole_number(side) for side in text.lower().split("x"))
     if len(size) != 2:
@@ -181,4 +158,4 @@ def height(text):
 
 
 if __name__ == "__main__":
-    commandline.run("render.py", main)
+    commandline.run(main)

@@ -10,15 +10,11 @@ The table has the cheapest way to every error. Needs trajectories in the file (r
 """
 
 import numpy as np
-from matplotlib.lines import Line2D
 
-import accuracy
-import commandline
-import intervals
-import layout
-import study
-import style
-from sweepfile import KeyNotFound, SweepFile
+from drawing import layout, study, style
+from reading import accuracy, commandline, intervals, texts
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/solvers.py results/solvers.h5
@@ -39,18 +35,16 @@ def arguments():
 def main():
     options = arguments()
     with SweepFile(options.file) as file:
-        shown = study.of_tasks(file, commandline.chosen_tasks(file, options), commandline.chosen_guesses(file, options),
-                               options)
+        shown = study.of_tasks(file, options)
         found = accuracy.accuracy(file, shown.sims.tasks())
         if not found.reference.any():
             raise KeyNotFound(f"{file.path} has no task of the direct solve to compare the others with")
         row, column = (values(file, key, found) for key in (options.rows, options.columns))
         cells = [[lines(found, file, (row == r) & (column == c)) for c in np.unique(column)] for r in np.unique(row)]
-        names = [[f"{style.parameter_label(key, file.parameter(key).unit)} {style.number_text(value)}"
+        names = [[f"{style.parameter_label(key, file.parameter(key).unit)} {texts.number_text(value)}"
                   for value in np.unique(of)] for key, of in ((options.rows, row), (options.columns, column))]
         print("\n".join(table(cells, names)) + "\n")
         study.save(file, options, {"solvers": figure(shown, found, cells, names)})
-    return 0
 
 
 def values(file, key, found):
@@ -71,7 +65,7 @@ def lines(found, file, cell):
         for effort in efforts[::-1] if family.startswith("CG") else efforts:
             rows = np.flatnonzero(of & (found.effort == effort))
             draws = file.sample[found.tasks[rows]]
-            ways[family].append((style.number_text(effort), intervals.median(1e6 * found.step_s[rows], draws),
+            ways[family].append((texts.number_text(effort), intervals.median(1e6 * found.step_s[rows], draws),
                                  intervals.median(np.maximum(found.error[rows], FLOOR), draws)))
     return ways
 
@@ -90,14 +84,14 @@ def table(cells, names):
         for column, ways in zip(names[1], row):
             best = [cheapest(ways, level) for level in LEVELS]
             rows.append([f"  {column}"] + [f"{b[1]} {b[2]}: {b[0]:.3g} µs" if b else "-" for b in best])
-    return commandline.aligned(rows)
+    return texts.aligned(rows)
 
 
 def figure(shown, found, cells, names):
     looks = {**style.guess_styles(np.unique(found.family)),
              **{f"CG from {label}": look for label, look in shown.styles.items()}}
     families = [family for family in looks if any(family in ways for row in cells for ways in row)]
-    handles = [Line2D([], [], label=family, **looks[family].line()) for family in families]
+    handles = [looks[family].handle(family) for family in families]
     points = [error for row in cells for ways in row for line in ways.values() for _, _, error in line]
     efforts = "; ".join(f"{family} " + ", ".join(dict.fromkeys(
         effort for row in cells for ways in row for effort, _, _ in ways.get(family, []))) for family in families)
@@ -123,10 +117,9 @@ def figure(shown, found, cells, names):
 
 def _draw(axes, look, line):
     x = [float(time.value) for _, time, _ in line]
-    y = np.array([float(error.value) for _, _, error in line])
-    bars = np.array([[float(e.value - e.low), float(e.high - e.value)] for _, _, e in line]).T
-    axes.errorbar(x, y, yerr=np.nan_to_num(bars).clip(min=0), elinewidth=0.7, capsize=1.1, capthick=0.7, **look.line())
+    y, low, high = (np.array([float(getattr(e, name)) for _, _, e in line]) for name in ("value", "low", "high"))
+    axes.errorbar(x, y, yerr=style.whiskers(y, low, high), **style.WHISKERS, **look.line())
 
 
 if __name__ == "__main__":
-    commandline.run("solvers.py", main)
+    commandline.run(main)

@@ -12,13 +12,9 @@ A row of panels per scene type and per value of any other grid of the job. Figur
 import sys
 from dataclasses import dataclass
 
-import commandline
-import figures
-import groups
-import study
-import style
-import timings
-from sweepfile import SweepFile
+from drawing import figures, study, style
+from reading import commandline, groups, timings
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/spatial.py results/demo.h5
@@ -26,20 +22,15 @@ EXAMPLES = """examples:
   analysis/spatial.py results/stiffness.h5 --x scene.youngs_modulus_pa --select scene.segments=20:40 --width 84"""
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Study(study.Study):
     """points[k] are the points along x of panels[k]."""
     x: str
     panels: list
     points: list
-    without_x: int      # simulations that have no value of x
 
     def x_label(self):
         return style.parameter_label(self.x, self.file.parameter(self.x).unit)
-
-    def about(self):
-        return super().about(f"{self.without_x} simulations without a value of {self.x} left out"
-                             if self.without_x else "")
 
 
 def arguments():
@@ -64,17 +55,18 @@ def main():
                   file=sys.stderr)
         by_x = "" if options.x == "scene.segments" else f"by-{options.x.rsplit('.', 1)[-1]}"
         study.save(file, options, made, [by_x])
-    return 0
 
 
 def make_study(file, options):
     base = study.of_guesses(file, options)
-    everything = base.sims
-    base.sims = everything.subset(groups.applicable(file, everything, options.x))
+    everything = len(base.sims)
+    base.sims = base.sims.subset(groups.applicable(file, base.sims, options.x))
+    if len(base.sims) < everything:
+        base.left_out = f"{everything - len(base.sims)} simulations without a value of {options.x} left out"
     panels = groups.panels(file, base.sims, options.x)
     points = [groups.points(file, base.sims, panel, options.x) for panel in panels]
-    return Study(**vars(base), x=options.x, panels=panels, points=points, without_x=len(everything) - len(base.sims))
+    return Study(**vars(base), x=options.x, panels=panels, points=points)
 
 
 if __name__ == "__main__":
-    commandline.run("spatial.py", main)
+    commandline.run(main)

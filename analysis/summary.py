@@ -10,18 +10,13 @@ A block per scene type and per value of any grid of the job outside `scene`; --b
 95 % bootstrap intervals over simulations.
 """
 
-import csv
 import json
 import math
 import os
 import sys
 
-import blocks
-import commandline
-import groups
-import measures
-import timings
-from sweepfile import SweepFile
+from reading import blocks, commandline, groups, measures, remarks, texts, timings
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/summary.py results/demo.h5
@@ -62,12 +57,10 @@ def main():
             lines += direct_lines(file, sims, found)
             lines += step_lines(file, found, guesses)
             print("\n".join(lines))
-    return 0
 
 
 def heading(file, sims, chosen, census):
-    job, runs = file.job(), file.runs()
-    revisions = ", ".join(sorted({str(run.get("revision", "")) for run in runs} - {""}))
+    job, revisions = file.job(), remarks.revisions(file)
     name = f"job {job['name']}" if "name" in job else "job"
     seed = f", seed {job['seed']}" if "seed" in job else ""
     lines = [f"{file.path}: {name}{seed}" + (f", revision {revisions}" if revisions else ""),
@@ -81,7 +74,7 @@ def heading(file, sims, chosen, census):
         lines.append(f"  and {len(failed) - FAILURES_SHOWN} more")
     if not len(sims):
         return lines + ["No simulation is complete yet."]
-    said = commandline.conditions(file, sims.tasks())
+    said = remarks.conditions(file, sims.tasks())
     solver = (f"{said['evaluation']} evaluation; preconditioner {said['preconditioner']}; residual test: {said['norm']}"
               if said["evaluation"] else "advanced by the direct solve, no guesses")
     return lines + [f"{solver}; time step {said['step_s']} s"]
@@ -96,14 +89,14 @@ def ratio_lines(file, found, guesses, tolerances, newton):
                  "mean over simulations [95 % interval]"]
     for block in shown:
         title, first = _titled(block, block.ratio.count[guesses])
-        rows = [[first] + [commandline.tolerance_label(file.tolerances[t]) for t in tolerances]]
+        rows = [[first] + [texts.tolerance_label(file.tolerances[t]) for t in tolerances]]
         for g in [g for g in guesses if g != file.zero]:
             marks = ["*" if block.unreached[g, t] or block.unreached[file.zero, t] else "" for t in tolerances]
             rows.append(["  " + file.guesses[g]] +
                         [_interval(block.ratio[g, t]) + mark for t, mark in zip(tolerances, marks)])
         if block.zero_iterations is not None:
             rows.append(["  zero, iterations/solve"] + [f"{block.zero_iterations[t]:.1f}" for t in tolerances])
-        lines += [""] + title + commandline.aligned(rows)
+        lines += [""] + title + texts.aligned(rows)
         lines += _missed(file, block, guesses, tolerances)
     return lines
 
@@ -114,7 +107,7 @@ def _missed(file, block, guesses, tolerances):
         counts = [f"{file.guesses[g]} {int(block.unreached[g, t])}" for g in sorted({*guesses, file.zero})
                   if block.unreached[g, t]]
         if counts:
-            found.append(f"      at {commandline.tolerance_label(file.tolerances[t])}: " + ", ".join(counts))
+            found.append(f"      at {texts.tolerance_label(file.tolerances[t])}: " + ", ".join(counts))
     return ["  * with solves that missed the tolerance and count what they used:"] + found if found else []
 
 
@@ -123,18 +116,10 @@ def speedup_lines(file, sims, found, guesses, newton):
     if not shown:
         untimed = any(block.ratio is not None for block in found)
         return ["", 'No times: the file has no rows of single solves (record.solves is "summary").'] if untimed else []
-    values = file.parameters["solve.tolerance"].values[sims.tasks()] if "solve.tolerance" in file.parameters else []
-    tolerance = " / ".join(dict.fromkeys(commandline.tolerance_label(v) for v in values))
     lines = ["", f"Time per solve and speedup over zero-guess CG, {measures.NEWTON[newton]}; whole step: all.",
-             f"Solved to tolerance {tolerance}; median over simulations [95 % interval]"]
-    warning = commandline.timing_warning(file, sims.tasks())
-    if warning:
-        lines.append("WARNING: " + warning)
-    note = commandline.timing_note(file, sims.tasks())
-    if note:
-        lines.append(note)
-    oracle = commandline.oracle_note(file, guesses)
-    lines += [oracle.strip()] if oracle else []
+             f"Solved to tolerance {remarks.solve_tolerance(file, sims.tasks())}; median over simulations [95 % interval]"]
+    lines += _warning(file, sims)
+    lines += filter(None, (remarks.timing_note(file, sims.tasks()), remarks.oracle_note(file, guesses).strip()))
     names = list(timings.SPEEDUPS)
     for block in shown:
         title, first = _titled(block, block.times["cg_us"].count[guesses])
@@ -147,7 +132,7 @@ def speedup_lines(file, sims, found, guesses, newton):
         if block.direct_speedup and math.isfinite(block.times["direct_us"].value[file.zero]):
             rows.append(["  direct", "-", _fixed(block.times["direct_us"].value[file.zero], 1)] +
                         [_interval(block.direct_speedup[name]) for name in names])
-        lines += [""] + title + commandline.aligned(rows)
+        lines += [""] + title + texts.aligned(rows)
         lines += [f"  {block.interruptions}"] if block.interruptions else []
     return lines
 
@@ -159,10 +144,14 @@ def direct_lines(file, sims, found):
         return []
     rows = [["Direct solve: median over simulations [95 % interval]", "assembly µs", "solve µs"]]
     for block in shown:
-        rows.append([f"  {block.title}, n = {commandline.range_text(block.direct_times['direct_us'].count)}"] +
+        rows.append([f"  {block.title}, n = {texts.range_text(block.direct_times['direct_us'].count)}"] +
                     [_interval(block.direct_times[name]) for name in ("assemble_us", "direct_us")])
-    warning = commandline.timing_warning(file, sims.tasks())
-    return [""] + ([f"WARNING: {warning}"] if warning else []) + commandline.aligned(rows)
+    return ["", *_warning(file, sims), *texts.aligned(rows)]
+
+
+def _warning(file, sims):
+    warning = remarks.timing_warning(file, sims.tasks())
+    return [f"WARNING: {warning}"] if warning else []
 
 
 STEP_COLUMNS = {"newton_iterations": "Newton its/step", "newton_residual": "Newton residual",
@@ -183,7 +172,7 @@ def step_lines(file, found, guesses):
                 estimate, largest = block.steps.get(name, (None, None))
                 cells.append("-" if estimate is None else f"{_number(estimate.value[g], 2)} ({_number(largest[g], 2)})")
             rows.append([f"  {title}"] + cells)
-    return [""] + commandline.aligned(rows)
+    return [""] + texts.aligned(rows)
 
 
 def _interval(estimate):
@@ -204,7 +193,7 @@ def _fixed(value, digits):
 
 def _titled(block, counts):
     """A block's title: in the first cell of its table, or on a line before it if it is long."""
-    title = f"{block.title}, n = {commandline.range_text(counts)}"
+    title = f"{block.title}, n = {texts.range_text(counts)}"
     return ([], title) if len(title) <= TITLE_WIDTH else ([title], "")
 
 
@@ -213,14 +202,12 @@ COLUMNS = ("scene", "settings", "newton", "quantity", "guess", "tolerance", "val
 
 
 def write_csv(file, sims, census, records):
-    """NaN (the one value that differs from itself) is an empty field. The first lines count the tasks."""
-    writer = csv.DictWriter(sys.stdout, COLUMNS, restval="", lineterminator="\n")
-    writer.writeheader()
+    """The first lines count the tasks."""
     counts = {"tasks": census.total, "tasks_ok": census.ok, "tasks_pending": census.pending,
               **{f"tasks_{outcome}": count for outcome, count in sorted(census.failed.items())},
-              "tasks_timed_oversubscribed": int(bool(commandline.timing_warning(file, sims.tasks())))}
-    writer.writerows({"quantity": name, "value": count} for name, count in counts.items())
-    writer.writerows({key: "" if value != value else value for key, value in record.items()} for record in records)
+              "tasks_timed_oversubscribed": int(bool(remarks.timing_warning(file, sims.tasks())))}
+    texts.write_csv(sys.stdout, COLUMNS,
+                    [{"quantity": name, "value": count} for name, count in counts.items()] + records)
 
 
 def write_json(file, sims, census, records):
@@ -228,11 +215,11 @@ def write_json(file, sims, census, records):
                for record in records]
     whole = {"file": os.path.basename(file.path), "job": file.job().get("name"),
              "tasks": {"total": census.total, "ok": census.ok, "pending": census.pending, "failed": census.failed},
-             "conditions": commandline.conditions(file, sims.tasks()),
-             "oversubscribed": bool(commandline.timing_warning(file, sims.tasks())), "numbers": numbers}
+             "conditions": remarks.conditions(file, sims.tasks()),
+             "oversubscribed": bool(remarks.timing_warning(file, sims.tasks())), "numbers": numbers}
     json.dump(whole, sys.stdout, indent=1, ensure_ascii=False)
     print()
 
 
 if __name__ == "__main__":
-    commandline.run("summary.py", main)
+    commandline.run(main)

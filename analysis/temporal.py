@@ -14,15 +14,10 @@ printed.
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-import along_time
-import commandline
-import groups
-import intervals
-import layout
-import measures
-import study
-import style
-from sweepfile import KeyNotFound, SweepFile
+from drawing import layout, study, style
+from reading import along_time, commandline, groups, intervals, measures
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/temporal.py results/temporal_bending.h5
@@ -33,16 +28,9 @@ EXAMPLES = """examples:
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES)
     study.add_figure_arguments(made)
-    made.add_argument("--window", metavar="STEPS", type=_steps,
+    made.add_argument("--window", metavar="STEPS", type=commandline.whole_number,
                       help="steps summed for a point, 1 for no smoothing (default: a twentieth of the run)")
     return made.parse_args()
-
-
-def _steps(text):
-    steps = int(text)
-    if steps < 1:
-        raise ValueError
-    return steps
 
 
 def main():
@@ -60,7 +48,6 @@ def main():
         made = {"cg-ratio-in-time": figure(shown, panels, found, columns, tolerances, relative=True),
                 "iterations-in-time": figure(shown, panels, found, columns, tolerances, relative=False)}
         study.save(file, options, made, [f"window{options.window}" if options.window else ""])
-    return 0
 
 
 def estimate(sims, windows, zero, relative):
@@ -94,10 +81,10 @@ def figure(shown, panels, found, columns, tolerances, relative):
     for row, (panel, windows, e) in enumerate(zip(panels, found, estimates)):
         at = [columns.index(g) for g in lines]
         tops = [_top(e[:, at, k]) for k in range(len(tolerances))]
-        x, label = _time(file, shown.sims.any_task[panel.index], windows.centre)
+        x, label = shown.time_axis(shown.sims.any_task[panel.index], windows.centre)
         for k, axes in enumerate(page.axes[row]):
             if relative:
-                axes.axhline(1, color=style.KINDS["zero"][0], linewidth=0.9, zorder=1.5)
+                axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
             for rank, g in enumerate(lines):
                 at = columns.index(g)
                 draw(axes, x, e[:, at, k], shown.style(g), windows.unreached[:, at, k] > 0, rank, len(lines))
@@ -117,14 +104,6 @@ def _top(e):
     return 1.06 * max(1.0, value, min(high, 1.5 * value))
 
 
-def _time(file, tasks, steps):
-    """Times of steps where the simulations share one step size, else the steps themselves."""
-    sizes = set(file.parameters["time.step_s"].values[tasks]) if "time.step_s" in file.parameters else set()
-    if len(sizes) == 1:
-        return steps * sizes.pop(), "simulated time (s)"
-    return steps, "time step"
-
-
 def draw(axes, x, e, guess_style, hollow, rank, count):
     """A line with a marker now and then and its band. Points whose solves missed the tolerance have open markers."""
     every = max(1, len(x) // 8)
@@ -139,4 +118,4 @@ def draw(axes, x, e, guess_style, hollow, rank, count):
 
 
 if __name__ == "__main__":
-    commandline.run("temporal.py", main)
+    commandline.run(main)

@@ -11,7 +11,40 @@ import unittest
 import unittest.mock
 
 import synthetic
-import commandline
+from reading import commandline
+
+HEADS = {".pdf": b"%PDF", ".png": b"\x89PNG"}
+
+
+def laid_out(page, folder, name):
+    """In the place of Page.save(): draws without pixels and files, in a fifth of the time."""
+    page.figure.draw_without_rendering()
+    sys.modules["drawing.layout"].plt.close(page.figure)
+    return [os.path.join(folder, name + ending) for ending in HEADS]
+
+
+def run(name, *arguments, files=False):
+    """What a script prints and its exit code, in this process: a start of Python with its libraries takes a second.
+    files: figures are written and looked at, not only laid out."""
+    script = importlib.import_module(name.removesuffix(".py"))
+    out, error, code = io.StringIO(), io.StringIO(), 0
+    with contextlib.ExitStack() as around:
+        around.enter_context(contextlib.redirect_stdout(out))
+        around.enter_context(contextlib.redirect_stderr(error))
+        around.enter_context(unittest.mock.patch.object(sys, "argv", [name, *arguments]))
+        if not files and "drawing.layout" in sys.modules:    # not every script draws
+            around.enter_context(unittest.mock.patch("drawing.layout.Page.save", laid_out))
+        try:
+            commandline.run(script.main)
+        except SystemExit as left:
+            code = left.code
+    if files:
+        paths = [line for line in out.getvalue().splitlines() if line[-4:] in HEADS]
+        for path in paths:
+            with open(path, "rb") as figure:
+                assert figure.read(4) == HEADS[path[-4:]] and os.path.getsize(path) > 5000, path
+        assert paths, out.getvalue()
+    return types.SimpleNamespace(stdout=out.getvalue(), stderr=error.getvalue(), code=code)
 
 
 class Scripts(unittest.TestCase):
@@ -19,25 +52,17 @@ class Scripts(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder, self.path = folder.name, os.path.join(folder.name, "sweep.h5")
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
 
     def write(self, **settings):
         settings.setdefault("steps", 2)
         synthetic.Sweep(**settings).write(self.path)
 
-    def run_script(self, name, *arguments, code=0):
-        """In this process, as `name` would: a start of Python with its libraries takes a second."""
-        script = importlib.import_module(name.removesuffix(".py"))
-        out, error, here = io.StringIO(), io.StringIO(), os.getcwd()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error), \
-                unittest.mock.patch.object(sys, "argv", [name, *arguments]):
-            os.chdir(self.folder)
-            try:
-                with self.assertRaises(SystemExit) as left:
-                    commandline.run(name, script.main)
-            finally:
-                os.chdir(here)
-        self.assertEqual(left.exception.code or 0, code, error.getvalue())
-        return types.SimpleNamespace(stdout=out.getvalue(), stderr=error.getvalue())
+    def run_script(self, name, *arguments, code=0, files=False):
+        done = run(name, *arguments, files=files)
+        self.assertEqual(done.code, code, done.stderr)
+        return done
 
     def refused(self, name, *arguments, words):
         error = self.run_script(name, *arguments, code=2).stderr

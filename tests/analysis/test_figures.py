@@ -7,13 +7,12 @@ import tempfile
 import unittest
 
 import synthetic
-import figures
-import timings
 import numpy as np
 import spatial
-import style
+from drawing import figures, style
 from matplotlib import colors, pyplot
-from sweepfile import SweepFile
+from reading import timings
+from reading.sweepfile import SweepFile
 
 
 class Drawn(unittest.TestCase):
@@ -70,7 +69,7 @@ class Values(Drawn):
             self.assertEqual(axes.get_ylim()[0], 0)
 
     def test_every_figure_says_what_it_is_of(self):
-        study = self.study(failed={0: "diverged"}, pending=(1,))
+        study = self.study(failed={0: "diverged"}, pending=(1,), guesses=("zero", "previous"))
         by_newton = timings.times(study.file, study.sims)
         for page in (figures.ratio_figure(study, [1]), figures.speedup_figure(study, by_newton),
                      figures.time_figure(study, by_newton)):
@@ -92,7 +91,7 @@ class Values(Drawn):
 
     def test_times_of_oversubscribed_runs_carry_a_warning(self):
         for oversubscribed in (False, True):
-            study = self.study(oversubscribed=oversubscribed, scenes=("helix",))
+            study = self.study(oversubscribed=oversubscribed, scenes=("helix",), guesses=("zero", "previous"))
             by_newton = timings.times(study.file, study.sims)
             for page in (figures.speedup_figure(study, by_newton), figures.time_figure(study, by_newton)):
                 self.assertEqual("more MPI ranks than cores" in self.page_texts(page), oversubscribed)

@@ -5,10 +5,10 @@ import tempfile
 import unittest
 
 import synthetic
-import groups
-import measures
 import numpy as np
-from sweepfile import KeyNotFound, SweepFile
+from reading import groups, measures
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 
 class Groups(unittest.TestCase):

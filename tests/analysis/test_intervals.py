@@ -3,8 +3,8 @@
 import unittest
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
-import intervals
 import numpy as np
+from reading import intervals
 
 
 class Centres(unittest.TestCase):

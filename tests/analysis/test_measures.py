@@ -6,10 +6,9 @@ import unittest
 
 import synthetic
 import h5py
-import measures
-import timings
 import numpy as np
-from sweepfile import SweepFile
+from reading import measures, timings
+from reading.sweepfile import SweepFile
 
 
 class Tables(unittest.TestCase):

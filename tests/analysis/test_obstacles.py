@@ -8,14 +8,11 @@ import unittest.mock
 import synthetic
 import numpy as np
 
-import obstacles
-import povray
-import staging
-import surfaces
 import trajectories
-import trajectory
+from drawing import povray, staging, surfaces
+from reading import obstacles, trajectory
+from reading.sweepfile import SweepFile
 from running import Scripts
-from sweepfile import SweepFile
 from test_pictures import drawn
 
 UP = np.array([0.0, 1, 0])
@@ -114,7 +111,7 @@ class Obstacles(Scripts):
         self.plant({"obstacles[0].ball.centre_m": [[0.1, 0.4, 0]] * 3, "obstacles[0].ball.radius_m": [0.3] * 3}, rods=1)
         stage = self.staged(view="front")
         with SweepFile(self.path) as file:
-            picture = drawn(trajectory.of_task(file, 0), stage)
+            picture, = drawn(trajectory.of_task(file, 0), stage)
         centre, top, right = stage.camera.project([[0.1, 0.4, 0], [0.1, 0.7, 0], [0.4, 0.4, 0]])[0]
         row = picture[int(centre[1]), :].max(axis=-1) < 235
         self.assertLess(abs(row.sum() / 2 - (right[0] - centre[0])), 2.5)

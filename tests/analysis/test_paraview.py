@@ -8,11 +8,10 @@ from xml.etree import ElementTree
 import synthetic
 import numpy as np
 
-import joints
 import trajectories
-import trajectory
+from reading import joints, trajectory
+from reading.sweepfile import SweepFile
 from running import Scripts
-from sweepfile import SweepFile
 
 
 class Paraview(Scripts):

@@ -1,26 +1,26 @@
 """render.py: what POV-Ray is given, what the camera sees, what comes out; films; mistakes."""
 
 import contextlib
+import hashlib
 import io
 import os
 import re
 import shutil
 import stat
+import time
 import unittest
 import unittest.mock
+from concurrent.futures import ThreadPoolExecutor
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
 import numpy as np
 from PIL import Image
 
-import camera
-import movie
-import povray
-import staging
 import trajectories
-import trajectory
+from drawing import camera, movie, povray, staging
+from reading import trajectory
+from reading.sweepfile import SweepFile
 from running import Scripts
-from sweepfile import SweepFile
 
 NUMBER = r"-?[\d.]+(?:e[-+]?\d+)?"
 
@@ -29,9 +29,23 @@ def opened_picture(picture):
     return np.asarray(Image.open(io.BytesIO(picture)).convert("RGB")).astype(int)
 
 
-def drawn(shown, stage, frame=0):
-    text = povray.scene(shown, stage, staging.colours(shown, "rod"), frame)
-    return opened_picture(povray.picture(text, stage.camera.size))
+def drawn(shown, *stages, frames=(0,)):
+    """Pictures of all stages and frames, together: POV-Ray sleeps most of the 0.7 s that it takes."""
+    colours = staging.colours(shown, "rod")
+    scenes = [(povray.scene(shown, stage, colours, frame), stage.camera.size) for stage in stages for frame in frames]
+    with ThreadPoolExecutor(len(scenes)) as pool:
+        return [opened_picture(picture) for picture in pool.map(povray.picture, *zip(*scenes))]
+
+
+def plain_picture(text, size, threads=1, fine=False):
+    """In the place of povray.picture(): of one colour, that of the scene."""
+    out = io.BytesIO()
+    Image.new("RGB", size, "#" + hashlib.sha1(text.encode()).hexdigest()[:6]).save(out, "PNG")
+    return out.getvalue()
+
+
+def plain_pictures(picture=plain_picture):
+    return unittest.mock.patch.object(povray, "picture", picture)
 
 
 class Planted(Scripts):
@@ -152,7 +166,7 @@ class Pictures(Planted):
     def test_a_picture_is_not_blank_and_a_tube_is_as_wide_as_it_is(self):
         with self.shown(rods=1) as shown:
             stage = self.stage(shown, view="front", floor="none")
-            picture = drawn(shown, stage)
+            picture, = drawn(shown, stage)
             self.assertEqual(picture.shape, (180, 240, 3))
             tube = picture.min(axis=-1) < 200
             self.assertTrue((picture[~tube] > 200).all())
@@ -172,14 +186,16 @@ class Pictures(Planted):
             text = povray.scene(shown, stage, staging.colours(shown, "rod"), 0)
             ends = stage.camera.project(np.concatenate(shown.ends(0)))[0][:, 0]
             columns = slice(int(ends.min()) + 2, int(ends.max()) - 2)
-            pictures = [opened_picture(povray.picture(text, (240, 180), fine=fine)) for fine in (False, True)]
+            with ThreadPoolExecutor(2) as pool:
+                drawings = [pool.submit(povray.picture, text, (240, 180), fine=fine) for fine in (False, True)]
+            pictures = [opened_picture(drawing.result()) for drawing in drawings]
             found = [(picture.min(axis=(0, 2))[columns] < 250).mean() for picture in pictures]
             self.assertGreater(found[1], max(0.95, found[0]))
 
     def test_handedness_x_is_to_the_right_from_the_front_and_z_is_near(self):
         with self.shown() as shown:  # rods at z = 0 and, nearer, at 0.5
             stage = self.stage(shown, view=(0, 30), floor="none")
-            picture = drawn(shown, stage)
+            picture, = drawn(shown, stage)
             for segment, rod in ((2, 0), (5, 1)):
                 (x, y), _ = stage.camera.project(shown.centres(0)[segment])
                 red, _, blue = picture[int(y), int(x)]
@@ -189,14 +205,12 @@ class Pictures(Planted):
 
     def test_the_floor_takes_a_shadow(self):
         with self.shown() as shown:
-            found = {}
-            for floor in ("auto", "none"):
-                stage = self.stage(shown, view=(20, 40), floor=floor)
-                picture = drawn(shown, stage)
-                grey = (np.ptp(picture, axis=-1) < 12) & (picture[..., 0] > 110) & (picture[..., 0] < 225)
-                found[floor] = grey.mean()   # held segments are grey too
-            self.assertGreater(found["auto"], 3 * found["none"])
+            stages = [self.stage(shown, view=(20, 40), floor=floor) for floor in ("auto", "none")]
+            grey = [(np.ptp(picture, axis=-1) < 12) & (picture[..., 0] > 110) & (picture[..., 0] < 225)
+                    for picture in drawn(shown, *stages)]
+            self.assertGreater(grey[0].mean(), 3 * grey[1].mean())   # held segments are grey too
 
+    @plain_pictures()
     def test_stills_have_names_and_are_not_replaced_unasked(self):
         self.plant()
         size = ("--size", "60x40")
@@ -217,26 +231,33 @@ class Pictures(Planted):
 class Films(Planted):
     def test_a_gif_has_all_frames_their_time_and_their_pixels(self):
         with self.shown() as shown:
-            self.run_script("render.py", "sweep.h5", "--movie", "gif", "--size", "120x90", "--rate", "20", "-o",
-                            "a.gif")
+            self.run_script("render.py", "sweep.h5", "--movie", "gif", "--size", "120x90", "--rate", "20", "-j", "4",
+                            "-o", "a.gif")
             stage = self.stage(shown, range(4), size=(120, 90))
             with Image.open(os.path.join(self.folder, "a.gif")) as film:
                 self.assertEqual((film.n_frames, film.size), (4, (120, 90)))
                 self.assertEqual((film.info["loop"], film.info["duration"]), (0, 50))
-                for frame in range(4):
+                for frame, exact in enumerate(drawn(shown, stage, frames=range(4))):
                     film.seek(frame)
-                    exact = drawn(shown, stage, frame)
                     self.assertLess(np.abs(np.asarray(film.convert("RGB")).astype(int) - exact).mean(), 2)
 
     def test_the_order_of_frames_does_not_depend_on_how_many_are_drawn_at_a_time(self):
+        def slower_at_first(text, size, threads=1, fine=False):
+            time.sleep(delays.pop())
+            return plain_picture(text, size)
+
         self.plant()
         films = []
         for jobs in ("1", "3"):
-            self.run_script("render.py", "sweep.h5", "--movie", "gif", "--size", "60x40", "-j", jobs, "-o",
-                            f"{jobs}.gif")
+            delays = [0.01, 0.02, 0.04, 0.08] * 2    # of four samples of the colours, then of four frames
+            with plain_pictures(slower_at_first):
+                self.run_script("render.py", "sweep.h5", "--movie", "gif", "--size", "60x40", "-j", jobs, "-o",
+                                f"{jobs}.gif")
             with open(os.path.join(self.folder, f"{jobs}.gif"), "rb") as film:
                 films.append(film.read())
         self.assertEqual(*films)
+        with Image.open("3.gif") as film:
+            self.assertEqual(film.n_frames, 4)
 
     def test_frames_that_do_not_change_and_colours_that_are_rare_are_kept(self):
         def png(colour):
@@ -266,6 +287,7 @@ class Films(Planted):
             os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
         return unittest.mock.patch.dict(os.environ, {"PATH": folder})
 
+    @plain_pictures()
     def test_an_mp4_is_what_ffmpeg_makes_of_the_pictures_in_order(self):
         self.plant()
         with self.with_programs(ffmpeg='for last; do :; done\n/bin/cat >"$last"\n'):
@@ -273,6 +295,7 @@ class Films(Planted):
         with open(os.path.join(self.folder, "a.mp4"), "rb") as film:
             self.assertEqual(film.read().count(b"\x89PNG"), 2)
 
+    @plain_pictures()
     def test_an_ffmpeg_that_fails_is_said_and_leaves_nothing(self):
         self.plant()
         with self.with_programs(ffmpeg="echo no such encoder >&2\nexit 1\n"):
@@ -305,6 +328,7 @@ class Mistakes(Planted):
             del h5["trajectories/segments"]
         self.refused("render.py", "sweep.h5", words="an older rodsweep wrote it")
 
+    @plain_pictures()
     def test_tasks_that_are_not_complete_have_no_picture(self):
         self.write(scenes=("helix",), grid={"scene.segments": [6]}, samples=3, solves=False, pending=(0,))
         trajectories.plant(self.path)

@@ -1,35 +1,19 @@
 """The scripts on files of the program itself: RODSWEEP names it. Derived numbers against the rows they come from."""
 
-import contextlib
-import io
 import json
 import os
 import subprocess
-import sys
 import tempfile
 import unittest
 import unittest.mock
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
-import along_time
-import commandline
-import export
 import h5py
-import heatmap
-import joints
-import long_term
-import measures
-import newton
-import newton_levels
 import numpy as np
-import paraview
-import render
-import spatial
-import summary
 import temporal
-import timings
-import trajectory
-from sweepfile import SweepFile
+from reading import along_time, joints, measures, newton_levels, timings, trajectory
+from reading.sweepfile import SweepFile
+from running import run
 
 ROD = {"type": "bending_rod", "segments": {"grid": [6, 9]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
        "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}
@@ -57,14 +41,10 @@ class Program(unittest.TestCase):
                            stdin=subprocess.DEVNULL)
         return results
 
-    def script(self, module, *arguments):
-        out, name = io.StringIO(), module.__name__ + ".py"
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()), \
-                unittest.mock.patch.object(sys, "argv", [name, *arguments]):
-            with self.assertRaises(SystemExit) as left:
-                commandline.run(name, module.main)
-        self.assertIn(left.exception.code, (None, 0))
-        return out.getvalue()
+    def script(self, name, *arguments):
+        done = run(name, *arguments)
+        self.assertEqual(done.code, 0, done.stderr)
+        return done.stdout
 
     def test_tasks_parameters_and_axes_are_understood(self):
         with SweepFile(self.run_job("paired")) as file:
@@ -112,10 +92,8 @@ class Program(unittest.TestCase):
 
     def test_a_paired_sweep_has_its_figures_and_table(self):
         path = self.run_job("paired")
-        figures = self.script(spatial, path).split()
-        self.assertEqual(len(figures), 6)
-        self.assertTrue(all(os.path.getsize(figure) > 5000 for figure in figures))
-        said = self.script(summary, path)
+        self.assertEqual(len(self.script("spatial.py", path).split()), 6)
+        said = self.script("summary.py", path)
         for words in ("6 of 6 tasks ok, none failed", "Bending rod, n = 4", "Helix, n = 2", "oracle",
                       "preconditioner jacobi", "Solved to tolerance 1e-2", "joint gap/length"):
             self.assertIn(words, said)
@@ -130,8 +108,8 @@ class Program(unittest.TestCase):
             ratio = measures.cg_ratios(file, sims, "first").ratio
             self.assertTrue(np.isfinite(ratio[..., :4]).all())
             np.testing.assert_array_equal(ratio[:, 0, :4], 1)
-        self.assertEqual(len(self.script(spatial, path).split()), 6)
-        self.assertIn("closed-loop evaluation", self.script(summary, path))
+        self.assertEqual(len(self.script("spatial.py", path).split()), 6)
+        self.assertIn("closed-loop evaluation", self.script("summary.py", path))
 
     def test_a_guess_that_varies_is_told_apart_by_its_parameters(self):
         varying = {"grid": ["previous", {"oracle": {"error": 0.5}}, {"oracle": {"error": 0.001}}]}
@@ -143,13 +121,13 @@ class Program(unittest.TestCase):
             ratios = file.results("cg_ratio", np.arange(file.task_count))[:, :, 1].reshape(2, 3, 2, 3)
             np.testing.assert_array_equal(ratios[:, 1, :, 1], ratios[:, 1, :, 2])  # the same guess in both columns
             self.assertTrue((ratios[:, 2, :, 1] < ratios[:, 1, :, 1]).all())
-        said = self.script(summary, path)
+        said = self.script("summary.py", path)
         for words in ("Bending rod, guesses[1] = previous, n = 4",
                       "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.5, n = 4",
                       "Bending rod, guesses[1] = oracle, guesses[1].oracle.error = 0.001, n = 4"):
             self.assertIn(words, said)
-        self.assertEqual(len(self.script(spatial, path).split()), 2)
-        by_error = self.script(summary, path, "--by", "guesses[1].oracle.error", "--select", "guesses[1]=oracle")
+        self.assertEqual(len(self.script("spatial.py", path).split()), 2)
+        by_error = self.script("summary.py", path, "--by", "guesses[1].oracle.error", "--select", "guesses[1]=oracle")
         self.assertIn("guesses[1].oracle.error = 0.001", by_error)
         self.assertNotIn("previous, n", by_error)
 
@@ -163,14 +141,14 @@ class Program(unittest.TestCase):
             sums = file.results("iterations_sum", np.arange(file.task_count))[:, 0, 1]
             icc = file.parameter("solve.preconditioner").values == "icc"
             self.assertLess(sums[icc].max(), sums[~icc].min())
-        said = self.script(summary, path)
+        said = self.script("summary.py", path)
         self.assertIn("solve.norm = natural, solve.preconditioner = icc", said)
 
     def test_a_direct_only_job_has_times_and_steps(self):
         path = self.run_job("direct", solve={"method": "direct"}, guesses=[])
         with SweepFile(path) as file:
             self.assertEqual((file.guesses, file.zero), ([], None))
-        said = self.script(summary, path)
+        said = self.script("summary.py", path)
         self.assertIn("advanced by the direct solve, no guesses", said)
         self.assertIn("Newton its/step", said)
         self.assertNotIn("CG ratio", said)
@@ -182,8 +160,8 @@ class Program(unittest.TestCase):
                       for file in (full, short)]
             np.testing.assert_array_equal(*ratios)
             self.assertFalse(timings.timed(short))
-        self.assertEqual(len(self.script(spatial, short.path).split()), 2)
-        self.assertIn("No times", self.script(summary, short.path))
+        self.assertEqual(len(self.script("spatial.py", short.path).split()), 2)
+        self.assertIn("No times", self.script("summary.py", short.path))
 
     def test_times_of_an_extended_sweep_say_that_they_are_of_two_runs(self):
         old = self.run_job("base", scene=ROD, guesses=["zero", "previous"])
@@ -193,7 +171,7 @@ class Program(unittest.TestCase):
                 json.dump({**JOB, "name": "extended", "scene": ROD, "guesses": guesses}, text)
             subprocess.run([os.environ["RODSWEEP"], "run", job, "-o", path, "--extend", old], check=True,
                            capture_output=True, stdin=subprocess.DEVNULL)
-            said = self.script(summary, path)
+            said = self.script("summary.py", path)
             os.remove(path)
             self.assertEqual("Of 4 tasks some guesses were timed in another run" in said, apart > 0)
             self.assertNotIn("WARNING", said)
@@ -212,13 +190,13 @@ class Program(unittest.TestCase):
             for k in range(4):
                 sums = counts[step == k].sum(axis=0)
                 self.assertAlmostEqual(curve[k], sums[1] / sums[0])
-        self.assertEqual(len(self.script(temporal, path, "--scene", "helix").split()), 4)
+        self.assertEqual(len(self.script("temporal.py", path, "--scene", "helix").split()), 4)
 
     def test_heat_maps_of_counts_times_and_steps(self):
         path = self.run_job("paired")
         for measure in ("ratio", "matvec-ratio", "speedup-step", "joint-gap"):
             x = ("--x", "scene.segments", "--y", "scene.length_m", "--measure", measure, "--scene", "bending_rod")
-            self.assertEqual(len(self.script(heatmap, path, *x).split()), 2)
+            self.assertEqual(len(self.script("heatmap.py", path, *x).split()), 2)
 
     def test_levels_of_newton_end_where_the_steps_end(self):
         path = self.run_job("paired")
@@ -230,30 +208,30 @@ class Program(unittest.TestCase):
                 values = file.h5[f"solves/{name}"][rows]
                 np.testing.assert_allclose(found[name][0, 0, 1], np.median(values[j == 0]))
                 self.assertLess(found[name][0, 2, 3], found[name][0, 0, 3])
-        self.assertIn("  direct", self.script(newton, path))
+        self.assertIn("  direct", self.script("newton.py", path, "--scene", "helix"))
 
     def test_a_long_run_of_cg_and_direct_side_by_side(self):
         path = self.run_job("long", evaluation="closed_loop", scene=HELIX, guesses=["zero", "previous"],
                             solve={"method": {"grid": ["cg", "direct"]}, "tolerance": 1e-2})
-        said = self.script(long_term, path)
+        said = self.script("long_term.py", path)
         for method in ("zero", "previous", "direct"):
             self.assertIn(f"\n  {method}", said)
 
     def test_an_export_has_the_sums_of_the_file(self):
         path = self.run_job("paired")
-        rows = [line.split(",") for line in self.script(export, path, "--columns", "task,iterations_sum").split()]
+        rows = [line.split(",") for line in self.script("export.py", path, "--columns", "task,iterations_sum").split()]
         with SweepFile(path) as file:
             self.assertEqual(sum(int(row[1]) for row in rows[1:]), file.h5["tasks/iterations_sum"][:].sum())
-        solves = self.script(export, path, "--level", "solves", "--columns", "newton", "--guess", "zero").split()
+        solves = self.script("export.py", path, "--level", "solves", "--columns", "newton", "--guess", "zero").split()
         with SweepFile(path) as file:
             self.assertEqual(len(solves) - 1, (file.h5["solves/newton"][:] >= 0).sum())
 
     def test_a_data_set_has_its_table_and_exports(self):
         path = self.run_job("data", kind="dataset", solve=None, guesses=None)
-        self.assertIn("advanced by the direct solve, no guesses", self.script(summary, path))
-        self.assertEqual(len(self.script(export, path).split("\n")), 1 + 6 + 1)
-        self.assertEqual(len(self.script(export, path, "--level", "steps").split("\n")), 1 + 24 + 1)
-        self.assertNotIn("first_system", self.script(export, path, "--list"))
+        self.assertIn("advanced by the direct solve, no guesses", self.script("summary.py", path))
+        self.assertEqual(len(self.script("export.py", path).split("\n")), 1 + 6 + 1)
+        self.assertEqual(len(self.script("export.py", path, "--level", "steps").split("\n")), 1 + 24 + 1)
+        self.assertNotIn("first_system", self.script("export.py", path, "--list"))
 
     def test_a_trajectory_is_where_its_rod_is_and_can_be_drawn(self):
         path = self.run_job("frames", scene=ROD, record={"trajectory_every": 2})
@@ -270,8 +248,8 @@ class Program(unittest.TestCase):
                 self.assertAlmostEqual(np.linalg.norm(high[-1] - low[0]), length)
                 np.testing.assert_array_equal(joints.pairs(shown), [[k, k + 1] for k in range(segments - 1)])
         picture = os.path.join(self.folder.name, "rod.png")
-        self.assertEqual(self.script(render, path, "--task", "2", "--size", "60x40", "-o", picture).strip(), picture)
-        self.assertTrue(os.path.exists(self.script(paraview, path, "--task", "2").strip()))
+        self.assertEqual(self.script("render.py", path, "--task", "2", "--size", "60x40", "-o", picture).strip(), picture)
+        self.assertTrue(os.path.exists(self.script("paraview.py", path, "--task", "2").strip()))
 
     def test_tasks_that_are_not_complete_are_not_read(self):
         path = self.run_job("partial")
@@ -280,7 +258,7 @@ class Program(unittest.TestCase):
         with SweepFile(path) as file:
             census = measures.census(file, np.ones(file.task_count, dtype=bool))
             self.assertEqual((census.ok, census.pending), (4, 2))
-        self.assertIn("4 of 6 tasks ok, none failed, 2 pending", self.script(summary, path))
+        self.assertIn("4 of 6 tasks ok, none failed, 2 pending", self.script("summary.py", path))
 
 
 if __name__ == "__main__":

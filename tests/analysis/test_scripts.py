@@ -13,19 +13,16 @@ from running import Scripts
 
 class Spatial(Scripts):
     def test_figures_go_beside_the_file_as_pdf_and_png_and_their_paths_are_printed(self):
-        self.write(scenes=("helix",))
-        printed = self.run_script("spatial.py", "sweep.h5").stdout.split()
+        self.write(scenes=("helix",), guesses=("zero", "previous"))
+        printed = self.run_script("spatial.py", "sweep.h5", files=True).stdout.split()
         self.assertEqual(printed, [f"figures/sweep-{name}.{ending}" for name in ("cg-ratio", "speedup", "time")
                                    for ending in ("pdf", "png")])
-        for path in printed:
-            with open(os.path.join(self.folder, path), "rb") as figure:
-                self.assertIn(figure.read(4), (b"%PDF", b"\x89PNG"))
 
     def test_the_same_figure_twice_is_the_same_file(self):
         self.write(scenes=("helix",), samples=2, solves=False)
         contents = []
         for folder in ("a", "b"):
-            self.run_script("spatial.py", "sweep.h5", "-o", folder)
+            self.run_script("spatial.py", "sweep.h5", "--tolerance", "1e-2", "-o", folder, files=True)
             with open(os.path.join(self.folder, folder, "sweep-cg-ratio.pdf"), "rb") as figure:
                 contents.append(figure.read())
         self.assertEqual(*contents)

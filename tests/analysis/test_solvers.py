@@ -1,6 +1,5 @@
 """solvers.py and accuracy.py: errors, costs and the cheapest way, of planted trajectories and times."""
 
-import itertools
 import os
 import sys
 import unittest
@@ -9,10 +8,10 @@ sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "analysis
 import h5py
 import numpy as np
 
-import accuracy
 import running
 import solvers
-from sweepfile import SweepFile
+from reading import accuracy
+from reading.sweepfile import SweepFile
 
 WAYS = [("direct", 20, -1), ("direct", 2, -1), ("xpbd", 6, 50), ("pbd", 6, 5)]   # method, newton, iterations
 OFF = (0, 1e-5, 1e-3, 0.2)        # from the reference, in rod lengths
@@ -63,7 +62,8 @@ class Solvers(running.Scripts):
 
     def test_the_cheapest_way_depends_on_the_error_allowed(self):
         self.write()
-        said = self.run_script("solvers.py", "sweep.h5", "--rows", "time.step_s", "--columns", "time.step_s").stdout
+        said = self.run_script("solvers.py", "sweep.h5", "--rows", "time.step_s", "--columns", "time.step_s",
+                               files=True).stdout
         row, = (line.split() for line in said.splitlines() if line.startswith("  time step"))
         self.assertEqual(row[-13:], ["xpbd", "50:", "10", "µs"] * 2 + ["direct", "2:", "20", "µs", "-"])
         self.assertTrue(said.rstrip().endswith("sweep-solvers.png"))

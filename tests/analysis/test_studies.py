@@ -3,23 +3,16 @@
 import argparse
 import csv
 import io
-import os
 import unittest
 
 import synthetic
-import along_time
-import envelopes
-import groups
-import heat
 import heatmap
-import intervals
 import long_term
-import measures
-import newton_levels
 import numpy as np
 import temporal
+from reading import along_time, envelopes, groups, heat, intervals, measures, newton_levels
+from reading.sweepfile import SweepFile
 from running import Scripts
-from sweepfile import SweepFile
 
 EVERYTHING = {"select": [], "scene": None, "guess": None, "tolerance": None, "newton": "first", "width": "174"}
 
@@ -113,7 +106,8 @@ class Temporal(Studies):
 
     def test_figures_with_a_window_in_their_name_and_caption(self):
         self.write(plant=Fading(), **self.TEMPORAL)
-        printed = self.run_script("temporal.py", "sweep.h5", "--window", "4").stdout.split()
+        printed = self.run_script("temporal.py", "sweep.h5", "--window", "4", "--tolerance", "1e-2",
+                                  files=True).stdout.split()
         self.assertEqual(printed[0], "figures/sweep-cg-ratio-in-time-window4.pdf")
         self.assertEqual(len(printed), 4)
         self.write(solves=False, **{**self.TEMPORAL, "counts_in_rows": False})
@@ -192,7 +186,7 @@ class Heatmap(Studies):
     def test_figures_and_refusals(self):
         self.write(plant=Cells(), **self.HEAT)
         where = ("--x", "time.step_s", "--y", "scene.segments")
-        printed = self.run_script("heatmap.py", "sweep.h5", *where).stdout.split()
+        printed = self.run_script("heatmap.py", "sweep.h5", *where, files=True).stdout.split()
         self.assertEqual(printed[1], "figures/sweep-heatmap-ratio-step_s-segments-1e-2.png")
         self.run_script("heatmap.py", "sweep.h5", *where, "--measure", "speedup-step", "--each", "--width", "84")
         self.refused("heatmap.py", "sweep.h5", "--x", "tolerance", "--y", "tolerance", words="two parameters")
@@ -215,6 +209,7 @@ class Drifting(synthetic.Plant):
 class LongTerm(Studies):
     LONG = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 1200, "newton": 1, "samples": 3,
             "solves": False, "closed_loop": True}
+    ONE = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 50}    # group of simulations
 
     def test_slopes_largest_and_final_values_are_the_planted_ones(self):
         file, sims = self.open(plant=Drifting(), **self.LONG)
@@ -289,7 +284,7 @@ class LongTerm(Studies):
 
     def test_figure_with_either_time_axis_and_of_a_paired_sweep(self):
         self.write(plant=Drifting(), **self.LONG)
-        said = self.run_script("long_term.py", "sweep.h5").stdout
+        said = self.run_script("long_term.py", "sweep.h5", files=True).stdout
         self.assertIn("drift per 1000 steps", said)
         self.assertTrue(said.rstrip().endswith("figures/sweep-long-term.png"))
         self.assertIn("sweep-long-term-log-time.png", self.run_script("long_term.py", "sweep.h5", "--log-time").stdout)
@@ -297,13 +292,13 @@ class LongTerm(Studies):
         self.assertIn("  direct", self.run_script("long_term.py", "sweep.h5").stdout)
 
     def test_a_network_instead_of_the_solve_is_a_method_by_the_name_of_its_model(self):
-        self.write(method="end_to_end", model="../models/bending.h5", failed={1: "diverged"}, steps=50)
+        self.write(method="end_to_end", model="../models/bending.h5", failed={1: "diverged"}, **self.ONE)
         said = self.run_script("long_term.py", "sweep.h5").stdout
         self.assertIn("  end_to_end bending ", said)
         self.assertNotIn("direct", said)
 
     def test_gauss_seidel_is_a_method_by_its_iterations(self):
-        self.write(method="xpbd", grid={"solve.iterations": (20,)}, steps=50)
+        self.write(**{**self.ONE, "method": "xpbd", "grid": {"solve.iterations": (20,)}})
         said = self.run_script("long_term.py", "sweep.h5").stdout
         self.assertIn("  xpbd 20 ", said)
         self.assertNotIn("direct", said)
@@ -364,7 +359,7 @@ class Newton(Studies):
 
     def test_the_table_has_medians_and_orders_of_every_way_to_solve(self):
         self.write(plant=Converging(), **self.NEWTON)
-        said = self.run_script("newton.py", "sweep.h5", "--floor", "1e-12").stdout
+        said = self.run_script("newton.py", "sweep.h5", "--floor", "1e-12", files=True).stdout
         self.assertIn("  direct", said)
         order = next(line for line in said.splitlines() if line.startswith("    order"))
         self.assertEqual(order.split(), ["order", "-", "2.00", "2.00", "-"])

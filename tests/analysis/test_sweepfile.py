@@ -7,7 +7,8 @@ import unittest
 import synthetic
 import h5py
 import numpy as np
-from sweepfile import KeyNotFound, SweepFile, SweepFileError
+from reading.errors import KeyNotFound, SweepFileError
+from reading.sweepfile import SweepFile
 
 
 class Folder(unittest.TestCase):

@@ -3,7 +3,7 @@
 import contextlib
 import os
 
-from sweepfile import SweepFileError
+from reading.errors import SweepFileError
 
 
 def add_force(made):

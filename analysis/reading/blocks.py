@@ -4,10 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import groups
-import intervals
-import measures
-import timings
+from reading import groups, intervals, measures, timings
 
 TIMES = ("assemble_us", "guess_us", "cg_us", "direct_us")
 

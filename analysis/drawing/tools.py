@@ -2,8 +2,10 @@
 
 import shutil
 
+from reading.errors import UserError
 
-class ToolError(Exception):
+
+class ToolError(UserError):
     """A program that is missing, or that failed."""
 
 

@@ -8,13 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import commandline
-import groups
-import intervals
-import measures
-import style
-import timings
-from sweepfile import KeyNotFound
+from reading import groups, intervals, measures, texts, timings
+from reading.errors import KeyNotFound
 
 LADDER = "tolerance"
 
@@ -93,7 +88,7 @@ def tolerance_points(file, tolerances):
     """The ladder as points along an axis; every tolerance is of all simulations."""
     order = np.argsort(file.tolerances[tolerances])
     values = file.tolerances[tolerances][order]
-    return groups.Points(values, [commandline.tolerance_label(value) for value in values], list(order), True, False)
+    return groups.Points(values, [texts.tolerance_label(value) for value in values], list(order), True, False)
 
 
 def planes(shown, name, x, y, guesses, tolerances):
@@ -139,4 +134,4 @@ def _members(panel, along, at):
 
 def comparable(file, guesses):
     """The guesses among which a best is sought: neither zero nor an oracle, which knows the solution."""
-    return [g for g in guesses if g != file.zero and not style.kind_of(file.guesses[g]).startswith("oracle")]
+    return [g for g in guesses if g != file.zero and not texts.kind_of(file.guesses[g]).startswith("oracle")]

@@ -5,17 +5,12 @@ what was left out.
 """
 
 import numpy as np
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-import commandline
-import intervals
-import layout
-import measures
-import style
-import timings
-from study import sample_text
+from drawing import layout, style
+from drawing.study import sample_text
+from reading import intervals, measures, remarks, timings
 
 TIME_PARTS = ("assembly", "guess", "CG")
 
@@ -43,7 +38,7 @@ def ratio_figure(study, tolerances):
     for axes_row, points, row, marks in zip(page.axes, study.points, estimates, open_points):
         for k, (axes, t) in enumerate(zip(axes_row, tolerances)):
             x = layout.XAxis(points)
-            axes.axhline(1, color=style.KINDS["zero"][0], linewidth=0.9, zorder=1.5)
+            axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
             for rank, g in enumerate(lines):
                 _line(axes, x.dodged(rank, len(lines)), [e[g, t] for e in row], study.style(g), points.categorical,
                       [bool(m[g, t]) for m in marks])
@@ -70,11 +65,11 @@ def speedup_figure(study, by_newton):
     whole = "" if study.newton == "all" else "; the whole step has all Newton iterations"
     notes = [f"Time of zero-guess CG ÷ time of the method, sums over a simulation: median over {sample_text(shown)}. "
              f"Counted: {measures.NEWTON[study.newton]}{whole}. "
-             f"Solved to tolerance {study.solve_tolerance()}. {commandline.oracle_note(study.file, lines)}"
+             f"Solved to tolerance {study.solve_tolerance()}. {remarks.oracle_note(study.file, lines)}"
              f"{timings.interruptions(by_newton['all'], study.sims)}"]
     handles = study.handles(lines, "zero-guess CG (= 1)")
     if with_direct:
-        handles.append(_direct_handle("direct solve"))
+        handles.append(style.DIRECT.handle("direct solve"))
     width = study.width_mm
     page = layout.Page(width, [p.title() for p in study.panels], 3, 3, 40 if study.wide else 34, handles,
                       notes + [study.about()], study.timing_warning(), ticks_mm=_ticks_mm(study))
@@ -85,7 +80,7 @@ def speedup_figure(study, by_newton):
         for k, (axes, (name, title)) in enumerate(zip(axes_row, timings.SPEEDUPS.items())):
             x = layout.XAxis(points)
             axes.set_yscale("log")
-            axes.axhline(1, color=style.KINDS["zero"][0], linewidth=0.9, zorder=1.5)
+            axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
             for rank, g in enumerate(lines):
                 _line(axes, x.dodged(rank, len(lines) + 1), [e[g] for e, _ in row[name]], study.style(g),
                       points.categorical)
@@ -114,11 +109,11 @@ def time_figure(study, by_newton):
     notes = [f"Mean time of a solve in a simulation, median over {sample_text(shown, ' of the total')}; parts in their "
              f"median proportions. Counted: {measures.NEWTON[study.newton]}. "
              f"Solved to tolerance {study.solve_tolerance()}. CG includes the preconditioner's set-up. "
-             f"{commandline.oracle_note(study.file, study.guesses)}{timings.interruptions(part, study.sims)}"]
+             f"{remarks.oracle_note(study.file, study.guesses)}{timings.interruptions(part, study.sims)}"]
     handles = [Patch(facecolor=style.PARTS[name][0], hatch=style.PARTS[name][1], edgecolor="white", label=name)
                for name in TIME_PARTS]
     if with_direct:
-        handles.append(_direct_handle("assembly + direct solve"))
+        handles.append(style.DIRECT.handle("assembly + direct solve"))
     width, count = study.width_mm, len(study.guesses)
     columns = layout.even_columns(count, 6 if study.wide else 3)
     page = layout.Page(width, [p.title() for p in study.panels], count, columns,
@@ -144,11 +139,10 @@ def _line(axes, x, estimates, guess_style, categorical, hollow=None, size=None):
     """Values with their intervals; categories have no line between them."""
     value, low, high = (np.array([getattr(e, name) for e in estimates], dtype=float)
                         for name in ("value", "low", "high"))
-    bars = np.nan_to_num(np.stack([value - low, high - value]).clip(min=0))
     line = {**guess_style.line(), "markersize": size}
     if categorical:
         line["linestyle"] = ""
-    container = axes.errorbar(x, value, yerr=bars, elinewidth=0.7, capsize=1.1, capthick=0.7, **line)
+    container = axes.errorbar(x, value, yerr=style.whiskers(value, low, high), **style.WHISKERS, **line)
     for bar in (*container[1], *container[2]):
         bar.set_alpha(0.75)
     hollow = np.zeros(len(value), dtype=bool) if hollow is None else np.array(hollow)
@@ -171,12 +165,8 @@ def _stack(axes, x, estimates):
                  linewidth=0.3)
         bottom = bottom + np.nan_to_num(parts[:, k])
     low, high = (np.array([getattr(e, name)[4] for e in estimates], dtype=float) for name in ("low", "high"))
-    axes.errorbar(x.position, total, yerr=np.nan_to_num(np.stack([total - low, high - total]).clip(min=0)), fmt="none",
-                  ecolor="#222222", elinewidth=0.7, capsize=1.2, capthick=0.7)
-
-
-def _direct_handle(label):
-    return Line2D([], [], label=label, **style.DIRECT.line())
+    axes.errorbar(x.position, total, yerr=style.whiskers(total, low, high), fmt="none", ecolor="#222222",
+                  **{**style.WHISKERS, "capsize": 1.2})
 
 
 def _ticks_mm(study):

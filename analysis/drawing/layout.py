@@ -8,7 +8,8 @@ from matplotlib import pyplot as plt
 from matplotlib.colors import LogNorm
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
-import style
+from drawing import style
+from reading import texts
 
 LOG_SPAN = 20        # positive x whose largest value exceeds the smallest by this factor get a logarithmic axis
 CHARACTER_MM = 1.45  # width of a digit of a tick, about
@@ -92,7 +93,7 @@ class Page:
         low, high = mappable.norm.vmin, mappable.norm.vmax
         if isinstance(mappable.norm, LogNorm):
             ticks = log_ticks(low, high)
-            bar.set_ticks(ticks, labels=[style.number_text(t) for t in ticks])
+            bar.set_ticks(ticks, labels=[texts.number_text(t) for t in ticks])
             bar.ax.xaxis.set_minor_locator(NullLocator())
         bar.ax.tick_params(pad=1.5)
         axes.text(-0.02, 0.5, text, transform=axes.transAxes, ha="right", va="center")

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.lines import Line2D
 
-import commandline
-import measures
-import style
-from sweepfile import KeyNotFound, SweepFile
+from drawing import style
+from reading import commandline, measures, remarks, texts
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
 
 
 @dataclass
@@ -22,6 +22,7 @@ class Study:
     newton: str
     width_mm: int
     census: measures.Census
+    left_out: str = ""    # of the tasks counted, and why
 
     @property
     def wide(self):
@@ -36,52 +37,67 @@ class Study:
 
     def handles(self, lines, zero_text=""):
         """The legend: the guesses, and what the line at 1 is."""
-        found = [Line2D([], [], label=self.file.guesses[g], **self.style(g).line()) for g in lines]
-        if zero_text:
-            found.append(Line2D([], [], color=style.KINDS["zero"][0], linewidth=0.9, label=zero_text))
-        return found
+        found = [self.style(g).handle(self.file.guesses[g]) for g in lines]
+        return found + ([Line2D([], [], label=zero_text, **style.ZERO_LINE)] if zero_text else [])
+
+    def methods_without_guess(self, panel, reverse=False):
+        """{method: (style, tasks, rows of Simulations)} of what has no guess in a panel."""
+        rows = panel.index[~self.sims.own[panel.index]]
+        tasks = self.sims.any_task[rows]
+        names = measures.without_guess(self.file, tasks)
+        looks = style.guess_styles(sorted(set(names.tolist()), reverse=reverse))
+        return {name: (look, tasks[names == name], rows[names == name]) for name, look in looks.items()}
+
+    def time_axis(self, tasks, steps):
+        """Times of steps and a label where the simulations share one step size, else the steps themselves."""
+        parameter = self.file.parameters.get("time.step_s")
+        sizes = set(parameter.values[tasks]) if parameter else set()
+        return (steps * sizes.pop(), "simulated time (s)") if len(sizes) == 1 else (steps, "time step")
 
     def solve_tolerance(self):
-        """As text; several where the job has a grid of them."""
-        values = self.file.parameter("solve.tolerance").values[self.sims.tasks()]
-        return " / ".join(commandline.tolerance_label(value) for value in dict.fromkeys(values.tolist()))
+        return remarks.solve_tolerance(self.file, self.sims.tasks())
 
     def timing_warning(self):
-        return commandline.timing_warning(self.file, self.sims.tasks())
+        return remarks.timing_warning(self.file, self.sims.tasks())
 
-    def about(self, left_out=""):
+    def about(self):
         """The note that every figure ends with."""
-        said = commandline.conditions(self.file, self.sims.tasks())
-        revisions = sorted({str(run.get("revision", "")) for run in self.file.runs()} - {""})
+        said = remarks.conditions(self.file, self.sims.tasks())
+        revisions = remarks.revisions(self.file)
         evaluation = f"{said['evaluation'].capitalize()} evaluation" if said["evaluation"] else "Direct solve alone"
         parts = [f"{evaluation}; preconditioner {said['preconditioner']}; "
                  f"residual test: {said['norm']}; time step {said['step_s']} s.",
                  f"{os.path.basename(self.file.path)}: {self.census.text()}"]
-        if left_out:
-            parts[-1] += f"; {left_out}"
-        note = commandline.timing_note(self.file, self.sims.tasks())
+        if self.left_out:
+            parts[-1] += f"; {self.left_out}"
+        note = remarks.timing_note(self.file, self.sims.tasks())
         if note:
             parts[-1] += f". {note.rstrip('.')}"
         if revisions:
-            parts[-1] += f"; revision {', '.join(revisions)}"
+            parts[-1] += f"; revision {revisions}"
         return " ".join(parts) + "."
 
 
-def of_guesses(file, options, needs_zero=True):
-    """A Study of the chosen tasks that try guesses. Raises KeyNotFound where there are none to compare."""
+def of_guesses(file, options):
+    """A Study of the chosen tasks that try guesses. Raises KeyNotFound where there are none to compare with zero."""
     guessing = commandline.chosen_tasks(file, options) & measures.has_guesses(file)
     if not guessing.any():
         raise KeyNotFound(f"{file.path} has no guesses to compare: the direct solve alone advances these simulations")
     guesses = commandline.chosen_guesses(file, options)
-    if needs_zero and file.zero is None:
+    if file.zero is None:
         raise KeyNotFound(f"{file.path} has no zero guess: nothing to relate {', '.join(file.guesses)} to")
-    if needs_zero and guesses == [file.zero]:
+    if guesses == [file.zero]:
         raise KeyNotFound("only the zero guess is left: nothing to relate to it")
-    return of_tasks(file, guessing, guesses, options)
+    return _study(file, options, guessing, guesses)
 
 
-def of_tasks(file, chosen, guesses, options, failed_too=False):
-    """A Study of the tasks of a mask that ended well (or at all). Raises KeyNotFound where there is none."""
+def of_tasks(file, options, failed_too=False):
+    """A Study of the chosen tasks that ended well (or at all). Raises KeyNotFound where there is none."""
+    chosen = commandline.chosen_tasks(file, options)
+    return _study(file, options, chosen, commandline.chosen_guesses(file, options), failed_too)
+
+
+def _study(file, options, chosen, guesses, failed_too=False):
     census = measures.census(file, chosen)
     sims = measures.simulations(file, chosen, failed_too)
     if not len(sims):
@@ -90,9 +106,15 @@ def of_tasks(file, chosen, guesses, options, failed_too=False):
                  census)
 
 
+def handles(series):
+    """The legend of several {method: (style, …)}, each method once."""
+    looks = {method: look for methods in series for method, (look, *_) in methods.items()}
+    return [look.handle(method) for method, look in looks.items()]
+
+
 def sample_text(estimates, of="", mark="whiskers", point="point"):
     """How many simulations the points stand for, and what their intervals look like (`mark`, "" if not drawn)."""
-    counts = commandline.range_text([int(n) for e in estimates for n in np.ravel(e.count)])
+    counts = texts.range_text([int(n) for e in estimates for n in np.ravel(e.count)])
     simulations = "simulation" if counts == "1" else "simulations"
     has_intervals = any(np.isfinite(e.low).any() for e in estimates)
     text = f"{counts} {simulations} per {point}"
@@ -108,7 +130,7 @@ def add_figure_arguments(made):
 
 
 def save(file, options, pages, choices=()):
-    """Writes pages {name: Page} as FILE[-SCENE]-NAME[-CHOICE…].pdf and .png and prints their paths."""
+    """Writes pages {name: Page} of what has a path as FILE[-SCENE]-NAME[-CHOICE…].pdf and .png and prints their paths."""
     folder = options.output or os.path.join(os.path.dirname(file.path), "figures")
     stem = os.path.splitext(os.path.basename(file.path))[0] + (f"-{options.scene}" if options.scene else "")
     endings = [*choices, "all-newton" if options.newton == "all" else "",

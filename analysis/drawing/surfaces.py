@@ -2,7 +2,7 @@
 
 import numpy as np
 
-import obstacles
+from reading import obstacles
 
 AROUND = 32     # corners of a circle
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import h5py
 import numpy as np
 
-import commandline
-from sweepfile import KeyNotFound
+from reading import commandline
+from reading.errors import KeyNotFound
 
 SEGMENTS = "/trajectories/segments"
 
@@ -85,10 +85,16 @@ def recorded(file):
                           f"older rodsweep wrote it); {again}")
 
 
-def chosen_task(file, options):
-    """--task, or the first complete task that --scene, --select and --guess leave."""
+def add_task_argument(made):
+    made.add_argument("--task", metavar="N", type=int, help="this task (default: the first that --scene, --select and "
+                                                            "--guess leave)")
+
+
+def chosen(file, options):
+    """That of --task, or of the first complete task that --scene, --select and --guess leave."""
+    recorded(file)
     if options.task is not None:
-        return options.task
+        return of_task(file, options.task)
     left = commandline.chosen_tasks(file, options) & file.complete
     if options.guess:
         left &= np.isin(file.own_guess, commandline.chosen_guesses(file, options))
@@ -96,4 +102,4 @@ def chosen_task(file, options):
         raise KeyNotFound(f"no complete task of {file.path} is left" +
                           ("; --guess chooses tasks of closed loops, which have a guess of their own" if options.guess
                            else ""))
-    return int(np.flatnonzero(left)[0])
+    return of_task(file, int(np.flatnonzero(left)[0]))

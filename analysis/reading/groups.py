@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sweepfile import KeyNotFound
+from reading.errors import KeyNotFound
 
 MOST_PANELS = 6
 MOST_POINTS = 14   # more distinct values of x than this are binned

@@ -9,8 +9,9 @@ empty fields. Blocks have at most BLOCK_ROWS rows of the file, whatever its size
 import h5py
 import numpy as np
 
-import commandline
-from sweepfile import KeyNotFound, decoded, not_found
+from reading import measures, texts
+from reading.errors import KeyNotFound, not_found
+from reading.hdf5 import decoded
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
@@ -71,7 +72,7 @@ class Tidy:
         return [name for name in self.names if name not in fixed]
 
     def _label(self, t):
-        return commandline.tolerance_label(self.file.tolerances[t])
+        return texts.tolerance_label(self.file.tolerances[t])
 
     def check(self, names):
         for name in names:
@@ -85,7 +86,7 @@ class Tidy:
                 own = self.file.own_guess[tasks]
                 kept = np.ones(len(tasks), dtype=bool) if g is None else (own < 0) | (own == g)
                 if g is not None and self.level == "tasks":
-                    kept &= self._has_guesses[tasks]
+                    kept &= measures.has_guesses(self.file)[tasks]
                 if not kept.any():
                     continue
                 yield {name: self._column(name, tasks[kept], rows, kept, g, t) for name in names}
@@ -93,12 +94,6 @@ class Tidy:
     def _combinations(self):
         guesses = self.guesses if self.by_guess else [None]
         return [(g, t) for g in guesses for t in (self.tolerances if self.by_tolerance else [None])]
-
-    @property
-    def _has_guesses(self):
-        method = self.file.parameters.get("solve.method")
-        every = np.ones(self.file.task_count, dtype=bool)
-        return every if method is None or not self.by_guess else method.values == "cg"
 
     def _row_blocks(self):
         """(task of every row, {dataset: rows}) with rows that were never reached left out."""
@@ -188,7 +183,7 @@ def _test(column, wanted):
 
     def test(values):
         if values.dtype.kind not in "iuf":
-            return np.isin(values.astype(str), [wanted, *commandline.split_labels(wanted)])
+            return np.isin(values.astype(str), [wanted, *texts.split_labels(wanted)])
         if ":" in wanted:
             low, _, high = wanted.partition(":")
             return (values >= number(low, -np.inf)) & (values <= number(high, np.inf))

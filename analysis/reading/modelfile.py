@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sweepfile import PROGRAM, UNREADABLE, SweepFileError, as_text, opened
+from reading.errors import SweepFileError
+from reading.hdf5 import PROGRAM, UNREADABLE, as_text, opened
 
 SCHEMA_VERSION = 1
 

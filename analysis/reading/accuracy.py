@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import measures
-from sweepfile import KeyNotFound
+from reading import measures
+from reading.errors import KeyNotFound
 
 REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
                                                                ("assemble", "direct", "guess", "cg")))

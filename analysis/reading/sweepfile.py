@@ -7,98 +7,19 @@ absent. Raises SweepFileError with a message for the user when a file is missing
 when a parameter, guess or tolerance that was asked for is not in it.
 """
 
-import difflib
 import json
 import os
-from dataclasses import dataclass
 
-os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a sweep may still be writing, on a file system without locks
 import h5py
 import numpy as np
 
-PROGRAM = "rodsweep"
+from reading.errors import KeyNotFound, SweepFileError, not_found
+from reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, opened
+from reading.parameters import Parameter
+
 SCHEMA_VERSION = 1
 BLOCK_ROWS = 1 << 17
-UNREADABLE = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError)  # what bad bytes raise
 PLAN_COLUMNS = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")
-
-
-class SweepFileError(Exception):
-    """A file that cannot be read as a rodsweep results file."""
-
-
-class KeyNotFound(Exception):
-    """A name or value that the user asked for and that the file does not have."""
-
-
-def not_found(what, name, known):
-    known = [str(k) for k in known]
-    close = difflib.get_close_matches(str(name), known, 1, 0.4)
-    by_last_part = [k for k in known if k.rsplit(".", 1)[-1] == name]
-    hint = f"; did you mean {(by_last_part or close)[0]}?" if by_last_part or close else ""
-    listed = ", ".join(known) if known else "none"
-    return KeyNotFound(f"{what} {name!r} is not in the file{hint} Known: {listed}" if hint else
-                       f"{what} {name!r} is not in the file; known: {listed}")
-
-
-def as_text(value):
-    return value.decode("utf-8", "replace").rstrip("\0") if isinstance(value, bytes) else str(value)
-
-
-def decoded(values):
-    """Fixed or variable strings of HDF5 as an array of str; other types unchanged."""
-    if values.dtype.kind in "SO":
-        return np.array([as_text(v) for v in values.ravel()], dtype=str).reshape(values.shape)
-    return values
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """One key of the job with its value for every task. Vectors have a second axis."""
-    name: str
-    unit: str
-    meaning: str
-    swept: bool
-    values: np.ndarray
-
-    @property
-    def numeric(self):
-        return self.values.ndim == 1 and self.values.dtype.kind in "iuf"
-
-    def applies(self):
-        """False where the key has no meaning for the task's scene: NaN, -1 or the empty string."""
-        first = self.values if self.values.ndim == 1 else self.values[:, 0]
-        if first.dtype.kind == "f":
-            return np.isfinite(first)
-        return first != ("" if first.dtype.kind == "U" else -1)
-
-    def codes(self):
-        """An integer per task, equal where the values are equal."""
-        axis = 0 if self.values.ndim > 1 else None
-        return np.unique(self.values, return_inverse=True, axis=axis)[1].reshape(len(self.values))
-
-    def text(self, task):
-        value = self.values[task]
-        if np.ndim(value):
-            return "(" + ", ".join(f"{v:g}" for v in value) + ")"
-        if self.values.dtype.kind == "U":
-            return str(value)
-        return "none" if np.isnan(value) else f"{value:g}"
-
-
-def opened(path, what):
-    """The h5py.File of a path that should lead to `what`."""
-    if not os.path.exists(path):
-        raise SweepFileError(f"{path}: there is no such file")
-    if os.path.isdir(path):
-        raise SweepFileError(f"{path} is a folder; give {what}")
-    try:
-        return h5py.File(path, "r")
-    except OSError as error:
-        if not os.access(path, os.R_OK):
-            raise SweepFileError(f"{path}: no permission to read it") from error
-        kind = "damaged" if h5py.is_hdf5(path) else "not an HDF5 file"
-        raise SweepFileError(f"{path} is {kind}; give a file written by `rodsweep run`") from error
 
 
 class SweepFile:
@@ -212,7 +133,7 @@ class SweepFile:
             if not equals or not wanted:
                 raise KeyNotFound(f"{condition!r}: write a selection as KEY=VALUE, KEY=A,B or KEY=LOW:HIGH")
             parameter = self.parameter(key)
-            chosen = _meets(parameter, wanted)
+            chosen = parameter.meets(wanted)
             if not chosen.any():
                 raise not_found(f"{key} =", wanted, sorted({parameter.text(t) for t in range(self.task_count)})[:12])
             mask &= chosen
@@ -288,23 +209,3 @@ class SweepFile:
 
     def _block(self, owners, starts, begin, end, columns):
         return np.array(owners), np.array(starts), {path: self.h5[path][begin:end] for path in columns}
-
-
-def _meets(parameter, wanted):
-    if parameter.numeric and ":" in wanted:
-        low, _, high = wanted.partition(":")
-        return (parameter.values >= _number(low, -np.inf, wanted)) & (parameter.values <= _number(high, np.inf, wanted))
-    if parameter.numeric:
-        chosen = [np.isclose(parameter.values, _number(part, None, wanted), rtol=1e-9) for part in wanted.split(",")]
-        return np.any(chosen, axis=0)
-    texts = np.array([parameter.text(t) for t in range(len(parameter.values))])
-    return (texts == wanted) | np.isin(texts, wanted.split(","))
-
-
-def _number(text, empty, whole):
-    if not text.strip() and empty is not None:
-        return empty
-    try:
-        return float(text)
-    except ValueError:
-        raise KeyNotFound(f"{whole!r}: {text!r} is not a number") from None

@@ -1,15 +1,13 @@
 """The table of long_term.py: how far the length and the joints of each method went, as text and as CSV."""
 
-import csv
-
 import numpy as np
 
-import commandline
-import intervals
-from style import number_text
+from reading import intervals, texts
+from reading.texts import number_text
 
 COLUMNS = ("scene", "settings", "method", "simulations", "failed", "failed_after_steps", "length_drift_largest",
-           "length_drift_final", "drift_per_1000_steps", "drift_per_1000_steps_low", "drift_per_1000_steps_high", "joint_gap_largest")
+           "length_drift_final", "drift_per_1000_steps", "drift_per_1000_steps_low", "drift_per_1000_steps_high",
+           "joint_gap_largest")
 
 
 def records(panels, series, found, sims, ok):
@@ -40,16 +38,15 @@ def lines(panels, series, found, sims, ok, begin):
             rows.append([panel.title()] + [""] * 7)
         for _ in methods_of:
             r = next(every)
-            interval = "" if np.isnan(r["drift_per_1000_steps_low"]) else (
-                f" [{number_text(r['drift_per_1000_steps_low'])}, {number_text(r['drift_per_1000_steps_high'])}]")
-            rows.append([f"  {r['method']}", str(r["simulations"]), str(r["failed"]),
-                         _text(r["failed_after_steps"]),
+            low, high = (r[f"drift_per_1000_steps_{end}"] for end in ("low", "high"))
+            interval = "" if np.isnan(low) else f" [{number_text(low)}, {number_text(high)}]"
+            rows.append([f"  {r['method']}", str(r["simulations"]), str(r["failed"]), _text(r["failed_after_steps"]),
                          number_text(r["length_drift_largest"]), number_text(r["length_drift_final"]),
                          _text(r["drift_per_1000_steps"]) + interval, number_text(r["joint_gap_largest"])])
     heading = [f"Largest and final drift, largest gap: of the worst simulation. Drift per 1000 steps: slope from step "
                f"{begin} on, median over simulations that did not fail [95 % interval]. After steps: median of how far the "
                "others came.", ""]
-    return heading + commandline.aligned(rows)
+    return heading + texts.aligned(rows)
 
 
 def _text(value):
@@ -57,7 +54,4 @@ def _text(value):
 
 
 def write_csv(out, panels, series, found, sims, ok):
-    writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    for record in records(panels, series, found, sims, ok):
-        writer.writerow({key: "" if value != value else value for key, value in record.items()})
+    texts.write_csv(out, COLUMNS, records(panels, series, found, sims, ok))

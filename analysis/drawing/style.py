@@ -12,7 +12,11 @@ from dataclasses import dataclass
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib import colors
+from matplotlib.lines import Line2D
+
+from reading import texts
 
 MM = 1 / 25.4
 WIDTHS_MM = {"84": 84, "174": 174}
@@ -62,21 +66,21 @@ class GuessStyle:
     def line(self):
         return {"color": self.colour, "marker": self.marker, "linestyle": self.dash}
 
+    def handle(self, label):
+        """Its line in a legend."""
+        return Line2D([], [], label=label, **self.line())
+
 
 DIRECT = GuessStyle(*KINDS["direct"])
-
-
-def kind_of(label):
-    """The label's first word; an oracle with white errors is a kind of its own."""
-    words = re.findall(r"[a-z]+", label.lower()) or [""]
-    return "oracle white" if words[0] == "oracle" and "white" in words else words[0]
+ZERO_LINE = {"color": KINDS["zero"][0], "linewidth": 0.9}    # at 1, where guesses are compared with zero
+WHISKERS = {"elinewidth": 0.7, "capsize": 1.1, "capthick": 0.7}
 
 
 def guess_styles(labels):
     """A style per label, from the label's kind and its rank among the labels of that kind."""
     styles, seen, spare = {}, {}, iter(SPARE * (1 + len(labels)))
     for label in labels:
-        kind = kind_of(label)
+        kind = texts.kind_of(label)
         rank = seen.get(kind, 0)
         seen[kind] = rank + 1
         if kind not in KINDS:
@@ -95,6 +99,11 @@ def series_styles(count):
     kinds = ("previous", "quadratic", "oracle", "copingnet", "linear", "guarded", "knn")
     looks = [KINDS[kind] for kind in kinds] + SPARE
     return [GuessStyle(*looks[k % len(looks)]) for k in range(count)]
+
+
+def whiskers(value, low, high):
+    """Lengths below and above a value for errorbar(); 0 where there is no interval."""
+    return np.nan_to_num(np.stack([value - low, high - value]).clip(min=0))
 
 
 def lighter(colour, share):
@@ -136,11 +145,3 @@ def tolerance_text(value):
     mantissa, exponent = f"{value:.2e}".split("e")
     power = f"10^{{{int(exponent)}}}"
     return f"${power}$" if float(mantissa) == 1 else f"${float(mantissa):g}\\times{power}$"
-
-
-def number_text(value):
-    """Short: 0.005, 20, 1e6, 3.7e-4."""
-    if value == 0 or 1e-3 <= abs(value) < 1e4:
-        return f"{value:.4g}"
-    mantissa, exponent = f"{value:.1e}".split("e")
-    return f"{float(mantissa):g}e{int(exponent)}"

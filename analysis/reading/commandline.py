@@ -1,0 +1,93 @@
+"""What the scripts share on the command line: choosing tasks, guesses and tolerances, and plain errors."""
+
+import argparse
+import os
+import sys
+
+import numpy as np
+
+from reading import measures, texts
+from reading.errors import KeyNotFound, UserError, not_found
+
+DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
+
+
+def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True):
+    """`tolerances`: what is shown by default, None for a script without that choice; newton: is there a choice?"""
+    made = argparse.ArgumentParser(description=description, epilog=epilog,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made.add_argument("file", help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
+    made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
+    made.add_argument("--select", metavar="KEY=VALUE", action="append", default=[],
+                      help="only tasks with these values of a parameter: KEY=VALUE, KEY=A,B or KEY=LOW:HIGH; "
+                           "may be repeated")
+    made.add_argument("--guess", metavar="LABEL,…", help="only these guesses (default: all)")
+    if tolerances:
+        made.add_argument("--tolerance", metavar="T,…",
+                          help=f"tolerances that iterations are counted to, or `all` (default: {tolerances})")
+    made.set_defaults(newton="first")
+    if newton:
+        made.add_argument("--newton", choices=list(measures.NEWTON), default="first",
+                          help="Newton iterations that count: the first of every step (j = 0, the default) or all")
+    return made
+
+
+def whole_number(text):
+    """The type of an argument that is at least 1."""
+    value = int(text)
+    if value < 1:
+        raise ValueError
+    return value
+
+
+def run(main):
+    """Calls main(); what the user can put right is one line on stderr and exit code 2."""
+    try:
+        main()
+        sys.stdout.flush()
+    except UserError as error:
+        _stop(error.args[0])
+    except BrokenPipeError:  # the reader of a pipe has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        # h5py raises it for rows that cannot be read, without a number
+        _stop(f"{error.filename or 'output'}: {error.strerror}" if error.errno else f"the file is damaged: {error}")
+
+
+def _stop(message):
+    print(f"{os.path.basename(sys.argv[0])}: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
+def chosen_tasks(file, arguments):
+    """Mask of the tasks that --scene and --select leave, complete or not."""
+    mask = file.select(arguments.select)
+    if arguments.scene:
+        scenes = file.scene_types()
+        if arguments.scene not in scenes:
+            raise not_found("scene", arguments.scene, sorted(set(scenes.tolist())))
+        mask &= scenes == arguments.scene
+        if not mask.any():
+            raise KeyNotFound(f"no task of scene {arguments.scene} meets all of " + ", ".join(arguments.select))
+    return mask
+
+
+def chosen_guesses(file, arguments):
+    """Indices of the guesses to show, in the file's order."""
+    if not arguments.guess:
+        return list(range(len(file.guesses)))
+    return sorted({file.guess_index(label.strip()) for label in texts.split_labels(arguments.guess)})
+
+
+def chosen_tolerances(file, arguments):
+    """Indices of the tolerances to show."""
+    if arguments.tolerance == "all":
+        return list(range(len(file.tolerances)))
+    if not arguments.tolerance:
+        return [k for k, t in enumerate(file.tolerances) if np.isclose(t, DEFAULT_TOLERANCES, rtol=1e-6, atol=0).any()]
+    try:
+        values = [float(part) for part in arguments.tolerance.split(",")]
+    except ValueError:
+        raise KeyNotFound(f"--tolerance {arguments.tolerance}: write numbers of the file's ladder with commas between "
+                          "them, or `all`") from None
+    return [file.tolerance_index(value) for value in values]

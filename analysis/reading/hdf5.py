@@ -1,0 +1,37 @@
+"""Opening the program's HDF5 files and decoding their texts. A file that cannot be opened is a SweepFileError."""
+
+import os
+
+import h5py
+import numpy as np
+
+from reading.errors import SweepFileError
+
+PROGRAM = "rodsweep"
+UNREADABLE = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError)  # what bad bytes raise
+
+
+def opened(path, what):
+    """The h5py.File of a path that should lead to `what`."""
+    if not os.path.exists(path):
+        raise SweepFileError(f"{path}: there is no such file")
+    if os.path.isdir(path):
+        raise SweepFileError(f"{path} is a folder; give {what}")
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        if not os.access(path, os.R_OK):
+            raise SweepFileError(f"{path}: no permission to read it") from error
+        kind = "damaged" if h5py.is_hdf5(path) else "not an HDF5 file"
+        raise SweepFileError(f"{path} is {kind}; give a file written by `rodsweep run`") from error
+
+
+def as_text(value):
+    return value.decode("utf-8", "replace").rstrip("\0") if isinstance(value, bytes) else str(value)
+
+
+def decoded(values):
+    """Fixed or variable strings of HDF5 as an array of str; other types unchanged."""
+    if values.dtype.kind in "SO":
+        return np.array([as_text(v) for v in values.ravel()], dtype=str).reshape(values.shape)
+    return values

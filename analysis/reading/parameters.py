@@ -1,0 +1,61 @@
+"""A parameter of the job: its value for every task, and which tasks meet a condition on it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reading.errors import KeyNotFound
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One key of the job with its value for every task. Vectors have a second axis."""
+    name: str
+    unit: str
+    meaning: str
+    swept: bool
+    values: np.ndarray
+
+    @property
+    def numeric(self):
+        return self.values.ndim == 1 and self.values.dtype.kind in "iuf"
+
+    def applies(self):
+        """False where the key has no meaning for the task's scene: NaN, -1 or the empty string."""
+        first = self.values if self.values.ndim == 1 else self.values[:, 0]
+        if first.dtype.kind == "f":
+            return np.isfinite(first)
+        return first != ("" if first.dtype.kind == "U" else -1)
+
+    def codes(self):
+        """An integer per task, equal where the values are equal."""
+        axis = 0 if self.values.ndim > 1 else None
+        return np.unique(self.values, return_inverse=True, axis=axis)[1].reshape(len(self.values))
+
+    def text(self, task):
+        value = self.values[task]
+        if np.ndim(value):
+            return "(" + ", ".join(f"{v:g}" for v in value) + ")"
+        if self.values.dtype.kind == "U":
+            return str(value)
+        return "none" if np.isnan(value) else f"{value:g}"
+
+    def meets(self, wanted):
+        """Mask of the tasks with one of the values A,B,… or a value within LOW:HIGH (both ends included)."""
+        if not self.numeric:
+            texts = np.array([self.text(t) for t in range(len(self.values))])
+            return (texts == wanted) | np.isin(texts, wanted.split(","))
+        if ":" in wanted:
+            low, _, high = wanted.partition(":")
+            return (self.values >= _number(low, -np.inf, wanted)) & (self.values <= _number(high, np.inf, wanted))
+        chosen = [np.isclose(self.values, _number(part, None, wanted), rtol=1e-9) for part in wanted.split(",")]
+        return np.any(chosen, axis=0)
+
+
+def _number(text, empty, whole):
+    if not text.strip() and empty is not None:
+        return empty
+    try:
+        return float(text)
+    except ValueError:
+        raise KeyNotFound(f"{whole!r}: {text!r} is not a number") from None

@@ -1,0 +1,59 @@
+"""Numbers, labels and tables as text."""
+
+import csv
+import re
+
+import numpy as np
+
+
+def number_text(value):
+    """Short: 0.005, 20, 1e6, 3.7e-4."""
+    if value == 0 or 1e-3 <= abs(value) < 1e4:
+        return f"{value:.4g}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{float(mantissa):g}e{int(exponent)}"
+
+
+def tolerance_label(value):
+    """1e-2, 3e-3."""
+    mantissa, exponent = f"{value:.2e}".split("e")
+    return f"{float(mantissa):g}e{int(exponent)}"
+
+
+def range_text(counts):
+    """5 or 4–5."""
+    counts = [int(c) for c in np.ravel(counts) if c > 0]
+    if not counts:
+        return "0"
+    return str(min(counts)) if min(counts) == max(counts) else f"{min(counts)}–{max(counts)}"
+
+
+def aligned(rows):
+    """Columns of equal width, the first to the left, the others to the right."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return ["  ".join([row[0].ljust(widths[0])] + [cell.rjust(w) for cell, w in zip(row[1:], widths[1:])]).rstrip()
+            for row in rows]
+
+
+def write_csv(out, columns, records):
+    """NaN (the one value that differs from itself) and what a record lacks are empty fields."""
+    writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: "" if value != value else value for key, value in record.items()} for record in records)
+
+
+def split_labels(text):
+    """At commas outside parentheses: labels may hold their own."""
+    parts, depth, start = [], 0, 0
+    for k, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        if letter == "," and depth == 0:
+            parts.append(text[start:k])
+            start = k + 1
+    return parts + [text[start:]]
+
+
+def kind_of(label):
+    """A guess's kind, the first word of its label; an oracle with white errors is a kind of its own."""
+    words = re.findall(r"[a-z]+", label.lower()) or [""]
+    return "oracle white" if words[0] == "oracle" and "white" in words else words[0]
