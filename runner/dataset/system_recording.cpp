@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "runner/file/state_rows.hpp"
+#include "solver/numbers/narrow.hpp"
 
 namespace rodsweep {
 
@@ -27,7 +28,7 @@ void SystemRecorder::before(const Rod& rod, const SolvePosition& at) {
   const SystemRows::Place place = rows_.place(at);
   record_.system_step[place.system] = at.step;
   record_.system_newton[place.system] = static_cast<std::int16_t>(at.newton);
-  record_.system_rod[place.system] = static_cast<std::int16_t>(at.rod);
+  record_.system_rod[place.system] = narrow<std::int16_t>(at.rod);
   store(rod.position, record_.system_position_m.data() + 3 * place.segment);
   store(rod.orientation, record_.system_orientation.data() + 4 * place.segment);
   store(rod.velocity, record_.system_velocity_m_s.data() + 3 * place.segment);

@@ -5,6 +5,7 @@
 
 #include "runner/experiment/projections.hpp"
 #include "runner/file/state_rows.hpp"
+#include "solver/numbers/narrow.hpp"
 #include "solver/step/observables.hpp"
 
 namespace rodsweep {
@@ -63,7 +64,7 @@ void record_segments(const Scene& scene, TaskRecord& record) {
     for (const Segment& segment : scene.rods[rod].segments) {
       record.segment_length_m[row] = segment.length_m;
       record.segment_radius_m[row] = segment.radius_m;
-      record.segment_rod[row] = static_cast<std::int16_t>(rod);
+      record.segment_rod[row] = narrow<std::int16_t>(static_cast<std::int64_t>(rod));
       record.segment_static[row] = segment.is_static ? 1 : 0;
       ++row;
     }

@@ -1,5 +1,6 @@
 #include "runner/experiment/solve_rows.hpp"
 
+#include "solver/numbers/narrow.hpp"
 #include "solver/step/observables.hpp"
 
 namespace rodsweep {
@@ -14,7 +15,7 @@ std::size_t solve_row(const TaskSpec& spec, std::size_t rods, const SolvePositio
 void record_position(const SolvePosition& at, std::size_t row, TaskRecord& record) {
   record.step[row] = at.step;
   record.newton[row] = static_cast<std::int16_t>(at.newton);
-  record.rod[row] = static_cast<std::int16_t>(at.rod);
+  record.rod[row] = narrow<std::int16_t>(at.rod);
 }
 
 void record_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "runner/job/job_keys.hpp"
+#include "runner/job/guess_keys.hpp"
 #include "runner/job/key_path.hpp"
 #include "runner/job/sweep.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "runner/job/job_keys.hpp"
+#include "runner/job/guess_keys.hpp"
 #include "runner/job/job_reader.hpp"
 #include "runner/job/key_path.hpp"
 #include "runner/job/nearest.hpp"

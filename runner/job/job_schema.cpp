@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "runner/job/guess_keys.hpp"
 #include "runner/job/job_keys.hpp"
 #include "runner/job/key_path.hpp"
 #include "runner/job/sweep.hpp"
@@ -17,12 +18,6 @@ using Json = nlohmann::ordered_json;
 Json reference(const std::string& definition) { return {{"$ref", "#/definitions/" + definition}}; }
 
 std::string description(const Key& key) { return key.help + (key.unit.empty() ? "" : " [" + key.unit + "]"); }
-
-/// 1 rather than 1.0.
-Json number(double value) {
-  if (std::trunc(value) == value && std::abs(value) <= 9007199254740991) return static_cast<std::int64_t>(value);
-  return value;
-}
 
 Json bounded(const char* type, const Key& key) {
   Json schema{{"type", type}};

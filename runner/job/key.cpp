@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/job/job_keys.hpp"
+#include "runner/job/guess_keys.hpp"
 
 namespace rodsweep {
 namespace {
@@ -48,6 +48,7 @@ Key& Key::at_most(double bound) {
   high = bound;
   return *this;
 }
+Key& Key::from(double least, double most) { return at_least(least).at_most(most); }
 Key& Key::or_word(const char* word) {
   choices.emplace_back(word);
   return *this;
@@ -58,6 +59,9 @@ Key& Key::defaults_to(nlohmann::ordered_json value) {
 }
 Key& Key::only(std::vector<std::string> tag_values, const char* advice) {
   only_for = std::move(tag_values);
+  return otherwise(advice);
+}
+Key& Key::otherwise(const char* advice) {
   only_advice = advice;
   return *this;
 }
@@ -123,6 +127,11 @@ Key component_key(const Key& vector) {
   Key key = vector;
   key.kind = Key::Kind::number;
   return key;
+}
+
+nlohmann::ordered_json number(double value) {
+  if (std::trunc(value) == value && std::abs(value) <= 9007199254740991) return static_cast<std::int64_t>(value);
+  return value;
 }
 
 std::string quoted_list(const std::vector<std::string>& words) {

@@ -1,5 +1,5 @@
 // One key of a job file, described once. Reading, defaults, refusals, the columns of the results file and help texts
-// all follow from these rows; the rows themselves are in runner/job/job_keys.cpp.
+// all follow from these rows; job_keys.cpp begins the whole, key_table.hpp binds many of them to what they fill.
 #pragma once
 
 #include <limits>
@@ -60,9 +60,11 @@ struct Key {
   Key& above(double bound);
   Key& at_least(double bound);
   Key& at_most(double bound);
+  Key& from(double least, double most);
   Key& or_word(const char* word);
   Key& defaults_to(nlohmann::ordered_json value);
   Key& only(std::vector<std::string> tag_values, const char* advice = "");
+  Key& otherwise(const char* advice);  ///< only_advice, where a table of keys knows whose the key is
   Key& one_of_group(const char* group);
   Key& of_form(Text form);
   Key& also_called(std::vector<std::string> words);
@@ -71,14 +73,14 @@ struct Key {
   Key& setting();  ///< concerns the whole job: neither swept nor a parameter of its tasks
 };
 
-Key object_key(const char* name, const char* help, std::vector<Key> keys, const char* tag = "");
+Key object_key(const char* name, const char* help, std::vector<Key> keys = {}, const char* tag = "");
 Key integer_key(const char* name, const char* help);
 Key boolean_key(const char* name, const char* help);
 Key number_key(const char* name, const char* help);
 Key vector_key(const char* name, const char* help);
 Key text_key(const char* name, const char* help);
 Key file_key(const char* name, const char* help);  ///< a file that the job reads
-Key choice_key(const char* name, const char* help, std::vector<std::string> choices);
+Key choice_key(const char* name, const char* help, std::vector<std::string> choices = {});
 Key variant_key(const char* name, const char* help, std::vector<Key> kinds);
 Key list_key(const char* name, const char* help, Key item);
 Key guess_key(const char* name, const char* help);
@@ -98,6 +100,9 @@ const Key* find_key(const std::vector<Key>& keys, const std::string& name);
 
 /// Does a key belong to this value of the tag?
 bool belongs(const Key& key, const std::string& tag_value);
+
+/// As a job has it: 1 rather than 1.0.
+nlohmann::ordered_json number(double value);
 
 /// "a", "b", "c"
 std::string quoted_list(const std::vector<std::string>& words);

@@ -1,9 +1,8 @@
 #include "runner/job/obstacle_keys.hpp"
 
-#include <optional>
 #include <string>
+#include <tuple>
 
-#include "runner/job/key_path.hpp"
 #include "runner/job/sweep.hpp"
 
 namespace rodsweep {
@@ -11,61 +10,79 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* list = "scene.obstacles";
+template <class Solid>
+struct Kind {
+  const char* name;
+  const char* help;
+  KeyTable<Solid> table;
+};
 
-Key place(const char* name, const char* help) { return vector_key(name, help).in("m").at_least(-1e6).at_most(1e6); }
+Key place(const char* name, const char* help) { return vector_key(name, help).in("m").from(-1e6, 1e6); }
 Key radius() { return number_key("radius_m", "radius").in("m").above(0).at_most(1e6); }
 
-Vector3 vector(const Point& point, const std::string& path) {
-  const double* number = point.at(path).number;
-  return {number[0], number[1], number[2]};
+KeyTable<HalfSpace> half_space_keys() {
+  KeyTable<HalfSpace> table;
+  table.optional(place("point_m", "a point of the plane"), &HalfSpace::point_m);
+  table.optional(vector_key("normal", "direction out of the solid, of any length").from(-1e6, 1e6), &HalfSpace::normal);
+  return table;
 }
 
-HalfSpace half_space(const Point& point, const Job& job, const std::string& path) {
-  const HalfSpace space{vector(point, path + ".point_m"), vector(point, path + ".normal")};
-  if (space.normal.isZero(0))
-    throw job_error(job.path, path + ".normal", "[0, 0, 0] is not allowed; must have a direction");
-  return space;
+KeyTable<Ball> ball_keys() {
+  KeyTable<Ball> table;
+  table.required(place("centre_m", "its centre"), &Ball::centre_m);
+  table.required(radius(), &Ball::radius_m);
+  return table;
 }
 
-/// The obstacle at a place of the list, nothing behind its end.
-std::optional<Obstacle> obstacle(const Point& point, const Job& job, const std::string& path) {
-  const std::string space = path + ".half_space", ball = path + ".ball", capsule = path + ".capsule";
-  if (point.has(space + ".normal")) return half_space(point, job, space);
-  if (point.has(ball + ".radius_m")) return Ball{vector(point, ball + ".centre_m"), point.number(ball + ".radius_m")};
-  if (point.has(capsule + ".radius_m"))
-    return Capsule{vector(point, capsule + ".from_m"), vector(point, capsule + ".to_m"),
-                   point.number(capsule + ".radius_m")};
-  return std::nullopt;
+KeyTable<Capsule> capsule_keys() {
+  KeyTable<Capsule> table;
+  table.required(place("from_m", "one end of the line"), &Capsule::from_m);
+  table.required(place("to_m", "the other end"), &Capsule::to_m);
+  table.required(radius(), &Capsule::radius_m);
+  return table;
+}
+
+const auto& kinds() {
+  static const std::tuple kinds{
+      Kind<HalfSpace>{"half_space", "all that is below a plane", half_space_keys()},
+      Kind<Ball>{"ball", "a ball", ball_keys()},
+      Kind<Capsule>{"capsule", "all that is nearer than a radius to a line from one point to another", capsule_keys()}};
+  return kinds;
+}
+
+template <class Solid>
+void read_if(const Kind<Solid>& kind, const Place& at, Obstacle& obstacle) {
+  if (at.point.text(at.path) != kind.name) return;
+  Solid solid;
+  kind.table.fill(solid, at.of(kind.name));
+  obstacle = solid;
+}
+
+Obstacle obstacle(const Place& at) {
+  Obstacle found;
+  std::apply([&](const auto&... kind) { (read_if(kind, at, found), ...); }, kinds());
+  if (const auto* space = std::get_if<HalfSpace>(&found); space && space->normal.isZero(0))
+    throw job_error(at.job.path, at.path + ".half_space.normal", "[0, 0, 0] is not allowed; must have a direction");
+  return found;
 }
 
 }  // namespace
 
 Key obstacles_key() {
-  const Key obstacle =
-      variant_key("obstacle", "a solid that rests",
-                  {
-                      object_key("half_space", "all that is below a plane",
-                                 {
-                                     place("point_m", "a point of the plane").defaults_to(Json::array({0, 0, 0})),
-                                     vector_key("normal", "direction out of the solid, of any length")
-                                         .at_least(-1e6)
-                                         .at_most(1e6)
-                                         .defaults_to(Json::array({0, 1, 0})),
-                                 }),
-                      object_key("ball", "a ball", {place("centre_m", "its centre"), radius()}),
-                      object_key("capsule", "all that is nearer than a radius to a line from one point to another",
-                                 {place("from_m", "one end of the line"), place("to_m", "the other end"), radius()}),
-                  });
+  const auto keys = [](const auto&... kind) {
+    return std::vector<Key>{object_key(kind.name, kind.help, kind.table.keys())...};
+  };
   return list_key("obstacles", "what rods with \"contact\" touch besides each other and the scene's own floor",
-                  obstacle)
-      .defaults_to(Json::array());
+                  variant_key("obstacle", "a solid that rests", std::apply(keys, kinds())));
 }
 
-std::vector<Obstacle> obstacles(const Point& point, const Job& job) {
-  std::vector<Obstacle> found;
-  while (const auto next = obstacle(point, job, element(list, found.size()))) found.push_back(*next);
-  return found;
+void read_value(const Place& list, std::vector<Obstacle>& obstacles) {
+  obstacles.clear();
+  while (true) {
+    const Place item{list.point, list.job, element(list.path, obstacles.size())};
+    if (!item.point.has(item.path)) return;
+    obstacles.push_back(obstacle(item));
+  }
 }
 
 void check_obstacles(const Json& scene, const std::string& path, const std::filesystem::path& file) {

@@ -1,4 +1,4 @@
-// What the rods of a scene in a job touch besides each other: the keys, and what they describe.
+// What the rods of a scene in a job touch besides each other: the keys of `scene.obstacles`.
 #pragma once
 
 #include <filesystem>
@@ -6,17 +6,19 @@
 #include <string>
 #include <vector>
 
-#include "runner/job/job.hpp"
-#include "runner/job/key.hpp"
-#include "runner/job/sweep_space.hpp"
+#include "runner/job/key_table.hpp"
 #include "solver/scene/contact_settings.hpp"
 
 namespace rodsweep {
 
 Key obstacles_key();
 
-/// At a parameter point. Throws JobError for a half-space without a direction.
-std::vector<Obstacle> obstacles(const Point& point, const Job& job);
+/// Throws JobError for a half-space without a direction.
+void read_value(const Place& list, std::vector<Obstacle>& obstacles);
+
+inline nlohmann::ordered_json written(const Key&, const std::vector<Obstacle>&) {
+  return nlohmann::ordered_json::array();  // none is the default
+}
 
 /// Throws JobError for obstacles in a scene that nothing can touch: a validated job's scene, or a sweep of scenes.
 /// Where contact is swept they may stand, since "none" is then what contact is compared with.

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "runner/job/contact_keys.hpp"
 #include "runner/job/counter_random.hpp"
+#include "runner/job/guess_keys.hpp"
 #include "runner/job/scene_spec.hpp"
 #include "runner/job/task_spec.hpp"
 
@@ -37,7 +37,7 @@ Plan::Plan(Job job)
     const SceneSpec scene = scene_spec(values, job_);
     check_scene(scene, job_);
     check_method(values, job_);
-    contact_rows_ = contact_rows_ || contact_settings(values);
+    contact_rows_ = contact_rows_ || rod_parameters(scene).contact;
     const TimeSpec time = time_spec(values, job_);
 
     Task task;

@@ -1,133 +1,211 @@
 #include "runner/job/scene_keys.hpp"
 
-#include <iterator>
-
 #include "runner/job/contact_keys.hpp"
 #include "runner/job/obstacle_keys.hpp"
-#include "runner/job/tree_keys.hpp"
+#include "runner/job/skeleton_file.hpp"
 #include "runner/job/wind_keys.hpp"
 
 namespace rodsweep {
 
-using Json = nlohmann::ordered_json;
+// Found by KeyTable among its overloads.
+static void read_value(const Place& at, std::shared_ptr<const Skeleton>& skeleton) {
+  const InputFile& file = at.job.files.at(at.point.text(at.path));
+  try {
+    skeleton = shared_skeleton(file.path, file.hash);
+  } catch (const SkeletonError& error) {
+    throw job_error(at.job.path, at.path, error.what());
+  }
+}
+
+namespace {
+
+using Table = KeyTable<SceneSpec>;
+using Rods = RodParameters;
+
+// Members of many scenes: of whichever has them, or a tree's shape.
+const auto segments = [](auto& scene) -> decltype((scene.segments)) { return scene.segments; };
+const auto length_m = [](auto& scene) -> decltype((scene.length_m)) { return scene.length_m; };
+template <class Value>
+auto shape(Value TreeShape::*value) {
+  return [value](Tree& tree) -> Value& { return tree.shape.*value; };
+}
+struct OwnRadius {
+  double& operator()(RodParameters& scene) const { return scene.radius_m; }
+  void operator()(SkeletonTree&) const = delete;
+};
+
+Key length_key(const char* name, const char* help) { return number_key(name, help).in("m").above(0).at_most(1e6); }
+Key angle_key(const char* name, const char* help, double least, double most) {
+  return number_key(name, help).in("deg").from(least, most);
+}
+
+void add_shapes(Table& table) {
+  table.optional(
+      choice_key("clamp", "how the first end is held: its segment, an exact wall (not of a ring), or not at all")
+          .otherwise("a net is \"held\", trees stand on the ground"),
+      Words<Clamp>{{"segment", Clamp::segment}, {"wall", Clamp::wall}, {"free", Clamp::free}}, &OpenRod::clamp,
+      &Ring::clamp);
+  table.optional(
+      choice_key("held",
+                 "what of a net is held: the first segments of all its rods along z, the end segments of the outermost "
+                 "two of them, or nothing")
+          .otherwise("a rod's end has a \"clamp\""),
+      Words<Net::Held>{{"side", Net::Held::side}, {"corners", Net::Held::corners}, {"free", Net::Held::free}},
+      &Net::held);
+  table.required(integer_key("segments",
+                             "number of segments of the rod, or of each of them, without a wall's static one; of a net "
+                             "from one crossing to the next; of a tree's trunk and of each of its branches")
+                     .from(1, 1000000)
+                     .also_called({"n", "number_of_segments", "elements"})
+                     .otherwise("a skeleton has one for every edge"),
+                 segments, shape(&TreeShape::segments));
+  table.required(length_key("length_m", "length of the rod; of a tree's trunk"), length_m, shape(&TreeShape::length_m));
+  table.optional(
+      angle_key("twist_deg", "total angle by which a ring was twisted before its ends were joined", -1e6, 1e6),
+      &Ring::twist_deg);
+  table.optional(choice_key("rest_shape", "what the rod of a ring would be without load, cut open"),
+                 Words<Ring::RestShape>{{"straight", Ring::RestShape::straight}, {"circle", Ring::RestShape::circle}},
+                 &Ring::rest_shape);
+  table.required(integer_key("rows", "rods of a net along x; rows of a forest").from(1, 1000), &Net::rows,
+                 &Forest::rows);
+  table.required(integer_key("columns", "rods of a net along z; trees in a row of a forest").from(1, 1000),
+                 &Net::columns, &Forest::columns);
+  table.required(length_key("mesh_m", "distance of neighbouring rods of a net"), &Net::mesh_m);
+  table.required(length_key("helix_radius_m", "radius of the helix"), &Helix::helix_radius_m);
+  table.required(length_key("helix_height_m", "height of the helix"), &Helix::helix_height_m);
+  table.required(number_key("windings", "turns of the helix").above(0).at_most(1e6).also_called({"turns"}),
+                 &Helix::windings);
+}
+
+void add_rods(Table& table) {
+  table.required(number_key("radius_m", "radius of the rod's cross-section; of a tree's trunk at the ground")
+                     .in("m")
+                     .above(0)
+                     .at_most(1e3)
+                     .otherwise("a skeleton has its own radii"),
+                 OwnRadius());
+  table.required(number_key("density_kg_m3", "density").in("kg/m^3").above(0).at_most(1e6).also_called({"rho"}),
+                 &Rods::density_kg_m3);
+  table.required(number_key("youngs_modulus_pa", "Young's modulus, for bending")
+                     .in("Pa")
+                     .above(0)
+                     .at_most(1e15)
+                     .also_called({"bending_modulus_pa", "elastic_modulus_pa", "e", "y"}),
+                 &Rods::youngs_modulus_pa);
+  table.required(number_key("torsion_modulus_pa", "torsion modulus, for twisting and shear")
+                     .in("Pa")
+                     .above(0)
+                     .at_most(1e15)
+                     .also_called({"shear_modulus_pa", "g", "t"}),
+                 &Rods::torsion_modulus_pa);
+  table.optional(
+      angle_key("initial_angle_deg",
+                "angle from the horizontal at the start; of a bundle's outermost rods from the vertical", -360, 360),
+      &BendingRod::initial_angle_deg, &Bundle::initial_angle_deg);
+  table.optional(vector_key("gravity_m_s2", "acceleration of gravity").in("m/s^2").from(-1e6, 1e6),
+                 &Rods::gravity_m_s2);
+  table.optional(number_key("damping_per_s", "viscous damping: velocities decay at this rate").in("1/s").from(0, 1e6),
+                 &Rods::damping_per_s);
+  table.optional(vector_key("tip_force_n", "constant force at the free end").in("N").from(-1e12, 1e12),
+                 &OpenRod::tip_force_n);
+  table.optional(choice_key("stretch",
+                            "stretching and shearing: held back by a stiffness chosen from the expected forces, or by "
+                            "EA and kappa G A (Timoshenko's coefficient of a circle)"),
+                 Words<Stretch>{{"inextensible", Stretch::inextensible}, {"physical", Stretch::physical}},
+                 &Rods::stretch);
+  table.optional(number_key("stretch_compliance_per_j",
+                            "compliance of the stretch and shear constraints, or the one that \"stretch\" means")
+                     .in("1/J")
+                     .from(0, 1e6)
+                     .or_word("from_stretch"),
+                 &Rods::stretch_compliance_per_j);
+  table.optional(
+      object_key("wind", "what the air around the rods does; segments have quadratic drag in it").or_word("none"),
+      wind_keys(), &Rods::wind);
+  table.optional(obstacles_key(), &Rods::obstacles);
+}
+
+void add_trees(Table& table) {
+  using Shape = TreeShape;
+  table.required(integer_key("depth", "branchings of a tree between the ground and a twig").from(0, 100),
+                 shape(&Shape::depth));
+  table.required(integer_key("branches", "new branches at the end of each branch of a tree").from(1, 100),
+                 shape(&Shape::branches));
+  table.optional(
+      number_key("length_ratio", "length of a tree's branch over that of the one it grows from").above(0).at_most(10),
+      shape(&Shape::length_ratio));
+  table.optional(
+      number_key("taper", "radius of a tree's branch where it ends over that where it begins; 1: the pipe model's own")
+          .above(0)
+          .at_most(1),
+      shape(&Shape::taper));
+  table.optional(
+      number_key("pipe_exponent", "e of the pipe model r^e = r_1^e + r_2^e + ... at every branching of a tree")
+          .from(0.5, 10),
+      shape(&Shape::pipe_exponent));
+  table.optional(angle_key("branching_angle_deg", "angle between a tree's branch and the one it grows from", 0, 150),
+                 shape(&Shape::branching_angle_deg));
+  table.optional(angle_key("angle_spread_deg", "by how much at most the branching angles differ from that", 0, 150),
+                 shape(&Shape::angle_spread_deg));
+  table.optional(
+      choice_key("phyllotaxis", "how branches go around: by the golden angle from one to the next, or at random"),
+      Words<Shape::Phyllotaxis>{{"golden", Shape::Phyllotaxis::golden}, {"random", Shape::Phyllotaxis::random}},
+      shape(&Shape::phyllotaxis));
+  table.optional(integer_key("tree_seed", "which tree of all those of this shape; which forest").from(0, 1e15),
+                 shape(&Shape::seed));
+  table.optional(
+      number_key("modulus_exponent", "both moduli of a tree's branch grow with its radius to this power").from(-4, 4),
+      &Tree::modulus_exponent, &SkeletonTree::modulus_exponent);
+  table.required(length_key("spacing_m", "distance of neighbouring trees of a forest"), &Forest::spacing_m);
+  table.optional(
+      number_key("jitter", "how much of the spacing the places of a forest's trees are spread over").from(0, 1),
+      &Forest::jitter);
+  table.required(file_key("skeleton", "SWC file of a tree: id, type, x, y, z, radius, parent"),
+                 &SkeletonTree::skeleton);
+  table.optional(length_key("skeleton_unit_m", "size of the skeleton file's unit"), &SkeletonTree::unit_m);
+  table.optional(choice_key("skeleton_up", "which axis of the skeleton file points up"),
+                 Words<Up>{{"y", Up::y}, {"z", Up::z}}, &SkeletonTree::up);
+}
+
+void add_touching(Table& table) {
+  table.optional(
+      object_key("contact", "rods touch each other, themselves and the floor, without rebound").or_word("none"),
+      contact_keys(), &Rods::contact);
+  table.required(integer_key("rods", "number of rods").from(1, 30000), &FallingRods::rods, &Bundle::rods);
+  table.required(integer_key("rings", "number of rings of a chain").from(1, 30000), &RingChain::rings);
+  table.required(
+      length_key("height_m", "from one falling rod to the next and to the floor; of a coiling rod's end above it"),
+      &FallingRods::height_m, &CoilingRod::height_m);
+  table.optional(angle_key("turn_deg", "of each falling rod against the one below", -360, 360), &FallingRods::turn_deg);
+  table.required(number_key("feed_m_s", "how fast the held end of a coiling rod goes down").in("m/s").from(0, 1e3),
+                 &CoilingRod::feed_m_s);
+  table.required(number_key("pull_m_s", "how fast each end of a knot is pulled away").in("m/s").from(0, 1e3),
+                 &Knot::pull_m_s);
+}
+
+}  // namespace
+
+const KeyTable<SceneSpec>& scene_keys() {
+  static const Table table = [] {
+    Table keys;
+    add_shapes(keys);
+    add_rods(keys);
+    add_trees(keys);
+    add_touching(keys);
+    return keys;
+  }();
+  return table;
+}
 
 Key scene_key() {
-  Key scene = object_key(
-      "scene", "the rods that are simulated",
-      {
-          choice_key("type", "which scene",
-                     {"bending_rod", "helix", "ring", "net", "tree", "forest", "skeleton", "falling_rods",
-                      "coiling_rod", "knot", "ring_chain", "bundle"})
-              .unswept(
-                  "to sweep over scenes, list whole ones: \"scene\": {\"grid\": [{\"type\": \"bending_rod\", ...}, "
-                  "{\"type\": \"helix\", ...}]}"),
-          choice_key("clamp", "how the first end is held: its segment, an exact wall (not of a ring), or not at all",
-                     {"segment", "wall", "free"})
-              .defaults_to("segment")
-              .only({"bending_rod", "helix", "ring"}, "a net is \"held\", trees stand on the ground"),
-          choice_key("held",
-                     "what of a net is held: the first segments of all its rods along z, the end segments of the "
-                     "outermost two of them, or nothing",
-                     {"side", "corners", "free"})
-              .defaults_to("corners")
-              .only({"net"}, "a rod's end has a \"clamp\""),
-          integer_key(
-              "segments",
-              "number of segments of the rod, or of each of them, without a wall's static one; of a net from one "
-              "crossing to the next; of a tree's trunk and of each of its branches")
-              .at_least(1)
-              .at_most(1000000)
-              .also_called({"n", "number_of_segments", "elements"})
-              .only({"bending_rod", "helix", "ring", "net", "tree", "forest", "falling_rods", "coiling_rod", "knot",
-                     "ring_chain", "bundle"},
-                    "a skeleton has one for every edge"),
-          number_key("length_m", "length of the rod; of a tree's trunk")
-              .in("m")
-              .above(0)
-              .at_most(1e6)
-              .only({"bending_rod", "ring", "tree", "forest", "falling_rods", "coiling_rod", "knot", "ring_chain",
-                     "bundle"}),
-          number_key("twist_deg", "total angle by which a ring was twisted before its ends were joined")
-              .in("deg")
-              .at_least(-1e6)
-              .at_most(1e6)
-              .defaults_to(0)
-              .only({"ring"}),
-          choice_key("rest_shape", "what the rod of a ring would be without load, cut open", {"straight", "circle"})
-              .defaults_to("straight")
-              .only({"ring"}),
-          integer_key("rows", "rods of a net along x; rows of a forest")
-              .at_least(1)
-              .at_most(1000)
-              .only({"net", "forest"}),
-          integer_key("columns", "rods of a net along z; trees in a row of a forest")
-              .at_least(1)
-              .at_most(1000)
-              .only({"net", "forest"}),
-          number_key("mesh_m", "distance of neighbouring rods of a net").in("m").above(0).at_most(1e6).only({"net"}),
-          number_key("helix_radius_m", "radius of the helix").in("m").above(0).at_most(1e6).only({"helix"}),
-          number_key("helix_height_m", "height of the helix").in("m").above(0).at_most(1e6).only({"helix"}),
-          number_key("windings", "turns of the helix").above(0).at_most(1e6).only({"helix"}).also_called({"turns"}),
-          number_key("radius_m", "radius of the rod's cross-section; of a tree's trunk at the ground")
-              .in("m")
-              .above(0)
-              .at_most(1e3)
-              .only({"bending_rod", "helix", "ring", "net", "tree", "forest", "falling_rods", "coiling_rod", "knot",
-                     "ring_chain", "bundle"},
-                    "a skeleton has its own radii"),
-          number_key("density_kg_m3", "density").in("kg/m^3").above(0).at_most(1e6).also_called({"rho"}),
-          number_key("youngs_modulus_pa", "Young's modulus, for bending")
-              .in("Pa")
-              .above(0)
-              .at_most(1e15)
-              .also_called({"bending_modulus_pa", "elastic_modulus_pa", "e", "y"}),
-          number_key("torsion_modulus_pa", "torsion modulus, for twisting and shear")
-              .in("Pa")
-              .above(0)
-              .at_most(1e15)
-              .also_called({"shear_modulus_pa", "g", "t"}),
-          number_key("initial_angle_deg",
-                     "angle from the horizontal at the start; of a bundle's outermost rods from the vertical")
-              .in("deg")
-              .at_least(-360)
-              .at_most(360)
-              .defaults_to(0)
-              .only({"bending_rod", "bundle"}),
-          vector_key("gravity_m_s2", "acceleration of gravity")
-              .in("m/s^2")
-              .at_least(-1e6)
-              .at_most(1e6)
-              .defaults_to(Json::array({0, -9.81, 0})),
-          number_key("damping_per_s", "viscous damping: velocities decay at this rate")
-              .in("1/s")
-              .at_least(0)
-              .at_most(1e6)
-              .defaults_to(0),
-          vector_key("tip_force_n", "constant force at the free end")
-              .in("N")
-              .at_least(-1e12)
-              .at_most(1e12)
-              .defaults_to(Json::array({0, 0, 0}))
-              .only({"bending_rod", "helix"}),
-          choice_key("stretch",
-                     "stretching and shearing: held back by a stiffness chosen from the expected forces, or by EA and "
-                     "kappa G A (Timoshenko's coefficient of a circle)",
-                     {"inextensible", "physical"})
-              .defaults_to("inextensible"),
-          number_key("stretch_compliance_per_j",
-                     "compliance of the stretch and shear constraints, or the one that \"stretch\" means")
-              .in("1/J")
-              .at_least(0)
-              .at_most(1e6)
-              .or_word("from_stretch")
-              .defaults_to("from_stretch"),
-          wind_key(),
-          obstacles_key(),
-      },
-      "type");
-  for (std::vector<Key> keys : {tree_keys(), contact_keys()})
-    scene.keys.insert(scene.keys.end(), std::make_move_iterator(keys.begin()), std::make_move_iterator(keys.end()));
-  return scene;
+  Key type = choice_key("type", "which scene")
+                 .unswept(
+                     "to sweep over scenes, list whole ones: \"scene\": {\"grid\": [{\"type\": \"bending_rod\", "
+                     "...}, {\"type\": \"helix\", ...}]}");
+  KindsOf<SceneSpec>::each([&](const auto& scene) { type.choices.emplace_back(scene.name); });
+  std::vector<Key> keys{type};
+  keys.insert(keys.end(), scene_keys().keys().begin(), scene_keys().keys().end());
+  return object_key("scene", "the rods that are simulated", std::move(keys), type.name.c_str());
 }
 
 }  // namespace rodsweep

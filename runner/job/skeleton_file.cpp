@@ -107,14 +107,4 @@ std::shared_ptr<const Skeleton> shared_skeleton(const std::filesystem::path& fil
   return skeleton = std::make_shared<const Skeleton>(parse_skeleton(text.str(), file));
 }
 
-Skeleton placed(const Skeleton& skeleton, double scale, Up up) {
-  Skeleton out = skeleton;
-  for (SkeletonNode& node : out) {
-    const Vector3 p = scale * (node.position_m - skeleton.front().position_m);
-    node.position_m = up == Up::y ? p : Vector3(p.x(), p.z(), -p.y());
-    node.radius_m *= scale;
-  }
-  return out;
-}
-
 }  // namespace rodsweep

@@ -25,9 +25,4 @@ Skeleton parse_skeleton(const std::string& text, const std::filesystem::path& fi
 /// Of a file whose content has this hash, read once a process.
 std::shared_ptr<const Skeleton> shared_skeleton(const std::filesystem::path& file, const std::string& hash);
 
-enum class Up { y, z };
-
-/// In metres, its root at the origin and y up; `scale` is the size of the file's unit in metres.
-Skeleton placed(const Skeleton& skeleton, double scale, Up up);
-
 }  // namespace rodsweep

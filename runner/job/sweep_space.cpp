@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "runner/job/counter_random.hpp"
+#include "runner/job/guess_keys.hpp"
 #include "runner/job/job.hpp"
 #include "runner/job/job_keys.hpp"
 #include "runner/job/key_path.hpp"

@@ -2,23 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "runner/job/choice.hpp"
-#include "runner/job/key_path.hpp"
-#include "runner/job/sweep.hpp"
+#include "runner/job/key_table.hpp"
 
 namespace rodsweep {
 namespace {
 
+constexpr int gauss_seidel_iterations = 20;
+
+const Words<Method> methods{{"cg", Method::cg},
+                            {"direct", Method::direct},
+                            {"end_to_end", Method::end_to_end},
+                            {"xpbd", Method::xpbd},
+                            {"pbd", Method::pbd}};
+
 Method method(const Point& point) {
-  static const std::map<std::string, Method> methods{{"cg", Method::cg},
-                                                     {"direct", Method::direct},
-                                                     {"end_to_end", Method::end_to_end},
-                                                     {"pbd", Method::pbd},
-                                                     {"xpbd", Method::xpbd}};
-  return point.has("solve.method") ? choice(methods, point.text("solve.method")) : Method::direct;
+  return point.has("solve.method") ? value_of(methods, point.text("solve.method")) : Method::direct;
 }
 
 int whole_steps(double duration_s, double step_s, const Job& job) {
@@ -41,84 +42,118 @@ int whole_steps(double duration_s, double step_s, const Job& job) {
   return static_cast<int>(steps);
 }
 
-GuessSpec guess_spec(const Point& point, const Job& job, const std::string& path) {
-  using Kind = GuessSpec::Kind;
-  static const std::map<std::string, Kind> kinds{{"zero", Kind::zero},           {"previous", Kind::previous},
-                                                 {"linear", Kind::linear},       {"quadratic", Kind::quadratic},
-                                                 {"fischer", Kind::fischer},     {"pod", Kind::pod},
-                                                 {"copingnet", Kind::copingnet}, {"knn", Kind::knn},
-                                                 {"oracle", Kind::oracle},       {"guarded", Kind::guarded}};
-  static const std::map<std::string, OracleGuess::Error> error_kinds{{"white", OracleGuess::Error::white},
-                                                                     {"smooth", OracleGuess::Error::smooth}};
-  GuessSpec guess;
-  const std::string& name = point.text(path);
-  guess.kind = choice(kinds, name);
-  const std::string parameters = path + "." + name + ".";
-  if (guess.kind == Kind::fischer || guess.kind == Kind::pod)
-    guess.size = static_cast<int>(point.integer(parameters + "size"));
-  if (guess.kind == Kind::copingnet) guess.model = job.files.at(point.text(parameters + "model")).path;
-  if (guess.kind == Kind::knn) {
-    guess.data = job.files.at(point.text(parameters + "data")).path;
-    guess.simulations = static_cast<int>(point.integer(parameters + "simulations"));
-    guess.neighbours = static_cast<int>(point.integer(parameters + "k"));
-  }
-  if (guess.kind == Kind::oracle) {
-    guess.error = point.number(parameters + "error");
-    guess.error_kind = choice(error_kinds, point.text(parameters + "errors"));
-  }
-  if (guess.kind == Kind::guarded) {
-    guess.threshold = point.number(parameters + "threshold");
-    guess.inner.push_back(guess_spec(point, job, parameters + "guess"));
-    guess.inner.back().label = guess.inner.back().kind == Kind::guarded ? "guarded" : point.text(parameters + "guess");
-  }
-  return guess;
+KeyTable<TimeSpec> time_keys() {
+  constexpr const char* run = "length of the run";
+  KeyTable<TimeSpec> table;
+  table.required(
+      number_key("step_s", "time step").in("s").above(0).at_most(1000).also_called({"dt", "dt_s", "time_step_s"}),
+      &TimeSpec::step_s);
+  table.required(integer_key("steps", "number of time steps").from(1, 10000000).one_of_group(run), &TimeSpec::steps);
+  table.unbound(number_key("duration_s", "simulated time, a whole number of steps")
+                    .in("s")
+                    .above(0)
+                    .at_most(1e9)
+                    .one_of_group(run));
+  table.optional(
+      integer_key("newton_iterations", "most Newton iterations in a step; not of xpbd and pbd, which have their own")
+          .from(1, 1000),
+      &TimeSpec::newton_iterations);
+  table.optional(
+      number_key("newton_tolerance", "a step's iterations end when max |C + alpha~ lambda| is below it").from(0, 1),
+      &TimeSpec::newton_tolerance);
+  return table;
+}
+
+KeyTable<SolveSpec> solve_keys() {
+  const auto stretch = [](SolveSpec& solve) -> double& { return solve.stiffness.stretch; };
+  const auto bending = [](SolveSpec& solve) -> double& { return solve.stiffness.bending; };
+  KeyTable<SolveSpec> table;
+  table.optional(
+      choice_key("method",
+                 "conjugate gradients with counted iterations, the direct solve alone, or in a closed loop what does "
+                 "without linear systems: a network's answers, or Gauss-Seidel over the joints, with compliances "
+                 "(xpbd) or without (pbd)"),
+      methods, &SolveSpec::method);
+  table.required(file_key("model", "model file of a train job")
+                     .only({"end_to_end"}, "a model that starts cg is a guess, \"copingnet\""),
+                 &SolveSpec::model);
+  table.unbound(integer_key("iterations", "most Gauss-Seidel iterations in a step")
+                    .from(1, 10000)
+                    .defaults_to(gauss_seidel_iterations)
+                    .only({"xpbd", "pbd"}, "cg has max_iterations, Newton time.newton_iterations"));
+  table.optional(number_key("stretch_stiffness", "share of a stretch or shear that one correction takes away")
+                     .from(0, 1)
+                     .only({"pbd"}, "moduli and stretch_compliance_per_j of the scene say how stiff a rod is"),
+                 stretch);
+  table.optional(number_key("bending_stiffness", "share of a bend or twist that one correction takes away")
+                     .from(0, 1)
+                     .only({"pbd"}, "moduli of the scene say how stiff a rod is"),
+                 bending);
+  table.optional(choice_key("preconditioner", "preconditioner of cg"),
+                 Words<Preconditioner>{{"none", Preconditioner::none},
+                                       {"jacobi", Preconditioner::jacobi},
+                                       {"point_block_jacobi", Preconditioner::point_block_jacobi},
+                                       {"icc", Preconditioner::icc},
+                                       {"cholesky", Preconditioner::cholesky},
+                                       {"lagged_cholesky", Preconditioner::lagged_cholesky}},
+                 &SolveSpec::preconditioner);
+  table.optional(integer_key("lag_steps",
+                             "lagged_cholesky: time steps from one factorisation, of the first Newton iteration's "
+                             "matrix, to the next")
+                     .from(1, 1000000),
+                 &SolveSpec::lag_steps);
+  table.optional(choice_key("norm", "residual norm of the stopping test of cg"),
+                 Words<Norm>{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}}, &SolveSpec::norm);
+  table.optional(number_key("tolerance",
+                            "tolerance of the timed solves, relative to ||b||; in a closed loop also of those that "
+                            "advance the rod")
+                     .above(0)
+                     .at_most(1),
+                 &SolveSpec::tolerance);
+  table.optional(
+      integer_key("max_iterations", "limit on cg iterations; 0: ten times the number of unknowns").from(0, 32767),
+      &SolveSpec::max_iterations);
+  table.optional(
+      integer_key("timing_repeats", "times are medians over so many repeats of guess and solve").from(1, 1000),
+      &SolveSpec::timing_repeats);
+  return table;
 }
 
 }  // namespace
 
+Key time_key() { return object_key("time", "time stepping", time_keys().keys()); }
+
+Key solve_key() {
+  return object_key("solve", "what moves the rods towards their constraints: mostly linear solves", solve_keys().keys(),
+                    "method")
+      .defaults_to(nlohmann::ordered_json::object());
+}
+
 TimeSpec time_spec(const Point& point, const Job& job) {
+  static const KeyTable<TimeSpec> keys = time_keys();
   TimeSpec time;
-  time.step_s = point.number("time.step_s");
-  time.steps = point.has("time.steps") ? static_cast<int>(point.integer("time.steps"))
-                                       : whole_steps(point.number("time.duration_s"), time.step_s, job);
-  time.newton_iterations =
-      static_cast<int>(point.integer(is_gauss_seidel(method(point)) ? "solve.iterations" : "time.newton_iterations"));
-  time.newton_tolerance = point.number("time.newton_tolerance");
+  keys.fill(time, {point, job, "time"});
+  if (!point.has("time.steps")) time.steps = whole_steps(point.number("time.duration_s"), time.step_s, job);
+  if (is_gauss_seidel(method(point))) {  // one of several methods has no defaults of its own
+    const bool given = point.has("solve.iterations");
+    time.newton_iterations = given ? static_cast<int>(point.integer("solve.iterations")) : gauss_seidel_iterations;
+  }
   return time;
 }
 
 SolveSpec solve_spec(const Point& point, const Job& job) {
-  static const std::map<std::string, Norm> norms{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}};
-  static const std::map<std::string, Preconditioner> preconditioners{
-      {"none", Preconditioner::none},
-      {"jacobi", Preconditioner::jacobi},
-      {"point_block_jacobi", Preconditioner::point_block_jacobi},
-      {"icc", Preconditioner::icc},
-      {"cholesky", Preconditioner::cholesky},
-      {"lagged_cholesky", Preconditioner::lagged_cholesky}};
+  static const KeyTable<SolveSpec> keys = solve_keys();
   SolveSpec solve;
-  solve.method = method(point);
-  if (!point.has("solve.method")) return solve;
-  solve.preconditioner = choice(preconditioners, point.text("solve.preconditioner"));
-  solve.norm = choice(norms, point.text("solve.norm"));
-  solve.tolerance = point.number("solve.tolerance");
-  solve.max_iterations = static_cast<int>(point.integer("solve.max_iterations"));
-  solve.lag_steps = static_cast<int>(point.integer("solve.lag_steps"));
-  solve.timing_repeats = static_cast<int>(point.integer("solve.timing_repeats"));
-  if (solve.method == Method::end_to_end) {
-    if (!point.has("solve.model"))
-      throw job_error(job.path, "solve.model", "missing: \"end_to_end\" needs the model file of a train job");
-    solve.model = job.files.at(point.text("solve.model")).path;
-  }
-  if (solve.method == Method::pbd)
-    solve.stiffness = {point.number("solve.stretch_stiffness"), point.number("solve.bending_stiffness")};
+  solve.method = Method::direct;
+  keys.fill(solve, {point, job, "solve"});
+  if (solve.method == Method::end_to_end && solve.model.empty())
+    throw job_error(job.path, "solve.model", "missing: \"end_to_end\" needs the model file of a train job");
   return solve;
 }
 
 Evaluation evaluation(const Point& point) {
-  static const std::map<std::string, Evaluation> evaluations{{"paired", Evaluation::paired},
-                                                             {"closed_loop", Evaluation::closed_loop}};
-  return point.has("evaluation") ? choice(evaluations, point.text("evaluation")) : Evaluation::paired;
+  const bool closed = point.has("evaluation") && point.text("evaluation") == "closed_loop";
+  return closed ? Evaluation::closed_loop : Evaluation::paired;
 }
 
 RecordSpec record_spec(const Job& job) {
@@ -128,22 +163,6 @@ RecordSpec record_spec(const Job& job) {
   if (record.contains("systems"))
     spec.systems = record["systems"] == "all" ? RecordedSystems::all : RecordedSystems::first;
   return spec;
-}
-
-std::vector<GuessSpec> guess_specs(const Point& point, const Job& job) {
-  std::vector<GuessSpec> guesses;
-  const std::vector<std::string> labels = guess_labels(job);
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    guesses.push_back(guess_spec(point, job, element("guesses", i)));
-    guesses.back().label = labels[i];
-  }
-  return guesses;
-}
-
-std::vector<std::string> guess_labels(const Job& job) {
-  std::vector<std::string> labels;
-  for (const auto& guess : job.guesses()) labels.push_back(guess_label(guess));
-  return labels;
 }
 
 void check_method(const Point& point, const Job& job) {

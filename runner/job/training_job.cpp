@@ -2,18 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <stdexcept>
-#include <utility>
-#include <vector>
+#include "runner/job/words.hpp"
 
 namespace rodsweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class Value>
-using Words = std::vector<std::pair<const char*, Value>>;
 
 const Words<Encoding> encodings{{"deck", Encoding::deck}, {"physics", Encoding::physics}, {"system", Encoding::system}};
 const Words<Processor> processors{{"sweeps", Processor::sweeps}, {"message_passing", Processor::message_passing}};
@@ -21,20 +15,6 @@ const Words<BaseGuess> bases{
     {"none", BaseGuess::none}, {"extrapolation", BaseGuess::extrapolation}, {"pod", BaseGuess::pod}};
 const Words<LossKind> losses{
     {"mse", LossKind::mse}, {"energy", LossKind::energy}, {"in_the_loop", LossKind::in_the_loop}};
-
-template <class Value>
-Value value_of(const Words<Value>& words, const Json& word) {
-  const auto found = std::find_if(words.begin(), words.end(), [&](const auto& entry) { return word == entry.first; });
-  if (found == words.end()) throw std::logic_error("no value for the choice " + word.dump());
-  return found->second;
-}
-
-template <class Value>
-const char* word_of(const Words<Value>& words, Value value) {
-  const auto found = std::find_if(words.begin(), words.end(), [&](const auto& entry) { return value == entry.second; });
-  if (found == words.end()) throw std::logic_error("a choice without a word");
-  return found->first;
-}
 
 TrainingSettings training_settings(const Json& values, std::uint64_t seed) {
   TrainingSettings settings;

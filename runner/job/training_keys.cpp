@@ -22,51 +22,40 @@ Key training() {
                             {"mse", "energy", "in_the_loop"})
                      .defaults_to("energy"),
                  integer_key("cg_steps", "steps of CG before the error is measured")
-                     .at_least(1)
-                     .at_most(100)
+                     .from(1, 100)
                      .defaults_to(4)
                      .only({"in_the_loop"}),
-                 integer_key("epochs", "passes over the training examples")
-                     .at_least(1)
-                     .at_most(1000000)
-                     .defaults_to(120),
+                 integer_key("epochs", "passes over the training examples").from(1, 1000000).defaults_to(120),
                  integer_key("batch", "examples in a step of the optimiser")
-                     .at_least(1)
-                     .at_most(100000)
+                     .from(1, 100000)
                      .defaults_to(16)
                      .also_called({"batch_size"}),
                  integer_key("shards",
                              "equal parts of a batch, a divisor of it: as many ranks at most share the work; results "
                              "depend on it, but not on the number of ranks")
-                     .at_least(1)
-                     .at_most(100000)
+                     .from(1, 100000)
                      .defaults_to(4),
                  number_key("rate", "largest step size of Adam, which rises linearly and falls along a cosine")
                      .above(0)
                      .at_most(1)
                      .defaults_to(2e-3)
                      .also_called({"learning_rate", "lr"}),
-                 number_key("warm_up", "part of all steps in which the rate rises")
-                     .at_least(0)
-                     .at_most(0.5)
-                     .defaults_to(0.02),
-                 number_key("weight_decay", "decoupled decay of the weights").at_least(0).at_most(1).defaults_to(0),
+                 number_key("warm_up", "part of all steps in which the rate rises").from(0, 0.5).defaults_to(0.02),
+                 number_key("weight_decay", "decoupled decay of the weights").from(0, 1).defaults_to(0),
                  number_key("clip", "largest norm of a gradient, above which it is scaled down")
                      .above(0)
                      .at_most(1e9)
                      .defaults_to(1),
                  integer_key("patience_epochs", "ends after so many epochs without a better validation loss; 0: never")
-                     .at_least(0)
-                     .at_most(1000000)
+                     .from(0, 1000000)
                      .defaults_to(0)
                      .also_called({"early_stopping"}),
                  integer_key("ratio_every_epochs",
                              "the CG ratio on validation simulations is measured every so many epochs, and at the "
                              "end; 0: at the end only")
-                     .at_least(0)
-                     .at_most(1000000)
+                     .from(0, 1000000)
                      .defaults_to(10),
-                 integer_key("ratio_simulations", "on how many, at most").at_least(1).at_most(1000000).defaults_to(50),
+                 integer_key("ratio_simulations", "on how many, at most").from(1, 1000000).defaults_to(50),
              },
              "loss")
       .defaults_to(Json::object());
@@ -88,14 +77,10 @@ Key network_key() {
                             {"sweeps", "message_passing"})
                      .defaults_to("sweeps"),
                  choice_key("base", "the guess that it corrects", {"none", "extrapolation", "pod"}).defaults_to("pod"),
-                 integer_key("base_size", "pod: most solutions that span the subspace")
-                     .at_least(1)
-                     .at_most(200)
-                     .defaults_to(10),
-                 integer_key("latent", "width of hidden layers and states").at_least(1).at_most(1024).defaults_to(32),
+                 integer_key("base_size", "pod: most solutions that span the subspace").from(1, 200).defaults_to(10),
+                 integer_key("latent", "width of hidden layers and states").from(1, 1024).defaults_to(32),
                  integer_key("steps", "message_passing: hops over the graph")
-                     .at_least(1)
-                     .at_most(100)
+                     .from(1, 100)
                      .defaults_to(6)
                      .only({"message_passing"}),
                  boolean_key("globals", "message_passing: with a state of the whole graph")
@@ -118,8 +103,7 @@ std::vector<Key> training_keys() {
           .of_form(Key::Text::line),
       integer_key("validation_simulations",
                   "the last so many simulations, of the data set's last samples, are not learned from")
-          .at_least(1)
-          .at_most(1000000)
+          .from(1, 1000000)
           .defaults_to(100),
       network_key(), training()};
   for (Key& key : keys) key = never_swept(key).only({"train"});

@@ -1,17 +1,11 @@
-// The wind of a scene in a job: its keys, and what they describe.
+// Wind in a job: the keys of `scene.wind`.
 #pragma once
 
-#include <optional>
-
-#include "runner/job/key.hpp"
-#include "runner/job/sweep_space.hpp"
+#include "runner/job/key_table.hpp"
 #include "solver/scene/wind.hpp"
 
 namespace rodsweep {
 
-Key wind_key();
-
-/// At a parameter point; nothing where there is "none".
-std::optional<WindParameters> wind_parameters(const Point& point);
+KeyTable<WindParameters> wind_keys();
 
 }  // namespace rodsweep

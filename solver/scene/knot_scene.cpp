@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 
-#include "solver/scene/scene_rods.hpp"
+#include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
 namespace {
@@ -52,8 +53,7 @@ std::vector<Vector3> cut(const std::vector<Vector3>& curve, int pieces, double l
   return vertices;
 }
 
-}  // namespace
-
+/// A knot's length, of the least that is loose enough, in radii.
 double loose_knot_radii() {
   // Strands cross at a distance of at least two radii and a tenth.
   static const double radii = [] {
@@ -68,12 +68,26 @@ double loose_knot_radii() {
   return radii;
 }
 
-Rod build_rod(const Knot& p) {
-  std::vector<SegmentSpec> segments = segments_through(cut(fine_knot(), p.segments, p.length_m), p);
-  segments.front().is_static = segments.back().is_static = true;
-  const Section section = circular_section(p.radius_m, p.youngs_modulus_pa, p.torsion_modulus_pa);
-  const double tightest = 4 * section.bending_x_nm2 / (p.radius_m * p.radius_m);  // EI / (2 r)^2, and as much again
-  return chain(segments, p, weight(segments, p) + tightest, true);
+}  // namespace
+
+void Knot::check() const {
+  check_least("segments", segments, 30, ": fewer do not make a knot");
+  const double shortest = loose_knot_radii() * radius_m;
+  if (!(length_m >= shortest))
+    throw SceneError("length_m is " + std::to_string(length_m) + "; must be at least " + std::to_string(shortest) +
+                     " for a loose knot of this radius_m");
+}
+
+SceneSize Knot::size() const { return {segments, segments - 1}; }
+
+void Knot::build(Scene& scene) const {
+  std::vector<SegmentSpec> rod = segments_through(cut(fine_knot(), segments, length_m), *this);
+  rod.front().is_static = rod.back().is_static = true;
+  const Section section = circular_section(radius_m, youngs_modulus_pa, torsion_modulus_pa);
+  const double tightest = 4 * section.bending_x_nm2 / (radius_m * radius_m);  // EI / (2 r)^2, and as much again
+  scene.rods.push_back(chain(rod, *this, weight(rod, *this) + tightest, true));
+  move_clamp(scene, 0, Vector3(-pull_m_s, 0, 0));
+  move_clamp(scene, segments - 1, Vector3(pull_m_s, 0, 0));
 }
 
 }  // namespace rodsweep

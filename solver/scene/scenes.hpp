@@ -1,35 +1,10 @@
-// The scenes that jobs name, from a handful of parameters: the deck's bending rod and hanging helix, a ring, a net,
-// trees, and rods that touch each other.
+// The scenes that jobs name, each a struct of its parameters (SI units): the deck's bending rod and hanging helix, a
+// ring, a net, trees, and rods that touch each other. A scene's struct has the name by which jobs know it and, in a
+// source of its own:
 //
-// Bending rod: straight and at rest, its first end at the origin, pointing along +x raised by `initial_angle_deg`
-// towards +y; gravity bends it. Helix: joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi
-// windings], so its axis is vertical (y) and it hangs from its first segment; the rest shape is the initial shape.
-// Ring: a closed regular polygon in the vertical xy-plane below the origin, the middle of its first and topmost side;
-// naturally straight or circular, and twisted by a total angle before its ends were joined. Net: `rows` rods along x
-// and `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where rods cross, the
-// centres of their segments are joined at the angle that they have there, with the stiffness EI / l about every axis.
-//
-// Tree: grown (tree_skeleton.hpp) or from a skeleton, a segment for every edge, standing on the ground by an exact
-// clamp (a static segment of zero length at the root). Both moduli of an edge of radius r are those of the widest edge
-// at the ground times (r / its radius)^`modulus_exponent`. A joint is half of one edge and half of the next behind each
-// other; where it rests bent by an angle theta, it is softer by cos(theta / 2)^2 about the axis of that bend, since its
-// constraint measures so much of it. An "inextensible" joint is made to hold the weight above it. The shape is that
-// without load: trees have grown against gravity, and sag a little under it at first. Forest: trees of one shape and as
-// many seeds on a grid along x and z, the first one near the origin, each off its place by up to half of `jitter`
-// spacings along both; a rod each.
-//
-// Every scene may have contact (contact.hpp); these are made for it. Falling rods: horizontal ones, each `height_m`
-// above the one below or the floor y = 0, turned against it by `turn_deg`. Coiling rod: a vertical one, straight but
-// for a hundredth of a turn of a helix as wide as itself, whose lower end is `height_m` above the floor y = 0; its
-// first and topmost segment is held and goes down at `feed_m_s`. Knot: an overhand knot, loose at first (an opened
-// trefoil between straight ends along x), of a rod that is naturally straight; its end segments are held and go apart
-// along x, each at `pull_m_s`. Ring chain: naturally circular rings, each hanging through the one above at right angles
-// to it, the first one from its first segment. Bundle: rods in hexagonal packing, a tenth of a radius apart, that hang
-// from their first segments, splayed by up to `initial_angle_deg` outwards.
-//
-// Clamps: `segment` holds the whole first segment (free length L - L/N); `wall` adds a static segment of zero length at
-// the first end and a first joint of half length, an exact clamp (not of a ring); `free` holds nothing.
-// Throws SceneError when a scene cannot be built (bounds are in the message).
+//   check()  throws SceneError where parameters do not fit together, with the bound
+//   size()   counts, without building anything
+//   build()  adds its rods to an empty scene, and what it has of loads, solids and moving clamps of its own
 #pragma once
 
 #include <memory>
@@ -43,14 +18,28 @@
 
 namespace rodsweep {
 
-enum class Clamp { segment, wall, free };
+/// The most rods of a scene: results number them in 16 bits.
+constexpr int most_rods = 32767;
+
+struct SceneSize {
+  int segments = 0;               ///< graph nodes
+  int joints = 0;                 ///< graph edges
+  int rods = 1;                   ///< at most `most_rods`
+  const char* rods_key = "rods";  ///< which of the scene's keys say so
+};
+
+enum class Clamp {
+  segment,  ///< holds the whole first segment: free length L - L/N
+  wall,     ///< adds a static segment of zero length and a first joint of half length: an exact clamp, not of a ring
+  free      ///< holds nothing
+};
 
 enum class Stretch {
   inextensible,  ///< see inextensible_compliance()
   physical       ///< EA along the rod, kappa G A across it, see Section
 };
 
-/// What all scenes share. SI units.
+/// What all scenes share.
 struct RodParameters {
   double radius_m = 0.05;
   double density_kg_m3 = 1000;
@@ -65,90 +54,165 @@ struct RodParameters {
   std::vector<Obstacle> obstacles;  ///< besides a scene's own floor
 };
 
-/// Rods with two ends.
+/// A rod with two ends.
 struct OpenRod : RodParameters {
   int segments = 30;
   Clamp clamp = Clamp::segment;
   Vector3 tip_force_n{0, 0, 0};
+  void check() const;
+  SceneSize size() const;
 };
 
+/// Straight and at rest, its first end at the origin, pointing along +x raised by `initial_angle_deg` towards +y;
+/// gravity bends it.
 struct BendingRod : OpenRod {
+  static constexpr const char* name = "bending_rod";
   double length_m = 2;
   double initial_angle_deg = 0;
+  void build(Scene& scene) const;
 };
 
+/// Joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi windings], so its axis is vertical (y)
+/// and it hangs from its first segment; the rest shape is the initial shape.
 struct Helix : OpenRod {
+  static constexpr const char* name = "helix";
   double helix_radius_m = 0.5;
   double helix_height_m = 0.5;
   double windings = 2.5;
+  void build(Scene& scene) const;
 };
 
+/// A closed regular polygon in the vertical xy-plane below the origin, the middle of its first and topmost side;
+/// naturally straight or circular, and twisted by a total angle before its ends were joined.
 struct Ring : RodParameters {
+  static constexpr const char* name = "ring";
   enum class RestShape { straight, circle };
   int segments = 30;
   Clamp clamp = Clamp::segment;
   double length_m = 2;  ///< circumference
   double twist_deg = 0;
   RestShape rest_shape = RestShape::straight;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
+/// `rows` rods along x and `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where
+/// rods cross, the centres of their segments are joined at the angle that they have there, with the stiffness EI / l
+/// about every axis: one rod of many loops.
 struct Net : RodParameters {
+  static constexpr const char* name = "net";
   /// The first segments of all rods along z; the first and last ones of the outermost two; nothing.
   enum class Held { side, corners, free };
   int rows = 5, columns = 5;
   int segments = 1;  ///< from one crossing to the next
   double mesh_m = 0.2;
   Held held = Held::corners;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
+/// Grown (tree_skeleton.hpp), a segment for every edge, standing on the ground by an exact clamp (a static segment of
+/// zero length at the root). Both moduli of an edge of radius r are those of the widest edge at the ground times (r /
+/// its radius)^`modulus_exponent`. A joint is half of one edge and half of the next behind each other; where it rests
+/// bent by an angle theta, it is softer by cos(theta / 2)^2 about the axis of that bend, since its constraint measures
+/// so much of it. An "inextensible" joint is made to hold the weight above it. The shape is that without load: trees
+/// have grown against gravity, and sag a little under it at first.
 struct Tree : RodParameters {  ///< radius and moduli: those of the trunk at the ground
+  static constexpr const char* name = "tree";
   TreeShape shape;
   double modulus_exponent = 0;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
+/// Trees of one shape and as many seeds on a grid along x and z, the first one near the origin, each off its place by
+/// up to half of `jitter` spacings along both; a rod each.
 struct Forest : Tree {
+  static constexpr const char* name = "forest";
   int rows = 3, columns = 3;  ///< along z and x
   double spacing_m = 3;
   double jitter = 0.5;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
-struct SkeletonTree : RodParameters {  ///< radii are the skeleton's
+/// A tree that was measured. Its radii are the skeleton's.
+struct SkeletonTree : RodParameters {
+  static constexpr const char* name = "skeleton";
   std::shared_ptr<const Skeleton> skeleton;
+  double unit_m = 1;  ///< in which its lengths are
+  Up up = Up::y;
   double modulus_exponent = 0;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
+/// Horizontal ones, each `height_m` above the one below or the floor y = 0, turned against it by `turn_deg`.
 struct FallingRods : RodParameters {
+  static constexpr const char* name = "falling_rods";
   int rods = 8;
   int segments = 10;
   double length_m = 1;
   double height_m = 0.2;
   double turn_deg = 50;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
+/// Vertical, straight but for a hundredth of a turn of a helix as wide as itself, its lower end `height_m` above the
+/// floor y = 0; its first and topmost segment is held and goes down at `feed_m_s`.
 struct CoilingRod : RodParameters {
+  static constexpr const char* name = "coiling_rod";
   int segments = 60;
   double length_m = 2;
   double height_m = 0.1;
   double feed_m_s = 1;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
+/// An overhand knot, loose at first (an opened trefoil between straight ends along x), of a rod that is naturally
+/// straight; its end segments are held and go apart along x, each at `pull_m_s`.
 struct Knot : RodParameters {
+  static constexpr const char* name = "knot";
   int segments = 80;
   double length_m = 5;
   double pull_m_s = 0.2;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
+/// Naturally circular rings, each hanging through the one above at right angles to it, the first one from its first
+/// segment.
 struct RingChain : RodParameters {
+  static constexpr const char* name = "ring_chain";
   int rings = 5;
   int segments = 16;    ///< of each
   double length_m = 2;  ///< circumference
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
+/// Rods in hexagonal packing, a tenth of a radius apart, that hang from their first segments, splayed by up to
+/// `initial_angle_deg` outwards.
 struct Bundle : RodParameters {
+  static constexpr const char* name = "bundle";
   int rods = 100;
   int segments = 10;
   double length_m = 1;
-  double initial_angle_deg = 20;
+  double initial_angle_deg = 0;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
 };
 
 using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Tree, Forest, SkeletonTree, FallingRods, CoilingRod, Knot,
@@ -157,14 +221,18 @@ using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Tree, Forest, Skele
 /// The scene's rod where it is one with two ends, else null.
 const OpenRod* open_rod(const SceneSpec& spec);
 
-/// Throws SceneError where parameters do not fit together; build_scene() does so too.
+/// What all scenes share, of this one.
+const RodParameters& rod_parameters(const SceneSpec& spec);
+
+/// Throws SceneError where parameters do not fit together, and for more than `most_rods`; build_scene() does so too.
 void validate(const SceneSpec& spec);
 
 Scene build_scene(const SceneSpec& spec);
 
 // Of the scene without building it: what a plan needs.
-int segment_count(const SceneSpec& spec);  ///< graph nodes
-int joint_count(const SceneSpec& spec);    ///< graph edges
-int rod_count(const SceneSpec& spec);
+SceneSize size_of(const SceneSpec& spec);
+inline int segment_count(const SceneSpec& spec) { return size_of(spec).segments; }
+inline int joint_count(const SceneSpec& spec) { return size_of(spec).joints; }
+inline int rod_count(const SceneSpec& spec) { return size_of(spec).rods; }
 
 }  // namespace rodsweep

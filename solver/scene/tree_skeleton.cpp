@@ -88,6 +88,16 @@ std::optional<SkeletonFault> fault(const Skeleton& skeleton) {
   return std::nullopt;
 }
 
+Skeleton placed(const Skeleton& skeleton, double unit_m, Up up) {
+  Skeleton out = skeleton;
+  for (SkeletonNode& node : out) {
+    const Vector3 p = unit_m * (node.position_m - skeleton.front().position_m);
+    node.position_m = up == Up::y ? p : Vector3(p.x(), p.z(), -p.y());
+    node.radius_m *= unit_m;
+  }
+  return out;
+}
+
 void validate(const TreeShape& p) {
   require(p.depth >= 0 && p.depth <= 100, "depth", p.depth, "from 0 to 100");
   require(p.branches >= 1, "branches", p.branches, "at least 1");

@@ -39,6 +39,11 @@ struct SkeletonFault {
 /// onto its first) by more than 160 degrees: the constraint of a joint ends at 180.
 std::optional<SkeletonFault> fault(const Skeleton& skeleton);
 
+enum class Up { y, z };
+
+/// In metres, its root at the origin and y up, of one in another unit with the axis `up` upwards.
+Skeleton placed(const Skeleton& skeleton, double unit_m, Up up);
+
 struct TreeShape {
   enum class Phyllotaxis { golden, random };
   int depth = 4;        ///< branchings between the ground and a twig

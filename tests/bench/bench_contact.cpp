@@ -9,7 +9,7 @@
 #include <string>
 
 #include "solver/contact/contact_projection.hpp"
-#include "solver/scene/scene_rods.hpp"
+#include "solver/scene/scene_parts.hpp"
 #include "tests/bench/medians.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "solver/contact/contact_bodies.hpp"
-#include "solver/scene/scene_rods.hpp"
+#include "solver/scene/scene_parts.hpp"
 #include "solver/step/observables.hpp"
 #include "solver/step/time_step.hpp"
 

@@ -34,6 +34,14 @@ TEST_CASE("pbd and xpbd count their own iterations, in a trajectory without gues
   CHECK(plan.tasks()[0].cost == 7.5 * plan.tasks()[2].cost);
 }
 
+TEST_CASE("of a grid of methods, those of Gauss-Seidel have their defaults too") {
+  const Plan plan = plan_of(by(R"({"method": {"grid": ["xpbd", "pbd", "direct"]}})"));
+  CHECK(plan.spec(0).time.newton_iterations == 20);
+  CHECK(plan.spec(1).time.newton_iterations == 20);
+  CHECK(plan.spec(1).solve.stiffness.stretch == 1);
+  CHECK(plan.spec(2).time.newton_iterations == 6);
+}
+
 TEST_CASE("iterations and stiffness are part of what a trajectory is") {
   const auto trajectory = [](const std::string& solve) { return plan_of(by(solve)).identity(0).trajectory; };
   CHECK(trajectory(R"({"method": "xpbd"})") == trajectory(R"({"method": "xpbd", "iterations": 20})"));

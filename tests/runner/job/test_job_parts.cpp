@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "runner/job/counter_random.hpp"
+#include "runner/job/guess_keys.hpp"
 #include "runner/job/job_keys.hpp"
 #include "runner/job/nearest.hpp"
 

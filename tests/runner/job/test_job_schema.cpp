@@ -2,6 +2,7 @@
 // validator, on the committed schema, in tests/command/test_schema.py.
 #include <catch2/catch.hpp>
 
+#include "runner/job/guess_keys.hpp"
 #include "runner/job/job_keys.hpp"
 #include "runner/job/job_schema.hpp"
 #include "tests/runner/job_examples.hpp"

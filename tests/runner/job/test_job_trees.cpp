@@ -84,6 +84,17 @@ TEST_CASE("a forest has rows of solves and systems for every tree") {
   CHECK(systems.task(0).system_joints == 4 * 2 * 26);
 }
 
+TEST_CASE("a forest has at most as many trees as the rods of a file can be numbered") {
+  Json job = tree_job("forest", R"(, "spacing_m": 4, "rows": 217, "columns": 151)");
+  job["scene"]["depth"] = 0;
+  CHECK(plan_of(job).task(0).segments == 32767 * 3);
+  job["scene"]["rows"] = 182;
+  job["scene"]["columns"] = {{"grid", {180, 182}}};
+  CHECK(refusal(job) ==
+        "job.json: scene: rows x columns is 33124; must be at most 32767, since results number rods in 16 bits: take "
+        "fewer, in several scenes");
+}
+
 TEST_CASE("wind blows on any scene, and may be one value of a grid with none") {
   const Plan plan = plan_of(
       with("/scene/wind", R"({"grid": ["none", {"mean_m_s": [{"grid": [3, 5]}, 0, 1], "gust_strength": 0.3}]})"));
@@ -127,7 +138,8 @@ TEST_CASE("a skeleton is found beside the job; units, axis and root are brought 
   const Plan plan(folder.job(skeleton_job(R"(, "skeleton_unit_m": 0.01, "skeleton_up": "z")")));
   CHECK(plan.task(0).segments == 4);
   CHECK(plan.task(0).joints == 3);
-  const Skeleton skeleton = *std::get<SkeletonTree>(plan.spec(0).scene).skeleton;
+  const SkeletonTree plum_tree = std::get<SkeletonTree>(plan.spec(0).scene);
+  const Skeleton skeleton = placed(*plum_tree.skeleton, plum_tree.unit_m, plum_tree.up);
   CHECK(skeleton[0].position_m.norm() == 0);
   CHECK((skeleton[1].position_m - Vector3(0, 0.5, 0)).norm() < 1e-15);
   CHECK((skeleton[3].position_m - Vector3(-0.2, 0.9, -0.2)).norm() < 1e-15);

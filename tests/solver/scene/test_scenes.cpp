@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "solver/numbers/narrow.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/rod/linearization.hpp"
 #include "solver/step/observables.hpp"
@@ -262,6 +263,40 @@ TEST_CASE("scenes of impossible rods are refused by what is wrong with them") {
   spec = test::bending_rod(3);
   spec.youngs_modulus_pa = 0;
   CHECK_THROWS_WITH(build_scene(spec), "joint 0: compliance of row 3 is inf; must be finite and at least 0");
+}
+
+TEST_CASE("a scene of more rods than results can number is refused with the keys, their value and the bound") {
+  const auto refused = [](const SceneSpec& spec, const char* what) {
+    CHECK_THROWS_WITH(validate(spec), std::string(what) +
+                                          " is 32768; must be at most 32767, since results number rods in 16 bits: "
+                                          "take fewer, in several scenes");
+  };
+  Forest forest;
+  forest.shape.depth = 0;
+  forest.rows = 7 * 31;
+  forest.columns = 151;
+  CHECK_NOTHROW(validate(forest));
+  CHECK(rod_count(forest) == most_rods);
+  forest.rows = 256;
+  forest.columns = 128;
+  refused(forest, "rows x columns");
+  FallingRods heap;
+  Bundle bundle;
+  RingChain chain;
+  chain.radius_m = 0.01;
+  heap.rods = bundle.rods = chain.rings = most_rods;
+  for (const SceneSpec& spec : {SceneSpec(heap), SceneSpec(bundle), SceneSpec(chain)}) CHECK_NOTHROW(validate(spec));
+  heap.rods = bundle.rods = chain.rings = most_rods + 1;
+  refused(heap, "rods");
+  refused(bundle, "rods");
+  refused(chain, "rings");
+}
+
+TEST_CASE("a number that does not fit into its bits is a bug, not another number") {
+  CHECK(narrow<std::int16_t>(32767) == 32767);
+  CHECK(narrow<std::int16_t>(-32768) == -32768);
+  CHECK_THROWS_WITH(narrow<std::int16_t>(32768), "32768 does not fit into 16 bits");
+  CHECK_THROWS_WITH(narrow<std::int16_t>(-32769), "-32769 does not fit into 16 bits");
 }
 
 }  // namespace

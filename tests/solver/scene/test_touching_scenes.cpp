@@ -191,6 +191,7 @@ TEST_CASE("the rods of a bundle swing together and touch") {
   p.rods = 7;
   p.segments = 6;
   p.radius_m = 0.02;
+  p.initial_angle_deg = 20;
   p.youngs_modulus_pa = 1e6;
   p.contact = ContactSettings{};
   Scene start = build_scene(p);

@@ -1,29 +1,22 @@
-#include "solver/scene/scene_rods.hpp"
+#include "solver/scene/scene_parts.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <string>
 
 namespace rodsweep {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double standard_gravity = 9.81;
-
-/// A rod whose joints lie on `vertices`.
-Rod rod_through(const std::vector<Vector3>& vertices, const OpenRod& p) {
-  std::vector<SegmentSpec> segments = segments_through(vertices, p);
-  segments.front().is_static = p.clamp == Clamp::segment;
-  if (p.clamp == Clamp::wall) {
-    SegmentSpec wall;
-    wall.position_m = vertices.front();
-    wall.orientation = segments.front().orientation;
-    wall.is_static = true;
-    segments.insert(segments.begin(), wall);
-  }
-  return chain(segments, p, weight(segments, p) + p.tip_force_n.norm());
-}
+constexpr int most_segments = 10000000;
 
 }  // namespace
+
+std::vector<Vector3> straight_line(const Vector3& from, const Vector3& to, int pieces) {
+  std::vector<Vector3> vertices;
+  for (int i = 0; i <= pieces; ++i) vertices.push_back(from + static_cast<double>(i) / pieces * (to - from));
+  return vertices;
+}
 
 std::vector<SegmentSpec> segments_through(const std::vector<Vector3>& vertices, const RodParameters& p) {
   std::vector<SegmentSpec> segments;
@@ -82,22 +75,24 @@ double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p) 
   return mass * std::max(p.gravity_m_s2.norm(), standard_gravity);
 }
 
-Rod build_rod(const BendingRod& p) {
-  const double angle = p.initial_angle_deg * pi / 180;
-  const Vector3 along = p.length_m / p.segments * Vector3(std::cos(angle), std::sin(angle), 0);
-  std::vector<Vector3> vertices;
-  for (int i = 0; i <= p.segments; ++i) vertices.push_back(i * along);
-  return rod_through(vertices, p);
+void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s) {
+  const Rod& rod = scene.rods.front();
+  const auto s = static_cast<std::size_t>(segment);
+  scene.clamps.push_back({0, segment, [from = rod.position[s], turned = rod.orientation[s], velocity_m_s](double t) {
+                            return Pose{from + t * velocity_m_s, turned};
+                          }});
 }
 
-Rod build_rod(const Helix& p) {
-  std::vector<Vector3> vertices;
-  for (int i = 0; i <= p.segments; ++i) {
-    const double fraction = static_cast<double>(i) / p.segments;
-    const double t = 2 * pi * p.windings * fraction;
-    vertices.emplace_back(p.helix_radius_m * std::cos(t), -p.helix_height_m * fraction, p.helix_radius_m * std::sin(t));
-  }
-  return rod_through(vertices, p);
+void check_least(const char* quantity, int value, int least, const char* why) {
+  if (value < least)
+    throw SceneError(std::string(quantity) + " is " + std::to_string(value) + "; must be at least " +
+                     std::to_string(least) + why);
+}
+
+void check_segments(const char* scene, double segments) {
+  if (segments > most_segments)
+    throw SceneError(std::string(scene) + " of so many segments is too large; the most is " +
+                     std::to_string(most_segments));
 }
 
 }  // namespace rodsweep

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "solver/numbers/split_mix.hpp"
-#include "solver/scene/scene_rods.hpp"
+#include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
 namespace {
@@ -87,22 +89,55 @@ Rod rod_of(const Skeleton& skeleton, const RodParameters& p, double modulus_expo
 
 }  // namespace
 
-Rod build_rod(const Tree& p) { return rod_of(grow(p.shape, p.radius_m), p, p.modulus_exponent, Vector3::Zero()); }
+void Tree::check() const { validate(shape); }
 
-Rod build_rod(const SkeletonTree& p) { return rod_of(*p.skeleton, p, p.modulus_exponent, Vector3::Zero()); }
+SceneSize Tree::size() const {
+  const int edges = edge_count(shape);
+  return {edges + 1, edges};  // with the ground
+}
 
-std::vector<Rod> build_rods(const Forest& p) {
-  SplitMix random(p.shape.seed);
-  std::vector<Rod> trees;
-  for (int row = 0; row < p.rows; ++row)
-    for (int column = 0; column < p.columns; ++column) {
-      TreeShape shape = p.shape;
-      shape.seed = split_mix(p.shape.seed ^ split_mix(at(row * p.columns + column)));
+void Tree::build(Scene& scene) const {
+  scene.rods.push_back(rod_of(grow(shape, radius_m), *this, modulus_exponent, Vector3::Zero()));
+}
+
+void SkeletonTree::check() const {
+  if (!skeleton || skeleton->size() < 2) throw SceneError("a skeleton needs at least two nodes");
+  if (const auto wrong = fault(*skeleton))
+    throw SceneError("node " + std::to_string(wrong->node) + " of a skeleton: " + wrong->text);
+}
+
+SceneSize SkeletonTree::size() const {
+  const int nodes = static_cast<int>(skeleton->size());
+  return {nodes, nodes - 1};
+}
+
+void SkeletonTree::build(Scene& scene) const {
+  scene.rods.push_back(rod_of(placed(*skeleton, unit_m, up), *this, modulus_exponent, Vector3::Zero()));
+}
+
+void Forest::check() const {
+  Tree::check();
+  check_least("rows", rows, 1);
+  check_least("columns", columns, 1);
+  check_segments("a forest", static_cast<double>(edge_count(shape)) * rows * columns);
+}
+
+SceneSize Forest::size() const {
+  const SceneSize tree = Tree::size();
+  const int trees = rows * columns;
+  return {trees * tree.segments, trees * tree.joints, trees, "rows x columns"};
+}
+
+void Forest::build(Scene& scene) const {
+  SplitMix random(shape.seed);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      TreeShape own = shape;
+      own.seed = split_mix(shape.seed ^ split_mix(at(row * columns + column)));
       const double x = random.uniform() - 0.5, z = random.uniform() - 0.5;
-      const Vector3 base = p.spacing_m * Vector3(column + p.jitter * x, 0, row + p.jitter * z);
-      trees.push_back(rod_of(grow(shape, p.radius_m), p, p.modulus_exponent, base));
+      const Vector3 base = spacing_m * Vector3(column + jitter * x, 0, row + jitter * z);
+      scene.rods.push_back(rod_of(grow(own, radius_m), *this, modulus_exponent, base));
     }
-  return trees;
 }
 
 }  // namespace rodsweep

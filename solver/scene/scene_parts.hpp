@@ -1,4 +1,5 @@
-// What the scenes are built of: segments along a direction, joints of their material, and the rods themselves.
+// What the scenes are made of: segments along a line, joints of their material, clamps that move; and bounds on their
+// parameters, which throw SceneError.
 #pragma once
 
 #include <vector>
@@ -17,29 +18,22 @@ JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, 
 /// Weight of the segments, under standard gravity at least [N].
 double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p);
 
+/// A straight line from one point to another, cut into equal pieces.
+std::vector<Vector3> straight_line(const Vector3& from, const Vector3& to, int pieces);
+
 /// Segments whose ends lie on `vertices`; orientations are parallel-transported along them.
 std::vector<SegmentSpec> segments_through(const std::vector<Vector3>& vertices, const RodParameters& p);
 
 /// Each segment joined to the next, at rest as they are or straight. `force_n` as above.
 Rod chain(const std::vector<SegmentSpec>& segments, const RodParameters& p, double force_n, bool straight = false);
 
-Rod build_rod(const BendingRod& p);
-Rod build_rod(const Helix& p);
-Rod build_rod(const Ring& p);
-Rod build_rod(const Net& p);
-Rod build_rod(const Tree& p);
-Rod build_rod(const SkeletonTree& p);
-Rod build_rod(const CoilingRod& p);
-Rod build_rod(const Knot& p);
-std::vector<Rod> build_rods(const Forest& p);
-std::vector<Rod> build_rods(const FallingRods& p);
-std::vector<Rod> build_rods(const RingChain& p);
-std::vector<Rod> build_rods(const Bundle& p);
+/// A held segment of the first rod moves on from where it is at a velocity.
+void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s);
 
-/// A knot's length, of the least that is loose enough, in radii.
-double loose_knot_radii();
+/// `why`, where it is not plain, with the punctuation before it.
+void check_least(const char* quantity, int value, int least, const char* why = "");
 
-/// The smallest chain ring through which the next one fits, around, in radii.
-constexpr double open_ring_radii = 40;
+/// Of a scene as a whole.
+void check_segments(const char* scene, double segments);
 
 }  // namespace rodsweep

@@ -1,0 +1,190 @@
+// Tables of keys, each with the member that it fills: what a job may say of a thing and how the thing is made of it.
+//
+//   KeyTable<WindParameters> table;
+//   table.required(vector_key("mean_m_s", "mean velocity"), &WindParameters::mean_m_s);
+//   table.optional(integer_key("seed", "which turbulence").at_least(0), &WindParameters::seed);
+//
+// The reader of jobs, the schema and help texts follow from keys(); fill() reads a parameter point. An optional key's
+// default is what its member is without it. Between key and member stand the Words of an enumeration, or the table of a
+// part that is an object or the word that stands for none (std::optional). A member is what std::invoke() takes with an
+// Owner: a pointer to it, or a function that returns a reference. Bugs in a table throw std::logic_error.
+//
+// An Owner that is a std::variant is an object with a tag, whose value is the `name` of one of its structs: a key
+// belongs to those that have a member for it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "runner/job/job.hpp"
+#include "runner/job/key.hpp"
+#include "runner/job/key_path.hpp"
+#include "runner/job/sweep_space.hpp"
+#include "runner/job/words.hpp"
+#include "solver/numbers/types.hpp"
+
+namespace rodsweep {
+
+/// A key of a job at a parameter point.
+struct Place {
+  const Point& point;
+  const Job& job;
+  std::string path;
+
+  Place of(const std::string& name) const { return {point, job, member(path, name)}; }
+};
+
+// How a value is read where its key has one. Types of their own have overloads of their own, beside their tables.
+inline void read_value(const Place& at, double& value) { value = at.point.number(at.path); }
+inline void read_value(const Place& at, int& value) { value = static_cast<int>(at.point.integer(at.path)); }
+inline void read_value(const Place& at, std::uint64_t& value) {
+  value = static_cast<std::uint64_t>(at.point.integer(at.path));
+}
+inline void read_value(const Place& at, Vector3& value) { value = Vector3::Map(at.point.at(at.path).number); }
+inline void read_value(const Place& at, std::filesystem::path& file) {
+  file = at.job.files.at(at.point.text(at.path)).path;
+}
+inline void read_value(const Place& at, std::optional<double>& value) {
+  value.reset();
+  if (!at.point.is_text(at.path)) value = at.point.number(at.path);
+}
+
+// How a value stands in a job, as the default of `key`.
+template <class Value, class = std::enable_if_t<std::is_arithmetic_v<Value>>>
+nlohmann::ordered_json written(const Key&, Value value) {
+  return number(static_cast<double>(value));
+}
+inline nlohmann::ordered_json written(const Key& key, const Vector3& value) {
+  return {written(key, value.x()), written(key, value.y()), written(key, value.z())};
+}
+template <class Value>
+nlohmann::ordered_json written(const Key& key, const std::optional<Value>& value) {
+  if (value) throw std::logic_error(key.name + " has a default that is more than a word");
+  return key.choices.front();
+}
+
+/// The structs that an Owner may be.
+template <class Owner>
+struct KindsOf {
+  static constexpr bool tagged = false;
+  template <class F>
+  static void each(const F& f) {
+    f(Owner{});
+  }
+  template <class F>
+  static void visit(const F& f, Owner& owner) {
+    f(owner);
+  }
+};
+template <class... Kind>
+struct KindsOf<std::variant<Kind...>> {
+  static constexpr bool tagged = true;
+  template <class F>
+  static void each(const F& f) {
+    (f(Kind{}), ...);
+  }
+  template <class F>
+  static void visit(const F& f, std::variant<Kind...>& owner) {
+    std::visit(f, owner);
+  }
+};
+
+/// The member that a struct has, of several.
+template <class Kind, class First, class... More>
+auto& member_of(Kind& kind, const First& first, const More&... more) {
+  if constexpr (std::is_invocable_v<const First&, Kind&>)
+    return std::invoke(first, kind);
+  else
+    return member_of(kind, more...);
+}
+
+template <class Owner>
+class KeyTable {
+ public:
+  /// Of keys that are read by other means too.
+  void unbound(Key key) { keys_.push_back(std::move(key)); }
+
+  template <class... Binding>
+  void required(Key key, const Binding&... binding) {
+    add<false>(std::move(key), binding...);
+  }
+  template <class... Binding>
+  void optional(Key key, const Binding&... binding) {
+    add<true>(std::move(key), binding...);
+  }
+
+  const std::vector<Key>& keys() const { return keys_; }
+
+  /// With the values of the object at a place. Members without a value stay as they are.
+  void fill(Owner& owner, const Place& object) const {
+    for (const auto& read : readers_) read(owner, object);
+  }
+
+ private:
+  template <bool is_optional, class... Member>
+  void add(Key key, const Member&... member) {
+    bind<is_optional>(
+        std::move(key), [](const Key& of, const auto& value) { return written(of, value); },
+        [](const Place& at, auto& value) { read_value(at, value); }, member...);
+  }
+  template <bool is_optional, class Value, class... Member>
+  void add(Key key, const Words<Value>& words, const Member&... member) {
+    for (const auto& [word, value] : words) key.choices.emplace_back(word);
+    bind<is_optional>(
+        std::move(key), [&words](const Key&, Value value) { return word_of(words, value); },
+        [words](const Place& at, Value& value) { value = value_of(words, at.point.text(at.path)); }, member...);
+  }
+  template <bool is_optional, class Part, class... Member>
+  void add(Key key, const KeyTable<Part>& part, const Member&... member) {
+    key.keys = part.keys();
+    bind<is_optional>(
+        std::move(key), [](const Key& of, const std::optional<Part>& value) { return written(of, value); },
+        [part](const Place& at, std::optional<Part>& value) {
+          value.reset();
+          if (at.point.has(at.of(part.keys().front().name).path)) part.fill(value.emplace(), at);
+        },
+        member...);
+  }
+
+  template <bool is_optional, class Write, class Read, class... Member>
+  void bind(Key key, const Write& write, const Read& read, const Member&... member) {
+    std::vector<std::string> having;
+    bool all = true;
+    KindsOf<Owner>::each([&]([[maybe_unused]] auto kind) {
+      using Kind = decltype(kind);
+      if constexpr ((std::is_invocable_v<const Member&, Kind&> || ...)) {
+        if constexpr (KindsOf<Owner>::tagged) having.emplace_back(Kind::name);
+        if constexpr (is_optional) default_to(key, write(key, member_of(kind, member...)));
+      } else {
+        all = false;
+      }
+    });
+    if (!all) key.only_for = std::move(having);
+    readers_.emplace_back([=, name = key.name](Owner& owner, const Place& object) {
+      const auto read_if_given = [&]([[maybe_unused]] auto& kind) {
+        if constexpr ((std::is_invocable_v<const Member&, decltype(kind)> || ...))
+          if (const Place at = object.of(name); at.point.has(at.path)) read(at, member_of(kind, member...));
+      };
+      KindsOf<Owner>::visit(read_if_given, owner);
+    });
+    keys_.push_back(std::move(key));
+  }
+
+  static void default_to(Key& key, nlohmann::ordered_json value) {
+    if (key.preset && *key.preset != value) throw std::logic_error(key.name + " has more than one default");
+    key.preset = std::move(value);
+  }
+
+  std::vector<Key> keys_;
+  std::vector<std::function<void(Owner&, const Place& object)>> readers_;
+};
+
+}  // namespace rodsweep
