@@ -42,7 +42,7 @@ bool has_guesses(const Column& column) { return !column.axes.empty() && column.a
 /// Copies guess `from` of every row to guess `to`; the columns differ in the length of their guess axis alone.
 void copy_guess(const Bytes<const char>& source, std::size_t from, std::size_t source_guesses,
                 const Bytes<char>& target, std::size_t to, std::size_t target_guesses, const Task& task) {
-  const auto rows = static_cast<std::size_t>(rows_of(task, target.column.rows).count);
+  const auto rows = static_cast<std::size_t>(task.rows[target.column.rows].count);
   if (rows == 0) return;
   const std::size_t block = target.size / (rows * target_guesses);
   for (std::size_t row = 0; row < rows; ++row) {
@@ -171,7 +171,7 @@ bool Extension::take(std::int64_t index, TaskRecord& record) const {
     }
   }
   for (std::int64_t& row : record.first_row)
-    if (row >= 0) row += task.first_frame_row - from.first_frame_row;
+    if (row >= 0) row += task.rows[Rows::frame_segment].first - from.rows[Rows::frame_segment].first;
   record.source_task[0] = from.index;
   for (std::size_t g = 0; g < guesses.size(); ++g) record.copied_guess[g] = guesses[g] < 0 ? -1 : 1;
   return true;

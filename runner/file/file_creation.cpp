@@ -10,6 +10,7 @@
 #include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"
+#include "runner/file/planned_columns.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/terminal/text.hpp"
 
@@ -83,11 +84,8 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   if (!plan.guess_labels().empty()) hdf5::write_texts(file, "/axes/guess", plan.guess_labels());
   hdf5::write_all(file, "/axes/tolerance", tolerance_ladder());
   write_parameters(file, parameters);
-  visit_task_columns(placed_rows(plan), [&](const char* path, const char*, const char*, auto value) {
-    std::vector<decltype(value(Task{}))> values;
-    for (const Task& task : plan.tasks()) values.push_back(value(task));
-    hdf5::write_all(file, path, values);
-  });
+  visit_planned_values(plan,
+                       [&](const char* path, const char*, const auto& values) { hdf5::write_all(file, path, values); });
   const auto tasks = static_cast<std::size_t>(plan.size());
   hdf5::write_all(file, "/tasks/state", std::vector<std::uint8_t>(tasks, 0));
   hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));

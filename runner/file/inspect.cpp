@@ -113,7 +113,7 @@ Verification verify(const fs::path& path) {
       if (states[index] == 0) continue;
       TaskChecksum sum(task.index, outcomes.at(index), hdf5::read_text_row(messages, index));
       for (const StoredColumn& stored : columns) {
-        read_rows(stored, rows_of(task, stored.column.rows), bytes);
+        read_rows(stored, task.rows[stored.column.rows], bytes);
         sum.add(stored.column, bytes.data(), bytes.size());
       }
       ++result.checked;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "runner/file/planned_columns.hpp"
 #include "runner/job/checksum.hpp"
 
 namespace rodsweep {
@@ -62,25 +63,7 @@ void append_parameters(std::vector<Field>& fields, const Plan& plan, const std::
   }
 }
 
-std::int64_t row_count(const Plan& plan, Rows rows) {
-  switch (rows) {
-    case Rows::task: return plan.size();
-    case Rows::step: return plan.step_rows();
-    case Rows::contact_task: return plan.contact_rows() ? plan.size() : 0;
-    case Rows::contact_step: return plan.contact_rows() ? plan.step_rows() : 0;
-    case Rows::solve: return plan.solve_rows();
-    case Rows::frame_segment: return plan.frame_rows();
-    case Rows::segment: return plan.segment_rows();
-    case Rows::system: return plan.system_rows();
-    case Rows::system_segment: return plan.system_segment_rows();
-    case Rows::system_joint: return plan.system_joint_rows();
-  }
-  return 0;
-}
-
 }  // namespace
-
-PlacedRows placed_rows(const Plan& plan) { return {plan.segment_rows() > 0, plan.system_rows() > 0}; }
 
 std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& parameters) {
   std::vector<Field> fields;
@@ -95,8 +78,9 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(number_field<double>("/axes/tolerance", {sizes.tolerances}, "1",
                                         "tolerances at which iterations are counted, relative to ||b||"));
   append_parameters(fields, plan, parameters);
-  visit_task_columns(placed_rows(plan), [&](const char* path, const char* unit, const char* meaning, auto value) {
-    fields.push_back(number_field<decltype(value(Task{}))>(path, {plan.size()}, unit, meaning));
+  visit_planned_values(plan, [&](const char* path, const char* meaning, const auto& values) {
+    fields.push_back(
+        number_field<typename std::decay_t<decltype(values)>::value_type>(path, {plan.size()}, "1", meaning));
   });
   fields.push_back(number_field<std::uint8_t>("/tasks/state", {plan.size()}, "1",
                                               "1: complete, all of its rows are valid; 0: pending, ignore its rows"));
@@ -108,7 +92,7 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   const TaskRecord record;
   visit_columns(record, [&](const Column& column, const auto& values) {
     using T = typename std::decay_t<decltype(values)>::value_type;
-    std::vector<std::int64_t> extent{row_count(plan, column.rows)};
+    std::vector<std::int64_t> extent{plan.rows(column.rows)};
     for (const Axis axis : column.axes) extent.push_back(sizes.size(axis));
     fields.push_back(number_field<T>(column.path, std::move(extent), column.unit, column.meaning));
   });
@@ -147,12 +131,9 @@ std::int64_t data_bytes(const Field& field) {
 std::string plan_hash(const Plan& plan, const std::vector<ParameterColumn>& parameters) {
   Checksum sum;
   const auto add_text = [&](const std::string& text) { sum.add(text.data(), text.size()); };
-  visit_task_columns(placed_rows(plan), [&](const char* path, const char*, const char*, auto value) {
+  visit_planned_values(plan, [&](const char* path, const char*, const auto& values) {
     add_text(path);
-    for (const Task& task : plan.tasks()) {
-      const auto number = value(task);
-      sum.add(&number, sizeof number);
-    }
+    for (const auto& value : values) sum.add(&value, sizeof value);
   });
   for (const ParameterColumn& parameter : parameters) {
     add_text(parameter.path);

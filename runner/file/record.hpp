@@ -18,20 +18,6 @@ namespace rodsweep {
 
 class Plan;
 
-/// What one row of a dataset stands for.
-enum class Rows {
-  task,
-  step,
-  contact_task,  ///< \ as those, in files of jobs in any of whose tasks rods touch
-  contact_step,  ///< /
-  solve,
-  frame_segment,
-  segment,
-  system,
-  system_segment,
-  system_joint
-};
-
 /// Axes after the row: none, guess, tolerance, the three components of a vector, four of a quaternion, the six of a
 /// joint's constraint (stretch-shear, then bend-twist), frames of a task.
 enum class Axis { guess, tolerance, xyz, wxyz, constraint, frame };
@@ -44,12 +30,6 @@ struct AxisSizes {
 };
 
 AxisSizes axis_sizes(const Plan& plan);
-
-/// Rows of one task in a dataset.
-struct RowRange {
-  std::int64_t first = 0, count = 0;
-};
-RowRange rows_of(const Task& task, Rows rows);
 
 struct Column {
   const char* path;

@@ -179,7 +179,7 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
   visit_columns(record, [&](const Column& column, const auto& values) {
     using T = typename std::decay_t<decltype(values)>::value_type;
     const hdf5::RowDataset& dataset = open.columns[next++];
-    const RowRange rows = rows_of(task, column.rows);
+    const RowRange rows = task.rows[column.rows];
     const std::int64_t expected = rows.count * row_width(column, open.sizes);
     if (static_cast<std::int64_t>(values.size()) != expected) {
       throw std::logic_error(fmt::format("the record of task {} holds {} values for {}, not {}", task.index,

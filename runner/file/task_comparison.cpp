@@ -29,7 +29,8 @@ bool same_frames(const Pair& pair, const StoredColumn& a, const StoredColumn& b)
   for (std::int64_t frame = 0; frame < pair.in_sweep.frames; ++frame) {
     const std::int64_t step = frame * pair.sweep_every, other = step / pair.rerun_every;
     if (step % pair.rerun_every != 0 || other >= pair.in_rerun.frames) continue;
-    if (!same_rows(a, {pair.in_sweep.first_frame_row + frame * segments, segments}, b, {other * segments, segments}))
+    if (!same_rows(a, {pair.in_sweep.rows[Rows::frame_segment].first + frame * segments, segments}, b,
+                   {other * segments, segments}))
       return false;
   }
   return true;
@@ -45,9 +46,8 @@ void compare_results(const Pair& pair, TaskComparison& result) {
     if (of_trajectory && (pair.sweep_every == 0 || pair.rerun_every == 0)) continue;
     if (of_trajectory && column.rows == Rows::task) continue;  // places and times of frames
     ++result.compared;
-    const bool same =
-        frames ? same_frames(pair, a[i], b[i])
-               : same_rows(a[i], rows_of(pair.in_sweep, column.rows), b[i], rows_of(pair.in_rerun, column.rows));
+    const bool same = frames ? same_frames(pair, a[i], b[i])
+                             : same_rows(a[i], pair.in_sweep.rows[column.rows], b[i], pair.in_rerun.rows[column.rows]);
     if (!same) result.differing.emplace_back(column.path);
   }
 }

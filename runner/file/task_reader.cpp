@@ -62,7 +62,7 @@ bool TaskReader::read(std::int64_t index, TaskRecord& record) const try {
   visit_columns(record, [&](const Column& column, auto& values) {
     using T = typename std::decay_t<decltype(values)>::value_type;
     const hdf5::RowDataset& dataset = columns_[next++];
-    const RowRange rows = rows_of(task, column.rows);
+    const RowRange rows = task.rows[column.rows];
     if (!values.empty()) {
       dataset.read(hdf5::type_of<T>(), static_cast<hsize_t>(rows.first), static_cast<hsize_t>(rows.count),
                    values.data());

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "runner/file/planned_columns.hpp"
 #include "runner/file/task_checksum.hpp"
 
 namespace rodsweep {
@@ -35,32 +36,24 @@ std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
     if (values.size() != count) throw std::length_error(std::string(path) + " has another length than /tasks/state");
     return values;
   };
-  const auto segments = numbers("/tasks/segments"), first_step = numbers("/tasks/first_step"),
-             steps = numbers("/tasks/steps"), first_solve = numbers("/tasks/first_solve"),
-             solves = numbers("/tasks/solves"), first_frame_row = numbers("/tasks/first_frame_row"),
-             frames = numbers("/tasks/frames");
   std::vector<Task> tasks(count);
+  visit_planned_columns([&](const RowPlace& place) { return hdf5::exists(file.id(), place.first); },
+                        [&](const char* path, const char*, auto member) {
+                          const auto values = numbers(path);
+                          for (std::size_t i = 0; i < count; ++i)
+                            member(tasks[i]) = static_cast<std::decay_t<decltype(member(tasks[i]))>>(values[i]);
+                        });
+  const bool contact = hdf5::exists(file.id(), "/steps/contacts");
   for (std::size_t i = 0; i < count; ++i) {
-    tasks[i].index = static_cast<std::int64_t>(i);
-    tasks[i].segments = static_cast<int>(segments[i]);
-    tasks[i].first_step = first_step[i], tasks[i].steps = steps[i];
-    tasks[i].first_solve = first_solve[i], tasks[i].solves = solves[i];
-    tasks[i].first_frame_row = first_frame_row[i], tasks[i].frames = frames[i];
-  }
-  const bool contact_rows = hdf5::exists(file.id(), "/steps/contacts");
-  for (Task& task : tasks) task.contact_rows = contact_rows;
-  if (hdf5::exists(file.id(), "/tasks/first_segment_row")) {
-    const auto first_segment_row = numbers("/tasks/first_segment_row");
-    for (std::size_t i = 0; i < count; ++i) tasks[i].first_segment_row = first_segment_row[i];
-  }
-  if (!hdf5::exists(file.id(), "/tasks/systems")) return tasks;
-  const auto first_system = numbers("/tasks/first_system"), systems = numbers("/tasks/systems"),
-             first_segment = numbers("/tasks/first_system_segment"), segment_rows = numbers("/tasks/system_segments"),
-             first_joint = numbers("/tasks/first_system_joint"), joint_rows = numbers("/tasks/system_joints");
-  for (std::size_t i = 0; i < count; ++i) {
-    tasks[i].first_system = first_system[i], tasks[i].systems = systems[i];
-    tasks[i].first_system_segment = first_segment[i], tasks[i].system_segments = segment_rows[i];
-    tasks[i].first_system_joint = first_joint[i], tasks[i].system_joints = joint_rows[i];
+    Task& task = tasks[i];
+    const auto index = static_cast<std::int64_t>(i);
+    task.index = index;
+    task.steps = task.rows[Rows::step].count;
+    task.rows[Rows::task] = {index, 1};
+    if (contact)
+      task.rows[Rows::contact_task] = task.rows[Rows::task], task.rows[Rows::contact_step] = task.rows[Rows::step];
+    task.rows[Rows::frame_segment].count = task.frames * task.segments;
+    task.rows[Rows::segment].count = task.frames > 0 ? task.segments : 0;
   }
   return tasks;
 }

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "runner/file/file_reading.hpp"
-#include "runner/file/layout.hpp"
+#include "runner/file/planned_columns.hpp"
 #include "runner/job/nearest.hpp"
 
 namespace rodsweep {
@@ -47,8 +47,8 @@ std::string attribute(hid_t file, const std::string& path, const char* name) {
 /// Known before the task runs.
 bool is_planned(const std::string& path) {
   bool found = false;
-  visit_task_columns(PlacedRows{true, true},
-                     [&](const char* planned, const char*, const char*, auto) { found = found || path == planned; });
+  visit_planned_columns([](const RowPlace&) { return true; },
+                        [&](const char* planned, const char*, auto) { found = found || path == planned; });
   return found;
 }
 

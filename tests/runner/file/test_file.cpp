@@ -33,7 +33,7 @@ template <class T>
 std::vector<T> task_rows(const hdf5::File& file, const Column& column, const Task& task, const AxisSizes& sizes) {
   if (!hdf5::exists(file.id(), column.path)) return {};
   const auto all = hdf5::read_all<T>(file.id(), column.path);
-  const RowRange rows = rows_of(task, column.rows);
+  const RowRange rows = task.rows[column.rows];
   const std::int64_t width = row_width(column, sizes);
   return {all.begin() + rows.first * width, all.begin() + (rows.first + rows.count) * width};
 }

@@ -145,7 +145,7 @@ TEST_CASE("verification finds one flipped bit in the data of a complete task") {
 
   const AxisSizes sizes = axis_sizes(plan);
   const auto first_byte = [&](const Task& task, std::int64_t width_bytes) {
-    return static_cast<std::size_t>(task.first_solve * width_bytes);
+    return static_cast<std::size_t>(task.rows[Rows::solve].first * width_bytes);
   };
   SECTION("in a row of a solve") {
     flip_bit(path, "/solves/iterations", first_byte(plan.task(2), sizes.guesses * sizes.tolerances * 2) + 5);
