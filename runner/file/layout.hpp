@@ -9,56 +9,37 @@
 #include <vector>
 
 #include "runner/file/hdf5.hpp"
-#include "runner/file/record.hpp"
 #include "runner/job/plan.hpp"
 
 namespace rodsweep {
 
-enum class Element { int8, uint8, int16, int32, int64, uint64, float32, float64, text };
-
 struct Field {
   std::string path;
-  Element element = Element::float64;
-  std::int64_t text_bytes = 0;       ///< length of Element::text
+  hid_t (*number)() = nullptr;       ///< hdf5::type_of<T>; none: text
+  std::int64_t text_bytes = 0;       ///< length of a text
   std::vector<std::int64_t> extent;  ///< empty: a scalar
   std::string unit, meaning;
 };
 
 inline constexpr int schema_version = 1;
 
-inline constexpr int run_rows = 64;  ///< rows of /runs: starts that one file remembers
 inline constexpr int outcome_bytes = 16;
 inline constexpr int message_bytes = 240;
 inline constexpr int host_bytes = 64;
 
-template <class T>
-constexpr Element element_of() {
-  if constexpr (std::is_same_v<T, std::int8_t>)
-    return Element::int8;
-  else if constexpr (std::is_same_v<T, std::uint8_t>)
-    return Element::uint8;
-  else if constexpr (std::is_same_v<T, std::int16_t>)
-    return Element::int16;
-  else if constexpr (std::is_same_v<T, std::int32_t>)
-    return Element::int32;
-  else if constexpr (std::is_same_v<T, std::int64_t>)
-    return Element::int64;
-  else if constexpr (std::is_same_v<T, std::uint64_t>)
-    return Element::uint64;
-  else if constexpr (std::is_same_v<T, float>)
-    return Element::float32;
-  else {
-    static_assert(std::is_same_v<T, double>, "no element for this");
-    return Element::float64;
-  }
-}
-
-/// `parameters` are plan.parameters(), which are built on demand.
+/// `parameters` are plan.parameters(), which are built on demand. Throws FileError for more bytes than any file takes.
 std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& parameters);
+
+Field text_field(std::string path, std::int64_t bytes, std::vector<std::int64_t> extent, std::string meaning);
+
+template <class T>
+Field number_field(std::string path, std::vector<std::int64_t> extent, std::string unit, std::string meaning) {
+  return {std::move(path), hdf5::type_of<T>, 0, std::move(extent), std::move(unit), std::move(meaning)};
+}
 
 hdf5::Datatype type_of(const Field& field);
 
-/// Bytes of a dataset's values.
+/// Bytes of the values of a dataset of a layout().
 std::int64_t data_bytes(const Field& field);
 
 /// Sixteen hexadecimal digits over what the plan fixes about the file (floating-point parameters are left out: another

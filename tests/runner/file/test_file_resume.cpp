@@ -3,6 +3,7 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
+#include "runner/file/runs.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
