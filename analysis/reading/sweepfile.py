@@ -1,4 +1,4 @@
-"""The one reader of a rodsweep results file (HDF5, schema version 1; layout in runner/file/record.hpp).
+"""The one reader of a rodsweep results file (HDF5, schema version 1; layout in runner/file/columns.cpp).
 
 A SweepFile knows the tasks of a sweep, their parameters and the axes of guesses and tolerances. Results are masked by
 /tasks/state: rows of a task that is not complete are never handed out, since unwritten bytes read as perfect results.

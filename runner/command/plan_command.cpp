@@ -53,7 +53,7 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
                               {"steps", all_steps(plan)},
                               {"most_systems", most_systems(plan)},
                               {"guesses", plan.guess_labels()},
-                              {"recorded_systems", plan.system_rows()},
+                              {"recorded_systems", plan.rows(Rows::system)},
                               {"file_bytes", file_bytes(plan)}};
   json["swept"] = nlohmann::ordered_json::array();
   for (const ParameterColumn& parameter : plan.parameters())
@@ -87,7 +87,7 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
   text += fmt::format("steps    {}\n", all_steps(plan));
   const auto guesses = plan.guess_labels().size();
   text += fmt::format("systems  {} at most{}{}\n", most_systems(plan),
-                      plan.system_rows() > 0 ? fmt::format(", of which {} recorded", plan.system_rows()) : "",
+                      plan.rows(Rows::system) > 0 ? fmt::format(", of which {} recorded", plan.rows(Rows::system)) : "",
                       guesses > 0 ? fmt::format(", guesses: {}", fmt::join(plan.guess_labels(), ", ")) : "");
   text += fmt::format("file     {}\n", bytes_text(file_bytes(plan)));
   if (!probes.empty()) {

@@ -11,10 +11,8 @@ constexpr double enough_s = 0.5, too_long_s = 5;
 
 /// The first `steps` steps of a task.
 void truncate(Task& task, TaskSpec& spec, int steps) {
-  for (std::int64_t* rows : {&task.solves, &task.systems, &task.system_segments, &task.system_joints})
-    *rows = *rows / task.steps * steps;
-  if (task.frames > 0) task.frames = 1 + steps / spec.record.trajectory_every;
-  task.steps = spec.time.steps = steps;
+  spec.time.steps = steps;
+  size_rows(task, spec.scene, spec.time, spec.record);
   spec.time_limit_s = spec.time_limit_s > 0 ? std::min(spec.time_limit_s, too_long_s) : too_long_s;
 }
 

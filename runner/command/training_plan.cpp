@@ -41,7 +41,7 @@ Extent extent_of(const TrainingJob& job, const DatasetReader& dataset) {
   extent.training_simulations = dataset.size() - job.validation_simulations;
   for (std::int64_t i = 0; i < dataset.size(); ++i)
     (i < extent.training_simulations ? extent.training_examples : extent.validation_examples) +=
-        dataset.task(i).systems;
+        dataset.task(i).rows[Rows::system].count;
   extent.steps_per_epoch = extent.training_examples / job.training.batch;
   extent.steps = extent.steps_per_epoch * job.training.epochs;
   return extent;

@@ -7,6 +7,7 @@
 #include "runner/dataset/system_recording.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
+#include "runner/file/resume_check.hpp"
 #include "runner/file/stored_plan.hpp"
 #include "runner/job/checksum.hpp"
 #include "runner/terminal/text.hpp"
@@ -60,8 +61,9 @@ std::string failures_text(const FileSummary& file) {
 DatasetReader::DatasetReader(const fs::path& path) : path_(path) {
   const FileSummary file = inspect(path);
   check_usable(file);
-  plan_ = std::make_unique<Plan>(stored_plan(file));
-  reader_ = std::make_unique<TaskReader>(path, *plan_, "Use that revision, or make the data set again");
+  plan_ = stored_plan(file);
+  check_same_plan(path, *plan_, "Use that revision, or make the data set again");
+  reader_.emplace(path);
   for (const Task& task : plan_->tasks())
     if (reader_->outcome(task.index) == TaskOutcome::ok) tasks_.push_back(task.index);
   std::stable_sort(tasks_.begin(), tasks_.end(),
@@ -77,7 +79,7 @@ const Task& DatasetReader::task(std::int64_t simulation) const {
 RecordedSimulation DatasetReader::read(std::int64_t simulation) const {
   const std::int64_t index = task(simulation).index;
   TaskRecord record;
-  if (!reader_->read(index, record)) {
+  if (!reader_->read_intact(index, record)) {
     throw FileError(fmt::format("{} is damaged: the data of task {} are not what was written; make the data set again",
                                 path_.native(), index));
   }

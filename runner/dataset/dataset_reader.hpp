@@ -7,7 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,8 +36,8 @@ class DatasetReader {
 
  private:
   std::filesystem::path path_;
-  std::unique_ptr<Plan> plan_;  ///< at a fixed place: the reader refers to it
-  std::unique_ptr<TaskReader> reader_;
+  std::optional<Plan> plan_;
+  std::optional<TaskReader> reader_;
   std::vector<std::int64_t> tasks_;
   std::string hash_, note_;
 };

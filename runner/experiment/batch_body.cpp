@@ -12,7 +12,7 @@ namespace rodsweep {
 static_assert(Assign::most <= BatchedRods::lanes, "an assignment must fit into a batch");
 
 std::vector<std::int64_t> batches(const Plan& plan) {
-  if (plan.system_rows() == 0) return std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1);
+  if (plan.rows(Rows::system) == 0) return std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1);
   std::map<BatchKey, std::int64_t> numbers;
   std::vector<std::int64_t> out;
   for (const Task& task : plan.tasks()) {

@@ -123,7 +123,7 @@ void SimulationRecord::fail(TaskOutcome outcome, int step, const std::string& wh
 
 void SimulationRecord::record_frame(std::size_t frame, const Scene& scene) {
   const std::size_t first = frame * static_cast<std::size_t>(task_.segments);
-  record_.first_row[frame] = task_.first_frame_row + static_cast<std::int64_t>(first);
+  record_.first_row[frame] = task_.rows[Rows::frame_segment].first + static_cast<std::int64_t>(first);
   record_.frame_time_s[frame] = scene.time_s;
   std::size_t row = first;
   for (const Rod& rod : scene.rods) {

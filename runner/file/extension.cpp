@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <string_view>
 #include <unordered_map>
-#include <utility>
 
+#include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
-#include "runner/file/provenance.hpp"
-#include "runner/file/task_checksum.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/resume_check.hpp"
+#include "runner/file/runs.hpp"
 #include "runner/job/job_extension.hpp"
 
 namespace rodsweep {
@@ -18,36 +20,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One column of a record, its type put aside.
-template <class Byte>
-struct Bytes {
-  Column column;
-  Byte* values;
-  std::size_t size;
-};
-
-template <class Byte, class Record>
-std::vector<Bytes<Byte>> columns_of(Record& record) {
-  std::vector<Bytes<Byte>> columns;
-  visit_columns(record, [&](const Column& column, auto& values) {
-    columns.push_back({column, reinterpret_cast<Byte*>(values.data()),
-                       values.size() * sizeof(typename std::decay_t<decltype(values)>::value_type)});
-  });
-  return columns;
-}
-
 /// Is its first axis after the row that of the guesses?
 bool has_guesses(const Column& column) { return !column.axes.empty() && column.axes.front() == Axis::guess; }
 
-/// Copies guess `from` of every row to guess `to`; the columns differ in the length of their guess axis alone.
-void copy_guess(const Bytes<const char>& source, std::size_t from, std::size_t source_guesses,
-                const Bytes<char>& target, std::size_t to, std::size_t target_guesses, const Task& task) {
-  const auto rows = static_cast<std::size_t>(rows_of(task, target.column.rows).count);
+/// Guess `guess` of the columns of a record that has so many.
+struct GuessPlace {
+  std::size_t guess, guesses;
+};
+
+/// Copies a guess of every row; the two columns differ in the length of their guess axis alone.
+void copy_guess(const Column& column, const Task& task, const TaskRecord& source, const GuessPlace& from,
+                TaskRecord& target, const GuessPlace& to) {
+  const auto rows = static_cast<std::size_t>(task.rows[column.rows].count);
   if (rows == 0) return;
-  const std::size_t block = target.size / (rows * target_guesses);
+  const std::string_view bytes = bytes_of(column, source);
+  const std::size_t block = bytes.size() / (rows * from.guesses);
   for (std::size_t row = 0; row < rows; ++row) {
-    std::memcpy(target.values + (row * target_guesses + to) * block,
-                source.values + (row * source_guesses + from) * block, block);
+    std::memcpy(data_of(column, target) + (row * to.guesses + to.guess) * block,
+                bytes.data() + (row * from.guesses + from.guess) * block, block);
   }
 }
 
@@ -56,29 +46,24 @@ bool is_final(TaskOutcome outcome) {
   return outcome != TaskOutcome::pending && outcome != TaskOutcome::timed_out && outcome != TaskOutcome::error;
 }
 
-std::string row_of(const hdf5::File& file, const char* path) {
-  const int runs = runs_used(file);
-  return runs > 0 ? hdf5::read_text_row(file.id(), path, static_cast<hsize_t>(runs - 1)) : "";
-}
-
 }  // namespace
 
 Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan_(&plan) {
   {
-    const hdf5::File file = open_results(path);
-    try {
-      before_ = std::make_unique<Plan>(parse_job(hdf5::read_texts(file.id(), "/job/text").at(0), path));
-      if (const std::string revision = row_of(file, "/runs/revision"); revision != source_revision()) {
-        note_ = fmt::format("{} was made by revision {}, and this is {}: what is copied is the former's", path.native(),
-                            revision, source_revision());
-      }
-    } catch (const Hdf5Error& failure) {
-      throw damaged_error(path, failure.what());
+    const FileSummary file = inspect(path);
+    const std::string revision = file.runs.empty() ? "" : file.runs.back().provenance.revision;
+    if (revision != source_revision()) {
+      note_ = fmt::format("{} was made by revision {}, and this is {}: what is copied is the former's", path.native(),
+                          revision, source_revision());
     }
+    before_.emplace(parse_job(file.job_text, path));
+    check_extends(plan.job(), before_->job());
+    if (file.rerun_of_task)
+      throw FileError(fmt::format(
+          "{} holds one task of a sweep, made by `rodsweep rerun`: extend the file of the sweep", path.native()));
   }
-  check_extends(plan.job(), before_->job());
-  reader_ = std::make_unique<TaskReader>(path, *before_,
-                                         "Extend it with that revision, or run the whole job without --extend");
+  check_same_plan(path, *before_, "Extend it with that revision, or run the whole job without --extend");
+  reader_.emplace(path);
 
   std::unordered_map<std::size_t, std::vector<std::int64_t>> by_trajectory;
   const std::hash<std::string> hash;
@@ -94,7 +79,7 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
 
 /// For every guess that the task tries, the column of the same guess in its source, or -1; for one that it does not
 /// try, -2.
-std::vector<int> Extension::columns(const Task& task, const TaskIdentity& wanted, const Task& source,
+std::vector<int> Extension::sources(const Task& task, const TaskIdentity& wanted, const Task& source,
                                     const TaskIdentity& found) const {
   std::vector<int> columns(plan_->guess_labels().size(), -2);
   for (std::size_t g = 0; g < wanted.guesses.size(); ++g) {
@@ -114,7 +99,7 @@ Extension::Source Extension::find(const Task& task, const TaskIdentity& wanted,
   for (const std::int64_t candidate : candidates) {
     const TaskIdentity found = before_->identity(candidate);
     if (found.trajectory != wanted.trajectory) continue;
-    const std::vector<int> places = columns(task, wanted, before_->task(candidate), found);
+    const std::vector<int> places = sources(task, wanted, before_->task(candidate), found);
     const auto missing = static_cast<int>(std::count(places.begin(), places.end(), -1));
     // Of a task that failed on its way there is no telling what another guess would have seen.
     if (missing > 0 && reader_->outcome(candidate) != TaskOutcome::ok) continue;
@@ -129,10 +114,12 @@ std::int64_t Extension::count(Use use) const {
 }
 
 void Extension::check_started(const fs::path& path) const {
-  const hdf5::File here = open_results(path), there = open_results(path_);
-  const auto begins = hdf5::read_texts(here.id(), "/runs/begin"), earlier = hdf5::read_texts(there.id(), "/runs/begin");
-  if (hdf5::read_text_row(here.id(), "/runs/source", 0).empty() ||
-      !std::equal(earlier.begin(), earlier.begin() + runs_used(there), begins.begin())) {
+  const std::vector<RunRow> here = read_runs(open_results(path)), there = read_runs(open_results(path_));
+  const auto same_begin = [](const RunRow& a, const RunRow& b) {
+    return a.provenance.begin_utc == b.provenance.begin_utc;
+  };
+  if (here.empty() || here.front().source.empty() || here.size() < there.size() ||
+      !std::equal(there.begin(), there.end(), here.begin(), same_begin)) {
     throw FileError(
         fmt::format("{} was not begun with --extend {}, or that file was continued since; --resume it "
                     "without --extend",
@@ -151,27 +138,25 @@ double Extension::cost(std::int64_t task) const {
 bool Extension::take(std::int64_t index, TaskRecord& record) const {
   TaskRecord earlier;
   const Task &task = plan_->task(index), &from = before_->task(source(index));
-  if (!reader_->read(from.index, earlier)) return false;
+  if (!reader_->read_intact(from.index, earlier)) return false;
   record.outcome = earlier.outcome;
   record.message = earlier.message;
-  const std::vector<int> guesses = columns(task, plan_->identity(index), from, before_->identity(from.index));
-  const std::size_t earlier_guesses = before_->guess_labels().size();
-  const auto sources = columns_of<const char>(std::as_const(earlier));
-  const auto targets = columns_of<char>(record);
-  for (std::size_t c = 0; c < targets.size(); ++c) {
-    if (!has_guesses(targets[c].column)) {  // the frame axis is as long as the plan's longest task needs it
-      const std::size_t bytes = std::min(sources[c].size, targets[c].size);
-      if (bytes > 0) std::memcpy(targets[c].values, sources[c].values, bytes);
+  const std::vector<int> guesses = sources(task, plan_->identity(index), from, before_->identity(from.index));
+  for (const Column& column : columns()) {
+    if (!has_guesses(column)) {  // the frame axis is as long as the plan's longest task needs it
+      const std::string_view source = bytes_of(column, earlier);
+      const std::size_t bytes = std::min(source.size(), bytes_of(column, record).size());
+      std::copy_n(source.begin(), bytes, data_of(column, record));
       continue;
     }
     for (std::size_t g = 0; g < guesses.size(); ++g) {
       if (guesses[g] < 0) continue;
-      copy_guess(sources[c], static_cast<std::size_t>(guesses[g]), earlier_guesses, targets[c], g, guesses.size(),
-                 task);
+      copy_guess(column, task, earlier, {static_cast<std::size_t>(guesses[g]), before_->guess_labels().size()}, record,
+                 {g, guesses.size()});
     }
   }
   for (std::int64_t& row : record.first_row)
-    if (row >= 0) row += task.first_frame_row - from.first_frame_row;
+    if (row >= 0) row += task.rows[Rows::frame_segment].first - from.rows[Rows::frame_segment].first;
   record.source_task[0] = from.index;
   for (std::size_t g = 0; g < guesses.size(); ++g) record.copied_guess[g] = guesses[g] < 0 ? -1 : 1;
   return true;
@@ -182,29 +167,19 @@ std::string complete(const Task& task, TaskRecord& record, const TaskRecord& tak
     return fmt::format("it ended as {} ({}) and had ended as {} ({})", to_string(record.outcome), record.message,
                        to_string(taken.outcome), taken.message);
   }
-  std::string difference;
-  const auto sources = columns_of<const char>(taken);
-  std::size_t next = 0;
-  visit_columns(std::as_const(record), [&](const Column& column, const auto& values) {
-    using T = typename std::decay_t<decltype(values)>::value_type;
-    const Bytes<const char>& source = sources[next++];
-    if (!difference.empty() || has_guesses(column) || !TaskChecksum::covers(column)) return;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      T before{};
-      std::memcpy(&before, source.values + i * sizeof(T), sizeof(T));
-      if (std::memcmp(&before, &values[i], sizeof(T)) == 0) continue;
-      difference = fmt::format("{}, value {}, is {} and was {}", column.path, i, values[i], before);
-      return;
-    }
-  });
-  if (!difference.empty()) return difference;
-
-  const auto targets = columns_of<char>(record);
+  for (const Column& column : columns()) {
+    const std::string_view now = bytes_of(column, record), before = bytes_of(column, taken);
+    if (now == before || has_guesses(column) || is_timing(column)) continue;
+    const auto byte = std::mismatch(now.begin(), now.end(), before.begin()).first - now.begin();
+    const std::size_t value = static_cast<std::size_t>(byte) / H5Tget_size(column.type());
+    return fmt::format("{}, value {}, is {} and was {}", column.path, value, text_of(column, record, value),
+                       text_of(column, taken, value));
+  }
   const std::size_t guesses = taken.copied_guess.size();
-  for (std::size_t c = 0; c < targets.size(); ++c) {
-    if (!has_guesses(targets[c].column)) continue;
+  for (const Column& column : columns()) {
+    if (!has_guesses(column)) continue;
     for (std::size_t g = 0; g < guesses; ++g)
-      if (taken.copied_guess[g] == 1) copy_guess(sources[c], g, guesses, targets[c], g, guesses, task);
+      if (taken.copied_guess[g] == 1) copy_guess(column, task, taken, {g, guesses}, record, {g, guesses});
   }
   record.source_task = taken.source_task;
   return {};

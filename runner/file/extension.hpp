@@ -9,7 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,14 +51,14 @@ class Extension {
     Use use = Use::run;
     int missing = 0;  ///< guesses that it lacks
   };
-  std::vector<int> columns(const Task& task, const TaskIdentity& wanted, const Task& source,
+  std::vector<int> sources(const Task& task, const TaskIdentity& wanted, const Task& source,
                            const TaskIdentity& found) const;
   Source find(const Task& task, const TaskIdentity& wanted, const std::vector<std::int64_t>& candidates) const;
 
   std::filesystem::path path_;
   const Plan* plan_;
-  std::unique_ptr<Plan> before_;  ///< at a fixed address: the reader refers to it
-  std::unique_ptr<TaskReader> reader_;
+  std::optional<Plan> before_;
+  std::optional<TaskReader> reader_;
   std::vector<Source> uses_;
   std::string note_;
 };

@@ -10,7 +10,10 @@
 #include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"
+#include "runner/file/planned_columns.hpp"
+#include "runner/file/runs.hpp"
 #include "runner/file/unfinished_file.hpp"
+#include "runner/job/task_outcome.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -83,33 +86,21 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   if (!plan.guess_labels().empty()) hdf5::write_texts(file, "/axes/guess", plan.guess_labels());
   hdf5::write_all(file, "/axes/tolerance", tolerance_ladder());
   write_parameters(file, parameters);
-  visit_task_columns(placed_rows(plan), [&](const char* path, const char*, const char*, auto value) {
-    std::vector<decltype(value(Task{}))> values;
-    for (const Task& task : plan.tasks()) values.push_back(value(task));
-    hdf5::write_all(file, path, values);
-  });
+  visit_planned_values(plan,
+                       [&](const char* path, const char*, const auto& values) { hdf5::write_all(file, path, values); });
   const auto tasks = static_cast<std::size_t>(plan.size());
   hdf5::write_all(file, "/tasks/state", std::vector<std::uint8_t>(tasks, 0));
   hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
 }
 
-/// The rows of /runs of an earlier file, byte for byte, marked with its name unless they were copied there already.
-int copy_runs(hid_t file, const std::vector<Field>& fields, const fs::path& earlier) {
-  const hdf5::File from = open_results(earlier);
-  for (const Field& field : fields) {
-    if (field.path.rfind("/runs/", 0) != 0) continue;
-    std::vector<char> bytes(static_cast<std::size_t>(data_bytes(field)));
-    const hdf5::Datatype type = type_of(field);
-    const auto rows = static_cast<hsize_t>(run_rows);
-    hdf5::RowDataset(from.id(), field.path).read(type.id(), 0, rows, bytes.data());
-    hdf5::RowDataset(file, field.path).write(type.id(), 0, rows, bytes.data());
+/// The starts of an earlier file, marked with its name unless they were copied there already.
+int copy_runs(const hdf5::File& file, const fs::path& earlier) {
+  std::vector<RunRow> runs = read_runs(open_results(earlier));
+  for (std::size_t row = 0; row < runs.size(); ++row) {
+    if (runs[row].source.empty()) runs[row].source = earlier.native();
+    write_run(file, row, runs[row]);
   }
-  const int used = runs_used(from);
-  std::vector<std::string> sources = hdf5::read_texts(file, "/runs/source");
-  for (int row = 0; row < used; ++row)
-    if (auto& source = sources[static_cast<std::size_t>(row)]; source.empty()) source = earlier.native();
-  hdf5::write_texts(file, "/runs/source", sources);
-  return used;
+  return static_cast<int>(runs.size());
 }
 
 /// Takes real blocks for the sparse file. File systems that cannot are left alone; the free-space check has to do
@@ -150,7 +141,7 @@ int create_results_file(const fs::path& path, const Plan& plan, const FreeSpace&
   hdf5::File file = hdf5::create_file(unfinished.path());
   create_datasets(file.id(), fields);
   write_constants(file.id(), plan, parameters);
-  const int runs = earlier.empty() ? 0 : copy_runs(file.id(), fields, earlier);
+  const int runs = earlier.empty() ? 0 : copy_runs(file, earlier);
   hdf5::close(file, "H5Fclose", unfinished.path().native());
   reserve_blocks(unfinished.path(), path);
   unfinished.publish();

@@ -82,9 +82,4 @@ std::vector<std::uint8_t> read_states(const hdf5::File& file, const fs::path& pa
   return states;
 }
 
-int runs_used(const hdf5::File& file) {
-  const std::vector<std::string> begins = hdf5::read_texts(file.id(), "/runs/begin");
-  return static_cast<int>(std::find(begins.begin(), begins.end(), "") - begins.begin());
-}
-
 }  // namespace rodsweep

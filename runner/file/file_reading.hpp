@@ -26,10 +26,19 @@ hdf5::File open_results(const std::filesystem::path& path);
 /// A file that passed open_results() but does not hold what it should; `reason` says what.
 FileError damaged_error(const std::filesystem::path& path, const std::string& reason);
 
+/// Does work(); what HDF5 or the sizes of a broken file make of it is the file's fault.
+template <class Work>
+auto reading(const std::filesystem::path& path, Work&& work) {
+  try {
+    return work();
+  } catch (const FileError&) {
+    throw;
+  } catch (const std::exception& failure) {
+    throw damaged_error(path, failure.what());
+  }
+}
+
 /// State bytes, 0 or 1 each.
 std::vector<std::uint8_t> read_states(const hdf5::File& file, const std::filesystem::path& path);
-
-/// How many rows of /runs are in use.
-int runs_used(const hdf5::File& file);
 
 }  // namespace rodsweep

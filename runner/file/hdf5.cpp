@@ -1,6 +1,7 @@
 #include "runner/file/hdf5.hpp"
 
 #include <algorithm>
+#include <new>
 #include <numeric>
 
 namespace rodsweep::hdf5 {
@@ -14,12 +15,26 @@ void silence() {
   static_cast<void>(done);
 }
 
-herr_t append_description(unsigned, const H5E_error2_t* error, void* text) {
+/// No exception may pass through HDF5: without memory the text ends here.
+herr_t append_description(unsigned, const H5E_error2_t* error, void* text) noexcept try {
   auto& all = *static_cast<std::string*>(text);
   if (error->desc != nullptr && *error->desc != '\0' && all.find(error->desc) == std::string::npos) {
     all += (all.empty() ? "" : "; ") + std::string(error->desc);
   }
   return 0;
+} catch (const std::bad_alloc&) {
+  return -1;
+}
+
+/// The names that name_at(index, buffer, bytes) fills in and tells the lengths of.
+template <class NameAt>
+std::vector<std::string> names(hsize_t count, const char* call, NameAt&& name_at) {
+  std::vector<std::string> all(count);
+  for (hsize_t i = 0; i < count; ++i) {
+    all[i].resize(static_cast<std::size_t>(check(name_at(i, nullptr, 0), call)));
+    check(name_at(i, all[i].data(), all[i].size() + 1), call);
+  }
+  return all;
 }
 
 Attribute create_attribute(hid_t object, const char* name, const Datatype& type) {
@@ -130,6 +145,21 @@ std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path) {
       static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.id()), "H5Sget_simple_extent_ndims", path)));
   check(H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr), "H5Sget_simple_extent_dims", path);
   return sizes;
+}
+
+std::vector<std::string> members(hid_t group) {
+  H5G_info_t info;
+  check(H5Gget_info(group, &info), "H5Gget_info");
+  return names(info.nlinks, "H5Lget_name_by_idx", [&](hsize_t i, char* name, std::size_t bytes) {
+    return H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, bytes, H5P_DEFAULT);
+  });
+}
+
+std::vector<std::string> attribute_names(hid_t object) {
+  const int count = check(H5Aget_num_attrs(object), "H5Aget_num_attrs");
+  return names(static_cast<hsize_t>(count), "H5Aget_name_by_idx", [&](hsize_t i, char* name, std::size_t bytes) {
+    return H5Aget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, bytes, H5P_DEFAULT);
+  });
 }
 
 RowDataset::RowDataset(hid_t file, std::string path) : path_(std::move(path)) {

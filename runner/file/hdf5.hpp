@@ -111,6 +111,9 @@ Dataset open_dataset(hid_t file, const std::string& path);
 bool exists(hid_t file, const std::string& path);  ///< also false where a group on the way is missing
 std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path);
 
+std::vector<std::string> members(hid_t group);           ///< their names, sorted
+std::vector<std::string> attribute_names(hid_t object);  ///< sorted
+
 /// A dataset kept open for access to whole rows, which `first` and `count` name; empty where there is none at `path`.
 class RowDataset {
  public:

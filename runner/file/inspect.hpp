@@ -15,16 +15,6 @@
 
 namespace rodsweep {
 
-/// One start of the sweep.
-struct RunRow {
-  Provenance provenance;
-  std::string end_utc;      ///< empty: still running, or killed
-  int exit_code = -1;       ///< -1: still running, or killed
-  std::string source;       ///< the file that this one extends, whose start it was; empty: a start of this sweep
-  std::int64_t tasks = 0;   ///< tasks that this start completed
-  double task_seconds = 0;  ///< their wall time, summed
-};
-
 struct FailedTask {
   std::int64_t index = 0;
   std::string outcome;  ///< to_string(TaskOutcome)

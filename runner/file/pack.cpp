@@ -20,20 +20,8 @@ constexpr hsize_t least_bytes = 1 << 12;  // below, a chunk's index would take m
 constexpr unsigned deflate_level = 4;     // higher ones take much longer and save little
 constexpr const char* state_path = "/tasks/state";
 
-herr_t append_name(hid_t, const char* name, const H5L_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
-}
-
-herr_t append_attribute(hid_t, const char* name, const H5A_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
-}
-
 void copy_attributes(hid_t from, hid_t to) {
-  std::vector<std::string> names;
-  hdf5::check(H5Aiterate2(from, H5_INDEX_NAME, H5_ITER_INC, nullptr, append_attribute, &names), "H5Aiterate2");
-  for (const std::string& name : names) {
+  for (const std::string& name : hdf5::attribute_names(from)) {
     const hdf5::Attribute source(hdf5::check(H5Aopen(from, name.c_str(), H5P_DEFAULT), "H5Aopen", name));
     const hdf5::Datatype type(hdf5::check(H5Aget_type(source.id()), "H5Aget_type", name));
     const hdf5::Dataspace space(hdf5::check(H5Aget_space(source.id()), "H5Aget_space", name));
@@ -110,7 +98,7 @@ void copy_group(const hdf5::File& source, const hdf5::File& target, const std::s
                                  : H5Gcreate2(target.id(), group.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                     "H5Gcreate2", group));
     copy_attributes(from.id(), to.id());
-    hdf5::check(H5Literate(from.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append_name, &names), "H5Literate", group);
+    names = hdf5::members(from.id());
   }
   for (const std::string& name : names) {
     const std::string path = prefix + name;

@@ -1,6 +1,7 @@
-// Who made a file and with what: one row of /runs. Works without MPI_Init and PetscInitialize.
+// Who made a file and with what. Works without MPI_Init and PetscInitialize.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace rodsweep {
@@ -11,6 +12,24 @@ struct Provenance {
   std::string job;  ///< absolute path of the job file: relative paths in the job begin in its folder
   int ranks = 1;
   bool oversubscribed = false;  ///< more ranks than cores: timings are worthless
+};
+
+/// One start of a sweep: a row of /runs.
+struct RunRow {
+  Provenance provenance;
+  std::string end_utc;      ///< empty: still running, or killed
+  int exit_code = -1;       ///< -1: still running, or killed
+  std::string source;       ///< the file that this one extends, whose start it was; empty: a start of this sweep
+  std::int64_t tasks = 0;   ///< tasks that this start completed (inspect())
+  double task_seconds = 0;  ///< their wall time, summed (inspect())
+};
+
+/// Who ran a task (/timing/tasks).
+struct TaskOrigin {
+  std::int32_t rank = 0;
+  std::int32_t attempt = 0;  ///< row of /runs
+  std::string host;
+  double write_s = 0;
 };
 
 /// Begins now, on this host, with this program; `ranks` and `oversubscribed` are for the caller to complete.

@@ -9,9 +9,10 @@
 #include <string_view>
 #include <utility>
 
-#include "runner/file/hdf5.hpp"
+#include "runner/file/columns.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/resume_check.hpp"
+#include "runner/file/runs.hpp"
 #include "runner/file/task_checksum.hpp"
 #include "runner/mpi/mpi_session.hpp"
 
@@ -83,11 +84,12 @@ struct ResultsFile::Open {
   fs::path path;
   int own_rank = 0;
   AxisSizes sizes;
-  std::vector<hdf5::RowDataset> columns;  // in the order of visit_columns(); empty: the file leaves it out
+  RunRow run;                             // this start's
+  std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: the file leaves it out
   hdf5::RowDataset state, outcome, message, checksum, rank, host, attempt, write_s;
   hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
   hdf5::Datatype host_type = hdf5::text_type(host_bytes);
-  std::string own_host = hdf5::fixed_text(host_name(), host_bytes);
+  std::string own_host = host_name();
 };
 
 ResultsFile::ResultsFile(ResultsFile&&) noexcept = default;
@@ -142,29 +144,11 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->host = open_rows("/timing/tasks/host");
     open_->attempt = open_rows("/timing/tasks/attempt");
     open_->write_s = open_rows("/timing/tasks/write_s");
-    const TaskRecord record;
-    visit_columns(record, [&](const Column& column, const auto&) { open_->columns.push_back(open_rows(column.path)); });
+    for (const Column& column : columns()) open_->columns.push_back(open_rows(column.path));
   });
-  Provenance everywhere = provenance;
-  everywhere.host = host_names(comm);
-  on_first_rank(comm, [&] { begin_run(everywhere); });
-}
-
-void ResultsFile::begin_run(const Provenance& provenance) {
-  const hid_t file = open_->file.id();
-  const auto row = static_cast<hsize_t>(attempt_);
-  hdf5::write_text_row(file, "/runs/end", row, "");
-  hdf5::write_text_row(file, "/runs/source", row, "");
-  hdf5::write_text_row(file, "/runs/host", row, provenance.host);
-  hdf5::write_text_row(file, "/runs/command", row, provenance.user_command);
-  hdf5::write_text_row(file, "/runs/job", row, provenance.job);
-  hdf5::write_text_row(file, "/runs/revision", row, provenance.revision);
-  hdf5::write_text_row(file, "/runs/versions", row, provenance.versions);
-  hdf5::write_text_row(file, "/runs/petsc_options", row, provenance.petsc_options);
-  hdf5::write_row<std::int32_t>(file, "/runs/ranks", row, provenance.ranks);
-  hdf5::write_row<std::int32_t>(file, "/runs/exit_code", row, -1);
-  hdf5::write_row<std::uint8_t>(file, "/runs/oversubscribed", row, provenance.oversubscribed ? 1 : 0);
-  hdf5::write_text_row(file, "/runs/begin", row, provenance.begin_utc);  // last: it marks the row as used
+  open_->run.provenance = provenance;
+  open_->run.provenance.host = host_names(comm);
+  on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(attempt_), open_->run); });
 }
 
 void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
@@ -174,39 +158,40 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
     throw std::logic_error(
         fmt::format("task {} is complete in {} and must not be written again", task.index, open.path.native()));
   }
-  TaskChecksum sum(task.index, to_string(record.outcome), record.message);
-  std::size_t next = 0;
-  visit_columns(record, [&](const Column& column, const auto& values) {
-    using T = typename std::decay_t<decltype(values)>::value_type;
-    const hdf5::RowDataset& dataset = open.columns[next++];
-    const RowRange rows = rows_of(task, column.rows);
+  for (std::size_t c = 0; c < open.columns.size(); ++c) {
+    const Column& column = columns()[c];
+    const RowRange& rows = task.rows[column.rows];
+    const auto values = static_cast<std::int64_t>(bytes_of(column, record).size() / H5Tget_size(column.type()));
     const std::int64_t expected = rows.count * row_width(column, open.sizes);
-    if (static_cast<std::int64_t>(values.size()) != expected) {
-      throw std::logic_error(fmt::format("the record of task {} holds {} values for {}, not {}", task.index,
-                                         values.size(), column.path, expected));
+    if (values != expected) {
+      throw std::logic_error(fmt::format("the record of task {} holds {} values for {}, not {}", task.index, values,
+                                         column.path, expected));
     }
-    sum.add(column, values.data(), values.size() * sizeof(T));
-    if (expected > 0) dataset.write(hdf5::type_of<T>(), rows.first, rows.count, values.data());
-  });
+    if (expected > 0) open.columns[c].write(column.type(), rows.first, rows.count, bytes_of(column, record).data());
+  }
   const auto write_one = [&](const hdf5::RowDataset& dataset, auto value) {
     dataset.write(hdf5::type_of<decltype(value)>(), task.index, 1, &value);
   };
-  open.outcome.write(open.outcome_type.id(), task.index, 1, sum.outcome().data());
-  open.message.write(open.message_type.id(), task.index, 1, sum.message().data());
-  write_one(open.checksum, sum.value());
-  const std::string host = origin != nullptr ? hdf5::fixed_text(origin->host, host_bytes) : open.own_host;
-  write_one(open.rank, origin != nullptr ? origin->rank : static_cast<std::int32_t>(open.own_rank));
-  open.host.write(open.host_type.id(), task.index, 1, host.data());
-  write_one(open.attempt, origin != nullptr ? origin->attempt : static_cast<std::int32_t>(attempt_));
-  write_one(open.write_s,
-            origin != nullptr ? origin->write_s : std::chrono::duration<double>(Clock::now() - begin).count());
+  const auto write_text = [&](const hdf5::RowDataset& dataset, const hdf5::Datatype& type, std::string_view text) {
+    dataset.write(type.id(), task.index, 1, hdf5::fixed_text(text, H5Tget_size(type.id())).data());
+  };
+  write_text(open.outcome, open.outcome_type, to_string(record.outcome));
+  write_text(open.message, open.message_type, record.message);
+  write_one(open.checksum, task_checksum(task.index, record));
+  const TaskOrigin here{open.own_rank, attempt_, open.own_host,
+                        std::chrono::duration<double>(Clock::now() - begin).count()};
+  const TaskOrigin& by = origin != nullptr ? *origin : here;
+  write_one(open.rank, by.rank);
+  write_text(open.host, open.host_type, by.host);
+  write_one(open.attempt, by.attempt);
+  write_one(open.write_s, by.write_s);
   write_one(open.state, std::uint8_t{1});
 }
 
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
-  const auto row = static_cast<hsize_t>(attempt_);
-  hdf5::write_row<std::int32_t>(open_->file.id(), "/runs/exit_code", row, exit_code);
-  hdf5::write_text_row(open_->file.id(), "/runs/end", row, end_utc);
+  open_->run.end_utc = end_utc;
+  open_->run.exit_code = exit_code;
+  write_run(open_->file, static_cast<std::size_t>(attempt_), open_->run);
 }
 
 void ResultsFile::close() {

@@ -4,8 +4,8 @@
 // allocation, so that no rank creates an object at run time; unwritten bytes are zero and `/tasks/state` is zero,
 // "pending". A worker writes all rows of a task, sentinels included, and the state byte last: a task whose state is 1
 // is complete, whatever happened to any process since. Metadata never change while the sweep runs, so a killed sweep
-// leaves a sound file. The layout is that of visit_columns() (runner/file/record.hpp) plus /job, /runs, /axes and the
-// plan's columns in /tasks: see runner/file/layout.hpp.
+// leaves a sound file. The layout is that of columns() (runner/file/columns.hpp) plus /job, /runs, /axes and the plan's
+// columns in /tasks: see runner/file/layout.hpp.
 //
 // Errors: FileError (the user's: exists already, not ours, another job, no space), Hdf5Error (a failing call, with its
 // name).
@@ -23,7 +23,6 @@
 #include "runner/file/file_error.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
-#include "runner/file/task_origin.hpp"
 #include "runner/job/plan.hpp"
 
 namespace rodsweep {
@@ -65,7 +64,6 @@ class ResultsFile {
   struct Open;
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
               const Provenance& provenance, MPI_Comm comm);
-  void begin_run(const Provenance& provenance);
 
   std::unique_ptr<Open> open_;
   std::vector<std::uint8_t> done_;

@@ -12,6 +12,7 @@
 #include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/pack.hpp"
+#include "runner/file/runs.hpp"
 
 namespace rodsweep {
 namespace {
@@ -98,6 +99,12 @@ void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& 
   }
 }
 
+void check_plan(const hdf5::File& file, const fs::path& path, const Plan& plan, const char* advice) {
+  const std::vector<ParameterColumn> parameters = plan.parameters();
+  check_layout(file, path, layout(plan, parameters), advice);
+  check_parameters(file, path, plan, parameters, advice);
+}
+
 void refuse_copies(const hdf5::File& file, const fs::path& path) {
   if (is_packed(file)) {
     throw FileError(
@@ -117,17 +124,12 @@ void refuse_copies(const hdf5::File& file, const fs::path& path) {
 
 void check_same_tasks(const fs::path& path, const Plan& plan) {
   const hdf5::File file = open_results(path);
-  try {
-    check_parameters(file, path, plan, plan.parameters(), other_revision);
-  } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, failure.what());
-  }
+  reading(path, [&] { check_parameters(file, path, plan, plan.parameters(), other_revision); });
 }
 
-void check_same_plan(const hdf5::File& file, const fs::path& path, const Plan& plan, const char* advice) {
-  const std::vector<ParameterColumn> parameters = plan.parameters();
-  check_layout(file, path, layout(plan, parameters), advice);
-  check_parameters(file, path, plan, parameters, advice);
+void check_same_plan(const fs::path& path, const Plan& plan, const char* advice) {
+  const hdf5::File file = open_results(path);
+  reading(path, [&] { check_plan(file, path, plan, advice); });
 }
 
 ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
@@ -135,14 +137,12 @@ ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
   if (access(path.c_str(), W_OK) != 0) {
     throw FileError(fmt::format("{} cannot be written: {}", path.native(), std::system_category().message(errno)));
   }
-  try {
+  return reading(path, [&] {
     refuse_copies(file, path);
     check_job(file, path, plan);
-    check_same_plan(file, path, plan, other_revision);
-    return {read_states(file, path), runs_used(file)};
-  } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, failure.what());
-  }
+    check_plan(file, path, plan, other_revision);
+    return ResumePoint{read_states(file, path), static_cast<int>(read_runs(file).size())};
+  });
 }
 
 }  // namespace rodsweep

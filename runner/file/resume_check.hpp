@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "runner/file/hdf5.hpp"
 #include "runner/job/plan.hpp"
 
 namespace rodsweep {
@@ -21,7 +20,7 @@ void check_same_tasks(const std::filesystem::path& path, const Plan& plan);
 
 /// Was the file made from this plan by a program that expands the plan's job in the same way? `advice`: what to do if
 /// not.
-void check_same_plan(const hdf5::File& file, const std::filesystem::path& path, const Plan& plan, const char* advice);
+void check_same_plan(const std::filesystem::path& path, const Plan& plan, const char* advice);
 
 ResumePoint check_resumable(const std::filesystem::path& path, const Plan& plan);
 

@@ -1,7 +1,10 @@
 #include "runner/file/task_comparison.hpp"
 
+#include <string_view>
+
+#include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
-#include "runner/file/task_rows.hpp"
+#include "runner/file/task_reader.hpp"
 #include "runner/file/task_table.hpp"
 
 namespace rodsweep {
@@ -9,45 +12,43 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The two files, and the task's rows in each.
-struct Pair {
-  const hdf5::File &sweep, &rerun;
-  Task in_sweep, in_rerun;
-  std::int64_t sweep_every, rerun_every;
+/// A task's record, and every how many steps it has a frame.
+struct Recorded {
+  Task task;
+  TaskRecord record;
+  std::int64_t every;
 };
 
-bool same_rows(const StoredColumn& a, const RowRange& rows_a, const StoredColumn& b, const RowRange& rows_b) {
-  std::vector<char> bytes_a, bytes_b;
-  read_rows(a, rows_a, bytes_a);
-  read_rows(b, rows_b, bytes_b);
-  return bytes_a == bytes_b;
+Recorded read(const fs::path& path, std::int64_t task, std::int64_t every) {
+  const TaskReader file(path, TaskReader::Times::left_out);
+  Recorded recorded{reading(path, [&] { return file.tasks().at(static_cast<std::size_t>(task)); }), {}, every};
+  file.read(task, recorded.record);  // damaged or not: the comparison tells
+  return recorded;
 }
 
 /// Frame by frame, where both have one of the same step.
-bool same_frames(const Pair& pair, const StoredColumn& a, const StoredColumn& b) {
-  const std::int64_t segments = pair.in_sweep.segments;
-  for (std::int64_t frame = 0; frame < pair.in_sweep.frames; ++frame) {
-    const std::int64_t step = frame * pair.sweep_every, other = step / pair.rerun_every;
-    if (step % pair.rerun_every != 0 || other >= pair.in_rerun.frames) continue;
-    if (!same_rows(a, {pair.in_sweep.first_frame_row + frame * segments, segments}, b, {other * segments, segments}))
-      return false;
+bool same_frames(const Recorded& a, std::string_view bytes_a, const Recorded& b, std::string_view bytes_b) {
+  const std::size_t frame_bytes = bytes_a.size() / static_cast<std::size_t>(a.task.frames);
+  const auto of_frame = [&](std::string_view bytes, std::int64_t frame) {
+    return bytes.substr(static_cast<std::size_t>(frame) * frame_bytes, frame_bytes);
+  };
+  for (std::int64_t frame = 0; frame < a.task.frames; ++frame) {
+    const std::int64_t step = frame * a.every, other = step / b.every;
+    if (step % b.every != 0 || other >= b.task.frames) continue;
+    if (of_frame(bytes_a, frame) != of_frame(bytes_b, other)) return false;
   }
   return true;
 }
 
-void compare_results(const Pair& pair, TaskComparison& result) {
-  const std::vector<StoredColumn> a = stored_columns(pair.sweep), b = stored_columns(pair.rerun);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const Column& column = a[i].column;
-    if (!a[i].dataset) continue;
-    const bool frames = column.rows == Rows::frame_segment;
-    const bool of_trajectory = std::string(column.path).rfind("/trajectories/", 0) == 0;
-    if (of_trajectory && (pair.sweep_every == 0 || pair.rerun_every == 0)) continue;
+void compare_results(const Recorded& a, const Recorded& b, TaskComparison& result) {
+  for (const Column& column : columns()) {
+    const std::string_view bytes_a = bytes_of(column, a.record), bytes_b = bytes_of(column, b.record);
+    if (is_timing(column) || bytes_a.empty()) continue;
+    const bool of_trajectory = std::string_view(column.path).rfind("/trajectories/", 0) == 0;
+    if (of_trajectory && (a.every == 0 || b.every == 0)) continue;
     if (of_trajectory && column.rows == Rows::task) continue;  // places and times of frames
     ++result.compared;
-    const bool same =
-        frames ? same_frames(pair, a[i], b[i])
-               : same_rows(a[i], rows_of(pair.in_sweep, column.rows), b[i], rows_of(pair.in_rerun, column.rows));
+    const bool same = column.rows == Rows::frame_segment ? same_frames(a, bytes_a, b, bytes_b) : bytes_a == bytes_b;
     if (!same) result.differing.emplace_back(column.path);
   }
 }
@@ -72,19 +73,9 @@ void compare_values(const TaskTable& sweep, std::size_t task, const TaskTable& r
 
 TaskComparison compare_task(const fs::path& sweep_path, std::int64_t task, std::int64_t sweep_every,
                             const fs::path& rerun_path, std::int64_t rerun_every) {
-  const auto index = static_cast<std::size_t>(task);
-  const TaskTable sweep_table(sweep_path), rerun_table(rerun_path);
-  const hdf5::File sweep = open_results(sweep_path), rerun = open_results(rerun_path);
   TaskComparison result;
-  compare_values(sweep_table, index, rerun_table, result);
-  try {
-    const auto tasks = static_cast<std::size_t>(sweep_table.size());
-    compare_results(
-        {sweep, rerun, read_tasks(sweep, tasks).at(index), read_tasks(rerun, 1).at(0), sweep_every, rerun_every},
-        result);
-  } catch (const std::exception& failure) {
-    throw damaged_error(sweep_path, failure.what());
-  }
+  compare_values(TaskTable(sweep_path), static_cast<std::size_t>(task), TaskTable(rerun_path), result);
+  compare_results(read(sweep_path, task, sweep_every), read(rerun_path, 0, rerun_every), result);
   return result;
 }
 

@@ -1,10 +1,13 @@
 #include "runner/file/task_reader.hpp"
 
-#include <fmt/format.h>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
 
+#include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
-#include "runner/file/layout.hpp"
-#include "runner/file/resume_check.hpp"
+#include "runner/file/planned_columns.hpp"
 #include "runner/file/task_checksum.hpp"
 
 namespace rodsweep {
@@ -12,10 +15,48 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TaskOutcome outcome_of(const std::string& text, const fs::path& path) {
+std::optional<TaskOutcome> outcome_of(const std::string& text) {
   for (int i = 0; i <= static_cast<int>(TaskOutcome::error); ++i)
     if (text == to_string(static_cast<TaskOutcome>(i))) return static_cast<TaskOutcome>(i);
-  throw damaged_error(path, "\"" + text + "\" is no outcome of a task");
+  return std::nullopt;
+}
+
+std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
+  std::vector<Task> tasks(count);
+  const auto holds = [&](const RowPlace& place) { return hdf5::exists(file.id(), place.first); };
+  visit_planned_columns(holds, [&](const char* path, const char*, auto member) {
+    using T = std::decay_t<decltype(member(tasks[0]))>;
+    const auto values = hdf5::read_all<T>(file.id(), path);
+    if (values.size() != count) throw std::length_error(std::string(path) + " has another length than /tasks/state");
+    for (std::size_t i = 0; i < count; ++i) member(tasks[i]) = values[i];
+  });
+  const bool contact = hdf5::exists(file.id(), "/steps/contacts");
+  for (std::size_t i = 0; i < count; ++i) {
+    Task& task = tasks[i];
+    auto& rows = task.rows;
+    task.index = static_cast<std::int64_t>(i);
+    task.steps = rows[Rows::step].count;
+    rows[Rows::task] = {task.index, 1};
+    if (contact) rows[Rows::contact_task] = rows[Rows::task], rows[Rows::contact_step] = rows[Rows::step];
+    rows[Rows::frame_segment].count = task.frames * task.segments;
+    rows[Rows::segment].count = task.frames > 0 ? task.segments : 0;
+  }
+  return tasks;
+}
+
+/// Of an axis that a dataset has at `place`; 0 where the file leaves it out.
+std::int64_t axis_size(const hdf5::File& file, const std::string& path, std::size_t place) {
+  if (!hdf5::exists(file.id(), path)) return 0;
+  return static_cast<std::int64_t>(hdf5::extent(hdf5::open_dataset(file.id(), path), path).at(place));
+}
+
+/// Refuses rows that are not in their dataset, or wider or narrower than the axes of the file make them.
+void check_rows(const RowRange& rows, std::int64_t width, const hdf5::RowDataset& dataset) {
+  const auto most = static_cast<std::int64_t>(dataset.rows());
+  if (rows.first < 0 || rows.count < 0 || rows.count > most || rows.first > most - rows.count)
+    throw std::out_of_range("a task has rows outside " + dataset.path());
+  if (static_cast<std::int64_t>(dataset.row_values()) != width)
+    throw std::length_error(dataset.path() + " has axes of other lengths than /axes");
 }
 
 template <class T>
@@ -27,57 +68,67 @@ T value_of(const hdf5::RowDataset& dataset, std::int64_t row) {
 
 }  // namespace
 
-TaskReader::TaskReader(const fs::path& path, const Plan& plan, const char* advice)
-    : file_(open_results(path)), plan_(&plan), sizes_(axis_sizes(plan)) {
-  try {
-    if (hdf5::has_attribute(file_.id(), "/job", "rerun_of_task")) {
-      throw FileError(fmt::format(
-          "{} holds one task of a sweep, made by `rodsweep rerun`: extend the file of the sweep", path.native()));
-    }
-    check_same_plan(file_, path, plan, advice);
-    const std::vector<std::uint8_t> states = read_states(file_, path);
-    const std::vector<std::string> outcomes = hdf5::read_texts(file_.id(), "/tasks/outcome");
-    outcomes_.assign(states.size(), TaskOutcome::pending);
-    for (std::size_t i = 0; i < states.size(); ++i)
-      if (states[i] == 1) outcomes_[i] = outcome_of(outcomes.at(i), path);
+TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(open_results(path)) {
+  reading(path, [&] {
+    // The states first: of a task that is complete now, everything else is there to be read.
+    states_ = read_states(file_, path);
+    outcomes_ = hdf5::read_texts(file_.id(), "/tasks/outcome");
+    if (outcomes_.size() != states_.size())
+      throw std::length_error("/tasks/outcome has another length than /tasks/state");
+    tasks_ = read_tasks(file_, states_.size());
+    sizes_ = {axis_size(file_, "/axes/guess", 0), axis_size(file_, "/axes/tolerance", 0),
+              axis_size(file_, "/trajectories/first_row", 1)};
     const auto rows = [&](const char* dataset) { return hdf5::RowDataset(file_.id(), dataset); };
+    for (const Column& column : columns())
+      columns_.push_back(is_timing(column) && times == Times::left_out ? hdf5::RowDataset() : rows(column.path));
+    message_ = rows("/tasks/message");
     checksum_ = rows("/tasks/checksum");
     rank_ = rows("/timing/tasks/rank");
+    host_ = rows("/timing/tasks/host");
     attempt_ = rows("/timing/tasks/attempt");
     write_s_ = rows("/timing/tasks/write_s");
-    const TaskRecord record;
-    visit_columns(record, [&](const Column& column, const auto&) { columns_.push_back(rows(column.path)); });
-  } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, failure.what());
-  }
+  });
 }
 
-bool TaskReader::read(std::int64_t index, TaskRecord& record) const try {
-  const Task& task = plan_->task(index);
-  record.prepare(task, sizes_);
-  record.outcome = outcome(index);
-  record.message = hdf5::read_text_row(file_.id(), "/tasks/message", static_cast<hsize_t>(index));
-  TaskChecksum sum(index, to_string(record.outcome), record.message);
-  std::size_t next = 0;
-  visit_columns(record, [&](const Column& column, auto& values) {
-    using T = typename std::decay_t<decltype(values)>::value_type;
-    const hdf5::RowDataset& dataset = columns_[next++];
-    const RowRange rows = rows_of(task, column.rows);
-    if (!values.empty()) {
-      dataset.read(hdf5::type_of<T>(), static_cast<hsize_t>(rows.first), static_cast<hsize_t>(rows.count),
-                   values.data());
+TaskOutcome TaskReader::outcome(std::int64_t task) const {
+  if (!done(task)) return TaskOutcome::pending;
+  const std::string& text = outcomes_[static_cast<std::size_t>(task)];
+  if (const auto outcome = outcome_of(text)) return *outcome;
+  throw damaged_error(path_, "\"" + text + "\" is no outcome of a task");
+}
+
+bool TaskReader::read(std::int64_t index, TaskRecord& record) const {
+  return reading(path_, [&] {
+    const Task& task = tasks_.at(static_cast<std::size_t>(index));
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      if (const Column& column = columns()[c]; columns_[c])
+        check_rows(task.rows[column.rows], row_width(column, sizes_), columns_[c]);
+    record.prepare(task, sizes_);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const Column& column = columns()[c];
+      const RowRange& rows = task.rows[column.rows];
+      if (!columns_[c])
+        std::visit([](auto* values) { values->clear(); }, column.values(record));
+      else if (rows.count > 0)
+        columns_[c].read(column.type(), static_cast<hsize_t>(rows.first), static_cast<hsize_t>(rows.count),
+                         data_of(column, record));
     }
-    sum.add(column, values.data(), values.size() * sizeof(T));
+    record.message = hdf5::read_text_row(message_, static_cast<hsize_t>(index));
+    const auto outcome = outcome_of(outcomes_[static_cast<std::size_t>(index)]);
+    record.outcome = outcome.value_or(TaskOutcome::error);
+    return outcome && task_checksum(index, record) == value_of<std::uint64_t>(checksum_, index);
   });
-  return sum.value() == value_of<std::uint64_t>(checksum_, index);
-} catch (const Hdf5Error&) {
+}
+
+bool TaskReader::read_intact(std::int64_t task, TaskRecord& record) const try {
+  return read(task, record);
+} catch (const FileError&) {
   return false;
 }
 
 TaskOrigin TaskReader::origin(std::int64_t task) const {
   return {value_of<std::int32_t>(rank_, task), value_of<std::int32_t>(attempt_, task),
-          hdf5::read_text_row(file_.id(), "/timing/tasks/host", static_cast<hsize_t>(task)),
-          value_of<double>(write_s_, task)};
+          hdf5::read_text_row(host_, static_cast<hsize_t>(task)), value_of<double>(write_s_, task)};
 }
 
 }  // namespace rodsweep

@@ -1,5 +1,5 @@
-// Reads the records of finished tasks back from a results file, read-only and without MPI, by the plan that the file
-// was made from. Throws FileError for a file that is none, or was not made from that plan.
+// Reads the records of finished tasks back from a results file, read-only, without MPI and without a plan. Throws
+// FileError for a file that is none, or contradicts itself.
 #pragma once
 
 #include <cstdint>
@@ -8,33 +8,41 @@
 #include <vector>
 
 #include "runner/file/hdf5.hpp"
+#include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
-#include "runner/file/task_origin.hpp"
-#include "runner/job/plan.hpp"
 
 namespace rodsweep {
 
 class TaskReader {
  public:
-  /// The plan must outlive the reader. `advice` ends the message about a file that another revision made.
-  TaskReader(const std::filesystem::path& path, const Plan& plan, const char* advice);
+  enum class Times { read, left_out };
+  explicit TaskReader(const std::filesystem::path& path, Times times = Times::read);
 
-  /// TaskOutcome::pending where a task is not complete.
-  TaskOutcome outcome(std::int64_t task) const { return outcomes_[static_cast<std::size_t>(task)]; }
+  /// As the file tells them: identity and rows.
+  const std::vector<Task>& tasks() const { return tasks_; }
 
-  /// The whole record of a complete task. False: it cannot be read, or does not have the checksum that it was written
-  /// with.
+  /// Was it complete when the file was opened?
+  bool done(std::int64_t task) const { return states_[static_cast<std::size_t>(task)] == 1; }
+  TaskOutcome outcome(std::int64_t task) const;  ///< TaskOutcome::pending where it was not
+
+  /// The whole record of a complete task, empty vectors where the file leaves a column out. False: it does not have the
+  /// checksum that it was written with.
   bool read(std::int64_t task, TaskRecord& record) const;
+
+  /// The same, and false also where it cannot be read at all.
+  bool read_intact(std::int64_t task, TaskRecord& record) const;
 
   TaskOrigin origin(std::int64_t task) const;
 
  private:
+  std::filesystem::path path_;
   hdf5::File file_;
-  const Plan* plan_;
   AxisSizes sizes_;
-  std::vector<hdf5::RowDataset> columns_;  ///< in the order of visit_columns(); empty: the file leaves it out
-  hdf5::RowDataset checksum_, rank_, attempt_, write_s_;
-  std::vector<TaskOutcome> outcomes_;
+  std::vector<Task> tasks_;
+  std::vector<std::uint8_t> states_;
+  std::vector<std::string> outcomes_;
+  std::vector<hdf5::RowDataset> columns_;  ///< in the order of columns(); empty: the file leaves it out
+  hdf5::RowDataset message_, checksum_, rank_, host_, attempt_, write_s_;
 };
 
 }  // namespace rodsweep

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "runner/file/file_reading.hpp"
-#include "runner/file/layout.hpp"
+#include "runner/file/planned_columns.hpp"
 #include "runner/job/nearest.hpp"
 
 namespace rodsweep {
@@ -21,18 +21,9 @@ constexpr double same_tolerance = 1e-6;
 
 bool same(double a, double b) { return std::abs(a - b) <= same_tolerance * b; }
 
-herr_t append_name(hid_t, const char* name, const H5L_info_t*, void* names) {
-  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
-  return 0;
-}
-
 std::vector<std::string> members(hid_t file, const std::string& group) {
-  std::vector<std::string> names;
-  if (!hdf5::exists(file, group)) return names;
-  hdf5::check(
-      H5Literate_by_name(file, group.c_str(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, append_name, &names, H5P_DEFAULT),
-      "H5Literate_by_name", group);
-  return names;
+  if (!hdf5::exists(file, group)) return {};
+  return hdf5::members(hdf5::Object(hdf5::check(H5Oopen(file, group.c_str(), H5P_DEFAULT), "H5Oopen", group)).id());
 }
 
 bool is_dataset(hid_t file, const std::string& path) {
@@ -47,8 +38,8 @@ std::string attribute(hid_t file, const std::string& path, const char* name) {
 /// Known before the task runs.
 bool is_planned(const std::string& path) {
   bool found = false;
-  visit_task_columns(PlacedRows{true, true},
-                     [&](const char* planned, const char*, const char*, auto) { found = found || path == planned; });
+  visit_planned_columns([](const RowPlace&) { return true; },
+                        [&](const char* planned, const char*, auto) { found = found || path == planned; });
   return found;
 }
 

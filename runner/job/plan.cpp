@@ -15,6 +15,18 @@ namespace {
 constexpr std::int64_t most_tasks = 1000000;
 constexpr double most_rows = 1e15;  // of a dataset: far beyond any disk, far below overflow
 
+/// Where it is larger than most_rows, something larger.
+std::int64_t product(std::initializer_list<std::int64_t> factors) {
+  double all = 1;
+  for (const std::int64_t factor : factors) all *= static_cast<double>(factor);
+  return static_cast<std::int64_t>(std::min(all, 2 * most_rows));
+}
+
+JobError too_large(const Job& job) {
+  return job_error(job.path, "",
+                   fmt::format("this job is too large: more than {} tasks or {} rows", most_tasks, most_rows));
+}
+
 }  // namespace
 
 const std::vector<double>& tolerance_ladder() {
@@ -22,8 +34,35 @@ const std::vector<double>& tolerance_ladder() {
   return ladder;
 }
 
+void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const RecordSpec& record) {
+  const int rods = rod_count(scene);
+  task.segments = segment_count(scene);
+  task.joints = joint_count(scene);
+  task.steps = time.steps;
+  task.frames = record.trajectory_every > 0 ? 1 + task.steps / record.trajectory_every : 0;
+  const std::int64_t recorded = task.steps * record.recorded_iterations(time.newton_iterations);
+  const auto set = [&](Rows kind, std::initializer_list<std::int64_t> factors) {
+    task.rows[kind].count = product(factors);
+  };
+  set(Rows::task, {1});
+  set(Rows::step, {task.steps});
+  set(Rows::contact_step, {task.rows[Rows::contact_task].count, task.steps});
+  set(Rows::solve, {record.solves ? task.steps : 0, time.newton_iterations, rods});
+  set(Rows::frame_segment, {task.frames, task.segments});
+  set(Rows::segment, {task.frames > 0 ? task.segments : 0});
+  set(Rows::system, {recorded, rods});
+  set(Rows::system_segment, {recorded, task.segments});
+  set(Rows::system_joint, {recorded, task.joints});
+}
+
 Plan::Plan(Job job)
     : job_(std::move(job)), space_(job_.values, job_.path), guess_labels_(rodsweep::guess_labels(job_)) {
+  expand();
+  place_rows();
+}
+
+/// Checks every parameter point and makes its tasks, their rows counted but not placed.
+void Plan::expand() {
   const std::int64_t points = space_.grid_points();
   if (static_cast<double>(points) * static_cast<double>(job_.samples) > most_tasks) {
     throw job_error(job_.path, "",
@@ -31,62 +70,49 @@ Plan::Plan(Job job)
                                 job_.samples, most_tasks));
   }
   const RecordSpec record = record_spec(job_);
+  bool contact = false;
   Point values;
   for (std::int64_t point = 0; point < points * job_.samples; ++point) {
     fill(values, point);
     const SceneSpec scene = scene_spec(values, job_);
     check_scene(scene, job_);
     check_method(values, job_);
-    contact_rows_ = contact_rows_ || rod_parameters(scene).contact;
+    contact = contact || rod_parameters(scene).contact;
     const TimeSpec time = time_spec(values, job_);
-
     Task task;
     task.point = point;
     task.sample = point % job_.samples;
-    task.segments = segment_count(scene);
-    task.joints = joint_count(scene);
-    task.steps = time.steps;
-    const int rods = rod_count(scene);
-    task.solves = record.solves ? task.steps * time.newton_iterations * rods : 0;
-    task.frames = record.trajectory_every > 0 ? 1 + task.steps / record.trajectory_every : 0;
-    const std::int64_t recorded = task.steps * record.recorded_iterations(time.newton_iterations);
-    task.systems = recorded * rods;
-    task.system_segments = recorded * task.segments;
-    task.system_joints = recorded * task.joints;
+    size_rows(task, scene, time, record);
     task.cost = static_cast<double>(task.segments) * time.steps * time.newton_iterations;
-
     const bool own_trajectories =
         evaluation(values) == Evaluation::closed_loop && solve_spec(values, job_).method == Method::cg;
     const int copies = own_trajectories ? static_cast<int>(guess_labels_.size()) : 1;
     for (int copy = 0; copy < copies; ++copy) {
+      if (size() == most_tasks) throw too_large(job_);
       task.index = size();
       task.own_guess = own_trajectories ? copy : -1;
-      task.first_step = step_rows_;
-      task.first_solve = solve_rows_;
-      task.first_frame_row = frame_rows_;
-      task.first_segment_row = segment_rows_;
-      task.first_system = system_rows_;
-      task.first_system_segment = system_segment_rows_;
-      task.first_system_joint = system_joint_rows_;
-      const double frame_rows = static_cast<double>(task.frames) * task.segments + static_cast<double>(frame_rows_);
-      const double system_rows = static_cast<double>(task.system_segments) + static_cast<double>(system_segment_rows_);
-      if (size() == most_tasks || frame_rows > most_rows || system_rows > most_rows ||
-          static_cast<double>(solve_rows_) > most_rows) {
-        throw job_error(job_.path, "",
-                        fmt::format("this job is too large: more than {} tasks or {} rows", most_tasks, most_rows));
-      }
-      step_rows_ += task.steps;
-      solve_rows_ += task.solves;
-      frame_rows_ += task.frames * task.segments;
-      segment_rows_ += task.segment_rows();
-      max_frames_ = std::max(max_frames_, task.frames);
-      system_rows_ += task.systems;
-      system_segment_rows_ += task.system_segments;
-      system_joint_rows_ += task.system_joints;
       tasks_.push_back(task);
     }
   }
-  for (Task& task : tasks_) task.contact_rows = contact_rows_;
+  if (!contact) return;
+  for (Task& task : tasks_) {
+    task.rows[Rows::contact_task].count = 1;
+    task.rows[Rows::contact_step].count = task.steps;
+  }
+}
+
+/// Gives every task its rows, after those of the task before it.
+void Plan::place_rows() {
+  rows_.fill(0);
+  max_frames_ = 0;
+  for (Task& task : tasks_) {
+    for (std::size_t kind = 0; kind < row_kinds; ++kind) {
+      task.rows[kind].first = rows_[kind];
+      rows_[kind] += task.rows[kind].count;
+      if (static_cast<double>(rows_[kind]) > most_rows) throw too_large(job_);
+    }
+    max_frames_ = std::max(max_frames_, task.frames);
+  }
 }
 
 Plan Plan::alone(std::int64_t index, int trajectory_every) const {
@@ -94,19 +120,12 @@ Plan Plan::alone(std::int64_t index, int trajectory_every) const {
   plan.task_alone_ = index;
   for (const ParameterColumn& column : parameters()) plan.kept_.push_back(column.path);
   plan.job_.values["record"]["trajectory_every"] = trajectory_every;
-  Task task = tasks_.at(static_cast<std::size_t>(index));
-  task.index = task.first_step = task.first_solve = task.first_frame_row = task.first_segment_row = 0;
-  task.first_system = task.first_system_segment = task.first_system_joint = 0;
-  task.frames = trajectory_every > 0 ? 1 + task.steps / trajectory_every : 0;
-  plan.step_rows_ = task.steps;
-  plan.solve_rows_ = task.solves;
-  plan.frame_rows_ = task.frames * task.segments;
-  plan.segment_rows_ = task.segment_rows();
-  plan.max_frames_ = task.frames;
-  plan.system_rows_ = task.systems;
-  plan.system_segment_rows_ = task.system_segments;
-  plan.system_joint_rows_ = task.system_joints;
-  plan.tasks_ = {task};
+  plan.tasks_ = {tasks_.at(static_cast<std::size_t>(index))};
+  Task& task = plan.tasks_.front();
+  task.index = 0;
+  const TaskSpec spec = plan.spec(0);
+  size_rows(task, spec.scene, spec.time, spec.record);
+  plan.place_rows();
   return plan;
 }
 

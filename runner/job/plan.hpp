@@ -60,18 +60,14 @@ class Plan {
   /// "scene.contact", where they vary, by their option_label().
   std::vector<ParameterColumn> parameters() const;
 
-  std::int64_t step_rows() const { return step_rows_; }
-  bool contact_rows() const { return contact_rows_; }  ///< do rods touch in any task?
-  std::int64_t solve_rows() const { return solve_rows_; }
-  std::int64_t frame_rows() const { return frame_rows_; }
-  std::int64_t segment_rows() const { return segment_rows_; }
+  /// Rows of all tasks; 0 of a kind that the job does not record.
+  std::int64_t rows(Rows kind) const { return rows_[kind]; }
   std::int64_t max_frames() const { return max_frames_; }
-  std::int64_t system_rows() const { return system_rows_; }  ///< 0 unless the job is a data set
-  std::int64_t system_segment_rows() const { return system_segment_rows_; }
-  std::int64_t system_joint_rows() const { return system_joint_rows_; }
 
  private:
   void fill(Point& point, std::int64_t index) const;
+  void expand();
+  void place_rows();
 
   Job job_;
   SweepSpace space_;
@@ -79,10 +75,12 @@ class Plan {
   std::vector<std::string> guess_labels_;
   std::optional<std::int64_t> task_alone_;
   std::vector<std::string> kept_;  ///< of a task alone: parameters that the whole plan has columns of
-  bool contact_rows_ = false;
-  std::int64_t step_rows_ = 0, solve_rows_ = 0, frame_rows_ = 0, segment_rows_ = 0, max_frames_ = 0;
-  std::int64_t system_rows_ = 0, system_segment_rows_ = 0, system_joint_rows_ = 0;
+  PerRows<std::int64_t> rows_{};
+  std::int64_t max_frames_ = 0;
 };
+
+/// Sets how many segments, joints, steps, frames and rows of every kind a task has.
+void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const RecordSpec& record);
 
 /// The tolerances at which iterations are counted (/axes/tolerance), relative to ||b||.
 const std::vector<double>& tolerance_ladder();  // 1e-1 ... 1e-8

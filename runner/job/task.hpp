@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/job/rows.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
 #include "solver/scene/scenes.hpp"
@@ -110,19 +111,10 @@ struct Task {
   int own_guess = -1;
   int segments = 0;  ///< dynamic and static ones (graph nodes)
   int joints = 0;
-  std::int64_t first_step = 0, steps = 0;  ///< rows of /steps
-  bool contact_rows = false;  ///< has the file columns of contact? It has where rods touch in any of its tasks
-  std::int64_t first_solve = 0,
-               solves = 0;  ///< rows of /solves: steps x newton_iterations x rods, step-major; 0 for summaries
-  std::int64_t first_frame_row = 0, frames = 0;  ///< rows of /trajectories: frames x segments
-  std::int64_t first_segment_row = 0;            ///< first of segment_rows() rows of /trajectories/segments
-  std::int64_t first_system = 0,
-               systems = 0;  ///< rows of /systems: steps x recorded Newton iterations x rods, step-major
-  std::int64_t first_system_segment = 0, system_segments = 0;  ///< rows of /systems/segments: those of each system
-  std::int64_t first_system_joint = 0, system_joints = 0;      ///< rows of /systems/joints
+  std::int64_t steps = 0;
+  std::int64_t frames = 0;  ///< of the trajectory
+  PerRows<RowRange> rows;
   double cost = 0;  ///< relative; tasks are dispatched in descending order of it (segments x steps x newton_iterations)
-
-  std::int64_t segment_rows() const { return frames > 0 ? segments : 0; }
 };
 
 }  // namespace rodsweep

@@ -1,4 +1,4 @@
-"""Results files with planted numbers, in the layout of runner/file/record.hpp, for the tests of the analysis scripts.
+"""Results files with planted numbers, in the layout of runner/file/columns.cpp, for the tests of the analysis scripts.
 
 Every solve of simulation s with N segments takes Plant.zero_iterations() from zero and that times Plant.ratio() with a
 guess; the times are planted in the same way. Put first among a test's imports: it makes analysis/ importable.

@@ -11,6 +11,7 @@
 #include <random>
 #include <string>
 
+#include "runner/file/columns.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/record.hpp"
 #include "runner/file/results_file.hpp"
@@ -62,13 +63,16 @@ inline TaskRecord synthetic_record(const Plan& plan, std::int64_t index) {
   record.prepare(task, axis_sizes(plan));
   record.outcome = TaskOutcome::ok;
   std::int64_t column_number = 0;
-  visit_columns(record, [&](const Column&, auto& values) {
-    using T = typename std::decay_t<decltype(values)>::value_type;
+  for (const Column& column : columns()) {
     ++column_number;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = static_cast<T>((7 * index + 3 * column_number + static_cast<std::int64_t>(i)) % 120);
-    }
-  });
+    std::visit(
+        [&](auto* values) {
+          using T = typename std::decay_t<decltype(*values)>::value_type;
+          for (std::size_t i = 0; i < values->size(); ++i)
+            (*values)[i] = static_cast<T>((7 * index + 3 * column_number + static_cast<std::int64_t>(i)) % 120);
+        },
+        column.values(record));
+  }
   return record;
 }
 

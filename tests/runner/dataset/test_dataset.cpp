@@ -184,7 +184,7 @@ TEST_CASE("a damaged simulation is refused, the others are read") {
   const Plan plan = make_data_set(path, ragged_job());
   {
     const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
-    const auto row = static_cast<hsize_t>(plan.task(1).first_system_joint);
+    const auto row = static_cast<hsize_t>(plan.task(1).rows[Rows::system_joint].first);
     const std::vector<double> wrong(6, 0.5);
     hdf5::RowDataset(file.id(), "/systems/joints/solution").write(hdf5::type_of<double>(), row, 1, wrong.data());
   }

@@ -26,9 +26,9 @@ TEST_CASE("A, b, velocities and solution of a tree and a chain of another size c
   scene.rods = {test::random_rod(test::tree(2, 2), {0}, 1), test::random_rod(test::chain(4), {}, 2)};
   const Scene start = scene;
   Task task;
-  task.systems = steps * iterations * 2;
-  task.system_segments = steps * iterations * (7 + 4);
-  task.system_joints = steps * iterations * (6 + 3);
+  task.rows[Rows::system].count = steps * iterations * 2;
+  task.rows[Rows::system_segment].count = steps * iterations * (7 + 4);
+  task.rows[Rows::system_joint].count = steps * iterations * (6 + 3);
   TaskRecord record;
   record.prepare(task, {});
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "runner/dataset/system_recording.hpp"
 #include "runner/experiment/batch_body.hpp"
 #include "runner/experiment/batched_evaluation.hpp"
+#include "runner/file/columns.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/runner/job_examples.hpp"
 
@@ -50,19 +50,9 @@ struct Evaluated {
 
 /// The datasets outside /timing in which two records differ in any bit.
 std::vector<std::string> differing(const TaskRecord& a, const TaskRecord& b) {
-  std::vector<std::vector<char>> bytes;
-  visit_columns(a, [&](const Column&, const auto& values) {
-    const auto* begin = reinterpret_cast<const char*>(values.data());
-    bytes.emplace_back(begin, begin + values.size() * sizeof(values[0]));
-  });
   std::vector<std::string> out;
-  std::size_t at = 0;
-  visit_columns(b, [&](const Column& column, const auto& values) {
-    const std::vector<char>& expected = bytes[at++];
-    const bool same = expected.size() == values.size() * sizeof(values[0]) &&
-                      (expected.empty() || std::memcmp(expected.data(), values.data(), expected.size()) == 0);
-    if (!same && std::string(column.path).rfind("/timing", 0) != 0) out.push_back(column.path);
-  });
+  for (const Column& column : columns())
+    if (!is_timing(column) && bytes_of(column, a) != bytes_of(column, b)) out.push_back(column.path);
   return out;
 }
 

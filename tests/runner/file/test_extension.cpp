@@ -138,7 +138,8 @@ TEST_CASE("what is taken over stands at its new rows, and a simulation that diff
       CHECK(taken.iterations[(row * 3 + 1) * tolerances + t] == written.iterations[(row * 2 + 1) * tolerances + t]);
       CHECK(taken.iterations[(row * 3 + 2) * tolerances + t] == written.iterations[(row * 2 + 0) * tolerances + t]);
     }
-  CHECK(taken.first_row[0] == written.first_row[0] + task.first_frame_row - before.task(3).first_frame_row);
+  CHECK(taken.first_row[0] ==
+        written.first_row[0] + task.rows[Rows::frame_segment].first - before.task(3).rows[Rows::frame_segment].first);
 
   TaskRecord record = taken;  // as if simulated again, with other guesses
   for (auto& iterations : record.iterations) iterations = 7;

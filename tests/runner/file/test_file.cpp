@@ -8,10 +8,11 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/task_checksum.hpp"
+#include "runner/job/checksum.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
-using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -33,7 +34,7 @@ template <class T>
 std::vector<T> task_rows(const hdf5::File& file, const Column& column, const Task& task, const AxisSizes& sizes) {
   if (!hdf5::exists(file.id(), column.path)) return {};
   const auto all = hdf5::read_all<T>(file.id(), column.path);
-  const RowRange rows = rows_of(task, column.rows);
+  const RowRange rows = task.rows[column.rows];
   const std::int64_t width = row_width(column, sizes);
   return {all.begin() + rows.first * width, all.begin() + (rows.first + rows.count) * width};
 }
@@ -49,13 +50,17 @@ TEST_CASE("a record comes back from the file value by value, whatever the order 
 
   const hdf5::File read = hdf5::open_file(folder / "a.h5", H5F_ACC_RDONLY);
   for (const std::int64_t i : {0, 1, 3, 5}) {
-    const TaskRecord record = synthetic_record(plan, i);
-    visit_columns(record, [&](const Column& column, const auto& values) {
-      using T = typename std::decay_t<decltype(values)>::value_type;
+    TaskRecord record = synthetic_record(plan, i);
+    for (const Column& column : columns()) {
       INFO(column.path << " of task " << i);
-      REQUIRE(values.empty() != hdf5::exists(read.id(), column.path));
-      CHECK(task_rows<T>(read, column, plan.task(i), axis_sizes(plan)) == values);
-    });
+      REQUIRE(bytes_of(column, record).empty() != hdf5::exists(read.id(), column.path));
+      std::visit(
+          [&](const auto* values) {
+            using T = typename std::decay_t<decltype(*values)>::value_type;
+            CHECK(task_rows<T>(read, column, plan.task(i), axis_sizes(plan)) == *values);
+          },
+          column.values(record));
+    }
   }
   CHECK(hdf5::read_all<std::uint8_t>(read.id(), "/tasks/state") == std::vector<std::uint8_t>{1, 1, 0, 1, 0, 1});
   CHECK(hdf5::read_texts(read.id(), "/tasks/outcome") ==
@@ -74,18 +79,22 @@ TEST_CASE("rows that a task did not reach hold sentinels, not zeros") {
     file.write(plan.task(1), record);
   }
   const hdf5::File read = hdf5::open_file(folder / "a.h5", H5F_ACC_RDONLY);
-  const TaskRecord types;
-  visit_columns(types, [&](const Column& column, const auto& values) {
-    using T = typename std::decay_t<decltype(values)>::value_type;
+  TaskRecord types;
+  for (const Column& column : columns()) {
     INFO(column.path);
-    for (const T value : task_rows<T>(read, column, plan.task(1), axis_sizes(plan))) {
-      if constexpr (std::is_floating_point_v<T>) {
-        CHECK(std::isnan(value));
-      } else {
-        CHECK(value == (column.path == std::string("/solves/reason") ? 0 : -1));
-      }
-    }
-  });
+    std::visit(
+        [&](const auto* values) {
+          using T = typename std::decay_t<decltype(*values)>::value_type;
+          for (const T value : task_rows<T>(read, column, plan.task(1), axis_sizes(plan))) {
+            if constexpr (std::is_floating_point_v<T>) {
+              CHECK(std::isnan(value));
+            } else {
+              CHECK(value == (column.path == std::string("/solves/reason") ? 0 : -1));
+            }
+          }
+        },
+        column.values(types));
+  }
   CHECK(hdf5::read_text_row(read.id(), "/tasks/outcome", 1) == "error");
   CHECK(hdf5::read_text_row(read.id(), "/tasks/message", 1) == "the scene cannot be built");
 }
@@ -187,13 +196,22 @@ TEST_CASE("contacts have columns where rods touch in any task, also in the file 
 }
 
 TEST_CASE("a file older than the columns of contact has the checksums that it had") {
-  const Column contacts{"/steps/contacts", Rows::contact_step, {}, "1", ""};
-  const std::int32_t count = 3;
-  TaskChecksum before(0, "ok", ""), none(0, "ok", ""), some(0, "ok", "");
-  none.add(contacts, nullptr, 0);
-  some.add(contacts, &count, sizeof count);
-  CHECK(none.value() == before.value());
-  CHECK(some.value() != before.value());
+  const Plan plan = plan_of(full_job());
+  TaskRecord record = synthetic_record(plan, 2);
+  record.message = "a message";
+  Checksum sum;
+  const std::int64_t index = 2;
+  sum.add(&index, sizeof index);
+  const auto add = [&](std::string_view bytes) { sum.add(bytes.data(), bytes.size()); };
+  add(hdf5::fixed_text("ok", outcome_bytes));
+  add(hdf5::fixed_text("a message", message_bytes));
+  for (const Column& column : columns())
+    if (column.rows != Rows::contact_task && column.rows != Rows::contact_step &&
+        std::string(column.path).rfind("/timing/", 0) != 0)
+      add(bytes_of(column, record));
+  CHECK(task_checksum(2, record) == sum.value());
+  record.contacts = {3};
+  CHECK(task_checksum(2, record) != sum.value());
 }
 
 TEST_CASE("the predicted size of the file is within 5 % of its real size") {
@@ -208,6 +226,20 @@ TEST_CASE("the predicted size of the file is within 5 % of its real size") {
     CHECK(static_cast<double>(file_bytes(plan)) == Approx(real).epsilon(0.05));
     CHECK(static_cast<double>(file_bytes(plan)) >= real);  // or the free-space check would promise too much
   }
+}
+
+TEST_CASE("a file of more bytes than any disk has is refused with the dataset and its sizes") {
+  Json job = small_job();  // 10^15 solves, and for each guess 8 counts of 2 bytes and 19 bytes more
+  job["scene"] = Json::parse(R"({"type": "net", "rows": 500, "columns": 500, "segments": 1, "mesh_m": 0.5,
+      "held": "free", "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6})");
+  job["time"] = {{"step_s", 0.02}, {"steps", 10000000}, {"newton_iterations", 1000}};
+  job["samples"] = 100;
+  job["guesses"] = {"zero"};
+  for (int i = 0; i < 599; ++i) job["guesses"].push_back({{"oracle", {{"error", 0.1}, {"label", std::to_string(i)}}}});
+  const Plan plan = plan_of(job);
+  CHECK_THAT(message_of<FileError>([&] { file_bytes(plan); }),
+             StartsWith("job.json: the results file would be too large: /solves/initial_residual has "
+                        "1000000000000000 x 600 values of 8 bytes, with which it exceeds 1e+18 bytes; record less"));
 }
 
 TEST_CASE("the bytes of a file are reserved when it is created, where the file system can") {

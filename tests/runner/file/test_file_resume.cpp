@@ -3,6 +3,7 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
+#include "runner/file/runs.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
@@ -145,7 +146,7 @@ TEST_CASE("verification finds one flipped bit in the data of a complete task") {
 
   const AxisSizes sizes = axis_sizes(plan);
   const auto first_byte = [&](const Task& task, std::int64_t width_bytes) {
-    return static_cast<std::size_t>(task.first_solve * width_bytes);
+    return static_cast<std::size_t>(task.rows[Rows::solve].first * width_bytes);
   };
   SECTION("in a row of a solve") {
     flip_bit(path, "/solves/iterations", first_byte(plan.task(2), sizes.guesses * sizes.tolerances * 2) + 5);

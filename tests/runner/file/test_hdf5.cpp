@@ -78,3 +78,17 @@ TEST_CASE("rows of a dataset are written and read without touching their neighbo
   CHECK_THROWS_AS(rows.write(hdf5::type_of<double>(), 3, 2, two.data()), Hdf5Error);
   CHECK_FALSE(hdf5::RowDataset(file.id(), "/group/y"));
 }
+
+TEST_CASE("members and attributes are told in the order of their names") {
+  const TemporaryFolder folder;
+  const hdf5::File file = hdf5::create_file(folder / "a.h5");
+  CHECK(hdf5::members(file.id()).empty());
+  for (const char* path : {"/runs", "/a longer name than the others", "/x/y"})
+    hdf5::create_dataset(file.id(), path, hdf5::type_of<double>(), {1});
+  CHECK(hdf5::members(file.id()) == std::vector<std::string>{"a longer name than the others", "runs", "x"});
+  const hdf5::Dataset dataset = hdf5::open_dataset(file.id(), "/runs");
+  CHECK(hdf5::attribute_names(dataset.id()).empty());
+  hdf5::write_attribute(dataset.id(), "unit", "m");
+  hdf5::write_attribute(dataset.id(), "meaning", "none");
+  CHECK(hdf5::attribute_names(dataset.id()) == std::vector<std::string>{"meaning", "unit"});
+}

@@ -51,18 +51,18 @@ TEST_CASE("rows of systems follow task by task, as many as their rods have segme
     job["record"] = {{"systems", iterations == 1 ? "first" : "all"}};
     const Plan plan = plan_of(job);
     const std::int64_t systems = 4 * iterations;
-    CHECK(plan.task(0).systems == systems);
-    CHECK(plan.task(1).first_system == systems);
-    CHECK(plan.task(1).first_system_segment == systems * 4);
-    CHECK(plan.task(1).first_system_joint == systems * 3);
-    CHECK(plan.system_rows() == 2 * systems);
-    CHECK(plan.system_segment_rows() == systems * (4 + 7));
-    CHECK(plan.system_joint_rows() == systems * (3 + 6));
-    CHECK(rows_of(plan.task(1), Rows::system_joint).count == systems * 6);
+    CHECK(plan.task(0).rows[Rows::system].count == systems);
+    CHECK(plan.task(1).rows[Rows::system].first == systems);
+    CHECK(plan.task(1).rows[Rows::system_segment].first == systems * 4);
+    CHECK(plan.task(1).rows[Rows::system_joint].first == systems * 3);
+    CHECK(plan.rows(Rows::system) == 2 * systems);
+    CHECK(plan.rows(Rows::system_segment) == systems * (4 + 7));
+    CHECK(plan.rows(Rows::system_joint) == systems * (3 + 6));
+    CHECK(plan.task(1).rows[Rows::system_joint].count == systems * 6);
 
     const Plan alone = plan.alone(1, 1);
-    CHECK(alone.task(0).first_system_segment == 0);
-    CHECK(alone.system_segment_rows() == systems * 7);
+    CHECK(alone.task(0).rows[Rows::system_segment].first == 0);
+    CHECK(alone.rows(Rows::system_segment) == systems * 7);
   }
 }
 

@@ -140,7 +140,7 @@ TEST_CASE("the scenes that are made for contact are read from their keys, and co
   CHECK(rods.radius_m == 0.01);
   CHECK(falling.task(0).segments == 15);
   CHECK(falling.task(0).joints == 12);
-  CHECK(falling.task(0).solves % (3 * falling.task(0).steps) == 0);
+  CHECK(falling.task(0).rows[Rows::solve].count % (3 * falling.task(0).steps) == 0);
   const Plan coiling = plan(R"("type": "coiling_rod", "segments": 9, "length_m": 1, "height_m": 0.3, "feed_m_s": 2)");
   CHECK(std::get<CoilingRod>(coiling.spec(0).scene).feed_m_s == 2);
   const Plan knot = plan(R"("type": "knot", "segments": 40, "length_m": 1, "pull_m_s": 0.3)");

@@ -75,13 +75,13 @@ TEST_CASE("a forest has rows of solves and systems for every tree") {
   CHECK(forest.jitter == 0.5);
   CHECK(plan.task(0).segments == 6 * 27);
   CHECK(plan.task(0).joints == 6 * 26);
-  CHECK(plan.task(0).solves == 10 * 6 * 6);
+  CHECK(plan.task(0).rows[Rows::solve].count == 10 * 6 * 6);
   Json data = data_job();
   data["scene"] = tree_job("forest", R"(, "rows": 1, "columns": 2, "spacing_m": 4)")["scene"];
   const Plan systems = plan_of(data);
-  CHECK(systems.task(0).systems == 4 * 2);
-  CHECK(systems.task(0).system_segments == 4 * 2 * 27);
-  CHECK(systems.task(0).system_joints == 4 * 2 * 26);
+  CHECK(systems.task(0).rows[Rows::system].count == 4 * 2);
+  CHECK(systems.task(0).rows[Rows::system_segment].count == 4 * 2 * 27);
+  CHECK(systems.task(0).rows[Rows::system_joint].count == 4 * 2 * 26);
 }
 
 TEST_CASE("a forest has at most as many trees as the rods of a file can be numbered") {

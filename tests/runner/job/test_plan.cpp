@@ -211,8 +211,8 @@ TEST_CASE("a duration becomes whole steps, in the tasks and in a column") {
   CHECK(integers(plan, "time.steps") == std::vector<std::int64_t>{60, 30, 20});
   CHECK(column(plan, "time.steps").swept);
   CHECK(plan.spec(2).time.steps == 20);
-  CHECK(plan.task(1).first_step == 60);
-  CHECK(plan.step_rows() == 110);
+  CHECK(plan.task(1).rows[Rows::step].first == 60);
+  CHECK(plan.rows(Rows::step) == 110);
 }
 
 TEST_CASE("a closed loop with cg runs a task for every guess, on the same draws") {
@@ -298,32 +298,49 @@ TEST_CASE("rows of the file follow one another without gaps") {
   std::int64_t steps = 0, solves = 0, frames = 0, segments = 0;
   for (const Task& task : plan.tasks()) {
     CHECK(task.joints == task.segments - 1);
-    CHECK(task.first_step == steps);
-    CHECK(task.first_solve == solves);
-    CHECK(task.first_frame_row == frames);
-    CHECK(task.first_segment_row == segments);
-    CHECK(task.segment_rows() == task.segments);
-    CHECK(task.solves == 3 * task.steps);
+    CHECK(task.rows[Rows::step].first == steps);
+    CHECK(task.rows[Rows::solve].first == solves);
+    CHECK(task.rows[Rows::frame_segment].first == frames);
+    CHECK(task.rows[Rows::segment].first == segments);
+    CHECK(task.rows[Rows::segment].count == task.segments);
+    CHECK(task.rows[Rows::solve].count == 3 * task.steps);
     CHECK(task.frames == (task.steps == 10 ? 2 : 3));  // the initial state too
-    CHECK(task.cost == static_cast<double>(task.segments * task.solves));
+    CHECK(task.cost == static_cast<double>(task.segments * task.rows[Rows::solve].count));
     steps += task.steps;
-    solves += task.solves;
+    solves += task.rows[Rows::solve].count;
     frames += task.frames * task.segments;
     segments += task.segments;
   }
   CHECK(plan.task(0).segments == 5);  // a wall adds its static segment
-  CHECK(plan.step_rows() == steps);
-  CHECK(plan.solve_rows() == solves);
-  CHECK(plan.frame_rows() == frames);
-  CHECK(plan.segment_rows() == segments);
+  CHECK(plan.rows(Rows::step) == steps);
+  CHECK(plan.rows(Rows::solve) == solves);
+  CHECK(plan.rows(Rows::frame_segment) == frames);
+  CHECK(plan.rows(Rows::segment) == segments);
   CHECK(plan.max_frames() == 3);
 
   job["record"] = {{"solves", "summary"}};
   const Plan summary = plan_of(job);
-  CHECK(summary.solve_rows() == 0);
-  CHECK(summary.frame_rows() == 0);
-  CHECK(summary.segment_rows() == 0);
+  CHECK(summary.rows(Rows::solve) == 0);
+  CHECK(summary.rows(Rows::frame_segment) == 0);
+  CHECK(summary.rows(Rows::segment) == 0);
   CHECK(summary.max_frames() == 0);
+}
+
+TEST_CASE("rows are counted with the last task's, and with those of a task that overflow") {
+  Json job = small_job();  // 1000 rods x 10^7 steps x 1000 iterations: 10^13 rows of solves in a task
+  job["scene"] = Json::parse(R"({"type": "net", "rows": 500, "columns": 500, "segments": 1, "mesh_m": 0.5,
+      "held": "free", "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6})");
+  job["time"] = {{"step_s", 0.02}, {"steps", 10000000}, {"newton_iterations", 1000}};
+  job["samples"] = 100;
+  CHECK(plan_of(job).rows(Rows::solve) == 1000000000000000);
+  const std::string too_large = "job.json: this job is too large: more than 1000000 tasks or 1e+15 rows";
+  CHECK(refusal(with("/samples", "101", job)) == too_large);
+
+  // 10^7 frames of 5 x 10^5 segments
+  job["record"] = {{"solves", "summary"}, {"trajectory_every", 1}};
+  CHECK(plan_of(job).rows(Rows::frame_segment) == 100 * 10000001 * std::int64_t{500000});
+  job["samples"] = 200;
+  CHECK(refusal(job) == too_large);
 }
 
 TEST_CASE("a hundred thousand tasks expand") {
@@ -331,7 +348,7 @@ TEST_CASE("a hundred thousand tasks expand") {
   job["samples"] = 25000;
   const Plan plan = plan_of(job);
   REQUIRE(plan.size() == 100000);
-  CHECK(plan.step_rows() == 1000000);
+  CHECK(plan.rows(Rows::step) == 1000000);
   CHECK(plan.task(99999).segments == 7);
   CHECK(std::get<BendingRod>(plan.spec(99999).scene).length_m == std::get<BendingRod>(plan.spec(24999).scene).length_m);
 }
@@ -353,13 +370,14 @@ TEST_CASE("a task alone keeps its point, sample, guess, values and seed, and has
   REQUIRE(one.size() == 1);
   CHECK(one.task_alone() == 11);
   const Task &there = whole.task(11), &here = one.task(0);
-  CHECK((here.index == 0 && here.first_step == 0 && here.first_solve == 0 && here.first_frame_row == 0 &&
-         here.first_segment_row == 0));
+  CHECK((here.index == 0 && here.rows[Rows::step].first == 0 && here.rows[Rows::solve].first == 0 &&
+         here.rows[Rows::frame_segment].first == 0 && here.rows[Rows::segment].first == 0));
   CHECK((here.point == there.point && here.sample == there.sample && here.own_guess == there.own_guess));
-  CHECK((here.steps == there.steps && here.solves == there.solves && here.segments == there.segments));
+  CHECK((here.steps == there.steps && here.rows[Rows::solve].count == there.rows[Rows::solve].count &&
+         here.segments == there.segments));
   CHECK(here.frames == 1 + 10 / 4);
-  CHECK((one.step_rows() == 10 && one.frame_rows() == here.frames * here.segments));
-  CHECK(one.segment_rows() == here.segments);
+  CHECK((one.rows(Rows::step) == 10 && one.rows(Rows::frame_segment) == here.frames * here.segments));
+  CHECK(one.rows(Rows::segment) == here.segments);
   const TaskSpec a = whole.spec(11), b = one.spec(0);
   CHECK(b.seed == a.seed);
   CHECK(b.record.trajectory_every == 4);

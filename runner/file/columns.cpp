@@ -1,0 +1,220 @@
+#include "runner/file/columns.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+
+namespace rodsweep {
+namespace {
+
+/// The vector of numbers that members lead to, from one to the next.
+template <auto... members>
+auto& vector_of(TaskRecord& record) {
+  return (record.*....*members);
+}
+
+template <auto... members>
+Column column(const char* path, Rows rows, std::vector<Axis> axes, const char* unit, const char* meaning) {
+  using Vector = std::decay_t<decltype(vector_of<members...>(std::declval<TaskRecord&>()))>;
+  return {path,
+          rows,
+          std::move(axes),
+          unit,
+          meaning,
+          hdf5::type_of<typename Vector::value_type>,
+          [](TaskRecord& record) -> Values { return &vector_of<members...>(record); }};
+}
+
+std::vector<Column> all_columns() {
+  using R = TaskRecord;
+  using Sums = CountSums;
+  const std::vector<Axis> none, guess{Axis::guess}, ladder{Axis::guess, Axis::tolerance}, xyz{Axis::xyz},
+      wxyz{Axis::wxyz}, six{Axis::constraint}, frame{Axis::frame};
+  return {
+      column<&R::steps_done>("/tasks/steps_done", Rows::task, none, "1", "time steps completed"),
+      column<&R::deepest_penetration>(
+          "/tasks/penetration", Rows::contact_task, none, "1",
+          "deepest overlap of two bodies after any step, over the smaller radius; NaN without contact"),
+      column<&R::counted, &Sums::iterations>(
+          "/tasks/iterations_sum", Rows::task, ladder, "1",
+          "CG iterations summed over the first Newton iteration of every step; solves that missed the tolerance count "
+          "what they used"),
+      column<&R::counted_all, &Sums::iterations>("/tasks/iterations_sum_all", Rows::task, ladder, "1",
+                                                 "CG iterations summed over all Newton iterations"),
+      column<&R::counted_other_norm, &Sums::iterations>(
+          "/tasks/iterations_sum_other_norm", Rows::task, ladder, "1",
+          "iterations_sum with the residual test in the norm that the job doesn't use: natural for true_residual, and "
+          "the other way round; -1 where record.norms is \"one\""),
+      column<&R::counted, &Sums::matvecs>(
+          "/tasks/matvecs_sum", Rows::task, ladder, "1",
+          "products with A in the solves of iterations_sum: iterations, residuals of nonzero guesses, and those that "
+          "guesses take themselves"),
+      column<&R::counted_all, &Sums::matvecs>("/tasks/matvecs_sum_all", Rows::task, ladder, "1",
+                                              "matvecs_sum over all Newton iterations"),
+      column<&R::counted, &Sums::unreached>("/tasks/unreached", Rows::task, ladder, "1",
+                                            "solves in iterations_sum that missed the tolerance"),
+      column<&R::counted_all, &Sums::unreached>("/tasks/unreached_all", Rows::task, ladder, "1",
+                                                "solves in iterations_sum_all that missed the tolerance"),
+      column<&R::counted_other_norm, &Sums::unreached>("/tasks/unreached_other_norm", Rows::task, ladder, "1",
+                                                       "solves in iterations_sum_other_norm that missed the tolerance"),
+      column<&R::counted, &Sums::cg_ratio>(
+          "/tasks/cg_ratio", Rows::task, ladder, "1",
+          "iterations_sum over that of the zero guess; NaN where there is no zero guess in the task"),
+      column<&R::counted_all, &Sums::cg_ratio>("/tasks/cg_ratio_all", Rows::task, ladder, "1",
+                                               "iterations_sum_all over that of the zero guess"),
+      column<&R::counted_other_norm, &Sums::cg_ratio>("/tasks/cg_ratio_other_norm", Rows::task, ladder, "1",
+                                                      "iterations_sum_other_norm over that of the zero guess"),
+
+      column<&R::step>("/solves/step", Rows::solve, none, "1", "time step, from 0"),
+      column<&R::newton>("/solves/newton", Rows::solve, none, "1",
+                         "Newton or Gauss-Seidel iteration within the step, from 0"),
+      column<&R::rod>("/solves/rod", Rows::solve, none, "1", "rod within the scene, from 0"),
+      column<&R::newton_residual>(
+          "/solves/newton_residual", Rows::solve, none, "1",
+          "max |C + alpha~ lambda| before the solve; of Gauss-Seidel, that met by the iteration"),
+      column<&R::solve_joint_gap>(
+          "/solves/joint_gap", Rows::solve, none, "1",
+          "largest distance between the two sides of a joint over the joint length, before the solve"),
+      column<&R::rhs_norm>("/solves/rhs_norm", Rows::solve, none, "1", "2-norm of b"),
+      column<&R::initial_residual>("/solves/initial_residual", Rows::solve, guess, "1",
+                                   "residual of the initial guess relative to the zero guess's, in the job's norm"),
+      column<&R::final_residual>("/solves/final_residual", Rows::solve, guess, "1",
+                                 "||b - A x||_2 / ||b||_2 recomputed after the tight solve"),
+      column<&R::reason>("/solves/reason", Rows::solve, guess, "1",
+                         "outcome of the tight solve: 0 not run, 1 converged, 2 zero right-hand side, 3 "
+                         "iteration limit, 4 diverged, 5 indefinite, 6 not a number"),
+      column<&R::start_matvecs>("/solves/start_matvecs", Rows::solve, guess, "1",
+                                "products with A before the first iteration: those of the guess itself, and "
+                                "one for the residual if it is nonzero; -1 not run"),
+      column<&R::iterations>("/solves/iterations", Rows::solve, ladder, "1",
+                             "CG iterations to each tolerance; -1 not reached or not run"),
+
+      column<&R::time_s>("/steps/time_s", Rows::step, none, "s", "time at the end of the step"),
+      column<&R::length_drift>("/steps/length_drift", Rows::step, none, "1",
+                               "total length through the joint midpoints over its initial value, minus 1"),
+      column<&R::joint_gap>("/steps/joint_gap", Rows::step, none, "1",
+                            "largest distance between the two sides of a joint over the joint length"),
+      column<&R::kinetic_energy_j>("/steps/kinetic_energy_j", Rows::step, none, "J",
+                                   "kinetic energy, translation and rotation"),
+      column<&R::potential_energy_j>("/steps/potential_energy_j", Rows::step, none, "J",
+                                     "gravitational energy, zero at the origin"),
+      column<&R::elastic_energy_j>("/steps/elastic_energy_j", Rows::step, none, "J", "energy stored in the joints"),
+      column<&R::momentum_kg_m_s>("/steps/momentum_kg_m_s", Rows::step, xyz, "kg m/s",
+                                  "linear momentum of the dynamic segments"),
+      column<&R::angular_momentum_kg_m2_s>("/steps/angular_momentum_kg_m2_s", Rows::step, xyz, "kg m^2/s",
+                                           "angular momentum of the dynamic segments about the origin"),
+      column<&R::newton_iterations>("/steps/newton_iterations", Rows::step, none, "1",
+                                    "Newton (or Gauss-Seidel) iterations used"),
+      column<&R::step_newton_residual>("/steps/newton_residual", Rows::step, none, "1",
+                                       "max |C + alpha~ lambda| at the end of the step"),
+      column<&R::contacts>("/steps/contacts", Rows::contact_step, none, "1",
+                           "places where bodies are near each other in this step; -1 without contact"),
+      column<&R::penetration>(
+          "/steps/penetration", Rows::contact_step, none, "1",
+          "deepest overlap of two bodies after the step, over the smaller radius; NaN without contact"),
+      column<&R::contact_residual>(
+          "/steps/contact_residual", Rows::contact_step, none, "1",
+          "farthest that a contact still wants to move its bodies after the step, over the smaller radius; those below "
+          "contact.tolerance have converged; NaN without contact"),
+
+      column<&R::position_m>("/trajectories/position_m", Rows::frame_segment, xyz, "m", "segment centre"),
+      column<&R::orientation>("/trajectories/orientation", Rows::frame_segment, wxyz, "1",
+                              "segment orientation, unit quaternion (w, x, y, z), local z along the rod"),
+      column<&R::first_row>("/trajectories/first_row", Rows::task, frame, "1",
+                            "row of the frame's first segment; -1 none"),
+      column<&R::frame_time_s>("/trajectories/time_s", Rows::task, frame, "s", "time of the frame"),
+      column<&R::segment_length_m>("/trajectories/segments/length_m", Rows::segment, none, "m", "length; 0: a wall"),
+      column<&R::segment_radius_m>("/trajectories/segments/radius_m", Rows::segment, none, "m", "radius; 0: a wall"),
+      column<&R::segment_rod>("/trajectories/segments/rod", Rows::segment, none, "1", "rod within the scene, from 0"),
+      column<&R::segment_static>("/trajectories/segments/static", Rows::segment, none, "1",
+                                 "1: held, as its clamp says; 0: it moves freely"),
+
+      column<&R::system_step>("/systems/step", Rows::system, none, "1",
+                              "time step, from 0; -1: a Newton iteration that was not needed"),
+      column<&R::system_newton>("/systems/newton", Rows::system, none, "1", "Newton iteration within the step, from 0"),
+      column<&R::system_rod>("/systems/rod", Rows::system, none, "1", "rod within the scene, from 0"),
+      column<&R::system_position_m>("/systems/segments/position_m", Rows::system_segment, xyz, "m",
+                                    "segment centre where the system was assembled"),
+      column<&R::system_orientation>("/systems/segments/orientation", Rows::system_segment, wxyz, "1",
+                                     "segment orientation there, unit quaternion (w, x, y, z), local z along the rod"),
+      column<&R::system_velocity_m_s>("/systems/segments/velocity_m_s", Rows::system_segment, xyz, "m/s",
+                                      "velocity at the start of the step"),
+      column<&R::system_angular_velocity_rad_s>("/systems/segments/angular_velocity_rad_s", Rows::system_segment, xyz,
+                                                "rad/s", "angular velocity at the start of the step, world frame"),
+      column<&R::system_lambda>("/systems/joints/lambda", Rows::system_joint, six, "kg m^2",
+                                "Lagrange multipliers before the solve: stretch-shear (3), bend-twist (3)"),
+      column<&R::system_solution>("/systems/joints/solution", Rows::system_joint, six, "kg m^2",
+                                  "their increment, which solves A dlambda = b: by the direct solve"),
+
+      column<&R::assemble_s>("/timing/solves/assemble_s", Rows::solve, none, "s", "assembly of A and b"),
+      column<&R::direct_s>("/timing/solves/direct_s", Rows::solve, none, "s",
+                           "block LDL^T factorisation and solve of the same system"),
+      column<&R::guess_s>("/timing/solves/guess_s", Rows::solve, guess, "s",
+                          "making the initial guess; median of solve.timing_repeats"),
+      column<&R::cg_s>("/timing/solves/cg_s", Rows::solve, guess, "s",
+                       "preconditioner set-up and CG to the job's tolerance; median of solve.timing_repeats"),
+      column<&R::rest_s>("/timing/steps/rest_s", Rows::step, none, "s",
+                         "the step without assembly, guesses and solves"),
+      column<&R::source_task>(
+          "/timing/tasks/source_task", Rows::task, none, "1",
+          "task of the extended file that its rows, or some guesses' rows, were copied from; -1: none"),
+      column<&R::copied_guess>("/timing/tasks/copied_guess", Rows::task, guess, "1",
+                               "1: the guess's rows and times were copied from source_task; -1: they were not"),
+      column<&R::elapsed_s>("/timing/tasks/elapsed_s", Rows::task, none, "s", "wall time of the task, without writing"),
+  };
+}
+
+std::int64_t size_of(Axis axis, const AxisSizes& sizes) {
+  switch (axis) {
+    case Axis::guess: return sizes.guesses;
+    case Axis::tolerance: return sizes.tolerances;
+    case Axis::xyz: return 3;
+    case Axis::wxyz: return 4;
+    case Axis::constraint: return 6;
+    case Axis::frame: return sizes.frames;
+  }
+  return 0;
+}
+
+}  // namespace
+
+const std::vector<Column>& columns() {
+  static const std::vector<Column> all = all_columns();
+  return all;
+}
+
+std::vector<std::int64_t> row_extent(const Column& column, const AxisSizes& sizes) {
+  std::vector<std::int64_t> extent;
+  for (const Axis axis : column.axes) extent.push_back(size_of(axis, sizes));
+  return extent;
+}
+
+std::int64_t row_width(const Column& column, const AxisSizes& sizes) {
+  const std::vector<std::int64_t> extent = row_extent(column, sizes);
+  return std::accumulate(extent.begin(), extent.end(), std::int64_t{1}, std::multiplies<>());
+}
+
+bool is_timing(const Column& column) { return std::string_view(column.path).substr(0, 8) == "/timing/"; }
+
+char* data_of(const Column& column, TaskRecord& record) {
+  return std::visit([](auto* values) { return reinterpret_cast<char*>(values->data()); }, column.values(record));
+}
+
+std::string_view bytes_of(const Column& column, const TaskRecord& record) {
+  return std::visit(
+      [](const auto* values) {
+        return std::string_view(reinterpret_cast<const char*>(values->data()),
+                                values->size() * sizeof(values->front()));
+      },
+      column.values(const_cast<TaskRecord&>(record)));  // which it only points into
+}
+
+std::string text_of(const Column& column, const TaskRecord& record, std::size_t index) {
+  return std::visit([&](const auto* values) { return fmt::format("{}", values->at(index)); },
+                    column.values(const_cast<TaskRecord&>(record)));
+}
+
+}  // namespace rodsweep

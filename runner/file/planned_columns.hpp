@@ -1,0 +1,52 @@
+// What the plan says of every task, as columns of /tasks: its place in the sweep, and which rows are its own. The
+// layout, the plan's hash, creation and reading walk this list.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "runner/job/plan.hpp"
+
+namespace rodsweep {
+
+/// Calls visit(path, meaning, member), member(task) a number of it, for all columns of a file; of those that not every
+/// file has, for each RowPlace that `holds` says it has.
+template <class Holds, class Visit>
+void visit_planned_columns(Holds&& holds, Visit&& visit) {
+  visit(
+      "/tasks/point", "parameter point; tasks of a closed loop that differ in their guess alone share it",
+      [](auto& task) -> auto& { return task.point; });
+  visit(
+      "/tasks/sample", "which draw of the random parameters, from 0", [](auto& task) -> auto& { return task.sample; });
+  visit(
+      "/tasks/own_guess", "index into /axes/guess of the guess that advances the rods; -1 the direct solve does",
+      [](auto& task) -> auto& { return task.own_guess; });
+  visit(
+      "/tasks/segments", "segments of the scene", [](auto& task) -> auto& { return task.segments; });
+  visit(
+      "/tasks/joints", "joints of the scene", [](auto& task) -> auto& { return task.joints; });
+  for (const RowPlace& place : row_places) {
+    if (place.with != Rows::task && !holds(place)) continue;
+    visit(
+        place.first, place.first_meaning, [&](auto& task) -> auto& { return task.rows[place.rows].first; });
+    if (place.count == nullptr) continue;
+    visit(
+        place.count, place.count_meaning, [&](auto& task) -> auto& {
+          return place.rows == Rows::frame_segment ? task.frames : task.rows[place.rows].count;
+        });
+  }
+}
+
+/// Calls visit(path, meaning, values), a vector with a number of every task.
+template <class Visit>
+void visit_planned_values(const Plan& plan, Visit&& visit) {
+  const auto holds = [&](const RowPlace& place) { return plan.rows(place.with) > 0; };
+  visit_planned_columns(holds, [&](const char* path, const char* meaning, auto member) {
+    std::vector<std::decay_t<decltype(member(std::declval<const Task&>()))>> values;
+    for (const Task& task : plan.tasks()) values.push_back(member(task));
+    visit(path, meaning, values);
+  });
+}
+
+}  // namespace rodsweep

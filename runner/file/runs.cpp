@@ -1,0 +1,106 @@
+#include "runner/file/runs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <variant>
+
+namespace rodsweep {
+namespace {
+
+struct RunColumn {
+  const char* path;
+  std::variant<std::string& (*)(RunRow&), int& (*)(RunRow&), bool& (*)(RunRow&)> value;
+  std::int64_t text_bytes;  ///< 0: a number
+  const char* meaning;
+};
+
+constexpr std::array<RunColumn, 12> run_columns{{
+    {"/runs/begin", [](RunRow& run) -> std::string& { return run.provenance.begin_utc; }, 24,
+     "when this start of the sweep began (UTC); empty: an unused row"},
+    {"/runs/end", [](RunRow& run) -> std::string& { return run.end_utc; }, 24,
+     "when it ended (UTC); empty: it still runs, or was killed"},
+    {"/runs/host", [](RunRow& run) -> std::string& { return run.provenance.host; }, 512, "hosts of its ranks"},
+    {"/runs/command", [](RunRow& run) -> std::string& { return run.provenance.user_command; }, 1024, "command line"},
+    {"/runs/job", [](RunRow& run) -> std::string& { return run.provenance.job; }, 1024,
+     "path of the job file; relative paths in the job begin in its folder"},
+    {"/runs/revision", [](RunRow& run) -> std::string& { return run.provenance.revision; }, 64,
+     "git revision of the program"},
+    {"/runs/versions", [](RunRow& run) -> std::string& { return run.provenance.versions; }, 256,
+     "program, libraries and compiler"},
+    {"/runs/petsc_options", [](RunRow& run) -> std::string& { return run.provenance.petsc_options; }, 1024,
+     "PETSC_OPTIONS of the environment"},
+    {"/runs/source", [](RunRow& run) -> std::string& { return run.source; }, 512,
+     "the file that this sweep extends and that this row was copied from; empty: a start of this sweep"},
+    {"/runs/ranks", [](RunRow& run) -> int& { return run.provenance.ranks; }, 0, "MPI ranks"},
+    {"/runs/exit_code", [](RunRow& run) -> int& { return run.exit_code; }, 0,
+     "exit code of the program; -1: it still runs, or was killed"},
+    {"/runs/oversubscribed", [](RunRow& run) -> bool& { return run.provenance.oversubscribed; }, 0,
+     "1: more ranks than cores, so that its times are worthless"},
+}};
+
+/// How a number of a RunRow is stored.
+template <class T>
+using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+
+/// Calls on_text(std::string&) or on_number(T&) with the value of a column.
+template <class OnText, class OnNumber>
+void visit_value(const RunColumn& column, RunRow& run, OnText&& on_text, OnNumber&& on_number) {
+  std::visit(
+      [&](auto value) {
+        if constexpr (std::is_same_v<decltype(value(run)), std::string&>)
+          on_text(value(run));
+        else
+          on_number(value(run));
+      },
+      column.value);
+}
+
+}  // namespace
+
+std::vector<Field> run_fields() {
+  std::vector<Field> fields;
+  RunRow any;
+  for (const RunColumn& column : run_columns) {
+    visit_value(
+        column, any,
+        [&](std::string&) { fields.push_back(text_field(column.path, column.text_bytes, {run_rows}, column.meaning)); },
+        [&](auto& number) {
+          using T = Stored<std::decay_t<decltype(number)>>;
+          fields.push_back(number_field<T>(column.path, {run_rows}, "1", column.meaning));
+        });
+  }
+  return fields;
+}
+
+std::vector<RunRow> read_runs(const hdf5::File& file) {
+  const std::vector<std::string> begins = hdf5::read_texts(file.id(), "/runs/begin");
+  std::vector<RunRow> runs(static_cast<std::size_t>(std::find(begins.begin(), begins.end(), "") - begins.begin()));
+  for (const RunColumn& column : run_columns) {
+    const hdf5::RowDataset rows(file.id(), column.path);
+    if (!rows) continue;
+    for (std::size_t row = 0; row < runs.size(); ++row) {
+      visit_value(
+          column, runs[row], [&](std::string& text) { text = hdf5::read_text_row(rows, row); },
+          [&](auto& number) {
+            Stored<std::decay_t<decltype(number)>> stored{};
+            rows.read(hdf5::type_of<decltype(stored)>(), row, 1, &stored);
+            number = static_cast<std::decay_t<decltype(number)>>(stored);
+          });
+    }
+  }
+  return runs;
+}
+
+void write_run(const hdf5::File& file, std::size_t row, const RunRow& run) {
+  RunRow written = run;
+  for (auto column = run_columns.rbegin(); column != run_columns.rend(); ++column) {
+    visit_value(
+        *column, written, [&](const std::string& text) { hdf5::write_text_row(file.id(), column->path, row, text); },
+        [&](auto number) {
+          hdf5::write_row(file.id(), column->path, row, static_cast<Stored<decltype(number)>>(number));
+        });
+  }
+}
+
+}  // namespace rodsweep
