@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "runner/file/hdf5.hpp"
+
 namespace rodsweep {
 namespace {
 

@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "runner/file/hdf5.hpp"
 #include "runner/file/record.hpp"
 
 namespace rodsweep {
@@ -25,9 +24,9 @@ struct Column {
   const char* path;
   Rows rows;
   std::vector<Axis> axes;
-  const char* unit;     ///< "1" for dimensionless
-  const char* meaning;  ///< one line
-  hid_t (*type)();      ///< of a value in memory
+  const char* unit;        ///< "1" for dimensionless
+  const char* meaning;     ///< one line
+  std::int64_t (*type)();  ///< HDF5's handle to the type of a value in memory
   Values (*values)(TaskRecord&);
 };
 

@@ -27,6 +27,15 @@ JobError too_large(const Job& job) {
                    fmt::format("this job is too large: more than {} tasks or {} rows", most_tasks, most_rows));
 }
 
+/// Parameter points, if they are not too many.
+std::int64_t point_count(const SweepSpace& space, const Job& job) {
+  const std::int64_t points = space.grid_points();
+  if (static_cast<double>(points) * static_cast<double>(job.samples) <= most_tasks) return points * job.samples;
+  throw job_error(job.path, "",
+                  fmt::format("{} grid points with {} samples each are too many tasks; the most is {}", points,
+                              job.samples, most_tasks));
+}
+
 }  // namespace
 
 const std::vector<double>& tolerance_ladder() {
@@ -63,16 +72,11 @@ Plan::Plan(Job job)
 
 /// Checks every parameter point and makes its tasks, their rows counted but not placed.
 void Plan::expand() {
-  const std::int64_t points = space_.grid_points();
-  if (static_cast<double>(points) * static_cast<double>(job_.samples) > most_tasks) {
-    throw job_error(job_.path, "",
-                    fmt::format("{} grid points with {} samples each are too many tasks; the most is {}", points,
-                                job_.samples, most_tasks));
-  }
+  const std::int64_t points = point_count(space_, job_);
   const RecordSpec record = record_spec(job_);
   bool contact = false;
   Point values;
-  for (std::int64_t point = 0; point < points * job_.samples; ++point) {
+  for (std::int64_t point = 0; point < points; ++point) {
     fill(values, point);
     const SceneSpec scene = scene_spec(values, job_);
     check_scene(scene, job_);

@@ -328,12 +328,14 @@ TEST_CASE("rows of the file follow one another without gaps") {
 
 TEST_CASE("rows are counted with the last task's, and with those of a task that overflow") {
   Json job = small_job();  // 1000 rods x 10^7 steps x 1000 iterations: 10^13 rows of solves in a task
-  job["scene"] = Json::parse(R"({"type": "net", "rows": 500, "columns": 500, "segments": 1, "mesh_m": 0.5,
-      "held": "free", "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6})");
+  job["scene"] = Json::parse(
+      R"({"type": "falling_rods", "rods": 1000, "segments": 500, "length_m": 1, "height_m": 0.3, "turn_deg": 70,
+          "radius_m": {"uniform": [0.004, 0.005]}, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6,
+          "torsion_modulus_pa": 1e6})");
   job["time"] = {{"step_s", 0.02}, {"steps", 10000000}, {"newton_iterations", 1000}};
   job["samples"] = 100;
   CHECK(plan_of(job).rows(Rows::solve) == 1000000000000000);
-  const std::string too_large = "job.json: this job is too large: more than 1000000 tasks or 1e+15 rows";
+  const std::string too_large = "job.json: this job is too large: more than 1000000 tasks or 1000000000000000 rows";
   CHECK(refusal(with("/samples", "101", job)) == too_large);
 
   // 10^7 frames of 5 x 10^5 segments
