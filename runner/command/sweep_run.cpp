@@ -10,9 +10,8 @@
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/stop_signal.hpp"
-#include "runner/experiment/batch_body.hpp"
-#include "runner/experiment/extending_body.hpp"
 #include "runner/experiment/loop_check.hpp"
+#include "runner/experiment/task_body.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
@@ -166,12 +165,11 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   double cost = 0;
   for (const PendingTask& task : pending) cost += task.cost;
   Progress progress(console, {total, total - to_do, before.failed, cost, where.workers}, Progress::Clock::now());
-  const auto write = [&](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
+  const WriteRecord write = [&](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
     file.write(task, record, origin);
   };
   const auto warn = [](const std::string& text) { Console(true).warn(text); };  // whichever rank finds the damage
-  BatchBody body = extension ? one_by_one(extending_body(plan, *extension, evaluate, write, warn))
-                             : batch_body(plan, [&](const Task& t, const TaskRecord& r) { file.write(t, r); });
+  BatchBody body = extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write);
   const Dispatch dispatch = mpi.size() == 1
                                 ? dispatch_alone(std::move(pending), progress, signal, std::move(body))
                                 : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body));
