@@ -43,7 +43,7 @@ ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan
 
 }  // namespace
 
-ExitCode rerun_task(const RerunOptions& options, Console& console) {
+ExitCode execute(const RerunOptions& options, Console& console) {
   const StopSignal signal;
   const FileSummary before = inspect(options.file);
   check_task(options, before);
