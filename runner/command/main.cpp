@@ -2,11 +2,18 @@
 //
 // An error that all ranks share (a bad job, an existing file) is said once and ends all of them with exit code 2. An
 // error of one rank alone (a full disk) is said by that rank, which then aborts the others: they would wait for it for
-// ever.
+// ever. What is printed on stdout and does not arrive is an error too (a full disk, a closed descriptor), but it ends
+// nothing: a sweep goes on, and its results are in their file. Only a reader that has left (`| head`) is none: then the
+// program ends as if the signal SIGPIPE had ended it, without a word.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 
 #include "runner/command/command_line.hpp"
@@ -18,6 +25,13 @@
 namespace rodsweep {
 
 namespace {
+
+/// A standard descriptor that is closed would become that of the next file, a results file say, and what is printed
+/// would end in there. Opened the wrong way round, it fails instead.
+void occupy_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(descriptor, F_GETFD) < 0) open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
 
 /// Under mpirun or srun every rank gets the command; one should speak.
 bool is_first_rank() {
@@ -86,6 +100,17 @@ ExitCode run_program(int argc, const char* const* argv, Console& console) {
 
 int main(int argc, char** argv) {
   using namespace rodsweep;
+  occupy_standard_descriptors();
+  std::signal(SIGPIPE, SIG_IGN);  // nor should a reader that has left end a sweep
   Console console(is_first_rank());
-  return static_cast<int>(run_program(argc, argv, console));
+  ExitCode code = run_program(argc, argv, console);
+  const int failure = console.close();
+  if (failure != 0 && failure != EPIPE)
+    console.error(fmt::format("writing to standard output failed: {}", std::strerror(failure)));
+  if (failure == EPIPE && code == ExitCode::ok) {
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
+  if (failure != 0 && code == ExitCode::ok) code = ExitCode::user_error;
+  return static_cast<int>(code);
 }
