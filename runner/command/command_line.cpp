@@ -1,10 +1,11 @@
 #include "runner/command/command_line.hpp"
 
 #include <CLI/CLI.hpp>
-#include <memory>
+#include <optional>
 #include <sstream>
 
-#include "runner/command/file_command_line.hpp"
+#include "runner/command/completion.hpp"
+#include "runner/job/job_schema.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -22,7 +23,7 @@ constexpr const char* exit_codes =
     "  3  the sweep is complete, some of its tasks failed; or a training diverged\n"
     "  4  stopped early; --resume continues";
 
-constexpr const char* main_footer =
+constexpr const char* main_help =
     "Examples:\n"
     "  rodsweep validate jobs/*.json            are these jobs sound?\n"
     "  rodsweep plan jobs/demo.json             how many tasks, bytes, core-hours?\n"
@@ -31,48 +32,19 @@ constexpr const char* main_footer =
     "  rodsweep query results/demo.h5           its tasks as a table, CSV or JSON\n"
     "'rodsweep COMMAND --help' tells more.";
 
-constexpr const char* run_footer =
-    "One rank runs the tasks itself; of more, rank 0 hands them out and sleeps, so C cores want C+1 ranks.\n"
-    "Open MPI refuses more ranks than cores unless told --oversubscribe; inside containers as root it also\n"
-    "wants --allow-run-as-root.\n"
-    "A training (kind \"train\") has no master: C cores want C ranks, at most as many as training.shards.\n\n"
-    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop the sweep between two time steps: running tasks are abandoned,\n"
-    "finished ones are in the file. mpirun hands SIGUSR1 on to all ranks and then exits 4 as well. On SIGTERM and\n"
-    "SIGINT it kills what still runs a second later, and itself exits 1. However a sweep ended, it can be resumed.\n"
-    "A training stops between two steps and goes on from there, to the same bits.\n\n"
-    "Examples:\n"
-    "  rodsweep run jobs/smoke.json                        one core, results/smoke.h5\n"
-    "  mpirun --oversubscribe -n 5 rodsweep run job.json   4 cores\n"
-    "  mpirun -n 5 rodsweep run job.json -o out.h5 --resume\n"
-    "                                                      continues out.h5, or starts it: for batch scripts\n"
-    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more values in a\n"
-    "                                                      grid, or more guesses. Copies what out.h5 holds, tries\n"
-    "                                                      new guesses alone on its trajectories, runs the rest.\n"
-    "                                                      out.h5 is read only; more.h5 is as if run from scratch.";
-
-constexpr const char* plan_footer =
-    "Up to three tasks (cheapest, median, dearest), or some steps of a training, are really run for a moment, unless\n"
-    "--no-probe is given. A training's data set must be there.\n\n"
+constexpr const char* schema_help =
+    "For completion and checks while you type; `rodsweep validate` has the last word. Put the file beside your jobs "
+    "and\n"
+    "name it in each: \"$schema\": \"schema.json\".\n\n"
     "Example:\n"
-    "  rodsweep plan jobs/spatial_bending.json";
+    "  rodsweep schema >schema.json";
 
-constexpr const char* validate_footer =
-    "Every job is expanded in full, so what passes here is accepted by run. Nothing is computed or written.\n\n"
+constexpr const char* completion_help =
+    "Commands, options, job files and results files after the Tab key.\n\n"
     "Example:\n"
-    "  rodsweep validate jobs/*.json";
+    "  source <(rodsweep completion bash)                              in ~/.bashrc";
 
-constexpr const char* status_footer =
-    "Reads only, also while the sweep writes. The exit code is 0 whatever the state: scripts read --json.\n\n"
-    "Example:\n"
-    "  rodsweep status results/demo.h5 --json | jq .pending";
-
-constexpr const char* info_footer =
-    "Examples:\n"
-    "  rodsweep info results/demo.h5                     job, axes, and every start with its versions\n"
-    "  rodsweep info results/demo.h5 --verify            are the data still what was written? (checksums)\n"
-    "  rodsweep info results/demo.h5 --job > again.json  the job, as it was given";
-
-std::string with_exit_codes(const char* footer) { return std::string(footer) + "\n\n" + exit_codes; }
+std::string with_exit_codes(const char* help) { return std::string(help) + "\n\n" + exit_codes; }
 
 std::string typed(int argc, const char* const* argv) {
   std::string line;
@@ -80,54 +52,142 @@ std::string typed(int argc, const char* const* argv) {
   return line;
 }
 
+/// "rodsweep 0.1.0 (revision ...)" and the libraries, a line each.
+std::string version_text() {
+  std::string text = library_versions() + '\n';
+  for (std::size_t at = text.find("; "); at != std::string::npos; at = text.find("; ", at)) text.replace(at, 2, "\n  ");
+  return text.insert(text.find('\n'), " (revision " + source_revision() + ")");
+}
+
+// Each adds a command, whose arguments fill the options given.
+
+CLI::App* add(CLI::App& app, RunOptions& run) {
+  CLI::App* command = app.add_subcommand("run", "Runs a job, or goes on with it");
+  command->footer(with_exit_codes(run_help));
+  command->add_option("JOB", run.job, "Job file (JSON)")->required();
+  command->add_option("-o,--output", run.output, "Results file; never overwritten [results/NAME.h5]")
+      ->type_name("FILE");
+  command->add_flag("--resume", run.resume, "Continue the results file if it exists");
+  command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
+  return command;
+}
+
+CLI::App* add(CLI::App& app, PlanOptions& plan) {
+  CLI::App* command = app.add_subcommand("plan", "Says what a job takes: tasks, bytes, core-hours");
+  command->footer(with_exit_codes(plan_help));
+  command->add_option("JOB", plan.job, "Job file (JSON)")->required();
+  command->add_flag_callback(
+      "--no-probe", [&plan] { plan.probe = false; }, "Run nothing, so tell no core-hours");
+  command->add_flag("--json", plan.json, "For programs");
+  return command;
+}
+
+CLI::App* add(CLI::App& app, ValidateOptions& validate) {
+  CLI::App* command = app.add_subcommand("validate", "Checks jobs without running them");
+  command->footer(with_exit_codes(validate_help));
+  command->add_option("JOB", validate.jobs, "Job files (JSON)")->required();
+  return command;
+}
+
+CLI::App* add(CLI::App& app, StatusOptions& status) {
+  CLI::App* command = app.add_subcommand("status", "Says how far a sweep is");
+  command->footer(with_exit_codes(status_help));
+  command->add_option("FILE", status.file, "Results file (HDF5)")->required();
+  command->add_flag("--json", status.json, "For programs");
+  return command;
+}
+
+CLI::App* add(CLI::App& app, InfoOptions& info) {
+  CLI::App* command = app.add_subcommand("info", "Says where results come from, and checks them");
+  command->footer(with_exit_codes(info_help));
+  command->add_option("FILE", info.file, "Results file (HDF5)")->required();
+  CLI::Option* verify = command->add_flag("--verify", info.verify, "Compare every finished task with its checksum");
+  CLI::Option* job = command->add_flag("--job", info.job, "Print the job alone, byte for byte");
+  CLI::Option* json = command->add_flag("--json", info.json, "For programs");
+  job->excludes(verify)->excludes(json);
+  return command;
+}
+
+CLI::App* add(CLI::App& app, QueryOptions& query) {
+  CLI::App* command = app.add_subcommand("query", "Lists tasks by parameter or outcome");
+  command->footer(query_help);
+  command->add_option("FILE", query.file, "Results file (HDF5)")->required();
+  command->add_option("CONDITION", query.conditions, "What the tasks must meet");
+  const auto append = [&query](const std::vector<std::string>& more) {  // comes after CONDITION
+    query.conditions.insert(query.conditions.end(), more.begin(), more.end());
+  };
+  command->add_option_function<std::vector<std::string>>("--where", append, "One more condition")
+      ->type_name("CONDITION")
+      ->allow_extra_args(false);
+  command->add_option("--columns", query.columns, "What to show, with commas between; help: all that there is")
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  command->add_option("--sort", query.sort, "Order by a column, smallest first")->type_name("COLUMN");
+  command->add_flag("--descending", query.descending, "Order by it, largest first")->needs("--sort");
+  command->add_option("--limit", query.limit, "Show so many tasks at most")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
+  using Format = QueryOptions::Format;
+  const auto set = [&query](Format format) { return [&query, format] { query.format = format; }; };
+  CLI::Option* csv = command->add_flag_callback("--csv", set(Format::csv), "For spreadsheets and programs");
+  command->add_flag_callback("--json", set(Format::json), "For programs")->excludes(csv);
+  return command;
+}
+
+CLI::App* add(CLI::App& app, RerunOptions& rerun) {
+  CLI::App* command = app.add_subcommand("rerun", "Runs one task of a sweep again, with its trajectory");
+  command->footer(rerun_help);
+  command->add_option("FILE", rerun.file, "Results file (HDF5)")->required();
+  command->add_option("TASK", rerun.task, "Number of the task, from 0")->required();
+  command->add_option("-o,--output", rerun.output, "Results file; never overwritten [FILE-task-TASK.h5]")
+      ->type_name("FILE");
+  command->add_option("--trajectory-every", rerun.trajectory_every, "A frame every K steps [1]")
+      ->check(CLI::PositiveNumber)
+      ->type_name("K");
+  return command;
+}
+
+CLI::App* add(CLI::App& app, PackOptions& pack) {
+  CLI::App* command = app.add_subcommand("pack", "Makes a compressed copy of a results file");
+  command->footer(pack_help);
+  command->add_option("FILE", pack.file, "Results file (HDF5)")->required();
+  command->add_option("-o,--output", pack.output, "The copy; never overwritten [FILE-packed.h5]")->type_name("FILE");
+  return command;
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
   CLI::App app(about, "rodsweep");
-  app.footer(with_exit_codes(main_footer));
+  app.footer(with_exit_codes(main_help));
   app.require_subcommand(0, 1);
   app.get_formatter()->column_width(28);
   bool version = false;
   app.add_flag("--version", version, "Version, revision and libraries");
 
   RunOptions run;
-  auto* run_command = app.add_subcommand("run", "Runs a job, or goes on with it");
-  run_command->footer(with_exit_codes(run_footer));
-  run_command->add_option("JOB", run.job, "Job file (JSON)")->required();
-  run_command->add_option("-o,--output", run.output, "Results file; never overwritten [results/NAME.h5]")
-      ->type_name("FILE");
-  run_command->add_flag("--resume", run.resume, "Continue the results file if it exists");
-  run_command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")
-      ->type_name("OLD");
-
   PlanOptions plan;
-  bool no_probe = false;
-  auto* plan_command = app.add_subcommand("plan", "Says what a job takes: tasks, bytes, core-hours");
-  plan_command->footer(with_exit_codes(plan_footer));
-  plan_command->add_option("JOB", plan.job, "Job file (JSON)")->required();
-  plan_command->add_flag("--no-probe", no_probe, "Run nothing, so tell no core-hours");
-  plan_command->add_flag("--json", plan.json, "For programs");
-
+  RerunOptions rerun;
+  run.program = plan.program = argv[0];
+  run.command = rerun.command = typed(argc, argv);
   ValidateOptions validate;
-  auto* validate_command = app.add_subcommand("validate", "Checks jobs without running them");
-  validate_command->footer(with_exit_codes(validate_footer));
-  validate_command->add_option("JOB", validate.jobs, "Job files (JSON)")->required();
-
   StatusOptions status;
-  auto* status_command = app.add_subcommand("status", "Says how far a sweep is");
-  status_command->footer(with_exit_codes(status_footer));
-  status_command->add_option("FILE", status.file, "Results file (HDF5)")->required();
-  status_command->add_flag("--json", status.json, "For programs");
-
   InfoOptions info;
-  auto* info_command = app.add_subcommand("info", "Says where results come from, and checks them");
-  info_command->footer(with_exit_codes(info_footer));
-  info_command->add_option("FILE", info.file, "Results file (HDF5)")->required();
-  auto* verify = info_command->add_flag("--verify", info.verify, "Compare every finished task with its checksum");
-  auto* job = info_command->add_flag("--job", info.job, "Print the job alone, byte for byte");
-  auto* json = info_command->add_flag("--json", info.json, "For programs");
-  job->excludes(verify)->excludes(json);
-  const FileCommandLine file_commands(app);
+  QueryOptions query;
+  PackOptions pack;
+  std::optional<Command> chosen;
+  const auto offer = [&](auto&... options) {
+    (add(app, options)->callback([&chosen, &options] { chosen = options; }), ...);
+  };
+  offer(run, plan, validate, status, info, query, rerun, pack);
+
+  CLI::App* schema = app.add_subcommand("schema", "Prints the JSON Schema of jobs, for editors");
+  schema->footer(schema_help);
+  schema->callback([&] { chosen = Answer{job_schema_text()}; });
+  CLI::App* completion = app.add_subcommand("completion", "Prints what a shell needs to complete this command line");
+  completion->footer(completion_help);
+  completion->require_subcommand(1);
+  completion->add_subcommand("bash", "For bash")->callback([&] { chosen = Answer{bash_completion(app)}; });
 
   try {
     app.parse(argc, argv);
@@ -136,23 +196,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     const bool mistake = app.exit(stop, help, complaint) != 0;
     return Answer{mistake ? complaint.str() : help.str(), mistake ? ExitCode::user_error : ExitCode::ok};
   }
-
-  if (version) return VersionOptions{};
-  if (run_command->parsed()) {
-    run.program = argv[0];
-    run.command = typed(argc, argv);
-    return run;
-  }
-  if (plan_command->parsed()) {
-    plan.program = argv[0];
-    plan.probe = !no_probe;
-    return plan;
-  }
-  if (validate_command->parsed()) return validate;
-  if (status_command->parsed()) return status;
-  if (info_command->parsed()) return info;
-  if (auto chosen = file_commands.chosen(typed(argc, argv))) return *std::move(chosen);
-  return Answer{app.help(), ExitCode::user_error};
+  if (version) return Answer{version_text()};
+  return chosen.value_or(Answer{app.help(), ExitCode::user_error});
 }
 
 }  // namespace rodsweep

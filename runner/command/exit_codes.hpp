@@ -5,7 +5,8 @@ namespace rodsweep {
 
 enum class ExitCode : int {
   ok = 0,            ///< all done
-  user_error = 2,    ///< the command line, a job or a file: nothing was computed, or a result could not be written
+  user_error = 2,    ///< the command line, a job or a file: nothing was computed, or a result could not be written,
+                     ///< be it to standard output, after all else went well
   tasks_failed = 3,  ///< the sweep is complete, some of its tasks failed; or a training diverged
   stopped = 4,       ///< stopped early by a signal; --resume continues
 };

@@ -2,19 +2,21 @@
 //
 // An error that all ranks share (a bad job, an existing file) is said once and ends all of them with exit code 2. An
 // error of one rank alone (a full disk) is said by that rank, which then aborts the others: they would wait for it for
-// ever.
+// ever. What is printed on stdout and does not arrive is an error too (a full disk, a closed descriptor), but it ends
+// nothing: a sweep goes on, and its results are in their file. Only a reader that has left (`| head`) is none: then the
+// program ends as if the signal SIGPIPE had ended it, without a word.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 
 #include "runner/command/command_line.hpp"
-#include "runner/command/file_commands.hpp"
-#include "runner/command/plan_command.hpp"
-#include "runner/command/shared_job.hpp"
-#include "runner/command/sweep_run.hpp"
-#include "runner/command/training_run.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
@@ -24,6 +26,13 @@ namespace rodsweep {
 
 namespace {
 
+/// A standard descriptor that is closed would become that of the next file, a results file say, and what is printed
+/// would end in there. Opened the wrong way round, it fails instead.
+void occupy_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(descriptor, F_GETFD) < 0) open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 /// Under mpirun or srun every rank gets the command; one should speak.
 bool is_first_rank() {
   for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK"})
@@ -31,7 +40,27 @@ bool is_first_rank() {
   return true;
 }
 
-ExitCode execute(const Answer& answer, Console& console) {
+/// A command that computes, on one rank. All must start MPI where one does.
+template <class Options>
+ExitCode execute_with_petsc(const Options& options, Console& console) {
+  const MpiSession mpi;
+  const PetscSession petsc;
+  return mpi.rank() == 0 ? execute(options, console) : ExitCode::ok;
+}
+
+/// A command that one rank does for all.
+template <class Options>
+ExitCode start(const Options& options, Console& console) {
+  return is_first_rank() ? execute(options, console) : ExitCode::ok;
+}
+
+ExitCode start(const RerunOptions& options, Console& console) { return execute_with_petsc(options, console); }
+
+ExitCode start(const PlanOptions& options, Console& console) {
+  return options.probe ? execute_with_petsc(options, console) : start<PlanOptions>(options, console);
+}
+
+ExitCode start(const Answer& answer, Console& console) {
   if (answer.code == ExitCode::ok)
     console.raw_result(answer.text);
   else
@@ -39,38 +68,10 @@ ExitCode execute(const Answer& answer, Console& console) {
   return answer.code;
 }
 
-ExitCode execute(const VersionOptions&, Console& console) { return show_version(console); }
-ExitCode execute(const ValidateOptions& options, Console& console) { return validate_jobs(options, console); }
-ExitCode execute(const StatusOptions& options, Console& console) { return show_status(options, console); }
-ExitCode execute(const InfoOptions& options, Console& console) { return show_info(options, console); }
-
-ExitCode execute(const QueryOptions& options, Console& console) { return query_tasks(options, console); }
-
-ExitCode execute(const PackOptions& options, Console& console) {
-  return is_first_rank() ? pack_file(options, console) : ExitCode::ok;  // one should write
-}
-
-ExitCode execute(const RerunOptions& options, Console& console) {
-  const MpiSession mpi;
-  const PetscSession petsc;
-  if (mpi.rank() > 0) return ExitCode::ok;
-  return rerun_task(options, console);
-}
-
-ExitCode execute(const PlanOptions& options, Console& console) {
-  if (!options.probe) return show_plan(options, console);
-  const MpiSession mpi;
-  const PetscSession petsc;
-  if (mpi.rank() > 0) return ExitCode::ok;
-  return show_plan(options, console);
-}
-
-ExitCode execute(const RunOptions& options, Console& console) {
+ExitCode start(const RunOptions& options, Console& console) {
   const MpiSession mpi;
   try {
-    const PetscSession petsc;
-    const Job job = read_job_everywhere(options.job, mpi);
-    return is_training(job) ? run_training(options, job, mpi, console) : run_sweep(options, job, mpi, console);
+    return execute(options, mpi, console);
   } catch (const CollectiveError& error) {
     console.error(error.what());
     return ExitCode::user_error;
@@ -83,19 +84,33 @@ ExitCode execute(const RunOptions& options, Console& console) {
   }
 }
 
+ExitCode run_program(int argc, const char* const* argv, Console& console) {
+  try {
+    const Command command = parse_command_line(argc, argv);
+    return std::visit([&](const auto& options) { return start(options, console); }, command);
+  } catch (const std::exception& error) {
+    console.error(error.what());
+    return ExitCode::user_error;
+  }
+}
+
 }  // namespace
 
 }  // namespace rodsweep
 
 int main(int argc, char** argv) {
   using namespace rodsweep;
+  occupy_standard_descriptors();
+  std::signal(SIGPIPE, SIG_IGN);  // nor should a reader that has left end a sweep
   Console console(is_first_rank());
-  try {
-    const Command command = parse_command_line(argc, argv);
-    const ExitCode code = std::visit([&](const auto& options) { return execute(options, console); }, command);
-    return static_cast<int>(code);
-  } catch (const std::exception& error) {
-    console.error(error.what());
-    return static_cast<int>(ExitCode::user_error);
+  ExitCode code = run_program(argc, argv, console);
+  const int failure = console.close();
+  if (failure != 0 && failure != EPIPE)
+    console.error(fmt::format("writing to standard output failed: {}", std::strerror(failure)));
+  if (failure == EPIPE && code == ExitCode::ok) {
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
   }
+  if (failure != 0 && code == ExitCode::ok) code = ExitCode::user_error;
+  return static_cast<int>(code);
 }

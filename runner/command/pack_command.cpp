@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-ExitCode pack_file(const PackOptions& options, Console& console) {
+ExitCode execute(const PackOptions& options, Console& console) {
   const std::filesystem::path output = options.output.value_or(file_beside(options.file, "-packed"));
   const Packing packing = pack_results(options.file, output);
   if (packing.verified < packing.tasks)

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "runner/command/next_line.hpp"
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/training_plan.hpp"
 #include "runner/experiment/batched_evaluation.hpp"
@@ -103,28 +103,13 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
       if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
         text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);
   }
-  text += "next     " + run_command(run, ranks_for(cores));
+  text += "next     " + run_line(run, ranks_for(cores));
   return text;
-}
-
-std::string extent_text(const Job& job) {
-  if (is_training(job)) return "trains a model";
-  const Plan plan(job);
-  return fmt::format("{} task{}", plan.size(), plan.size() == 1 ? "" : "s");
-}
-
-/// jobs/schema.json stands among the jobs, and `validate jobs/*.json` should pass.
-bool is_json_schema(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  const auto json = nlohmann::json::parse(in, nullptr, false);
-  const auto found = json.is_object() ? json.find("$schema") : json.end();
-  return json.is_object() && found != json.end() && found->is_string() &&
-         found->get<std::string>().find("json-schema.org/") != std::string::npos;
 }
 
 }  // namespace
 
-ExitCode show_plan(const PlanOptions& options, Console& console) {
+ExitCode execute(const PlanOptions& options, Console& console) {
   const Job job = read_job(options.job);
   check_inputs(job);
   if (is_training(job)) return show_training_plan(options, job, console);
@@ -133,28 +118,6 @@ ExitCode show_plan(const PlanOptions& options, Console& console) {
   const std::vector<Probe> probes = options.probe ? probe(plan, evaluate_among_equals) : std::vector<Probe>();
   console.result(options.json ? to_json(plan, probes).dump(2) : to_text(plan, probes, options));
   return ExitCode::ok;
-}
-
-ExitCode validate_jobs(const ValidateOptions& options, Console& console) {
-  ExitCode code = ExitCode::ok;
-  for (const auto& path : options.jobs) {
-    if (is_json_schema(path)) {
-      console.result(fmt::format("{}: a JSON Schema for editors, not a job", path.native()));
-      continue;
-    }
-    try {
-      const Job job = read_job(path, MissingFiles::accepted);
-      check_inputs(job);
-      console.result(fmt::format("{}: sound, {}", path.native(), extent_text(job)));
-      for (const auto& [written, file] : job.files)
-        if (file.hash.empty())
-          console.note(fmt::format("{}: {}: {} is not there yet", path.native(), file.key_path, file.path.native()));
-    } catch (const JobError& error) {
-      console.error(error.what());
-      code = ExitCode::user_error;
-    }
-  }
-  return code;
 }
 
 }  // namespace rodsweep

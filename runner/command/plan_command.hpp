@@ -1,16 +1,27 @@
-// The commands `plan` and `validate`: what a job would do. Throws JobError. Neither needs MPI; a plan with probes needs
-// PETSc.
+// The command `plan`: what a job would do, and what it would take. Throws JobError. No MPI; with probes it needs PETSc.
 #pragma once
 
-#include "runner/command/command_line.hpp"
+#include <filesystem>
+#include <string>
+
 #include "runner/command/exit_codes.hpp"
 #include "runner/terminal/console.hpp"
 
 namespace rodsweep {
 
-ExitCode show_plan(const PlanOptions& options, Console& console);
+struct PlanOptions {
+  std::filesystem::path job;
+  bool probe = true;
+  bool json = false;
+  std::string program = "rodsweep";  ///< as the user typed it
+};
 
-/// Says of every job whether it is sound, and goes on after one that is not.
-ExitCode validate_jobs(const ValidateOptions& options, Console& console);
+inline constexpr const char* plan_help =
+    "Up to three tasks (cheapest, median, dearest), or some steps of a training, are really run for a moment, unless\n"
+    "--no-probe is given. A training's data set must be there.\n\n"
+    "Example:\n"
+    "  rodsweep plan jobs/spatial_bending.json";
+
+ExitCode execute(const PlanOptions& options, Console& console);
 
 }  // namespace rodsweep

@@ -116,7 +116,7 @@ void sort_tasks(std::vector<std::int64_t>& tasks, const TaskColumn& column, cons
 
 }  // namespace
 
-ExitCode query_tasks(const QueryOptions& options, Console& console) {
+ExitCode execute(const QueryOptions& options, Console& console) {
   const TaskTable table(options.file);
   if (options.columns == std::vector<std::string>{"help"}) {
     console.raw_result(columns_text(table));

@@ -43,7 +43,7 @@ ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan
 
 }  // namespace
 
-ExitCode rerun_task(const RerunOptions& options, Console& console) {
+ExitCode execute(const RerunOptions& options, Console& console) {
   const StopSignal signal;
   const FileSummary before = inspect(options.file);
   check_task(options, before);
@@ -58,14 +58,14 @@ ExitCode rerun_task(const RerunOptions& options, Console& console) {
   const Task& task = plan.task(0);
   console.note(
       fmt::format("task {}: {} segments, {} steps, {} frames", options.task, task.segments, task.steps, task.frames));
-  const TaskBody body = task_body(plan, evaluate, [&](const Task& done, const TaskRecord& record) {
+  const BatchBody body = task_body(plan, [&](const Task& done, const TaskRecord& record, const TaskOrigin*) {
     ResultsFile file = ResultsFile::create(output, plan, provenance, MPI_COMM_SELF);
     file.write(done, record);
     const ExitCode code = record.outcome == TaskOutcome::ok ? ExitCode::ok : ExitCode::tasks_failed;
     file.end_run(utc_now(), static_cast<int>(code));
     file.close();
   });
-  const TaskResult result = body(0, [&] { return signal.received() != 0; });
+  const TaskResult result = body({0}, [&] { return signal.received() != 0; }).front();
   if (result.outcome == TaskOutcome::pending) {
     console.note(fmt::format("stopped early by {}; nothing was written", signal_name(signal.received())));
     return ExitCode::stopped;

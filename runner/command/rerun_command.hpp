@@ -21,8 +21,23 @@ struct RerunOptions {
   std::string command;  ///< the whole line, for /runs
 };
 
+inline constexpr const char* rerun_help =
+    "The job comes from FILE, so its own file need not be there; relative paths in it begin where it was. The new "
+    "file\n"
+    "holds one task and is read like any other. Everything that the task wrote outside /timing is compared, bit for "
+    "bit.\n"
+    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 end it between two time steps; then nothing is written.\n\n"
+    "Examples:\n"
+    "  rodsweep rerun results/demo.h5 12                               every step into results/demo-task-12.h5\n"
+    "  rodsweep rerun results/long.h5 3 --trajectory-every 100 -o three.h5\n\n"
+    "Exit codes:\n"
+    "  0  identical, or there was nothing to compare with\n"
+    "  2  the command line or the file is at fault; nothing was written\n"
+    "  3  the results differ; or the task failed, and was pending in FILE\n"
+    "  4  stopped early; nothing was written";
+
 /// tasks_failed if the results differ from those in the file, or if it has none and the task fails; stopped after a
 /// signal, and then nothing is written.
-ExitCode rerun_task(const RerunOptions& options, Console& console);
+ExitCode execute(const RerunOptions& options, Console& console);
 
 }  // namespace rodsweep

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/command/scripts.hpp"
+#include "runner/command/next_line.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {

@@ -8,6 +8,7 @@
 
 #include "network/guess/coping_net_guess.hpp"
 #include "network/training/example_builder.hpp"
+#include "runner/command/next_line.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/training_data.hpp"
 #include "runner/training/validation_ratio.hpp"
@@ -148,7 +149,7 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
     text += fmt::format("memory    about {} on each rank\n", bytes_text(static_cast<std::int64_t>(probe->bytes)));
     text += fmt::format("time      about {} on {} core{} here\n", duration_text(seconds), ranks, ranks == 1 ? "" : "s");
   }
-  return text + "next      " + run_command(run, ranks);
+  return text + "next      " + run_line(run, ranks);
 }
 
 }  // namespace

@@ -2,10 +2,8 @@
 // computed, memory and time. Throws JobError and FileError. A probe needs PETSc.
 #pragma once
 
-#include "runner/command/command_line.hpp"
-#include "runner/command/exit_codes.hpp"
+#include "runner/command/plan_command.hpp"
 #include "runner/job/job.hpp"
-#include "runner/terminal/console.hpp"
 
 namespace rodsweep {
 

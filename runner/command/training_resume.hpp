@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "runner/command/sweep_run.hpp"
+#include "runner/command/run_command.hpp"
+#include "runner/job/job.hpp"
 #include "runner/training/model_file.hpp"
 
 namespace rodsweep {

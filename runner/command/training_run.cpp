@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runner/command/scripts.hpp"
+#include "runner/command/next_line.hpp"
 #include "runner/command/training_resume.hpp"
 #include "runner/command/training_summary.hpp"
 #include "runner/dispatch/stop_signal.hpp"
@@ -80,11 +80,7 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   first_step_ = training_->trainer().step();
 
   const Placement where = placement(mpi_.world(), Share::all_work);
-  TrainingStart start{provenance_of_this_process(options_.command), "", -1};
-  start.provenance.job = fs::absolute(options_.job).lexically_normal().native();
-  start.provenance.ranks = mpi_.size();
-  start.provenance.oversubscribed = where.oversubscribed;
-  starts_.push_back(std::move(start));
+  starts_.push_back({provenance_of(options_, mpi_, where), "", -1});
   collectively(mpi_.world(), [&] {
     if (!writes()) return;
     file_.emplace(path_, earlier.has_value());
@@ -104,7 +100,7 @@ void TrainingRun::advise(const Placement& where) {
                               mpi_.size() - shards, mpi_.size()));
   } else if (const int useful = std::min(where.cores, shards); mpi_.size() < useful) {
     console_.note(fmt::format("{} of {} cores will work; for {} of them: {}", mpi_.size(), where.cores, useful,
-                              run_command(options_, useful)));
+                              run_line(options_, useful)));
   }
   const Trainer& trainer = training_->trainer();
   const ModelCard& card = training_->card();
@@ -141,10 +137,7 @@ void TrainingRun::report(const StopSignal& signal) {
     return;
   }
   console_.result(summary);
-  RunOptions again = options_;
-  again.resume = true;
-  console_.note(fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_name(signal.received()),
-                            run_command(again, mpi_.size())));
+  console_.note(stopped_text(signal.received(), options_, mpi_.size()));
 }
 
 void TrainingRun::show_progress() {
@@ -181,11 +174,10 @@ void TrainingRun::save() {
 
 ExitCode run_training(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
   const StopSignal signal;  // from here on a signal is a request, until the file is closed
-  const fs::path path = options.output.value_or(default_output(job.name));
-  std::optional<StoredModel> earlier;
-  collectively(mpi.world(), [&] {
+  const fs::path path = output_of(options, job.name);
+  const auto earlier = collectively(mpi.world(), [&] {
     if (options.extend) throw job_error(job.path, "kind", "a training extends nothing: remove --extend");
-    earlier = earlier_training(options, job, path);
+    return earlier_training(options, job, path);
   });
   if (earlier && earlier->card.ending != Ending::none) {
     console.note("the training has ended already");

@@ -5,10 +5,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runner/job/training_job.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json to_json(const ValidationRatio::Ratios& ratios) {
+  Json json = Json::array();
+  for (const double ratio : ratios) json.push_back(or_null(ratio));
+  return json;
+}
 
 std::string ending_text(const ModelCard& card) {
   const std::size_t done = card.epochs.size();
@@ -67,6 +78,54 @@ std::string training_summary(const ModelCard& card, const std::filesystem::path&
   for (const Epoch& epoch : card.epochs) seconds += epoch.seconds;
   return text + fmt::format("{} for {} epochs; model: {}, {}", duration_text(seconds), card.epochs.size(),
                             path.native(), bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(path))));
+}
+
+Json to_json(const StoredModel& stored, const std::filesystem::path& path) {
+  const ModelCard& card = stored.card;
+  Json json{{"file", path.native()},
+            {"kind", "model"},
+            {"job", card.name},
+            {"hash", model_hash(*stored.model)},
+            {"network", network_json(stored.model->net.settings())},
+            {"data", card.data_path},
+            {"data_hash", card.data_hash},
+            {"ended", card.ending != Ending::none},
+            {"message", card.message},
+            {"epochs", card.epochs.size()},
+            {"planned_epochs", card.planned_epochs},
+            {"best_epoch", card.best_epoch},
+            {"validation_loss", card.best_epoch > 0 ? Json(best_epoch(card).validation_loss) : Json()},
+            {"tolerances", ValidationRatio::tolerances()},
+            {"cg_ratio", to_json(card.cg_ratio)},
+            {"base_cg_ratio", to_json(card.base_cg_ratio)}};
+  for (const TrainingStart& start : card.starts)
+    json["starts"].push_back({{"begin", start.provenance.begin_utc},
+                              {"end", start.end_utc.empty() ? Json() : Json(start.end_utc)},
+                              {"exit_code", start.end_utc.empty() ? Json() : Json(start.exit_code)},
+                              {"host", start.provenance.host},
+                              {"ranks", start.provenance.ranks},
+                              {"command", start.provenance.user_command},
+                              {"revision", start.provenance.revision},
+                              {"versions", start.provenance.versions}});
+  return json;
+}
+
+std::string provenance_text(const StoredModel& stored) {
+  const ModelCard& card = stored.card;
+  std::string text =
+      fmt::format("model    hash {}: {} parameters, {}\n", model_hash(*stored.model),
+                  stored.model->net.parameters().values().size(), network_json(stored.model->net.settings()).dump());
+  text += fmt::format("data     {}, hash {}: {} examples of {} simulations, {} of {} for validation\n", card.data_path,
+                      card.data_hash, card.training_examples, card.training_simulations, card.validation_examples,
+                      card.validation_simulations);
+  for (std::size_t i = 0; i < card.starts.size(); ++i) {
+    const Provenance& p = card.starts[i].provenance;
+    text += fmt::format("start {}: {} to {} on {}, {} rank{}\n  command   {}\n  revision  {}\n  versions  {}\n", i,
+                        p.begin_utc, card.starts[i].end_utc.empty() ? "?" : card.starts[i].end_utc, p.host, p.ranks,
+                        p.ranks == 1 ? "" : "s", p.user_command, p.revision, p.versions);
+  }
+  text.pop_back();
+  return text;
 }
 
 }  // namespace rodsweep

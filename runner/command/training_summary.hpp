@@ -1,10 +1,11 @@
-// A training in words: how far it is, and what came of it.
+// A training, and the model that came of it, in words and as JSON.
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include "runner/training/model_card.hpp"
+#include "runner/training/model_file.hpp"
 
 namespace rodsweep {
 
@@ -14,5 +15,9 @@ std::string progress_text(const ModelCard& card, double seconds_left);
 
 /// The end of a training, or how far it came: a few lines for stdout.
 std::string training_summary(const ModelCard& card, const std::filesystem::path& path);
+
+/// What `info` adds: the model, its data, every start.
+std::string provenance_text(const StoredModel& stored);
+nlohmann::ordered_json to_json(const StoredModel& stored, const std::filesystem::path& path);
 
 }  // namespace rodsweep

@@ -10,7 +10,9 @@ MpiChannel::MpiChannel(MPI_Comm comm) {
   check_mpi(MPI_Comm_size(comm_, &size_), "MPI_Comm_size");
 }
 
-MpiChannel::~MpiChannel() { MPI_Comm_free(&comm_); }
+MpiChannel::~MpiChannel() {
+  if (std::uncaught_exceptions() == exceptions_) MPI_Comm_free(&comm_);
+}
 
 std::optional<Envelope> MpiChannel::probe() {
   int arrived = 0, bytes = 0;

@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include <exception>
+
 #include "runner/dispatch/channel.hpp"
 
 namespace rodsweep {
@@ -10,6 +12,8 @@ namespace rodsweep {
 class MpiChannel : public Channel {
  public:
   explicit MpiChannel(MPI_Comm comm);  ///< collective
+  /// Collective too, unless an exception unwinds this rank: the others need not be on their way here, and it must not
+  /// wait for them before it can say what happened.
   ~MpiChannel() override;
   MpiChannel(const MpiChannel&) = delete;
   MpiChannel& operator=(const MpiChannel&) = delete;
@@ -23,6 +27,7 @@ class MpiChannel : public Channel {
  private:
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
+  int exceptions_ = std::uncaught_exceptions();  ///< under way when this was made
 };
 
 }  // namespace rodsweep

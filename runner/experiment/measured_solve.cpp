@@ -127,7 +127,9 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
     const bool lagged = spec_.solve.preconditioner == Preconditioner::lagged_cholesky;
     solvers.renewed = !lagged || (at.newton == 0 && at.step % spec_.solve.lag_steps == 0);
     if (solvers.renewed) solvers.renew_preconditioners();
-    count(system, at, row, solvers);
+    outcome = count(system, at, row, solvers);
+  }
+  if (outcome == SolveOutcome::converged && !guesses_.empty()) {
     time(system, at, row, solvers);
     if (spec_.own_guess >= 0 && system.newton_residual() > rounding_level) {
       delta_lambda = solvers.x;
@@ -139,13 +141,15 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
   return outcome;
 }
 
-/// One tight solve for each guess and norm, untimed.
-void MeasuredSolve::count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers) {
+/// One tight solve for each guess and norm, untimed. Not converged: a solve could not start from its guess.
+SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePosition& at, std::size_t row,
+                                  RodSolvers& solvers) {
   const VectorX& b = system.rhs();
   const std::vector<double>& ladder = tolerance_ladder();
   const bool rounding = system.newton_residual() <= rounding_level;
   solvers.reference = solvers.tight.norm_of(b);
   const double reference_other = solvers.tight_other ? solvers.tight_other->norm_of(b) : 0;
+  SolveOutcome failure = SolveOutcome::not_run;
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
     RodSolvers::PerGuess& own = solvers.guesses[g];
     own.proposal = guesses_[g].guess->propose(system, at, own.x0);
@@ -157,20 +161,25 @@ void MeasuredSolve::count(const LinearSystem& system, const SolvePosition& at, s
       }
       solvers.x = own.x0;
       const CgReport report = cg.solve(b, solvers.x, own.proposal.nonzero, ladder.back(), reference);
+      if (cg.history().empty()) failure = report.outcome;  // its first residual was not a number
       iterations_to(cg.history(), reference, ladder, iterations.data());
       return report;
     };
-    const std::size_t column = guesses_[g].column;
-    if (solvers.tight_other) {
-      const CgReport other = tight_solve(*solvers.tight_other, reference_other, solvers.iterations_other);
-      if (at.newton == 0) add(record_.counted_other_norm, column, solvers.iterations_other, other.iterations, start);
-    }
+    CgReport other;
+    if (solvers.tight_other) other = tight_solve(*solvers.tight_other, reference_other, solvers.iterations_other);
     const CgReport report = tight_solve(solvers.tight, solvers.reference, solvers.iterations);
+    const std::size_t column = guesses_[g].column, entry = row * spec_.guesses.size() + column;
+    if (failure != SolveOutcome::not_run) {
+      if (spec_.record.solves) record_.reason[entry] = static_cast<std::int8_t>(failure);
+      unusable_ = spec_.guesses[column].label;
+      return failure;
+    }
+    if (solvers.tight_other && at.newton == 0)
+      add(record_.counted_other_norm, column, solvers.iterations_other, other.iterations, start);
     add(record_.counted_all, column, solvers.iterations, report.iterations, start);
     if (at.newton == 0) add(record_.counted, column, solvers.iterations, report.iterations, start);
 
     if (!spec_.record.solves) continue;
-    const std::size_t entry = row * spec_.guesses.size() + column;
     record_.reason[entry] = static_cast<std::int8_t>(report.outcome);
     record_.start_matvecs[entry] = static_cast<std::int16_t>(start);
     std::copy(solvers.iterations.begin(), solvers.iterations.end(),
@@ -180,6 +189,7 @@ void MeasuredSolve::count(const LinearSystem& system, const SolvePosition& at, s
     record_.initial_residual[entry] = solvers.tight.history().front() / solvers.reference;
     record_.final_residual[entry] = (b - solvers.residual).norm() / b.norm();
   }
+  return SolveOutcome::converged;
 }
 
 /// One solve each to the job's tolerance, in an order that rotates from system to system and repeat to repeat.
@@ -229,7 +239,10 @@ void MeasuredSolve::add(CountSums& sums, std::size_t column, const std::vector<s
 
 double MeasuredSolve::take_elapsed_s() { return std::exchange(elapsed_s_, 0); }
 
-void MeasuredSolve::finish() { set_cg_ratios(spec_, record_); }
+void MeasuredSolve::finish() {
+  set_cg_ratios(spec_, record_);
+  if (!unusable_.empty()) record_.message += ": it cannot start from the guess \"" + unusable_ + "\"";
+}
 
 void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {
   const auto zero = static_cast<std::size_t>(

@@ -6,10 +6,11 @@
 // guesses in rotated order, the preconditioner's set-up included; the median counts. A lagged preconditioner is set up
 // at the first Newton iteration of every `lag_steps`-th step, and costs nothing in between. Guesses hear of the
 // solution that advanced the trajectory. Right-hand sides at rounding level (max |b| <= 1e-13) count as solved: zero
-// iterations for every guess.
+// iterations for every guess. A guess that no solve can start from (its first residual is not a number) ends the task.
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "runner/file/record.hpp"
@@ -41,7 +42,7 @@ class MeasuredSolve : public LinearSolve {
   struct Guess;       // one guess under test
   struct RodSolvers;  // the solvers of one rod
   RodSolvers& solvers_for(const LinearSystem& system, int rod);
-  void count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
+  SolveOutcome count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution);
   void add(CountSums& sums, std::size_t column, const std::vector<std::int16_t>& iterations, int used,
@@ -54,6 +55,7 @@ class MeasuredSolve : public LinearSolve {
   std::vector<Guess> guesses_;
   std::vector<std::unique_ptr<RodSolvers>> solvers_;  // made at a rod's first solve
   double elapsed_s_ = 0;
+  std::string unusable_;  // label of the guess that no solve can start from
 };
 
 }  // namespace rodsweep

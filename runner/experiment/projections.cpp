@@ -1,10 +1,63 @@
 #include "runner/experiment/projections.hpp"
 
-#include "runner/experiment/recorded_increments.hpp"
-#include "runner/experiment/recorded_iterations.hpp"
+#include <utility>
+
+#include "network/guess/end_to_end.hpp"
+#include "runner/experiment/models.hpp"
+#include "runner/experiment/solve_rows.hpp"
 #include "solver/step/xpbd_projection.hpp"
 
 namespace rodsweep {
+namespace {
+
+/// A network in place of the solve: its row of /solves holds the system that it was given. There are no iterations to
+/// count, and its time is within that of the step.
+class RecordedIncrements : public IncrementSource {
+ public:
+  RecordedIncrements(const Scene& scene, const TaskSpec& spec, TaskRecord& record)
+      : spec_(spec),
+        record_(record),
+        rods_(scene.rods.size()),
+        network_(shared_model(spec.solve.model), scene, spec.time.newton_iterations) {}
+
+  bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, VectorX& delta_lambda,
+               std::vector<Lane8>& moves) override {
+    if (spec_.record.solves) record_system(system, rod, at, solve_row(spec_, rods_, at), record_);
+    return network_.predict(rod, system, at, dt_c, delta_lambda, moves);
+  }
+
+ private:
+  const TaskSpec& spec_;
+  TaskRecord& record_;
+  std::size_t rods_;
+  CopingNetIncrements network_;
+};
+
+/// Gauss-Seidel: every iteration has a row of /solves with the residual that it met. There is no linear system to tell
+/// more of; the time is that of the step.
+class RecordedIterations : public Projection {
+ public:
+  RecordedIterations(const Scene& scene, const TaskSpec& spec, TaskRecord& record,
+                     std::unique_ptr<GaussSeidelProjection> projection)
+      : spec_(spec), record_(record), rods_(scene.rods.size()), projection_(std::move(projection)) {}
+
+  ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override {
+    const ProjectionReport report = projection_->project(rod, at, dt, newton_tolerance);
+    if (!spec_.record.solves || report.outcome == SolveOutcome::not_run) return report;
+    const std::size_t row = solve_row(spec_, rods_, at);
+    record_position(at, row, record_);
+    record_.newton_residual[row] = report.newton_residual;
+    return report;
+  }
+
+ private:
+  const TaskSpec& spec_;
+  TaskRecord& record_;
+  std::size_t rods_;
+  std::unique_ptr<GaussSeidelProjection> projection_;
+};
+
+}  // namespace
 
 std::unique_ptr<Projection> make_projection(const Scene& scene, const TaskSpec& spec, TaskRecord& record,
                                             LinearSolve& solve) {

@@ -1,25 +1,116 @@
 #include "runner/experiment/task_body.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <exception>
+#include <map>
 #include <utility>
 
-namespace rodsweep {
+#include "runner/experiment/batched_evaluation.hpp"
+#include "runner/experiment/measured_solve.hpp"
+#include "runner/file/extension.hpp"
+#include "solver/batch/batched_rods.hpp"
 
-TaskBody task_body(const Plan& plan, Evaluate evaluate, WriteRecord write) {
-  return [&plan, evaluate = std::move(evaluate), write = std::move(write), sizes = axis_sizes(plan),
-          record = TaskRecord()](std::int64_t index, const StopRequested& stop) mutable -> TaskResult {
-    const Task& task = plan.task(index);
-    record.prepare(task, sizes);
-    try {
-      if (!evaluate(task, plan.spec(index), record, stop)) return {};
-    } catch (const std::exception& error) {
-      record.prepare(task, sizes);
-      record.outcome = TaskOutcome::error;
-      record.message = error.what();
+namespace rodsweep {
+namespace {
+
+static_assert(Assign::most <= BatchedRods::lanes, "an assignment must fit into a batch");
+
+/// Of a task that throws nothing is kept but why.
+bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& evaluate, const StopRequested& stop) {
+  try {
+    return evaluate(*run.task, run.spec, *run.record, stop);
+  } catch (const std::exception& error) {
+    run.record->prepare(*run.task, sizes);
+    run.record->outcome = TaskOutcome::error;
+    run.record->message = error.what();
+    return true;
+  }
+}
+
+/// The guesses that the earlier file lacks, on the task's trajectory, put beside those that it has. False: abandoned.
+bool complete_task(const Plan& plan, const Extension& extension, const Evaluate& evaluate, const StopRequested& stop,
+                   const Task& task, const TaskRecord& taken, TaskRecord& record) {
+  TaskSpec spec = plan.spec(task.index);
+  for (const std::int8_t copied : taken.copied_guess) spec.settled.push_back(copied == 1);
+  if (!evaluate(task, spec, record, stop)) return false;
+  // Not the trajectory's doing: an outcome like any other.
+  if (record.outcome == TaskOutcome::timed_out || record.outcome == TaskOutcome::error) return true;
+  const std::string difference = complete(task, record, taken);
+  if (!difference.empty()) {
+    const std::string earlier = extension.path().native();
+    throw FileError(fmt::format(
+        "task {}, simulated again for its new guesses, is not what {} holds as task {}: {}. That file is of "
+        "another machine or revision, and its guesses cannot stand beside new ones; --resume without "
+        "--extend runs what is left in full",
+        task.index, earlier, extension.source(task.index), difference));
+  }
+  set_cg_ratios(spec, record);
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> batches(const Plan& plan) {
+  if (plan.rows(Rows::system) == 0) return std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1);
+  std::map<BatchKey, std::int64_t> numbers;
+  std::vector<std::int64_t> out;
+  for (const Task& task : plan.tasks()) {
+    const TaskSpec spec = plan.spec(task.index);
+    const auto next = static_cast<std::int64_t>(numbers.size());
+    out.push_back(steps_in_batches(spec) ? numbers.try_emplace(batch_key(spec), next).first->second : -1);
+  }
+  return out;
+}
+
+BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
+  return [&plan, write = std::move(write), evaluate = std::move(evaluate), sizes = axis_sizes(plan),
+          records = std::vector<TaskRecord>()](const std::vector<std::int64_t>& tasks,
+                                               const StopRequested& stop) mutable -> std::vector<TaskResult> {
+    records.resize(std::max(records.size(), tasks.size()));  // their memory is used again
+    std::vector<TaskRun> runs;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      const Task& task = plan.task(tasks[i]);
+      records[i].prepare(task, sizes);
+      runs.push_back({&task, plan.spec(tasks[i]), &records[i]});
     }
-    write(task, record);
-    return {record.outcome, record.message};
+    std::vector<TaskResult> results(tasks.size());
+    if (runs.size() == 1 ? !evaluate_alone(runs.front(), sizes, evaluate, stop) : !evaluate_batch(runs, stop))
+      return results;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      write(*runs[i].task, records[i], nullptr);
+      results[i] = {records[i].outcome, records[i].message};
+    }
+    return results;
   };
+}
+
+BatchBody extending_body(const Plan& plan, const Extension& extension, WriteRecord write,
+                         std::function<void(const std::string&)> warn, Evaluate evaluate) {
+  return one_by_one([&plan, &extension, write, warn = std::move(warn), evaluate, run = task_body(plan, write, evaluate),
+                     sizes = axis_sizes(plan), taken = TaskRecord(),
+                     record = TaskRecord()](std::int64_t index, const StopRequested& stop) mutable -> TaskResult {
+    const Task& task = plan.task(index);
+    const Extension::Use use = extension.use(index);
+    if (use == Extension::Use::run) return run({index}, stop).front();
+    taken.prepare(task, sizes);
+    if (!extension.take(index, taken)) {
+      warn(fmt::format(
+          "task {} of {} is damaged: its data are not what was written (checksum); it is run again as task {}",
+          extension.source(index), extension.path().native(), index));
+      return run({index}, stop).front();
+    }
+    if (use == Extension::Use::copy) {
+      const TaskOrigin origin = extension.origin(index);
+      write(task, taken, &origin);
+      return {taken.outcome, taken.message};
+    }
+    record.prepare(task, sizes);
+    if (!complete_task(plan, extension, evaluate, stop, task, taken, record)) return {};
+    write(task, record, nullptr);
+    return {record.outcome, record.message};
+  });
 }
 
 }  // namespace rodsweep

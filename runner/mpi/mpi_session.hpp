@@ -7,8 +7,11 @@
 #include <mpi.h>
 
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 namespace rodsweep {
 
@@ -48,6 +51,14 @@ int broadcast(int value, MPI_Comm comm);
 /// Does `part` on every rank. If it throws anywhere, every rank throws a CollectiveError with the message of the lowest
 /// rank at fault (and that rank's number, if it is not 0), so that an error is reported once and nobody waits for it.
 void collectively(MPI_Comm comm, const std::function<void()>& part);
+
+/// The same, returning what `part` makes.
+template <class Part, class Made = std::invoke_result_t<Part>, class = std::enable_if_t<!std::is_void_v<Made>>>
+Made collectively(MPI_Comm comm, const Part& part) {
+  std::optional<Made> made;
+  collectively(comm, std::function<void()>([&] { made.emplace(part()); }));
+  return std::move(*made);
+}
 
 /// The ranks beside the cores that they may run on (their affinity masks put together), host by host.
 struct Placement {

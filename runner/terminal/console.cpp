@@ -5,6 +5,7 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -36,12 +37,16 @@ Console::Console(bool speaks) : speaks_(speaks) {
   colours_ = live_ && !set("NO_COLOR");
 }
 
-void Console::result(std::string_view text) const { raw_result(std::string(text) + '\n'); }
+void Console::result(std::string_view text) { raw_result(std::string(text) + '\n'); }
 
-void Console::raw_result(std::string_view text) const {
-  if (!speaks_) return;
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
+void Console::raw_result(std::string_view text) {
+  if (!speaks_ || failure_ != 0) return;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) failure_ = errno;
+}
+
+int Console::close() {
+  if (std::fclose(stdout) != 0 && failure_ == 0) failure_ = errno;  // what a network file system could not store
+  return failure_;
 }
 
 void Console::raw_error(std::string_view text) const {

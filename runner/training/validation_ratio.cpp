@@ -44,7 +44,7 @@ ValidationRatio::Ratios ValidationRatio::measure(std::size_t simulation, const M
   const Iterations& from_zero = from_zero_[simulation];
   Ratios ratios = unmeasured();
   for (std::size_t t = 0; t < tolerance_count; ++t)
-    if (from_zero[t] > 0) ratios[t] = static_cast<double>(with_guess[t]) / static_cast<double>(from_zero[t]);
+    if (from_zero[t] > 0) ratios[t] = with_guess[t] / from_zero[t];
   return ratios;
 }
 
@@ -64,6 +64,8 @@ ValidationRatio::Iterations ValidationRatio::count(const RecordedSimulation& sim
       const double reference = of.cg.norm_of(system.rhs());
       const CgReport report = of.cg.solve(system.rhs(), of.x, proposal.nonzero, tolerances().back(), reference);
       iterations_to(of.cg.history(), reference, tolerances(), reached.data());
+      if (of.cg.history().empty())
+        sums.fill(std::numeric_limits<double>::infinity());  // its first residual is no number
       for (std::size_t t = 0; t < tolerance_count; ++t) sums[t] += reached[t] >= 0 ? reached[t] : report.iterations;
     }
     guess->accept(recorded.at, recorded.solution);

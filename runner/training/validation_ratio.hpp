@@ -18,9 +18,10 @@ namespace rodsweep {
 class ValidationRatio {
  public:
   static constexpr std::size_t tolerance_count = 4;
-  static const std::vector<double>& tolerances();      ///< 1e-1 ... 1e-4
-  using Ratios = std::array<double, tolerance_count>;  ///< NaN where CG from zero takes no iterations at all
-  static Ratios unmeasured();                          ///< NaN everywhere
+  static const std::vector<double>& tolerances();  ///< 1e-1 ... 1e-4
+  /// NaN where CG from zero takes no iterations at all, infinite where it cannot start from a guess.
+  using Ratios = std::array<double, tolerance_count>;
+  static Ratios unmeasured();  ///< NaN everywhere
   /// Makes the guess for the simulation's scene, whose rods the solves move.
   using MakeGuess = std::function<std::unique_ptr<InitialGuess>(const Scene&, const RecordedSimulation&)>;
 
@@ -31,7 +32,7 @@ class ValidationRatio {
   Ratios measure(std::size_t simulation, const MakeGuess& make_guess) const;
 
  private:
-  using Iterations = std::array<std::int64_t, tolerance_count>;
+  using Iterations = std::array<double, tolerance_count>;
   static Iterations count(const RecordedSimulation& simulation, const MakeGuess& make_guess);
 
   std::vector<RecordedSimulation> simulations_;

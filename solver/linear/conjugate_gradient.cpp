@@ -23,7 +23,7 @@ struct Target {
   double reference = 0;
 };
 
-PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReason* reason, void* context) {
+PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReason* reason, void* context) noexcept {
   const Target& target = *static_cast<const Target*>(context);
   *reason = KSP_CONVERGED_ITERATING;
   if (!std::isfinite(norm))

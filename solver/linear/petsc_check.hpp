@@ -1,4 +1,5 @@
-// The one check for PETSc calls. Included by sources only: PETSc stays out of the solver's headers.
+// The one check for PETSc calls. Included by sources only: PETSc stays out of the solver's headers. It throws, so it is
+// not for what PETSc calls back: an exception may not cross its C frames, and such functions are noexcept.
 #pragma once
 
 #include <petscsys.h>

@@ -11,14 +11,14 @@ namespace {
 
 constexpr char class_name[] = "rodsweep_blocks";
 
-PetscErrorCode multiply(Mat m, Vec x, Vec y) {
+PetscErrorCode multiply(Mat m, Vec x, Vec y) noexcept {
   BlockOperator& op = *static_cast<BlockOperator*>(m->data);
   op.a.multiply(vector_data(x), vector_data(y));
   ++op.products;
   return entries_changed(y);
 }
 
-PetscErrorCode extract_diagonal(Mat m, Vec diagonal) {
+PetscErrorCode extract_diagonal(Mat m, Vec diagonal) noexcept {
   const BlockMatrix& a = static_cast<BlockOperator*>(m->data)->a;
   double* out = vector_data(diagonal);
   for (int row = 0; row < a.block_rows(); ++row)
@@ -26,7 +26,7 @@ PetscErrorCode extract_diagonal(Mat m, Vec diagonal) {
   return entries_changed(diagonal);
 }
 
-PetscErrorCode create(Mat m) {
+PetscErrorCode create(Mat m) noexcept {
   m->ops->mult = multiply;
   m->ops->getdiagonal = extract_diagonal;
   m->assembled = m->preallocated = PETSC_TRUE;

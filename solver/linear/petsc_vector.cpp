@@ -17,7 +17,7 @@ PetscInt lane_count(Vec v) { return (v->map->n + 7) / 8; }
 
 Lane8* lanes(Vec v) { return reinterpret_cast<Lane8*>(vector_data(v)); }
 
-PetscErrorCode dot(Vec x, Vec y, PetscScalar* out);
+PetscErrorCode dot(Vec x, Vec y, PetscScalar* out) noexcept;
 
 template <class... Vecs>
 bool ours(Vecs... vectors) {
@@ -38,7 +38,7 @@ double product(Vec x, Vec y) {
   return sum((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
-PetscErrorCode dot(Vec x, Vec y, PetscScalar* out) {
+PetscErrorCode dot(Vec x, Vec y, PetscScalar* out) noexcept {
   if (!ours(x, y)) return PETSC_ERR_ARG_WRONG;
   *out = product(x, y);
   return 0;
@@ -46,13 +46,13 @@ PetscErrorCode dot(Vec x, Vec y, PetscScalar* out) {
 
 PetscErrorCode (*other_norm)(Vec, NormType, PetscReal*) = nullptr;  ///< PETSc's own
 
-PetscErrorCode norm(Vec x, NormType type, PetscReal* out) {
+PetscErrorCode norm(Vec x, NormType type, PetscReal* out) noexcept {
   if (type != NORM_2) return other_norm(x, type, out);
   *out = std::sqrt(product(x, x));
   return 0;
 }
 
-PetscErrorCode axpy(Vec y, PetscScalar alpha, Vec x) {
+PetscErrorCode axpy(Vec y, PetscScalar alpha, Vec x) noexcept {
   if (!ours(x, y)) return PETSC_ERR_ARG_WRONG;
   Lane8* const to = lanes(y);
   const Lane8* const from = lanes(x);
@@ -60,7 +60,7 @@ PetscErrorCode axpy(Vec y, PetscScalar alpha, Vec x) {
   return 0;
 }
 
-PetscErrorCode aypx(Vec y, PetscScalar beta, Vec x) {
+PetscErrorCode aypx(Vec y, PetscScalar beta, Vec x) noexcept {
   if (!ours(x, y)) return PETSC_ERR_ARG_WRONG;
   Lane8* const to = lanes(y);
   const Lane8* const from = lanes(x);
@@ -68,7 +68,7 @@ PetscErrorCode aypx(Vec y, PetscScalar beta, Vec x) {
   return 0;
 }
 
-PetscErrorCode pointwise_multiply(Vec w, Vec x, Vec y) {
+PetscErrorCode pointwise_multiply(Vec w, Vec x, Vec y) noexcept {
   if (!ours(w, x, y)) return PETSC_ERR_ARG_WRONG;
   Lane8* const to = lanes(w);
   const Lane8 *const a = lanes(x), *const b = lanes(y);
@@ -76,21 +76,21 @@ PetscErrorCode pointwise_multiply(Vec w, Vec x, Vec y) {
   return 0;
 }
 
-PetscErrorCode copy_entries(Vec x, Vec y) {
+PetscErrorCode copy_entries(Vec x, Vec y) noexcept {
   std::copy_n(vector_data(x), x->map->n, vector_data(y));
   return 0;
 }
 
-PetscErrorCode release(void* memory) {
+PetscErrorCode release(void* memory) noexcept {
   std::free(memory);
   return 0;
 }
 
-PetscErrorCode create(PetscInt size, Vec* out);
+PetscErrorCode create(PetscInt size, Vec* out) noexcept;
 
-PetscErrorCode duplicate(Vec v, Vec* out) { return create(v->map->n, out); }
+PetscErrorCode duplicate(Vec v, Vec* out) noexcept { return create(v->map->n, out); }
 
-PetscErrorCode create_vectors(Mat m, Vec* right, Vec* left) {
+PetscErrorCode create_vectors(Mat m, Vec* right, Vec* left) noexcept {
   PetscInt rows = 0;
   PetscErrorCode code = MatGetLocalSize(m, &rows, nullptr);
   if (right && code == 0) code = create(rows, right);
@@ -98,7 +98,7 @@ PetscErrorCode create_vectors(Mat m, Vec* right, Vec* left) {
   return code;
 }
 
-PetscErrorCode create(PetscInt size, Vec* out) {
+PetscErrorCode create(PetscInt size, Vec* out) noexcept {
   const std::size_t count = static_cast<std::size_t>(size) / 8 + 1;
   Lane8* const memory = static_cast<Lane8*>(std::aligned_alloc(alignof(Lane8), count * sizeof(Lane8)));
   if (!memory) return PETSC_ERR_MEM;

@@ -17,9 +17,9 @@ DATA = {"kind": "dataset", "solve": None, "guesses": None}  # the changes that m
 
 
 def rodsweep(*words, **options):
-    """Runs to the end: the completed process with its texts."""
-    return subprocess.run([RODSWEEP, *map(str, words)], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          timeout=60, **options)
+    """Runs to the end: the completed process with its texts, unless `options` send them elsewhere."""
+    return subprocess.run([RODSWEEP, *map(str, words)], stdin=subprocess.DEVNULL, text=True, timeout=60,
+                          **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options})
 
 
 def sweep(name="small", **changes):

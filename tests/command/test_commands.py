@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""query, rerun, pack and completion from outside: what they print, write, refuse and exit with."""
+"""The commands from outside: what they print, write, refuse and exit with."""
 
 import csv
 import io
@@ -312,6 +312,65 @@ class DataSets(Case):
         sweep("data", **DATA)
         self.assert_refused(rodsweep("run", "jobs/data.json", "-o", "both.h5", "--extend", sweep()), "jobs/data.json: ")
         self.assertFalse(os.path.exists("both.h5"))
+
+
+class Output(Case):
+    """Standard output that cannot be written."""
+
+    def every_command(self):
+        path = sweep()
+        yield from ((), ("query", path), ("query", path, "--csv"), ("query", path, "--columns", "help"), ("status", path),
+                    ("status", path, "--json"), ("info", path, "--job"), ("info", path, "--verify"),
+                    ("plan", "jobs/small.json"), ("validate", "jobs/small.json"), ("schema",), ("completion", "bash"),
+                    ("--version",), ("--help",), ("run", "--help"))
+
+    def without_reader(self, *words, of="stdout", **options):
+        """Where nobody reads what the program prints, as after `| head`."""
+        reader, writer = os.pipe()
+        os.close(reader)
+        try:
+            return rodsweep(*words, **{of: writer}, **options)
+        finally:
+            os.close(writer)
+
+    def test_every_command_says_so_and_fails(self):
+        for words in self.every_command():
+            with self.subTest(words=words), open("/dev/full", "w", encoding="utf-8") as full:
+                said = rodsweep(*words, stdout=full)
+                self.assertEqual(said.returncode, USER_ERROR)
+                if words:  # without any the usage is told on stderr
+                    self.assertIn("rodsweep: error: writing to standard output failed: No space left on device",
+                                  said.stderr)
+
+    def test_the_results_of_a_sweep_are_complete_all_the_same(self):
+        sweep()
+        hard = {**JOB, "name": "failing", "evaluation": "closed_loop",
+                "solve": {"preconditioner": "none", "tolerance": 1e-8, "max_iterations": 2}}
+        with open("jobs/failing.json", "w", encoding="utf-8") as file:
+            json.dump(hard, file)
+        for job, code in (("small", USER_ERROR), ("failing", TASKS_FAILED)):
+            for name, options in (("full", {"stdout": open("/dev/full", "w", encoding="utf-8")}),
+                                  ("closed", {"stdout": None, "preexec_fn": lambda: os.close(1)})):
+                with self.subTest(job=job, stdout=name):
+                    path = f"{job}-{name}.h5"
+                    said = rodsweep("run", f"jobs/{job}.json", "-o", path, **options)
+                    self.assertEqual(said.returncode, code)
+                    self.assertIn("writing to standard output failed: ", said.stderr)
+                    now = json.loads(self.assert_exit(rodsweep("info", path, "--verify", "--json"), ALL_DONE))
+                    self.assertEqual((now["pending"], now["verified"]["damaged"]), (0, []))
+                    self.assertEqual(now["starts"][0]["exit_code"], TASKS_FAILED if job == "failing" else ALL_DONE)
+
+    def test_a_reader_that_has_left_ends_it_without_a_word(self):
+        for words in (("query", sweep(), "--csv"), ("schema",), ("--help",), ("status", sweep())):
+            for inherited in (True, False):  # the signal at its default, and ignored
+                with self.subTest(words=words, inherited=inherited):
+                    said = self.without_reader(*words, restore_signals=inherited)
+                    self.assertEqual((said.returncode, said.stderr), (-signal.SIGPIPE, ""))
+
+    def test_a_sweep_outlives_the_reader_of_its_progress(self):
+        sweep()
+        said = self.without_reader("run", "jobs/small.json", "-o", "unread.h5", of="stderr")
+        self.assertIn("4 tasks: 4 ok", self.assert_exit(said, ALL_DONE))
 
 
 class Completion(Case):

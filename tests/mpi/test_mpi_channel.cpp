@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
+#include <stdexcept>
 
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
@@ -9,6 +10,18 @@
 #include "runner/mpi/mpi_session.hpp"
 
 using namespace rodsweep;
+
+namespace {
+
+int frees = 0;  ///< of communicators, on this rank
+
+}  // namespace
+
+/// MPI's own is PMPI_Comm_free.
+extern "C" int MPI_Comm_free(MPI_Comm* comm) {
+  ++frees;
+  return PMPI_Comm_free(comm);
+}
 
 namespace {
 
@@ -73,4 +86,27 @@ TEST_CASE("over MPI a signal to one worker stops all, and no task is lost or cou
     CHECK(dispatch.left == 2000 - finished);
     CHECK(dispatch.left > 0);
   }
+}
+
+TEST_CASE("a channel's communicator is freed by all ranks together, so not by one that an exception unwinds") {
+  const int before = frees;
+  { const MpiChannel channel(MPI_COMM_WORLD); }
+  CHECK(frees == before + 1);
+  const auto unwound = [] {
+    const MpiChannel channel(MPI_COMM_WORLD);
+    throw std::runtime_error("the disk is full");
+  };
+  CHECK_THROWS(unwound());
+  CHECK(frees == before + 1);
+
+  // An exception that was under way before is none of the channel's.
+  struct Late {
+    ~Late() { const MpiChannel channel(MPI_COMM_WORLD); }
+  };
+  const auto unwound_later = [] {
+    const Late late;
+    throw std::runtime_error("the disk is full");
+  };
+  CHECK_THROWS(unwound_later());
+  CHECK(frees == before + 2);
 }

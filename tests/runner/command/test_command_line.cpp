@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "runner/command/command_line.hpp"
+#include "runner/command/next_line.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;
@@ -29,17 +30,17 @@ TEST_CASE("run takes a job, a file and --resume, and remembers the line for the 
 }
 
 TEST_CASE("without -o a job named demo is written to results/demo.h5") {
-  CHECK_FALSE(std::get<RunOptions>(parse({"run", "job.json"})).output);
-  CHECK(default_output("demo") == "results/demo.h5");
+  CHECK(output_of(std::get<RunOptions>(parse({"run", "job.json"})), "demo") == "results/demo.h5");
+  CHECK(output_of(std::get<RunOptions>(parse({"run", "job.json", "-o", "out.h5"})), "demo") == "out.h5");
 }
 
 TEST_CASE("the command that continues a sweep can be typed as it stands") {
   auto run = std::get<RunOptions>(parse({"run", "my job.json"}));
-  CHECK(run_command(run, 1) == "build/rodsweep run 'my job.json'");
+  CHECK(run_line(run, 1) == "build/rodsweep run 'my job.json'");
   run.resume = true;
   run.output = "out.h5";
   const std::string as_root = geteuid() == 0 ? "--allow-run-as-root " : "";  // mpirun refuses root without it
-  CHECK(run_command(run, ranks_for(4)) ==
+  CHECK(run_line(run, ranks_for(4)) ==
         "mpirun --oversubscribe " + as_root + "-n 5 build/rodsweep run 'my job.json' -o out.h5 --resume");
 }
 
@@ -51,7 +52,8 @@ TEST_CASE("the other commands take their options") {
   CHECK(std::get<StatusOptions>(parse({"status", "a.h5", "--json"})).json);
   CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--verify"})).verify);
   CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--job"})).job);
-  CHECK(std::holds_alternative<VersionOptions>(parse({"--version"})));
+  CHECK(answer({"--version"}).code == ExitCode::ok);
+  CHECK_THAT(answer({"--version"}).text, Catch::Matches("rodsweep [0-9.]+ \\(revision [^)]+\\)\n  [^]*HDF5[^]*\n"));
 }
 
 TEST_CASE("the commands on results files take their options") {

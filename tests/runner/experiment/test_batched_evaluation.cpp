@@ -7,8 +7,8 @@
 
 #include "network/encoding/recorded_simulation.hpp"
 #include "runner/dataset/system_recording.hpp"
-#include "runner/experiment/batch_body.hpp"
 #include "runner/experiment/batched_evaluation.hpp"
+#include "runner/experiment/task_body.hpp"
 #include "runner/file/columns.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/runner/job_examples.hpp"
@@ -188,7 +188,7 @@ TEST_CASE("data sets of chains step in batches of equal ones, other tasks alone"
 TEST_CASE("an assignment's records are written one by one, those of a request to stop not at all") {
   const Plan plan = plan_of(random_data());
   std::vector<std::int64_t> written;
-  BatchBody body = batch_body(plan, [&](const Task& task, const TaskRecord& record) {
+  BatchBody body = task_body(plan, [&](const Task& task, const TaskRecord& record, const TaskOrigin*) {
     CHECK(record.outcome == TaskOutcome::ok);
     written.push_back(task.index);
   });

@@ -1,8 +1,11 @@
 // One task evaluated: what is counted, for guesses of known quality.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "runner/experiment/evaluation.hpp"
+#include "runner/experiment/measured_solve.hpp"
+#include "solver/step/time_step.hpp"
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
@@ -125,6 +128,32 @@ TEST_CASE("a closed loop advances by its own guess's solution, at the job's tole
   CHECK(loose.joint_gap[4] > 100 * paired.joint_gap[4]);
   CHECK(tight.position_m == paired.position_m);
   CHECK(tight.kinetic_energy_j[4] == Approx(paired.kinetic_energy_j[4]).epsilon(1e-6));
+}
+
+TEST_CASE("a guess that no solve can start from fails the task by its name, and is not counted as zero iterations") {
+  const Plan plan = plan_of(job_with(R"(["zero", {"oracle": {"error": 1e6}}, "previous"])"));
+  const TaskSpec spec = plan.spec(0);
+  TaskRecord record;
+  record.prepare(plan.task(0), axis_sizes(plan));
+  Scene scene = build_scene(spec.scene);
+  Rod& rod = scene.rods.front();
+  rod.position.back().x() = 1e150;  // a million times as much has a norm, but not in doubles
+  LinearSystem system(rod);
+  system.assemble(rod, constraint_dt(scene, spec.time.step_s));
+  MeasuredSolve solve(scene, spec, record);
+  VectorX delta_lambda = VectorX::Zero(system.rhs().size());
+  CHECK(solve.solve(system, {0, 0, 0}, 0, delta_lambda) == SolveOutcome::not_a_number);
+  solve.finish();
+  CHECK(record.message == ": it cannot start from the guess \"oracle 1000000.0\"");
+  CHECK(record.reason[0] != static_cast<int>(SolveOutcome::not_a_number));
+  CHECK(record.reason[1] == static_cast<int>(SolveOutcome::not_a_number));
+  CHECK(record.reason[2] == static_cast<int>(SolveOutcome::not_run));
+  CHECK(std::isnan(record.initial_residual[1]));
+  for (std::size_t t = 0; t < tolerances; ++t) {
+    CHECK(record.iterations[tolerances + t] == -1);
+    CHECK(record.counted.matvecs[t] > 0);
+    CHECK(record.counted.unreached[tolerances + t] == 0);
+  }
 }
 
 TEST_CASE("the joint gap before a step's first solve is not that of the step before: the rod has moved by itself") {

@@ -21,7 +21,8 @@ struct Written {
 struct Writer {
   std::vector<Written> rows;
   WriteRecord writes() {
-    return [this](const Task& task, const TaskRecord& record) {
+    return [this](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
+      CHECK(origin == nullptr);
       rows.push_back({task.index, record.outcome, record.message, record.steps_done.at(0)});
     };
   }
@@ -32,16 +33,14 @@ struct Writer {
 TEST_CASE("a record that was filled is written and its outcome returned") {
   const Plan plan = plan_of(small_job());
   Writer writer;
-  TaskBody body = task_body(
-      plan,
-      [](const Task&, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
+  BatchBody body =
+      task_body(plan, writer.writes(), [](const Task&, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
         record.outcome = TaskOutcome::diverged;
         record.message = "joint gap 12";
         record.steps_done[0] = spec.time.steps;
         return true;
-      },
-      writer.writes());
-  const TaskResult result = body(0, never);
+      });
+  const TaskResult result = body({0}, never).at(0);
   CHECK(result.outcome == TaskOutcome::diverged);
   CHECK(result.message == "joint gap 12");
   REQUIRE(writer.rows.size() == 1);
@@ -52,14 +51,12 @@ TEST_CASE("a record that was filled is written and its outcome returned") {
 TEST_CASE("a task that throws is an error with its message, written with sentinels") {
   const Plan plan = plan_of(small_job());
   Writer writer;
-  TaskBody body = task_body(
-      plan,
-      [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) -> bool {
-        record.steps_done[0] = 3;
-        throw std::runtime_error("the matrix has no diagonal");
-      },
-      writer.writes());
-  CHECK(body(0, never).outcome == TaskOutcome::error);
+  BatchBody body = task_body(plan, writer.writes(),
+                             [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) -> bool {
+                               record.steps_done[0] = 3;
+                               throw std::runtime_error("the matrix has no diagonal");
+                             });
+  CHECK(body({0}, never).at(0).outcome == TaskOutcome::error);
   REQUIRE(writer.rows.size() == 1);
   CHECK(writer.rows[0].outcome == TaskOutcome::error);
   CHECK(writer.rows[0].message == "the matrix has no diagonal");
@@ -69,19 +66,20 @@ TEST_CASE("a task that throws is an error with its message, written with sentine
 TEST_CASE("an abandoned task is not written") {
   const Plan plan = plan_of(small_job());
   Writer writer;
-  TaskBody body = task_body(
-      plan, [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested& stop) { return !stop(); },
-      writer.writes());
-  CHECK(body(0, [] { return true; }).outcome == TaskOutcome::pending);
+  BatchBody body =
+      task_body(plan, writer.writes(),
+                [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested& stop) { return !stop(); });
+  CHECK(body({0}, [] { return true; }).at(0).outcome == TaskOutcome::pending);
   CHECK(writer.rows.empty());
 }
 
 TEST_CASE("a failing write is no outcome of the task") {
   const Plan plan = plan_of(small_job());
-  TaskBody body = task_body(
-      plan, [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested&) { return true; },
-      [](const Task&, const TaskRecord&) { throw std::runtime_error("no space left on device"); });
-  CHECK_THROWS_WITH(body(0, never), "no space left on device");
+  BatchBody body = task_body(
+      plan,
+      [](const Task&, const TaskRecord&, const TaskOrigin*) { throw std::runtime_error("no space left on device"); },
+      [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested&) { return true; });
+  CHECK_THROWS_WITH(body({0}, never), "no space left on device");
 }
 
 TEST_CASE("outcomes of tasks keep the numbers and names that files hold") {

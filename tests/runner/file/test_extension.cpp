@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "runner/experiment/extending_body.hpp"
+#include "runner/experiment/task_body.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/job/job_extension.hpp"
 #include "tests/runner/file_examples.hpp"
@@ -174,14 +174,15 @@ TEST_CASE(
     return true;
   };
   int written = 0;
-  const WriteExtended write = [&](const Task&, const TaskRecord&, const TaskOrigin* origin) {
+  const WriteRecord write = [&](const Task&, const TaskRecord&, const TaskOrigin* origin) {
     written += origin == nullptr;
   };
-  TaskBody body = extending_body(plan, extension, evaluate, write, [](const std::string&) { FAIL("no damage"); });
-  CHECK(body(3, {}).outcome == TaskOutcome::ok);
+  const auto warn = [](const std::string&) { FAIL("no damage"); };
+  BatchBody body = extending_body(plan, extension, write, warn, evaluate);
+  CHECK(body({3}, {}).at(0).outcome == TaskOutcome::ok);
   CHECK(written == 1);
   gap = 1;
-  const std::string text = message_of<FileError>([&] { body(4, {}); });
+  const std::string text = message_of<FileError>([&] { body({4}, {}); });
   CHECK_THAT(text, StartsWith("task 4, simulated again for its new guesses, is not what " +
                               (folder / "old.h5").native() + " holds as task 4: /steps/joint_gap, value 1, is "));
   CHECK_THAT(text, Catch::Matchers::EndsWith("--resume without --extend runs what is left in full"));

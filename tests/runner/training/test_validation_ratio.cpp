@@ -48,6 +48,21 @@ TEST_CASE("the CG ratio of a guess on recorded simulations is that of a paired s
   }
 }
 
+TEST_CASE("a guess that is no number saves nothing: its ratio is infinite") {
+  struct NoNumber : ZeroGuess {
+    Proposal propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
+      x0.setConstant(std::nan(""));
+      return {true, 0};
+    }
+  };
+  const TemporaryFolder folder;
+  make_data_set(folder / "data.h5", data_job());
+  const ValidationRatio ratios(DatasetReader(folder / "data.h5").read(0, 1));
+  const auto infinite =
+      ratios.measure(0, [](const Scene&, const RecordedSimulation&) { return std::make_unique<NoNumber>(); });
+  for (const double ratio : infinite) CHECK(std::isinf(ratio));
+}
+
 TEST_CASE("a rod at rest has no ratio") {
   Json job = data_job();
   job["scene"]["gravity_m_s2"] = {0, 0, 0};

@@ -95,6 +95,22 @@ TEST_CASE("a NaN in b is an outcome") {
     }
 }
 
+TEST_CASE("a guess whose residual is not finite is an outcome, without a history that could be read") {
+  const Case c = moving_chain();
+  for (const double entry :
+       {nan, std::numeric_limits<double>::infinity(), 1e200})  // the last one's square is not finite
+    for (const Preconditioner p : preconditioners)
+      for (const Norm norm : norms) {
+        INFO(name(p) << ", " << entry);
+        ConjugateGradient cg(c.a(), {p, norm, 0});
+        const VectorX guess = VectorX::Constant(c.a().unknowns(), entry);
+        const Run ended = run(cg, c.b(), 1e-8, &guess);
+        CHECK(ended.report.outcome == SolveOutcome::not_a_number);
+        CHECK(ended.report.iterations == 0);
+        CHECK(ended.history.empty());
+      }
+}
+
 TEST_CASE("a NaN in the matrix never converges") {
   const Case c = moving_chain();
   BlockMatrix bad = c.a();

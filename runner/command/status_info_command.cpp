@@ -1,10 +1,10 @@
-#include "runner/command/file_commands.hpp"
+#include "runner/command/status_info_command.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "runner/command/model_commands.hpp"
+#include "runner/command/training_summary.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/model_file.hpp"
@@ -91,10 +91,27 @@ std::string provenance_text(const FileSummary& file) {
   return text;
 }
 
+ExitCode show_model(const InfoOptions& options, Console& console) {
+  const StoredModel stored = read_training(options.file);
+  if (options.job) {
+    console.raw_result(stored.card.job_text);
+  } else if (options.json) {
+    console.result(to_json(stored, options.file).dump(2));
+  } else {
+    console.result(training_summary(stored.card, options.file) + '\n' + provenance_text(stored));
+    if (options.verify) console.result("verified: the model is as it was written");  // else it could not be read
+  }
+  return ExitCode::ok;
+}
+
 }  // namespace
 
-ExitCode show_status(const StatusOptions& options, Console& console) {
-  if (is_model_file(options.file)) return show_model_status(options, console);
+ExitCode execute(const StatusOptions& options, Console& console) {
+  if (is_model_file(options.file)) {
+    const StoredModel stored = read_training(options.file);
+    console.result(options.json ? to_json(stored, options.file).dump(2) : training_summary(stored.card, options.file));
+    return ExitCode::ok;
+  }
   const FileSummary file = inspect(options.file);
   if (options.json) {
     console.result(to_json(file).dump(2));
@@ -113,8 +130,8 @@ ExitCode show_status(const StatusOptions& options, Console& console) {
   return ExitCode::ok;
 }
 
-ExitCode show_info(const InfoOptions& options, Console& console) {
-  if (is_model_file(options.file)) return show_model_info(options, console);
+ExitCode execute(const InfoOptions& options, Console& console) {
+  if (is_model_file(options.file)) return show_model(options, console);
   const FileSummary file = inspect(options.file);
   if (options.job) {
     console.raw_result(file.job_text);
@@ -143,14 +160,6 @@ ExitCode show_info(const InfoOptions& options, Console& console) {
   console.error(fmt::format("{} is damaged: the data of task{} {} are not what was written", options.file.native(),
                             verified.damaged.size() == 1 ? "" : "s", fmt::join(verified.damaged, ", ")));
   return ExitCode::user_error;
-}
-
-ExitCode show_version(Console& console) {
-  std::string text = library_versions();
-  for (std::size_t at = text.find("; "); at != std::string::npos; at = text.find("; ", at)) text.replace(at, 2, "\n  ");
-  const std::size_t line = text.find('\n');
-  console.result(text.insert(line, " (revision " + source_revision() + ")"));
-  return ExitCode::ok;
 }
 
 }  // namespace rodsweep

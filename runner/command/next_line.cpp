@@ -1,0 +1,51 @@
+#include "runner/command/next_line.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "runner/dispatch/stop_signal.hpp"
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string path_from_here(const std::string& name) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  for (const char* folder : {"../share/rodsweep/analysis", "../analysis"}) {
+    const fs::path script = (program.parent_path() / folder / name).lexically_normal();
+    if (!fs::exists(script, error)) continue;
+    const std::string here = fs::proximate(script, error).native();
+    return here.empty() || here.size() > script.native().size() ? script.native() : here;
+  }
+  return "analysis/" + name;
+}
+
+}  // namespace
+
+int ranks_for(int workers) { return workers > 1 ? workers + 1 : 1; }
+
+std::string run_line(const RunOptions& options, int ranks) {
+  std::string line;
+  if (ranks > 1)
+    line = fmt::format("mpirun --oversubscribe {}-n {} ", geteuid() == 0 ? "--allow-run-as-root " : "", ranks);
+  line += fmt::format("{} run {}", shell_quoted(options.program), shell_quoted(options.job.native()));
+  if (options.output) line += " -o " + shell_quoted(options.output->native());
+  if (options.extend) line += " --extend " + shell_quoted(options.extend->native());
+  if (options.resume) line += " --resume";
+  return line;
+}
+
+std::string stopped_text(int signal, RunOptions options, int ranks) {
+  options.resume = true;
+  return fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_name(signal),
+                     run_line(options, ranks));
+}
+
+std::string script_line(const std::string& script, const fs::path& file) {
+  return fmt::format("/usr/bin/python3 {} {}", shell_quoted(path_from_here(script)), shell_quoted(file.native()));
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,46 @@
+#include "runner/command/run_command.hpp"
+
+#include "runner/command/sweep_run.hpp"
+#include "runner/command/training_run.hpp"
+#include "runner/experiment/inputs.hpp"
+#include "solver/linear/petsc_session.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rank 0 reads the job and its text travels, so that every rank has the same one, wherever its own copy of the file
+/// stands.
+Job read_job_everywhere(const fs::path& path, const MpiSession& mpi) {
+  std::optional<Job> job;
+  collectively(mpi.world(), [&] {
+    if (mpi.rank() > 0) return;
+    job = read_job(path);
+    check_inputs(*job);
+  });
+  const std::string text = broadcast(job ? job->text : std::string(), mpi.world());
+  return collectively(mpi.world(), [&] { return job ? std::move(*job) : parse_job(text, path); });
+}
+
+}  // namespace
+
+ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console) {
+  const PetscSession petsc;
+  const Job job = read_job_everywhere(options.job, mpi);
+  return is_training(job) ? run_training(options, job, mpi, console) : run_sweep(options, job, mpi, console);
+}
+
+fs::path output_of(const RunOptions& options, const std::string& job_name) {
+  return options.output.value_or(fs::path("results") / (job_name + ".h5"));
+}
+
+Provenance provenance_of(const RunOptions& options, const MpiSession& mpi, const Placement& where) {
+  Provenance provenance = provenance_of_this_process(options.command);
+  provenance.job = fs::absolute(options.job).lexically_normal().native();
+  provenance.ranks = mpi.size();
+  provenance.oversubscribed = where.oversubscribed;
+  return provenance;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,55 @@
+// The command `run`: a job of kind "train" trains a model (training_run.hpp), any other is a sweep (sweep_run.hpp).
+// Collective over all ranks.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "runner/command/exit_codes.hpp"
+#include "runner/file/provenance.hpp"
+#include "runner/mpi/mpi_session.hpp"
+#include "runner/terminal/console.hpp"
+
+namespace rodsweep {
+
+struct RunOptions {
+  std::filesystem::path job;
+  std::optional<std::filesystem::path> output;  ///< default: results/NAME.h5 in the current folder
+  bool resume = false;                          ///< continue the output if it exists
+  std::optional<std::filesystem::path> extend;  ///< results of a smaller job, which need not be computed again
+  std::string program = "rodsweep";             ///< as the user typed it
+  std::string command;                          ///< the whole line, for /runs
+};
+
+inline constexpr const char* run_help =
+    "One rank runs the tasks itself; of more, rank 0 hands them out and sleeps, so C cores want C+1 ranks.\n"
+    "Open MPI refuses more ranks than cores unless told --oversubscribe; inside containers as root it also\n"
+    "wants --allow-run-as-root.\n"
+    "A training (kind \"train\") has no master: C cores want C ranks, at most as many as training.shards.\n\n"
+    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop the sweep between two time steps: running tasks are abandoned,\n"
+    "finished ones are in the file. mpirun hands SIGUSR1 on to all ranks and then exits 4 as well. On SIGTERM and\n"
+    "SIGINT it kills what still runs a second later, and itself exits 1. However a sweep ended, it can be resumed.\n"
+    "A training stops between two steps and goes on from there, to the same bits.\n\n"
+    "Examples:\n"
+    "  rodsweep run jobs/smoke.json                        one core, results/smoke.h5\n"
+    "  mpirun --oversubscribe -n 5 rodsweep run job.json   4 cores\n"
+    "  mpirun -n 5 rodsweep run job.json -o out.h5 --resume\n"
+    "                                                      continues out.h5, or starts it: for batch scripts\n"
+    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more values in a\n"
+    "                                                      grid, or more guesses. Copies what out.h5 holds, tries\n"
+    "                                                      new guesses alone on its trajectories, runs the rest.\n"
+    "                                                      out.h5 is read only; more.h5 is as if run from scratch.";
+
+/// Starts PETSc. The same result on every rank. Throws CollectiveError, the same on every rank, when nothing could be
+/// started (a job or file error); any other exception belongs to this rank alone, and the others wait for it in vain:
+/// the caller must abort.
+ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console);
+
+/// Where the results of a job go: results/NAME.h5 unless the user names another file.
+std::filesystem::path output_of(const RunOptions& options, const std::string& job_name);
+
+/// Of a start on these ranks: a row of /runs.
+Provenance provenance_of(const RunOptions& options, const MpiSession& mpi, const Placement& where);
+
+}  // namespace rodsweep
