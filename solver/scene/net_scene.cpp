@@ -1,3 +1,4 @@
+#include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_rods.hpp"
 
 namespace rodsweep {
@@ -7,7 +8,7 @@ namespace rodsweep {
 Rod build_rod(const Net& p) {
   const double length = p.mesh_m / p.segments;
   const int along_x = (p.columns - 1) * p.segments + 1, along_z = (p.rows - 1) * p.segments + 1;  // segments of a rod
-  const Quaternion to_x = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  const Quaternion to_x = turn_between(Vector3::UnitZ(), Vector3::UnitX());
   std::vector<SegmentSpec> segments;
   for (int row = 0; row < p.rows; ++row)
     for (int i = 0; i < along_x; ++i)

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_rods.hpp"
 
 namespace rodsweep {
@@ -16,7 +17,7 @@ Quaternion about_rod(double angle) { return Quaternion(Eigen::AngleAxisd(angle, 
 // of a joint stays small, also where the ends were joined. For a circular cross-section that is the same rod.
 Rod build_rod(const Ring& p) {
   const double side = p.length_m / p.segments, turn = 2 * pi / p.segments, twist = p.twist_deg * pi / 180 / p.segments;
-  const Quaternion top = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  const Quaternion top = turn_between(Vector3::UnitZ(), Vector3::UnitX());
   const double apothem = side / 2 / std::tan(turn / 2);
   std::vector<SegmentSpec> segments;
   for (int i = 0; i < p.segments; ++i) {
