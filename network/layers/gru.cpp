@@ -1,5 +1,7 @@
 #include "network/layers/gru.hpp"
 
+#include "network/layers/product.hpp"
+
 namespace rodsweep {
 
 template <class T>
@@ -12,7 +14,8 @@ template <class T>
 void Gru<T>::forward(const Parameters<T>& p, const TensorIn<T>& p_in, const TensorIn<T>& h, Tape& tape,
                      Eigen::Index first, Eigen::Ref<Tensor<T>> out) const {
   const Eigen::Index n = h.cols(), H = size_;
-  const Tensor<T> u = p[recurrent_] * h;
+  Tensor<T> u = Tensor<T>::Zero(3 * H, n);
+  add_product<T>(p[recurrent_], h, u);
   auto z = tape.z.middleCols(first, n), r = tape.r.middleCols(first, n), c = tape.c.middleCols(first, n);
   z = (p_in.topRows(H) + u.topRows(H)).array().logistic();
   r = (p_in.middleRows(H, H) + u.middleRows(H, H)).array().logistic();
@@ -36,9 +39,9 @@ void Gru<T>::backward(const Parameters<T>& p, const Tape& tape, Eigen::Index fir
   dp.middleRows(H, H) = dp.bottomRows(H).array() * uc * r * (T(1) - r);
   du.topRows(2 * H) = dp.topRows(2 * H);
   du.bottomRows(H) = dp.bottomRows(H).array() * r;
-  gradient[recurrent_].noalias() += du * tape.h.middleCols(first, n).transpose();
+  add_outer_product<T>(du, tape.h.middleCols(first, n), gradient[recurrent_]);
   dh = d * z;
-  dh.noalias() += p[recurrent_].transpose() * du;
+  add_transposed_product<T>(p[recurrent_], du, dh);
 }
 
 template class Gru<float>;

@@ -22,9 +22,9 @@ void Linear<T>::forward(const Parameters<T>& p, const TensorIn<T>& x, Eigen::Ref
 template <class T>
 void Linear<T>::backward(const Parameters<T>& p, const TensorIn<T>& x, const TensorIn<T>& dy, Parameters<T>& gradient,
                          Tensor<T>* dx) const {
-  gradient[weight_].noalias() += dy * x.transpose();
+  add_outer_product<T>(dy, x, gradient[weight_]);
   gradient[bias_] += dy.rowwise().sum();
-  if (dx) dx->noalias() += p[weight_].transpose() * dy;
+  if (dx) add_transposed_product<T>(p[weight_], dy, *dx);
 }
 
 template class Linear<float>;

@@ -112,8 +112,28 @@ void multiply(const TensorIn<T>& weight, const T* bias, const TensorIn<T>& x, Ei
                        0, x.cols());
 }
 
-template void multiply<float>(const TensorIn<float>&, const float*, const TensorIn<float>&, Eigen::Ref<Tensor<float>>);
-template void multiply<double>(const TensorIn<double>&, const double*, const TensorIn<double>&,
-                               Eigen::Ref<Tensor<double>>);
+template <class T>
+void add_product(const TensorIn<T>& a, const TensorIn<T>& b, Eigen::Ref<Tensor<T>> y) {
+  y.noalias() += a * b;
+}
+
+template <class T>
+void add_outer_product(const TensorIn<T>& a, const TensorIn<T>& b, Eigen::Ref<Tensor<T>> y) {
+  y.noalias() += a * b.transpose();
+}
+
+template <class T>
+void add_transposed_product(const TensorIn<T>& a, const TensorIn<T>& b, Eigen::Ref<Tensor<T>> y) {
+  y.noalias() += a.transpose() * b;
+}
+
+#define RODSWEEP_PRODUCTS(T)                                                                          \
+  template void multiply<T>(const TensorIn<T>&, const T*, const TensorIn<T>&, Eigen::Ref<Tensor<T>>); \
+  template void add_product<T>(const TensorIn<T>&, const TensorIn<T>&, Eigen::Ref<Tensor<T>>);        \
+  template void add_outer_product<T>(const TensorIn<T>&, const TensorIn<T>&, Eigen::Ref<Tensor<T>>);  \
+  template void add_transposed_product<T>(const TensorIn<T>&, const TensorIn<T>&, Eigen::Ref<Tensor<T>>);
+RODSWEEP_PRODUCTS(float)
+RODSWEEP_PRODUCTS(double)
+#undef RODSWEEP_PRODUCTS
 
 }  // namespace rodsweep

@@ -152,12 +152,12 @@ void GraphBlock<T>::backward(const Parameters<T>& p, const RodGraph& graph, cons
   d_before.array() *= silu_derivative(tape.edge_before.array());
   from_edges_.backward(p, in.edges, d_before, gradient, &d.edges);
   add_to_ends(graph, d_before, d_from_nodes);
-  gradient[from_nodes_].topRows((readers + 1) * H).noalias() += d_from_nodes * in.nodes.transpose();
-  d.nodes.noalias() += p[from_nodes_].topRows((readers + 1) * H).transpose() * d_from_nodes;
+  add_outer_product<T>(d_from_nodes, in.nodes, gradient[from_nodes_].topRows((readers + 1) * H));
+  add_transposed_product<T>(p[from_nodes_].topRows((readers + 1) * H), d_from_nodes, d.nodes);
   if (from_globals_ < 0) return;
   sum_per_rod<T>(d_before, graph.first_edge, d_from_globals.topRows(H));
-  gradient[from_globals_].topRows(readers * H).noalias() += d_from_globals * in.globals.transpose();
-  d.globals.noalias() += p[from_globals_].topRows(readers * H).transpose() * d_from_globals;
+  add_outer_product<T>(d_from_globals, in.globals, gradient[from_globals_].topRows(readers * H));
+  add_transposed_product<T>(p[from_globals_].topRows(readers * H), d_from_globals, d.globals);
 }
 
 template class GraphBlock<float>;

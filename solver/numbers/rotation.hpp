@@ -22,6 +22,10 @@ inline Vector3 rotation(const Quaternion& q, const Quaternion& q_old) {
   return (2 / d.w()) * d.vec();
 }
 
+/// The shortest turn that takes the direction of one vector to that of another. Out of line: Eigen's needs a singular
+/// value decomposition, which takes seconds to compile.
+Quaternion turn_between(const Vector3& from, const Vector3& to);
+
 /// R e_z of a unit quaternion: the world direction of a segment.
 inline Vector3 director(const Quaternion& q) {
   return {2 * (q.x() * q.z() + q.w() * q.y()), 2 * (q.y() * q.z() - q.w() * q.x()),

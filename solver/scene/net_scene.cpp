@@ -1,3 +1,4 @@
+#include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
@@ -21,7 +22,7 @@ SceneSize Net::size() const {
 void Net::build(Scene& scene) const {
   const double length = mesh_m / segments;
   const int along_x = (columns - 1) * segments + 1, along_z = (rows - 1) * segments + 1;  // segments of a rod
-  const Quaternion to_x = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  const Quaternion to_x = turn_between(Vector3::UnitZ(), Vector3::UnitX());
   std::vector<SegmentSpec> all;
   for (int row = 0; row < rows; ++row)
     for (int i = 0; i < along_x; ++i)

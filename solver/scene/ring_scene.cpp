@@ -1,6 +1,7 @@
 #include <cmath>
 #include <string>
 
+#include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
@@ -27,7 +28,7 @@ SceneSize Ring::size() const { return {segments, segments}; }
 // of a joint stays small, also where the ends were joined. For a circular cross-section that is the same rod.
 void Ring::build(Scene& scene) const {
   const double side = length_m / segments, turn = 2 * pi / segments, twist = twist_deg * pi / 180 / segments;
-  const Quaternion top = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  const Quaternion top = turn_between(Vector3::UnitZ(), Vector3::UnitX());
   const double apothem = side / 2 / std::tan(turn / 2);
   std::vector<SegmentSpec> rod;
   for (int i = 0; i < segments; ++i) {

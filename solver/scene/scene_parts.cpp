@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "solver/numbers/rotation.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -24,7 +26,7 @@ std::vector<SegmentSpec> segments_through(const std::vector<Vector3>& vertices, 
   for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
     const Vector3 chord = vertices[i + 1] - vertices[i];
     const Vector3 before = orientation * Vector3::UnitZ();
-    orientation = (Quaternion::FromTwoVectors(before, chord) * orientation).normalized();
+    orientation = (turn_between(before, chord) * orientation).normalized();
     segments.push_back(segment_at(vertices[i] + chord / 2, orientation, chord.norm(), p));
   }
   return segments;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "solver/numbers/rotation.hpp"
 #include "solver/numbers/split_mix.hpp"
 #include "solver/scene/scene_parts.hpp"
 
@@ -60,7 +61,7 @@ std::vector<SegmentSpec> segments_along(const Skeleton& skeleton, const RodParam
     const SegmentSpec& below = segments[at(node.parent)];
     const bool first = i == 1;  // of all edges: it gives the ground its frame
     const Vector3 before = (first ? Quaternion::Identity() : below.orientation) * Vector3::UnitZ();
-    Quaternion orientation = Quaternion::FromTwoVectors(before, edge);
+    Quaternion orientation = turn_between(before, edge);
     if (!first) orientation = orientation * below.orientation;
     segments[i] = segment_at(base + parent.position_m + edge / 2, orientation.normalized(), edge.norm(), p);
     segments[i].radius_m = node.radius_m;

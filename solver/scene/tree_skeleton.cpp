@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "solver/numbers/rotation.hpp"
 #include "solver/numbers/split_mix.hpp"
 #include "solver/rod/rod.hpp"
 
@@ -119,7 +120,7 @@ Skeleton grow(const TreeShape& shape, double radius_m) {
   Skeleton out;
   out.reserve(static_cast<std::size_t>(edge_count(shape)) + 1);
   out.push_back({-1, Vector3::Zero(), radius_m});
-  const Quaternion up = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitY());
+  const Quaternion up = turn_between(Vector3::UnitZ(), Vector3::UnitY());
   Growth(shape, out).branch(0, up, shape.length_m, radius_m, 0);
   return out;
 }

@@ -1,6 +1,8 @@
 // One results file and several ranks: run in an empty folder that all ranks share.
 #include <catch2/catch.hpp>
+#include <fstream>
 
+#include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "tests/runner/file_examples.hpp"

@@ -1,26 +1,12 @@
 // For tests of what reads data sets: their files, made by one process.
 #pragma once
 
-#include "runner/experiment/evaluation.hpp"
 #include "tests/runner/file_examples.hpp"
 
 namespace rodsweep {
 
 /// The file of a job, of which tasks from `failing` on fail, or are left out where `pending`.
-inline Plan make_data_set(const std::filesystem::path& path, const Json& job, std::int64_t failing = 1000,
-                          bool pending = false) {
-  const Plan plan = plan_of(job);
-  ResultsFile file = ResultsFile::create(path, plan, test_provenance(), MPI_COMM_SELF);
-  for (const Task& task : plan.tasks()) {
-    if (pending && task.index >= failing) continue;
-    TaskRecord record;
-    record.prepare(task, axis_sizes(plan));
-    evaluate(task, plan.spec(task.index), record, [] { return false; });
-    if (task.index >= failing) record.outcome = TaskOutcome::diverged, record.message = "step 2: too bad";
-    file.write(task, record);
-  }
-  file.close();
-  return plan;
-}
+Plan make_data_set(const std::filesystem::path& path, const Json& job, std::int64_t failing = 1000,
+                   bool pending = false);
 
 }  // namespace rodsweep

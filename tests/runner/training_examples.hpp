@@ -7,34 +7,13 @@
 namespace rodsweep {
 
 /// Eight short simulations of rods that differ.
-inline Json toy_data_job() {
-  Json job = data_job();
-  job["samples"] = 8;
-  job["scene"]["segments"] = {{"integer", {4, 7}}};
-  job["scene"]["initial_angle_deg"] = uniform(0, 45);
-  job["scene"]["youngs_modulus_pa"] = {{"log_uniform", {1e4, 1e6}}};
-  job["time"]["steps"] = 6;
-  return job;
-}
+Json toy_data_job();
 
 /// The same of trees in the wind.
-inline Json toy_tree_data_job() {
-  Json job = toy_data_job();
-  job["scene"] =
-      Json::parse(R"({"type": "tree", "depth": {"integer": [1, 2]}, "branches": 2, "segments": 2, "length_m": 1,
-      "tree_seed": {"integer": [0, 1000]}, "radius_m": 0.05, "density_kg_m3": 800, "youngs_modulus_pa": 1e7,
-      "torsion_modulus_pa": 1e7, "wind": {"mean_m_s": [9, 0, 0], "turbulence_m_s": 2}})");
-  return job;
-}
+Json toy_tree_data_job();
 
 /// Four epochs of three steps.
-inline Json toy_train_job() {
-  Json job = train_job();
-  job["validation_simulations"] = 4;
-  job["network"] = {{"base", "none"}, {"latent", 8}};
-  job["training"] = {{"epochs", 4}, {"batch", 8}, {"shards", 4}, {"ratio_every_epochs", 2}, {"ratio_simulations", 3}};
-  return job;
-}
+Json toy_train_job();
 
 /// A job with its data, read once, and trainings of it in this process.
 struct Toy {
@@ -44,25 +23,11 @@ struct Toy {
   TrainingData data;
   std::vector<RecordedSimulation> simulations;
 
-  explicit Toy(const Json& values = toy_train_job(), const Json& rods = toy_data_job()) {
-    make_data_set(folder / "data.h5", rods);
-    job = parse_job(values.dump(), folder / "job.json");
-    training = training_job(job);
-    const DatasetReader dataset = open_dataset(training, job);
-    data = training_data(training, dataset);
-    simulations = ratio_simulations(training, dataset, 0, 1);
-  }
+  explicit Toy(const Json& values = toy_train_job(), const Json& rods = toy_data_job());
 
-  Training begin() const { return Training(job, training, data, simulations, MPI_COMM_SELF); }
-  /// To its end.
-  Training run() const {
-    Training result = begin();
-    finish(result);
-    return result;
-  }
-  static void finish(Training& training) {
-    while (!training.ended()) training.step(false);
-  }
+  Training begin() const;
+  Training run() const;  ///< to its end
+  static void finish(Training& training);
 };
 
 }  // namespace rodsweep

@@ -1,10 +1,7 @@
 #include "tests/solver/support.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/projection.hpp"
@@ -170,27 +167,6 @@ DenseSystem dense_system(const Rod& rod, double dt) {
       out.b[6 * k + row] -= alpha * rod.lambda[6 * k + row];
     }
   return out;
-}
-
-VectorX dense_solve(const MatrixX& a, const VectorX& b) {
-  const Eigen::LLT<MatrixX> factor(a);
-  if (factor.info() != Eigen::Success) throw std::runtime_error("the reference matrix is not positive definite");
-  return factor.solve(b);
-}
-
-double smallest_scaled_eigenvalue(const MatrixX& a) {
-  const VectorX scale = a.diagonal().cwiseSqrt().cwiseInverse();
-  const MatrixX scaled = scale.asDiagonal() * a * scale.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<MatrixX>(scaled, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
-}
-
-double scaled_difference(const MatrixX& a, const MatrixX& b) {
-  const VectorX scale = a.diagonal().cwiseSqrt().cwiseInverse();
-  return (scale.asDiagonal() * (a - b) * scale.asDiagonal()).cwiseAbs().maxCoeff();
-}
-
-double energy_error(const MatrixX& a, const VectorX& x, const VectorX& y) {
-  return std::sqrt((x - y).dot(a * (x - y)) / y.dot(a * y));
 }
 
 BlockMatrix random_matrix(const Edges& joints_coupled, int block_rows, unsigned seed) {

@@ -1,6 +1,6 @@
-// Sample rods and dense references for the solver's tests.
+// Sample rods for the solver's tests, and their dense systems.
 //
-// The references share no formula with the solver: constraints through rotation matrices, Jacobians by fourth-order
+// These share no formula with the solver: constraints through rotation matrices, Jacobians by fourth-order
 // central differences of them (good to about 1e-11), masses from the segments' radius, length and density.
 #pragma once
 
@@ -11,10 +11,9 @@
 #include "solver/linear/block_matrix.hpp"
 #include "solver/rod/rod.hpp"
 #include "solver/scene/scenes.hpp"
+#include "tests/solver/dense.hpp"
 
 namespace rodsweep::test {
-
-using MatrixX = Eigen::MatrixXd;
 
 /// Numbers that are the same in every run.
 class Random {
@@ -55,15 +54,6 @@ struct DenseSystem {
   VectorX b;
 };
 DenseSystem dense_system(const Rod& rod, double dt);
-
-/// Solution of the symmetric positive definite system by Eigen; throws std::runtime_error where A is not.
-VectorX dense_solve(const MatrixX& a, const VectorX& b);
-/// Of D^-1/2 A D^-1/2, D the diagonal of A.
-double smallest_scaled_eigenvalue(const MatrixX& a);
-/// max |A_ij - B_ij| / sqrt(A_ii A_jj).
-double scaled_difference(const MatrixX& a, const MatrixX& b);
-/// sqrt((x - y)^T A (x - y) / y^T A y).
-double energy_error(const MatrixX& a, const VectorX& x, const VectorX& y);
 
 /// The pattern of a graph's system, with random well-conditioned symmetric positive definite entries.
 BlockMatrix random_matrix(const Edges& joints_coupled, int block_rows, unsigned seed);

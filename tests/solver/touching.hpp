@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/contact/contact_bodies.hpp"
+#include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
 #include "solver/step/observables.hpp"
 #include "solver/step/time_step.hpp"
@@ -18,7 +19,7 @@ namespace rodsweep::test {
 /// A straight rod from one point to another.
 inline Rod straight_rod(const Vector3& from, const Vector3& to, int segments, const RodParameters& p) {
   const Vector3 along = (to - from) / segments;
-  const Quaternion orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), along);
+  const Quaternion orientation = turn_between(Vector3::UnitZ(), along);
   std::vector<SegmentSpec> specs;
   for (int i = 0; i < segments; ++i)
     specs.push_back(segment_at(from + (i + 0.5) * along, orientation, along.norm(), p));

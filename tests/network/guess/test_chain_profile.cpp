@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "network/guess/knn.hpp"
+#include "solver/numbers/rotation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -67,7 +68,7 @@ TEST_CASE("the weight of the rod hangs on its first joint, however it is divided
     Scene scene = build_scene(test::bending_rod(segments, Clamp::wall));
     Rod& rod = scene.rods[0];
     for (std::size_t s = 1; s < rod.segments.size(); ++s) {  // straight down
-      rod.orientation[s] = Quaternion::FromTwoVectors(Vector3(0, 0, 1), Vector3(0, -1, 0));
+      rod.orientation[s] = turn_between(Vector3(0, 0, 1), Vector3(0, -1, 0));
       rod.position[s] = Vector3(0, -(static_cast<double>(s) - 0.5) * rod.segments[s].length_m, 0);
     }
     rod.orientation[0] = rod.orientation[1];

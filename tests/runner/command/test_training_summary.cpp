@@ -1,5 +1,6 @@
 // What is said of a training.
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "runner/command/training_summary.hpp"
 #include "tests/runner/file_examples.hpp"

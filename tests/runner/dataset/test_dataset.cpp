@@ -1,7 +1,9 @@
 // Data sets in files: what is read back, and which files are refused.
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "runner/dataset/dataset_reader.hpp"
+#include "runner/file/layout.hpp"
 #include "runner/file/pack.hpp"
 #include "tests/runner/data_set_examples.hpp"
 #include "tests/runner/recorded_examples.hpp"

@@ -1,6 +1,7 @@
 // Nearest neighbours and a network instead of the solve, from their files, in whole tasks.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
 
 #include "runner/experiment/evaluation.hpp"
 #include "runner/experiment/training_sets.hpp"

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"

@@ -1,7 +1,9 @@
 // Packed copies: the same data in fewer bytes, verified, never half a file; and what must not be continued.
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "runner/file/inspect.hpp"
+#include "runner/file/layout.hpp"
 #include "runner/file/pack.hpp"
 #include "runner/file/task_table.hpp"
 #include "tests/runner/file_examples.hpp"

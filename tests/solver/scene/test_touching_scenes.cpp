@@ -1,5 +1,4 @@
 // Scenes made for contact: geometry, and that they do what they are named for. The knot stays one.
-#include <Eigen/LU>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -48,7 +47,7 @@ long knot_determinant(const std::vector<Vector3>& polygon) {
     colours(passing.crossing, arc) -= 1;
   }
   const Eigen::Index m = crossings - 1;
-  return std::lround(std::abs(colours.topLeftCorner(m, m).fullPivLu().determinant()));
+  return std::lround(std::abs(test::determinant(colours.topLeftCorner(m, m))));
 }
 
 /// A rod's axis, closed far around its ends, which point to -x and x; seen from a direction of no symmetry.

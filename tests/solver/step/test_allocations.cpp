@@ -9,6 +9,7 @@
 #include "solver/guess/initial_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
+#include "solver/numbers/rotation.hpp"
 #include "solver/step/pbd_projection.hpp"
 #include "solver/step/time_step.hpp"
 #include "solver/step/xpbd_projection.hpp"
@@ -132,7 +133,7 @@ TEST_CASE("a step with contacts allocates nothing unless there are more of them 
   Scene scene = build_scene(test::bending_rod(12, Clamp::free));
   for (Vector3& position : scene.rods[0].position) position.y() = 0.05;
   for (Quaternion& orientation : scene.rods[0].orientation)
-    orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+    orientation = turn_between(Vector3::UnitZ(), Vector3::UnitX());
   scene.contact = ContactSettings{};
   scene.obstacles = {HalfSpace{}, Ball{{0, -9, 0}, 8.9}};
   DirectSolve direct(scene);
@@ -143,7 +144,7 @@ TEST_CASE("contacts allocate once, in the first step in which there are so many"
   Scene scene = build_scene(test::bending_rod(12, Clamp::free));
   for (std::size_t s = 0; s < 12; ++s) {
     scene.rods[0].position[s] = {static_cast<double>(s) / 6, 0.05, 0};
-    scene.rods[0].orientation[s] = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+    scene.rods[0].orientation[s] = turn_between(Vector3::UnitZ(), Vector3::UnitX());
   }
   scene.contact = ContactSettings{};
   scene.obstacles = {HalfSpace{}};

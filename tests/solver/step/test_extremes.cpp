@@ -1,5 +1,4 @@
 // Numerical care: signs of quaternions, segments shorter than thick, moduli far off, both ends held.
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -33,8 +32,7 @@ Rod straight_rod(int n, bool both_ends, double stretch) {
 double condition_number(const Rod& rod, double dt) {
   LinearSystem system(rod);
   system.assemble(rod, dt);
-  const VectorX values =
-      Eigen::SelfAdjointEigenSolver<test::MatrixX>(system.matrix().dense(), Eigen::EigenvaluesOnly).eigenvalues();
+  const VectorX values = test::eigenvalues(system.matrix().dense());
   return values.maxCoeff() / values.minCoeff();
 }
 

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "solver/numbers/rotation.hpp"
 #include "solver/rod/linearization.hpp"
 #include "tests/solver/simulation.hpp"
 
@@ -24,7 +25,7 @@ constexpr int settling_steps = 2000;
 
 Scene twisted_rod(int n) {
   const double l = length / n;
-  const Quaternion along_x = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  const Quaternion along_x = turn_between(Vector3::UnitZ(), Vector3::UnitX());
   std::vector<SegmentSpec> segments;
   std::vector<JointSpec> joints;
   for (int i = 0; i < n; ++i) {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "solver/numbers/rotation.hpp"
 #include "solver/rod/linearization.hpp"
 #include "tests/solver/simulation.hpp"
 
@@ -22,7 +23,7 @@ Rod rod_held_at_both_ends() {
   for (int i = 0; i < count; ++i) {
     SegmentSpec s;
     s.position_m = Vector3((i + 0.5) * segment_length, 0, 0);
-    s.orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+    s.orientation = turn_between(Vector3::UnitZ(), Vector3::UnitX());
     s.length_m = segment_length;
     s.radius_m = radius;
     s.density_kg_m3 = 1000;
@@ -66,7 +67,7 @@ Vector3 joint_turn(const Rod& rod, const Joint& j) {
 
 TEST_CASE("A rod bent by its end turns by the same angle in every joint") {
   const double angle = GENERATE(0.3, pi / 2, pi);
-  const Quaternion along_x = Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitX());
+  const Quaternion along_x = turn_between(Vector3::UnitZ(), Vector3::UnitX());
   // The end of a polygon of equal sides and equal turns.
   const auto end_of_polygon = [&](double total) {
     Vector3 vertex(0, 0, 0), side(0, 0, 0);

@@ -2,11 +2,11 @@
 //
 // A mode is started by its velocities and watched through its own shape. Implicit Euler turns exp(i w dt) into
 // 1 / (1 - i w dt): the frequency seen is atan(w dt) / dt, and a step keeps (1 + w^2 dt^2)^-1/2 of the amplitude.
-#include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 
+#include "tests/solver/dense.hpp"
 #include "tests/solver/simulation.hpp"
 
 using namespace rodsweep;
@@ -30,7 +30,7 @@ void set_transverse_velocity(Rod& rod, const VectorX& at_vertices, const Vector3
 /// fit of y(k + 1) - 2 Re(z) y(k) + |z|^2 y(k - 1) = 0 to every `stride`-th sample.
 std::complex<double> factor_per_step(const std::vector<double>& samples, std::size_t stride) {
   const std::size_t rows = samples.size() - 2 * stride;
-  Eigen::MatrixX2d known(rows, 2);
+  test::MatrixX known(rows, 2);
   VectorX next(rows);
   for (std::size_t k = 0; k < rows; ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(k);
@@ -38,7 +38,7 @@ std::complex<double> factor_per_step(const std::vector<double>& samples, std::si
     known(row, 1) = -samples[k];
     next[row] = samples[k + 2 * stride];
   }
-  const Eigen::Vector2d fit = known.colPivHouseholderQr().solve(next);
+  const VectorX fit = test::least_squares(known, next);
   const double size = std::sqrt(fit[1]);
   return std::polar(std::pow(size, 1.0 / static_cast<double>(stride)),
                     std::acos(fit[0] / (2 * size)) / static_cast<double>(stride));
@@ -107,15 +107,16 @@ Modes chain_modes(const BendingRod& p) {
   Eigen::MatrixXd vertices = Eigen::MatrixXd::Zero(n + 1, n), stiffness = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) vertices.row(i + 1) = vertices.row(i) + l * Eigen::MatrixXd::Identity(n, n).row(i);
   const Eigen::MatrixXd centres = (vertices.topRows(n) + vertices.bottomRows(n)) / 2;
-  const Eigen::MatrixXd masses = mass * centres.transpose() * centres + inertia * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd masses =
+      mass * test::product(centres.transpose(), centres) + inertia * Eigen::MatrixXd::Identity(n, n);
   stiffness(0, 0) = 2 * joint;
   for (int i = 1; i < n; ++i) {
     stiffness(i - 1, i - 1) += joint;
     stiffness(i, i) += joint;
     stiffness(i - 1, i) = stiffness(i, i - 1) = -joint;
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(stiffness, masses);
-  return {eigen.eigenvalues().cwiseSqrt(), vertices * eigen.eigenvectors()};
+  const test::Modes modes = test::modes(stiffness, masses);
+  return {modes.values.cwiseSqrt(), test::product(vertices, modes.vectors)};
 }
 
 }  // namespace
