@@ -60,7 +60,7 @@ struct KnnSet::Iteration {
 KnnSet::KnnSet() = default;
 KnnSet::~KnnSet() = default;
 
-void KnnSet::add(const RecordedSimulation& simulation) {
+void KnnSet::add(const StoredSimulation& simulation) {
   Replay replay(simulation);
   std::vector<ChainProfile> profiles;
   const std::size_t first_rod = arcs_.size();
@@ -69,12 +69,12 @@ void KnnSet::add(const RecordedSimulation& simulation) {
     arcs_.push_back(profiles.back().arc());
   }
   Tensor<float> state, loads;
-  replay.run([&](const RecordedSystem& recorded, const Rod& rod, const LinearSystem& system) {
-    const auto r = static_cast<std::size_t>(recorded.at.rod), j = static_cast<std::size_t>(recorded.at.newton);
+  replay.run([&](const StoredSystem& stored, const Rod& rod, const LinearSystem& system) {
+    const auto r = static_cast<std::size_t>(stored.at.rod), j = static_cast<std::size_t>(stored.at.newton);
     state.resize(ChainProfile::state_size, rod.joint_count());
     loads.resize(6, rod.joint_count());
     profiles[r].state(rod, system, simulation.constraint_dt_s, state);
-    profiles[r].loads(recorded.solution, simulation.constraint_dt_s, loads);
+    profiles[r].loads(stored.solution, simulation.constraint_dt_s, loads);
     while (iterations_.size() <= j) iterations_.push_back(std::make_unique<Iteration>());
     Iteration& of = *iterations_[j];
     of.queries.push_back(query(profiles[r], state));

@@ -1,4 +1,4 @@
-// The training set of the deck's baseline: recorded systems of unbranched rods, found again by their likeness.
+// The training set of the deck's baseline: stored systems of unbranched rods, found again by their likeness.
 //
 // A system is known by a query: the state of its rod (network/guess/chain_profile.hpp) at `points` values of the arc
 // length, and the rod's constants. Each quantity is shifted and divided by its deviation over the training set; the
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "network/encoding/normalisation.hpp"
-#include "network/encoding/recorded_simulation.hpp"
+#include "network/encoding/stored_simulation.hpp"
 #include "network/guess/chain_profile.hpp"
 
 namespace rodsweep {
@@ -40,7 +40,7 @@ class KnnSet {
   ~KnnSet();
 
   /// Takes in a simulation, which is not needed afterwards. Throws SceneError where a rod branches.
-  void add(const RecordedSimulation& simulation);
+  void add(const StoredSimulation& simulation);
   /// Normalises and indexes. To be called once, after the last simulation.
   void finish();
 

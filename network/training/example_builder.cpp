@@ -31,15 +31,15 @@ Tensor<float> by_place(const Topology& topology, const VectorX& values) {
 }
 
 Example example_of(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system,
-                   const RecordedSystem& recorded, double dt_c, RodExamples& of) {
+                   const StoredSystem& stored, double dt_c, RodExamples& of) {
   Example out;
   out.topology = of.encoder.shared_topology();
   out.nodes.resize(node_features(settings), rod.segment_count());
   out.edges.resize(edge_features(settings), rod.joint_count());
-  of.encoder.encode(rod, system, recorded.at.newton, dt_c, of.base, of.residual, out.nodes, out.edges);
-  const VectorX error = recorded.solution - of.base;
+  of.encoder.encode(rod, system, stored.at.newton, dt_c, of.base, of.residual, out.nodes, out.edges);
+  const VectorX error = stored.solution - of.base;
   out.system =
-      scaled_system(of.encoder.pattern(), system.matrix(), of.residual, error, recorded.solution.dot(system.rhs()));
+      scaled_system(of.encoder.pattern(), system.matrix(), of.residual, error, stored.solution.dot(system.rhs()));
   correction_scale(system.matrix(), of.residual, of.scale);
   if (settings.encoding == Encoding::system) {
     out.unit = Tensor<float>::Ones(6, rod.joint_count());
@@ -50,7 +50,7 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Line
   }
   if (settings.moves) {
     out.node_target.resize(6, rod.segment_count());
-    system.displacements(rod, recorded.solution, of.moves);
+    system.displacements(rod, stored.solution, of.moves);
     for (Eigen::Index s = 0; s < out.node_target.cols(); ++s)
       for (int k = 0; k < 6; ++k) out.node_target(k, s) = static_cast<float>(of.moves[static_cast<std::size_t>(s)][k]);
   } else {
@@ -61,20 +61,20 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Line
 
 }  // namespace
 
-void add_examples(const CopingNetSettings& settings, const RecordedSimulation& simulation, std::vector<Example>& out) {
+void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out) {
   Replay replay(simulation);
   const Scene& scene = replay.scene();
   const std::unique_ptr<InitialGuess> base = base_guess(settings, scene, simulation.newton_iterations);
   std::vector<RodExamples> rods;
   for (std::size_t r = 0; r < scene.rods.size(); ++r) rods.emplace_back(settings, scene.rods[r], replay.systems()[r]);
-  replay.run([&](const RecordedSystem& recorded, const Rod& rod, const LinearSystem& system) {
-    RodExamples& of = rods[static_cast<std::size_t>(recorded.at.rod)];
-    base->propose(system, recorded.at, of.base);
+  replay.run([&](const StoredSystem& stored, const Rod& rod, const LinearSystem& system) {
+    RodExamples& of = rods[static_cast<std::size_t>(stored.at.rod)];
+    base->propose(system, stored.at, of.base);
     system.matrix().multiply(of.base.data(), of.residual.data());
     of.residual = system.rhs() - of.residual;
     if (of.residual.lpNorm<Eigen::Infinity>() > rounding_level)
-      out.push_back(example_of(settings, rod, system, recorded, simulation.constraint_dt_s, of));
-    base->accept(recorded.at, recorded.solution);
+      out.push_back(example_of(settings, rod, system, stored, simulation.constraint_dt_s, of));
+    base->accept(stored.at, stored.solution);
   });
 }
 

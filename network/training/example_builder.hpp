@@ -5,13 +5,13 @@
 #pragma once
 
 #include "network/encoding/feature_encoder.hpp"
-#include "network/encoding/recorded_simulation.hpp"
+#include "network/encoding/stored_simulation.hpp"
 #include "network/training/example.hpp"
 
 namespace rodsweep {
 
 /// Adds the examples of one simulation, their features and targets without normalisation.
-void add_examples(const CopingNetSettings& settings, const RecordedSimulation& simulation, std::vector<Example>& out);
+void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out);
 
 /// The scales of a training set of such examples.
 FeatureScales feature_scales(const CopingNetSettings& settings, const std::vector<Example>& examples);

@@ -53,7 +53,7 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
                               {"steps", all_steps(plan)},
                               {"most_systems", most_systems(plan)},
                               {"guesses", plan.guess_labels()},
-                              {"recorded_systems", plan.rows(Rows::system)},
+                              {"stored_systems", plan.rows(Rows::system)},
                               {"file_bytes", file_bytes(plan)}};
   json["swept"] = nlohmann::ordered_json::array();
   for (const ParameterColumn& parameter : plan.parameters())

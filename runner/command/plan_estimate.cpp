@@ -12,7 +12,7 @@ constexpr double enough_s = 0.5, too_long_s = 5;
 /// The first `steps` steps of a task.
 void truncate(Task& task, TaskSpec& spec, int steps) {
   spec.time.steps = steps;
-  size_rows(task, spec.scene, spec.time, spec.record);
+  size_rows(task, spec.scene, spec.time, spec.output);
   spec.time_limit_s = spec.time_limit_s > 0 ? std::min(spec.time_limit_s, too_long_s) : too_long_s;
 }
 

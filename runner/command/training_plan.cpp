@@ -58,11 +58,11 @@ double bytes_of(const Example& example) {
          static_cast<double>(system.couplings.size() * sizeof(SystemPattern::Coupling) + sizeof(Example));
 }
 
-double seconds_of_ratio(const TrainingJob& job, const Model& model, RecordedSimulation simulation) {
+double seconds_of_ratio(const TrainingJob& job, const Model& model, StoredSimulation simulation) {
   const ValidationRatio ratio({std::move(simulation)});
   const auto shared = std::make_shared<const Model>(model);
   const Stopwatch watch;
-  ratio.measure(0, [&](const Scene& scene, const RecordedSimulation& of) {
+  ratio.measure(0, [&](const Scene& scene, const StoredSimulation& of) {
     return std::make_unique<CopingNetGuess>(shared, scene, of.constraint_dt_s, of.newton_iterations);
   });
   const int times = 1 + (job.ratio_every_epochs > 0 ? job.training.epochs / job.ratio_every_epochs : 0);

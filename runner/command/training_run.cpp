@@ -62,7 +62,7 @@ class TrainingRun {
 /// Collective: reads the data and creates the file, or goes on from it.
 void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   console_.note(fmt::format("reading {}", training_job_.data.native()));
-  std::vector<RecordedSimulation> simulations;
+  std::vector<StoredSimulation> simulations;
   collectively(mpi_.world(), [&] {
     const DatasetReader dataset = open_dataset(training_job_, job_);
     if (earlier && earlier->card.data_hash != dataset.hash())

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/dataset/system_recording.hpp"
+#include "runner/dataset/stored_systems.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/resume_check.hpp"
@@ -76,7 +76,7 @@ const Task& DatasetReader::task(std::int64_t simulation) const {
   return plan_->task(tasks_.at(static_cast<std::size_t>(simulation)));
 }
 
-RecordedSimulation DatasetReader::read(std::int64_t simulation) const {
+StoredSimulation DatasetReader::read(std::int64_t simulation) const {
   const std::int64_t index = task(simulation).index;
   TaskRecord record;
   if (!reader_->read_intact(index, record)) {
@@ -84,17 +84,17 @@ RecordedSimulation DatasetReader::read(std::int64_t simulation) const {
                                 path_.native(), index));
   }
   const TaskSpec spec = plan_->spec(index);
-  RecordedSimulation result;
+  StoredSimulation result;
   result.scene = build_scene(spec.scene);
   result.step_s = spec.time.step_s;
   result.newton_iterations = spec.time.newton_iterations;
   result.constraint_dt_s = constraint_dt(result.scene, result.step_s);
-  result.systems = recorded_systems(record, result.scene, spec.record.recorded_iterations(spec.time.newton_iterations));
+  result.systems = stored_systems(record, result.scene, spec.output.stored_iterations(spec.time.newton_iterations));
   return result;
 }
 
-std::vector<RecordedSimulation> DatasetReader::read(std::int64_t first, std::int64_t count) const {
-  std::vector<RecordedSimulation> simulations;
+std::vector<StoredSimulation> DatasetReader::read(std::int64_t first, std::int64_t count) const {
+  std::vector<StoredSimulation> simulations;
   for (std::int64_t i = first; i < first + count; ++i) simulations.push_back(read(i));
   return simulations;
 }

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "network/encoding/recorded_simulation.hpp"
+#include "network/encoding/stored_simulation.hpp"
 #include "runner/file/task_reader.hpp"
 #include "runner/job/plan.hpp"
 
@@ -26,8 +26,8 @@ class DatasetReader {
   const Plan& plan() const { return *plan_; }
 
   /// Compared with its checksum.
-  RecordedSimulation read(std::int64_t simulation) const;
-  std::vector<RecordedSimulation> read(std::int64_t first, std::int64_t count) const;
+  StoredSimulation read(std::int64_t simulation) const;
+  std::vector<StoredSimulation> read(std::int64_t first, std::int64_t count) const;
 
   /// Sixteen hexadecimal digits over the job's text and all checksums: the same for the same data.
   const std::string& hash() const { return hash_; }

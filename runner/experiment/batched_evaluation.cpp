@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "runner/dataset/system_recording.hpp"
-#include "runner/experiment/simulation_record.hpp"
+#include "runner/dataset/stored_systems.hpp"
+#include "runner/experiment/simulation_log.hpp"
 #include "runner/experiment/solve_rows.hpp"
 #include "solver/batch/batched_step.hpp"
 #include "solver/step/stopwatch.hpp"
@@ -20,25 +20,25 @@ namespace {
 struct Member {
   const TaskRun& run;
   Scene scene;
-  SimulationRecord simulation;
-  SystemRecorder systems;
+  SimulationLog simulation;
+  SystemStore systems;
 
   Member(const TaskRun& of, Scene start)
       : run(of),
         scene(std::move(start)),
         simulation(*of.task, of.spec, *of.record, scene),
-        systems(scene, of.spec.record.recorded_iterations(of.spec.time.newton_iterations), *of.record) {}
+        systems(scene, of.spec.output.stored_iterations(of.spec.time.newton_iterations), *of.record) {}
   Member(const Member&) = delete;
   Member& operator=(const Member&) = delete;
 };
 
 /// Its columns of /solves and the system itself, before the solve.
-void record_before(const BatchedStepper& stepper, int lane, const SolvePosition& at, Member& member) {
+void log_before(const BatchedStepper& stepper, int lane, const SolvePosition& at, Member& member) {
   TaskRecord& record = *member.run.record;
-  if (member.run.spec.record.solves) {
+  if (member.run.spec.output.solves) {
     const BatchedLinearization& linearization = stepper.system().linearization();
     const std::size_t row = solve_row(member.run.spec, 1, at);
-    record_position(at, row, record);
+    log_position(at, row, record);
     record.newton_residual[row] = linearization.residual[lane];
     record.solve_joint_gap[row] = std::sqrt(linearization.squared_gap[lane]);
     record.rhs_norm[row] = std::sqrt(linearization.squared_norm[lane]);
@@ -57,7 +57,7 @@ const std::vector<StepReport>& step(BatchedStepper& stepper, std::deque<Member>&
   stepper.begin();
   for (int newton = 0; stepper.linearize(); ++newton) {
     const SolvePosition at{step, newton, 0};
-    each([&](int lane, Member& member) { record_before(stepper, lane, at, member); });
+    each([&](int lane, Member& member) { log_before(stepper, lane, at, member); });
     stepper.solve();
     each([&](int lane, Member& member) {
       if (member.systems.holds(at)) stepper.system().write_solution(lane, member.systems.solution(at));
@@ -122,7 +122,7 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop, const Stop
 
 bool steps_in_batches(const TaskSpec& spec) {
   const OpenRod* rod = open_rod(spec.scene);
-  return rod && spec.record.systems != RecordedSystems::none && rod->tip_force_n.isZero() && !rod->wind &&
+  return rod && spec.output.systems != StoredSystems::none && rod->tip_force_n.isZero() && !rod->wind &&
          !rod->contact && (rod->stretch == Stretch::inextensible || rod->stretch_compliance_per_j);
 }
 

@@ -4,11 +4,11 @@
 #include <memory>
 #include <optional>
 
-#include "runner/dataset/system_recording.hpp"
+#include "runner/dataset/stored_systems.hpp"
 #include "runner/experiment/batched_evaluation.hpp"
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/experiment/projections.hpp"
-#include "runner/experiment/simulation_record.hpp"
+#include "runner/experiment/simulation_log.hpp"
 #include "solver/step/stopwatch.hpp"
 #include "solver/step/time_step.hpp"
 
@@ -20,14 +20,14 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
               const Stopwatch& watch) {
   Scene scene = build_scene(spec.scene);
   MeasuredSolve solve(scene, spec, record);
-  std::optional<RecordingSolve> recording;
-  if (const int iterations = spec.record.recorded_iterations(spec.time.newton_iterations); iterations > 0)
-    recording.emplace(scene, iterations, solve, record);
+  std::optional<StoringSolve> storing;
+  if (const int iterations = spec.output.stored_iterations(spec.time.newton_iterations); iterations > 0)
+    storing.emplace(scene, iterations, solve, record);
   const std::unique_ptr<Projection> projection =
-      make_projection(scene, spec, record, recording ? static_cast<LinearSolve&>(*recording) : solve);
+      make_projection(scene, spec, record, storing ? static_cast<LinearSolve&>(*storing) : solve);
   TimeStepper stepper(scene, {spec.time.step_s, spec.time.newton_iterations, spec.time.newton_tolerance});
 
-  SimulationRecord simulation(task, spec, record, scene);
+  SimulationLog simulation(task, spec, record, scene);
   for (int step = 0; step < spec.time.steps; ++step) {
     if (stop && stop()) return false;
     if (simulation.out_of_time(step, watch.seconds())) break;

@@ -53,11 +53,11 @@ struct MeasuredSolve::RodSolvers {
         exact(VectorX::Zero(a.unknowns())),
         x(exact),
         residual(exact) {
-    tight.record_history(true);
-    if (spec.record.other_norm) {
+    tight.keep_history(true);
+    if (spec.output.other_norm) {
       const Norm other = spec.solve.norm == Norm::natural ? Norm::true_residual : Norm::natural;
       tight_other.emplace(a, settings(spec, other));
-      tight_other->record_history(true);
+      tight_other->keep_history(true);
     }
     for (std::size_t g = 0; g < guess_count; ++g)
       guesses.push_back({ConjugateGradient(a, settings(spec, spec.solve.norm)), exact, {}, direct_s, direct_s, {}});
@@ -90,7 +90,7 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
       reset(sums->matvecs);
       reset(sums->unreached);
     }
-    if (!spec.record.other_norm) continue;
+    if (!spec.output.other_norm) continue;
     reset(record_.counted_other_norm.iterations);
     reset(record_.counted_other_norm.unreached);
   }
@@ -117,8 +117,8 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
     outcome = direct_.solve(system, at, 0, solvers.exact);
     seconds = watch.seconds();
   }
-  if (spec_.record.solves) {
-    record_system(system, scene_.rods[static_cast<std::size_t>(at.rod)], at, row, record_);
+  if (spec_.output.solves) {
+    log_system(system, scene_.rods[static_cast<std::size_t>(at.rod)], at, row, record_);
     record_.assemble_s[row] = static_cast<float>(assemble_s);
     record_.direct_s[row] = static_cast<float>(median(solvers.direct_s));
   }
@@ -170,7 +170,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     const CgReport report = tight_solve(solvers.tight, solvers.reference, solvers.iterations);
     const std::size_t column = guesses_[g].column, entry = row * spec_.guesses.size() + column;
     if (failure != SolveOutcome::not_run) {
-      if (spec_.record.solves) record_.reason[entry] = static_cast<std::int8_t>(failure);
+      if (spec_.output.solves) record_.reason[entry] = static_cast<std::int8_t>(failure);
       unusable_ = spec_.guesses[column].label;
       return failure;
     }
@@ -179,7 +179,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     add(record_.counted_all, column, solvers.iterations, report.iterations, start);
     if (at.newton == 0) add(record_.counted, column, solvers.iterations, report.iterations, start);
 
-    if (!spec_.record.solves) continue;
+    if (!spec_.output.solves) continue;
     record_.reason[entry] = static_cast<std::int8_t>(report.outcome);
     record_.start_matvecs[entry] = static_cast<std::int16_t>(start);
     std::copy(solvers.iterations.begin(), solvers.iterations.end(),
@@ -218,7 +218,7 @@ void MeasuredSolve::accept(const SolvePosition& at, std::size_t row, RodSolvers&
     const Stopwatch watch;
     guesses_[g].guess->accept(at, solution);
     const double accept_s = watch.seconds();
-    if (!spec_.record.solves) continue;
+    if (!spec_.output.solves) continue;
     const std::size_t entry = row * spec_.guesses.size() + guesses_[g].column;
     record_.guess_s[entry] = static_cast<float>(median(solvers.guesses[g].guess_s) + accept_s);
     record_.cg_s[entry] = static_cast<float>(median(solvers.guesses[g].cg_s));

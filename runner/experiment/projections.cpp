@@ -12,9 +12,9 @@ namespace {
 
 /// A network in place of the solve: its row of /solves holds the system that it was given. There are no iterations to
 /// count, and its time is within that of the step.
-class RecordedIncrements : public IncrementSource {
+class LoggedIncrements : public IncrementSource {
  public:
-  RecordedIncrements(const Scene& scene, const TaskSpec& spec, TaskRecord& record)
+  LoggedIncrements(const Scene& scene, const TaskSpec& spec, TaskRecord& record)
       : spec_(spec),
         record_(record),
         rods_(scene.rods.size()),
@@ -22,7 +22,7 @@ class RecordedIncrements : public IncrementSource {
 
   bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, VectorX& delta_lambda,
                std::vector<Lane8>& moves) override {
-    if (spec_.record.solves) record_system(system, rod, at, solve_row(spec_, rods_, at), record_);
+    if (spec_.output.solves) log_system(system, rod, at, solve_row(spec_, rods_, at), record_);
     return network_.predict(rod, system, at, dt_c, delta_lambda, moves);
   }
 
@@ -35,17 +35,17 @@ class RecordedIncrements : public IncrementSource {
 
 /// Gauss-Seidel: every iteration has a row of /solves with the residual that it met. There is no linear system to tell
 /// more of; the time is that of the step.
-class RecordedIterations : public Projection {
+class LoggedIterations : public Projection {
  public:
-  RecordedIterations(const Scene& scene, const TaskSpec& spec, TaskRecord& record,
-                     std::unique_ptr<GaussSeidelProjection> projection)
+  LoggedIterations(const Scene& scene, const TaskSpec& spec, TaskRecord& record,
+                   std::unique_ptr<GaussSeidelProjection> projection)
       : spec_(spec), record_(record), rods_(scene.rods.size()), projection_(std::move(projection)) {}
 
   ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override {
     const ProjectionReport report = projection_->project(rod, at, dt, newton_tolerance);
-    if (!spec_.record.solves || report.outcome == SolveOutcome::not_run) return report;
+    if (!spec_.output.solves || report.outcome == SolveOutcome::not_run) return report;
     const std::size_t row = solve_row(spec_, rods_, at);
-    record_position(at, row, record_);
+    log_position(at, row, record_);
     record_.newton_residual[row] = report.newton_residual;
     return report;
   }
@@ -65,12 +65,12 @@ std::unique_ptr<Projection> make_projection(const Scene& scene, const TaskSpec& 
     case Method::direct:
     case Method::cg: break;
     case Method::end_to_end:
-      return std::make_unique<EndToEndProjection>(scene, std::make_unique<RecordedIncrements>(scene, spec, record));
+      return std::make_unique<EndToEndProjection>(scene, std::make_unique<LoggedIncrements>(scene, spec, record));
     case Method::pbd:
-      return std::make_unique<RecordedIterations>(scene, spec, record,
-                                                  std::make_unique<PbdProjection>(scene, spec.solve.stiffness));
+      return std::make_unique<LoggedIterations>(scene, spec, record,
+                                                std::make_unique<PbdProjection>(scene, spec.solve.stiffness));
     case Method::xpbd:
-      return std::make_unique<RecordedIterations>(scene, spec, record, std::make_unique<XpbdProjection>(scene));
+      return std::make_unique<LoggedIterations>(scene, spec, record, std::make_unique<XpbdProjection>(scene));
   }
   return std::make_unique<LinearProjection>(scene, solve);
 }

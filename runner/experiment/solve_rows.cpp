@@ -12,15 +12,15 @@ std::size_t solve_row(const TaskSpec& spec, std::size_t rods, const SolvePositio
   return iteration * rods + static_cast<std::size_t>(at.rod);
 }
 
-void record_position(const SolvePosition& at, std::size_t row, TaskRecord& record) {
+void log_position(const SolvePosition& at, std::size_t row, TaskRecord& record) {
   record.step[row] = at.step;
   record.newton[row] = static_cast<std::int16_t>(at.newton);
   record.rod[row] = narrow<std::int16_t>(at.rod);
 }
 
-void record_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
-                   TaskRecord& record) {
-  record_position(at, row, record);
+void log_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
+                TaskRecord& record) {
+  log_position(at, row, record);
   record.newton_residual[row] = system.newton_residual();
   record.solve_joint_gap[row] = joint_gap(rod);
   record.rhs_norm[row] = system.rhs().norm();

@@ -12,10 +12,10 @@ namespace rodsweep {
 std::size_t solve_row(const TaskSpec& spec, std::size_t rods, const SolvePosition& at);
 
 /// Where in its simulation a row stands.
-void record_position(const SolvePosition& at, std::size_t row, TaskRecord& record);
+void log_position(const SolvePosition& at, std::size_t row, TaskRecord& record);
 
 /// Position, residuals and gap: `rod` in the state that the system was assembled from.
-void record_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
-                   TaskRecord& record);
+void log_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
+                TaskRecord& record);
 
 }  // namespace rodsweep

@@ -65,7 +65,7 @@ struct TaskRecord {
   std::vector<std::int16_t> segment_rod;                   ///< [segment]
   std::vector<std::int8_t> segment_static;                 ///< [segment]
 
-  // ---- /systems: the recorded linear systems of a data set (runner/dataset/system_recording.hpp)
+  // ---- /systems: the linear systems of a data set (runner/dataset/stored_systems.hpp)
   std::vector<std::int32_t> system_step;                      ///< [system]
   std::vector<std::int16_t> system_newton, system_rod;        ///< [system]
   std::vector<double> system_position_m, system_orientation;  ///< [system x segment, 3], [.., 4] (w, x, y, z)

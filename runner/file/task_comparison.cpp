@@ -13,21 +13,21 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A task's record, and every how many steps it has a frame.
-struct Recorded {
+struct Written {
   Task task;
   TaskRecord record;
   std::int64_t every;
 };
 
-Recorded read(const fs::path& path, std::int64_t task, std::int64_t every) {
+Written read(const fs::path& path, std::int64_t task, std::int64_t every) {
   const TaskReader file(path, TaskReader::Times::left_out);
-  Recorded recorded{reading(path, [&] { return file.tasks().at(static_cast<std::size_t>(task)); }), {}, every};
-  file.read(task, recorded.record);  // damaged or not: the comparison tells
-  return recorded;
+  Written written{reading(path, [&] { return file.tasks().at(static_cast<std::size_t>(task)); }), {}, every};
+  file.read(task, written.record);  // damaged or not: the comparison tells
+  return written;
 }
 
 /// Frame by frame, where both have one of the same step.
-bool same_frames(const Recorded& a, std::string_view bytes_a, const Recorded& b, std::string_view bytes_b) {
+bool same_frames(const Written& a, std::string_view bytes_a, const Written& b, std::string_view bytes_b) {
   const std::size_t frame_bytes = bytes_a.size() / static_cast<std::size_t>(a.task.frames);
   const auto of_frame = [&](std::string_view bytes, std::int64_t frame) {
     return bytes.substr(static_cast<std::size_t>(frame) * frame_bytes, frame_bytes);
@@ -40,7 +40,7 @@ bool same_frames(const Recorded& a, std::string_view bytes_a, const Recorded& b,
   return true;
 }
 
-void compare_results(const Recorded& a, const Recorded& b, TaskComparison& result) {
+void compare_results(const Written& a, const Written& b, TaskComparison& result) {
   for (const Column& column : columns()) {
     const std::string_view bytes_a = bytes_of(column, a.record), bytes_b = bytes_of(column, b.record);
     if (is_timing(column) || bytes_a.empty()) continue;

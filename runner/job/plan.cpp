@@ -43,25 +43,25 @@ const std::vector<double>& tolerance_ladder() {
   return ladder;
 }
 
-void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const RecordSpec& record) {
+void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const OutputSpec& output) {
   const int rods = rod_count(scene);
   task.segments = segment_count(scene);
   task.joints = joint_count(scene);
   task.steps = time.steps;
-  task.frames = record.trajectory_every > 0 ? 1 + task.steps / record.trajectory_every : 0;
-  const std::int64_t recorded = task.steps * record.recorded_iterations(time.newton_iterations);
+  task.frames = output.trajectory_every > 0 ? 1 + task.steps / output.trajectory_every : 0;
+  const std::int64_t stored = task.steps * output.stored_iterations(time.newton_iterations);
   const auto set = [&](Rows kind, std::initializer_list<std::int64_t> factors) {
     task.rows[kind].count = product(factors);
   };
   set(Rows::task, {1});
   set(Rows::step, {task.steps});
   set(Rows::contact_step, {task.rows[Rows::contact_task].count, task.steps});
-  set(Rows::solve, {record.solves ? task.steps : 0, time.newton_iterations, rods});
+  set(Rows::solve, {output.solves ? task.steps : 0, time.newton_iterations, rods});
   set(Rows::frame_segment, {task.frames, task.segments});
   set(Rows::segment, {task.frames > 0 ? task.segments : 0});
-  set(Rows::system, {recorded, rods});
-  set(Rows::system_segment, {recorded, task.segments});
-  set(Rows::system_joint, {recorded, task.joints});
+  set(Rows::system, {stored, rods});
+  set(Rows::system_segment, {stored, task.segments});
+  set(Rows::system_joint, {stored, task.joints});
 }
 
 Plan::Plan(Job job)
@@ -73,7 +73,7 @@ Plan::Plan(Job job)
 /// Checks every parameter point and makes its tasks, their rows counted but not placed.
 void Plan::expand() {
   const std::int64_t points = point_count(space_, job_);
-  const RecordSpec record = record_spec(job_);
+  const OutputSpec output = output_spec(job_);
   bool contact = false;
   Point values;
   for (std::int64_t point = 0; point < points; ++point) {
@@ -86,7 +86,7 @@ void Plan::expand() {
     Task task;
     task.point = point;
     task.sample = point % job_.samples;
-    size_rows(task, scene, time, record);
+    size_rows(task, scene, time, output);
     task.cost = static_cast<double>(task.segments) * time.steps * time.newton_iterations;
     const bool own_trajectories =
         evaluation(values) == Evaluation::closed_loop && solve_spec(values, job_).method == Method::cg;
@@ -128,7 +128,7 @@ Plan Plan::alone(std::int64_t index, int trajectory_every) const {
   Task& task = plan.tasks_.front();
   task.index = 0;
   const TaskSpec spec = plan.spec(0);
-  size_rows(task, spec.scene, spec.time, spec.record);
+  size_rows(task, spec.scene, spec.time, spec.output);
   plan.place_rows();
   return plan;
 }
@@ -148,7 +148,7 @@ TaskSpec Plan::spec(std::int64_t index) const {
   spec.evaluation = evaluation(point);
   if (spec.solve.method == Method::cg) spec.guesses = guess_specs(point, job_);
   spec.own_guess = task.own_guess;
-  spec.record = record_spec(job_);
+  spec.output = output_spec(job_);
   spec.seed = random_bits(job_.seed, static_cast<std::uint64_t>(task.sample), random_stream("guesses"));
   spec.time_limit_s = job_.values["task_time_limit_s"];
   return spec;

@@ -80,7 +80,7 @@ class Plan {
 };
 
 /// Sets how many segments, joints, steps, frames and rows of every kind a task has.
-void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const RecordSpec& record);
+void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const OutputSpec& output);
 
 /// The tolerances at which iterations are counted (/axes/tolerance), relative to ||b||.
 const std::vector<double>& tolerance_ladder();  // 1e-1 ... 1e-8

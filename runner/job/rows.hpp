@@ -16,8 +16,8 @@ enum class Rows {
   contact_step,   ///< as step, in the same files
   solve,          ///< step-major, then Newton iterations, then rods; none in summaries
   frame_segment,  ///< frame by frame
-  segment,        ///< of a recorded trajectory
-  system,         ///< of a data set: step-major, then recorded Newton iterations, then rods
+  segment,        ///< of a trajectory
+  system,         ///< of a data set: step-major, then stored Newton iterations, then rods
   system_segment,
   system_joint
 };

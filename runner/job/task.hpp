@@ -68,22 +68,23 @@ struct GuessSpec {
 };
 
 /// Of which linear systems a data set holds what they were assembled from, and the solution.
-enum class RecordedSystems {
+enum class StoredSystems {
   none,   ///< a sweep
   first,  ///< the first Newton iteration of every step
   all
 };
 
-struct RecordSpec {
+/// What a job says under "record".
+struct OutputSpec {
   bool solves = true;        ///< false: "summary", no /solves rows
   bool other_norm = true;    ///< iterations also in the norm that the job doesn't test
   int trajectory_every = 0;  ///< a frame every so many steps, frame 0 the initial state; 0: no trajectory
-  RecordedSystems systems = RecordedSystems::none;
+  StoredSystems systems = StoredSystems::none;
 
-  /// Newton iterations of a step, from the first, whose systems are recorded.
-  int recorded_iterations(int newton_iterations) const {
-    if (systems == RecordedSystems::none) return 0;
-    return systems == RecordedSystems::first ? 1 : newton_iterations;
+  /// Newton iterations of a step, from the first, whose systems are stored.
+  int stored_iterations(int newton_iterations) const {
+    if (systems == StoredSystems::none) return 0;
+    return systems == StoredSystems::first ? 1 : newton_iterations;
   }
 };
 
@@ -96,7 +97,7 @@ struct TaskSpec {
   std::vector<GuessSpec> guesses;     ///< the file's whole guess axis, in order; empty for a plain direct simulation
   std::vector<std::uint8_t> settled;  ///< 1: a guess whose results are known, which is not tried; empty: all are
   int own_guess = -1;  ///< closed loop with cg: index into `guesses` of the guess that this task runs; else -1
-  RecordSpec record;
+  OutputSpec output;
   std::uint64_t seed =
       0;  ///< for guesses that draw random numbers; from the job's seed and the sample, shared by grid points
   double time_limit_s = 0;  ///< 0: none

@@ -156,12 +156,11 @@ Evaluation evaluation(const Point& point) {
   return closed ? Evaluation::closed_loop : Evaluation::paired;
 }
 
-RecordSpec record_spec(const Job& job) {
+OutputSpec output_spec(const Job& job) {
   const auto& record = job.values["record"];
-  RecordSpec spec{record["solves"] == "all", record.value("norms", "one") == "both",
-                  record["trajectory_every"].get<int>(), RecordedSystems::none};
-  if (record.contains("systems"))
-    spec.systems = record["systems"] == "all" ? RecordedSystems::all : RecordedSystems::first;
+  OutputSpec spec{record["solves"] == "all", record.value("norms", "one") == "both",
+                  record["trajectory_every"].get<int>(), StoredSystems::none};
+  if (record.contains("systems")) spec.systems = record["systems"] == "all" ? StoredSystems::all : StoredSystems::first;
   return spec;
 }
 

@@ -32,7 +32,7 @@ ModelCard new_card(const Job& job, const TrainingJob& settings, const TrainingDa
 }  // namespace
 
 Training::Training(const Job& job, const TrainingJob& settings, const TrainingData& data,
-                   std::vector<RecordedSimulation> simulations, MPI_Comm comm)
+                   std::vector<StoredSimulation> simulations, MPI_Comm comm)
     : settings_(settings),
       data_(data),
       model_(std::make_shared<Model>(Model{CopingNet<float>(settings.network, settings.training.seed), data.scales})),
@@ -141,14 +141,14 @@ ValidationRatio::Ratios Training::mean_ratio(const ValidationRatio::MakeGuess& m
 }
 
 ValidationRatio::Ratios Training::mean_ratio(const std::shared_ptr<const Model>& model) const {
-  return mean_ratio([&](const Scene& scene, const RecordedSimulation& simulation) {
+  return mean_ratio([&](const Scene& scene, const StoredSimulation& simulation) {
     return std::make_unique<CopingNetGuess>(model, scene, simulation.constraint_dt_s, simulation.newton_iterations);
   });
 }
 
 void Training::end() {
   card_.cg_ratio = mean_ratio(kept_);
-  card_.base_cg_ratio = mean_ratio([&](const Scene& scene, const RecordedSimulation& simulation) {
+  card_.base_cg_ratio = mean_ratio([&](const Scene& scene, const StoredSimulation& simulation) {
     return base_guess(settings_.network, scene, simulation.newton_iterations);
   });
 }

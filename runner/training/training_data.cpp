@@ -44,10 +44,10 @@ TrainingData training_data(const TrainingJob& training, const DatasetReader& dat
   return data;
 }
 
-std::vector<RecordedSimulation> ratio_simulations(const TrainingJob& training, const DatasetReader& dataset, int part,
-                                                  int parts) {
+std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const DatasetReader& dataset, int part,
+                                                int parts) {
   const std::int64_t count = std::min(training.ratio_simulations, training.validation_simulations);
-  std::vector<RecordedSimulation> out;
+  std::vector<StoredSimulation> out;
   for (std::int64_t i = part; i < count; i += parts)
     out.push_back(dataset.read(dataset.size() - training.validation_simulations + i));
   return out;

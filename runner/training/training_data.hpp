@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "network/encoding/feature_encoder.hpp"
-#include "network/encoding/recorded_simulation.hpp"
+#include "network/encoding/stored_simulation.hpp"
 #include "network/training/example.hpp"
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/job/training_job.hpp"
@@ -29,7 +29,7 @@ DatasetReader open_dataset(const TrainingJob& training, const Job& job);
 TrainingData training_data(const TrainingJob& training, const DatasetReader& dataset);
 
 /// The validation simulations on which CG ratios are measured: those whose number leaves `part` of `parts`.
-std::vector<RecordedSimulation> ratio_simulations(const TrainingJob& training, const DatasetReader& dataset, int part,
-                                                  int parts);
+std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const DatasetReader& dataset, int part,
+                                                int parts);
 
 }  // namespace rodsweep

@@ -16,7 +16,7 @@ struct RodSolver {
 
   explicit RodSolver(const LinearSystem& system)
       : cg(system.matrix(), {Preconditioner::jacobi, Norm::true_residual, 0}), x(VectorX::Zero(system.rhs().size())) {
-    cg.record_history(true);
+    cg.keep_history(true);
   }
 };
 
@@ -33,10 +33,10 @@ ValidationRatio::Ratios ValidationRatio::unmeasured() {
   return ratios;
 }
 
-ValidationRatio::ValidationRatio(std::vector<RecordedSimulation> simulations) : simulations_(std::move(simulations)) {
-  for (const RecordedSimulation& simulation : simulations_)
+ValidationRatio::ValidationRatio(std::vector<StoredSimulation> simulations) : simulations_(std::move(simulations)) {
+  for (const StoredSimulation& simulation : simulations_)
     from_zero_.push_back(
-        count(simulation, [](const Scene&, const RecordedSimulation&) { return std::make_unique<ZeroGuess>(); }));
+        count(simulation, [](const Scene&, const StoredSimulation&) { return std::make_unique<ZeroGuess>(); }));
 }
 
 ValidationRatio::Ratios ValidationRatio::measure(std::size_t simulation, const MakeGuess& make_guess) const {
@@ -48,17 +48,17 @@ ValidationRatio::Ratios ValidationRatio::measure(std::size_t simulation, const M
   return ratios;
 }
 
-ValidationRatio::Iterations ValidationRatio::count(const RecordedSimulation& simulation, const MakeGuess& make_guess) {
+ValidationRatio::Iterations ValidationRatio::count(const StoredSimulation& simulation, const MakeGuess& make_guess) {
   Replay replay(simulation);
   const std::unique_ptr<InitialGuess> guess = make_guess(replay.scene(), simulation);
   std::vector<RodSolver> solvers;
   for (const LinearSystem& system : replay.systems()) solvers.emplace_back(system);
   Iterations sums{};
   std::array<std::int16_t, tolerance_count> reached{};
-  replay.run([&](const RecordedSystem& recorded, const Rod&, const LinearSystem& system) {
-    if (recorded.at.newton > 0) return;
-    RodSolver& of = solvers[static_cast<std::size_t>(recorded.at.rod)];
-    const Proposal proposal = guess->propose(system, recorded.at, of.x);
+  replay.run([&](const StoredSystem& stored, const Rod&, const LinearSystem& system) {
+    if (stored.at.newton > 0) return;
+    RodSolver& of = solvers[static_cast<std::size_t>(stored.at.rod)];
+    const Proposal proposal = guess->propose(system, stored.at, of.x);
     if (system.newton_residual() > rounding_level) {
       of.cg.matrix_changed();
       const double reference = of.cg.norm_of(system.rhs());
@@ -68,7 +68,7 @@ ValidationRatio::Iterations ValidationRatio::count(const RecordedSimulation& sim
         sums.fill(std::numeric_limits<double>::infinity());  // its first residual is no number
       for (std::size_t t = 0; t < tolerance_count; ++t) sums[t] += reached[t] >= 0 ? reached[t] : report.iterations;
     }
-    guess->accept(recorded.at, recorded.solution);
+    guess->accept(stored.at, stored.solution);
   });
   return sums;
 }

@@ -216,7 +216,7 @@ double ConjugateGradient::norm_of(const VectorX& b) {
   return std::sqrt(square);
 }
 
-void ConjugateGradient::record_history(bool on) {
+void ConjugateGradient::keep_history(bool on) {
   Impl& s = *impl_;
   s.history.clear();
   s.history.reserve(on ? static_cast<std::size_t>(s.settings.max_iterations) + 1 : 0);

@@ -53,8 +53,8 @@ class ConjugateGradient {
   /// The norm of b in which `reference` is to be given: ||b||_2, or the natural one.
   double norm_of(const VectorX& b);
 
-  /// Norms of the residual, [0] before the first iteration; recorded by the last solve if recording was on.
-  void record_history(bool on);
+  /// Norms of the residual, [0] before the first iteration; of the last solve, if it was kept.
+  void keep_history(bool on);
   const std::vector<double>& history() const;
 
  private:

@@ -21,7 +21,7 @@ struct Toy {
   Job job;
   TrainingJob training;
   TrainingData data;
-  std::vector<RecordedSimulation> simulations;
+  std::vector<StoredSimulation> simulations;
 
   explicit Toy(const Json& values = toy_train_job(), const Json& rods = toy_data_job());
 

@@ -54,7 +54,7 @@ struct Run {
 inline Run run(ConjugateGradient& cg, const VectorX& b, double tolerance, const VectorX* guess = nullptr) {
   Run out;
   out.x = guess ? *guess : VectorX(VectorX::Zero(b.size()));
-  cg.record_history(true);
+  cg.keep_history(true);
   out.report = cg.solve(b, out.x, guess != nullptr, tolerance, cg.norm_of(b));
   out.history = cg.history();
   return out;

@@ -2,21 +2,21 @@
 #include <catch2/catch.hpp>
 
 #include "network/guess/knn_guess.hpp"
-#include "tests/network/recorded.hpp"
+#include "tests/network/stored.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
 namespace {
 
-std::shared_ptr<const KnnSet> set_of(const std::vector<RecordedSimulation>& simulations) {
+std::shared_ptr<const KnnSet> set_of(const std::vector<StoredSimulation>& simulations) {
   auto set = std::make_shared<KnnSet>();
-  for (const RecordedSimulation& simulation : simulations) set->add(simulation);
+  for (const StoredSimulation& simulation : simulations) set->add(simulation);
   set->finish();
   return set;
 }
 
 /// What the guess says where a recorded system was solved, at a rod of `scene` in that state.
-VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const RecordedSystem& where, int k,
+VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const StoredSystem& where, int k,
                  double dt = 0.02, Proposal* proposal = nullptr) {
   Rod& rod = scene.rods[0];
   restore(where, rod);
@@ -29,7 +29,7 @@ VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const Re
 }
 
 /// A straight rod at rest whose velocity and solution are planted.
-RecordedSystem planted(const Rod& rod, const Vector3& velocity, const VectorX& solution) {
+StoredSystem planted(const Rod& rod, const Vector3& velocity, const VectorX& solution) {
   return {{},
           rod.position,
           rod.orientation,
@@ -42,12 +42,12 @@ RecordedSystem planted(const Rod& rod, const Vector3& velocity, const VectorX& s
 TEST_CASE("a system of the training set is its own nearest neighbour and is answered with its solution") {
   BendingRod other = test::bending_rod(7);
   other.length_m *= 1.3;
-  const std::vector<RecordedSimulation> simulations{test::recorded_simulation(build_scene(test::bending_rod(9)), 12, 2),
-                                                    test::recorded_simulation(build_scene(other), 12, 2)};
+  const std::vector<StoredSimulation> simulations{test::stored_simulation(build_scene(test::bending_rod(9)), 12, 2),
+                                                  test::stored_simulation(build_scene(other), 12, 2)};
   const auto set = set_of(simulations);
   CHECK(set->size(0) == 24);
-  for (const RecordedSimulation& simulation : simulations)
-    for (const RecordedSystem& system : simulation.systems) {
+  for (const StoredSimulation& simulation : simulations)
+    for (const StoredSystem& system : simulation.systems) {
       const double norm = system.solution.norm();
       CHECK((guess_at(set, simulation.scene, system, 1) - system.solution).norm() < 1e-6 * norm);
       CHECK((guess_at(set, simulation.scene, system, 3) - system.solution).norm() < 1e-3 * norm);
@@ -59,9 +59,9 @@ TEST_CASE("neighbours weigh by the inverse of their distance") {
   test::Random random(1);
   const VectorX near = random.entries(24), far = random.entries(24);
   const Vector3 u(0.1, 0.2, -0.3);
-  RecordedSimulation simulation{scene, 0.02, 0.02, 1, {}};
+  StoredSimulation simulation{scene, 0.02, 0.02, 1, {}};
   simulation.systems = {planted(scene.rods[0], Vector3::Zero(), near), planted(scene.rods[0], 3 * u, far)};
-  const RecordedSystem between = planted(scene.rods[0], u, near);
+  const StoredSystem between = planted(scene.rods[0], u, near);
   const auto set = set_of({simulation});
   for (const int k : {2, 5}) {  // no more than there are
     const VectorX x0 = guess_at(set, scene, between, k);
@@ -83,7 +83,7 @@ TEST_CASE("twice as many segments in the same pose are given the same forces and
     }
     return out;
   };
-  RecordedSimulation simulation{coarse, dt, dt, 1, {}};
+  StoredSimulation simulation{coarse, dt, dt, 1, {}};
   simulation.systems = {planted(coarse.rods[0], Vector3::Zero(), multipliers(coarse.rods[0], dt))};
   const auto set = set_of({simulation});
   for (const double step : {dt, dt / 2}) {
@@ -94,16 +94,16 @@ TEST_CASE("twice as many segments in the same pose are given the same forces and
 }
 
 TEST_CASE("the tree finds what a look at every system finds") {
-  std::vector<RecordedSimulation> simulations;
+  std::vector<StoredSimulation> simulations;
   for (const int segments : {6, 8, 11, 14})
-    simulations.push_back(test::recorded_simulation(build_scene(test::bending_rod(segments)), 20, 1));
+    simulations.push_back(test::stored_simulation(build_scene(test::bending_rod(segments)), 20, 1));
   const auto set = set_of(simulations);
-  const RecordedSimulation unseen = test::recorded_simulation(build_scene(test::bending_rod(9)), 20, 1);
+  const StoredSimulation unseen = test::stored_simulation(build_scene(test::bending_rod(9)), 20, 1);
   Rod rod = unseen.scene.rods[0];
   const ChainProfile profile(rod, unseen.scene.gravity_m_s2);
   LinearSystem system(rod);
   Tensor<float> state(ChainProfile::state_size, rod.joint_count());
-  for (const RecordedSystem& one : unseen.systems) {
+  for (const StoredSystem& one : unseen.systems) {
     restore(one, rod);
     system.assemble(rod, unseen.constraint_dt_s);
     profile.state(rod, system, unseen.constraint_dt_s, state);
@@ -120,8 +120,8 @@ TEST_CASE("the tree finds what a look at every system finds") {
 }
 
 TEST_CASE("a Newton iteration without training data is answered with zero") {
-  const RecordedSimulation simulation = test::recorded_simulation(build_scene(test::bending_rod(6)), 3, 1);
-  RecordedSystem later = simulation.systems.back();
+  const StoredSimulation simulation = test::stored_simulation(build_scene(test::bending_rod(6)), 3, 1);
+  StoredSystem later = simulation.systems.back();
   later.at.newton = 1;
   Proposal proposal{true, 7};
   const VectorX x0 = guess_at(set_of({simulation}), simulation.scene, later, 3, 0.02, &proposal);
@@ -131,18 +131,18 @@ TEST_CASE("a Newton iteration without training data is answered with zero") {
 }
 
 TEST_CASE("an unseen rod of the training set's kind is guessed roughly right") {
-  std::vector<RecordedSimulation> simulations;
+  std::vector<StoredSimulation> simulations;
   for (const double length : {1.0, 1.2, 1.4, 1.6, 1.8, 2.0}) {
     BendingRod rod = test::bending_rod(10);
     rod.length_m = length;
-    simulations.push_back(test::recorded_simulation(build_scene(rod), 15, 1));
+    simulations.push_back(test::stored_simulation(build_scene(rod), 15, 1));
   }
   BendingRod rod = test::bending_rod(17);
   rod.length_m = 1.5;
-  const RecordedSimulation unseen = test::recorded_simulation(build_scene(rod), 15, 1);
+  const StoredSimulation unseen = test::stored_simulation(build_scene(rod), 15, 1);
   const auto set = set_of(simulations);
   double error = 0, norm = 0;
-  for (const RecordedSystem& system : unseen.systems) {
+  for (const StoredSystem& system : unseen.systems) {
     error += (guess_at(set, unseen.scene, system, 3) - system.solution).squaredNorm();
     norm += system.solution.squaredNorm();
   }
@@ -150,7 +150,7 @@ TEST_CASE("an unseen rod of the training set's kind is guessed roughly right") {
 }
 
 TEST_CASE("no neighbours is not a number of neighbours") {
-  const RecordedSimulation simulation = test::recorded_simulation(build_scene(test::bending_rod(4)), 1);
+  const StoredSimulation simulation = test::stored_simulation(build_scene(test::bending_rod(4)), 1);
   CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0.02, 0), std::invalid_argument);
 }
 

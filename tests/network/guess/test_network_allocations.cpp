@@ -5,7 +5,7 @@
 #include "network/guess/end_to_end.hpp"
 #include "network/guess/knn_guess.hpp"
 #include "tests/network/models.hpp"
-#include "tests/network/recorded.hpp"
+#include "tests/network/stored.hpp"
 #include "tests/solver/allocations.hpp"
 #include "tests/solver/support.hpp"
 
@@ -59,7 +59,7 @@ TEST_CASE("a network instead of the solve allocates nothing on a rod seen before
 
 TEST_CASE("nearest neighbours allocate nothing") {
   const auto set = std::make_shared<KnnSet>();
-  set->add(test::recorded_simulation(build_scene(test::bending_rod(12)), 30));
+  set->add(test::stored_simulation(build_scene(test::bending_rod(12)), 30));
   set->finish();
   const Scene scene = build_scene(test::bending_rod(20));
   LinearSystem system(scene.rods.front());

@@ -4,7 +4,7 @@
 
 #include "network/training/trainer.hpp"
 #include "tests/network/models.hpp"
-#include "tests/network/recorded.hpp"
+#include "tests/network/stored.hpp"
 
 namespace rodsweep {
 namespace {

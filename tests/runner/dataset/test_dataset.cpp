@@ -6,7 +6,7 @@
 #include "runner/file/layout.hpp"
 #include "runner/file/pack.hpp"
 #include "tests/runner/data_set_examples.hpp"
-#include "tests/runner/recorded_examples.hpp"
+#include "tests/runner/stored_examples.hpp"
 
 namespace rodsweep {
 namespace {
@@ -77,7 +77,7 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
     REQUIRE(data.size() == plan.size());
     CHECK(data.note().empty());
     for (std::int64_t i = 0; i < data.size(); ++i) {
-      const RecordedSimulation simulation = data.read(i);
+      const StoredSimulation simulation = data.read(i);
       CHECK(data.task(i).sample == i);
       CHECK(simulation.step_s == 0.02);
       CHECK(simulation.newton_iterations == 3);
@@ -97,7 +97,7 @@ TEST_CASE("simulations are of different sizes, and a range of them is read") {
   const TemporaryFolder folder;
   const Plan plan = make_data_set(folder / "a.h5", ragged_job());
   const DatasetReader data(folder / "a.h5");
-  const std::vector<RecordedSimulation> last = data.read(1, 2);
+  const std::vector<StoredSimulation> last = data.read(1, 2);
   REQUIRE(last.size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {
     const Task& task = plan.task(static_cast<std::int64_t>(i) + 1);
@@ -150,7 +150,7 @@ TEST_CASE("a packed copy is read like the original") {
   const TemporaryFolder folder;
   make_data_set(folder / "a.h5", ragged_job());
   pack_results(folder / "a.h5", folder / "packed.h5");
-  const RecordedSimulation a = DatasetReader(folder / "a.h5").read(1), b = DatasetReader(folder / "packed.h5").read(1);
+  const StoredSimulation a = DatasetReader(folder / "a.h5").read(1), b = DatasetReader(folder / "packed.h5").read(1);
   REQUIRE(a.systems.size() == b.systems.size());
   for (std::size_t i = 0; i < a.systems.size(); ++i) {
     CHECK(a.systems[i].position == b.systems[i].position);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "network/encoding/recorded_simulation.hpp"
-#include "runner/dataset/system_recording.hpp"
+#include "network/encoding/stored_simulation.hpp"
+#include "runner/dataset/stored_systems.hpp"
 #include "runner/experiment/batched_evaluation.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/file/columns.hpp"
@@ -114,9 +114,9 @@ TEST_CASE("recorded systems are solved by what is recorded as their solutions") 
     const TaskSpec spec = batch.plan.spec(task);
     Scene scene = build_scene(spec.scene);
     Rod& rod = scene.rods.front();
-    const std::vector<RecordedSystem> systems = recorded_systems(batch.record(task), scene, 3);
+    const std::vector<StoredSystem> systems = stored_systems(batch.record(task), scene, 3);
     CHECK(systems.size() >= 8);  // four steps of at least two Newton iterations
-    for (const RecordedSystem& recorded : systems) {
+    for (const StoredSystem& recorded : systems) {
       restore(recorded, rod);
       LinearSystem system(rod);
       system.assemble(rod, constraint_dt(scene, spec.time.step_s));

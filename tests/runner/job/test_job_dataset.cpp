@@ -38,10 +38,10 @@ TEST_CASE("a data set is simulated with the direct solve and no guesses") {
   CHECK(spec.solve.method == Method::direct);
   CHECK(spec.guesses.empty());
   CHECK(spec.own_guess == -1);
-  CHECK(spec.record.solves);
-  CHECK(spec.record.systems == RecordedSystems::first);
+  CHECK(spec.output.solves);
+  CHECK(spec.output.systems == StoredSystems::first);
   CHECK(plan.guess_labels().empty());
-  CHECK(plan_of(small_job()).spec(0).record.systems == RecordedSystems::none);
+  CHECK(plan_of(small_job()).spec(0).output.systems == StoredSystems::none);
 }
 
 TEST_CASE("rows of systems follow task by task, as many as their rods have segments and joints") {

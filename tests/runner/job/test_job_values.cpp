@@ -56,8 +56,8 @@ TEST_CASE("every value of a job arrives in the task") {
   CHECK(spec.solve.max_iterations == 500);
   CHECK(spec.evaluation == Evaluation::closed_loop);
   CHECK(spec.own_guess == 5);
-  CHECK_FALSE(spec.record.solves);
-  CHECK(spec.record.trajectory_every == 10);
+  CHECK_FALSE(spec.output.solves);
+  CHECK(spec.output.trajectory_every == 10);
   CHECK(spec.time_limit_s == 60);
 
   REQUIRE(spec.guesses.size() == 6);

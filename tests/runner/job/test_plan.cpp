@@ -382,7 +382,7 @@ TEST_CASE("a task alone keeps its point, sample, guess, values and seed, and has
   CHECK(one.rows(Rows::segment) == here.segments);
   const TaskSpec a = whole.spec(11), b = one.spec(0);
   CHECK(b.seed == a.seed);
-  CHECK(b.record.trajectory_every == 4);
+  CHECK(b.output.trajectory_every == 4);
   CHECK(std::get<BendingRod>(b.scene).length_m == std::get<BendingRod>(a.scene).length_m);
   CHECK(b.guesses[1].error == a.guesses[1].error);
   CHECK(one.job().text == whole.job().text);

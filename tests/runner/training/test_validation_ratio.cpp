@@ -40,7 +40,7 @@ TEST_CASE("the CG ratio of a guess on recorded simulations is that of a paired s
         CAPTURE(systems, task.index, g);
         const auto measured = ratios.measure(
             static_cast<std::size_t>(task.index),
-            [&](const Scene& scene, const RecordedSimulation&) { return make_guess(spec.guesses[g], spec, scene); });
+            [&](const Scene& scene, const StoredSimulation&) { return make_guess(spec.guesses[g], spec, scene); });
         for (std::size_t t = 0; t < ValidationRatio::tolerance_count; ++t)
           CHECK(measured[t] == record.counted.cg_ratio[g * tolerance_ladder().size() + t]);
         if (g > 0) CHECK(measured[1] < 1);
@@ -60,7 +60,7 @@ TEST_CASE("a guess that is no number saves nothing: its ratio is infinite") {
   make_data_set(folder / "data.h5", data_job());
   const ValidationRatio ratios(DatasetReader(folder / "data.h5").read(0, 1));
   const auto infinite =
-      ratios.measure(0, [](const Scene&, const RecordedSimulation&) { return std::make_unique<NoNumber>(); });
+      ratios.measure(0, [](const Scene&, const StoredSimulation&) { return std::make_unique<NoNumber>(); });
   for (const double ratio : infinite) CHECK(std::isinf(ratio));
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("a rod at rest has no ratio") {
   make_data_set(folder / "rest.h5", job);
   const ValidationRatio ratios(DatasetReader(folder / "rest.h5").read(0, 1));
   const auto none =
-      ratios.measure(0, [](const Scene&, const RecordedSimulation&) { return std::make_unique<ZeroGuess>(); });
+      ratios.measure(0, [](const Scene&, const StoredSimulation&) { return std::make_unique<ZeroGuess>(); });
   for (const double ratio : none) CHECK(std::isnan(ratio));
 }
 

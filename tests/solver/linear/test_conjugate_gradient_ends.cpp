@@ -244,7 +244,7 @@ TEST_CASE("the history is empty while recording is off, and the solution the sam
   const Run recorded = run(cg, c.b(), 1e-8);
   CHECK(recorded.x == x);
   CHECK_FALSE(recorded.history.empty());
-  cg.record_history(false);
+  cg.keep_history(false);
   cg.solve(c.b(), x, false, 1e-8, c.b().norm());
   CHECK(cg.history().empty());
   CHECK(run(cg, c.b(), 1e-8).history == recorded.history);

@@ -27,7 +27,7 @@ class CgSolve : public LinearSolve {
   SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda) override {
     if (!cg_) {
       cg_ = std::make_unique<ConjugateGradient>(system.matrix(), settings_);
-      cg_->record_history(true);
+      cg_->keep_history(true);
     }
     cg_->matrix_changed();
     ++calls;

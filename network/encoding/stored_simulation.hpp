@@ -1,4 +1,4 @@
-// What a simulation leaves behind for learning: of every recorded linear system the state that it was assembled from
+// What a simulation leaves behind for learning: of every stored linear system the state that it was assembled from
 // and its exact solution, so that A, b and every feature can be formed again, bit for bit.
 //
 //   restore(system, rod);  LinearSystem::assemble(rod, constraint_dt_s)   gives A and b, and A solution = b
@@ -13,7 +13,7 @@
 namespace rodsweep {
 
 /// One linear system. Vectors have an entry per segment, `lambda` and `solution` six per joint.
-struct RecordedSystem {
+struct StoredSystem {
   SolvePosition at;
   std::vector<Vector3> position;  ///< where the system was assembled [m]
   std::vector<Quaternion> orientation;
@@ -23,40 +23,40 @@ struct RecordedSystem {
   VectorX solution;                       ///< the increment of lambda [kg m^2]
 };
 
-struct RecordedSimulation {
-  Scene scene;                          ///< at its start: what is constant, the rods' masses, joints and loads
-  double step_s = 0;                    ///< time step
-  double constraint_dt_s = 0;           ///< constraint_dt(scene, step_s)
-  int newton_iterations = 0;            ///< at most, in a step
-  std::vector<RecordedSystem> systems;  ///< in the order in which they were solved
+struct StoredSimulation {
+  Scene scene;                        ///< at its start: what is constant, the rods' masses, joints and loads
+  double step_s = 0;                  ///< time step
+  double constraint_dt_s = 0;         ///< constraint_dt(scene, step_s)
+  int newton_iterations = 0;          ///< at most, in a step
+  std::vector<StoredSystem> systems;  ///< in the order in which they were solved
 };
 
 /// Puts the rod `system.at.rod` of the scene into the state that the system was assembled from. Throws
 /// std::invalid_argument where the rod has another number of segments or joints.
-void restore(const RecordedSystem& system, Rod& rod);
+void restore(const StoredSystem& system, Rod& rod);
 
 /// Goes through a simulation once more: one rod after the other is put into the state that a system was assembled from,
 /// and the system is assembled again.
 class Replay {
  public:
-  explicit Replay(const RecordedSimulation& simulation);  ///< which must outlive this
+  explicit Replay(const StoredSimulation& simulation);  ///< which must outlive this
 
   const Scene& scene() const { return scene_; }
   const std::vector<LinearSystem>& systems() const { return systems_; }  ///< of each rod, as it stands
 
-  /// Calls visit(recorded system, its rod, its linear system) for every system in order.
+  /// Calls visit(stored system, its rod, its linear system) for every system in order.
   template <class Visit>
   void run(Visit visit) {
-    for (const RecordedSystem& recorded : simulation_.systems) {
-      const auto r = static_cast<std::size_t>(recorded.at.rod);
-      restore(recorded, scene_.rods[r]);
+    for (const StoredSystem& stored : simulation_.systems) {
+      const auto r = static_cast<std::size_t>(stored.at.rod);
+      restore(stored, scene_.rods[r]);
       systems_[r].assemble(scene_.rods[r], simulation_.constraint_dt_s);
-      visit(recorded, std::as_const(scene_.rods[r]), std::as_const(systems_[r]));
+      visit(stored, std::as_const(scene_.rods[r]), std::as_const(systems_[r]));
     }
   }
 
  private:
-  const RecordedSimulation& simulation_;
+  const StoredSimulation& simulation_;
   Scene scene_;
   std::vector<LinearSystem> systems_;
 };

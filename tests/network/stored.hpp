@@ -22,15 +22,15 @@ class Recorder : public LinearSolve {
     return outcome;
   }
 
-  std::vector<RecordedSystem> systems;
+  std::vector<StoredSystem> systems;
 
  private:
   const Scene& scene_;
   DirectSolve direct_;
 };
 
-inline RecordedSimulation recorded_simulation(Scene scene, int steps, int newton_iterations = 2) {
-  RecordedSimulation out;
+inline StoredSimulation stored_simulation(Scene scene, int steps, int newton_iterations = 2) {
+  StoredSimulation out;
   out.scene = scene;
   out.step_s = 0.02;
   out.newton_iterations = newton_iterations;
@@ -60,8 +60,7 @@ struct Examples {
 /// Normalised by themselves.
 inline Examples sample_examples(const CopingNetSettings& settings, int simulations, int steps) {
   Examples out;
-  for (int i = 0; i < simulations; ++i)
-    add_examples(settings, recorded_simulation(sample_scene(i), steps), out.examples);
+  for (int i = 0; i < simulations; ++i) add_examples(settings, stored_simulation(sample_scene(i), steps), out.examples);
   out.scales = feature_scales(settings, out.examples);
   normalise(settings, out.scales, out.examples);
   return out;

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runner/dataset/system_recording.hpp"
+#include "runner/dataset/stored_systems.hpp"
 #include "runner/experiment/evaluation.hpp"
 #include "tests/runner/job_examples.hpp"
-#include "tests/runner/recorded_examples.hpp"
+#include "tests/runner/stored_examples.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -33,12 +33,12 @@ TEST_CASE("A, b, velocities and solution of a tree and a chain of another size c
   record.prepare(task, {});
 
   SolveProbe probe(scene);
-  RecordingSolve recording(scene, iterations, probe, record);
+  StoringSolve recording(scene, iterations, probe, record);
   LinearProjection projection(scene, recording);
   TimeStepper stepper(scene, {0.01, iterations + 1, 0});
   for (int step = 0; step < steps; ++step) stepper.step(projection);
 
-  const std::vector<RecordedSystem> systems = recorded_systems(record, start, iterations);
+  const std::vector<StoredSystem> systems = stored_systems(record, start, iterations);
   CHECK(systems.size() == steps * iterations * 2);
   check_same(systems, start, stepper.constraint_dt(), probe.first_iterations(iterations));
 }
@@ -71,7 +71,7 @@ TEST_CASE("Newton iterations that were not needed stay marked and are not read")
   CHECK(record.system_step == std::vector<std::int32_t>(4 * 3, -1));
   CHECK(std::isnan(record.system_position_m.back()));
   CHECK(std::isnan(record.system_solution.front()));
-  CHECK(recorded_systems(record, build_scene(plan.spec(0).scene), 3).empty());
+  CHECK(stored_systems(record, build_scene(plan.spec(0).scene), 3).empty());
 }
 
 }  // namespace

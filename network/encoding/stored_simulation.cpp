@@ -1,11 +1,11 @@
-#include "network/encoding/recorded_simulation.hpp"
+#include "network/encoding/stored_simulation.hpp"
 
 #include <stdexcept>
 #include <string>
 
 namespace rodsweep {
 
-void restore(const RecordedSystem& system, Rod& rod) {
+void restore(const StoredSystem& system, Rod& rod) {
   if (system.position.size() != rod.segments.size() || system.lambda.size() != rod.lambda.size())
     throw std::invalid_argument("restore: a system of " + std::to_string(system.position.size()) + " segments and " +
                                 std::to_string(system.lambda.size() / 6) + " joints for a rod of " +
@@ -17,7 +17,7 @@ void restore(const RecordedSystem& system, Rod& rod) {
   rod.lambda = system.lambda;
 }
 
-Replay::Replay(const RecordedSimulation& simulation) : simulation_(simulation), scene_(simulation.scene) {
+Replay::Replay(const StoredSimulation& simulation) : simulation_(simulation), scene_(simulation.scene) {
   for (const Rod& rod : scene_.rods) systems_.emplace_back(rod);
 }
 

@@ -11,10 +11,10 @@
 
 namespace rodsweep {
 
-class SimulationRecord {
+class SimulationLog {
  public:
   /// `scene` at the start, which is frame 0. All but the scene must outlive this.
-  SimulationRecord(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene);
+  SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene);
 
   /// Ends the task if its time limit has passed: true.
   bool out_of_time(int step, double elapsed_s);
@@ -24,7 +24,7 @@ class SimulationRecord {
 
  private:
   void fail(TaskOutcome outcome, int step, const std::string& why);
-  void record_frame(std::size_t frame, const Scene& scene);
+  void log_frame(std::size_t frame, const Scene& scene);
 
   const Task& task_;
   const TaskSpec& spec_;

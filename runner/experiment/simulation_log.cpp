@@ -1,4 +1,4 @@
-#include "runner/experiment/simulation_record.hpp"
+#include "runner/experiment/simulation_log.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +24,8 @@ TaskOutcome outcome_of(SolveOutcome solve) {
 }
 
 /// Writes the observables of one finished step into row `step` of /steps.
-void record_step(TaskRecord& record, std::size_t step, const Scene& scene, const StepReport& report,
-                 double constraint_dt, double initial_length) {
+void log_step(TaskRecord& record, std::size_t step, const Scene& scene, const StepReport& report, double constraint_dt,
+              double initial_length) {
   double length = 0, gap = 0, residual = 0, kinetic = 0, potential = 0, elastic = 0;
   Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
   for (const Rod& rod : scene.rods) {
@@ -58,7 +58,7 @@ void record_step(TaskRecord& record, std::size_t step, const Scene& scene, const
 }
 
 /// What the segments of a trajectory's frames are.
-void record_segments(const Scene& scene, TaskRecord& record) {
+void log_segments(const Scene& scene, TaskRecord& record) {
   std::size_t row = 0;
   for (std::size_t rod = 0; rod < scene.rods.size(); ++rod) {
     for (const Segment& segment : scene.rods[rod].segments) {
@@ -73,25 +73,25 @@ void record_segments(const Scene& scene, TaskRecord& record) {
 
 }  // namespace
 
-SimulationRecord::SimulationRecord(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)
+SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)
     : task_(task), spec_(spec), record_(record) {
   for (const Rod& rod : scene.rods) initial_length_ += rod_length(rod);
   record_.outcome = TaskOutcome::ok;
   record_.steps_done[0] = 0;
-  if (spec_.record.trajectory_every > 0) {
-    record_segments(scene, record_);
-    record_frame(0, scene);
+  if (spec_.output.trajectory_every > 0) {
+    log_segments(scene, record_);
+    log_frame(0, scene);
   }
 }
 
-bool SimulationRecord::out_of_time(int step, double elapsed_s) {
+bool SimulationLog::out_of_time(int step, double elapsed_s) {
   if (spec_.time_limit_s <= 0 || elapsed_s <= spec_.time_limit_s) return false;
   fail(TaskOutcome::timed_out, step,
        "the limit task_time_limit_s of " + std::to_string(spec_.time_limit_s) + " s has passed");
   return true;
 }
 
-bool SimulationRecord::finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt) {
+bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt) {
   if (report.outcome == SolveOutcome::iteration_limit && record_.outcome == TaskOutcome::ok)
     fail(TaskOutcome::iteration_limit, step, "a solve that advances the rod hit its iteration limit (and others may)");
   else if (report.outcome != SolveOutcome::converged && report.outcome != SolveOutcome::iteration_limit) {
@@ -100,10 +100,10 @@ bool SimulationRecord::finish_step(int step, const Scene& scene, const StepRepor
     return false;
   }
   const auto row = static_cast<std::size_t>(step);
-  record_step(record_, row, scene, report, constraint_dt, initial_length_);
+  log_step(record_, row, scene, report, constraint_dt, initial_length_);
   record_.steps_done[0] = step + 1;
-  const int every = spec_.record.trajectory_every;
-  if (every > 0 && (step + 1) % every == 0) record_frame(static_cast<std::size_t>((step + 1) / every), scene);
+  const int every = spec_.output.trajectory_every;
+  if (every > 0 && (step + 1) % every == 0) log_frame(static_cast<std::size_t>((step + 1) / every), scene);
 
   if (!std::all_of(scene.rods.begin(), scene.rods.end(), [](const Rod& rod) { return is_finite(rod); })) {
     fail(TaskOutcome::not_a_number, step, "the rod's state is not finite");
@@ -116,12 +116,12 @@ bool SimulationRecord::finish_step(int step, const Scene& scene, const StepRepor
   return true;
 }
 
-void SimulationRecord::fail(TaskOutcome outcome, int step, const std::string& why) {
+void SimulationLog::fail(TaskOutcome outcome, int step, const std::string& why) {
   record_.outcome = outcome;
   record_.message = "step " + std::to_string(step) + ": " + why;
 }
 
-void SimulationRecord::record_frame(std::size_t frame, const Scene& scene) {
+void SimulationLog::log_frame(std::size_t frame, const Scene& scene) {
   const std::size_t first = frame * static_cast<std::size_t>(task_.segments);
   record_.first_row[frame] = task_.rows[Rows::frame_segment].first + static_cast<std::int64_t>(first);
   record_.frame_time_s[frame] = scene.time_s;

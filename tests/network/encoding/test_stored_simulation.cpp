@@ -1,13 +1,13 @@
 #include <catch2/catch.hpp>
 
-#include "network/encoding/recorded_simulation.hpp"
+#include "network/encoding/stored_simulation.hpp"
 #include "tests/solver/support.hpp"
 
 using namespace rodsweep;
 
 TEST_CASE("a recorded system puts its rod back to the state that it was assembled from") {
   const Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
-  RecordedSystem system;
+  StoredSystem system;
   system.position = rod.position;
   system.orientation = rod.orientation;
   system.velocity = rod.velocity;
@@ -36,7 +36,7 @@ TEST_CASE("a recorded system puts its rod back to the state that it was assemble
 }
 
 TEST_CASE("a system is not put into a rod of another size") {
-  RecordedSystem system;
+  StoredSystem system;
   system.position.resize(3);
   system.lambda.resize(12);
   Rod rod = test::random_rod(test::chain(4), {}, 1);

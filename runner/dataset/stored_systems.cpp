@@ -1,4 +1,4 @@
-#include "runner/dataset/system_recording.hpp"
+#include "runner/dataset/stored_systems.hpp"
 
 #include <utility>
 
@@ -24,7 +24,7 @@ SystemRows::Place SystemRows::place(const SolvePosition& at) const {
           before * iteration_.joint + rod.joint};
 }
 
-void SystemRecorder::before(const Rod& rod, const SolvePosition& at) {
+void SystemStore::before(const Rod& rod, const SolvePosition& at) {
   const SystemRows::Place place = rows_.place(at);
   record_.system_step[place.system] = at.step;
   record_.system_newton[place.system] = static_cast<std::int16_t>(at.newton);
@@ -36,24 +36,24 @@ void SystemRecorder::before(const Rod& rod, const SolvePosition& at) {
   VectorX::Map(record_.system_lambda.data() + 6 * place.joint, rod.lambda.size()) = rod.lambda;
 }
 
-RecordingSolve::RecordingSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record)
-    : scene_(scene), recorder_(scene, iterations, record), solve_(solve) {}
+StoringSolve::StoringSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record)
+    : scene_(scene), store_(scene, iterations, record), solve_(solve) {}
 
-SolveOutcome RecordingSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
-                                   VectorX& delta_lambda) {
-  if (!recorder_.holds(at)) return solve_.solve(system, at, assemble_s, delta_lambda);
-  recorder_.before(scene_.rods[static_cast<std::size_t>(at.rod)], at);
+SolveOutcome StoringSolve::solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                                 VectorX& delta_lambda) {
+  if (!store_.holds(at)) return solve_.solve(system, at, assemble_s, delta_lambda);
+  store_.before(scene_.rods[static_cast<std::size_t>(at.rod)], at);
   const SolveOutcome outcome = solve_.solve(system, at, assemble_s, delta_lambda);
-  if (outcome == SolveOutcome::converged) VectorX::Map(recorder_.solution(at), delta_lambda.size()) = delta_lambda;
+  if (outcome == SolveOutcome::converged) VectorX::Map(store_.solution(at), delta_lambda.size()) = delta_lambda;
   return outcome;
 }
 
-std::vector<RecordedSystem> recorded_systems(const TaskRecord& record, const Scene& scene, int iterations) {
+std::vector<StoredSystem> stored_systems(const TaskRecord& record, const Scene& scene, int iterations) {
   const SystemRows rows(scene, iterations);
-  std::vector<RecordedSystem> systems;
+  std::vector<StoredSystem> systems;
   for (std::size_t row = 0; row < record.system_step.size(); ++row) {
     if (record.system_step[row] < 0) continue;
-    RecordedSystem system;
+    StoredSystem system;
     system.at = {record.system_step[row], record.system_newton[row], record.system_rod[row]};
     const Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
     const SystemRows::Place place = rows.place(system.at);

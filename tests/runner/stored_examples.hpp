@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "network/encoding/recorded_simulation.hpp"
+#include "network/encoding/stored_simulation.hpp"
 #include "solver/step/time_step.hpp"
 
 namespace rodsweep {
@@ -54,11 +54,11 @@ inline bool same_bits(const BlockMatrix& a, const BlockMatrix& b) {
 }
 
 /// Each system, put into a rod of `scene` and assembled again, is the one that was solved; its solution solves it.
-inline void check_same(const std::vector<RecordedSystem>& systems, Scene scene, double constraint_dt_s,
+inline void check_same(const std::vector<StoredSystem>& systems, Scene scene, double constraint_dt_s,
                        const std::vector<SolveProbe::Solved>& solved) {
   REQUIRE(systems.size() == solved.size());
   for (std::size_t i = 0; i < systems.size(); ++i) {
-    const RecordedSystem& system = systems[i];
+    const StoredSystem& system = systems[i];
     CAPTURE(i, system.at.step, system.at.newton, system.at.rod);
     CHECK(system.at.step == solved[i].at.step);
     CHECK(system.at.newton == solved[i].at.newton);

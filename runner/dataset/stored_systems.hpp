@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "network/encoding/recorded_simulation.hpp"
+#include "network/encoding/stored_simulation.hpp"
 #include "runner/file/record.hpp"
 
 namespace rodsweep {
@@ -18,7 +18,7 @@ class SystemRows {
     std::size_t system = 0, segment = 0, joint = 0;  ///< (first) rows
   };
 
-  /// `iterations`: recorded Newton iterations of a step.
+  /// `iterations`: stored Newton iterations of a step.
   SystemRows(const Scene& scene, int iterations);
 
   bool holds(const SolvePosition& at) const { return at.newton < iterations_; }
@@ -31,9 +31,9 @@ class SystemRows {
 };
 
 /// Writes systems into a record. Allocates nothing after construction.
-class SystemRecorder {
+class SystemStore {
  public:
-  SystemRecorder(const Scene& scene, int iterations, TaskRecord& record) : rows_(scene, iterations), record_(record) {}
+  SystemStore(const Scene& scene, int iterations, TaskRecord& record) : rows_(scene, iterations), record_(record) {}
 
   bool holds(const SolvePosition& at) const { return rows_.holds(at); }
 
@@ -49,21 +49,21 @@ class SystemRecorder {
 };
 
 /// Records what another solve is given and what it finds. Allocates nothing.
-class RecordingSolve : public LinearSolve {
+class StoringSolve : public LinearSolve {
  public:
   /// All arguments must outlive this.
-  RecordingSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record);
+  StoringSolve(const Scene& scene, int iterations, LinearSolve& solve, TaskRecord& record);
 
   SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
                      VectorX& delta_lambda) override;
 
  private:
   const Scene& scene_;
-  SystemRecorder recorder_;
+  SystemStore store_;
   LinearSolve& solve_;
 };
 
 /// The systems that were solved, in order.
-std::vector<RecordedSystem> recorded_systems(const TaskRecord& record, const Scene& scene, int iterations);
+std::vector<StoredSystem> stored_systems(const TaskRecord& record, const Scene& scene, int iterations);
 
 }  // namespace rodsweep
