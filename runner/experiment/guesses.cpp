@@ -6,6 +6,7 @@
 #include "network/guess/knn_guess.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/experiment/training_sets.hpp"
+#include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/step/time_step.hpp"
 
@@ -26,6 +27,9 @@ std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec&
     case Kind::quadratic: return extrapolation(3);
     case Kind::fischer: return subspace(SubspaceGuess::Window::restarted);
     case Kind::pod: return subspace(SubspaceGuess::Window::sliding);
+    case Kind::regression:
+      return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window,
+                                               task.own_guess >= 0 ? task.solve.tolerance : 0);
     case Kind::copingnet:
       return std::make_unique<CopingNetGuess>(shared_model(guess.model), scene, constraint_dt(scene, task.time.step_s),
                                               task.time.newton_iterations);

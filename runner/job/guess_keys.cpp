@@ -22,6 +22,12 @@ KeyTable<Guess> subspace_keys() {
   return table;
 }
 
+KeyTable<Guess> regression_keys() {
+  KeyTable<Guess> table;
+  table.optional(integer_key("size", "most systems to regress on").from(1, 200), &Guess::window);
+  return table;
+}
+
 KeyTable<Guess> copingnet_keys() {
   KeyTable<Guess> table;
   table.required(file_key("model", "model file of a train job"), &Guess::model);
@@ -68,6 +74,9 @@ const std::vector<Kind>& kinds() {
        "best approximation within the last solutions, collected until there are `size`, then from one again",
        subspace_keys()},
       {Guess::Kind::pod, "pod", "best approximation within the last `size` solutions", subspace_keys()},
+      {Guess::Kind::regression, "regression",
+       "the last `size` solutions combined as their right-hand sides make up today's: no product with A",
+       regression_keys()},
       {Guess::Kind::copingnet, "copingnet",
        "a learned guess: a network's correction of the guess that it was trained with", copingnet_keys()},
       {Guess::Kind::knn, "knn",

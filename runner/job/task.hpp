@@ -52,10 +52,11 @@ struct SolveSpec {
 
 /// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.
 struct GuessSpec {
-  enum class Kind { zero, previous, linear, quadratic, fischer, pod, copingnet, knn, oracle, guarded };
+  enum class Kind { zero, previous, linear, quadratic, fischer, pod, regression, copingnet, knn, oracle, guarded };
   Kind kind = Kind::zero;
   std::string label;
   int size = 10;                ///< fischer, pod: how many solutions span the subspace
+  int window = 6;               ///< regression: on how many of the last systems
   std::filesystem::path model;  ///< copingnet
   std::filesystem::path data;   ///< knn: the data set
   int simulations = 0;          ///< knn: of the data set, from the first; 0: all

@@ -1,14 +1,14 @@
 // Projected initial guesses: the best approximation, in the energy norm, of the solution within the span of earlier
 // ones (Fischer 1998, Comput. Methods Appl. Mech. Engrg. 163), always of the current matrix A:
 //   x0 = V c,   (V^T A V) c = V^T b,   V the stored solutions of one (rod, Newton iteration).
-// A changes from solve to solve, so A V is formed anew: as many products with A as there are solutions. V^T A V, scaled
-// to a unit diagonal, is factorised from the newest solution to the oldest; one that the newer ones span already (pivot
-// below 1e-12) is dropped.
+// A changes from solve to solve, so A V is formed anew: as many products with A as there are solutions. Newer solutions
+// go before older ones (normal_equations.hpp).
 #pragma once
 
 #include <vector>
 
 #include "solver/guess/initial_guess.hpp"
+#include "solver/guess/normal_equations.hpp"
 
 namespace rodsweep {
 
@@ -35,8 +35,7 @@ class SubspaceGuess : public InitialGuess {
   Window window_;
   std::vector<History> histories_;
   std::vector<Matrix> products_;  ///< per rod: A V
-  Matrix factor_;                 ///< L below the diagonal
-  VectorX pivot_, scale_, coefficients_;
+  NormalEquations equations_;
 };
 
 }  // namespace rodsweep

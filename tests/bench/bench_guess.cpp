@@ -1,4 +1,5 @@
-// What a learned guess costs on one rod in motion, by parts: base guess, features, network, and all that proposes x0.
+// What guesses cost on one rod in motion: classical ones to propose x0 and hear of the solution, a learned one by
+// parts, base guess, features, network, and all that proposes x0.
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -6,6 +7,8 @@
 #include "network/guess/base_guess.hpp"
 #include "network/guess/coping_net_guess.hpp"
 #include "network/processor/sweeps_inference.hpp"
+#include "solver/guess/regression_guess.hpp"
+#include "solver/guess/subspace_guess.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/bench/medians.hpp"
@@ -16,6 +19,48 @@ using namespace rodsweep;
 
 constexpr std::array<int, 2> sizes{50, 100};           // segments
 constexpr std::array<int, 4> latents{16, 32, 48, 64};  // of sweeps
+
+using MakeGuess = std::unique_ptr<InitialGuess> (*)(const Scene&);
+constexpr std::array<std::pair<const char*, MakeGuess>, 4> classical_guesses{{
+    {"previous",
+     [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<ExtrapolationGuess>(s, 1, 1); }},
+    {"quadratic",
+     [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<ExtrapolationGuess>(s, 1, 3); }},
+    {"regression 6",
+     [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<RegressionGuess>(s, 1, 6, 0); }},
+    {"pod 10",
+     [](const Scene& s) -> std::unique_ptr<InitialGuess> {
+       return std::make_unique<SubspaceGuess>(s, 1, 10, SubspaceGuess::Window::sliding);
+     }},
+}};
+
+/// The step of a classical guess, with the history that 30 steps make.
+template <class Make>
+void classical(benchmark::State& state, Make make) {
+  BendingRod spec;
+  spec.segments = static_cast<int>(state.range(0));
+  Scene scene = build_scene(spec);
+  const std::unique_ptr<InitialGuess> guess = make(scene);
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {0.02, 1, 0});
+  LinearSystem system(scene.rods.front());
+  VectorX x0(6 * scene.rods.front().joint_count()), solution(x0.size());
+  SolvePosition at;
+  for (; at.step < 30; ++at.step) {
+    stepper.step(projection);
+    system.assemble(scene.rods.front(), 0.02);
+    direct.solve(system, at, 0, solution);
+    guess->propose(system, at, x0);
+    guess->accept(at, solution);
+  }
+  for (auto _ : state) {
+    guess->propose(system, at, x0);
+    guess->accept(at, solution);
+    ++at.step;
+    benchmark::ClobberMemory();
+  }
+}
 
 /// A bending rod after some steps, and guesses that know its history.
 struct Case {
@@ -92,6 +137,15 @@ void network(benchmark::State& state) {
 }
 
 void print_summary(const Medians& median) {
+  std::printf("\nClassical guesses, us per segment to propose x0 and hear of the solution\n%9s", "segments");
+  for (const auto& [name, make] : classical_guesses) std::printf(" %13s", name);
+  std::printf("\n");
+  for (const int n : sizes) {
+    std::printf("%9d", n);
+    for (const auto& [name, make] : classical_guesses)
+      std::printf(" %13.4f", median(std::string(name) + "/" + std::to_string(n)) / n * 1e6);
+    std::printf("\n");
+  }
   std::printf("\nA learned guess (encoding system, sweeps, base pod 10), us per segment (target: at most 1.2)\n");
   std::printf("%9s %7s %9s %7s %9s %9s %8s %9s\n", "segments", "latent", "weights", "base", "features", "network",
               "GFLOP/s", "whole");
@@ -113,6 +167,8 @@ void print_summary(const Medians& median) {
 
 int main(int argc, char** argv) {
   for (const int n : sizes) {
+    for (const auto& [name, make] : classical_guesses)
+      benchmark::RegisterBenchmark(name, [make = make](benchmark::State& state) { classical(state, make); })->Arg(n);
     benchmark::RegisterBenchmark("base", base_alone)->Arg(n);
     benchmark::RegisterBenchmark("features", features)->Arg(n);
     for (const int latent : latents) {

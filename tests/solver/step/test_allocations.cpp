@@ -7,6 +7,7 @@
 
 #include "solver/batch/batched_step.hpp"
 #include "solver/guess/initial_guess.hpp"
+#include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
 #include "solver/numbers/rotation.hpp"
@@ -165,12 +166,14 @@ TEST_CASE("a step with CG allocates nothing, whatever the guess") {
     if (name == "quadratic") return std::make_unique<ExtrapolationGuess>(scene, 4, 3);
     if (name == "oracle") return std::make_unique<OracleGuess>(scene, 0.1, OracleGuess::Error::smooth, 7);
     if (name == "fischer") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::restarted);
+    if (name == "regression") return std::make_unique<RegressionGuess>(scene, 4, 5, 1e-2);
     if (name == "pod") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding);
     if (name == "guarded")
       return std::make_unique<GuardedGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 3), 0.5);
     return std::make_unique<ZeroGuess>();
   };
-  for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod"}) {
+  for (const char* guess :
+       {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod", "regression"}) {
     INFO(guess);
     Scene scene = loaded_scene();
     CgSolve solve({}, make(guess, scene));

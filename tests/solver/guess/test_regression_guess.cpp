@@ -1,0 +1,132 @@
+// A guess by regression on earlier right-hand sides: exact where it can be, least squares where not, never a product.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/guess/regression_guess.hpp"
+#include "solver/step/projection.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::MatrixX;
+
+/// Systems of one matrix: their right-hand sides -C - alpha~ lambda follow the multipliers.
+struct OneMatrix {
+  Scene scene;
+  LinearSystem system;
+  DirectSolve direct;
+
+  OneMatrix() : scene(scene_of(test::random_rod(test::tree(2, 3), {0}, 1))), system(scene.rods[0]), direct(scene) {}
+
+  static Scene scene_of(const Rod& rod) {
+    Scene scene;
+    scene.rods.push_back(rod);
+    return scene;
+  }
+  Eigen::Index size() const { return scene.rods[0].lambda.size(); }
+
+  const LinearSystem& with(const VectorX& lambda) {
+    scene.rods[0].lambda = lambda;
+    system.assemble(scene.rods[0], 0.02);
+    return system;
+  }
+  VectorX solution() {
+    VectorX out = VectorX::Zero(size());
+    REQUIRE(direct.solve(system, {}, 0, out) == SolveOutcome::converged);
+    return out;
+  }
+  /// Proposes for these multipliers at a step, then tells the solution.
+  void pass(RegressionGuess& guess, int step, const VectorX& lambda) {
+    VectorX x0(size());
+    guess.propose(with(lambda), {step, 0, 0}, x0);
+    guess.accept({step, 0, 0}, solution());
+  }
+};
+
+TEST_CASE("without history a regression is zero") {
+  OneMatrix one;
+  RegressionGuess guess(one.scene, 1, 3, 0);
+  VectorX x0 = VectorX::Ones(one.size());
+  CHECK_FALSE(guess.propose(one.with(VectorX::Zero(one.size())), {0, 0, 0}, x0).nonzero);
+  CHECK(x0.isZero(0));
+}
+
+TEST_CASE("a right-hand side that the last ones make up has its solution found, without a product with A") {
+  OneMatrix one;
+  test::Random random(3);
+  RegressionGuess guess(one.scene, 1, 3, 0);
+  std::vector<VectorX> lambda;
+  for (int step = 0; step < 5; ++step) {  // the first two are forgotten
+    lambda.push_back(random.entries(static_cast<int>(one.size())));
+    one.pass(guess, step, lambda.back());
+  }
+  VectorX x0(one.size());
+  const Proposal proposal = guess.propose(one.with(0.5 * lambda[4] - 1.5 * lambda[3] + 2 * lambda[2]), {5, 0, 0}, x0);
+  CHECK(proposal.nonzero);
+  CHECK(proposal.products == 0);
+  CHECK((x0 - one.solution()).norm() < 1e-9 * x0.norm());
+  guess.propose(one.with(lambda[1]), {5, 0, 0}, x0);
+  CHECK((x0 - one.solution()).norm() > 1e-3 * x0.norm());
+}
+
+TEST_CASE("what the last right-hand sides leave of today's is orthogonal to them, weighted by the diagonal of A") {
+  OneMatrix one;
+  test::Random random(5);
+  RegressionGuess guess(one.scene, 1, 4, 0);
+  const auto draw = [&] { return random.entries(static_cast<int>(one.size())); };
+  std::vector<VectorX> stored;
+  for (int step = 0; step < 4; ++step) {
+    one.pass(guess, step, draw());
+    stored.push_back(one.system.rhs());
+  }
+  VectorX x0(one.size());
+  guess.propose(one.with(draw()), {4, 0, 0}, x0);
+  const MatrixX a = one.system.matrix().dense();
+  const VectorX left = (one.system.rhs() - a * x0).cwiseQuotient(a.diagonal());
+  for (const VectorX& b : stored) CHECK(std::abs(left.dot(b)) < 1e-9 * left.norm() * b.norm());
+  CHECK(left.dot(one.system.rhs()) > 1e-3 * left.norm() * one.system.rhs().norm());
+}
+
+TEST_CASE("noise in the stored solutions is not blown up by coefficients of opposite signs") {
+  OneMatrix one;
+  test::Random random(7);
+  const auto draw = [&] { return random.entries(static_cast<int>(one.size())); };
+  const double noise = 1e-2;
+  RegressionGuess trusting(one.scene, 1, 2, 0), damped(one.scene, 1, 2, noise);
+  const VectorX lambda = draw(), change = 1e-4 * draw();
+  VectorX x0(one.size());
+  for (int step = 0; step < 2; ++step) {
+    one.with(lambda + step * change);
+    const VectorX exact = one.solution(), found = exact + noise * exact.norm() / std::sqrt(one.size()) * draw();
+    for (RegressionGuess* guess : {&trusting, &damped}) {
+      guess->propose(one.system, {step, 0, 0}, x0);
+      guess->accept({step, 0, 0}, found);
+    }
+  }
+  one.with(lambda + 50 * change);  // 50 x2 - 49 x1, exactly
+  const VectorX exact = one.solution();
+  trusting.propose(one.system, {2, 0, 0}, x0);
+  CHECK((x0 - exact).norm() > 20 * noise * exact.norm());
+  damped.propose(one.system, {2, 0, 0}, x0);
+  CHECK((x0 - exact).norm() < 2 * noise * exact.norm());
+}
+
+TEST_CASE("a step without a solution starts a regression's history again") {
+  OneMatrix one;
+  test::Random random(9);
+  const auto draw = [&] { return random.entries(static_cast<int>(one.size())); };
+  RegressionGuess guess(one.scene, 2, 3, 0);
+  VectorX x0(one.size());
+  for (const int step : {0, 1}) one.pass(guess, step, draw());
+  const VectorX newest = draw();
+  CHECK(guess.propose(one.with(newest), {2, 0, 0}, x0).nonzero);
+  CHECK_FALSE(guess.propose(one.system, {2, 1, 0}, x0).nonzero);  // the other Newton iteration has had none
+  CHECK_FALSE(guess.propose(one.system, {3, 0, 0}, x0).nonzero);
+  guess.accept({3, 0, 0}, one.solution());
+  guess.propose(one.with(newest), {4, 0, 0}, x0);
+  CHECK((x0 - one.solution()).norm() < 1e-9 * x0.norm());
+}
+
+}  // namespace
+}  // namespace rodsweep
