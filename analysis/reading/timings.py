@@ -2,10 +2,13 @@
 
 A row holds the times of the parts of a solve: assembly, each guess and its CG to the job's tolerance, the direct solve.
 They last microseconds, and the operating system's interruptions milliseconds: one would outweigh a whole simulation.
-A row is left out, for all guesses, where a part took over INTERRUPTED times its median in the simulation and FLOOR_S
-longer (CG: its median per iteration, with FIXED iterations for what every solve costs); sums are scaled up to all rows.
-A lagged preconditioner is factored anew in rows of their own kind: those are not judged, and stay.
-Times.interrupted counts the rows left out.
+A row is left out, for all guesses, where a part took over INTERRUPTED times its median and FLOOR_S longer (CG: its
+median per iteration, with FIXED iterations for what every solve costs; the rest of a step: per Newton iteration, with
+one for prediction and velocities); sums are scaled up to all rows. The median is over the simulation's rows of the same
+Newton iteration, since a guess may be made in another way there (the nearest data of a first one, no history of a
+late one); where they are fewer than FEW, that of the iteration before it stands in. A lagged preconditioner is factored
+anew in rows of their own kind: those are not judged, and stay. Times.interrupted counts the rows left out; where they
+are more than SUSPICIOUS of all, the sentence that says so says also what it means.
 """
 
 from dataclasses import dataclass
@@ -18,6 +21,8 @@ SPEEDUPS = {"cg": "CG only", "guess_cg": "guess + CG", "step": "whole step"}
 INTERRUPTED = 5
 FLOOR_S = 5e-6
 FIXED = 4
+FEW = 5
+SUSPICIOUS = 0.05
 
 
 @dataclass(frozen=True)
@@ -63,7 +68,7 @@ def times(file, sims):
         work[:, -guesses:] = np.where(iterations >= 0, iterations + FIXED, np.nan)
         first = (rows["/solves/newton"] == 0)[:, None]
         renewed = first[:, 0] & (lag[owner] > 0) & (rows["/solves/step"] % np.maximum(lag[owner], 1) == 0)
-        smooth = ~(_interrupted(starts, parts, work) & ~renewed)[:, None]
+        smooth = ~(_interrupted(starts, parts, work, rows["/solves/newton"]) & ~renewed)[:, None]
         for which, counted in (("first", valid & first), ("later", valid & ~first)):
             kept = counted & smooth
             with_direct = kept & np.isfinite(direct)
@@ -98,16 +103,18 @@ def _lag_steps(file):
     return np.where(preconditioner == "lagged_cholesky", steps, 0)
 
 
-def _interrupted(starts, parts, work):
-    """Rows in which some part lasted far longer than its median per work over the rows of the task."""
+def _interrupted(starts, parts, work, kind):
+    """Rows in which some part lasted far longer than its median per work over the task's rows of that kind."""
     found = np.zeros(len(parts), dtype=bool)
     for begin, end in zip(starts, np.append(starts[1:], len(parts))):
-        rate = parts[begin:end] / work[begin:end]
-        there = np.isfinite(rate).any(axis=0)
-        if there.any():
-            seconds = parts[begin:end, there]
-            usual = np.nanmedian(rate[:, there], axis=0) * work[begin:end, there]
-            found[begin:end] = ((seconds > INTERRUPTED * usual) & (seconds > usual + FLOOR_S)).any(axis=1)
+        usual = np.full(parts.shape[1], np.nan)
+        for one in np.unique(kind[begin:end]):
+            rows = begin + np.flatnonzero(kind[begin:end] == one)
+            rate = parts[rows] / work[rows]
+            trusted = np.isfinite(rate).sum(axis=0) >= np.where(np.isfinite(usual), FEW, 1)
+            usual[trusted] = np.nanmedian(rate[:, trusted], axis=0)
+            expected = usual * work[rows]
+            found[rows] = ((parts[rows] > INTERRUPTED * expected) & (parts[rows] > expected + FLOOR_S)).any(axis=1)
     return found
 
 
@@ -143,10 +150,11 @@ def _rest_s(file, tasks):
     """Seconds of the steps outside assembly and solves per task, interruptions left out; NaN if not recorded."""
     total, kept, taken = (np.zeros(file.task_count) for _ in range(3))
     if file.has("/timing/steps/rest_s"):
-        for owners, starts, rows in file.step_blocks(tasks, ["/timing/steps/rest_s"]):
+        for owners, starts, rows in file.step_blocks(tasks, ["/timing/steps/rest_s", "/steps/newton_iterations"]):
             rest = rows["/timing/steps/rest_s"].astype(float)
             there = np.isfinite(rest)
-            smooth = there & ~_interrupted(starts, rest[:, None], np.ones((len(rest), 1)))
+            iterations = rows["/steps/newton_iterations"][:, None] + 1.0
+            smooth = there & ~_interrupted(starts, rest[:, None], iterations, np.zeros(len(rest)))
             for sums, values in ((total, np.where(smooth, rest, 0)), (kept, smooth), (taken, there)):
                 np.add.at(sums, owners, np.add.reduceat(values.astype(float), starts))
     return np.divide(total * taken, kept, out=np.full(file.task_count, np.nan), where=kept > 0)
@@ -179,7 +187,7 @@ def direct_times(file, sims):
     if all(file.has(path) for path in paths):
         for owners, starts, rows in file.solve_blocks(tasks, paths):
             both = np.stack([rows[path].astype(float) for path in paths], axis=1)
-            kept = np.isfinite(both).all(axis=1) & ~_interrupted(starts, both, np.ones(both.shape))
+            kept = np.isfinite(both).all(axis=1) & ~_interrupted(starts, both, np.ones(both.shape), np.zeros(len(both)))
             for part, values in zip(sums, both.T):
                 np.add.at(part, owners, np.add.reduceat(np.where(kept, values, 0), starts))
             np.add.at(solves, owners, np.add.reduceat(kept.astype(float), starts))
@@ -193,5 +201,9 @@ def interruptions(part, sims):
                         for count in (part.solves, part.interrupted))
     if not left_out:
         return ""
-    return (f"Left out: {left_out:.0f} of {solves:.0f} solves that the operating system interrupted "
-            f"(a part lasted over {INTERRUPTED} times its median).")
+    found = (f"Left out: {left_out:.0f} of {solves:.0f} solves that the operating system interrupted "
+             f"(a part lasted over {INTERRUPTED} times its median).")
+    if left_out <= SUSPICIOUS * solves:
+        return found
+    return (f"{found} That is {left_out / solves:.0%} of them: these times are not to be trusted. The machine had other "
+            "work to do, or some solves are slow by design.")

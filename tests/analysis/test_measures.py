@@ -235,6 +235,56 @@ class Interruptions(Tables):
         np.testing.assert_array_equal(times.interrupted[0], 1)
         np.testing.assert_allclose(times.cg_s[0, 0], (3e-3 + 4 * 20e-6) * 5 / 4 + 10 * 10e-6, rtol=1e-5)
 
+    def test_a_guess_that_is_slow_at_the_first_newton_iteration_loses_nothing_there(self):
+        """k nearest neighbours of a data set of first iterations: 40 times as long there as later."""
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=40, newton=3)
+        before = timings.times(file, sims)
+
+        def slow(h5):
+            h5["timing/solves/guess_s"][0::3, 2] *= 40
+            h5["timing/solves/guess_s"][3, 2] = 4e-3  # interrupted as well
+
+        after = timings.times(self.changed(file, slow), sims)
+        self.assertEqual(after["all"].interrupted[:, 0].sum(), 1)
+        np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
+        np.testing.assert_allclose(after["first"].guess_s[:, 2], 40 * before["first"].guess_s[:, 2], rtol=1e-6)
+        self.assertNotIn("trusted", timings.interruptions(after["all"], sims))
+
+    def test_an_iteration_that_few_steps_reach_is_judged_by_the_one_before_it(self):
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=20, newton=3)
+
+        def change(h5):
+            for name in ("guess_s", "cg_s"):
+                values = h5[f"timing/solves/{name}"][:]
+                values[5:60:3] = np.nan  # of the first task, all third iterations but one
+                h5[f"timing/solves/{name}"][:] = values
+            h5["timing/solves/cg_s"][2, 1] = 4e-3
+
+        self.assertEqual(timings.times(self.changed(file, change), sims)["all"].interrupted[0, 0], 1)
+
+    def test_more_than_a_twentieth_left_out_is_said_to_be_too_much(self):
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=20, newton=3)
+
+        def interrupt(h5):
+            h5["timing/solves/cg_s"][::15, 0] = 4e-3
+
+        sentence = timings.interruptions(timings.times(self.changed(file, interrupt), sims)["all"], sims)
+        self.assertIn("16 of 240 solves", sentence)
+        self.assertIn("7% of them: these times are not to be trusted", sentence)
+
+    def test_a_step_of_many_newton_iterations_is_not_an_interruption(self):
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=20, newton=3)
+
+        def lengthen(h5):
+            h5["steps/newton_iterations"][::2] = 0
+            h5["steps/newton_iterations"][1::4] = 9
+            rest = 10e-6 * (h5["steps/newton_iterations"][:] + 1)
+            h5["timing/steps/rest_s"][:] = rest
+            self.total = rest[:20].sum()
+
+        found = timings.times(self.changed(file, lengthen), sims)["all"]
+        np.testing.assert_allclose(found.rest_s[0, 0], self.total, rtol=1e-5)
+
     def test_in_a_closed_loop_every_guess_loses_its_own_rows(self):
         file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3, closed_loop=True)
         before = timings.speedups(timings.times(file, sims), "first")["guess_cg"]
