@@ -35,7 +35,7 @@ struct Dispatch {
     std::string message;
   };
 
-  std::array<std::int64_t, 8> finished{};  ///< by TaskOutcome
+  std::array<std::int64_t, task_outcomes> finished{};  ///< by TaskOutcome
   std::vector<Failure> failures;           ///< the first few
   std::int64_t left = 0;                   ///< not run, or abandoned: 0 unless stopped early
   int signal = 0;                          ///< the signal that stopped it

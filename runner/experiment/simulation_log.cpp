@@ -11,7 +11,8 @@
 namespace rodsweep {
 namespace {
 
-constexpr double meaningless_gap = 100;  // joint lengths: the simulation has blown up
+// Largest joint gaps, in joint lengths.
+constexpr double whole_rod = 1, meaningless_gap = 100;
 
 TaskOutcome outcome_of(SolveOutcome solve) {
   switch (solve) {
@@ -109,8 +110,9 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
     fail(TaskOutcome::not_a_number, step, "the rod's state is not finite");
     return false;
   }
-  if (const double gap = record_.joint_gap[row]; gap > meaningless_gap) {
-    fail(TaskOutcome::diverged, step, "a joint is open by " + std::to_string(gap) + " joint lengths");
+  if (const double gap = record_.joint_gap[row]; gap > whole_rod) {
+    fail(gap > meaningless_gap ? TaskOutcome::diverged : TaskOutcome::torn, step,
+         "a joint is open by " + std::to_string(gap) + " joint lengths");
     return false;
   }
   return true;

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::optional<TaskOutcome> outcome_of(const std::string& text) {
-  for (int i = 0; i <= static_cast<int>(TaskOutcome::error); ++i)
+  for (int i = 0; i < task_outcomes; ++i)
     if (text == to_string(static_cast<TaskOutcome>(i))) return static_cast<TaskOutcome>(i);
   return std::nullopt;
 }

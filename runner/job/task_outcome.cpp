@@ -12,6 +12,7 @@ const char* to_string(TaskOutcome outcome) {
     case TaskOutcome::iteration_limit: return "iteration_limit";
     case TaskOutcome::timed_out: return "timed_out";
     case TaskOutcome::error: return "error";
+    case TaskOutcome::torn: return "torn";
   }
   return "unknown";
 }

@@ -9,13 +9,15 @@ namespace rodsweep {
 enum class TaskOutcome : std::int8_t {
   pending = 0,          ///< not run yet
   ok = 1,               ///< every step was taken
-  diverged = 2,         ///< the simulation blew up (joint gap beyond any meaning) or a solve diverged
+  diverged = 2,         ///< the simulation blew up (joints open by a hundred lengths) or a solve diverged
   not_a_number = 3,     ///< the state holds a NaN or infinity
   indefinite = 4,       ///< the system matrix lost positive definiteness
   iteration_limit = 5,  ///< the solve that advances the trajectory hit its cap on iterations
   timed_out = 6,        ///< the task's time limit passed
   error = 7,            ///< an exception; its text is the task's message
+  torn = 8,             ///< a joint opened by more than its length: no rod any more
 };
+inline constexpr int task_outcomes = 9;
 
 const char* to_string(TaskOutcome outcome);
 

@@ -139,7 +139,7 @@ TEST_CASE("contacts and the deepest penetration are recorded where rods touch, a
   CHECK(evaluated(job).contacts.empty());
 }
 
-TEST_CASE("a rod that blows up and a task out of time end with what was done") {
+TEST_CASE("a rod that blows up or is torn and a task out of time end with what was done") {
   Json wild = job_with(R"(["zero"])");
   wild["scene"]["tip_force_n"] = {0, 1e12, 0};
   wild["time"]["newton_iterations"] = 1;
@@ -148,6 +148,13 @@ TEST_CASE("a rod that blows up and a task out of time end with what was done") {
   CHECK_THAT(blown.message, Catch::Matchers::Contains("step 0: a joint is open by"));
   CHECK(blown.steps_done[0] == 1);
   CHECK(std::isnan(blown.time_s[1]));
+
+  Json pulled = wild;
+  pulled["scene"]["tip_force_n"] = {0, 1e5, 0};
+  const TaskRecord torn = evaluated(pulled);
+  CHECK(torn.outcome == TaskOutcome::torn);
+  CHECK_THAT(torn.message, Catch::Matchers::Contains("a joint is open by"));
+  CHECK(torn.joint_gap[static_cast<std::size_t>(torn.steps_done[0] - 1)] > 1);
 
   Json slow = job_with(R"(["zero"])");
   slow["task_time_limit_s"] = 1e-9;
