@@ -12,6 +12,7 @@ PYTHON   := /usr/bin/python3
 BUILD_TYPE    ?= Release
 PORTABLE      ?= 0
 WERROR        ?= 0
+SANITIZE      ?= 0
 SKIP_PACKAGES ?= 0
 
 yes = $(filter-out 0 no off,$(1))
@@ -42,7 +43,7 @@ help:
 	@echo 'make schema        refresh jobs/schema.json after a change of the keys of jobs'
 	@echo 'make format        clang-format the tree; make format-check only looks'
 	@echo 'make tidy          clang-tidy'
-	@echo 'make clean         remove $(BUILD)/ and $(BUILD)-sanitize/; results stay'
+	@echo 'make clean         remove $(BUILD)/, $(BUILD)-sanitize/ and $(BUILD)-tidy/; results stay'
 	@echo
 	@echo 'PORTABLE=1 builds for any processor of this kind, WERROR=1 makes warnings errors, SKIP_PACKAGES=1 leaves apt-get alone.'
 
@@ -82,9 +83,10 @@ pictures: build
 	      --colour $$colour $$([ $$name != tree ] || echo --fine) -o $$path; \
 	done; done
 
-test: configure
-	@cmake --build $(BUILD) -j $(CORES)
-	@ctest --test-dir $(BUILD) -j $(CORES) -LE long --output-on-failure --no-tests=error
+# SANITIZE=1: the unit tests are those of `make sanitize` and no others, so that they are built once, as in .ci/run.
+test: configure $(if $(call yes,$(SANITIZE)),sanitize)
+	@cmake --build $(BUILD) -j $(CORES) $(if $(call yes,$(SANITIZE)),--target program_tests)
+	@ctest --test-dir $(BUILD) -j $(CORES) -LE '$(if $(call yes,$(SANITIZE)),unit|)long' --output-on-failure --no-tests=error
 
 test-long: configure
 	@cmake --build $(BUILD) -j $(CORES)
@@ -114,12 +116,15 @@ format-check:
 	@$(call packages,develop)
 	@clang-format --dry-run -Werror $(sources) && echo 'format: clean'
 
-tidy: build
-	@$(call packages,develop)
-	@run-clang-tidy -quiet -p $(BUILD) -j $(CORES) '^$(CURDIR)/(solver|network|runner)/.*\.cpp$$'
+# Reads how things are compiled from a folder of its own: clang has no use for the compiler's precompiled headers.
+tidy:
+	@$(call packages,build develop)
+	@$(call configure,$(BUILD)-tidy,-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
+	@cmake --build $(BUILD)-tidy --target revision_header
+	@run-clang-tidy -quiet -p $(BUILD)-tidy -j $(CORES) '^$(CURDIR)/(solver|network|runner)/.*\.cpp$$'
 
 install: build
 	@cmake --install $(BUILD) --prefix "$$(realpath -m -- "$(PREFIX)")"
 
 clean:
-	@for folder in $(BUILD) $(BUILD)-sanitize; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done
+	@for folder in $(BUILD) $(BUILD)-sanitize $(BUILD)-tidy; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done
