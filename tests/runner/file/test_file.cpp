@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "runner/file/columns.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
