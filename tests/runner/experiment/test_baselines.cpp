@@ -89,7 +89,9 @@ TEST_CASE("a file that is no data set makes the task an error that says so") {
 TEST_CASE("a network that says nothing lets the rod fall apart, which is data: rows without iterations") {
   const TemporaryFolder folder;
   write_model(folder / "silent.h5", 0);
-  const TaskRecord record = evaluated(folder, instead_of_the_solve("silent.h5")).front();
+  Json job = instead_of_the_solve("silent.h5");
+  job["time"]["steps"] = 5;
+  const TaskRecord record = evaluated(folder, job).front();
   CHECK(record.outcome == TaskOutcome::ok);
   CHECK(record.joint_gap.back() > record.joint_gap.front());
   CHECK(record.joint_gap.front() > 0.001);
@@ -100,6 +102,10 @@ TEST_CASE("a network that says nothing lets the rod fall apart, which is data: r
   CHECK(record.iterations.empty());
   CHECK(std::isnan(record.assemble_s.front()));
   CHECK(record.rest_s.front() > 0);
+  job["time"]["steps"] = 20;
+  const TaskRecord torn = evaluated(folder, job).front();
+  CHECK(torn.outcome == TaskOutcome::torn);
+  CHECK(torn.joint_gap[static_cast<std::size_t>(torn.steps_done[0] - 1)] > 1);
 }
 
 TEST_CASE("a network moves every tree of a forest instead of the solve") {
@@ -128,13 +134,14 @@ TEST_CASE("a network whose answer is no number ends its task, and only that") {
   CHECK(records[1].outcome == TaskOutcome::ok);
 }
 
-TEST_CASE("a network that blows up is a simulation that diverged") {
+TEST_CASE("a network that blows up tears its rod, or more") {
   const TemporaryFolder folder;
   write_model(folder / "wild.h5", 10);
   Json job = instead_of_the_solve("wild.h5");
   job["time"]["steps"] = 200;
   const TaskRecord record = evaluated(folder, job).front();
-  CHECK((record.outcome == TaskOutcome::diverged || record.outcome == TaskOutcome::not_a_number));
+  CHECK((record.outcome == TaskOutcome::torn || record.outcome == TaskOutcome::diverged ||
+         record.outcome == TaskOutcome::not_a_number));
   CHECK(record.steps_done.front() < 200);
 }
 
