@@ -101,7 +101,7 @@ bench:
 sanitize: BUILD_TYPE = Debug
 sanitize:
 	@$(call packages,build)
-	@$(call configure,$(BUILD)-sanitize,-DRODSWEEP_SANITIZE=ON -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1')
+	@$(call configure,$(BUILD)-sanitize,-DRODSWEEP_SANITIZE=ON -DCMAKE_CXX_FLAGS_DEBUG='-Og -g1')
 	@cmake --build $(BUILD)-sanitize -j $(CORES) --target unit_tests
 	@ctest --test-dir $(BUILD)-sanitize -j $(CORES) -L unit --output-on-failure --no-tests=error
 

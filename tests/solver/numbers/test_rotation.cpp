@@ -58,5 +58,17 @@ TEST_CASE("the director is the rotated z axis") {
   }
 }
 
+TEST_CASE("turn_between() takes one direction to the other by the shortest way, opposite ones too") {
+  Random random(2);
+  for (int i = 0; i < 50; ++i) {
+    const Vector3 from = random.vector(3), to = i % 5 == 0 ? Vector3(-2 * from) : random.vector(3);
+    const Quaternion turn = turn_between(from, to);
+    CHECK(turn.norm() == Approx(1).epsilon(1e-14));
+    CHECK((turn * from.normalized() - to.normalized()).norm() < 1e-12);
+    CHECK(std::abs(turn.vec().dot(from)) < 1e-12 * from.norm());  // about an axis across both
+    CHECK(turn.w() >= 0);
+  }
+}
+
 }  // namespace
 }  // namespace rodsweep
