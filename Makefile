@@ -83,10 +83,11 @@ pictures: build
 	      --colour $$colour $$([ $$name != tree ] || echo --fine) -o $$path; \
 	done; done
 
-# SANITIZE=1: the unit tests are those of `make sanitize` and no others, so that they are built once, as in .ci/run.
+# Two tests a core, since those under mpirun mostly wait. SANITIZE=1: the unit tests are those of `make sanitize` and no
+# others, so that they are built once, as in .ci/run.
 test: configure $(if $(call yes,$(SANITIZE)),sanitize)
 	@cmake --build $(BUILD) -j $(CORES) $(if $(call yes,$(SANITIZE)),--target program_tests)
-	@ctest --test-dir $(BUILD) -j $(CORES) -LE '$(if $(call yes,$(SANITIZE)),unit|)long' --output-on-failure --no-tests=error
+	@ctest --test-dir $(BUILD) -j $$((2 * $(CORES))) -LE '$(if $(call yes,$(SANITIZE)),unit|)long' --output-on-failure --no-tests=error
 
 test-long: configure
 	@cmake --build $(BUILD) -j $(CORES)
