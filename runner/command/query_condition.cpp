@@ -80,8 +80,7 @@ std::vector<std::string> words_of(const TaskColumn& column, const TaskTable& tab
   if (column.kind == TaskColumn::Kind::own_guess) return table.guesses();
   std::vector<std::string> words;
   if (column.kind == TaskColumn::Kind::outcome)
-    for (int i = 0; i < task_outcomes; ++i)
-      words.emplace_back(to_string(static_cast<TaskOutcome>(i)));
+    for (int i = 0; i < task_outcomes; ++i) words.emplace_back(to_string(static_cast<TaskOutcome>(i)));
   return words;
 }
 

@@ -36,10 +36,10 @@ struct Dispatch {
   };
 
   std::array<std::int64_t, task_outcomes> finished{};  ///< by TaskOutcome
-  std::vector<Failure> failures;           ///< the first few
-  std::int64_t left = 0;                   ///< not run, or abandoned: 0 unless stopped early
-  int signal = 0;                          ///< the signal that stopped it
-  double busy_s = 0;                       ///< of all workers
+  std::vector<Failure> failures;                       ///< the first few
+  std::int64_t left = 0;                               ///< not run, or abandoned: 0 unless stopped early
+  int signal = 0;                                      ///< the signal that stopped it
+  double busy_s = 0;                                   ///< of all workers
   double wall_s = 0;
 };
 
