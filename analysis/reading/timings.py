@@ -6,9 +6,9 @@ A row is left out, for all guesses, where a part took over INTERRUPTED times its
 median per iteration, with FIXED iterations for what every solve costs; the rest of a step: per Newton iteration, with
 one for prediction and velocities); sums are scaled up to all rows. The median is over the simulation's rows of the same
 Newton iteration, since a guess may be made in another way there (the nearest data of a first one, no history of a
-late one); where they are fewer than FEW, that of an iteration before it or of all stands in. A lagged preconditioner is factored
-anew in rows of their own kind: those are not judged, and stay. Times.interrupted counts the rows left out; where they
-are more than SUSPICIOUS of all, the sentence that says so says also what it means.
+late one); where they are fewer than FEW, that of an iteration before it or of all stands in. A lagged preconditioner is
+factored anew in rows of their own kind: those are not judged, and stay. Times.interrupted counts the rows left out;
+where they are more than SUSPICIOUS of all, the sentence that says so says also what it means.
 """
 
 from dataclasses import dataclass
@@ -103,9 +103,11 @@ def _lag_steps(file):
     return np.where(preconditioner == "lagged_cholesky", steps, 0)
 
 
-def _interrupted(starts, parts, work, kind, judged):
+def _interrupted(starts, parts, work, kind=None, judged=None):
     """Rows judged in which some part lasted far longer than its median per work over the task's rows of that kind."""
     found = np.zeros(len(parts), dtype=bool)
+    kind = np.zeros(len(parts)) if kind is None else kind
+    judged = ~found if judged is None else judged
     for begin, end in zip(starts, np.append(starts[1:], len(parts))):
         of_task = begin + np.flatnonzero(judged[begin:end])
         rate = parts[of_task] / work[of_task]
@@ -158,7 +160,7 @@ def _rest_s(file, tasks):
             rest = rows["/timing/steps/rest_s"].astype(float)
             there = np.isfinite(rest)
             iterations = rows["/steps/newton_iterations"][:, None] + 1.0
-            smooth = there & ~_interrupted(starts, rest[:, None], iterations, np.zeros(len(rest)), there)
+            smooth = there & ~_interrupted(starts, rest[:, None], iterations)
             for sums, values in ((total, np.where(smooth, rest, 0)), (kept, smooth), (taken, there)):
                 np.add.at(sums, owners, np.add.reduceat(values.astype(float), starts))
     return np.divide(total * taken, kept, out=np.full(file.task_count, np.nan), where=kept > 0)
@@ -191,8 +193,7 @@ def direct_times(file, sims):
     if all(file.has(path) for path in paths):
         for owners, starts, rows in file.solve_blocks(tasks, paths):
             both = np.stack([rows[path].astype(float) for path in paths], axis=1)
-            kept = np.isfinite(both).all(axis=1) & ~_interrupted(starts, both, np.ones(both.shape), np.zeros(len(both)),
-                                                                                 np.ones(len(both), dtype=bool))
+            kept = np.isfinite(both).all(axis=1) & ~_interrupted(starts, both, np.ones(both.shape))
             for part, values in zip(sums, both.T):
                 np.add.at(part, owners, np.add.reduceat(np.where(kept, values, 0), starts))
             np.add.at(solves, owners, np.add.reduceat(kept.astype(float), starts))
