@@ -98,7 +98,7 @@ void ChainProfile::state(const Rod& rod, const LinearSystem& system, double dt_c
     }
     const Vector6 b = sign_[i] * system.rhs().segment<6>(6 * joint_[i]);
     if (i == 0) first = point;
-    gap += length_[i] * b.head<3>();
+    gap += to_world(rod, joint, length_[i] * b.head<3>());
     auto to = out.col(static_cast<Eigen::Index>(i));
     to.segment<3>(0) = ((point - first) / length_m_).cast<float>();
     to.segment<3>(3) = (-length_m_ / length_[i] * b.tail<3>()).cast<float>();

@@ -5,9 +5,9 @@
 // m/s^2 where there is none), T = sqrt(L / a). At every joint, of length l:
 //   state   15: its point relative to the first joint's, over L
 //               L / l (-b_b): L (Omega - Omega0), and what multipliers changed of it
-//               the sum of l b_s / (a dt_c^2) up to this joint: a clamp's jump and gaps spread along the rod alike
+//               the sum of l b_s / (a dt_c^2) up to this joint, in the world: a clamp's jump and gaps spread alike
 //               velocity of the point T / L, angular velocity T
-//   load     6: force lambda_s / (l dt_c^2) over m a, world frame; torque lambda_b / dt_c^2 over m a L, local frame.
+//   load     6: force lambda_s / (l dt_c^2) over m a, torque lambda_b / dt_c^2 over m a L, in the joint's frame.
 //               Neither depends on how finely the rod is divided nor, but for the motion in a step, on dt.
 //   constants 2: log10 of EI and GJ over m a L^2, means over the joints
 #pragma once

@@ -2,7 +2,7 @@
 //
 //   x = x_base + c d,   d = unit * y(features of the rod, A, r),   r = b - A x_base,
 //   c = d.r / d.A d with `best_length`, else 1
-// and, where the network predicts them, the segments' moves Delta p in metres and radians.
+// and, where the network predicts them, the segments' moves Delta p in their own frames, in metres and radians.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // A network instead of the solve ("end to end" on the deck): its increments move the rod, and nobody checks them.
 //
-// In every Newton iteration   lambda += Delta lambda,   x += Delta x,   q <- normalise(q + [0, Delta theta] q / 2)
+// In every Newton iteration   lambda += Delta lambda,   x += R u,   q <- normalise(q + q [0, phi] / 2)
 // on free segments; static ones stay. The system is assembled for the network's features and for Newton's test.
 #pragma once
 
@@ -15,8 +15,8 @@ namespace rodsweep {
 class IncrementSource {
  public:
   virtual ~IncrementSource() = default;
-  /// Sets Delta lambda and the segments' moves (dx in lanes 0..2, dtheta in lanes 3..5) for the system assembled at the
-  /// rod's state with dt_c. False where they are not finite.
+  /// Sets Delta lambda and the segments' moves (u in lanes 0..2, phi in lanes 3..5, in their own frames) for the system
+  /// assembled at the rod's state with dt_c. False where they are not finite.
   virtual bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c,
                        VectorX& delta_lambda, std::vector<Lane8>& moves) = 0;
 };

@@ -146,8 +146,9 @@ std::vector<Column> all_columns() {
                                       "velocity at the start of the step"),
       column<&R::system_angular_velocity_rad_s>("/systems/segments/angular_velocity_rad_s", Rows::system_segment, xyz,
                                                 "rad/s", "angular velocity at the start of the step, world frame"),
-      column<&R::system_lambda>("/systems/joints/lambda", Rows::system_joint, six, "kg m^2",
-                                "Lagrange multipliers before the solve: stretch-shear (3), bend-twist (3)"),
+      column<&R::system_lambda>(
+          "/systems/joints/lambda", Rows::system_joint, six, "kg m^2",
+          "Lagrange multipliers before the solve: stretch-shear (3), bend-twist (3), in the joint's frame"),
       column<&R::system_solution>("/systems/joints/solution", Rows::system_joint, six, "kg m^2",
                                   "their increment, which solves A dlambda = b: by the direct solve"),
 

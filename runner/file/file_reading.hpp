@@ -21,6 +21,12 @@ std::string kind_of(const hdf5::File& file);
 /// Refuses a file that another version of rodsweep wrote in another form.
 void check_version(const hdf5::File& file, const std::filesystem::path& path, int known);
 
+/// Marks a file: its A, b and multipliers are in the joints' frames (solver/rod/linearization.hpp).
+void mark_frame(hid_t file);
+
+/// Refuses a file without that mark, of a rodsweep that measured stretch and shear in the world. `advice`: what to do.
+void check_frame(const hdf5::File& file, const std::filesystem::path& path, const char* advice);
+
 hdf5::File open_results(const std::filesystem::path& path);
 
 /// A file that passed open_results() but does not hold what it should; `reason` says what.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/job/checksum.hpp"
 #include "runner/job/training_job.hpp"
@@ -70,6 +71,7 @@ void write_epochs(hid_t file, const ModelCard& card) {
 void write_card(hid_t file, const ModelCard& card) {
   hdf5::write_attribute(file, "program", "rodsweep");
   hdf5::write_attribute(file, "schema_version", model_schema_version);
+  mark_frame(file);
   hdf5::write_attribute(file, "kind", "model");
   hdf5::write_attribute(file, "title", "rodsweep model: " + card.name);
   write_texts(file, "/job/text", {card.job_text});

@@ -1,7 +1,7 @@
-// Constraints and Jacobians of eight equal chains at once: linearization.hpp's, rod r in lane r.
+// Constraints of eight equal chains at once: linearization.hpp's, rod r in lane r.
 //
-// The sides of a joint are written J_a = (I/l, K_a) and J_b = -(I/l, K_b), the I in the stretch-shear rows, with
-//   K u = (u x rho, -G u)  for a turn u;   K^T e_i is row i of K:  rho x e_i, then -G^T e_i.
+// Of a joint's Jacobian only what H is made of is kept: with the arms over l it is
+//   J_a = (H^T/l, -H^T [arm_a]x; 0, -(w I - [v]x)),   J_b = (-H/l, H [arm_b]x; 0, w I + [v]x).
 #pragma once
 
 #include <vector>
@@ -11,17 +11,25 @@
 namespace rodsweep {
 
 struct BatchedJacobian {
-  LaneVector arm_a, arm_b;  ///< rho / l, world frame
-  LaneVector bend[3];       ///< rows of G
+  LaneQuaternion turn;  ///< d
+  Lane8 scale;          ///< 1 / (1 + w)
 };
 
+/// H = R(d^(1/2)) = w I + [v]x + v v^T / (1 + w).
+inline LaneMatrix half_turn(const BatchedJacobian& jacobian) {
+  const LaneQuaternion& d = jacobian.turn;
+  const LaneVector v = {d.x, d.y, d.z}, scaled = jacobian.scale * v;
+  const Lane8 xy = v.x * scaled.y, xz = v.x * scaled.z, yz = v.y * scaled.z;
+  return {{d.w + v.x * scaled.x, xy + v.z, xz - v.y},
+          {xy - v.z, d.w + v.y * scaled.y, yz + v.x},
+          {xz + v.y, yz - v.x, d.w + v.z * scaled.z}};
+}
+
 struct BatchedLinearization {
-  explicit BatchedLinearization(const BatchedRods& rods)
-      : joints(rods.joints.size()), b(joints.size()), axes(rods.segments.size()) {}
+  explicit BatchedLinearization(const BatchedRods& rods) : joints(rods.joints.size()), b(joints.size()) {}
 
   std::vector<BatchedJacobian> joints;
-  std::vector<LaneVector6> b;    ///< -C - alpha~ lambda
-  std::vector<LaneVector> axes;  ///< world direction of every segment's local z
+  std::vector<LaneVector6> b;  ///< -C - alpha~ lambda
 
   Lane8 residual;      ///< max |b|
   Lane8 squared_norm;  ///< of b

@@ -1,6 +1,7 @@
 #include "solver/batch/batched_rods.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "solver/step/time_step.hpp"
@@ -28,9 +29,6 @@ void check_alone(const Scene& scene, const std::string& name) {
     if (rod.segments[static_cast<std::size_t>(k)].is_static && rod.segments[static_cast<std::size_t>(k) + 1].is_static)
       throw SceneError(name + ": joint " + std::to_string(k) +
                        " joins two static segments; remove it or free one of them");
-    if (joint.axial_excess != 0)
-      throw SceneError(name + ": joint " + std::to_string(k) +
-                       " stretches more easily or less along the rod than across; a batched step knows one stretch");
   }
 }
 
@@ -65,7 +63,9 @@ void put(BatchedSegment& out, int lane, const Rod& rod, std::size_t s) {
   out.is_static = segment.is_static;
   out.inverse_mass[lane] = segment.inverse_mass;
   out.inverse_inertia_transverse[lane] = segment.inverse_inertia_transverse;
-  out.inverse_inertia_excess[lane] = segment.inverse_inertia_axial - segment.inverse_inertia_transverse;
+  out.inverse_inertia_axial[lane] = segment.inverse_inertia_axial;
+  out.root_inverse_inertia_transverse[lane] = std::sqrt(segment.inverse_inertia_transverse);
+  out.root_inverse_inertia_axial[lane] = std::sqrt(segment.inverse_inertia_axial);
   out.inertia_excess[lane] = segment.inertia_axial - segment.inertia_transverse;
   put(out.position, lane, rod.position[s]);
   put(out.velocity, lane, rod.velocity[s]);

@@ -15,9 +15,9 @@ namespace rodsweep {
 
 struct BatchedSegment {
   bool is_static;
-  Lane8 inverse_mass, inverse_inertia_transverse;
-  Lane8 inverse_inertia_excess;  ///< axial minus transverse: M^-1 turns by i_t I + excess t t^T, t the axis
-  Lane8 inertia_excess;
+  Lane8 inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;
+  Lane8 root_inverse_inertia_transverse, root_inverse_inertia_axial;  ///< their square roots
+  Lane8 inertia_excess;                                               ///< axial minus transverse
   LaneVector position, velocity, angular_velocity;
   LaneQuaternion orientation;
   LaneVector old_position;  ///< at the start of the step
@@ -36,8 +36,8 @@ struct BatchedRods {
   static constexpr int lanes = 8;
 
   /// From the states of scenes of one rod each, for steps of dt. Throws SceneError: fewer than one or more than eight
-  /// scenes, rods that are not equal chains, a joint between static segments or of physical stretch, moving
-  /// clamps or point loads.
+  /// scenes, rods that are not equal chains, a joint between static segments, moving clamps or
+  /// point loads.
   BatchedRods(const std::vector<Scene>& scenes, double dt);
 
   /// Writes the state of rod `lane` into its scene.

@@ -5,56 +5,70 @@
 namespace rodsweep {
 namespace {
 
-/// One side of a joint.
-struct Side {
-  const LaneVector& arm;
-  const LaneVector (&bend)[3];
-};
-
-/// K u.
-inline LaneVector6 rates(const Side& side, const LaneVector& u) {
-  const LaneVector stretch = cross(u, side.arm);
-  return {stretch.x, stretch.y, stretch.z, -dot(side.bend[0], u), -dot(side.bend[1], u), -dot(side.bend[2], u)};
-}
-
-/// V K^T e_i, the rows of K V, with V = transverse I + excess axis axis^T.
-struct WeightedRows {
+/// The rows of K D^1/2 of one side of a joint, so that the products of rows are those of K D K^T.
+struct Rows {
   LaneVector row[6];
-
-  WeightedRows(const Side& side, const BatchedSegment& segment, const LaneVector& axis) {
-    const LaneVector excess = segment.inverse_inertia_excess * axis;
-    const LaneVector arm = segment.inverse_inertia_transverse * side.arm;
-    const LaneVector along = cross(axis, side.arm);  // axis . (rho x e_i)
-    const Lane8 zero{};
-    row[0] = LaneVector{zero, arm.z, -arm.y} + along.x * excess;
-    row[1] = LaneVector{-arm.z, zero, arm.x} + along.y * excess;
-    row[2] = LaneVector{arm.y, -arm.x, zero} + along.z * excess;
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) {
-      const LaneVector transverse = -segment.inverse_inertia_transverse * side.bend[i];
-      row[3 + i] = transverse - dot(axis, side.bend[i]) * excess;
-    }
-  }
 };
 
-/// The lower triangle of s += K V K^T.
-inline void add_side(const Side& side, const WeightedRows& weighted, LaneBlock& s) {
-#pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i) {
-    const LaneVector6 row = rates(side, weighted.row[i]);
-#pragma GCC unroll 6
-    for (int j = 0; j <= i; ++j) s[i][j] += row[j];
-  }
+/// The last three of [v]x + w I; t and a are D^1/2 across the segment and along it.
+inline void bend_rows(const LaneQuaternion& d, const Lane8& w, const Lane8& t, const Lane8& a, Rows& out) {
+  const Lane8 tw = t * w, tx = t * d.x, ty = t * d.y, tz = t * d.z;
+  out.row[3] = {tw, -tz, a * d.y};
+  out.row[4] = {tz, tw, -a * d.x};
+  out.row[5] = {-ty, tx, a * w};
 }
 
-/// B_k: rows of side a of joint k, `weighted`, columns of side b of the joint before; `linear` is 1/(m l l).
-inline LaneBlock coupling(const WeightedRows& weighted, const Side& before, const Lane8& linear) {
+/// Of side a: -H^T [arm_a]x, then [v]x - w I.
+inline Rows rows_a(const BatchedJacobian& jacobian, const LaneMatrix& h, const LaneVector& arm,
+                   const BatchedSegment& segment) {
+  const Lane8 &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial;
+  const LaneVector across = t * arm;
+  const Lane8 x = a * arm.x, y = a * arm.y;
+  Rows out;
+  out.row[0] = {across.y * h.x.z - across.z * h.x.y, across.z * h.x.x - across.x * h.x.z, x * h.x.y - y * h.x.x};
+  out.row[1] = {across.y * h.y.z - across.z * h.y.y, across.z * h.y.x - across.x * h.y.z, x * h.y.y - y * h.y.x};
+  out.row[2] = {across.y * h.z.z - across.z * h.z.y, across.z * h.z.x - across.x * h.z.z, x * h.z.y - y * h.z.x};
+  bend_rows(jacobian.turn, -jacobian.turn.w, t, a, out);
+  return out;
+}
+
+/// Of side b: H [arm_b]x, then [v]x + w I.
+inline Rows rows_b(const BatchedJacobian& jacobian, const LaneMatrix& h, const LaneVector& arm,
+                   const BatchedSegment& segment) {
+  const Lane8 &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial;
+  const LaneVector across = t * arm;
+  const Lane8 x = a * arm.x, y = a * arm.y;
+  Rows out;
+  out.row[0] = {across.z * h.y.x - across.y * h.z.x, across.x * h.z.x - across.z * h.x.x, y * h.x.x - x * h.y.x};
+  out.row[1] = {across.z * h.y.y - across.y * h.z.y, across.x * h.z.y - across.z * h.x.y, y * h.x.y - x * h.y.y};
+  out.row[2] = {across.z * h.y.z - across.y * h.z.z, across.x * h.z.z - across.z * h.x.z, y * h.x.z - x * h.y.z};
+  bend_rows(jacobian.turn, jacobian.turn.w, t, a, out);
+  return out;
+}
+
+/// The lower triangle of s += K D K^T.
+inline void add_side(const Rows& k, LaneBlock& s) {
+#pragma GCC unroll 6
+  for (int i = 0; i < 6; ++i)
+#pragma GCC unroll 6
+    for (int j = 0; j <= i; ++j) s[i][j] += dot(k.row[i], k.row[j]);
+}
+
+/// B_k: rows of side a of joint k, columns of side b of the joint before; `linear` is 1/(m l l).
+inline LaneBlock coupling(const Rows& side, const LaneMatrix& half, const Rows& before, const LaneMatrix& half_before,
+                          const Lane8& linear) {
   LaneBlock out;
 #pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i) {
-    const LaneVector6 row = rates(before, weighted.row[i]);
+  for (int i = 0; i < 6; ++i)
 #pragma GCC unroll 6
-    for (int j = 0; j < 6; ++j) out[i][j] = i == j && i < 3 ? -row[j] - linear : -row[j];
+    for (int j = 0; j < 6; ++j) out[i][j] = dot(side.row[i], before.row[j]);
+  const LaneVector columns[3] = {-linear * half.x, -linear * half.y, -linear * half.z};
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    const LaneVector shift = half_before * columns[i];
+    out[i][0] += shift.x;
+    out[i][1] += shift.y;
+    out[i][2] += shift.z;
   }
   return out;
 }
@@ -63,18 +77,23 @@ inline LaneBlock coupling(const WeightedRows& weighted, const Side& before, cons
 
 LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
   LaneMask positive = Lane8{} < 1;
-  LaneBlock s{};    // what the joint after has taken from A_kk
-  LaneVector6 w{};  // and from b_k
+  LaneBlock s{};      // what the joint after has taken from A_kk
+  LaneVector6 w{};    // and from b_k
+  LaneMatrix half{};  // of joint k
+  Rows side_b{};
   for (std::size_t k = columns_.size(); k-- > 0;) {
     const BatchedJoint& joint = rods.joints[k];
     const BatchedSegment &a = rods.segments[k], &b = rods.segments[k + 1];
     const BatchedJacobian& jacobian = linearization_.joints[k];
     Column& column = columns_[k];
 
-    const Side side_a{jacobian.arm_a, jacobian.bend}, side_b{jacobian.arm_b, jacobian.bend};
-    const WeightedRows weighted_a(side_a, a, linearization_.axes[k]);
-    add_side(side_a, weighted_a, s);
-    add_side(side_b, WeightedRows(side_b, b, linearization_.axes[k + 1]), s);
+    if (k + 1 == columns_.size()) {
+      half = half_turn(jacobian);
+      side_b = rows_b(jacobian, half, joint.arm_b, b);
+    }
+    const Rows side_a = rows_a(jacobian, half, joint.arm_a, a);
+    add_side(side_a, s);
+    add_side(side_b, s);
     const Lane8 linear = (a.inverse_mass + b.inverse_mass) * joint.inverse_length * joint.inverse_length;
 #pragma GCC unroll 6
     for (int i = 0; i < 6; ++i) {
@@ -87,9 +106,13 @@ LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
     column.solution = divided(column.factor, w);
     if (k == 0) break;
 
+    const BatchedJoint& joint_before = rods.joints[k - 1];
     const BatchedJacobian& before = linearization_.joints[k - 1];
-    LaneBlock block = coupling(weighted_a, {before.arm_b, before.bend},
-                               a.inverse_mass * joint.inverse_length * rods.joints[k - 1].inverse_length);
+    const LaneMatrix half_before = half_turn(before);
+    side_b = rows_b(before, half_before, joint_before.arm_b, a);
+    LaneBlock block = coupling(side_a, half, side_b, half_before,
+                               a.inverse_mass * joint.inverse_length * joint_before.inverse_length);
+    half = half_before;
     forward(column.factor, block);
     column.u = divided(column.factor, block);
     s = minus_gram(block, column.u);
@@ -134,20 +157,22 @@ void BatchedSystem::apply(BatchedRods& rods, const LaneMask& where) const {
       BatchedJoint& joint = rods.joints[s];
 #pragma GCC unroll 6
       for (int row = 0; row < 6; ++row) joint.lambda[row] = where ? joint.lambda[row] + x[row] : joint.lambda[row];
-      const LaneVector stretch = {x[0], x[1], x[2]};
-      const LaneVector force = joint.inverse_length * stretch;
-      const LaneVector bend = x[3] * jacobian.bend[0] + x[4] * jacobian.bend[1] + x[5] * jacobian.bend[2];
-      impulse = impulse + force;
-      turn = turn + cross(jacobian.arm_a, stretch) - bend;
-      next_impulse = -force;
-      next_turn = bend - cross(jacobian.arm_b, stretch);
+      const LaneQuaternion& d = jacobian.turn;
+      const LaneVector stretch = {x[0], x[1], x[2]}, bend = {x[3], x[4], x[5]}, v = {d.x, d.y, d.z};
+      const LaneMatrix half = half_turn(jacobian);
+      const LaneVector on_a = half * stretch, on_b = transposed_product(half, stretch);
+      const LaneVector along = d.w * bend, across = cross(v, bend);
+      impulse = impulse + joint.inverse_length * on_a;
+      turn = turn + cross(joint.arm_a, on_a) - along - across;
+      next_impulse = -joint.inverse_length * on_b;
+      next_turn = along - across - cross(joint.arm_b, on_b);
     }
     if (!segment.is_static) {
-      const LaneVector& axis = linearization_.axes[s];
-      const LaneVector theta =
-          segment.inverse_inertia_transverse * turn + segment.inverse_inertia_excess * dot(axis, turn) * axis;
-      segment.position = select(where, segment.position + segment.inverse_mass * impulse, segment.position);
-      segment.orientation = select(where, rotated(segment.orientation, theta), segment.orientation);
+      const LaneVector phi = {segment.inverse_inertia_transverse * turn.x, segment.inverse_inertia_transverse * turn.y,
+                              segment.inverse_inertia_axial * turn.z};
+      const LaneVector moved = segment.position + segment.orientation * (segment.inverse_mass * impulse);
+      segment.position = select(where, moved, segment.position);
+      segment.orientation = select(where, turned(segment.orientation, phi), segment.orientation);
     }
     impulse = next_impulse;
     turn = next_turn;

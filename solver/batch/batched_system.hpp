@@ -1,10 +1,11 @@
 // The linear system of a Newton iteration of eight equal chains at once, solved by block LDL^T: linear_system.hpp's
 // equations, rod r in lane r.
 //
-// A chain's matrix is block tridiagonal. Segment k, which joints k - 1 and k share, contributes (m its mass, V its
-// world inverse inertia; the terms in I stand in the stretch-shear rows alone)
-//   A_kk += I/(m l_k^2) + K_a V K_a^T,   A_k-1,k-1 += I/(m l_k-1^2) + K_b V K_b^T,
-//   A_k,k-1 = B_k = -(I/(m l_k l_k-1) + K_a V K_b^T).
+// A chain's matrix is block tridiagonal. Segment k, which joints k - 1 and k share, contributes (m its mass, D its
+// diagonal inverse inertia, K the columns dC/dphi, H the joints' half turns; the first terms stand in the
+// stretch-shear rows alone)
+//   A_kk += I/(m l_k^2) + K_a D K_a^T,   A_k-1,k-1 += I/(m l_k-1^2) + K_b D K_b^T,
+//   A_k,k-1 = B_k = -(H_k-1 H_k)^T/(m l_k l_k-1) + K_a D K_b^T.
 // Joints are eliminated from the last to the first, each as soon as its blocks are evaluated: A is never stored, and of
 // its diagonal blocks only lower triangles are evaluated. With S_k = A_kk - W_k+1^T U_k+1 = L D L^T,
 //   W_k = L^-1 B_k,  U_k = D^-1 W_k,  w = L^-1 (b_k - W_k+1^T y_k+1),  y_k = D^-1 w      and then

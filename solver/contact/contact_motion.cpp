@@ -3,7 +3,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "solver/numbers/rotation.hpp"
+
 namespace rodsweep {
+namespace {
+
+void move_in_world(Rod& rod, std::size_t segment, const Lane8& motion) {
+  if (rod.segments[segment].is_static) return;
+  rod.position[segment] += Vector3(motion[0], motion[1], motion[2]);
+  rod.orientation[segment] = rotated(rod.orientation[segment], Vector3(motion[3], motion[4], motion[5]));
+}
+
+}  // namespace
 
 ContactMotion::ContactMotion(Scene& scene, const ContactBodies& bodies)
     : scene_(scene),
@@ -72,7 +83,7 @@ void ContactMotion::apply() {
     rod.lambda += coupled.response->multipliers();
     for (int s = 0; s < rod.segment_count(); ++s) {
       const auto body = static_cast<std::size_t>(coupled.first_body + s);
-      move(rod, static_cast<std::size_t>(s), settled_[body]);
+      move_in_world(rod, static_cast<std::size_t>(s), settled_[body]);
       motion_[body] = settled_[body] = Lane8{};
     }
   }

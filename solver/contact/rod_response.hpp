@@ -1,10 +1,11 @@
 // How a rod as a whole gives way to impulses on its segments, to first order: what its joints leave of the motions that
 // the segments would take on their own.
 //
-//   A dlambda = -J u,   u <- u + M^-1 J^T dlambda,   A = J M^-1 J^T + alpha~
+//   A dlambda = -J R^T u,   u <- u + R M^-1 J^T dlambda,   A = J M^-1 J^T + alpha~
 //
-// so that the constraints and their multipliers stay as consistent as they were, J u + alpha~ dlambda = 0. With
-// u = M^-1 f this is H f, H = M^-1 - M^-1 J^T A^-1 J M^-1, which is at most M^-1: a rod is never freer than its pieces.
+// so that the constraints and their multipliers stay as consistent as they were, J R^T u + alpha~ dlambda = 0; R turns
+// from the segments' frames into the world, where contacts push. With u = M^-1 f this is H f, where, but for R,
+// H = M^-1 - M^-1 J^T A^-1 J M^-1, which is at most M^-1: a rod is never freer than its pieces.
 // A response costs O(n) on chains and trees, with the factor of A kept. Nothing allocates after the first assembly.
 #pragma once
 
@@ -24,7 +25,7 @@ class RodResponse {
   /// shows in the state.
   void assemble(const Rod& rod, double dt);
 
-  /// `motion`: dx and dtheta of every segment, as LinearSystem::displacements(); of static ones zero.
+  /// `motion`: dx and dtheta of every segment, lanes 0..2 and 3..5, in the world; of static ones zero.
   void respond(const Rod& rod, Lane8* motion);
 
   /// dlambda of all responses since the assembly.
@@ -35,7 +36,7 @@ class RodResponse {
   BlockFactor factor_;
   VectorX change_;  ///< J u, then -dlambda
   VectorX multipliers_;
-  std::vector<Lane8> taken_back_;
+  std::vector<Lane8> own_, taken_back_;  ///< motions in the segments' frames
 };
 
 }  // namespace rodsweep

@@ -1,19 +1,16 @@
 #include "solver/linear/linear_system.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
-#include "solver/linear/axial_compliance.hpp"
-#include "solver/numbers/rotation.hpp"
+#include "solver/numbers/lane_vectors.hpp"
 #include "solver/rod/joint_kernels.hpp"
 
 namespace rodsweep {
 
 LinearSystem::LinearSystem(const Rod& rod)
-    : linearization_(rod),
-      rhs_(VectorX::Zero(6 * rod.joint_count())),
-      axial_joints_(axial_joints(rod)),
-      displacements_(rod.segments.size()) {
+    : linearization_(rod), rhs_(VectorX::Zero(6 * rod.joint_count())), displacements_(rod.segments.size()) {
   refuse_static_joints(rod);  // their rows would be alpha~ alone, and must not be singular
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
@@ -52,7 +49,6 @@ void LinearSystem::assemble(const Rod& rod, double dt) {
     rhs_.segment<6>(row) = -linearization_.constraint.segment<6>(row) -
                            inverse_dt2 * rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
   }
-  add_axial_compliance(rod, linearization_, axial_joints_, inverse_dt2, matrix_, rhs_);
 }
 
 void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
@@ -60,28 +56,24 @@ void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     const Segment& segment = rod.segments[s];
     for (int u = side_start_[s]; u < side_start_[s + 1]; ++u) {
-      const Side& side_u = sides_[static_cast<std::size_t>(u)];
-      const JointJacobian& jacobian_u = linearization_.joints[static_cast<std::size_t>(side_u.joint)];
-      const TurnedColumns turned(side_u.is_b ? jacobian_u.rotation_b : jacobian_u.rotation_a, segment,
-                                 linearization_.axis[s]);
+      const Side& at_u = sides_[static_cast<std::size_t>(u)];
+      const JointSide side_u(linearization_.joints[static_cast<std::size_t>(at_u.joint)], at_u.is_b);
+      const WeightedSide weighted(side_u, segment);
 
       for (int v = side_start_[s]; v < side_start_[s + 1]; ++v, ++next) {
-        const Side& side_v = sides_[static_cast<std::size_t>(v)];
-        const JointJacobian& jacobian_v = linearization_.joints[static_cast<std::size_t>(side_v.joint)];
-        const Lane8* k = side_v.is_b ? jacobian_v.rotation_b : jacobian_v.rotation_a;
-        const double sign = side_u.is_b == side_v.is_b ? 1 : -1;
-        const double linear = sign * segment.inverse_mass * jacobian_u.inverse_length * jacobian_v.inverse_length;
-
+        const Side& at_v = sides_[static_cast<std::size_t>(v)];
         Block6& block = matrix_.blocks[static_cast<std::size_t>(next->block)];
         Lane8 product[6];
-        for (int c = 0; c < 6; ++c) product[c] = turned.times(k, c);
-        for (int c = 0; c < 3; ++c) product[c] += unit_lane[c] * linear;
+        if (u == v)
+          weighted.times_itself(product);
+        else
+          weighted.times(JointSide(linearization_.joints[static_cast<std::size_t>(at_v.joint)], at_v.is_b), product);
         if (!next->first) {
           for (int c = 0; c < 6; ++c) block.column[c] += product[c];
           continue;
         }
-        if (side_u.joint == side_v.joint) {
-          const Vector6& alpha = rod.joints[static_cast<std::size_t>(side_u.joint)].compliance;
+        if (at_u.joint == at_v.joint) {
+          const Vector6& alpha = rod.joints[static_cast<std::size_t>(at_u.joint)].compliance;
           for (int c = 0; c < 6; ++c) product[c] += unit_lane[c] * (inverse_dt2 * alpha[c]);
         }
         for (int c = 0; c < 6; ++c) block.column[c] = product[c];
@@ -99,8 +91,7 @@ void LinearSystem::displacements(const Rod& rod, const VectorX& delta_lambda, st
     out[static_cast<std::size_t>(joint.a)] += on_a;
     out[static_cast<std::size_t>(joint.b)] += on_b;
   }
-  for (std::size_t s = 0; s < rod.segments.size(); ++s)
-    out[s] = motion(rod.segments[s], linearization_.axis[s], out[s]);
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) out[s] = motion(rod.segments[s], out[s]);
 }
 
 void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
@@ -115,9 +106,12 @@ void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delt
 
 void move(Rod& rod, std::size_t segment, const Lane8& displacement) {
   if (rod.segments[segment].is_static) return;
-  const Lane8& d = displacement;
-  rod.position[segment] += Vector3(d[0], d[1], d[2]);
-  rod.orientation[segment] = rotated(rod.orientation[segment], Vector3(d[3], d[4], d[5]));
+  const Lane4 shift = __builtin_shufflevector(displacement, displacement, 0, 1, 2, 6);
+  const Lane4 phi = __builtin_shufflevector(displacement, displacement, 3, 4, 5, 6);
+  Quaternion& q = rod.orientation[segment];
+  const Lane4 by = turned(q, shift), after = turned_within(q, phi);
+  rod.position[segment] += Vector3(by[0], by[1], by[2]);
+  std::memcpy(q.coeffs().data(), &after, sizeof after);
 }
 
 double LinearSystem::newton_residual() const {

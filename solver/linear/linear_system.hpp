@@ -1,8 +1,9 @@
 // The linear system of one Newton iteration on one rod, and the update that its solution makes:
 //
 //   A dlambda = b,   A = J M^-1 J^T + alpha~,   b = -C - alpha~ lambda,   alpha~ = alpha / dt^2
-//   dx = M^-1 J^T dlambda,   lambda += dlambda,   x += dx,   q <- normalise(q + [0, dtheta] q / 2)
+//   (u, phi) = M^-1 J^T dlambda,   lambda += dlambda,   x += R u,   q <- normalise(q + q [0, phi] / 2)
 //
+// All in the segments' and joints' own frames (linearization.hpp): A and b are those of any turned or shifted rod.
 // (Deul et al. 2018; Shao et al. 2021.) A is symmetric positive definite, with one 6x6 block row per joint coupled to
 // all joints that share a dynamic segment with it; siblings at a branching couple too. Nothing allocates after
 // construction.
@@ -20,7 +21,7 @@ class LinearSystem {
   /// Evaluates A and b at the rod's positions and multipliers.
   void assemble(const Rod& rod, double dt);
 
-  /// M^-1 J^T dlambda, per segment: dx in lanes 0..2, dtheta in lanes 3..5, zero where static.
+  /// M^-1 J^T dlambda, per segment and in its frame: u in lanes 0..2, phi in lanes 3..5, zero where static.
   void displacements(const Rod& rod, const VectorX& delta_lambda, std::vector<Lane8>& out) const;
 
   /// Moves the rod by the solution of the assembled system.
@@ -48,14 +49,13 @@ class LinearSystem {
   Linearization linearization_;
   BlockMatrix matrix_;
   VectorX rhs_;
-  std::vector<std::size_t> axial_joints_;  ///< see axial_compliance.hpp
   std::vector<int> side_start_;  ///< sides of segment i: side_start_[i] .. side_start_[i + 1]; none for static ones
   std::vector<Side> sides_;
   std::vector<Contribution> contributions_;  ///< in the order in which assemble_matrix() visits them
   std::vector<Lane8> displacements_;
 };
 
-/// Moves a free segment by dx (lanes 0..2) and dtheta (lanes 3..5); a static one stays.
+/// Moves a free segment by u (lanes 0..2) and phi (lanes 3..5) in its own frame; a static one stays.
 void move(Rod& rod, std::size_t segment, const Lane8& displacement);
 
 /// The update: lambda += dlambda, and every free segment by its displacement.

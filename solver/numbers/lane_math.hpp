@@ -87,6 +87,14 @@ inline LaneQuaternion rotated(const LaneQuaternion& q, const LaneVector& theta) 
   return 1 / square_root(dot(turned, turned)) * turned;
 }
 
+/// normalise(q + q [0, phi] / 2).
+inline LaneQuaternion turned(const LaneQuaternion& q, const LaneVector& phi) {
+  const LaneVector h = broadcast(0.5) * phi;
+  const LaneQuaternion moved = {q.w - h.x * q.x - h.y * q.y - h.z * q.z, q.x + h.x * q.w - h.y * q.z + h.z * q.y,
+                                q.y + h.y * q.w - h.z * q.x + h.x * q.z, q.z + h.z * q.w - h.x * q.y + h.y * q.x};
+  return 1 / square_root(dot(moved, moved)) * moved;
+}
+
 /// 2 Im(d) / Re(d), d = q conj(q_old).
 inline LaneVector rotation(const LaneQuaternion& q, const LaneQuaternion& old) {
   const LaneVector imaginary = {q.x * old.w - q.w * old.x - q.y * old.z + q.z * old.y,
@@ -95,21 +103,27 @@ inline LaneVector rotation(const LaneQuaternion& q, const LaneQuaternion& old) {
   return 2 / dot(q, old) * imaginary;
 }
 
-/// The columns of R(q), the segment's axes in the world.
-struct LaneFrame {
-  LaneVector x, y, z;
-};
+/// R(q) v.
+inline LaneVector operator*(const LaneQuaternion& q, const LaneVector& v) {
+  const LaneVector axis = {q.x, q.y, q.z}, twice = broadcast(2) * cross(axis, v);
+  return v + q.w * twice + cross(axis, twice);
+}
 
+inline LaneQuaternion conjugate(const LaneQuaternion& q) { return {q.w, -q.x, -q.y, -q.z}; }
+
+/// A segment's local z in the world.
 inline LaneVector director(const LaneQuaternion& q) {
   return {2 * (q.x * q.z + q.w * q.y), 2 * (q.y * q.z - q.w * q.x), 1 - 2 * (q.x * q.x + q.y * q.y)};
 }
 
-inline LaneFrame frame(const LaneQuaternion& q) {
-  return {{1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y + q.w * q.z), 2 * (q.x * q.z - q.w * q.y)},
-          {2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x)},
-          director(q)};
-}
+/// A 3x3 matrix by its columns.
+struct LaneMatrix {
+  LaneVector x, y, z;
+};
 
-inline LaneVector operator*(const LaneFrame& r, const LaneVector& v) { return v.x * r.x + v.y * r.y + v.z * r.z; }
+inline LaneVector operator*(const LaneMatrix& m, const LaneVector& v) { return v.x * m.x + v.y * m.y + v.z * m.z; }
+inline LaneVector transposed_product(const LaneMatrix& m, const LaneVector& v) {
+  return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
+}
 
 }  // namespace rodsweep

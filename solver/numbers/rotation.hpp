@@ -1,6 +1,6 @@
 // The two rotation maps of the time step, exact inverses of each other:
 //   rotated(q, theta)  = normalise(q + [0, theta] q / 2)                       (turns by 2 atan(|theta| / 2))
-//   rotation(q, q_old) = 2 Im(d) / Re(d), d = q conj(q_old)                    (gives that theta back)
+//   rotation(q, q_old) = 2 Im(d) / Re(d), d = q conj(q_old)                    (gives theta back)
 #pragma once
 
 #include <cmath>

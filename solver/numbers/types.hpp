@@ -4,8 +4,9 @@
 //   v_i  linear velocity [m/s]           w_i  angular velocity, world frame [rad/s]
 //   l    joint length, the mean of its two segments' lengths [m]
 //   C    constraint values (6 per joint, dimensionless): stretch-shear (3), then bend-twist (3)
-//   J    Jacobian of C with respect to (x, theta) of the two segments, theta a world-frame rotation vector
-//   M    mass matrix, block diagonal: m_i (3x3), world inertia tensor (3x3)
+//   u, phi  motion of a segment in its own frame: dx = R u, and a rotation vector; dtheta = R phi in the world
+//   J    Jacobian of C with respect to (u, phi) of the two segments
+//   M    mass matrix, diagonal: m_i (3), principal moments of inertia (3)
 //   alpha   compliance [1/J], alpha~ = alpha / dt^2 [1/(kg m^2)]
 //   lambda  Lagrange multipliers [kg m^2]: J^T lambda / dt^2 are the generalised forces
 //   A = J M^-1 J^T + alpha~,  b = -C - alpha~ lambda

@@ -1,103 +1,101 @@
 #include "solver/rod/linearization.hpp"
 
-#include <cstring>
+#include "solver/numbers/lane_vectors.hpp"
 
 namespace rodsweep {
 namespace {
 
-/// The columns of R(q).
-inline SegmentFrame frame_of(const Quaternion& q) {
-  const double x = q.x() + q.x(), y = q.y() + q.y(), z = q.z() + q.z();
-  const double xx = x * q.x(), yy = y * q.y(), zz = z * q.z();
-  const double xy = x * q.y(), xz = x * q.z(), yz = y * q.z();
-  const double wx = x * q.w(), wy = y * q.w(), wz = z * q.w();
-  return {{Lane4{1 - (yy + zz), xy + wz, xz - wy, 0}, Lane4{xy - wz, 1 - (xx + zz), yz + wx, 0},
-           Lane4{xz + wy, yz - wx, 1 - (xx + yy), 0}}};
+/// Lanes 0..3 of four, the others zero.
+inline Lane8 widened(const Lane4& v) { return __builtin_shufflevector(v, Lane4{}, 0, 1, 2, 3, 4, 4, 4, 4); }
+
+/// The columns of w I and [v]x, d = (v, w), which permute d, in lanes 0..2 and in lanes 3..5.
+struct TurnColumns {
+  Lane4 low[3];
+  Lane8 high[3];
+
+  explicit TurnColumns(const Lane4& d)
+      : low{__builtin_shufflevector(d, d, 3, 2, 1, 0), __builtin_shufflevector(d, d, 2, 3, 0, 1),
+            __builtin_shufflevector(d, d, 1, 0, 3, 2)},
+        high{__builtin_shufflevector(d, d, 3, 3, 3, 3, 2, 1, 0, 0),
+             __builtin_shufflevector(d, d, 2, 2, 2, 2, 3, 0, 1, 1),
+             __builtin_shufflevector(d, d, 1, 1, 1, 1, 0, 3, 2, 2)} {}
+};
+
+// Their signs in w I + [v]x (forth) and [v]x - w I (back).
+constexpr Lane4 forth_low[3] = {{1, 1, -1, 0}, {-1, 1, 1, 0}, {1, -1, 1, 0}};
+constexpr Lane4 back_low[3] = {{-1, 1, -1, 0}, {-1, -1, 1, 0}, {1, -1, -1, 0}};
+constexpr Lane8 forth_high[3] = {{0, 0, 0, 1, 1, -1}, {0, 0, 0, -1, 1, 1}, {0, 0, 0, 1, -1, 1}};
+constexpr Lane8 back_high[3] = {{0, 0, 0, -1, 1, -1}, {0, 0, 0, -1, -1, 1}, {0, 0, 0, 1, -1, -1}};
+
+inline Lane4 product(const Lane4 (&m)[3], const Lane4& v) { return m[0] * v[0] + m[1] * v[1] + m[2] * v[2]; }
+inline Lane4 product(const Lane4 (&m)[3], const Vector3& v) { return m[0] * v[0] + m[1] * v[1] + m[2] * v[2]; }
+
+/// The columns of -M [v]x.
+inline void product_with_cross(const Lane4 (&m)[3], const Vector3& v, Lane4 (&column)[3]) {
+  column[0] = v[1] * m[2] - v[2] * m[1];
+  column[1] = v[2] * m[0] - v[0] * m[2];
+  column[2] = v[0] * m[1] - v[1] * m[0];
 }
 
-inline Lane4 operator*(const SegmentFrame& frame, const Vector3& v) {
-  return frame.column[0] * v.x() + frame.column[1] * v.y() + frame.column[2] * v.z();
+/// d of a joint, in the hemisphere of d0.
+inline Lane4 turn_of(const Rod& rod, const Joint& joint) {
+  const Lane4 d =
+      relative(rod.orientation[static_cast<std::size_t>(joint.a)], rod.orientation[static_cast<std::size_t>(joint.b)]);
+  return sum(d * lanes(joint.rest)) < 0 ? -d : d;
 }
 
-inline Lane4 lanes(const Vector3& v) { return Lane4{v.x(), v.y(), v.z(), 0}; }
-
-inline Lane4 lanes(const Quaternion& q) {  // x, y, z, w
-  Lane4 out;
-  std::memcpy(&out, q.coeffs().data(), sizeof out);
-  return out;
-}
-
-/// conj(a) b.
-inline Lane4 relative(const Quaternion& a, const Quaternion& b) {
-  const Lane4 q = lanes(b);
-  return a.w() * q + a.x() * (Lane4{-1, 1, -1, 1} * __builtin_shufflevector(q, q, 3, 2, 1, 0)) +
-         a.y() * (Lane4{-1, -1, 1, 1} * __builtin_shufflevector(q, q, 2, 3, 0, 1)) +
-         a.z() * (Lane4{1, -1, -1, 1} * __builtin_shufflevector(q, q, 1, 0, 3, 2));
-}
-
-/// The columns of w I - [v]x.
-inline void rotation_columns(const Lane4& v, double w, Lane4 (&column)[3]) {
-  const Lane4 u = {v[0], v[1], v[2], w};
-  column[0] = Lane4{1, -1, 1, 0} * __builtin_shufflevector(u, u, 3, 2, 1, 0);
-  column[1] = Lane4{1, 1, -1, 0} * __builtin_shufflevector(u, u, 2, 3, 0, 1);
-  column[2] = Lane4{-1, 1, 1, 0} * __builtin_shufflevector(u, u, 1, 0, 3, 2);
-}
-
-/// Stretch-shear rows from one, bend-twist rows from the other.
-inline Lane8 rows(const Lane4& stretch, const Lane4& bend) {
-  return __builtin_shufflevector(stretch, bend, 0, 1, 2, 4, 5, 6, 3, 3);
-}
-
-inline void linearize(const Rod& rod, const Joint& joint, const SegmentFrame& frame_a, const SegmentFrame& frame_b,
-                      JointJacobian& jacobian, double* constraint) {
+inline void evaluate(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint) {
   const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+  const Lane4 d = turn_of(rod, joint);
   const double inverse_length = 1 / joint.length;
-  const Lane4 arm_a = inverse_length * (frame_a * joint.arm_a);  // rho / l
-  const Lane4 arm_b = inverse_length * (frame_b * joint.arm_b);
-  const Lane4 stretch = inverse_length * (lanes(rod.position[a]) - lanes(rod.position[b])) + arm_a - arm_b;
-
-  const Lane4 rest = lanes(joint.rest);
-  Lane4 d = relative(rod.orientation[a], rod.orientation[b]);
-  const Lane4 products = d * rest;
-  if ((products[0] + products[1]) + (products[2] + products[3]) < 0) d = -d;
-  store6(constraint, rows(stretch, 2 * (d - rest)));
-
-  Lane4 hat[3], cross_a[3], cross_b[3];
-  rotation_columns(d, d[3], hat);
-  rotation_columns(arm_a, 0, cross_a);
-  rotation_columns(arm_b, 0, cross_b);
-  jacobian.inverse_length = inverse_length;
+  const TurnColumns turn(d);
+  const Lane4 v = d * Lane4{1, 1, 1, 0}, scaled = v * (inverse_length / (1 + d[3]));
   for (int c = 0; c < 3; ++c) {
-    const Lane4 g = hat[0] * frame_a.column[0][c] + hat[1] * frame_a.column[1][c] + hat[2] * frame_a.column[2][c];
-    jacobian.rotation_a[c] = rows(cross_a[c], -g);
-    jacobian.rotation_b[c] = rows(-cross_b[c], g);
+    const Lane4 outer = scaled * v[c], column = inverse_length * turn.low[c];
+    jacobian.shift_a[c] = outer - back_low[c] * column;
+    jacobian.shift_b[c] = -outer - forth_low[c] * column;
   }
+
+  const Lane4 apart = turned_back(rod.orientation[a], lanes(rod.position[a] - rod.position[b]));
+  const Lane4 stretch = product(jacobian.shift_a, apart) + product(jacobian.shift_a, joint.arm_a) +
+                        product(jacobian.shift_b, joint.arm_b);
+  const Lane4 bend = 2 * (d - lanes(joint.rest));
+  store6(constraint, __builtin_shufflevector(stretch, bend, 0, 1, 2, 4, 5, 6, 3, 3));
+
+  Lane4 across_a[3], across_b[3];
+  product_with_cross(jacobian.shift_a, joint.arm_a, across_a);
+  product_with_cross(jacobian.shift_b, joint.arm_b, across_b);
+  for (int c = 0; c < 3; ++c) {
+    jacobian.rotation_a[c] = widened(across_a[c]) + back_high[c] * turn.high[c];
+    jacobian.rotation_b[c] = widened(across_b[c]) + forth_high[c] * turn.high[c];
+  }
+  jacobian.inverse_length = inverse_length;
 }
 
 }  // namespace
 
 Linearization::Linearization(const Rod& rod)
-    : joints(rod.joints.size()),
-      frame(rod.segments.size()),
-      axis(rod.segments.size()),
-      constraint(VectorX::Zero(6 * rod.joint_count())) {}
+    : joints(rod.joints.size()), constraint(VectorX::Zero(6 * rod.joint_count())) {}
+
+Quaternion relative_turn(const Rod& rod, const Joint& joint) {
+  const Lane4 d = turn_of(rod, joint);
+  return Quaternion(d[3], d[0], d[1], d[2]);
+}
+
+Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_frame) {
+  const Lane4 d = turn_of(rod, joint), v = d * Lane4{1, 1, 1, 0}, local = lanes(in_joint_frame);
+  const Lane4 own = d[3] * local + cross(d, local) + v * (sum(v * local) / (1 + d[3]));
+  const Lane4 out = turned(rod.orientation[static_cast<std::size_t>(joint.a)], own);
+  return {out[0], out[1], out[2]};
+}
 
 void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint) {
-  linearize(rod, joint, frame_of(rod.orientation[static_cast<std::size_t>(joint.a)]),
-            frame_of(rod.orientation[static_cast<std::size_t>(joint.b)]), jacobian, constraint);
+  evaluate(rod, joint, jacobian, constraint);
 }
 
 void linearize(const Rod& rod, Linearization& out) {
-  for (std::size_t i = 0; i < rod.segments.size(); ++i) {
-    out.frame[i] = frame_of(rod.orientation[i]);
-    const Lane4& axis = out.frame[i].column[2];
-    out.axis[i] = {axis[0], axis[1], axis[2]};
-  }
-  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
-    const Joint& joint = rod.joints[k];
-    linearize(rod, joint, out.frame[static_cast<std::size_t>(joint.a)], out.frame[static_cast<std::size_t>(joint.b)],
-              out.joints[k], out.constraint.data() + 6 * k);
-  }
+  for (std::size_t k = 0; k < rod.joints.size(); ++k)
+    evaluate(rod, rod.joints[k], out.joints[k], out.constraint.data() + 6 * k);
 }
 
 }  // namespace rodsweep

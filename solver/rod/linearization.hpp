@@ -1,13 +1,17 @@
-// Constraints and their Jacobians of every joint of a rod at its current positions.
+// Constraints and their Jacobians of every joint of a rod at its current positions, in the rod's own (material) frames.
 //
-//   stretch-shear  C_s = (x_a + rho_a - x_b - rho_b) / l,        rho = R arm          (world frame, dimensionless)
-//   bend-twist     C_b = 2 Im(d) - 2 Im(d0),  d = conj(q_a) q_b, d taken in d0's hemisphere
-// which is l (Omega - Omega0) with the Darboux vector Omega = (2/l) Im(d)  (Kugelstadt & Schoemer 2016; Deul et al.
-// 2018).
+//   bend-twist     C_b = 2 Im(d) - 2 Im(d0),  d = conj(q_a) q_b = (w, v), taken in d0's hemisphere
+//   stretch-shear  C_s = R_m^T (x_a + R_a arm_a - x_b - R_b arm_b) / l,   R_m = R_a H = R_b H^T
+// C_b is l (Omega - Omega0) with the Darboux vector Omega = (2/l) Im(d)  (Kugelstadt & Schoemer 2016; Deul et al. 2018,
+// who measure the gap in the world). The joint's frame R_m is half-way between those of its segments, H = R(d^(1/2)) =
+// w I + [v]x + v v^T / (1 + w): z along the rod, and the same one for a joint whose segments change places.
 //
-// With the update q <- normalise(q + [0, dtheta] q / 2) the Jacobians are
-//   dC_s/dx_a = I/l,  dC_s/dtheta_a = -[rho_a]x / l,  dC_s/dx_b = -I/l,  dC_s/dtheta_b = [rho_b]x / l,
-//   dC_b/dtheta_b = G = s (d_w I - [Im d]x) R_a^T,  dC_b/dtheta_a = -G,  s the hemisphere's sign.
+// Segments move by u and turn by phi, both in their own frame: dx = R u, q <- normalise(q (1 + [0, phi] / 2)). Then
+//   dC_s/du_a = H^T/l,   dC_s/dphi_a = -H^T [arm_a]x / l,   dC_b/dphi_a = -(w I - [v]x)
+//   dC_s/du_b = -H/l,    dC_s/dphi_b =  H [arm_b]x / l,     dC_b/dphi_b =   w I + [v]x
+// depend on d alone: where a scene stands and how it is turned enters neither J nor C. That R_m turns with the
+// segments is left out of J: what it would add is proportional to the gap, and without it Newton's iterates are those
+// of C_s in the world. (H is not regular where w = -1: a joint turned all round from a rest that folds it back.)
 #pragma once
 
 #include <vector>
@@ -17,26 +21,26 @@
 
 namespace rodsweep {
 
-/// One joint's Jacobian: the columns dC/dtheta of its two sides (six rows in the six lanes), and dC/dx = +-I/l.
+/// One joint's Jacobian, by columns of its two sides. dC/dphi has six rows, in the six lanes; dC/du has only those of
+/// stretch-shear, in lanes 0..2.
 struct JointJacobian {
-  Lane8 rotation_a[3];
-  Lane8 rotation_b[3];
-  double inverse_length;  ///< 1/l [1/m]
-};
-
-/// A segment's axes in the world, the columns of R.
-struct SegmentFrame {
-  Lane4 column[3];  ///< the fourth lane zero
+  Lane8 rotation_a[3], rotation_b[3];  ///< dC/dphi
+  Lane4 shift_a[3], shift_b[3];        ///< dC_s/du, minus the transpose of the other's
+  double inverse_length;               ///< 1/l [1/m]
 };
 
 struct Linearization {
   std::vector<JointJacobian> joints;
-  std::vector<SegmentFrame> frame;
-  std::vector<Vector3> axis;  ///< world direction of every segment's local z
-  VectorX constraint;         ///< C, six per joint
+  VectorX constraint;  ///< C, six per joint
 
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };
+
+/// d of a joint, in the hemisphere of d0.
+Quaternion relative_turn(const Rod& rod, const Joint& joint);
+
+/// R_m v of a joint: from its frame to the world.
+Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_frame);
 
 /// One joint's Jacobian and the six values of its C at the rod's positions.
 void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint);

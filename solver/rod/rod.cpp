@@ -54,26 +54,11 @@ Joint make_joint(const JointSpec& j, const std::vector<SegmentSpec>& segments, i
   if (j.b < 0 || j.b >= n) refuse("joint", index, "segment b", j.b, "from 0 to " + std::to_string(n - 1));
   if (j.a == j.b) refuse("joint", index, "segment b", j.b, "different from segment a");
   const SegmentSpec &a = segments[static_cast<std::size_t>(j.a)], &b = segments[static_cast<std::size_t>(j.b)];
-  Joint out{j.a,
-            j.b,
-            j.arm_a_m,
-            j.arm_b_m,
-            (a.length_m + b.length_m) / 2,
-            j.compliance_per_j,
-            j.axial_excess_per_j,
-            Quaternion::Identity()};
+  Joint out{j.a, j.b, j.arm_a_m, j.arm_b_m, (a.length_m + b.length_m) / 2, j.compliance_per_j, Quaternion::Identity()};
   if (!(out.length > 0)) refuse("joint", index, "length", out.length, "positive: two zero-length segments meet");
   for (int row = 0; row < 6; ++row)
     if (!(out.compliance[row] >= 0) || !std::isfinite(out.compliance[row]))
       refuse("joint", index, "compliance of row " + std::to_string(row), out.compliance[row], "finite and at least 0");
-  if (out.axial_excess != 0) {
-    const Vector3 rows = out.compliance.head<3>();
-    if (!std::isfinite(out.axial_excess) || out.axial_excess < -rows[0])
-      refuse("joint", index, "axial excess", out.axial_excess,
-             "finite and at least minus the stretch-shear compliance");
-    if (rows[1] != rows[0] || rows[2] != rows[0])
-      refuse("joint", index, "axial excess", out.axial_excess, "0 unless the stretch-shear compliances are equal");
-  }
   if (!j.arm_a_m.allFinite() || !j.arm_b_m.allFinite())
     throw SceneError("joint " + std::to_string(index) + ": an arm is not finite");
   if (j.rest && !(std::abs(j.rest->norm() - 1) < 1e-6))
@@ -141,12 +126,10 @@ Vector6 joint_compliance(double length_m, double radius_m, double youngs_modulus
   return joint_compliance(length_m, circular_section(radius_m, youngs_modulus_pa, torsion_modulus_pa), stretch_per_j);
 }
 
-double shear_compliance(double joint_length_m, const Section& section) {
-  return 1 / (section.shear_n * joint_length_m);
-}
-
-double axial_excess(double joint_length_m, const Section& section) {
-  return 1 / (section.axial_n * joint_length_m) - shear_compliance(joint_length_m, section);
+Vector6 physical_compliance(double length_m, const Section& section) {
+  Vector6 alpha = joint_compliance(length_m, section, 1 / (section.shear_n * length_m));
+  alpha[2] = 1 / (section.axial_n * length_m);
+  return alpha;
 }
 
 double inextensible_compliance(double joint_length_m, double force_n) { return 1e-7 / (joint_length_m * force_n); }

@@ -4,8 +4,8 @@
 // Segment: solid cylinder along its local z, mass m = rho pi r^2 L, principal inertia m (3 r^2 + L^2) / 12 (transverse)
 // and m r^2 / 2 (axial). A static segment has zero inverse mass and inertia; it may have zero length (a wall). Joint
 // between a and b: the point centre_a + R_a arm_a = centre_b + R_b arm_b; length l, the mean of the two segments'
-// lengths; compliance alpha of its six rows, of which the stretch-shear ones may differ along the rod
-// (axial_compliance.hpp); rest relative orientation d0 = conj(q_a) q_b.
+// lengths; compliance alpha of its six rows, in the joint's frame (linearization.hpp); rest relative orientation
+// d0 = conj(q_a) q_b.
 // Any graph is accepted: chains, trees (several joints on a segment), loops. Throws SceneError.
 #pragma once
 
@@ -37,7 +37,6 @@ struct JointSpec {
   Vector3 arm_a_m{0, 0, 0}, arm_b_m{0, 0, 0};  ///< from the segments' centres to the shared point, local frames
   Vector6 compliance_per_j = Vector6::Zero();  ///< stretch-shear rows, then bend-twist rows
   std::optional<Quaternion> rest;              ///< conj(q_a) q_b at rest; empty: as given by the initial orientations
-  double axial_excess_per_j = 0;               ///< along the rod on top of the stretch-shear rows, which are equal then
 };
 
 struct Segment {
@@ -51,10 +50,9 @@ struct Segment {
 struct Joint {
   int a, b;
   Vector3 arm_a, arm_b;
-  double length;        ///< l [m]
-  Vector6 compliance;   ///< alpha [1/J]
-  double axial_excess;  ///< [1/J]
-  Quaternion rest;      ///< d0, real part >= 0
+  double length;       ///< l [m]
+  Vector6 compliance;  ///< alpha [1/J]: across the rod (2), along it, bending about x and y, twisting
+  Quaternion rest;     ///< d0, real part >= 0
 };
 
 class Rod {
@@ -93,14 +91,13 @@ Section circular_section(double radius_m, double youngs_modulus_pa, double torsi
 /// where nu = E / 2G - 1 is kept within 0 and 1/2, since E and G may be given independently of each other.
 double shear_coefficient(double youngs_modulus_pa, double torsion_modulus_pa);
 
-/// Bend-twist compliance (l/EI, l/EI, l/GJ), and `stretch` for the three stretch-shear rows.
+/// Of a joint: `stretch` for the three stretch-shear rows, or physical stretch, 1 / (kappa G A l) across the rod and
+/// 1 / (E A l) along it; and bend-twist compliance (l/EI, l/EI, l/GJ).
 Vector6 joint_compliance(double length_m, const Section& section, double stretch_per_j);
 Vector6 joint_compliance(double length_m, double radius_m, double youngs_modulus_pa, double torsion_modulus_pa,
                          double stretch_per_j);
 
-/// Physical stretch: 1 / (kappa G A l) for the stretch-shear rows, and what 1 / (E A l) is beyond that along the rod.
-double shear_compliance(double joint_length_m, const Section& section);
-double axial_excess(double joint_length_m, const Section& section);
+Vector6 physical_compliance(double length_m, const Section& section);
 
 /// The default "inextensible" compliance: a joint under the force F stretches by 1e-7 of its length l: 1e-7 / (l F).
 double inextensible_compliance(double joint_length_m, double force_n);

@@ -51,7 +51,7 @@ void Net::build(Scene& scene) const {
     for (int column = 0; column < columns; ++column) {
       JointSpec crossing = joint_between(all, on_x(row, column * segments), on_z(column, row * segments), *this, force);
       crossing.arm_a_m = crossing.arm_b_m = Vector3::Zero();
-      crossing.axial_excess_per_j = 0;  // it has no direction of its own
+      crossing.compliance_per_j[2] = crossing.compliance_per_j[0];  // it has no direction of its own
       // EI / l about every axis. A joint that rests at a right angle about local y measures a further turn about it,
       // 2 Im(d) - 2 Im(d0), by 1 / sqrt 2 only.
       const double turning = crossing.compliance_per_j[3];

@@ -57,17 +57,16 @@ JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, 
   const double length_b = segments[static_cast<std::size_t>(b)].length_m;
   const double length = (length_a + length_b) / 2;
   const Section section = circular_section(p.radius_m, p.youngs_modulus_pa, p.torsion_modulus_pa);
-  const bool physical = p.stretch == Stretch::physical;
   JointSpec joint;
   joint.a = a;
   joint.b = b;
   joint.arm_a_m = Vector3(0, 0, length_a / 2);
   joint.arm_b_m = Vector3(0, 0, -length_b / 2);
   joint.compliance_per_j =
-      joint_compliance(length, section,
-                       physical ? shear_compliance(length, section)
-                                : p.stretch_compliance_per_j.value_or(inextensible_compliance(length, force_n)));
-  if (physical) joint.axial_excess_per_j = axial_excess(length, section);
+      p.stretch == Stretch::physical
+          ? physical_compliance(length, section)
+          : joint_compliance(length, section,
+                             p.stretch_compliance_per_j.value_or(inextensible_compliance(length, force_n)));
   return joint;
 }
 

@@ -40,12 +40,12 @@ JointSpec series_joint(const SegmentSpec& a, const SegmentSpec& b, const Wood& w
   JointSpec joint;
   joint.arm_a_m = Vector3(0, 0, half_a);
   joint.arm_b_m = Vector3(0, 0, -half_b);
-  double stretch = p.stretch_compliance_per_j.value_or(inextensible_compliance(length, force_n));
+  double across = p.stretch_compliance_per_j.value_or(inextensible_compliance(length, force_n)), along = across;
   if (p.stretch == Stretch::physical) {
-    stretch = in_series(&Section::shear_n) / (length * length);
-    joint.axial_excess_per_j = in_series(&Section::axial_n) / (length * length) - stretch;
+    across = in_series(&Section::shear_n) / (length * length);
+    along = in_series(&Section::axial_n) / (length * length);
   }
-  joint.compliance_per_j << stretch, stretch, stretch, in_series(&Section::bending_x_nm2),
+  joint.compliance_per_j << across, across, along, in_series(&Section::bending_x_nm2),
       in_series(&Section::bending_y_nm2), in_series(&Section::torsion_nm2);
   return joint;
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/linear/axial_compliance.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/rod/linearization.hpp"
 
@@ -69,8 +68,7 @@ double newton_residual(const Rod& rod, double constraint_dt) {
   double worst = 0;
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
-    Vector6 yielding = rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
-    yielding.head<3>() += axial_compliance(rod, at, k) * rod.lambda.segment<3>(row);
+    const Vector6 yielding = rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
     const Vector6 residual = at.constraint.segment<6>(row) + yielding / (constraint_dt * constraint_dt);
     if (!residual.allFinite()) return std::numeric_limits<double>::quiet_NaN();
     worst = std::max(worst, residual.lpNorm<Eigen::Infinity>());
@@ -82,14 +80,12 @@ double elastic_energy(const Rod& rod) {
   Linearization at(rod);
   linearize(rod, at);
   double energy = 0;
-  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
-    energy += stretch_energy(rod, at, k);
-    for (int row = 3; row < 6; ++row) {
+  for (std::size_t k = 0; k < rod.joints.size(); ++k)
+    for (int row = 0; row < 6; ++row) {
       const double c = at.constraint[static_cast<Eigen::Index>(6 * k) + row];
       const double alpha = rod.joints[k].compliance[row];
       if (alpha > 0) energy += c * c / alpha / 2;
     }
-  }
   return energy;
 }
 

@@ -1,6 +1,7 @@
 #include "solver/step/pbd_projection.hpp"
 
 #include "solver/numbers/rotation.hpp"
+#include "solver/rod/linearization.hpp"
 
 namespace rodsweep {
 namespace {
@@ -9,8 +10,8 @@ void turn(Rod& rod, std::size_t segment, const Vector3& theta) {
   if (!rod.segments[segment].is_static) rod.orientation[segment] = rotated(rod.orientation[segment], theta);
 }
 
-/// Returns C_s as it was.
-Vector3 correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
+/// Returns |C_s| as it was.
+double correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
   const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
   const Segment &segment_a = rod.segments[a], &segment_b = rod.segments[b];
   const Vector3 rho_a = rod.orientation[a] * joint.arm_a, rho_b = rod.orientation[b] * joint.arm_b;
@@ -23,14 +24,13 @@ Vector3 correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
   rod.position[b] -= segment_b.inverse_mass * mu;
   turn(rod, a, turn_a * rho_a.cross(mu));
   turn(rod, b, -turn_b * rho_b.cross(mu));
-  return gap / joint.length;
+  return gap.norm() / joint.length;
 }
 
 /// Returns C_b as it was.
 Vector3 correct_bend_twist(Rod& rod, const Joint& joint, double stiffness) {
   const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
-  Quaternion d = rod.orientation[a].conjugate() * rod.orientation[b];
-  if (d.dot(joint.rest) < 0) d.coeffs() = -d.coeffs();
+  const Quaternion d = relative_turn(rod, joint);
   const Vector3 bend = 2 * (d.vec() - joint.rest.vec());
   const double turn_a = rod.segments[a].inverse_inertia_transverse, turn_b = rod.segments[b].inverse_inertia_transverse;
   const Vector3 torque =
@@ -47,7 +47,7 @@ GaussSeidelProjection::Iteration PbdProjection::iterate(Rod& rod, const std::vec
   for (const int joint_index : order) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(joint_index)];
     Vector6 met;
-    met.head<3>() = correct_stretch_shear(rod, joint, stiffness_.stretch);
+    met.head<3>() = Vector3(correct_stretch_shear(rod, joint, stiffness_.stretch), 0, 0);
     met.tail<3>() = correct_bend_twist(rod, joint, stiffness_.bending);
     iteration.meet(met);
   }

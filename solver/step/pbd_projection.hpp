@@ -31,7 +31,7 @@ class PbdProjection : public GaussSeidelProjection {
       : GaussSeidelProjection(scene), stiffness_(stiffness) {}
 
  private:
-  /// The residual is max |C|: multipliers stay zero.
+  /// The residual is max |C|, of a gap its length: multipliers stay zero.
   Iteration iterate(Rod& rod, const std::vector<int>& order, double dt) const override;
 
   PbdStiffness stiffness_;

@@ -1,19 +1,16 @@
 #include "solver/step/xpbd_projection.hpp"
 
-#include "solver/linear/axial_compliance.hpp"
 #include "solver/linear/block_kernels.hpp"
-#include "solver/numbers/rotation.hpp"
 #include "solver/rod/joint_kernels.hpp"
 
 namespace rodsweep {
 namespace {
 
-/// S += K M^-1 K^T of one side of a joint, rows of S.
-void add_side(Lane8 (&s)[6], const Lane8* k, const Segment& segment, const Vector3& axis, double inverse_length) {
-  const TurnedColumns turned(k, segment, axis);
-  const double linear = segment.inverse_mass * inverse_length * inverse_length;
-  for (int r = 0; r < 6; ++r) s[r] += turned.times(k, r);
-  for (int r = 0; r < 3; ++r) s[r] += unit_lane[r] * linear;
+/// S += J M^-1 J^T of one side of a joint, rows of S.
+void add_side(Lane8 (&s)[6], const JointJacobian& jacobian, bool is_b, const Segment& segment) {
+  Lane8 block[6];
+  WeightedSide(JointSide(jacobian, is_b), segment).times_itself(block);
+  for (int r = 0; r < 6; ++r) s[r] += block[r];
 }
 
 }  // namespace
@@ -24,7 +21,6 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
   for (const int joint_index : order) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(joint_index)];
     const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
-    const Vector3 axis_a = director(rod.orientation[a]), axis_b = director(rod.orientation[b]);
     JointJacobian jacobian;
     Vector6 residual;
     linearize(rod, joint, jacobian, residual.data());
@@ -33,15 +29,10 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
     residual += softness.cwiseProduct(lambda);
     Lane8 s[6];
     for (int r = 0; r < 6; ++r) s[r] = unit_lane[r] * softness[r];
-    if (joint.axial_excess != 0) {
-      const Matrix3 axial = inverse_dt2 * axial_compliance(joint, axis_a, axis_b);
-      residual.head<3>() += axial * lambda.head<3>();
-      for (int r = 0; r < 3; ++r) s[r] += Lane8{axial(r, 0), axial(r, 1), axial(r, 2), 0, 0, 0, 0, 0};
-    }
     iteration.meet(residual);
 
-    add_side(s, jacobian.rotation_a, rod.segments[a], axis_a, jacobian.inverse_length);
-    add_side(s, jacobian.rotation_b, rod.segments[b], axis_b, jacobian.inverse_length);
+    add_side(s, jacobian, false, rod.segments[a]);
+    add_side(s, jacobian, true, rod.segments[b]);
     for (int r = 0; r < 6; ++r) s[r] = with_lane_6(s[r], broadcast(-residual[r]));
     RowOperations ops;
     iteration.definite &= invert(s, ops);
@@ -51,8 +42,8 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
     for (int r = 0; r < 6; ++r) lambda[r] += delta_lambda[r];
     Lane8 on_a, on_b;
     impulses(jacobian, delta_lambda, on_a, on_b);
-    move(rod, a, motion(rod.segments[a], axis_a, on_a));
-    move(rod, b, motion(rod.segments[b], axis_b, on_b));
+    move(rod, a, motion(rod.segments[a], on_a));
+    move(rod, b, motion(rod.segments[b], on_b));
   }
   return iteration;
 }

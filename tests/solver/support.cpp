@@ -126,13 +126,34 @@ Scene moving_scene(int segments, int steps) {
   return scene;
 }
 
-VectorX constraint(const Rod& rod) {
+namespace {
+
+/// Half the turn from segment a to segment b, the way round that is nearer to the turn at rest.
+Matrix3 half_way(const Rod& rod, const Joint& joint) {
+  Quaternion d = rod.orientation[joint.a].conjugate() * rod.orientation[joint.b];
+  if (d.dot(joint.rest) < 0) d.coeffs() *= -1;
+  const double half_turn = std::atan2(d.vec().norm(), d.w());
+  return rod.orientation[joint.a] * Eigen::AngleAxisd(half_turn, d.vec().normalized()).toRotationMatrix();
+}
+
+std::vector<Matrix3> joint_frames(const Rod& rod) {
+  std::vector<Matrix3> out;
+  for (const Joint& joint : rod.joints) out.push_back(half_way(rod, joint));
+  return out;
+}
+
+}  // namespace
+
+VectorX constraint(const Rod& rod) { return constraint(rod, joint_frames(rod)); }
+
+VectorX constraint(const Rod& rod, const std::vector<Matrix3>& frames) {
   VectorX out(6 * rod.joint_count());
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& j = rod.joints[k];
     const double length = (rod.segments[j.a].length_m + rod.segments[j.b].length_m) / 2;
     const Matrix3 ra = rod.orientation[j.a].toRotationMatrix(), rb = rod.orientation[j.b].toRotationMatrix();
-    out.segment<3>(6 * k) = (rod.position[j.a] + ra * j.arm_a - rod.position[j.b] - rb * j.arm_b) / length;
+    out.segment<3>(6 * k) =
+        frames[k].transpose() * (rod.position[j.a] + ra * j.arm_a - rod.position[j.b] - rb * j.arm_b) / length;
     Quaternion d = rod.orientation[j.a].conjugate() * rod.orientation[j.b];
     if (d.dot(j.rest) < 0) d = Quaternion(-d.w(), -d.x(), -d.y(), -d.z());
     out.segment<3>(6 * k + 3) = 2 * d.vec() - 2 * j.rest.vec();
@@ -142,11 +163,12 @@ VectorX constraint(const Rod& rod) {
 
 DenseSystem dense_system(const Rod& rod, double dt) {
   const int m = 6 * rod.joint_count(), n = 6 * rod.segment_count();
+  const std::vector<Matrix3> frames = joint_frames(rod);
   DenseSystem out{MatrixX::Zero(m, n), MatrixX::Zero(n, n), {}, {}};
   for (int s = 0; s < rod.segment_count(); ++s) {
     for (int dof = 0; dof < 6; ++dof) {
       const double h = dof < 3 ? 1e-3 : 3e-3;
-      const auto at = [&](double steps) { return constraint(nudged(rod, s, dof, steps * h)); };
+      const auto at = [&](double steps) { return constraint(nudged(rod, s, dof, steps * h), frames); };
       out.jacobian.col(6 * s + dof) = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
     }
     const Segment& segment = rod.segments[s];

@@ -44,11 +44,12 @@ BendingRod bending_rod(int segments, Clamp clamp = Clamp::segment);
 /// The same, in the middle of its motion after some direct steps.
 Scene moving_scene(int segments, int steps = 8);
 
-/// C of all joints, independently of linearize().
-VectorX constraint(const Rod& rod);
+/// C of all joints, independently of linearize(), stretch-shear rows in these frames, one a joint.
+VectorX constraint(const Rod& rod, const std::vector<Matrix3>& frames);
+VectorX constraint(const Rod& rod);  ///< in the rod's own
 
 struct DenseSystem {
-  MatrixX jacobian;      ///< 6 per joint x 6 per segment (x, theta)
+  MatrixX jacobian;      ///< 6 per joint x 6 per segment (x, theta), in the world; joints' frames stand still
   MatrixX inverse_mass;  ///< world frame; zero for static segments
   MatrixX a;
   VectorX b;

@@ -55,7 +55,7 @@ TEST_CASE("with the best length the guess is never worse than its base in the en
       CHECK(with.products == without.products + (without.nonzero ? 1 : 0) + 1);
       const double before = energy_error(system, alone, solution), after = energy_error(system, x0, solution);
       CHECK(after <= before * (1 + 1e-6) + 1e-24);
-      better += after < 0.999 * before;
+      better += after < (1 - 1e-6) * before;
       VectorX again(solution.size());
       guess.propose(system, at, again);
       CHECK(again == x0);

@@ -166,6 +166,15 @@ TEST_CASE("a file of another schema version is refused with both versions") {
   CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("has schema version 99, and this rodsweep knows version 1"));
 }
 
+TEST_CASE("a file whose multipliers are in the world frame is not continued") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "a.h5", plan, 2);
+  REQUIRE(H5Adelete(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "multiplier_frame") >= 0);
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan), Contains("which measured stretch and shear in the world") &&
+                                                        EndsWith("run into another file with -o FILE"));
+}
+
 TEST_CASE("resume with another job is refused with the line that differs") {
   const TemporaryFolder folder;
   const auto plan_of_text = [](const std::string& text) { return Plan(parse_job(text, "other.json")); };

@@ -273,6 +273,9 @@ TEST_CASE("settings and cards that cannot be are refused") {
                hdf5::write_attribute(file, "schema_version", model_schema_version + 1);
              }),
              Contains("has schema version 2, and this rodsweep knows version 1 only"));
+  CHECK_THAT(refusal_after([](hid_t file) { H5Adelete(file, "multiplier_frame"); }),
+             Contains("which measured stretch and shear in the world") &&
+                 EndsWith("Use that revision, or train the model again"));
 }
 
 TEST_CASE("a training of which no epoch has ended has no model to use, but can be looked at") {

@@ -114,13 +114,15 @@ TEST_CASE("applying a solution moves the rod by M^-1 J^T dlambda and adds to its
       system.apply(rod, dl);
       const VectorX moved = dense.inverse_mass * dense.jacobian.transpose() * dl;
       std::vector<Lane8> displacements;
-      system.displacements(before, dl, displacements);
+      system.displacements(before, dl, displacements);  // in the segments' frames
       double worst = 0, worst_displacement = 0;
       for (int s = 0; s < rod.segment_count(); ++s) {
-        for (int i = 0; i < 6; ++i)
-          worst_displacement =
-              std::max(worst_displacement, std::abs(displacements[std::size_t(s)][i] - moved[6 * s + i]));
         const Vector3 shift = moved.segment<3>(6 * s), turn = moved.segment<3>(6 * s + 3);
+        const Quaternion to_own = before.orientation[s].conjugate();
+        Vector6 own;
+        own << to_own * shift, to_own * turn;
+        for (int i = 0; i < 6; ++i)
+          worst_displacement = std::max(worst_displacement, std::abs(displacements[std::size_t(s)][i] - own[i]));
         worst = std::max(worst, (rod.position[s] - before.position[s] - shift).norm());
         worst = std::max(worst, (rod.orientation[s].coeffs() - rotated(before.orientation[s], turn).coeffs()).norm());
       }

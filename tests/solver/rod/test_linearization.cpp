@@ -14,17 +14,28 @@ namespace {
 using test::MatrixX;
 using test::Random;
 
-/// J of one joint as linearize() gives it, 6 x 12: x_a, theta_a, x_b, theta_b.
+/// J of one joint as linearize() gives it, 6 x 12: u_a, phi_a, u_b, phi_b.
 MatrixX jacobian_of(const JointJacobian& j) {
   MatrixX out = MatrixX::Zero(6, 12);
   for (int c = 0; c < 3; ++c) {
-    out(c, c) = j.inverse_length;
-    out(c, 6 + c) = -j.inverse_length;
+    for (int r = 0; r < 3; ++r) {
+      out(r, c) = j.shift_a[c][r];
+      out(r, 6 + c) = j.shift_b[c][r];
+    }
     for (int r = 0; r < 6; ++r) {
       out(r, 3 + c) = j.rotation_a[c][r];
       out(r, 9 + c) = j.rotation_b[c][r];
     }
   }
+  return out;
+}
+
+/// The same for motions in the world, dx_a, dtheta_a, dx_b, dtheta_b.
+MatrixX world_jacobian(const Rod& rod, int joint, const JointJacobian& j) {
+  MatrixX out = jacobian_of(j);
+  const int segments[] = {rod.joints[joint].a, rod.joints[joint].b};
+  for (int half = 0; half < 4; ++half)
+    out.middleCols(3 * half, 3) *= rod.orientation[segments[half / 2]].toRotationMatrix().transpose();
   return out;
 }
 
@@ -48,11 +59,22 @@ TEST_CASE("constraints are the joint gap and the Darboux vector's change, both d
   }
 }
 
+TEST_CASE("turned by its joint's frame into the world, stretch-shear is the gap over the joint's length") {
+  const Rod rod = test::random_rod(test::net(3, 3), {0}, 4);
+  const VectorX c = linearized(rod).constraint;
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& j = rod.joints[k];
+    const Vector3 gap =
+        rod.position[j.a] + rod.orientation[j.a] * j.arm_a - rod.position[j.b] - rod.orientation[j.b] * j.arm_b;
+    CHECK((to_world(rod, j, c.segment<3>(6 * k)) - gap / j.length).norm() < 1e-13);
+  }
+}
+
 TEST_CASE("Jacobians equal central differences of the constraints under the Newton update") {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const Rod rod = test::random_rod({{0, 1}}, {}, seed);
     const MatrixX expected = test::dense_system(rod, 0.01).jacobian;
-    CHECK((jacobian_of(linearized(rod).joints[0]) - expected).cwiseAbs().maxCoeff() < 1e-8);
+    CHECK((world_jacobian(rod, 0, linearized(rod).joints[0]) - expected).cwiseAbs().maxCoeff() < 1e-8);
   }
 }
 
@@ -77,19 +99,33 @@ TEST_CASE("bending by more than half a turn of the rest rotation is measured the
   CHECK(std::abs(c[4]) < 1e-15);
 }
 
-TEST_CASE("rigid motion of a rod leaves bend-twist as it is and only turns stretch-shear") {
+TEST_CASE("constraints and Jacobians are those of the rod wherever it is moved and however turned") {
   Random random(11);
   for (unsigned seed = 0; seed < 20; ++seed) {
     Rod rod = test::random_rod(test::tree(2, 3), {0}, seed);
-    const VectorX before = linearized(rod).constraint;
-    const Quaternion turn = random.quaternion();
-    move_rigidly(rod, turn, random.vector(10));
-    const VectorX after = linearized(rod).constraint;
-    for (int k = 0; k < rod.joint_count(); ++k) {
-      const Vector3 stretch = before.segment<3>(6 * k);
-      CHECK((after.segment<3>(6 * k) - turn * stretch).norm() < 1e-12);
-      CHECK((after.segment<3>(6 * k + 3) - before.segment<3>(6 * k + 3)).norm() < 1e-14);
-    }
+    const Linearization before = linearized(rod);
+    move_rigidly(rod, random.quaternion(), random.vector(10));
+    const Linearization after = linearized(rod);
+    CHECK((after.constraint - before.constraint).lpNorm<Eigen::Infinity>() < 3e-13);
+    for (int k = 0; k < rod.joint_count(); ++k)
+      CHECK((jacobian_of(after.joints[k]) - jacobian_of(before.joints[k])).norm() <
+            1e-13 * jacobian_of(before.joints[k]).norm());
+  }
+}
+
+TEST_CASE("a joint whose segments change places has the same frame: its constraint and Jacobian change their sign") {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Rod rod = test::random_rod({{0, 1}}, {}, seed);
+    Rod exchanged = rod;
+    Joint& joint = exchanged.joints[0];
+    std::swap(joint.a, joint.b);
+    std::swap(joint.arm_a, joint.arm_b);
+    joint.rest = joint.rest.conjugate();
+    const Linearization one = linearized(rod), other = linearized(exchanged);
+    CHECK((one.constraint + other.constraint).lpNorm<Eigen::Infinity>() < 1e-13);
+    MatrixX expected(6, 12);
+    expected << -jacobian_of(one.joints[0]).rightCols(6), -jacobian_of(one.joints[0]).leftCols(6);
+    CHECK((jacobian_of(other.joints[0]) - expected).norm() < 1e-13 * expected.norm());
   }
 }
 
@@ -111,15 +147,8 @@ TEST_CASE("an infinitesimal rigid motion is in the null space of every Jacobian"
     motion.segment<3>(0) = shift + spin.cross(rod.position[rod.joints[k].a]);
     motion.segment<3>(6) = shift + spin.cross(rod.position[rod.joints[k].b]);
     motion.segment<3>(3) = motion.segment<3>(9) = spin;
-    CHECK((jacobian_of(at.joints[k]) * motion).norm() < 1e-12);
+    CHECK((world_jacobian(rod, k, at.joints[k]) * motion).norm() < 1e-12);
   }
-}
-
-TEST_CASE("the linearization knows every segment's direction") {
-  const Rod rod = test::random_rod(test::chain(5), {}, 3);
-  const Linearization at = linearized(rod);
-  for (int s = 0; s < rod.segment_count(); ++s)
-    CHECK((at.axis[s] - rod.orientation[s] * Vector3::UnitZ()).norm() < 1e-15);
 }
 
 TEST_CASE("the Newton residual is the largest |C + alpha~ lambda|") {

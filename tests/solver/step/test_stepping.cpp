@@ -113,7 +113,8 @@ TEST_CASE("multipliers start from zero in every step and end as the forces that 
   for (int i = 0; i < 1000; ++i) stepper.step(projection);
   const Rod& rod = scene.rods[0];
   REQUIRE(kinetic_energy(rod) < 1e-18);
-  const Vector3 force = rod.lambda.head<3>() / rod.joints[0].length / (dt_c * dt_c);  // on segment a
+  const Joint& joint = rod.joints[0];
+  const Vector3 force = to_world(rod, joint, rod.lambda.head<3>()) / joint.length / (dt_c * dt_c);  // on a
   const Vector3 weight = 5 * rod.segments[1].mass * scene.gravity_m_s2;
   CHECK((force - weight).norm() < 1e-6 * weight.norm());
 }

@@ -105,8 +105,8 @@ TEST_CASE("A rod twisted by its end has uniform twist and the torque of its join
     for (int c = 0; c < 3; ++c)
       for (int row = 0; row < 6; ++row)
         on_b[c] += at.joints[k].rotation_b[c][row] * rod.lambda[static_cast<Eigen::Index>(6 * k) + row] / (step * step);
-    CHECK((on_b + torque * Vector3::UnitX()).norm() < 1e-8 * torque);
-    CHECK(-on_b.x() ==
+    CHECK((on_b + torque * Vector3::UnitZ()).norm() < 1e-8 * torque);  // in its own frame
+    CHECK(-on_b.z() ==
           Approx(torsion_modulus * second_moment * angle / free_length).epsilon(joint_angle * joint_angle));
   }
 }

@@ -77,7 +77,8 @@ Vector3 force_on_held(const Rod& rod, double constraint_dt) {
   Vector3 total = Vector3::Zero();
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
-    const Vector3 force = rod.lambda.segment<3>(static_cast<Eigen::Index>(6 * k)) / joint.length;
+    const Vector3 multiplier = rod.lambda.segment<3>(static_cast<Eigen::Index>(6 * k));
+    const Vector3 force = to_world(rod, joint, multiplier) / joint.length;
     if (rod.segments[static_cast<std::size_t>(joint.a)].is_static) total += force;
     if (rod.segments[static_cast<std::size_t>(joint.b)].is_static) total -= force;
   }

@@ -1,9 +1,7 @@
-// Physical stretching and shearing: A and b, energy, closed forms of a pulled and of a sheared rod.
+// Physical stretching and shearing: compliance, energy, closed forms of a pulled and of a sheared rod.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 
-#include "solver/linear/linear_system.hpp"
 #include "solver/step/observables.hpp"
 #include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/simulation.hpp"
@@ -56,29 +54,14 @@ TEST_CASE("sections are those of ellipses, a circle's among them") {
   CHECK(e.shear_n == Approx(c.shear_n).epsilon(1e-14));
 }
 
-TEST_CASE("physical stretch adds its own compliance along the rod to A, and takes its yielding from b") {
-  Helix p;
-  p.segments = 12;
-  p.stretch = Stretch::physical;
-  Rod rod = build_scene(p).rods.front();
-  rod.lambda = test::Random(1).entries(6 * rod.joint_count());
-  Rod isotropic = rod;
-  for (Joint& joint : isotropic.joints) joint.axial_excess = 0;
-  LinearSystem with(rod), without(isotropic);
-  const double dt = 0.01;
-  with.assemble(rod, dt);
-  without.assemble(isotropic, dt);
-  const test::MatrixX more = with.matrix().dense() - without.matrix().dense();
-  test::MatrixX expected = test::MatrixX::Zero(more.rows(), more.cols());
-  for (int k = 0; k < rod.joint_count(); ++k) {
-    const Vector3 t =
-        (director(rod.orientation[rod.joints[k].a]) + director(rod.orientation[rod.joints[k].b])).normalized();
-    expected.block<3, 3>(6 * k, 6 * k) = rod.joints[k].axial_excess / (dt * dt) * t * t.transpose();
-  }
-  REQUIRE(expected.norm() > 1e-6);
-  CHECK((more - expected).norm() < 1e-12 * with.matrix().dense().norm());
-  CHECK((with.rhs() - without.rhs() + expected * rod.lambda).norm() < 1e-12 * with.rhs().norm());
-  CHECK(newton_residual(rod, dt) == Approx(with.newton_residual()).epsilon(1e-12));
+TEST_CASE("physical stretch is a compliance of shear across a joint and of stretch along it") {
+  const Vector6 alpha = physical_compliance(0.2, circular_section(0.05, 3e6, 1e6));
+  const double area = pi * 0.0025, second_moment = area * 0.0025 / 4;
+  CHECK(alpha[0] == Approx(1 / (shear_coefficient(3e6, 1e6) * 1e6 * area * 0.2)).epsilon(1e-14));
+  CHECK(alpha[1] == alpha[0]);
+  CHECK(alpha[2] == Approx(1 / (3e6 * area * 0.2)).epsilon(1e-14));
+  CHECK(alpha[3] == Approx(0.2 / (3e6 * second_moment)).epsilon(1e-14));
+  CHECK(alpha[5] == Approx(0.2 / (1e6 * 2 * second_moment)).epsilon(1e-14));
 }
 
 TEST_CASE("elastic energy of physical stretch is EA and kappa G A times half the squared strains") {
@@ -154,33 +137,6 @@ TEST_CASE("xpbd stretches physically too: it leaves the residual of Newton's fix
   for (int i = 0; i < 5; ++i) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
   CHECK(newton_residual(scene.rods.front(), stepper.constraint_dt()) < 1e-11);
   CHECK(joint_gap(scene.rods.front()) > 1e-4);
-}
-
-TEST_CASE("impossible axial compliances are refused with value and bound") {
-  const auto refusal = [](double excess, double row) {
-    SegmentSpec s;
-    s.length_m = 1;
-    s.radius_m = 0.1;
-    s.density_kg_m3 = 1;
-    JointSpec joint;
-    joint.b = 1;
-    joint.compliance_per_j << 1e-3, 1e-3, row, 1, 1, 1;
-    joint.axial_excess_per_j = excess;
-    try {
-      Rod({s, s}, {joint});
-    } catch (const SceneError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
-  CHECK(refusal(-1e-3, 1e-3) == "accepted");
-  CHECK(refusal(0, 2e-3) == "accepted");
-  CHECK(refusal(-2e-3, 1e-3) ==
-        "joint 0: axial excess is -0.002; must be finite and at least minus the stretch-shear compliance");
-  CHECK(refusal(std::numeric_limits<double>::infinity(), 1e-3) ==
-        "joint 0: axial excess is inf; must be finite and at least minus the stretch-shear compliance");
-  CHECK(refusal(1e-4, 2e-3) ==
-        "joint 0: axial excess is 0.0001; must be 0 unless the stretch-shear compliances are equal");
 }
 
 }  // namespace
