@@ -1,13 +1,19 @@
 #include "solver/guess/subspace_guess.hpp"
 
+#include <algorithm>
+
 namespace rodsweep {
 SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window)
-    : newton_iterations_(newton_iterations), size_(size), window_(window), equations_(size) {
-  for (const Rod& rod : scene.rods) {
-    const Matrix empty = Matrix::Zero(6 * rod.joint_count(), size);
-    products_.push_back(empty);
-    histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations), History{empty});
-  }
+    : newton_iterations_(newton_iterations),
+      size_(size),
+      window_(window),
+      gram_(size, size),
+      right_side_(size),
+      coefficients_(VectorX::Zero(size)),
+      equations_(size) {
+  for (const Rod& rod : scene.rods)
+    histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations),
+                      History{StoredVectors(6 * rod.joint_count(), size)});
 }
 
 SubspaceGuess::History& SubspaceGuess::history(const SolvePosition& at) {
@@ -15,20 +21,22 @@ SubspaceGuess::History& SubspaceGuess::history(const SolvePosition& at) {
 }
 
 Proposal SubspaceGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
-  const History& h = history(at);
-  x0.setZero();
-  if (h.last_step != at.step - 1 || h.known == 0) return {};
-  Matrix& products = products_[static_cast<std::size_t>(at.rod)];
-  for (int i = 0; i < h.known; ++i) system.matrix().multiply(h.solutions.col(i).data(), products.col(i).data());
-
+  History& h = history(at);
+  if (h.last_step != at.step - 1 || h.known == 0) {
+    x0.setZero();
+    return {};
+  }
+  h.solutions.project(system.matrix(), system.rhs(), gram_, right_side_);
   const auto by_age = [&](int age) { return (h.newest - age + size_) % size_; };
   for (int i = 0; i < h.known; ++i) {
-    const auto solution = h.solutions.col(by_age(i));
-    equations_.right_side(i) = solution.dot(system.rhs());
-    for (int k = 0; k <= i; ++k) equations_.gram(i, k) = solution.dot(products.col(by_age(k)));
+    equations_.right_side(i) = right_side_[by_age(i)];
+    for (int k = 0; k <= i; ++k)
+      equations_.gram(i, k) = gram_(std::max(by_age(i), by_age(k)), std::min(by_age(i), by_age(k)));
   }
   equations_.solve(h.known);
-  for (int i = h.known - 1; i >= 0; --i) x0 += equations_.coefficient(i) * h.solutions.col(by_age(i));
+  coefficients_.setZero();
+  for (int i = 0; i < h.known; ++i) coefficients_[by_age(i)] = equations_.coefficient(i);
+  h.solutions.combine(coefficients_, x0);
   return {true, h.known};
 }
 
@@ -39,7 +47,7 @@ void SubspaceGuess::accept(const SolvePosition& at, const VectorX& solution) {
   h.newest = again ? 0 : (h.newest + 1) % size_;
   h.known = std::min(h.known + 1, size_);
   h.last_step = at.step;
-  h.solutions.col(h.newest) = solution;
+  h.solutions.set(h.newest, solution);
 }
 
 }  // namespace rodsweep

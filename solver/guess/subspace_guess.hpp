@@ -1,14 +1,15 @@
 // Projected initial guesses: the best approximation, in the energy norm, of the solution within the span of earlier
 // ones (Fischer 1998, Comput. Methods Appl. Mech. Engrg. 163), always of the current matrix A:
 //   x0 = V c,   (V^T A V) c = V^T b,   V the stored solutions of one (rod, Newton iteration).
-// A changes from solve to solve, so A V is formed anew: as many products with A as there are solutions. Newer solutions
-// go before older ones (normal_equations.hpp).
+// A changes from solve to solve, so A V is formed anew: as many products with A as there are solutions, all in one pass
+// (stored_vectors.hpp). Newer solutions go before older ones (normal_equations.hpp).
 #pragma once
 
 #include <vector>
 
 #include "solver/guess/initial_guess.hpp"
 #include "solver/guess/normal_equations.hpp"
+#include "solver/linear/stored_vectors.hpp"
 
 namespace rodsweep {
 
@@ -24,9 +25,8 @@ class SubspaceGuess : public InitialGuess {
   void accept(const SolvePosition& at, const VectorX& solution) override;
 
  private:
-  using Matrix = Eigen::MatrixXd;
   struct History {
-    Matrix solutions;  ///< one per column
+    StoredVectors solutions;
     int known = 0, newest = -1, last_step = -2;
   };
   History& history(const SolvePosition& at);
@@ -34,7 +34,8 @@ class SubspaceGuess : public InitialGuess {
   int newton_iterations_, size_;
   Window window_;
   std::vector<History> histories_;
-  std::vector<Matrix> products_;  ///< per rod: A V
+  Eigen::MatrixXd gram_;               ///< V^T A V, lower triangle
+  VectorX right_side_, coefficients_;  ///< V^T b and c, in the order of V
   NormalEquations equations_;
 };
 
