@@ -8,11 +8,15 @@
 #include "runner/experiment/training_sets.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
+#include "solver/guess/totals_guess.hpp"
 #include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 
-std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec& task, const Scene& scene) {
+namespace {
+
+/// `noise`: the relative error of the solutions that the guess will hear of.
+std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task, const Scene& scene, double noise) {
   using Kind = GuessSpec::Kind;
   const auto extrapolation = [&](int terms) {
     return std::make_unique<ExtrapolationGuess>(scene, task.time.newton_iterations, terms);
@@ -28,8 +32,7 @@ std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec&
     case Kind::fischer: return subspace(SubspaceGuess::Window::restarted);
     case Kind::pod: return subspace(SubspaceGuess::Window::sliding);
     case Kind::regression:
-      return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window,
-                                               task.own_guess >= 0 ? task.solve.tolerance : 0);
+      return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window, noise);
     case Kind::copingnet:
       return std::make_unique<CopingNetGuess>(shared_model(guess.model), scene, constraint_dt(scene, task.time.step_s),
                                               task.time.newton_iterations);
@@ -38,9 +41,18 @@ std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec&
                                         constraint_dt(scene, task.time.step_s), guess.neighbours);
     case Kind::oracle: return std::make_unique<OracleGuess>(scene, guess.error, guess.error_kind, task.seed);
     case Kind::guarded:
-      return std::make_unique<GuardedGuess>(scene, make_guess(guess.inner.front(), task, scene), guess.threshold);
+      return std::make_unique<GuardedGuess>(scene, make(guess.inner.front(), task, scene, noise), guess.threshold);
+    case Kind::totals:
+      return std::make_unique<TotalsGuess>(scene, make(guess.inner.front(), task, scene, 0));  // Newton corrects them
   }
   throw std::logic_error("make_guess: unknown kind of guess \"" + guess.label + "\"");
+}
+
+}  // namespace
+
+std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec& task, const Scene& scene) {
+  const bool closed_loop = task.own_guess >= 0;
+  return make(guess, task, scene, closed_loop ? task.solve.tolerance : 0);
 }
 
 }  // namespace rodsweep

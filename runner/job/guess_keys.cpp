@@ -64,6 +64,12 @@ KeyTable<Guess> guarded_keys() {
   return table;
 }
 
+KeyTable<Guess> totals_keys() {
+  KeyTable<Guess> table;
+  table.unbound(guess_key("guess", "the guess that hears of whole steps"));
+  return table;
+}
+
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> kinds{
       {Guess::Kind::zero, "zero", "no guess: the denominator of every ratio", {}},
@@ -83,6 +89,9 @@ const std::vector<Kind>& kinds() {
        "the solutions of the most similar systems of a data set, resampled by arc length and averaged", knn_keys()},
       {Guess::Kind::oracle, "oracle", "the exact solution plus a random error", oracle_keys()},
       {Guess::Kind::guarded, "guarded", "another guess, used only where its residual is small", guarded_keys()},
+      {Guess::Kind::totals, "totals",
+       "another guess, that hears what a step's increments add up to in place of the first one: for closed loops",
+       totals_keys()},
   };
   return kinds;
 }
@@ -95,7 +104,7 @@ Guess guess_spec(const Place& at) {
     guess.kind = kind.kind;
     kind.parameters.fill(guess, at.of(name));
   }
-  if (guess.kind == Guess::Kind::guarded) {
+  if (guess.kind == Guess::Kind::guarded || guess.kind == Guess::Kind::totals) {
     const Place within = at.of(name).of("guess");
     guess.inner.push_back(guess_spec(within));
     guess.inner.back().label = within.point.text(within.path);

@@ -52,7 +52,7 @@ struct SolveSpec {
 
 /// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.
 struct GuessSpec {
-  enum class Kind { zero, previous, linear, quadratic, fischer, pod, regression, copingnet, knn, oracle, guarded };
+  enum class Kind { zero, previous, linear, quadratic, fischer, pod, regression, copingnet, knn, oracle, guarded, totals };
   Kind kind = Kind::zero;
   std::string label;
   int size = 10;                ///< fischer, pod: how many solutions span the subspace
@@ -65,7 +65,7 @@ struct GuessSpec {
   OracleGuess::Error error_kind = OracleGuess::Error::white;  ///< oracle
   double threshold =
       1;  ///< guarded: use `inner` only where the natural norm of b - A x0 is below threshold times that of b
-  std::vector<GuessSpec> inner;  ///< guarded: exactly one
+  std::vector<GuessSpec> inner;  ///< guarded, totals: exactly one
 };
 
 /// Of which linear systems a data set holds what they were assembled from, and the solution.

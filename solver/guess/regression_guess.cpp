@@ -10,9 +10,12 @@ RegressionGuess::RegressionGuess(const Scene& scene, int newton_iterations, int 
   for (const Rod& rod : scene.rods) {
     const Eigen::Index unknowns = 6 * rod.joint_count();
     const Matrix empty = Matrix::Zero(unknowns, size);
-    const History none{VectorX::Ones(unknowns), empty, empty, Matrix::Zero(size, size)};
+    History none;
+    none.weight = none.right_side = VectorX::Ones(unknowns);
+    none.right_sides = none.solutions = empty;
+    none.gram = Matrix::Zero(size, size);
+    none.products = VectorX::Zero(size);
     histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations), none);
-    pending_.push_back({VectorX::Zero(unknowns), VectorX::Zero(size)});
   }
 }
 
@@ -22,7 +25,6 @@ RegressionGuess::History& RegressionGuess::history(const SolvePosition& at) {
 
 Proposal RegressionGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   History& h = history(at);
-  Pending& pending = pending_[static_cast<std::size_t>(at.rod)];
   if (h.last_step != at.step - 1) h.known = 0;
   if (h.known == 0) {
     const BlockMatrix& a = system.matrix();
@@ -31,16 +33,16 @@ Proposal RegressionGuess::propose(const LinearSystem& system, const SolvePositio
       for (int i = 0; i < 6; ++i) h.weight[6 * row + i] = 1 / std::sqrt(diagonal.column[i][i]);
     }
   }
-  pending.right_side = h.weight.cwiseProduct(system.rhs());
-  pending.squared_norm = pending.right_side.squaredNorm();
-  pending.products.head(h.known).noalias() = h.right_sides.leftCols(h.known).transpose() * pending.right_side;
+  h.right_side = h.weight.cwiseProduct(system.rhs());
+  h.squared_norm = h.right_side.squaredNorm();
+  h.products.head(h.known).noalias() = h.right_sides.leftCols(h.known).transpose() * h.right_side;
   if (h.known == 0) {
     x0.setZero();
     return {};
   }
   const auto by_age = [&](int age) { return (h.newest - age + size_) % size_; };
   for (int i = 0; i < h.known; ++i) {
-    equations_.right_side(i) = pending.products[by_age(i)];
+    equations_.right_side(i) = h.products[by_age(i)];
     for (int k = 0; k <= i; ++k) equations_.gram(i, k) = h.gram(by_age(i), by_age(k));
   }
   equations_.solve(h.known, noise_);
@@ -51,15 +53,14 @@ Proposal RegressionGuess::propose(const LinearSystem& system, const SolvePositio
 
 void RegressionGuess::accept(const SolvePosition& at, const VectorX& solution) {
   History& h = history(at);
-  const Pending& pending = pending_[static_cast<std::size_t>(at.rod)];
   h.newest = h.known == 0 ? 0 : (h.newest + 1) % size_;
   h.known = std::min(h.known + 1, size_);
   h.last_step = at.step;
-  h.right_sides.col(h.newest) = pending.right_side;
+  h.right_sides.col(h.newest) = h.right_side;
   h.solutions.col(h.newest) = solution;
-  h.gram.col(h.newest) = pending.products;
+  h.gram.col(h.newest) = h.products;
   h.gram.row(h.newest) = h.gram.col(h.newest).transpose();
-  h.gram(h.newest, h.newest) = pending.squared_norm;
+  h.gram(h.newest, h.newest) = h.squared_norm;
 }
 
 }  // namespace rodsweep

@@ -32,9 +32,7 @@ class RegressionGuess : public InitialGuess {
     Matrix right_sides, solutions;  ///< W b_k and x_k, one a column
     Matrix gram;                    ///< dot products of the right-hand sides
     int known = 0, newest = -1, last_step = -2;
-  };
-  /// The system last proposed for: W b, and its dot products with the stored ones and itself.
-  struct Pending {
+    /// The system last proposed for: W b, and its dot products with the stored ones and itself.
     VectorX right_side, products;
     double squared_norm = 0;
   };
@@ -43,7 +41,6 @@ class RegressionGuess : public InitialGuess {
   int newton_iterations_, size_;
   double noise_;
   std::vector<History> histories_;
-  std::vector<Pending> pending_;  ///< per rod
   NormalEquations equations_;
   VectorX coefficients_;  ///< of the columns
 };

@@ -9,6 +9,7 @@
 #include "solver/guess/initial_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
+#include "solver/guess/totals_guess.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/pbd_projection.hpp"
@@ -170,10 +171,12 @@ TEST_CASE("a step with CG allocates nothing, whatever the guess") {
     if (name == "pod") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding);
     if (name == "guarded")
       return std::make_unique<GuardedGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 3), 0.5);
+    if (name == "totals")
+      return std::make_unique<TotalsGuess>(scene, std::make_unique<RegressionGuess>(scene, 4, 5, 1e-2));
     return std::make_unique<ZeroGuess>();
   };
   for (const char* guess :
-       {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod", "regression"}) {
+       {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod", "regression", "totals"}) {
     INFO(guess);
     Scene scene = loaded_scene();
     CgSolve solve({}, make(guess, scene));

@@ -1,0 +1,31 @@
+// Another guess, with a history of whole steps: for the first Newton iteration it hears, in place of that iteration's
+// own solutions, the sum of a step's increments,
+//   x_n = sum_j dlambda_j of step n.
+// In a closed loop an iteration's solution is as inexact as its solve, and the iterations after it correct it: what the
+// first system of the step needed is known best at its end. Later iterations keep their own histories.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/guess/initial_guess.hpp"
+
+namespace rodsweep {
+
+class TotalsGuess : public InitialGuess {
+ public:
+  TotalsGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner);
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  void accept(const SolvePosition& at, const VectorX& solution) override;
+
+ private:
+  struct Total {
+    VectorX sum;
+    int step = -1;      ///< of the sum
+    bool told = true;   ///< whether the inner guess knows it
+  };
+  std::unique_ptr<InitialGuess> inner_;
+  std::vector<Total> totals_;  ///< per rod
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,104 @@
+// What a guess hears of whole steps.
+#include <catch2/catch.hpp>
+#include <tuple>
+#include <vector>
+
+#include "solver/guess/regression_guess.hpp"
+#include "solver/guess/totals_guess.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+struct Told {
+  int step, newton, rod;
+  VectorX solution;
+};
+
+/// Writes down what it is told; proposes the number of things told so far.
+class Listener : public InitialGuess {
+ public:
+  explicit Listener(std::vector<Told>& told) : told_(told) {}
+  Proposal propose(const LinearSystem&, const SolvePosition&, VectorX& x0) override {
+    x0.setConstant(static_cast<double>(told_.size()));
+    return {true, 0};
+  }
+  void accept(const SolvePosition& at, const VectorX& solution) override {
+    told_.push_back({at.step, at.newton, at.rod, solution});
+  }
+
+ private:
+  std::vector<Told>& told_;
+};
+
+Scene two_rods() {
+  Scene scene = build_scene(test::bending_rod(4));
+  scene.rods.push_back(scene.rods.front());
+  return scene;
+}
+
+TEST_CASE("the history of the first iteration is of what whole steps add up to, those of later ones of their own") {
+  const Scene scene = two_rods();
+  const LinearSystem system(scene.rods[0]);
+  std::vector<Told> told;
+  TotalsGuess guess(scene, std::make_unique<Listener>(told));
+  VectorX x0(18);
+  const auto constant = [](double value) { return VectorX::Constant(18, value).eval(); };
+  for (int step = 0; step < 2; ++step)
+    for (int newton = 0; newton < 3; ++newton)
+      for (int rod = 0; rod < 2; ++rod) {
+        guess.propose(system, {step, newton, rod}, x0);
+        guess.accept({step, newton, rod}, constant(100 * step + 10 * newton + rod));
+      }
+  std::vector<std::tuple<int, int, int, double>> seen;
+  for (const Told& t : told) {
+    CHECK(t.solution == constant(t.solution[0]));
+    seen.emplace_back(t.step, t.newton, t.rod, t.solution[0]);
+  }
+  const std::vector<std::tuple<int, int, int, double>> expected{
+      {0, 1, 0, 10}, {0, 1, 1, 11}, {0, 2, 0, 20},  {0, 2, 1, 21},  {0, 0, 0, 30},
+      {0, 0, 1, 33}, {1, 1, 0, 110}, {1, 1, 1, 111}, {1, 2, 0, 120}, {1, 2, 1, 121}};
+  CHECK(seen == expected);
+}
+
+TEST_CASE("proposing again tells nothing twice") {
+  const Scene scene = two_rods();
+  const LinearSystem system(scene.rods[0]);
+  std::vector<Told> told;
+  TotalsGuess guess(scene, std::make_unique<Listener>(told));
+  VectorX x0(18), again(18);
+  guess.propose(system, {0, 0, 0}, x0);
+  guess.accept({0, 0, 0}, VectorX::Ones(18));
+  guess.propose(system, {1, 0, 0}, x0);
+  guess.propose(system, {1, 0, 0}, again);
+  CHECK(told.size() == 1);
+  CHECK(x0 == again);
+}
+
+TEST_CASE("a regression combines totals as the first right-hand sides of their steps make up today's") {
+  Scene scene = build_scene(test::bending_rod(6));
+  Rod& rod = scene.rods[0];
+  LinearSystem system(rod);
+  test::Random random(4);
+  TotalsGuess guess(scene, std::make_unique<RegressionGuess>(scene, 2, 2, 0));
+  VectorX x0(30), lambda[2], first[2], later[2];
+  for (int step = 0; step < 2; ++step) {
+    rod.lambda = lambda[step] = random.entries(30);
+    system.assemble(rod, 0.02);
+    first[step] = random.entries(30);
+    later[step] = random.entries(30);
+    guess.propose(system, {step, 0, 0}, x0);
+    guess.accept({step, 0, 0}, first[step]);
+    rod.lambda = random.entries(30);
+    system.assemble(rod, 0.02);
+    guess.propose(system, {step, 1, 0}, x0);
+    guess.accept({step, 1, 0}, later[step]);
+  }
+  rod.lambda = 3 * lambda[0] - 2 * lambda[1];  // b is -C - alpha~ lambda, and C is that of all steps: zero
+  system.assemble(rod, 0.02);
+  guess.propose(system, {2, 0, 0}, x0);
+  CHECK((x0 - (3 * (first[0] + later[0]) - 2 * (first[1] + later[1]))).norm() < 1e-9 * x0.norm());
+}
+
+}  // namespace
+}  // namespace rodsweep
