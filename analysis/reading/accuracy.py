@@ -19,8 +19,6 @@ from reading.errors import KeyNotFound
 REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
                                                                ("assemble", "direct", "guess", "cg")))
 NEWTON = "time.newton_iterations"
-
-
 FLOOR = 1e-12    # errors up to this are rounding of another order of operations
 REFERENCE = ("Reference: Newton with direct solves, converged, with the same step; xpbd converges to a trajectory of "
              "its own, whose forces acted along the positions on its way.")
