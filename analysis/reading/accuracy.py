@@ -1,33 +1,71 @@
-"""How far every way of moving the rods ends from a converged trajectory, and what its steps cost: for solvers.py.
+"""How far every way of moving the rods ends from a converged trajectory, and what its steps cost: for solvers.py and
+work_precision.py.
 
-A way is a method with its effort: Newton iterations of the direct solve, the tolerance of CG, Gauss-Seidel iterations.
-The reference of a simulation is the direct solve with the most Newton iterations, of the same scene, draw and step.
-Error: the distance of a segment from where the reference has it, root mean square over segments, the largest over the
-frames of the trajectory, relative to the rod's length; NaN where a simulation has no reference. Cost: wall time of a
-step with its assembly, guess and solves, the median over steps.
+A way is a method with its effort: Newton iterations of the direct solve, these and the tolerance of CG with its
+preconditioner and guess, Gauss-Seidel iterations. The reference of a simulation is the direct solve with the most
+Newton iterations, of the same scene, draw and step. Error: the distance of a segment from where the reference has it,
+root mean square over segments, the largest over the frames of the trajectory, relative to the diagonal of the box
+around all segments at the start, which is the length of a straight rod; NaN where a simulation has no reference,
+infinite where it failed. Cost: wall time of a step with its assembly, guess and solves, the median over steps.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from reading import measures
+from reading import intervals, measures, texts
 from reading.errors import KeyNotFound
 
 REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
                                                                ("assemble", "direct", "guess", "cg")))
 NEWTON = "time.newton_iterations"
+FLOOR = 1e-12    # errors up to this are rounding of another order of operations
+REFERENCE = ("Reference: Newton with direct solves, converged, with the same step; xpbd converges to a trajectory of "
+             "its own, whose forces acted along the positions on its way.")
+
+
+@dataclass(frozen=True)
+class Way:
+    """What does not apply is empty or 0."""
+    method: str               # direct, cg, xpbd, pbd, or end_to_end and its model
+    newton: int = 0
+    iterations: int = 0
+    tolerance: float = 0
+    preconditioner: str = ""
+    guess: str = ""
+
+    @property
+    def family(self):
+        return f"CG {self.preconditioner} from {self.guess}" if self.method == "cg" else self.method
+
+    @property
+    def effort(self):
+        """What a line of a figure goes along: iterations, or CG's tolerance."""
+        return self.tolerance or self.iterations or self.newton
+
+    def text(self):
+        if self.iterations:
+            return f"{self.method} {self.iterations}"
+        to = f" to {texts.tolerance_label(self.tolerance)}" if self.tolerance else ""
+        return f"{self.family}{to}, Newton {self.newton}"
 
 
 @dataclass(frozen=True)
 class Accuracy:
     """A row per task."""
     tasks: np.ndarray
-    family: np.ndarray     # "direct", "CG from zero", "xpbd", …
-    effort: np.ndarray     # iterations, or CG's tolerance
+    ways: list
     reference: np.ndarray  # is it one?
     error: np.ndarray
     step_s: np.ndarray
+
+
+@dataclass(frozen=True)
+class Point:
+    """A way's medians over simulations, Estimates."""
+    way: Way
+    time_us: intervals.Estimate
+    error: intervals.Estimate
 
 
 def accuracy(file, tasks):
@@ -36,30 +74,69 @@ def accuracy(file, tasks):
         raise KeyNotFound(f"{file.path} has no trajectories: ask for them with record.trajectory_every")
     if not all(file.has(path) for path in (REST, ASSEMBLY, DIRECT)):
         raise KeyNotFound(f"{file.path} has no times of single solves (record.solves is \"summary\")")
-    family, effort = zip(*(_way(file, task) for task in tasks))
-    family, effort = np.array(family), np.array(effort, dtype=float)
-    reference = _references(file, tasks, family)
-    error = np.full(len(tasks), np.nan)
+    ways = [_way(file, task) for task in tasks]
+    ok = file.ok[tasks]
+    reference = _references(file, tasks, ok & np.array([way.method == "direct" for way in ways]))
+    if (reference < 0).all():
+        raise KeyNotFound(f"{file.path} has no task of the direct solve to compare the others with")
+    error, step_s = np.full(len(tasks), np.nan), np.full(len(tasks), np.nan)
+    error[(reference >= 0) & ~ok] = np.inf
     for of in np.unique(reference[reference >= 0]):
         exact = _positions(file, tasks[of])
-        for k in np.flatnonzero(reference == of):
-            error[k] = _error(file, tasks[k], exact)
-    own = reference == np.arange(len(tasks))
-    return Accuracy(tasks, family, effort, own, error, np.array([_step_s(file, task) for task in tasks]))
+        for k in np.flatnonzero((reference == of) & ok):
+            error[k], step_s[k] = _error(file, tasks[k], exact), _step_s(file, tasks[k])
+    return Accuracy(tasks, ways, reference == np.arange(len(tasks)), error, step_s)
+
+
+def points(file, found, cell):
+    """A Point per way among the rows of a mask, families in the order of the job, least effort first in each; none of a
+    way that failed in any simulation."""
+    rows, families = {}, {}
+    for row in np.flatnonzero(cell & ~found.reference & ~np.isnan(found.error)):
+        way = found.ways[row]
+        rows.setdefault(way, []).append(row)
+        families.setdefault(way.family, len(families))
+    made = []
+    for way in sorted(rows, key=lambda way: (families[way.family], -way.tolerance, way.iterations, way.newton)):
+        of, draws = rows[way], file.sample[found.tasks[rows[way]]]
+        if np.isfinite(found.error[of]).all():
+            made.append(Point(way, intervals.median(1e6 * found.step_s[of], draws),
+                              intervals.median(np.maximum(found.error[of], FLOOR), draws)))
+    return made
+
+
+def cheapest(points, level):
+    """The fastest of the points whose error is at most `level`; None where there is none."""
+    good = [point for point in points if point.error.value <= level]
+    return min(good, key=lambda point: float(point.time_us.value)) if good else None
+
+
+def envelope(points, floor):
+    """The points that no cheaper one is as accurate as, fastest first; errors up to the floor are all one."""
+    kept, least = [], np.inf
+    for point in sorted(points, key=lambda point: (float(point.time_us.value), float(point.error.value))):
+        if max(float(point.error.value), floor) < least:
+            kept.append(point)
+            least = max(float(point.error.value), floor)
+    return kept
 
 
 def _way(file, task):
-    """(family, effort)"""
-    method = file.parameters["solve.method"].values[task]
-    if method == "cg":
-        return f"CG from {file.guesses[file.own_guess[task]]}", file.parameters["solve.tolerance"].values[task]
+    def value(key):
+        return file.parameters[key].values[task]
+
+    method = value("solve.method")
     if method in ("xpbd", "pbd"):
-        return method, file.parameters["solve.iterations"].values[task]
-    return measures.without_guess(file, [task])[0], file.parameters[NEWTON].values[task]
+        return Way(method, iterations=int(value("solve.iterations")))
+    newton = int(value(NEWTON))
+    if method == "cg":
+        return Way(method, newton, 0, float(value("solve.tolerance")), str(value("solve.preconditioner")),
+                   file.guesses[file.own_guess[task]])
+    return Way(str(measures.without_guess(file, [task])[0]), newton)
 
 
-def _references(file, tasks, family):
-    """The row of the reference among `tasks` for each of them, -1 where there is none."""
+def _references(file, tasks, candidate):
+    """The row of the reference among `tasks` for each of them, of the candidates; -1 where there is none."""
     keys = [p.codes()[tasks] for p in file.parameters.values()
             if p.name.startswith(("scene.", "time.")) and p.name != NEWTON]
     rod = np.unique(np.column_stack([file.sample[tasks], *keys]), axis=0, return_inverse=True)[1].ravel()
@@ -67,7 +144,7 @@ def _references(file, tasks, family):
     found = np.full(len(tasks), -1)
     for group in range(rod.max() + 1):
         rows = np.flatnonzero(rod == group)
-        direct = rows[family[rows] == "direct"]
+        direct = rows[candidate[rows]]
         if len(direct):
             found[rows] = direct[np.argmax(newton[direct])]
     return found
@@ -85,7 +162,7 @@ def _positions(file, task):
 
 def _error(file, task, exact):
     apart = np.sqrt((np.square(_positions(file, task) - exact).sum(axis=2)).mean(axis=1)).max()
-    return apart / np.linalg.norm(np.diff(exact[0], axis=0), axis=1).sum()
+    return apart / np.linalg.norm(np.ptp(exact[0], axis=0))
 
 
 def _step_s(file, task):

@@ -28,9 +28,14 @@ class Parameter:
         return first != ("" if first.dtype.kind == "U" else -1)
 
     def codes(self):
-        """An integer per task, equal where the values are equal."""
-        axis = 0 if self.values.ndim > 1 else None
-        return np.unique(self.values, return_inverse=True, axis=axis)[1].reshape(len(self.values))
+        """An integer per task, equal where the values are equal; where the key does not apply, too."""
+        def codes(values):
+            return np.unique(values, return_inverse=True)[1].reshape(len(values))
+
+        if self.values.ndim == 1:
+            return codes(self.values)
+        components = np.column_stack([codes(component) for component in self.values.T])  # NaN is no NaN's equal in rows
+        return np.unique(components, axis=0, return_inverse=True)[1].reshape(len(self.values))
 
     def text(self, task):
         value = self.values[task]

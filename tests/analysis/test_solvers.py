@@ -1,64 +1,58 @@
 """solvers.py and accuracy.py: errors, costs and the cheapest way, of planted trajectories and times."""
 
-import os
-import sys
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "analysis"))
+import ways
 import h5py
 import numpy as np
-
-import running
-import solvers
-from reading import accuracy
+from reading import accuracy, intervals
 from reading.sweepfile import SweepFile
-
-WAYS = [("direct", 20, -1), ("direct", 2, -1), ("xpbd", 6, 50), ("pbd", 6, 5)]   # method, newton, iterations
-OFF = (0, 1e-5, 1e-3, 0.2)        # from the reference, in rod lengths
-STEP_S = (9e-5, 2e-5, 1e-5, 4e-6)
-STEPS, FRAMES, SEGMENTS, SAMPLES = 4, 3, 5, 2
+from ways import OFF, SAMPLES, STEP_S, WAYS
 
 
-class Solvers(running.Scripts):
-    def write(self):
-        """Two rods by four ways, a row of /solves per step, and trajectories."""
-        count = len(WAYS) * SAMPLES
-        super().write(method="direct", scenes=("bending_rod",), samples=SAMPLES, steps=STEPS,
-                      grid={"time.newton_iterations": tuple(newton for _, newton, _ in WAYS)})
-        rows = np.arange(count) * STEPS
-        way = np.repeat(np.arange(len(WAYS)), SAMPLES)
-        linear = np.repeat([method == "direct" for method, _, _ in WAYS], SAMPLES)
-        times = np.repeat(np.array(STEP_S)[way], STEPS).reshape(count, STEPS)
-        times[:, 0] += 1     # a hiccup of the machine
-        position = np.zeros((count, FRAMES, SEGMENTS, 3))
-        position[..., 2] = np.linspace(0, 1, SEGMENTS)
-        position[:, 1, :, 0] += np.array(OFF)[way, None]
-        planted = {"tasks/first_solve": rows, "tasks/solves": np.full(count, STEPS),
-                   "tasks/parameters/solve/method": np.array([m for m, _, _ in WAYS], dtype="S8")[way],
-                   "tasks/parameters/solve/iterations": np.array([i for _, _, i in WAYS])[way],
-                   "timing/steps/rest_s": np.where(linear[:, None], times - 1.5e-5, times).ravel(),
-                   "timing/solves/assemble_s": np.repeat(np.where(linear, 5e-6, np.nan), STEPS),
-                   "timing/solves/direct_s": np.repeat(np.where(linear, 1e-5, np.nan), STEPS),
-                   "trajectories/position_m": position.reshape(-1, 3),
-                   "trajectories/first_row": np.arange(count * FRAMES).reshape(count, FRAMES) * SEGMENTS}
-        with h5py.File(self.path, "a") as h5:
-            for name, values in planted.items():
-                stored = name.replace("parameters/solve/", "parameters/solve.")
-                attributes = dict(h5[stored].attrs) if stored in h5 else {}
-                if stored in h5:
-                    del h5[stored]
-                h5[stored] = values
-                h5[stored].attrs.update(attributes)
+def point(way, time_us, error):
+    estimate = lambda value: intervals.median(np.array([float(value)]))
+    return accuracy.Point(way, estimate(time_us), estimate(error))
+
+
+class Solvers(ways.Planted):
+    def accuracy(self, **settings):
+        self.write(**settings)
+        file = SweepFile(self.path)
+        self.addCleanup(file.h5.close)
+        return file, accuracy.accuracy(file, np.arange(file.task_count))
 
     def test_errors_are_those_of_the_worst_frame_and_costs_are_medians_over_steps(self):
-        self.write()
-        with SweepFile(self.path) as file:
-            found = accuracy.accuracy(file, np.arange(len(WAYS) * SAMPLES))
+        _, found = self.accuracy()
         np.testing.assert_allclose(found.error, np.repeat(OFF, SAMPLES), atol=1e-15)
         np.testing.assert_allclose(found.step_s, np.repeat(STEP_S, SAMPLES), rtol=1e-5)
-        self.assertEqual(found.reference.tolist(), [True] * SAMPLES + [False] * 3 * SAMPLES)
-        self.assertEqual(found.family.tolist(), [m for m, _, _ in WAYS for _ in range(SAMPLES)])
-        self.assertEqual(found.effort.tolist(), [20, 20, 2, 2, 50, 50, 5, 5])
+        self.assertEqual(found.reference.tolist(), [True] * SAMPLES + [False] * (len(WAYS) - 1) * SAMPLES)
+        self.assertEqual(found.ways, [way for way in WAYS for _ in range(SAMPLES)])
+
+    def test_every_scene_has_its_own_reference_also_where_a_vector_is_none_of_its_keys(self):
+        self.write(scenes=("bending_rod", "net"))
+        with h5py.File(self.path, "a") as h5:
+            count = len(h5["tasks/state"])
+            wind = np.where(np.arange(count)[:, None] < count // 2, np.nan, [8.0, 0, 0])
+            h5["tasks/parameters/scene.wind.mean_m_s"] = wind
+        with SweepFile(self.path) as file:
+            found = accuracy.accuracy(file, np.arange(count))
+        np.testing.assert_allclose(found.error, np.tile(np.repeat(OFF, SAMPLES), 2), atol=1e-15)
+        self.assertEqual(found.reference.sum(), 2 * SAMPLES)
+
+    def test_a_way_that_failed_once_has_no_point_and_a_failed_reference_is_none(self):
+        failed = WAYS.index(accuracy.Way("xpbd", iterations=50))
+        file, found = self.accuracy(failed={SAMPLES * failed + 1: "torn", 1: "diverged"})
+        everything = np.ones(file.task_count, dtype=bool)
+        self.assertEqual(found.reference.tolist()[:2 * SAMPLES], [True, False, False, True])
+        self.assertEqual({p.way for p in accuracy.points(file, found, everything)}, set(WAYS[1:]) - {WAYS[failed]})
+
+    def test_points_of_a_family_go_from_the_least_effort_to_the_most(self):
+        file, found = self.accuracy()
+        points = accuracy.points(file, found, np.ones(file.task_count, dtype=bool))
+        self.assertEqual([p.way for p in points], WAYS[1:-2] + [WAYS[-1], WAYS[-2]])   # 1e-1 before 1e-2
+        self.assertEqual([(p.way.family, p.way.effort) for p in points[:4]],
+                         [("direct", 2), ("xpbd", 50), ("pbd", 5), ("CG jacobi from zero", 1e-2)])
 
     def test_the_cheapest_way_depends_on_the_error_allowed(self):
         self.write()
@@ -68,12 +62,16 @@ class Solvers(running.Scripts):
         self.assertEqual(row[-13:], ["xpbd", "50:", "10", "µs"] * 2 + ["direct", "2:", "20", "µs", "-"])
         self.assertTrue(said.rstrip().endswith("sweep-solvers.png"))
 
-    def test_no_way_is_named_where_none_is_good_enough(self):
-        estimate = lambda value: solvers.intervals.median(np.array([float(value)]))
-        ways = {"pbd": [("5", estimate(4), estimate(0.2))], "xpbd": [("50", estimate(30), estimate(1e-3))]}
-        self.assertEqual(solvers.cheapest(ways, 0.5), (4, "pbd", "5"))
-        self.assertEqual(solvers.cheapest(ways, 1e-2), (30, "xpbd", "50"))
-        self.assertIsNone(solvers.cheapest(ways, 1e-4))
+    def test_no_way_is_the_cheapest_where_none_is_good_enough(self):
+        pbd, xpbd = point(WAYS[3], 4, 0.2), point(WAYS[2], 30, 1e-3)
+        self.assertEqual(accuracy.cheapest([xpbd, pbd], 0.5), pbd)
+        self.assertEqual(accuracy.cheapest([xpbd, pbd], 1e-2), xpbd)
+        self.assertIsNone(accuracy.cheapest([xpbd, pbd], 1e-4))
+
+    def test_the_envelope_leaves_out_what_costs_more_and_is_no_better(self):
+        slow, good, worse, same = (point(WAYS[k], *values)
+                                   for k, values in enumerate([(9, 1e-9), (4, 1e-5), (5, 1e-3), (20, 1e-12)]))
+        self.assertEqual(accuracy.envelope([slow, worse, same, good], 1e-8), [good, slow])
 
     def test_files_without_trajectories_or_reference_are_refused(self):
         self.write()

@@ -1,0 +1,139 @@
+#!/usr/bin/python3
+"""Figure and table of what a step costs altogether: which method, preconditioner and guess to use when.
+
+Error of a trajectory over wall time of a step, as in solvers.py (see accuracy.py), a panel per value of a parameter, in
+rows that tell one choice apart each: the method, the preconditioner of CG, the guess of CG. A line is the lower
+envelope over all that its name leaves open: the efforts (Newton iterations, tolerance of CG, iterations of xpbd and
+pbd), in the row of preconditioners also the guesses, in that of guesses the preconditioners, in that of methods both.
+A way that failed in any simulation of a panel is left out of it. The table has, for every error, the cheapest way of
+all and of CG, and how many times the time of the cheapest direct solve CG takes. Needs trajectories in the file
+(record.trajectory_every) and /solves (record.solves "all").
+"""
+
+import numpy as np
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from drawing import layout, study, style
+from reading import accuracy, commandline, texts
+from reading.sweepfile import SweepFile
+
+EXAMPLES = """examples:
+  analysis/work_precision.py results/work_precision.h5
+  analysis/work_precision.py results/work_precision.h5 --guess zero        # what preconditioners do alone
+  analysis/work_precision.py results/solvers.h5 --select scene.segments=50 --columns scene.youngs_modulus_pa"""
+LEVELS = (1e-2, 1e-3, 1e-4, 1e-6)
+DRAWN_FROM = 1e-8    # of an error: nobody pays for less
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
+    study.add_figure_arguments(made)
+    made.add_argument("--columns", metavar="KEY", default="scene.type",
+                      help="a panel per value of this parameter, number or word (default: scene.type)")
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        shown = study.of_tasks(file, options, failed_too=True)
+        tasks = np.unique(shown.sims.task[:, shown.guesses or [0]])
+        found = accuracy.accuracy(file, tasks[tasks >= 0])
+        panels = by_panel(file, found, file.parameter(options.columns))
+        print("\n".join(table(panels)) + "\n")
+        study.save(file, options, {"work-precision": figure(shown, panels)})
+
+
+def by_panel(file, found, parameter):
+    """{title: points}, numbers in their order, words in that of the job."""
+    codes = parameter.codes()[found.tasks]
+    ordered = np.unique(codes) if parameter.numeric else dict.fromkeys(codes.tolist())
+    label = style.parameter_label(parameter.name, parameter.unit)
+    panels = {}
+    for code in ordered:
+        task = found.tasks[np.argmax(codes == code)]
+        title = (f"{label} {texts.number_text(parameter.values[task])}" if parameter.numeric else
+                 parameter.text(task).replace("_", " "))
+        panels[title] = accuracy.points(file, found, codes == code)
+    return panels
+
+
+def table(panels):
+    rows = [["", "error at most", "cheapest way", "µs", "cheapest CG", "µs", "÷ direct"]]
+    for panel, points in panels.items():
+        for k, level in enumerate(LEVELS):
+            best = accuracy.cheapest(points, level)
+            cg, direct = (accuracy.cheapest([point for point in points if point.way.method == method], level)
+                          for method in ("cg", "direct"))
+            factor = f"{float(cg.time_us.value / direct.time_us.value):.3g}" if cg and direct else "-"
+            rows.append(["" if k else panel, f"{level:g}", *_cells(best), *_cells(cg), factor])
+    return texts.aligned(rows)
+
+
+def _cells(point):
+    return (point.way.text(), f"{float(point.time_us.value):.3g}") if point else ("-", "-")
+
+
+def choices(shown, points):
+    """Rows of panels: (title, name of a way's line, {name: style}). What the file has one of is no choice."""
+    cg = [point.way for point in points if point.way.method == "cg"]
+    methods = dict.fromkeys(_method(point.way) for point in points)
+    preconditioners, guesses = dict.fromkeys(way.preconditioner for way in cg), dict.fromkeys(way.guess for way in cg)
+    direct = {"direct": style.DIRECT} if "direct" in methods else {}
+
+    def best(*others):
+        swept = [name for name, values in others if len(values) > 1]
+        return f", with the best {' and '.join(swept)} at every point" if swept and shown.wide else ""
+
+    rows = [("Methods" + best(("preconditioner", preconditioners), ("guess of CG", guesses)), _method,
+             style.guess_styles(methods))]
+    if len(preconditioners) > 1:
+        looks = zip(preconditioners, style.series_styles(len(preconditioners)))
+        rows.append(("Preconditioners of CG" + best(("guess", guesses)), lambda way: way.preconditioner or way.method,
+                     {**direct, **dict(looks)}))
+    if len(guesses) > 1:
+        looks = {guess: shown.styles[guess] for guess in guesses}
+        rows.append(("Guesses of CG" + best(("preconditioner", preconditioners)), lambda way: way.guess or way.method,
+                     {**direct, **looks}))
+    return rows
+
+
+def _method(way):
+    return "CG" if way.method == "cg" else way.method
+
+
+def figure(shown, panels):
+    points = sum(panels.values(), [])
+    rows = choices(shown, points)
+    notes = [f"Medians of {study.sample_text([point.error for point in points], mark='')}. Lines: the lower envelope "
+             "over what their names leave open, Newton iterations and the tolerance of CG among it. Errors up to "
+             f"{DRAWN_FROM:g} are drawn there; ways that failed in any simulation are not. {accuracy.REFERENCE}",
+             shown.about()]
+    page = layout.Page(shown.width_mm, [title for title, _, _ in rows], len(panels), 5 if shown.wide else 2, 36, [],
+                       notes, shown.timing_warning(), left_mm=12, gap_mm=3,
+                       row_handles=[[look.handle(name) for name, look in looks.items()] for _, _, looks in rows])
+    for k, (_, name, looks) in enumerate(rows):
+        for column, (axes, (title, here)) in enumerate(zip(page.axes[k], panels.items())):
+            times = []
+            for line, look in looks.items():
+                kept = accuracy.envelope([point for point in here if name(point.way) == line], DRAWN_FROM)
+                x = [float(point.time_us.value) for point in kept]
+                axes.plot(x, [max(float(point.error.value), DRAWN_FROM) for point in kept], **look.line(),
+                          linewidth=0.9, markersize=2.8)
+                times += x
+            axes.set(xscale="log", yscale="log", ylim=(0.4 * DRAWN_FROM, 2))
+            if times:
+                low, high = 0.7 * min(times), 1.4 * max(times)
+                axes.set_xlim(low, high)
+                ticks = layout.log_ticks(low, high)
+                axes.xaxis.set_major_locator(FixedLocator(ticks[::-(-len(ticks) // 4)]))
+                axes.xaxis.set_minor_locator(NullLocator())
+                axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
+            page.title(axes, title)
+            page.label_y(axes, column, "error / size of the scene")
+        page.label_x(k, "wall time of a step (µs)")
+    return page
+
+
+if __name__ == "__main__":
+    commandline.run(main)
