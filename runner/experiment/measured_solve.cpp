@@ -75,7 +75,12 @@ struct MeasuredSolve::RodSolvers {
 };
 
 MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecord& record)
-    : scene_(scene), spec_(spec), record_(record), direct_(scene), solvers_(scene.rods.size()) {
+    : scene_(scene),
+      spec_(spec),
+      record_(record),
+      direct_(scene),
+      forcing_(static_cast<int>(scene.rods.size()), spec.solve.tolerance, spec.time.newton_tolerance),
+      solvers_(scene.rods.size()) {
   const bool one = spec.own_guess >= 0;
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
     if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
@@ -195,6 +200,9 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
 /// One solve each to the job's tolerance, in an order that rotates from system to system and repeat to repeat.
 void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers) {
   const bool rounding = system.newton_residual() <= rounding_level;
+  const double tolerance = spec_.solve.forcing == Forcing::fixed
+                               ? spec_.solve.tolerance
+                               : forcing_.next(at.rod, at.newton, solvers.reference, system.newton_residual());
   for (std::size_t repeat = 0; repeat < solvers.direct_s.size(); ++repeat)
     for (std::size_t k = 0; k < guesses_.size(); ++k) {
       const std::size_t g = (k + row + repeat) % guesses_.size();
@@ -205,9 +213,9 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
       solvers.x = own.x0;
       if (repeat > 0 && solvers.renewed) own.timed.matrix_changed();
       const Stopwatch watch;
-      own.advanced = rounding ? CgReport{SolveOutcome::converged}
-                              : own.timed.solve(system.rhs(), solvers.x, own.proposal.nonzero, spec_.solve.tolerance,
-                                                solvers.reference);
+      own.advanced = rounding
+                         ? CgReport{SolveOutcome::converged}
+                         : own.timed.solve(system.rhs(), solvers.x, own.proposal.nonzero, tolerance, solvers.reference);
       own.cg_s[repeat] = watch.seconds();
     }
 }

@@ -2,11 +2,12 @@
 // times, and lets one of the solutions advance the trajectory.
 //
 // Per system and guess: one untimed solve to the tightest tolerance of the ladder, in each norm, whose residual history
-// gives the iterations to every tolerance; `timing_repeats` timed solves to the job's tolerance, without history, the
-// guesses in rotated order, the preconditioner's set-up included; the median counts. A lagged preconditioner is set up
-// at the first Newton iteration of every `lag_steps`-th step, and costs nothing in between. Guesses hear of the
-// solution that advanced the trajectory. Right-hand sides at rounding level (max |b| <= 1e-13) count as solved: zero
-// iterations for every guess. A guess that no solve can start from (its first residual is not a number) ends the task.
+// gives the iterations to every tolerance; `timing_repeats` timed solves to the job's tolerance (or as its forcing
+// terms ask), without history, the guesses in rotated order, the preconditioner's set-up included; the median counts. A
+// lagged preconditioner is set up at the first Newton iteration of every `lag_steps`-th step, and costs nothing in
+// between. Guesses hear of the solution that advanced the trajectory. Right-hand sides at rounding level (max |b| <=
+// 1e-13) count as solved: zero iterations for every guess. A guess that no solve can start from (its first residual is
+// not a number) ends the task.
 #pragma once
 
 #include <memory>
@@ -16,6 +17,7 @@
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
 #include "solver/guess/initial_guess.hpp"
+#include "solver/step/forcing_terms.hpp"
 #include "solver/step/projection.hpp"
 
 namespace rodsweep {
@@ -52,6 +54,7 @@ class MeasuredSolve : public LinearSolve {
   const TaskSpec& spec_;
   TaskRecord& record_;
   DirectSolve direct_;
+  ForcingTerms forcing_;
   std::vector<Guess> guesses_;
   std::vector<std::unique_ptr<RodSolvers>> solvers_;  // made at a rod's first solve
   double elapsed_s_ = 0;

@@ -37,22 +37,38 @@ struct TimeSpec {
   double newton_tolerance = 1e-9;  ///< Newton ends when max |C + alpha~ lambda| falls below it
 };
 
+enum class Forcing { fixed, eisenstat_walker };
+
 struct SolveSpec {
   Method method = Method::cg;
   Preconditioner preconditioner = Preconditioner::jacobi;
   Norm norm = Norm::true_residual;
   double tolerance =
       1e-2;  ///< of the timed solves and, in a closed loop, of the solves that advance the rod; relative to ||b||
-  int max_iterations = 0;       ///< 0: ten times the number of unknowns
-  int lag_steps = 10;           ///< lagged_cholesky: time steps from one factorisation to the next
-  int timing_repeats = 1;       ///< times are medians over so many repeats of guess, solve and direct solve
-  std::filesystem::path model;  ///< end_to_end
-  PbdStiffness stiffness;       ///< pbd
+  Forcing forcing = Forcing::fixed;  ///< else `tolerance` is that of a step's first solves (forcing_terms.hpp)
+  int max_iterations = 0;            ///< 0: ten times the number of unknowns
+  int lag_steps = 10;                ///< lagged_cholesky: time steps from one factorisation to the next
+  int timing_repeats = 1;            ///< times are medians over so many repeats of guess, solve and direct solve
+  std::filesystem::path model;       ///< end_to_end
+  PbdStiffness stiffness;            ///< pbd
 };
 
 /// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.
 struct GuessSpec {
-  enum class Kind { zero, previous, linear, quadratic, fischer, pod, regression, copingnet, knn, oracle, guarded, totals };
+  enum class Kind {
+    zero,
+    previous,
+    linear,
+    quadratic,
+    fischer,
+    pod,
+    regression,
+    copingnet,
+    knn,
+    oracle,
+    guarded,
+    totals
+  };
   Kind kind = Kind::zero;
   std::string label;
   int size = 10;                ///< fischer, pod: how many solutions span the subspace

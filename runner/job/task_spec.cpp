@@ -110,6 +110,11 @@ KeyTable<SolveSpec> solve_keys() {
                      .above(0)
                      .at_most(1),
                  &SolveSpec::tolerance);
+  table.optional(choice_key("forcing",
+                            "fixed: every solve to `tolerance`; eisenstat_walker: the first of a step, and the next as "
+                            "exactly as the Newton iteration that it serves pays for (closed loops)"),
+                 Words<Forcing>{{"fixed", Forcing::fixed}, {"eisenstat_walker", Forcing::eisenstat_walker}},
+                 &SolveSpec::forcing);
   table.optional(
       integer_key("max_iterations", "limit on cg iterations; 0: ten times the number of unknowns").from(0, 32767),
       &SolveSpec::max_iterations);
@@ -165,8 +170,14 @@ OutputSpec output_spec(const Job& job) {
 }
 
 void check_method(const Point& point, const Job& job) {
+  if (evaluation(point) == Evaluation::closed_loop) return;
+  if (point.has("solve.forcing") && point.text("solve.forcing") != "fixed")
+    throw job_error(job.path, "solve.forcing",
+                    fmt::format("\"{}\" is not allowed with evaluation \"paired\", in which the direct solve advances "
+                                "the rod, whatever the tolerance of cg; must be with \"closed_loop\"",
+                                point.text("solve.forcing")));
   const Method own = method(point);
-  if (own == Method::cg || own == Method::direct || evaluation(point) == Evaluation::closed_loop) return;
+  if (own == Method::cg || own == Method::direct) return;
   throw job_error(
       job.path, "solve.method",
       fmt::format("\"{}\" is not allowed with evaluation \"paired\", in which the direct solve advances the "

@@ -21,8 +21,8 @@ class TotalsGuess : public InitialGuess {
  private:
   struct Total {
     VectorX sum;
-    int step = -1;      ///< of the sum
-    bool told = true;   ///< whether the inner guess knows it
+    int step = -1;     ///< of the sum
+    bool told = true;  ///< whether the inner guess knows it
   };
   std::unique_ptr<InitialGuess> inner_;
   std::vector<Total> totals_;  ///< per rod

@@ -39,7 +39,8 @@ inline void add_outer(const double* v, std::size_t width, const T (&p)[6], doubl
 #pragma GCC unroll 6
   for (int r = 0; r < 6; ++r)
 #pragma GCC unroll 8
-    for (int k = 0; k < rows; ++k) sum[k] += v[static_cast<std::size_t>(r) * width + static_cast<std::size_t>(k)] * p[r];
+    for (int k = 0; k < rows; ++k)
+      sum[k] += v[static_cast<std::size_t>(r) * width + static_cast<std::size_t>(k)] * p[r];
 #pragma GCC unroll 8
   for (int k = 0; k < rows; ++k) store(half + static_cast<std::size_t>(k) * width, sum[k]);
 }

@@ -218,7 +218,8 @@ TEST_CASE("guesses that make no guess axis are refused") {
         "\"grid\"");
   const std::string names =
       " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"pod\", "
-      "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", or an object such as {\"oracle\": {\"error\": "
+      "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", or an object such as {\"oracle\": "
+      "{\"error\": "
       "0.1}}";
   CHECK(refusal(with("/guesses", R"(["zero", "orcale"])")) ==
         "job.json: guesses[1]: \"orcale\"" + names + "; did you mean \"oracle\"?");

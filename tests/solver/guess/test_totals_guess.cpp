@@ -56,7 +56,7 @@ TEST_CASE("the history of the first iteration is of what whole steps add up to, 
     seen.emplace_back(t.step, t.newton, t.rod, t.solution[0]);
   }
   const std::vector<std::tuple<int, int, int, double>> expected{
-      {0, 1, 0, 10}, {0, 1, 1, 11}, {0, 2, 0, 20},  {0, 2, 1, 21},  {0, 0, 0, 30},
+      {0, 1, 0, 10}, {0, 1, 1, 11},  {0, 2, 0, 20},  {0, 2, 1, 21},  {0, 0, 0, 30},
       {0, 0, 1, 33}, {1, 1, 0, 110}, {1, 1, 1, 111}, {1, 2, 0, 120}, {1, 2, 1, 121}};
   CHECK(seen == expected);
 }

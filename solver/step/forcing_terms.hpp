@@ -1,0 +1,28 @@
+// How exactly a Newton iteration's system needs solving: forcing terms of Eisenstat & Walker (1996, SIAM J. Sci.
+// Comput. 17, choice 2 with its safeguard), relative residuals eta_j of its linear solve,
+//   eta_0 given,   eta_j = gamma (|b_j| / |b_{j-1}|)^2,   gamma = 0.9,
+// at least gamma eta_{j-1}^2 where that exceeds 0.1, at most eta_0; and never more than is left to do: a residual of
+// half of Newton's own tolerance is enough. The iterations converge superlinearly, where a fixed tolerance converges
+// linearly, and no solve is more exact than the model that it solves.
+#pragma once
+
+#include <vector>
+
+namespace rodsweep {
+
+class ForcingTerms {
+ public:
+  ForcingTerms(int rods, double first, double newton_tolerance);
+
+  /// eta of this iteration's solve, asked once for each, in order; `norm` is |b|, `residual` max |b|.
+  double next(int rod, int newton, double norm, double residual);
+
+ private:
+  struct Last {
+    double norm = 0, eta = 0;
+  };
+  double first_, newton_tolerance_;
+  std::vector<Last> last_;  ///< per rod
+};
+
+}  // namespace rodsweep

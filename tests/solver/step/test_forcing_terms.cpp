@@ -1,0 +1,72 @@
+// Eisenstat and Walker's forcing terms, by their formulas and by what Newton makes of them.
+#include <catch2/catch.hpp>
+
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/step/forcing_terms.hpp"
+#include "solver/step/observables.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+TEST_CASE("forcing terms follow the square of what the last iteration achieved, from the first one given") {
+  ForcingTerms forcing(2, 0.5, 0);
+  CHECK(forcing.next(0, 0, 1, 1) == 0.5);
+  CHECK(forcing.next(0, 1, 0.1, 0.1) == Approx(0.9 * 0.25));    // 0.009, but 0.9 0.5^2 exceeds 0.1: heeded
+  CHECK(forcing.next(0, 2, 0.02, 0.02) == Approx(0.9 * 0.04));  // 0.9 0.225^2 does not
+  CHECK(forcing.next(0, 3, 0.06, 0.06) == 0.5);                 // it grew: no more than the first
+  CHECK(forcing.next(1, 1, 0.001, 0.001) == 0.5);               // another rod, of which nothing is known
+  CHECK(forcing.next(0, 0, 1e-5, 1e-5) == 0.5);                 // another step
+}
+
+TEST_CASE("no solve does more than Newton's tolerance asks for") {
+  ForcingTerms forcing(1, 0.1, 1e-6);
+  CHECK(forcing.next(0, 0, 1, 1) == 0.1);
+  CHECK(forcing.next(0, 1, 1e-3, 1e-3) == Approx(5e-4));  // half of 1e-6 over 1e-3, where 9e-7 would follow
+  CHECK(forcing.next(0, 2, 1e-6, 1e-7) == 0.1);           // nothing is left to do
+}
+
+/// CG from zero, to forcing terms or to one tolerance.
+class Forced : public LinearSolve {
+ public:
+  Forced(double first, bool forced) : forcing_(1, first, 1e-9), first_(first), forced_(forced) {}
+  int iterations = 0, solves = 0;
+
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda) override {
+    const double norm = system.rhs().norm();
+    const double eta = forced_ ? forcing_.next(at.rod, at.newton, norm, system.newton_residual()) : first_;
+    ConjugateGradient cg(system.matrix(), {});
+    const CgReport report = cg.solve(system.rhs(), delta_lambda.setZero(), false, eta, norm);
+    iterations += report.iterations;
+    ++solves;
+    return report.outcome;
+  }
+
+ private:
+  ForcingTerms forcing_;
+  double first_;
+  bool forced_;
+};
+
+TEST_CASE(
+    "with forcing terms Newton converges in fewer iterations than to their first tolerance, with fewer of CG's "
+    "than to a tight one") {
+  const auto run = [](double tolerance, bool forced) {
+    Scene scene = build_scene(test::bending_rod(20));
+    Forced solve(tolerance, forced);
+    LinearProjection projection(scene, solve);
+    TimeStepper stepper(scene, {0.02, 40, 1e-9});
+    for (int step = 0; step < 20; ++step) {
+      REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
+      CHECK(newton_residual(scene.rods[0], 0.02) < 1e-9);
+    }
+    return solve;
+  };
+  const Forced forced = run(0.1, true), loose = run(0.1, false), tight = run(1e-6, false);
+  CHECK(forced.solves < 0.7 * loose.solves);
+  CHECK(forced.iterations < 0.95 * tight.iterations);
+}
+
+}  // namespace
+}  // namespace rodsweep
