@@ -33,6 +33,7 @@ class Way:
     tolerance: float = 0
     preconditioner: str = ""
     guess: str = ""
+    forcing: bool = False     # the tolerance is that of a step's first solves
 
     @property
     def family(self):
@@ -47,6 +48,7 @@ class Way:
         if self.iterations:
             return f"{self.method} {self.iterations}"
         to = f" to {texts.tolerance_label(self.tolerance)}" if self.tolerance else ""
+        to += " with forcing terms" if self.forcing else ""
         return f"{self.family}{to}, Newton {self.newton}"
 
 
@@ -130,8 +132,9 @@ def _way(file, task):
         return Way(method, iterations=int(value("solve.iterations")))
     newton = int(value(NEWTON))
     if method == "cg":
+        forced = "solve.forcing" in file.parameters and value("solve.forcing") == "eisenstat_walker"
         return Way(method, newton, 0, float(value("solve.tolerance")), str(value("solve.preconditioner")),
-                   file.guesses[file.own_guess[task]])
+                   file.guesses[file.own_guess[task]], forced)
     return Way(str(measures.without_guess(file, [task])[0]), newton)
 
 
