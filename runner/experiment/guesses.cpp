@@ -6,6 +6,7 @@
 #include "network/guess/knn_guess.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/experiment/training_sets.hpp"
+#include "solver/guess/deflating_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
@@ -31,6 +32,7 @@ std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task,
     case Kind::quadratic: return extrapolation(3);
     case Kind::fischer: return subspace(SubspaceGuess::Window::restarted);
     case Kind::pod: return subspace(SubspaceGuess::Window::sliding);
+    case Kind::deflation: return std::make_unique<DeflatingGuess>(scene, task.time.newton_iterations, guess.size);
     case Kind::regression:
       return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window, noise);
     case Kind::copingnet:

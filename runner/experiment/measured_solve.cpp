@@ -165,7 +165,8 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
         return CgReport{SolveOutcome::zero_rhs};
       }
       solvers.x = own.x0;
-      const CgReport report = cg.solve(b, solvers.x, own.proposal.nonzero, ladder.back(), reference);
+      const CgReport report =
+          cg.solve(b, solvers.x, own.proposal.nonzero, ladder.back(), reference, guesses_[g].guess->deflation());
       if (cg.history().empty()) failure = report.outcome;  // its first residual was not a number
       iterations_to(cg.history(), reference, ladder, iterations.data());
       return report;
@@ -213,9 +214,9 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
       solvers.x = own.x0;
       if (repeat > 0 && solvers.renewed) own.timed.matrix_changed();
       const Stopwatch watch;
-      own.advanced = rounding
-                         ? CgReport{SolveOutcome::converged}
-                         : own.timed.solve(system.rhs(), solvers.x, own.proposal.nonzero, tolerance, solvers.reference);
+      own.advanced = rounding ? CgReport{SolveOutcome::converged}
+                              : own.timed.solve(system.rhs(), solvers.x, own.proposal.nonzero, tolerance,
+                                                solvers.reference, guesses_[g].guess->deflation());
       own.cg_s[repeat] = watch.seconds();
     }
 }

@@ -62,6 +62,7 @@ struct GuessSpec {
     quadratic,
     fischer,
     pod,
+    deflation,
     regression,
     copingnet,
     knn,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "solver/linear/block_factor.hpp"
+#include "solver/linear/deflation.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/step/projection.hpp"
 
@@ -29,6 +30,8 @@ class InitialGuess {
   virtual Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) = 0;
   /// The solution of the system last proposed for.
   virtual void accept(const SolvePosition& at, const VectorX& solution) = 0;
+  /// What CG is to project out of the residuals of the system last proposed for; null: nothing.
+  virtual Deflation* deflation() { return nullptr; }
 };
 
 /// Always zero: the denominator of every ratio.

@@ -16,12 +16,14 @@ class NormalEquations {
   double& gram(int row, int column) { return gram_(row, column); }
   double& right_side(int row) { return coefficients_[row]; }
 
-  /// c in place of g; 0 of what is dropped, and of vectors without length. `damping` d adds d^2 sum c_k^2 |v_k|^2 to
-  /// what is minimised (Tikhonov).
-  void solve(int count, double damping = 0);
+  /// `damping` d adds d^2 sum c_k^2 |v_k|^2 to what is minimised (Tikhonov).
+  void factorise(int count, double damping = 0);
+  /// c in place of g; 0 of what is dropped, and of vectors without length. Of one factorisation as often as wanted.
+  void solve();
   double coefficient(int row) const { return coefficients_[row]; }
 
  private:
+  int count_ = 0;
   Eigen::MatrixXd gram_;  ///< then L below the diagonal
   VectorX pivot_, scale_, coefficients_;
 };

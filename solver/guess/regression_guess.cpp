@@ -45,7 +45,8 @@ Proposal RegressionGuess::propose(const LinearSystem& system, const SolvePositio
     equations_.right_side(i) = h.products[by_age(i)];
     for (int k = 0; k <= i; ++k) equations_.gram(i, k) = h.gram(by_age(i), by_age(k));
   }
-  equations_.solve(h.known, noise_);
+  equations_.factorise(h.known, noise_);
+  equations_.solve();
   for (int i = 0; i < h.known; ++i) coefficients_[by_age(i)] = equations_.coefficient(i);
   x0.noalias() = h.solutions.leftCols(h.known) * coefficients_.head(h.known);
   return {true, 0};

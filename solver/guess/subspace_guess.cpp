@@ -33,7 +33,8 @@ Proposal SubspaceGuess::propose(const LinearSystem& system, const SolvePosition&
     for (int k = 0; k <= i; ++k)
       equations_.gram(i, k) = gram_(std::max(by_age(i), by_age(k)), std::min(by_age(i), by_age(k)));
   }
-  equations_.solve(h.known);
+  equations_.factorise(h.known);
+  equations_.solve();
   coefficients_.setZero();
   for (int i = 0; i < h.known; ++i) coefficients_[by_age(i)] = equations_.coefficient(i);
   h.solutions.combine(coefficients_, x0);

@@ -17,6 +17,7 @@ class TotalsGuess : public InitialGuess {
   TotalsGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner);
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition& at, const VectorX& solution) override;
+  Deflation* deflation() override { return inner_->deflation(); }
 
  private:
   struct Total {

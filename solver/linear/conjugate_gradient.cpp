@@ -64,6 +64,21 @@ bool factorises(Preconditioner p) {
   return p == Preconditioner::icc || p == Preconditioner::cholesky || p == Preconditioner::lagged_cholesky;
 }
 
+/// A preconditioner behind whose answers a projection stands.
+struct Projected {
+  PC inner = nullptr;
+  Deflation* deflation = nullptr;
+};
+
+PetscErrorCode apply_projected(PC pc, Vec r, Vec z) noexcept {
+  void* context = nullptr;
+  if (const PetscErrorCode error = PCShellGetContext(pc, &context)) return error;
+  const Projected& projected = *static_cast<const Projected*>(context);
+  if (const PetscErrorCode error = PCApply(projected.inner, r, z)) return error;
+  projected.deflation->project(vector_data(z));
+  return entries_changed(z);
+}
+
 }  // namespace
 
 struct ConjugateGradient::Impl {
@@ -73,6 +88,8 @@ struct ConjugateGradient::Impl {
   Mat product = nullptr;
   Mat entries = nullptr;  ///< copy of the blocks for preconditioners that factorise; else null
   KSP ksp = nullptr;
+  PC plain = nullptr, shell = nullptr;  ///< the preconditioner, and the same with projections, once one was asked for
+  Projected projected;
   Vec b = nullptr, x = nullptr, scratch = nullptr;
   Target target;
   bool stale = true;  ///< the preconditioner is of older entries
@@ -87,6 +104,7 @@ struct ConjugateGradient::Impl {
   void create_entries(bool symmetric);
   void copy_entries();
   void refresh();
+  void use(Deflation* deflation);
 };
 
 ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : a(matrix), op{matrix}, settings(s) {
@@ -102,13 +120,13 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : 
   if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
   if (factorises(settings.preconditioner)) create_entries(true);
 
-  PC pc = nullptr;
   petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
   petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");
   petsc_check(KSPSetNormType(ksp, settings.norm == Norm::natural ? KSP_NORM_NATURAL : KSP_NORM_UNPRECONDITIONED),
               "KSPSetNormType");
-  petsc_check(KSPGetPC(ksp, &pc), "KSPGetPC");
-  petsc_check(PCSetType(pc, pc_type(settings.preconditioner)), "PCSetType");
+  petsc_check(KSPGetPC(ksp, &plain), "KSPGetPC");
+  petsc_check(PetscObjectReference(reinterpret_cast<PetscObject>(plain)), "PetscObjectReference");
+  petsc_check(PCSetType(plain, pc_type(settings.preconditioner)), "PCSetType");
   petsc_check(KSPSetOperators(ksp, product, entries ? entries : product), "KSPSetOperators");
   petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, settings.max_iterations), "KSPSetTolerances");
   petsc_check(KSPSetConvergenceTest(ksp, test_convergence, &target, nullptr), "KSPSetConvergenceTest");
@@ -117,6 +135,8 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : 
 ConjugateGradient::Impl::~Impl() {
   // A destructor cannot report; PETSc prints what it has to say.
   KSPDestroy(&ksp);
+  PCDestroy(&shell);
+  PCDestroy(&plain);
   MatDestroy(&entries);
   MatDestroy(&product);
   VecDestroy(&scratch);
@@ -154,6 +174,19 @@ void ConjugateGradient::Impl::refresh() {
   petsc_check(MatAssemblyEnd(changed, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
 }
 
+void ConjugateGradient::Impl::use(Deflation* deflation) {
+  if (deflation && !shell) {
+    petsc_check(PCCreate(PETSC_COMM_SELF, &shell), "PCCreate");
+    petsc_check(PCSetType(shell, PCSHELL), "PCSetType");
+    petsc_check(PCSetOperators(shell, product, product), "PCSetOperators");
+    petsc_check(PCShellSetContext(shell, &projected), "PCShellSetContext");
+    petsc_check(PCShellSetApply(shell, apply_projected), "PCShellSetApply");
+  }
+  if (shell && (deflation != nullptr) != (projected.deflation != nullptr))
+    petsc_check(KSPSetPC(ksp, deflation ? shell : plain), "KSPSetPC");
+  projected = {plain, deflation};
+}
+
 void ConjugateGradient::Impl::copy_entries() {
   // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper ones.
   const bool symmetric = factorises(settings.preconditioner);
@@ -178,9 +211,11 @@ ConjugateGradient& ConjugateGradient::operator=(ConjugateGradient&&) noexcept = 
 
 void ConjugateGradient::matrix_changed() { impl_->stale = true; }
 
-CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, bool nonzero, double tolerance, double reference) {
+CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, bool nonzero, double tolerance, double reference,
+                                  Deflation* deflation) {
   Impl& s = *impl_;
   s.refresh();
+  s.use(deflation);
   s.target = {tolerance, reference};
   copy(b, s.b);
   if (nonzero) copy(x, s.x);
@@ -207,11 +242,10 @@ double ConjugateGradient::norm_of(const VectorX& b) {
   if (s.settings.norm == Norm::true_residual) return b.norm();
   s.refresh();
   copy(b, s.b);
-  PC pc = nullptr;
   PetscScalar square = 0;
+  s.use(nullptr);
   petsc_check(KSPSetUp(s.ksp), "KSPSetUp");
-  petsc_check(KSPGetPC(s.ksp, &pc), "KSPGetPC");
-  petsc_check(PCApply(pc, s.b, s.scratch), "PCApply");
+  petsc_check(PCApply(s.plain, s.b, s.scratch), "PCApply");
   petsc_check(VecDot(s.b, s.scratch, &square), "VecDot");
   return std::sqrt(square);
 }

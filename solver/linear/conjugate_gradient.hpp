@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "solver/linear/block_matrix.hpp"
+#include "solver/linear/deflation.hpp"
 #include "solver/linear/solve_outcome.hpp"
 
 namespace rodsweep {
@@ -48,7 +49,9 @@ class ConjugateGradient {
   void matrix_changed();
 
   /// From x (or from zero, if !nonzero) until the norm is below tolerance * reference. x receives the solution.
-  CgReport solve(const VectorX& b, VectorX& x, bool nonzero, double tolerance, double reference);
+  /// With `deflation` every preconditioned residual is projected; the first residual has no part in its space then.
+  CgReport solve(const VectorX& b, VectorX& x, bool nonzero, double tolerance, double reference,
+                 Deflation* deflation = nullptr);
 
   /// The norm of b in which `reference` is to be given: ||b||_2, or the natural one.
   double norm_of(const VectorX& b);

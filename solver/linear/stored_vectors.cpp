@@ -90,26 +90,66 @@ void StoredVectors::project(const BlockMatrix& a, const VectorX& b, Eigen::Matri
   }
 }
 
-void StoredVectors::combine(const VectorX& c, VectorX& x) {
+void StoredVectors::multiply(const BlockMatrix& a, const StoredVectors& v) {
+  const auto of_lanes = [&](auto lanes, int i, std::size_t first) {
+    using T = decltype(lanes);
+    T p[6]{};
+    for (int k = a.row_begin(i); k < a.row_end(i); ++k)
+      add_product<T>(a.blocks[static_cast<std::size_t>(k)], v.row(6 * a.column(k)) + first, width_, p);
+    for (int r = 0; r < 6; ++r) store(row(6 * i + r) + first, p[r]);
+  };
+  for (int i = 0; i < block_rows_; ++i) {
+    std::size_t first = 0;
+    for (; first + 8 <= width_; first += 8) of_lanes(Lane8{}, i, first);
+    for (; first < width_; first += 4) of_lanes(Lane4{}, i, first);
+  }
+}
+
+void StoredVectors::dots(const double* x, VectorX& c) {
+  const auto of_lanes = [&](auto lanes, std::size_t first) {
+    using T = decltype(lanes);
+    T sums[2]{};
+    for (int i = 0; i < 6 * block_rows_; ++i) sums[i % 2] += x[i] * load<T>(row(i) + first);
+    store(dots_.data() + first, sums[0] + sums[1]);
+  };
+  std::size_t first = 0;
+  for (; first + 8 <= width_; first += 8) of_lanes(Lane8{}, first);
+  for (; first < width_; first += 4) of_lanes(Lane4{}, first);
+  std::copy_n(dots_.begin(), count_, c.data());
+}
+
+void StoredVectors::set_factors(const VectorX& c) {
   std::fill(dots_.begin(), dots_.end(), 0);
   std::copy_n(c.data(), count_, dots_.begin());
-  for (int i = 0; i < block_rows_; ++i) {
-    const double* own = row(6 * i);
-    Lane8 sum[6]{};
-    std::size_t first = 0;
-    for (; first + 8 <= width_; first += 8) {
-      const Lane8 factors = load<Lane8>(dots_.data() + first);
-      for (int r = 0; r < 6; ++r) sum[r] += factors * load<Lane8>(own + static_cast<std::size_t>(r) * width_ + first);
-    }
-    if (first < width_) {
-      const Lane4 factors = load<Lane4>(dots_.data() + first);
-      for (int r = 0; r < 6; ++r) {
-        const Lane4 part = factors * load<Lane4>(own + static_cast<std::size_t>(r) * width_ + first);
-        sum[r] += __builtin_shufflevector(part, Lane4{}, 0, 1, 2, 3, 4, 4, 4, 4);
-      }
-    }
-    store6(x.data() + 6 * i, sum_lanes(sum));
+}
+
+/// Six entries of V c.
+Lane8 StoredVectors::combined(int block_row) const {
+  const double* own = row(6 * block_row);
+  Lane8 sum[6]{};
+  std::size_t first = 0;
+  for (; first + 8 <= width_; first += 8) {
+    const Lane8 factors = load<Lane8>(dots_.data() + first);
+    for (int r = 0; r < 6; ++r) sum[r] += factors * load<Lane8>(own + static_cast<std::size_t>(r) * width_ + first);
   }
+  if (first < width_) {
+    const Lane4 factors = load<Lane4>(dots_.data() + first);
+    for (int r = 0; r < 6; ++r) {
+      const Lane4 part = factors * load<Lane4>(own + static_cast<std::size_t>(r) * width_ + first);
+      sum[r] += __builtin_shufflevector(part, Lane4{}, 0, 1, 2, 3, 4, 4, 4, 4);
+    }
+  }
+  return sum_lanes(sum);
+}
+
+void StoredVectors::combine(const VectorX& c, VectorX& x) {
+  set_factors(c);
+  for (int i = 0; i < block_rows_; ++i) store6(x.data() + 6 * i, combined(i));
+}
+
+void StoredVectors::subtract(const VectorX& c, double* x) {
+  set_factors(c);
+  for (int i = 0; i < block_rows_; ++i) store6(x + 6 * i, load6(x + 6 * i) - combined(i));
 }
 
 }  // namespace rodsweep

@@ -19,17 +19,27 @@ class StoredVectors {
   /// Sets gram to V^T A V, of which the lower triangle is written, and right_side to V^T b. Sized by the caller: count.
   void project(const BlockMatrix& a, const VectorX& b, Eigen::MatrixXd& gram, VectorX& right_side);
 
-  /// x = V c.
+  /// Sets these to A V of others, as many.
+  void multiply(const BlockMatrix& a, const StoredVectors& v);
+
+  /// c = V^T x.
+  void dots(const double* x, VectorX& c);
+
+  /// x = V c, and x -= V c.
   void combine(const VectorX& c, VectorX& x);
+  void subtract(const VectorX& c, double* x);
 
  private:
   double* row(int unknown) { return entries_.data() + static_cast<std::size_t>(unknown) * width_; }
+  const double* row(int unknown) const { return entries_.data() + static_cast<std::size_t>(unknown) * width_; }
+  void set_factors(const VectorX& c);
+  Lane8 combined(int block_row) const;
 
   int block_rows_, count_;
   std::size_t width_;            ///< count, rounded up to whole lanes of four
   std::vector<double> entries_;  ///< [unknowns, width]
   std::vector<double> half_;     ///< [width, width] G
-  std::vector<double> dots_;     ///< [width] V^T b, and c
+  std::vector<double> dots_;     ///< [width] V^T b, or c
 };
 
 }  // namespace rodsweep

@@ -218,6 +218,7 @@ TEST_CASE("guesses that make no guess axis are refused") {
         "\"grid\"");
   const std::string names =
       " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"pod\", "
+      "\"deflation\", "
       "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", or an object such as {\"oracle\": "
       "{\"error\": "
       "0.1}}";

@@ -31,6 +31,14 @@ TEST_CASE("vectors side by side project and combine as dense algebra does, also 
     const VectorX c = random.entries(count);
     stored.combine(c, x);
     CHECK((x - v * c).norm() < 1e-14 * v.norm() * c.norm());
+    stored.subtract(2 * c, x.data());
+    CHECK((x + v * c).norm() < 1e-14 * v.norm() * c.norm());
+
+    StoredVectors products(a.unknowns(), count);
+    products.multiply(a, stored);
+    VectorX dots(count);
+    products.dots(x.data(), dots);
+    CHECK((dots - v.transpose() * (a.dense() * x)).norm() < 1e-13 * v.norm() * x.norm() * a.dense().norm());
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/batch/batched_step.hpp"
+#include "solver/guess/deflating_guess.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
@@ -34,7 +35,8 @@ class CgSolve : public LinearSolve {
     cg_->matrix_changed();
     ++calls;
     const bool nonzero = guess_->propose(system, at, delta_lambda).nonzero;
-    const CgReport report = cg_->solve(system.rhs(), delta_lambda, nonzero, 1e-6, cg_->norm_of(system.rhs()));
+    const CgReport report =
+        cg_->solve(system.rhs(), delta_lambda, nonzero, 1e-6, cg_->norm_of(system.rhs()), guess_->deflation());
     guess_->accept(at, delta_lambda);
     return report.outcome;
   }
@@ -171,12 +173,13 @@ TEST_CASE("a step with CG allocates nothing, whatever the guess") {
     if (name == "pod") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding);
     if (name == "guarded")
       return std::make_unique<GuardedGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 3), 0.5);
+    if (name == "deflation") return std::make_unique<DeflatingGuess>(scene, 4, 5);
     if (name == "totals")
       return std::make_unique<TotalsGuess>(scene, std::make_unique<RegressionGuess>(scene, 4, 5, 1e-2));
     return std::make_unique<ZeroGuess>();
   };
-  for (const char* guess :
-       {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod", "regression", "totals"}) {
+  for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod",
+                            "deflation", "regression", "totals"}) {
     INFO(guess);
     Scene scene = loaded_scene();
     CgSolve solve({}, make(guess, scene));

@@ -1,0 +1,113 @@
+// Deflated CG: on planted spectra, and with stored solutions.
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solver/guess/deflating_guess.hpp"
+#include "solver/guess/subspace_guess.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::MatrixX;
+
+struct OneRod {
+  Scene scene;
+  LinearSystem system;
+  MatrixX a;
+
+  OneRod() : system(rod_of(scene)) {
+    system.assemble(scene.rods[0], 0.02);
+    a = system.matrix().dense();
+  }
+  static const Rod& rod_of(Scene& scene) {
+    scene.rods.push_back(test::random_rod(test::tree(2, 3), {0}, 1));
+    return scene.rods.front();
+  }
+  int size() const { return system.matrix().unknowns(); }
+  VectorX exact() const { return test::dense_solve(a, system.rhs()); }
+  CgReport solve(VectorX& x, bool nonzero, double tolerance, Deflation* deflation) const {
+    ConjugateGradient cg(system.matrix(), {});
+    return cg.solve(system.rhs(), x, nonzero, tolerance, system.rhs().norm(), deflation);
+  }
+};
+
+TEST_CASE("without history there is nothing to project out") {
+  OneRod one;
+  DeflatingGuess guess(one.scene, 1, 3);
+  VectorX x0 = VectorX::Ones(one.size());
+  CHECK_FALSE(guess.propose(one.system, {0, 0, 0}, x0).nonzero);
+  CHECK(guess.deflation() == nullptr);
+  CHECK(x0.isZero(0));
+}
+
+TEST_CASE("a deflating guess starts where pod does, and projects to what is A-orthogonal to the stored solutions") {
+  OneRod one;
+  test::Random random(3);
+  DeflatingGuess guess(one.scene, 1, 4);
+  SubspaceGuess pod(one.scene, 1, 4, SubspaceGuess::Window::sliding);
+  std::vector<VectorX> stored;
+  for (int step = 0; step < 6; ++step) {  // the first two are forgotten
+    stored.push_back(one.exact() + 2 * random.entries(one.size()).cwiseProduct(one.exact()));
+    guess.accept({step, 0, 0}, stored.back());
+    pod.accept({step, 0, 0}, stored.back());
+  }
+  VectorX x0(one.size()), expected(one.size());
+  const Proposal proposal = guess.propose(one.system, {6, 0, 0}, x0);
+  CHECK(proposal.products == 4);
+  pod.propose(one.system, {6, 0, 0}, expected);
+  CHECK((x0 - expected).norm() < 1e-12 * expected.norm());
+  VectorX z = random.entries(one.size());
+  const VectorX before = z;
+  REQUIRE(guess.deflation() != nullptr);
+  guess.deflation()->project(z.data());
+  const auto cosine = [&](const VectorX& u, const VectorX& v) {
+    return std::abs(u.dot(one.a * v)) / std::sqrt(u.dot(one.a * u) * v.dot(one.a * v));
+  };
+  for (int step = 2; step < 6; ++step) CHECK(cosine(z, stored[static_cast<std::size_t>(step)]) < 1e-9);
+  CHECK(cosine(z, before) > 0.1);
+  guess.deflation()->project((x0 = z).data());
+  CHECK((x0 - z).norm() < 1e-9 * z.norm());  // a projection
+}
+
+TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations, with the same solution") {
+  OneRod one;
+  // Of D^-1/2 A D^-1/2, which Jacobi makes of A.
+  const VectorX s = one.a.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<MatrixX> modes(s.asDiagonal() * one.a * s.asDiagonal());
+  DeflatingGuess guess(one.scene, 1, 12);
+  for (int k = 0; k < 12; ++k) guess.accept({k, 0, 0}, s.cwiseProduct(modes.eigenvectors().col(k)));
+  VectorX plain = VectorX::Zero(one.size()), x0(one.size());
+  const CgReport without = one.solve(plain, false, 1e-8, nullptr);
+  REQUIRE(guess.propose(one.system, {12, 0, 0}, x0).nonzero);
+  VectorX deflated = x0, undeflated = x0;
+  const CgReport with = one.solve(deflated, true, 1e-8, guess.deflation());
+  CHECK(with.outcome == SolveOutcome::converged);
+  CHECK(with.iterations < 0.8 * without.iterations);
+  CHECK((one.system.rhs() - one.a * deflated).norm() < 1e-7 * one.system.rhs().norm());
+  // Without the projection it finds again, in rounding, what the guess has taken away already.
+  CHECK(with.iterations <= one.solve(undeflated, true, 1e-8, nullptr).iterations);
+}
+
+TEST_CASE("the same CG deflates one system and not the next") {
+  OneRod one;
+  DeflatingGuess guess(one.scene, 1, 2);
+  test::Random random(9);
+  for (int k = 0; k < 2; ++k) guess.accept({k, 0, 0}, random.entries(one.size()));
+  VectorX x0(one.size()), first = VectorX::Zero(one.size()), last = first;
+  guess.propose(one.system, {2, 0, 0}, x0);
+  ConjugateGradient cg(one.system.matrix(), {});
+  const double norm = one.system.rhs().norm();
+  const CgReport before = cg.solve(one.system.rhs(), first, false, 1e-6, norm);
+  VectorX x = x0;
+  CHECK(cg.solve(one.system.rhs(), x, true, 1e-6, norm, guess.deflation()).outcome == SolveOutcome::converged);
+  CHECK((one.system.rhs() - one.a * x).norm() < 1e-5 * norm);
+  const CgReport after = cg.solve(one.system.rhs(), last, false, 1e-6, norm);
+  CHECK(after.iterations == before.iterations);
+  CHECK(last == first);
+}
+
+}  // namespace
+}  // namespace rodsweep
