@@ -2,12 +2,10 @@
 // encodings.
 //
 // The network corrects x_base: x = x_base + unit * y, entry by entry.
-//   deck, physics   features of segments and joints (network/encoding/graph_encoding.hpp), with a base guess also
-//   x_base on the
-//                   joints, all normalised; unit: how much each component of x - x_base deviates in the training set
-//   system          features of the scaled system A^ d^ = r^ alone (network/encoding/system_encoding.hpp), which need
-//   no
-//                   normalisation; unit: the scale of d^
+//   deck, physics   features of segments and joints (graph_encoding.hpp), with a base guess also x_base on the joints,
+//                   all normalised; unit: how much each component of x - x_base deviates in the training set
+//   system          features of the scaled system A^ d^ = r^ alone (system_encoding.hpp), which need no normalisation;
+//                   unit: the scale of d^
 // Edge features are in the places of the rod's topology.
 #pragma once
 

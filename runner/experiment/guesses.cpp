@@ -6,7 +6,6 @@
 #include "network/guess/knn_guess.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/experiment/training_sets.hpp"
-#include "solver/guess/deflating_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
@@ -22,8 +21,9 @@ std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task,
   const auto extrapolation = [&](int terms) {
     return std::make_unique<ExtrapolationGuess>(scene, task.time.newton_iterations, terms);
   };
-  const auto subspace = [&](SubspaceGuess::Window window) {
-    return std::make_unique<SubspaceGuess>(scene, task.time.newton_iterations, guess.size, window);
+  using Use = SubspaceGuess::Use;
+  const auto subspace = [&](SubspaceGuess::Window window, Use use = Use::guess) {
+    return std::make_unique<SubspaceGuess>(scene, task.time.newton_iterations, guess.size, window, use);
   };
   switch (guess.kind) {
     case Kind::zero: return std::make_unique<ZeroGuess>();
@@ -32,7 +32,7 @@ std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task,
     case Kind::quadratic: return extrapolation(3);
     case Kind::fischer: return subspace(SubspaceGuess::Window::restarted);
     case Kind::pod: return subspace(SubspaceGuess::Window::sliding);
-    case Kind::deflation: return std::make_unique<DeflatingGuess>(scene, task.time.newton_iterations, guess.size);
+    case Kind::deflation: return subspace(SubspaceGuess::Window::sliding, Use::guess_and_deflation);
     case Kind::regression:
       return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window, noise);
     case Kind::copingnet:

@@ -3,17 +3,19 @@
 #include <algorithm>
 
 namespace rodsweep {
-SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window)
+
+SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window, Use use)
     : newton_iterations_(newton_iterations),
       size_(size),
       window_(window),
       gram_(size, size),
-      right_side_(size),
       coefficients_(VectorX::Zero(size)),
       equations_(size) {
-  for (const Rod& rod : scene.rods)
-    histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations),
-                      History{StoredVectors(6 * rod.joint_count(), size)});
+  for (const Rod& rod : scene.rods) {
+    const StoredVectors none(6 * rod.joint_count(), size);
+    histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations), History{none});
+    if (use == Use::guess_and_deflation) products_.push_back(none);
+  }
 }
 
 SubspaceGuess::History& SubspaceGuess::history(const SolvePosition& at) {
@@ -22,23 +24,39 @@ SubspaceGuess::History& SubspaceGuess::history(const SolvePosition& at) {
 
 Proposal SubspaceGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   History& h = history(at);
+  deflating_ = nullptr;
   if (h.last_step != at.step - 1 || h.known == 0) {
     x0.setZero();
     return {};
   }
-  h.solutions.project(system.matrix(), system.rhs(), gram_, right_side_);
-  const auto by_age = [&](int age) { return (h.newest - age + size_) % size_; };
-  for (int i = 0; i < h.known; ++i) {
-    equations_.right_side(i) = right_side_[by_age(i)];
-    for (int k = 0; k <= i; ++k)
-      equations_.gram(i, k) = gram_(std::max(by_age(i), by_age(k)), std::min(by_age(i), by_age(k)));
-  }
+  h.solutions.project(system.matrix(), system.rhs(), gram_, coefficients_);
+  for (int i = 0; i < h.known; ++i)
+    for (int k = 0; k <= i; ++k) {
+      const auto [column, row] = std::minmax({by_age(h, i), by_age(h, k)});
+      equations_.gram(i, k) = gram_(row, column);
+    }
   equations_.factorise(h.known);
-  equations_.solve();
-  coefficients_.setZero();
-  for (int i = 0; i < h.known; ++i) coefficients_[by_age(i)] = equations_.coefficient(i);
+  solve(h, coefficients_);
   h.solutions.combine(coefficients_, x0);
+  if (!products_.empty()) {
+    deflating_ = &h;
+    deflating_products_ = &products_[static_cast<std::size_t>(at.rod)];
+    deflating_products_->multiply(system.matrix(), h.solutions);
+  }
   return {true, h.known};
+}
+
+void SubspaceGuess::solve(const History& h, VectorX& c) {
+  for (int i = 0; i < h.known; ++i) equations_.right_side(i) = c[by_age(h, i)];
+  equations_.solve();
+  c.setZero();
+  for (int i = 0; i < h.known; ++i) c[by_age(h, i)] = equations_.coefficient(i);
+}
+
+void SubspaceGuess::project(double* z) {
+  deflating_products_->dots(z, coefficients_);
+  solve(*deflating_, coefficients_);
+  deflating_->solutions.subtract(coefficients_, z);
 }
 
 void SubspaceGuess::accept(const SolvePosition& at, const VectorX& solution) {

@@ -1,8 +1,12 @@
 // Projected initial guesses: the best approximation, in the energy norm, of the solution within the span of earlier
 // ones (Fischer 1998, Comput. Methods Appl. Mech. Engrg. 163), always of the current matrix A:
-//   x0 = V c,   (V^T A V) c = V^T b,   V the stored solutions of one (rod, Newton iteration).
+//   x0 = V E^-1 V^T b,   E = V^T A V,   V the stored solutions of one (rod, Newton iteration).
 // A changes from solve to solve, so A V is formed anew: as many products with A as there are solutions, all in one pass
 // (stored_vectors.hpp). Newer solutions go before older ones (normal_equations.hpp).
+//
+// A deflating guess has CG project the same span out of every residual too, z <- z - V E^-1 (A V)^T z: search
+// directions are A-orthogonal to all stored solutions then, and what CG would find of them again, at the small
+// eigenvalues that it finds last, it need not look for (deflation.hpp). An iteration costs two passes over V more.
 #pragma once
 
 #include <vector>
@@ -13,16 +17,18 @@
 
 namespace rodsweep {
 
-class SubspaceGuess : public InitialGuess {
+class SubspaceGuess : public InitialGuess, private Deflation {
  public:
   enum class Window {
     restarted,  ///< `fischer`: solutions are collected until there are `size`, then the newest starts a new set
     sliding     ///< `pod`: the newest `size` solutions, the space of a proper orthogonal decomposition with all modes
   };
+  enum class Use { guess, guess_and_deflation };
   /// `size` of at least 1. As with extrapolation, a time step without a solution starts the history again.
-  SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window);
+  SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window, Use use = Use::guess);
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition& at, const VectorX& solution) override;
+  Deflation* deflation() override { return deflating_ ? this : nullptr; }
 
  private:
   struct History {
@@ -30,13 +36,20 @@ class SubspaceGuess : public InitialGuess {
     int known = 0, newest = -1, last_step = -2;
   };
   History& history(const SolvePosition& at);
+  int by_age(const History& h, int age) const { return (h.newest - age + size_) % size_; }
+  /// c <- E^-1 c, in the order of V.
+  void solve(const History& h, VectorX& c);
+  void project(double* z) override;
 
   int newton_iterations_, size_;
   Window window_;
   std::vector<History> histories_;
-  Eigen::MatrixXd gram_;               ///< V^T A V, lower triangle
-  VectorX right_side_, coefficients_;  ///< V^T b and c, in the order of V
+  Eigen::MatrixXd gram_;  ///< E, lower triangle
+  VectorX coefficients_;  ///< V^T b, then c, in the order of V
   NormalEquations equations_;
+  std::vector<StoredVectors> products_;  ///< per rod: A V; empty unless deflating
+  History* deflating_ = nullptr;         ///< of the system last proposed for, where its span is to be projected out
+  StoredVectors* deflating_products_ = nullptr;
 };
 
 }  // namespace rodsweep

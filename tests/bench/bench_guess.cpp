@@ -9,6 +9,7 @@
 #include "network/processor/sweeps_inference.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
+#include "solver/guess/totals_guess.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/bench/medians.hpp"
@@ -21,13 +22,26 @@ constexpr std::array<int, 2> sizes{50, 100};           // segments
 constexpr std::array<int, 4> latents{16, 32, 48, 64};  // of sweeps
 
 using MakeGuess = std::unique_ptr<InitialGuess> (*)(const Scene&);
-constexpr std::array<std::pair<const char*, MakeGuess>, 4> classical_guesses{{
+constexpr std::array<std::pair<const char*, MakeGuess>, 7> classical_guesses{{
     {"previous",
      [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<ExtrapolationGuess>(s, 1, 1); }},
     {"quadratic",
      [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<ExtrapolationGuess>(s, 1, 3); }},
     {"regression 6",
      [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<RegressionGuess>(s, 1, 6, 0); }},
+    {"totals regression 6",
+     [](const Scene& s) -> std::unique_ptr<InitialGuess> {
+       return std::make_unique<TotalsGuess>(s, std::make_unique<RegressionGuess>(s, 1, 6, 0));
+     }},
+    {"pod 8",
+     [](const Scene& s) -> std::unique_ptr<InitialGuess> {
+       return std::make_unique<SubspaceGuess>(s, 1, 8, SubspaceGuess::Window::sliding);
+     }},
+    {"deflation 10",
+     [](const Scene& s) -> std::unique_ptr<InitialGuess> {
+       return std::make_unique<SubspaceGuess>(s, 1, 10, SubspaceGuess::Window::sliding,
+                                              SubspaceGuess::Use::guess_and_deflation);
+     }},
     {"pod 10",
      [](const Scene& s) -> std::unique_ptr<InitialGuess> {
        return std::make_unique<SubspaceGuess>(s, 1, 10, SubspaceGuess::Window::sliding);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "solver/batch/batched_step.hpp"
-#include "solver/guess/deflating_guess.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
@@ -173,7 +172,9 @@ TEST_CASE("a step with CG allocates nothing, whatever the guess") {
     if (name == "pod") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding);
     if (name == "guarded")
       return std::make_unique<GuardedGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 3), 0.5);
-    if (name == "deflation") return std::make_unique<DeflatingGuess>(scene, 4, 5);
+    if (name == "deflation")
+      return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding,
+                                             SubspaceGuess::Use::guess_and_deflation);
     if (name == "totals")
       return std::make_unique<TotalsGuess>(scene, std::make_unique<RegressionGuess>(scene, 4, 5, 1e-2));
     return std::make_unique<ZeroGuess>();

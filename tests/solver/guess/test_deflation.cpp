@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "solver/guess/deflating_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
 #include "tests/solver/support.hpp"
@@ -12,6 +11,10 @@ namespace rodsweep {
 namespace {
 
 using test::MatrixX;
+
+SubspaceGuess deflating(const Scene& scene, int size) {
+  return SubspaceGuess(scene, 1, size, SubspaceGuess::Window::sliding, SubspaceGuess::Use::guess_and_deflation);
+}
 
 struct OneRod {
   Scene scene;
@@ -36,7 +39,7 @@ struct OneRod {
 
 TEST_CASE("without history there is nothing to project out") {
   OneRod one;
-  DeflatingGuess guess(one.scene, 1, 3);
+  SubspaceGuess guess = deflating(one.scene, 3);
   VectorX x0 = VectorX::Ones(one.size());
   CHECK_FALSE(guess.propose(one.system, {0, 0, 0}, x0).nonzero);
   CHECK(guess.deflation() == nullptr);
@@ -46,7 +49,7 @@ TEST_CASE("without history there is nothing to project out") {
 TEST_CASE("a deflating guess starts where pod does, and projects to what is A-orthogonal to the stored solutions") {
   OneRod one;
   test::Random random(3);
-  DeflatingGuess guess(one.scene, 1, 4);
+  SubspaceGuess guess = deflating(one.scene, 4);
   SubspaceGuess pod(one.scene, 1, 4, SubspaceGuess::Window::sliding);
   std::vector<VectorX> stored;
   for (int step = 0; step < 6; ++step) {  // the first two are forgotten
@@ -77,7 +80,7 @@ TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations,
   // Of D^-1/2 A D^-1/2, which Jacobi makes of A.
   const VectorX s = one.a.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<MatrixX> modes(s.asDiagonal() * one.a * s.asDiagonal());
-  DeflatingGuess guess(one.scene, 1, 12);
+  SubspaceGuess guess = deflating(one.scene, 12);
   for (int k = 0; k < 12; ++k) guess.accept({k, 0, 0}, s.cwiseProduct(modes.eigenvectors().col(k)));
   VectorX plain = VectorX::Zero(one.size()), x0(one.size());
   const CgReport without = one.solve(plain, false, 1e-8, nullptr);
@@ -93,7 +96,7 @@ TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations,
 
 TEST_CASE("the same CG deflates one system and not the next") {
   OneRod one;
-  DeflatingGuess guess(one.scene, 1, 2);
+  SubspaceGuess guess = deflating(one.scene, 2);
   test::Random random(9);
   for (int k = 0; k < 2; ++k) guess.accept({k, 0, 0}, random.entries(one.size()));
   VectorX x0(one.size()), first = VectorX::Zero(one.size()), last = first;
