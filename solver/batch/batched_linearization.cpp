@@ -14,12 +14,15 @@ void linearize(const BatchedRods& rods, BatchedLinearization& out) {
     const LaneVector stretch = transposed_product(half, apart + joint.arm_a) - half * joint.arm_b;
     const LaneVector6 constraint = {
         stretch.x, stretch.y, stretch.z, 2 * (d.x - joint.rest.x), 2 * (d.y - joint.rest.y), 2 * (d.z - joint.rest.z)};
+    LaneVector6 rhs;
 #pragma GCC unroll 6
     for (int row = 0; row < 6; ++row) {
-      out.b[k][row] = -constraint[row] - joint.compliance[row] * joint.lambda[row];
-      residual = larger(residual, absolute(out.b[k][row]));
-      squared_norm += out.b[k][row] * out.b[k][row];
+      rhs[row] = -constraint[row] - joint.compliance[row] * joint.lambda[row];
+      residual = larger(residual, absolute(rhs[row]));
+      squared_norm += rhs[row] * rhs[row];
     }
+    const LaneVector turned = transposed_product(half, {rhs[0], rhs[1], rhs[2]});
+    out.b[k] = {turned.x, turned.y, turned.z, rhs[3], rhs[4], rhs[5]};
     squared_gap = larger(squared_gap, dot(stretch, stretch));
   }
   out.residual = residual;

@@ -1,7 +1,8 @@
 // Constraints of eight equal chains at once: linearization.hpp's, rod r in lane r.
 //
-// Of a joint's Jacobian only what H is made of is kept: with the arms over l it is
-//   J_a = (H^T/l, -H^T [arm_a]x; 0, -(w I - [v]x)),   J_b = (-H/l, H [arm_b]x; 0, w I + [v]x).
+// Of a joint's Jacobian only what H is made of is kept. Residual, norm and gap are those of b in the joints' frames;
+// the stretch-shear rows of b are left in the frames of the joints' second segments, R_b^T R_m = H^T, for
+// batched_system.hpp.
 #pragma once
 
 #include <vector>
@@ -29,7 +30,7 @@ struct BatchedLinearization {
   explicit BatchedLinearization(const BatchedRods& rods) : joints(rods.joints.size()), b(joints.size()) {}
 
   std::vector<BatchedJacobian> joints;
-  std::vector<LaneVector6> b;  ///< -C - alpha~ lambda
+  std::vector<LaneVector6> b;  ///< -C - alpha~ lambda, its first three rows turned by H^T
 
   Lane8 residual;      ///< max |b|
   Lane8 squared_norm;  ///< of b

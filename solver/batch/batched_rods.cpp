@@ -106,6 +106,10 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double dt) : rods(sta
     put(gravity, lane, scene.gravity_m_s2);
     damping[lane] = 1 / (1 + scene.damping_per_s * dt);
   }
+  stretches_evenly = std::all_of(joints.begin(), joints.end(), [](const BatchedJoint& joint) {
+    const LaneVector6& c = joint.compliance;
+    return !any((c[0] != c[1]) | (c[0] != c[2]));
+  });
 }
 
 void BatchedRods::write(int lane, Scene& scene) const {

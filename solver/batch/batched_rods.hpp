@@ -47,7 +47,8 @@ struct BatchedRods {
   std::vector<BatchedSegment> segments;
   std::vector<BatchedJoint> joints;
   LaneVector gravity;
-  Lane8 damping;  ///< 1 / (1 + c dt)
+  Lane8 damping;          ///< 1 / (1 + c dt)
+  bool stretches_evenly;  ///< every joint is as compliant along its rod as across
 };
 
 }  // namespace rodsweep

@@ -5,71 +5,98 @@
 namespace rodsweep {
 namespace {
 
-/// The rows of K D^1/2 of one side of a joint, so that the products of rows are those of K D K^T.
-struct Rows {
-  LaneVector row[6];
+/// One side of a joint by columns of K D^1/2, so that K D K^T is the sum of their squares.
+struct Side {
+  LaneVector6 column[3];
 };
 
-/// The last three of [v]x + w I; t and a are D^1/2 across the segment and along it.
-inline void bend_rows(const LaneQuaternion& d, const Lane8& w, const Lane8& t, const Lane8& a, Rows& out) {
-  const Lane8 tw = t * w, tx = t * d.x, ty = t * d.y, tz = t * d.z;
-  out.row[3] = {tw, -tz, a * d.y};
-  out.row[4] = {tz, tw, -a * d.x};
-  out.row[5] = {-ty, tx, a * w};
+struct Sides {
+  Side a, b;
+  LaneVector6 shift[6]{};  ///< columns of -S/(m l), m the mass of a; zero beyond the stretch-shear rows and columns
+};
+
+inline void put(const LaneVector& v, Lane8* to) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
 }
 
-/// Of side a: -H^T [arm_a]x, then [v]x - w I.
-inline Rows rows_a(const BatchedJacobian& jacobian, const LaneMatrix& h, const LaneVector& arm,
-                   const BatchedSegment& segment) {
+/// The last three rows, [v]x + w I; t and a are D^1/2 across the segment and along it.
+inline void put_bend(const LaneQuaternion& d, const Lane8& w, const Lane8& t, const Lane8& a, Side& out) {
+  const Lane8 tw = t * w, tz = t * d.z;
+  put({tw, tz, -t * d.y}, out.column[0].row + 3);
+  put({-tz, tw, t * d.x}, out.column[1].row + 3);
+  put({a * d.y, -a * d.x, a * w}, out.column[2].row + 3);
+}
+
+/// -S [arm_a]x, then [v]x - w I; and the shift.
+inline void put_side_a(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
   const Lane8 &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial;
-  const LaneVector across = t * arm;
-  const Lane8 x = a * arm.x, y = a * arm.y;
-  Rows out;
-  out.row[0] = {across.y * h.x.z - across.z * h.x.y, across.z * h.x.x - across.x * h.x.z, x * h.x.y - y * h.x.x};
-  out.row[1] = {across.y * h.y.z - across.z * h.y.y, across.z * h.y.x - across.x * h.y.z, x * h.y.y - y * h.y.x};
-  out.row[2] = {across.y * h.z.z - across.z * h.z.y, across.z * h.z.x - across.x * h.z.z, x * h.z.y - y * h.z.x};
-  bend_rows(jacobian.turn, -jacobian.turn.w, t, a, out);
-  return out;
+  const LaneMatrix s = rotation_matrix(conjugate(d));
+  const LaneVector arm = t * joint.arm_a;
+  put(arm.y * s.z - arm.z * s.y, out.a.column[0].row);
+  put(arm.z * s.x - arm.x * s.z, out.a.column[1].row);
+  put((a * joint.arm_a.x) * s.y - (a * joint.arm_a.y) * s.x, out.a.column[2].row);
+  put_bend(d, -d.w, t, a, out.a);
+  const Lane8 scale = -segment.inverse_mass * joint.inverse_length;
+  put(scale * s.x, out.shift[0].row);
+  put(scale * s.y, out.shift[1].row);
+  put(scale * s.z, out.shift[2].row);
 }
 
-/// Of side b: H [arm_b]x, then [v]x + w I.
-inline Rows rows_b(const BatchedJacobian& jacobian, const LaneMatrix& h, const LaneVector& arm,
-                   const BatchedSegment& segment) {
-  const Lane8 &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial;
-  const LaneVector across = t * arm;
-  const Lane8 x = a * arm.x, y = a * arm.y;
-  Rows out;
-  out.row[0] = {across.z * h.y.x - across.y * h.z.x, across.x * h.z.x - across.z * h.x.x, y * h.x.x - x * h.y.x};
-  out.row[1] = {across.z * h.y.y - across.y * h.z.y, across.x * h.z.y - across.z * h.x.y, y * h.x.y - x * h.y.y};
-  out.row[2] = {across.z * h.y.z - across.y * h.z.z, across.x * h.z.z - across.z * h.x.z, y * h.x.z - x * h.y.z};
-  bend_rows(jacobian.turn, jacobian.turn.w, t, a, out);
-  return out;
+/// [arm_b]x, then [v]x + w I.
+inline void put_side_b(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
+  const Lane8 &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial, zero{};
+  const LaneVector arm = t * joint.arm_b;
+  put({zero, arm.z, -arm.y}, out.b.column[0].row);
+  put({-arm.z, zero, arm.x}, out.b.column[1].row);
+  put({a * joint.arm_b.y, -a * joint.arm_b.x, zero}, out.b.column[2].row);
+  put_bend(d, d.w, t, a, out.b);
 }
 
-/// The lower triangle of s += K D K^T.
-inline void add_side(const Rows& k, LaneBlock& s) {
-#pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i)
-#pragma GCC unroll 6
-    for (int j = 0; j <= i; ++j) s[i][j] += dot(k.row[i], k.row[j]);
+/// H^T diag(c) H, of the lower triangle's rows of stretch-shear.
+inline void put_turned_compliance(const BatchedJacobian& jacobian, const LaneVector6& c, LaneBlock& out) {
+  const LaneMatrix h = half_turn(jacobian);
+  const LaneVector across = {c[0] * h.x.x, c[1] * h.x.y, c[2] * h.x.z}, up = {c[0] * h.y.x, c[1] * h.y.y, c[2] * h.y.z},
+                   along = {c[0] * h.z.x, c[1] * h.z.y, c[2] * h.z.z};
+  out[0][0] = dot(across, h.x);
+  out[1][0] = dot(up, h.x);
+  out[1][1] = dot(up, h.y);
+  out[2][0] = dot(along, h.x);
+  out[2][1] = dot(along, h.y);
+  out[2][2] = dot(along, h.z);
 }
 
-/// B_k: rows of side a of joint k, columns of side b of the joint before; `linear` is 1/(m l l).
-inline LaneBlock coupling(const Rows& side, const LaneMatrix& half, const Rows& before, const LaneMatrix& half_before,
-                          const Lane8& linear) {
-  LaneBlock out;
+/// A_kk but for what the joint after takes from it, and the sides of joint k.
+[[gnu::always_inline]] inline LaneBlock evaluate(const BatchedRods& rods, const BatchedJacobian& jacobian,
+                                                 std::size_t k, Sides& sides) {
+  const BatchedJoint& joint = rods.joints[k];
+  const BatchedSegment &a = rods.segments[k], &b = rods.segments[k + 1];
+  put_side_a(jacobian.turn, joint, a, sides);
+  put_side_b(jacobian.turn, joint, b, sides);
+  LaneBlock out{};
 #pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i)
-#pragma GCC unroll 6
-    for (int j = 0; j < 6; ++j) out[i][j] = dot(side.row[i], before.row[j]);
-  const LaneVector columns[3] = {-linear * half.x, -linear * half.y, -linear * half.z};
+  for (int i = 0; i < 6; ++i) out[i][i] = joint.compliance[i];
+  if (!rods.stretches_evenly) put_turned_compliance(jacobian, joint.compliance, out);
 #pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) {
-    const LaneVector shift = half_before * columns[i];
-    out[i][0] += shift.x;
-    out[i][1] += shift.y;
-    out[i][2] += shift.z;
-  }
+  for (int i = 0; i < 3; ++i)
+    out[i][i] += (a.inverse_mass + b.inverse_mass) * joint.inverse_length * joint.inverse_length;
+#pragma GCC unroll 1
+  for (const LaneVector6& column : sides.a.column) add_square(out, column);
+#pragma GCC unroll 1
+  for (const LaneVector6& column : sides.b.column) add_square(out, column);
+  return out;
+}
+
+/// A column of B_k: of side a of joint k, and of side b of the joint before, 1 / `inverse_length` long.
+inline LaneVector6 coupling(const Sides& sides, const Side& before, const Lane8& inverse_length, int c) {
+  LaneVector6 out = sides.shift[c];
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) out[i] *= inverse_length;
+#pragma GCC unroll 3
+  for (int j = 0; j < 3; ++j)
+#pragma GCC unroll 6
+    for (int i = 0; i < 6; ++i) out[i] += sides.a.column[j][i] * before.column[j][c];
   return out;
 }
 
@@ -77,48 +104,33 @@ inline LaneBlock coupling(const Rows& side, const LaneMatrix& half, const Rows& 
 
 LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
   LaneMask positive = Lane8{} < 1;
-  LaneBlock s{};      // what the joint after has taken from A_kk
-  LaneVector6 w{};    // and from b_k
-  LaneMatrix half{};  // of joint k
-  Rows side_b{};
-  for (std::size_t k = columns_.size(); k-- > 0;) {
-    const BatchedJoint& joint = rods.joints[k];
-    const BatchedSegment &a = rods.segments[k], &b = rods.segments[k + 1];
-    const BatchedJacobian& jacobian = linearization_.joints[k];
+  if (columns_.empty()) return positive;
+  std::size_t k = columns_.size() - 1;
+  Sides sides[2];  // of joint k and of the one before, by the last bit of their numbers
+  LaneBlock s = evaluate(rods, linearization_.joints[k], k, sides[k % 2]);
+  LaneVector6 w{};  // what the joint after has taken from b_k
+  for (;; --k) {
     Column& column = columns_[k];
-
-    if (k + 1 == columns_.size()) {
-      half = half_turn(jacobian);
-      side_b = rows_b(jacobian, half, joint.arm_b, b);
-    }
-    const Rows side_a = rows_a(jacobian, half, joint.arm_a, a);
-    add_side(side_a, s);
-    add_side(side_b, s);
-    const Lane8 linear = (a.inverse_mass + b.inverse_mass) * joint.inverse_length * joint.inverse_length;
-#pragma GCC unroll 6
-    for (int i = 0; i < 6; ++i) {
-      s[i][i] += i < 3 ? joint.compliance[i] + linear : joint.compliance[i];
-      w[i] += linearization_.b[k][i];
-    }
-
     positive &= factorise(s, column.factor);
+#pragma GCC unroll 6
+    for (int i = 0; i < 6; ++i) w[i] += linearization_.b[k][i];
     forward(column.factor, w);
     column.solution = divided(column.factor, w);
-    if (k == 0) break;
+    if (k == 0) return positive;
 
-    const BatchedJoint& joint_before = rods.joints[k - 1];
-    const BatchedJacobian& before = linearization_.joints[k - 1];
-    const LaneMatrix half_before = half_turn(before);
-    side_b = rows_b(before, half_before, joint_before.arm_b, a);
-    LaneBlock block = coupling(side_a, half, side_b, half_before,
-                               a.inverse_mass * joint.inverse_length * joint_before.inverse_length);
-    half = half_before;
-    forward(column.factor, block);
-    column.u = divided(column.factor, block);
-    s = minus_gram(block, column.u);
-    w = minus_product(block, column.solution);
+    Sides& before = sides[(k - 1) % 2];
+    s = evaluate(rods, linearization_.joints[k - 1], k - 1, before);
+    LaneVector6 eliminated[6];  // W, by columns
+#pragma GCC unroll 1
+    for (int c = 0; c < 6; ++c) {
+      LaneVector6 v = coupling(sides[k % 2], before.b, rods.joints[k - 1].inverse_length, c);
+      forward(column.factor, v);
+      eliminated[c] = v;
+      column.u[c] = divided(column.factor, v);
+    }
+    w = LaneVector6{};
+    subtract_products(s, w, eliminated, column.u, column.solution);
   }
-  return positive;
 }
 
 LaneMask BatchedSystem::below(double tolerance) const {
@@ -131,19 +143,22 @@ BatchedSystem::Outcome BatchedSystem::solve(const BatchedRods& rods) {
   Lane8 sum{};
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     Column& column = columns_[k];
-    LaneVector6 x = column.solution;
-    if (k > 0) subtract_product(x, column.u, columns_[k - 1].solution);
-    backward(column.factor, x);
-    column.solution = x;
+    LaneVector6 y = column.solution;
+    if (k > 0) subtract_product(y, column.u, columns_[k - 1].solution);
+    backward(column.factor, y);
+    column.solution = y;
 #pragma GCC unroll 6
-    for (int i = 0; i < 6; ++i) sum += x[i];
+    for (int i = 0; i < 6; ++i) sum += y[i];
   }
   return {positive, absolute(sum) <= std::numeric_limits<double>::max()};
 }
 
 void BatchedSystem::write_solution(int lane, double* solution) const {
-  for (const Column& column : columns_)
-    for (int row = 0; row < 6; ++row) *solution++ = column.solution[row][lane];
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    const LaneVector6& y = columns_[k].solution;
+    const LaneVector stretch = half_turn(linearization_.joints[k]) * LaneVector{y[0], y[1], y[2]};
+    for (const Lane8& row : {stretch.x, stretch.y, stretch.z, y[3], y[4], y[5]}) *solution++ = row[lane];
+  }
 }
 
 void BatchedSystem::apply(BatchedRods& rods, const LaneMask& where) const {
@@ -153,14 +168,16 @@ void BatchedSystem::apply(BatchedRods& rods, const LaneMask& where) const {
     LaneVector next_impulse{}, next_turn{};
     if (s < columns_.size()) {
       const BatchedJacobian& jacobian = linearization_.joints[s];
-      const LaneVector6& x = columns_[s].solution;
+      const LaneVector6& y = columns_[s].solution;
       BatchedJoint& joint = rods.joints[s];
+      const LaneMatrix half = half_turn(jacobian);
+      const LaneVector on_b = {y[0], y[1], y[2]}, bend = {y[3], y[4], y[5]};
+      const LaneVector stretch = half * on_b, on_a = half * stretch;
+      const LaneVector6 x = {stretch.x, stretch.y, stretch.z, bend.x, bend.y, bend.z};
 #pragma GCC unroll 6
       for (int row = 0; row < 6; ++row) joint.lambda[row] = where ? joint.lambda[row] + x[row] : joint.lambda[row];
       const LaneQuaternion& d = jacobian.turn;
-      const LaneVector stretch = {x[0], x[1], x[2]}, bend = {x[3], x[4], x[5]}, v = {d.x, d.y, d.z};
-      const LaneMatrix half = half_turn(jacobian);
-      const LaneVector on_a = half * stretch, on_b = transposed_product(half, stretch);
+      const LaneVector v = {d.x, d.y, d.z};
       const LaneVector along = d.w * bend, across = cross(v, bend);
       impulse = impulse + joint.inverse_length * on_a;
       turn = turn + cross(joint.arm_a, on_a) - along - across;

@@ -1,15 +1,22 @@
 // The linear system of a Newton iteration of eight equal chains at once, solved by block LDL^T: linear_system.hpp's
 // equations, rod r in lane r.
 //
+// The stretch-shear rows, which the joint's frame has, are eliminated turned into that of its second segment: with
+// Q = diag(H^T, I) and y = Q x, the matrix is Q A Q^T and the right-hand side Q b. There a joint's sides are, arms over
+// l,
+//   Q J_a = (S/l, -S [arm_a]x; 0, -(w I - [v]x)),   Q J_b = (-I/l, [arm_b]x; 0, w I + [v]x),   S = R(d)^T,
+// and its compliance is Q diag(c) Q^T, c itself where the three of stretch-shear are equal.
+//
 // A chain's matrix is block tridiagonal. Segment k, which joints k - 1 and k share, contributes (m its mass, D its
-// diagonal inverse inertia, K the columns dC/dphi, H the joints' half turns; the first terms stand in the
-// stretch-shear rows alone)
+// diagonal inverse inertia, K the columns of Q J that belong to turns; the first terms stand in the stretch-shear rows
+// alone)
 //   A_kk += I/(m l_k^2) + K_a D K_a^T,   A_k-1,k-1 += I/(m l_k-1^2) + K_b D K_b^T,
-//   A_k,k-1 = B_k = -(H_k-1 H_k)^T/(m l_k l_k-1) + K_a D K_b^T.
+//   A_k,k-1 = B_k = -S_k/(m l_k l_k-1) + K_a D K_b^T.
 // Joints are eliminated from the last to the first, each as soon as its blocks are evaluated: A is never stored, and of
-// its diagonal blocks only lower triangles are evaluated. With S_k = A_kk - W_k+1^T U_k+1 = L D L^T,
-//   W_k = L^-1 B_k,  U_k = D^-1 W_k,  w = L^-1 (b_k - W_k+1^T y_k+1),  y_k = D^-1 w      and then
-//   x_k = L^-T (y_k - U_k x_k-1).
+// its diagonal blocks only lower triangles are evaluated. With A_kk - W_k+1^T U_k+1 = L D L^T,
+//   W_k = L^-1 B_k,  U_k = D^-1 W_k,  w = L^-1 (b_k - W_k+1^T z_k+1),  z_k = D^-1 w      and then
+//   y_k = L^-T (z_k - U_k y_k-1).
+// A_k-1,k-1 is evaluated between the factors of A_kk, whose divisions wait for each other, and B_k.
 #pragma once
 
 #include <vector>
@@ -45,8 +52,8 @@ class BatchedSystem {
  private:
   struct Column {
     LaneFactor factor;
-    LaneBlock u;
-    LaneVector6 solution;  ///< y, then x
+    LaneVector6 u[6];      ///< columns
+    LaneVector6 solution;  ///< z, then y
   };
   LaneMask eliminate(const BatchedRods& rods);
 

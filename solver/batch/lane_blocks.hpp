@@ -1,7 +1,8 @@
 // 6x6 blocks and vectors of six of eight rods at once, one rod per lane: the kernels of a block LDL^T.
 //
-// Of symmetric blocks only the lower triangle is touched. L is unit lower triangular, its rows below the diagonal one
-// after the other. Everything unrolls, so that entries live in registers.
+// Of symmetric blocks only the lower triangle is touched, by rows; other blocks are arrays of six columns. L is unit
+// lower triangular, its rows below the diagonal one after the other. Loops over the entries of a triangle unroll, so
+// that they live in registers; those over columns don't, so that no more than a triangle and a column do.
 #pragma once
 
 #include "solver/numbers/lane_math.hpp"
@@ -15,6 +16,7 @@ struct LaneVector6 {
   Lane8& operator[](int i) { return row[i]; }
 };
 
+/// Symmetric.
 struct LaneBlock {
   LaneVector6 row[6];
 
@@ -30,20 +32,24 @@ struct LaneFactor {
   Lane8& at(int row, int column) { return l[row * (row - 1) / 2 + column]; }
 };
 
-/// S = L D L^T; s is used up. Returns where all pivots are positive (false for NaN).
+/// S = L D L^T; s is used up. Returns where all pivots are positive (false for NaN). Pivots come in pairs, the second
+/// as the determinant of both over the first, so that it need not wait for the first division.
 inline LaneMask factorise(LaneBlock& s, LaneFactor& out) {
-  LaneMask positive = s[0][0] > 0;
+  LaneMask positive = Lane8{} < 1;
+#pragma GCC unroll 3
+  for (int j = 0; j < 6; j += 2) {
+    const Lane8 determinant = s[j][j] * s[j + 1][j + 1] - s[j + 1][j] * s[j + 1][j];
+    positive &= (s[j][j] > 0) & (determinant > 0);
+    out.inverse_pivot[j] = 1 / s[j][j];
+    out.inverse_pivot[j + 1] = s[j][j] / determinant;
+#pragma GCC unroll 2
+    for (int c = j; c < j + 2; ++c)
 #pragma GCC unroll 6
-  for (int j = 0; j < 6; ++j) {
-    const Lane8 pivot = s[j][j];
-    positive &= pivot > 0;
-    out.inverse_pivot[j] = 1 / pivot;
+      for (int i = c + 1; i < 6; ++i) {
+        out.at(i, c) = s[i][c] * out.inverse_pivot[c];
 #pragma GCC unroll 6
-    for (int i = j + 1; i < 6; ++i) {
-      out.at(i, j) = s[i][j] * out.inverse_pivot[j];
-#pragma GCC unroll 6
-      for (int k = j + 1; k <= i; ++k) s[i][k] -= out.at(i, j) * s[k][j];
-    }
+        for (int k = c + 1; k <= i; ++k) s[i][k] -= out.at(i, c) * s[k][c];
+      }
   }
   return positive;
 }
@@ -56,16 +62,6 @@ inline void forward(const LaneFactor& factor, LaneVector6& v) {
     for (int j = 0; j < i; ++j) v[i] -= factor.at(i, j) * v[j];
 }
 
-/// B <- L^-1 B.
-inline void forward(const LaneFactor& factor, LaneBlock& b) {
-#pragma GCC unroll 6
-  for (int i = 1; i < 6; ++i)
-#pragma GCC unroll 6
-    for (int j = 0; j < i; ++j)
-#pragma GCC unroll 6
-      for (int c = 0; c < 6; ++c) b[i][c] -= factor.at(i, j) * b[j][c];
-}
-
 /// v <- L^-T v.
 inline void backward(const LaneFactor& factor, LaneVector6& v) {
 #pragma GCC unroll 6
@@ -74,50 +70,41 @@ inline void backward(const LaneFactor& factor, LaneVector6& v) {
     for (int j = i + 1; j < 6; ++j) v[i] -= factor.at(j, i) * v[j];
 }
 
-/// D^-1 v and D^-1 B.
+/// D^-1 v.
 inline LaneVector6 divided(const LaneFactor& factor, const LaneVector6& v) {
   LaneVector6 out;
 #pragma GCC unroll 6
   for (int i = 0; i < 6; ++i) out[i] = factor.inverse_pivot[i] * v[i];
   return out;
 }
-inline LaneBlock divided(const LaneFactor& factor, const LaneBlock& b) {
-  LaneBlock out;
+
+/// s <- s + v v^T.
+inline void add_square(LaneBlock& s, const LaneVector6& v) {
 #pragma GCC unroll 6
+  for (int c = 0; c < 6; ++c)
+#pragma GCC unroll 6
+    for (int r = c; r < 6; ++r) s[r][c] += v[r] * v[c];
+}
+
+/// s <- s - W^T U, which is symmetric, and v <- v - W^T y.
+inline void subtract_products(LaneBlock& s, LaneVector6& v, const LaneVector6 (&w)[6], const LaneVector6 (&u)[6],
+                              const LaneVector6& y) {
+#pragma GCC unroll 1
   for (int i = 0; i < 6; ++i)
 #pragma GCC unroll 6
-    for (int c = 0; c < 6; ++c) out[i][c] = factor.inverse_pivot[i] * b[i][c];
-  return out;
-}
-
-/// The lower triangle of -W^T U, which is symmetric.
-inline LaneBlock minus_gram(const LaneBlock& w, const LaneBlock& u) {
-  LaneBlock out{};
+    for (int c = 0; c < 6; ++c) {
+      v[c] -= w[c][i] * y[i];
 #pragma GCC unroll 6
-  for (int r = 0; r < 6; ++r)
-#pragma GCC unroll 6
-    for (int c = 0; c <= r; ++c)
-#pragma GCC unroll 6
-      for (int i = 0; i < 6; ++i) out[r][c] -= w[i][r] * u[i][c];
-  return out;
-}
-
-/// -W^T v.
-inline LaneVector6 minus_product(const LaneBlock& w, const LaneVector6& v) {
-  LaneVector6 out{};
-#pragma GCC unroll 6
-  for (int r = 0; r < 6; ++r)
-#pragma GCC unroll 6
-    for (int i = 0; i < 6; ++i) out[r] -= w[i][r] * v[i];
-  return out;
+      for (int r = c; r < 6; ++r) s[r][c] -= w[r][i] * u[c][i];
+    }
 }
 
 /// v <- v - U x.
-inline void subtract_product(LaneVector6& v, const LaneBlock& u, const LaneVector6& x) {
+inline void subtract_product(LaneVector6& v, const LaneVector6 (&u)[6], const LaneVector6& x) {
 #pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i)
+  for (int c = 0; c < 6; ++c)
 #pragma GCC unroll 6
-    for (int c = 0; c < 6; ++c) v[i] -= u[i][c] * x[c];
+    for (int i = 0; i < 6; ++i) v[i] -= u[c][i] * x[c];
 }
 
 }  // namespace rodsweep

@@ -121,6 +121,14 @@ struct LaneMatrix {
   LaneVector x, y, z;
 };
 
+/// R(q).
+inline LaneMatrix rotation_matrix(const LaneQuaternion& q) {
+  const Lane8 x = 2 * q.x, y = 2 * q.y, z = 2 * q.z, one = broadcast(1);
+  const Lane8 wx = q.w * x, wy = q.w * y, wz = q.w * z;
+  const Lane8 xx = q.x * x, yy = q.y * y, zz = q.z * z, xy = q.x * y, xz = q.x * z, yz = q.y * z;
+  return {{one - yy - zz, xy + wz, xz - wy}, {xy - wz, one - xx - zz, yz + wx}, {xz + wy, yz - wx, one - xx - yy}};
+}
+
 inline LaneVector operator*(const LaneMatrix& m, const LaneVector& v) { return v.x * m.x + v.y * m.y + v.z * m.z; }
 inline LaneVector transposed_product(const LaneMatrix& m, const LaneVector& v) {
   return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
