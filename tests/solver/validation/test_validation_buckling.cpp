@@ -88,7 +88,7 @@ Buckled buckled(int n) {
   for (std::size_t k = 0; k < rod.joints.size(); ++k) twist += at.constraint[static_cast<Eigen::Index>(6 * k) + 5];
   const double moment = torsion_modulus * pi * std::pow(radius, 4) / 2 / l * twist / static_cast<double>(n - 1);
   const double scale = 2 * stiffness / std::abs(moment) * std::sqrt((1 + cosine0) / (1 - cosine0));
-  const double tension = -rod.lambda[0] / l / (step * step);
+  const double tension = -to_world(rod, rod.joints.front(), rod.lambda.head<3>()).x() / l / (step * step);
   Buckled out{0, std::acos(cosine0), moment * moment / (2 * stiffness * std::abs(tension) * (1 + cosine0)) - 1};
   for (std::size_t s = 0; s < cosine.size(); ++s) {
     const double law = std::pow(std::tanh((static_cast<double>(s) - centre) * l / scale), 2);
