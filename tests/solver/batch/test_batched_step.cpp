@@ -157,7 +157,7 @@ TEST_CASE("any arms, rest rotations, compliances and held segments") {
                                          std::vector<int>{0, 6}, std::vector<int>{3});
   std::vector<Scene> scenes;
   for (unsigned r = 0; r < 8; ++r) scenes.push_back(random_scene(7, held, 10 + r));
-  check_equal(scenes, 1, 1e-8, {1e-3, 3, 1e-9});  // metres of gap, and joints so folded that H loses digits
+  check_equal(scenes, 1, 1e-8, {1e-3, 3, 1e-9});  // metres of gap to close
 }
 
 TEST_CASE("a rod that has converged waits, unchanged, for those that have not") {
