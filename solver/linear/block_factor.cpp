@@ -10,25 +10,30 @@
 namespace rodsweep {
 namespace {
 
-/// b <- S^-1 b on the rows of b.
-inline void solve_rows(const RowOperations& ops, Lane8 (&b)[6]) {
+/// target <- from - B^T X over the rows of B and X.
+inline void subtract_product(const Block6& from, const Block6& b, const Block6& x, Block6& target) {
+#pragma GCC unroll 4
+  for (int p = 0; p < slices; ++p) {
+    const RowSlice slice(x, p);
 #pragma GCC unroll 6
-  for (int j = 0; j < 6; ++j)
+    for (int r = 0; r < 6; ++r) {
+      Slice row = slice_of(from.column[r], p);
 #pragma GCC unroll 6
-    for (int k = 0; k < 6; ++k)
-      if (k != j) b[k] -= ops.factor[j][k] * b[j];
-#pragma GCC unroll 6
-  for (int j = 0; j < 6; ++j) b[j] *= ops.inverse[j];
+      for (int j = 0; j < 6; ++j) row -= reinterpret_cast<const double*>(&b.column[j])[r] * slice.row[j];
+      set_slice(target.column[r], p, row);
+    }
+  }
 }
 
-/// target -= B^T X over the rows of B and X.
-inline void subtract_product(Block6& target, const Lane8* b, const Lane8* x) {
-#pragma GCC unroll 6
-  for (int r = 0; r < 6; ++r) {
-    Lane8 row = target.column[r];
-#pragma GCC unroll 6
-    for (int j = 0; j < 6; ++j) row -= b[j][r] * x[j];
-    target.column[r] = row;
+/// b <- S^-1 b on the rows of b.
+inline void solve_rows(const RowFactor& factor, Block6& b) {
+#pragma GCC unroll 4
+  for (int p = 0; p < slices; ++p) {
+    RowSlice rows(b, p);
+    forward(factor, rows);
+    divide(factor, rows);
+    backward(factor, rows);
+    rows.store(b, p);
   }
 }
 
@@ -48,30 +53,27 @@ std::vector<int> root_to_leaf_order(const Rod& rod) {
     joints_of[static_cast<std::size_t>(rod.joints[static_cast<std::size_t>(k)].a)].push_back(k);
     joints_of[static_cast<std::size_t>(rod.joints[static_cast<std::size_t>(k)].b)].push_back(k);
   }
-  std::vector<int> order, open;
-  std::vector<bool> joint_seen(rod.joints.size(), false), segment_seen(rod.segments.size(), false);
-  const auto visit_from = [&](int root) {
-    if (segment_seen[static_cast<std::size_t>(root)]) return;
-    segment_seen[static_cast<std::size_t>(root)] = true;
-    open.assign(1, root);
-    while (!open.empty()) {
-      const int segment = open.back();
-      open.pop_back();
-      for (const int k : joints_of[static_cast<std::size_t>(segment)]) {
-        if (joint_seen[static_cast<std::size_t>(k)]) continue;
-        joint_seen[static_cast<std::size_t>(k)] = true;
-        order.push_back(k);
-        const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
-        const int other = joint.a == segment ? joint.b : joint.a;
-        if (segment_seen[static_cast<std::size_t>(other)]) continue;
-        segment_seen[static_cast<std::size_t>(other)] = true;
-        open.push_back(other);
-      }
-    }
+  std::vector<std::size_t> left(rod.segments.size());  // joints of a segment that are not eliminated
+  for (std::size_t s = 0; s < left.size(); ++s) left[s] = joints_of[s].size();
+  std::vector<int> order;  // of elimination
+  std::vector<bool> seen(rod.joints.size(), false);
+  const auto see = [&](int k) {
+    if (seen[static_cast<std::size_t>(k)]) return;
+    seen[static_cast<std::size_t>(k)] = true;
+    order.push_back(k);
   };
-  for (int s = 0; s < rod.segment_count(); ++s)
-    if (rod.segments[static_cast<std::size_t>(s)].is_static) visit_from(s);
-  for (int s = 0; s < rod.segment_count(); ++s) visit_from(s);
+  const auto see_all_of = [&](std::size_t s) {
+    for (const int k : joints_of[s]) see(k);
+  };
+  for (std::size_t s = 0; s < left.size(); ++s)
+    if (left[s] == 1 || rod.segments[s].is_static) see_all_of(s);
+  for (std::size_t next = 0; next < order.size(); ++next) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(order[next])];
+    for (const int s : {joint.a, joint.b})
+      if (--left[static_cast<std::size_t>(s)] == 1) see_all_of(static_cast<std::size_t>(s));
+  }
+  for (int k = 0; k < rod.joint_count(); ++k) see(k);  // of loops, and between them
+  std::reverse(order.begin(), order.end());
   return order;
 }
 
@@ -99,47 +101,38 @@ BlockFactor::BlockFactor(const BlockMatrix& pattern, const std::vector<int>& pre
   std::vector<int> row_at(n);
   for (std::size_t row = 0; row < n; ++row) row_at[static_cast<std::size_t>(position[row])] = static_cast<int>(row);
   for (std::size_t i = 0; i < n; ++i) {
-    Column column{row_at[i], static_cast<int>(off_.size()), 0, 0, pattern.diagonal(row_at[i])};
+    Column column{row_at[i], static_cast<int>(off_.size()), 0, 0, pattern.diagonal(row_at[i]), false};
     for (const int p : offs[i]) {
       // Row r of B = A_kp is column r of A_pk.
       const int source = pattern.find(row_at[static_cast<std::size_t>(p)], row_at[i]);
       fill_in_ += source < 0;
-      off_.push_back({p, source});
+      off_.push_back({p, source, false, false});
     }
     column.off_end = static_cast<int>(off_.size());
     columns_.push_back(column);
   }
   for (Column& column : columns_) {
     column.update_begin = static_cast<int>(updates_.size());
-    for (int q = column.off_begin; q < column.off_end; ++q)
+    for (int q = column.off_begin; q < column.off_end; ++q) {
+      Off& off = off_[static_cast<std::size_t>(q)];
+      Column& later_column = columns_[static_cast<std::size_t>(off.position)];
+      off.first = !later_column.updated;
+      later_column.updated = true;
       for (int p = column.off_begin; p < q; ++p) {
         int entry = columns_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)].off_begin;
         while (off_[static_cast<std::size_t>(entry)].position != off_[static_cast<std::size_t>(q)].position) ++entry;
-        updates_.push_back(entry);
+        updates_.push_back({entry, !off_[static_cast<std::size_t>(entry)].updated});
+        off_[static_cast<std::size_t>(entry)].updated = true;
       }
+    }
   }
   diagonal_work_.resize(n);
   off_work_.resize(off_.size());
   solution_.resize(n);
 }
 
-void BlockFactor::load(const BlockMatrix& a, const double* b) {
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const Column& column = columns_[i];
-    Block6& diagonal = diagonal_work_[i];
-    diagonal = a.blocks[static_cast<std::size_t>(column.diagonal_source)];
-    for (int r = 0; r < 6; ++r)
-      diagonal.column[r] = with_lane_6(diagonal.column[r], broadcast(b ? b[6 * column.row + r] : 0));
-    for (int p = column.off_begin; p < column.off_end; ++p) {
-      const int source = off_[static_cast<std::size_t>(p)].source;
-      off_work_[static_cast<std::size_t>(p)] = source < 0 ? Block6{} : a.blocks[static_cast<std::size_t>(source)];
-    }
-  }
-}
-
 SolveOutcome BlockFactor::solve(const BlockMatrix& a, const VectorX& b, VectorX& x) {
-  load(a, b.data());
-  const bool positive = eliminate<false>();
+  const bool positive = eliminate<false>(a, b.data());
   for (std::size_t i = columns_.size(); i-- > 0;) {
     const Column& column = columns_[i];
     if (column.off_begin < column.off_end) {
@@ -162,8 +155,7 @@ SolveOutcome BlockFactor::solve(const BlockMatrix& a, const VectorX& b, VectorX&
 
 bool BlockFactor::factorise(const BlockMatrix& a) {
   inverse_.resize(columns_.size());
-  load(a, nullptr);
-  return eliminate<true>();
+  return eliminate<true>(a, nullptr);
 }
 
 void BlockFactor::substitute(VectorX& x) {
@@ -189,36 +181,51 @@ void BlockFactor::substitute(VectorX& x) {
 }
 
 template <bool keep_inverse>
-bool BlockFactor::eliminate() {
+bool BlockFactor::eliminate(const BlockMatrix& a, const double* b) {
   bool positive = true;
+  const auto block_of = [&](int source) -> const Block6& {
+    static constexpr Block6 zero{};
+    return source < 0 ? zero : a.blocks[static_cast<std::size_t>(source)];
+  };
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const Column& column = columns_[i];
-    Lane8 s[6];
-    for (int r = 0; r < 6; ++r) s[r] = diagonal_work_[i].column[r];
-    const Lane8 rhs[6] = {s[0], s[1], s[2], s[3], s[4], s[5]};  // in lane 6
-    RowOperations ops;
-    positive &= invert(s, ops);
+    const Block6& left = column.updated ? diagonal_work_[i] : block_of(column.diagonal_source);
+    Block6 s;
+    for (int r = 0; r < 6; ++r) s.column[r] = b ? left.column[r] + in_lane_6(b[6 * column.row + r]) : left.column[r];
+    RowFactor factor;
+    positive &= decompose(s, factor);
     if constexpr (keep_inverse) {
-      Lane8 inverse[6] = {unit_lane[0], unit_lane[1], unit_lane[2], unit_lane[3], unit_lane[4], unit_lane[5]};
-      solve_rows(ops, inverse);
-      for (int r = 0; r < 6; ++r) inverse_[i].column[r] = inverse[r];
+      inverse_[i] = {{unit_lane[0], unit_lane[1], unit_lane[2], unit_lane[3], unit_lane[4], unit_lane[5]}};
+      solve_rows(factor, inverse_[i]);
     }
-    if (column.off_begin == column.off_end)
-      for (int r = 0; r < 6; ++r) solution_[i][r] = s[r][6] * ops.inverse[r][6];
+    if (column.off_begin == column.off_end) solution_[i] = solution(factor, s);
 
-    const int* target = updates_.data() + column.update_begin;
+    const Update* update = updates_.data() + column.update_begin;
     for (int q = column.off_begin; q < column.off_end; ++q) {
-      Lane8* stored = off_work_[static_cast<std::size_t>(q)].column;
-      Lane8 before[6], solved[6];
-      for (int r = 0; r < 6; ++r) solved[r] = before[r] = with_lane_6(stored[r], rhs[r]);
-      solve_rows(ops, solved);
-      subtract_product(diagonal_work_[static_cast<std::size_t>(off_[static_cast<std::size_t>(q)].position)], before,
-                       solved);
+      const Off& off = off_[static_cast<std::size_t>(q)];
+      Block6& x = off_work_[static_cast<std::size_t>(q)];
+      const Block6& before = off.updated ? x : block_of(off.source);
       // S^-1 is symmetric: B_p^T X_q = X_p^T B_q, and X_p is stored by now.
-      for (int p = column.off_begin; p < q; ++p)
-        subtract_product(off_work_[static_cast<std::size_t>(*target++)], off_work_[static_cast<std::size_t>(p)].column,
-                         before);
-      for (int r = 0; r < 6; ++r) stored[r] = solved[r];
+      for (int p = column.off_begin; p < q; ++p, ++update) {
+        Block6& target = off_work_[static_cast<std::size_t>(update->target)];
+        subtract_product(update->first ? block_of(off_[static_cast<std::size_t>(update->target)].source) : target,
+                         off_work_[static_cast<std::size_t>(p)], before, target);
+      }
+      Block6 w, u;
+#pragma GCC unroll 4
+      for (int p = 0; p < slices; ++p) {
+        RowSlice rows(before, p);
+        forward(factor, rows);
+        if (p == 6 / slice_width) rows.take_lane_6(s);
+        rows.store(w, p);
+        divide(factor, rows);
+        rows.store(u, p);
+        backward(factor, rows);
+        rows.store(x, p);
+      }
+      const auto at = static_cast<std::size_t>(off.position);
+      Block6& diagonal = diagonal_work_[at];
+      subtract_product(off.first ? block_of(columns_[at].diagonal_source) : diagonal, w, u, diagonal);
     }
   }
   return positive;

@@ -1,16 +1,17 @@
 // Direct solution of A x = b by block elimination from the leaves of a rod to its root, O(n) on chains and trees.
 //
-// Joints are eliminated in the reverse of a depth-first order that starts at the held segments, so that the remaining
-// neighbours of an eliminated joint (its parent and its siblings) are coupled already: no block fills in, as in the
-// body-and-joint tree of Deul et al. 2018. Where joints close loops (rings, nets) a symbolic elimination finds what
-// fills in, in an order of minimum degree (elimination_order.hpp): a sparse Cholesky factorisation in blocks.
+// All leaves come first, then what they leave as leaves, and so on to the middle: the remaining neighbours of an
+// eliminated joint share a segment with it and are coupled already, so no block fills in (as in the body-and-joint tree
+// of Deul et al. 2018), and joints that follow each other don't wait for each other: a chain is eliminated from both
+// ends at once, and the processor overlaps the two. Where joints close loops (rings, nets) a symbolic elimination finds
+// what fills in, in an order of minimum degree (elimination_order.hpp): a sparse Cholesky factorisation in blocks.
 //
-// Per joint k, with S the block left on the diagonal and B_p the blocks towards the joints p eliminated later:
-//   X_p = S^-1 B_p,  y = S^-1 b_k,  A_pq -= B_p^T X_q,  b_p -= B_p^T y      and backwards   x_k = y - sum_p X_p x_p.
-// A factor that is kept needs S^-1 and the X_p alone: b_p -= X_p^T b_k, y = S^-1 b_k.
-// S is inverted by Gauss-Jordan steps on whole rows; b rides along in a spare lane of the rows, so the forward
-// substitution costs nothing. Pivots are those of LDL^T: one that is not positive means that A is not positive
-// definite.
+// Per joint k, with S = L D L^T the block left on the diagonal and B_p the blocks towards the joints p eliminated
+// later:
+//   W_p = L^-1 B_p,  U_p = D^-1 W_p,  X_p = L^-T U_p,  y = S^-1 b_k,
+//   A_pp -= W_p^T U_p,  A_pq -= X_p^T B_q,  b_p -= X_p^T b_k     and backwards   x_k = y - sum_p X_p x_p.
+// A factor that is kept needs S^-1 and the X_p alone. b rides along in a spare lane of the rows, so the forward
+// substitution costs nothing. A pivot in D that is not positive means that A is not positive definite.
 #pragma once
 
 #include <vector>
@@ -21,8 +22,8 @@
 
 namespace rodsweep {
 
-/// Joints of the rod in depth-first order, branch by branch, from the static segments (then from segment 0 of what they
-/// don't reach).
+/// Joints of the rod from its middle to its leaves; what hangs on a static segment ends there as on a free one. Joints
+/// of loops, and between them, come first.
 std::vector<int> root_to_leaf_order(const Rod& rod);
 
 class BlockFactor {
@@ -49,18 +50,24 @@ class BlockFactor {
     int off_begin, off_end;  ///< its later neighbours: entries of off_
     int update_begin;        ///< its pairs of later neighbours: entries of updates_
     int diagonal_source;     ///< block of A
+    bool updated;            ///< by earlier eliminations: then it stands in diagonal_work_
   };
   struct Off {
     int position;  ///< of the neighbour in the elimination order
     int source;    ///< block of A whose columns are this block's rows; -1 for fill
+    bool updated;  ///< by earlier eliminations: then it stands in off_work_
+    bool first;    ///< to update the neighbour's diagonal block
   };
-  void load(const BlockMatrix& a, const double* b);  ///< null: none
+  struct Update {
+    int target;  ///< of A_pq -= B_p^T X_q: entry of off_
+    bool first;  ///< to update it
+  };
   template <bool keep_inverse>
-  bool eliminate();
+  bool eliminate(const BlockMatrix& a, const double* b);  ///< null: none
 
   std::vector<Column> columns_;
   std::vector<Off> off_;
-  std::vector<int> updates_;           ///< target of A_pq -= B_p^T X_q: entry of off_; for every q, its p < q
+  std::vector<Update> updates_;        ///< for every q, its p < q
   std::vector<Block6> diagonal_work_;  ///< rows, lane 6 the right-hand side
   std::vector<Block6> off_work_;       ///< rows of B_p before, of X_p after its elimination
   std::vector<Block6> inverse_;        ///< rows of S^-1, of factorise()

@@ -13,7 +13,27 @@ namespace rodsweep {
 using Lane8 = double __attribute__((vector_size(64)));
 using Lane4 = double __attribute__((vector_size(32)));  ///< a vector or quaternion
 
-/// A 6x6 block: six columns (or six rows, where said so) of six entries, padded to eight.
+// What one register of the processor holds of a Lane8.
+#if defined(__AVX512F__)
+inline constexpr int slice_width = 8;
+#elif defined(__AVX__)
+inline constexpr int slice_width = 4;
+#else
+inline constexpr int slice_width = 2;
+#endif
+inline constexpr int slices = 8 / slice_width;
+using Slice = double __attribute__((vector_size(8 * slice_width)));
+
+inline Slice slice_of(const Lane8& value, int slice) {
+  Slice out;
+  std::memcpy(&out, reinterpret_cast<const Slice*>(&value) + slice, sizeof out);
+  return out;
+}
+inline void set_slice(Lane8& value, int slice, const Slice& to) {
+  std::memcpy(reinterpret_cast<Slice*>(&value) + slice, &to, sizeof to);
+}
+
+/// A 6x6 block: six columns (or six rows, where said so) of six entries and two zeros.
 struct Block6 {
   Lane8 column[6];
 };

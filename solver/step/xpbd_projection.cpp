@@ -33,11 +33,11 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
 
     add_side(s, jacobian, false, rod.segments[a]);
     add_side(s, jacobian, true, rod.segments[b]);
-    for (int r = 0; r < 6; ++r) s[r] = with_lane_6(s[r], broadcast(-residual[r]));
-    RowOperations ops;
-    iteration.definite &= invert(s, ops);
-    Lane8 delta_lambda{};
-    for (int r = 0; r < 6; ++r) delta_lambda[r] = s[r][6] * ops.inverse[r][6];
+    Block6 rows;
+    for (int r = 0; r < 6; ++r) rows.column[r] = with_lane_6(s[r], broadcast(-residual[r]));
+    RowFactor factor;
+    iteration.definite &= decompose(rows, factor);
+    const Lane8 delta_lambda = solution(factor, rows);
 
     for (int r = 0; r < 6; ++r) lambda[r] += delta_lambda[r];
     Lane8 on_a, on_b;
