@@ -84,7 +84,8 @@ std::deque<Member> built(const std::vector<TaskRun>& runs) {
   return members;
 }
 
-bool simulate(std::deque<Member>& members, const StopRequested& stop, const Stopwatch& watch) {
+bool simulate(std::deque<Member>& members, const StopRequested& stop) {
+  const Stopwatch watch;
   std::vector<Scene> scenes;
   for (const Member& member : members) scenes.push_back(member.scene);
   const TimeSpec& time = members.front().run.spec.time;
@@ -118,6 +119,17 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop, const Stop
   return true;
 }
 
+/// As many as a batch holds.
+bool evaluate_at_once(const std::vector<TaskRun>& runs, const StopRequested& stop) {
+  std::deque<Member> members = built(runs);
+  try {
+    return members.empty() || simulate(members, stop);
+  } catch (const std::exception& error) {
+    for (const Member& member : members) fail(*member.run.record, error);
+    return true;
+  }
+}
+
 }  // namespace
 
 bool steps_in_batches(const TaskSpec& spec) {
@@ -135,11 +147,10 @@ BatchKey batch_key(const TaskSpec& spec) {
 bool evaluate_batch(const std::vector<TaskRun>& runs, const StopRequested& stop) {
   const Stopwatch watch;
   bool finished = true;
-  std::deque<Member> members = built(runs);
-  try {
-    if (!members.empty()) finished = simulate(members, stop, watch);
-  } catch (const std::exception& error) {
-    for (const Member& member : members) fail(*member.run.record, error);
+  for (std::size_t first = 0; first < runs.size() && finished; first += BatchedRods::lanes) {
+    const std::size_t end = std::min(first + BatchedRods::lanes, runs.size());
+    finished = evaluate_at_once(
+        {runs.begin() + static_cast<std::ptrdiff_t>(first), runs.begin() + static_cast<std::ptrdiff_t>(end)}, stop);
   }
   for (const TaskRun& run : runs) run.record->elapsed_s[0] = watch.seconds() / static_cast<double>(runs.size());
   return finished;

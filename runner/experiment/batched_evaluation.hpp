@@ -1,4 +1,4 @@
-// Simulations of a data set, up to eight at once, one per SIMD lane (solver/batch/batched_step.hpp).
+// Simulations of a data set, one in each lane of a register at once (solver/batch/batched_step.hpp).
 //
 // A task's record is the same to the bit in every batch, also alone in one: what is simulated together is a matter of
 // speed only. Systems have no times of their own; a step's and a task's are its share of the batch's.
@@ -25,7 +25,7 @@ bool steps_in_batches(const TaskSpec& spec);
 using BatchKey = std::tuple<int, Clamp, double, int, int, double>;
 BatchKey batch_key(const TaskSpec& spec);
 
-/// evaluate() of all of them, one to eight that fit together. False: abandoned on request, and so are all records.
+/// evaluate() of all of them, one or more that fit together. False: abandoned on request, and so are all records.
 bool evaluate_batch(const std::vector<TaskRun>& runs, const StopRequested& stop);
 
 /// evaluate() with the time that the task takes in a full batch, where it would be in one: what a plan estimates from.

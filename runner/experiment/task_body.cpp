@@ -10,12 +10,9 @@
 #include "runner/experiment/batched_evaluation.hpp"
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/file/extension.hpp"
-#include "solver/batch/batched_rods.hpp"
 
 namespace rodsweep {
 namespace {
-
-static_assert(Assign::most <= BatchedRods::lanes, "an assignment must fit into a batch");
 
 /// Of a task that throws nothing is kept but why.
 bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& evaluate, const StopRequested& stop) {

@@ -2,7 +2,7 @@
 
 namespace rodsweep {
 void linearize(const BatchedRods& rods, BatchedLinearization& out) {
-  Lane8 residual{}, squared_norm{}, squared_gap{};
+  Lane residual{}, squared_norm{}, squared_gap{};
   for (std::size_t k = 0; k < rods.joints.size(); ++k) {
     const BatchedJoint& joint = rods.joints[k];
     const BatchedSegment &a = rods.segments[k], &b = rods.segments[k + 1];

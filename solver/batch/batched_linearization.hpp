@@ -1,4 +1,4 @@
-// Constraints of eight equal chains at once: linearization.hpp's, rod r in lane r.
+// Constraints of several equal chains at once: linearization.hpp's, rod r in lane r.
 //
 // Of a joint's Jacobian only what H is made of is kept. Residual, norm and gap are those of b in the joints' frames;
 // the stretch-shear rows of b are left in the frames of the joints' second segments, R_b^T R_m = H^T, for
@@ -13,14 +13,14 @@ namespace rodsweep {
 
 struct BatchedJacobian {
   LaneQuaternion turn;  ///< d
-  Lane8 scale;          ///< 1 / (1 + w)
+  Lane scale;           ///< 1 / (1 + w)
 };
 
 /// H = R(d^(1/2)) = w I + [v]x + v v^T / (1 + w).
 inline LaneMatrix half_turn(const BatchedJacobian& jacobian) {
   const LaneQuaternion& d = jacobian.turn;
   const LaneVector v = {d.x, d.y, d.z}, scaled = jacobian.scale * v;
-  const Lane8 xy = v.x * scaled.y, xz = v.x * scaled.z, yz = v.y * scaled.z;
+  const Lane xy = v.x * scaled.y, xz = v.x * scaled.z, yz = v.y * scaled.z;
   return {{d.w + v.x * scaled.x, xy + v.z, xz - v.y},
           {xy - v.z, d.w + v.y * scaled.y, yz + v.x},
           {xz + v.y, yz - v.x, d.w + v.z * scaled.z}};
@@ -32,9 +32,9 @@ struct BatchedLinearization {
   std::vector<BatchedJacobian> joints;
   std::vector<LaneVector6> b;  ///< -C - alpha~ lambda, its first three rows turned by H^T
 
-  Lane8 residual;      ///< max |b|
-  Lane8 squared_norm;  ///< of b
-  Lane8 squared_gap;   ///< of the widest joint, over the joint length
+  Lane residual;      ///< max |b|
+  Lane squared_norm;  ///< of b
+  Lane squared_gap;   ///< of the widest joint, over the joint length
 };
 
 /// Evaluates `out` at the rods' positions.

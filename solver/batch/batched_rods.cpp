@@ -66,7 +66,7 @@ void put(BatchedSegment& out, int lane, const Rod& rod, std::size_t s) {
   out.inverse_inertia_axial[lane] = segment.inverse_inertia_axial;
   out.root_inverse_inertia_transverse[lane] = std::sqrt(segment.inverse_inertia_transverse);
   out.root_inverse_inertia_axial[lane] = std::sqrt(segment.inverse_inertia_axial);
-  out.inertia_excess[lane] = segment.inertia_axial - segment.inertia_transverse;
+  out.gyration[lane] = (segment.inertia_axial - segment.inertia_transverse) * segment.inverse_inertia_transverse;
   put(out.position, lane, rod.position[s]);
   put(out.velocity, lane, rod.velocity[s]);
   put(out.angular_velocity, lane, rod.angular_velocity[s]);

@@ -1,4 +1,5 @@
-// Up to eight equal chains side by side, rod r in lane r of every number: the state of the batched step.
+// Equal chains side by side, as many as a register has lanes, rod r in lane r of every number: the state of the batched
+// step.
 //
 // Equal means: as many segments, joint k between segments k and k + 1, the same segments static. Everything else
 // (sizes, moduli, rest shapes, states, gravity, damping) is each rod's own. Lanes beyond the last rod repeat it, so
@@ -15,9 +16,9 @@ namespace rodsweep {
 
 struct BatchedSegment {
   bool is_static;
-  Lane8 inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;
-  Lane8 root_inverse_inertia_transverse, root_inverse_inertia_axial;  ///< their square roots
-  Lane8 inertia_excess;                                               ///< axial minus transverse
+  Lane inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;
+  Lane root_inverse_inertia_transverse, root_inverse_inertia_axial;  ///< their square roots
+  Lane gyration;                                                     ///< (axial - transverse) / transverse inertia
   LaneVector position, velocity, angular_velocity;
   LaneQuaternion orientation;
   LaneVector old_position;  ///< at the start of the step
@@ -26,18 +27,17 @@ struct BatchedSegment {
 
 struct BatchedJoint {
   LaneVector arm_a, arm_b;  ///< divided by l
-  Lane8 inverse_length;     ///< 1/l [1/m]
+  Lane inverse_length;      ///< 1/l [1/m]
   LaneVector6 compliance;   ///< alpha~ [1/(kg m^2)]
   LaneQuaternion rest;
   LaneVector6 lambda;
 };
 
 struct BatchedRods {
-  static constexpr int lanes = 8;
+  static constexpr int lanes = lane_width;
 
-  /// From the states of scenes of one rod each, for steps of dt. Throws SceneError: fewer than one or more than eight
-  /// scenes, rods that are not equal chains, a joint between static segments, moving clamps or
-  /// point loads.
+  /// From the states of scenes of one rod each, for steps of dt. Throws SceneError: no scene or more than `lanes`, rods
+  /// that are not equal chains, a joint between static segments, moving clamps or point loads.
   BatchedRods(const std::vector<Scene>& scenes, double dt);
 
   /// Writes the state of rod `lane` into its scene.
@@ -47,7 +47,7 @@ struct BatchedRods {
   std::vector<BatchedSegment> segments;
   std::vector<BatchedJoint> joints;
   LaneVector gravity;
-  Lane8 damping;          ///< 1 / (1 + c dt)
+  Lane damping;           ///< 1 / (1 + c dt)
   bool stretches_evenly;  ///< every joint is as compliant along its rod as across
 };
 

@@ -67,33 +67,29 @@ void BatchedStepper::write(int rod, Scene& scene) const {
 
 void BatchedStepper::predict() {
   const double dt = settings_.dt;
-  const LaneVector gain = broadcast(dt) * rods_.gravity;
+  const LaneVector gain = all_lanes(dt) * rods_.gravity;
   for (BatchedSegment& segment : rods_.segments) {
     segment.old_position = segment.position;
     segment.old_orientation = segment.orientation;
     if (segment.is_static) continue;
-    // The gyroscopic torque is transverse, so that I^-1 scales it.
-    const LaneVector axis = director(segment.orientation);
-    const LaneVector& w = segment.angular_velocity;
-    const Lane8 spin = segment.inertia_excess * segment.inverse_inertia_transverse * dot(axis, w);
-    const LaneVector turn = w - (dt * spin) * cross(w, axis);
+    const LaneVector turn = gyrated(segment.angular_velocity, director(segment.orientation), dt * segment.gyration);
     segment.position =
         select(sound_, segment.position + (dt * rods_.damping) * (segment.velocity + gain), segment.position);
     segment.orientation =
         select(sound_, rotated(segment.orientation, (dt * rods_.damping) * turn), segment.orientation);
   }
-  const Lane8 zero{};
+  const Lane zero{};
   for (BatchedJoint& joint : rods_.joints)
-    for (Lane8& row : joint.lambda.row) row = sound_ ? zero : row;
+    for (Lane& row : joint.lambda.row) row = sound_ ? zero : row;
 }
 
 void BatchedStepper::update_velocities() {
   const double inverse_dt = 1 / settings_.dt;
   for (BatchedSegment& segment : rods_.segments) {
     segment.velocity =
-        select(sound_, broadcast(inverse_dt) * (segment.position - segment.old_position), segment.velocity);
+        select(sound_, all_lanes(inverse_dt) * (segment.position - segment.old_position), segment.velocity);
     segment.angular_velocity =
-        select(sound_, broadcast(inverse_dt) * rotation(segment.orientation, segment.old_orientation),
+        select(sound_, all_lanes(inverse_dt) * rotation(segment.orientation, segment.old_orientation),
                segment.angular_velocity);
   }
 }

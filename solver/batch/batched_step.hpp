@@ -1,7 +1,7 @@
-// The time step of time_step.hpp with the direct solve, for up to eight equal chains at once, one per lane: what makes
-// data generation fast. Each rod goes as it would alone, to rounding, and to the bit as it would in any other batch: a
-// lane that has converged is left as it is while the others iterate, and one whose solve fails is left as it is for
-// good. Nothing allocates after construction.
+// The time step of time_step.hpp with the direct solve, for as many equal chains at once as a register has lanes, one
+// in each: what makes data generation fast. Each rod goes as it would alone, to rounding, and to the bit as it would in
+// any other batch: a lane that has converged is left as it is while the others iterate, and one whose solve fails is
+// left as it is for good. Nothing allocates after construction.
 #pragma once
 
 #include <vector>

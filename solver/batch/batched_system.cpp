@@ -15,15 +15,15 @@ struct Sides {
   LaneVector6 shift[6]{};  ///< columns of -S/(m l), m the mass of a; zero beyond the stretch-shear rows and columns
 };
 
-inline void put(const LaneVector& v, Lane8* to) {
+inline void put(const LaneVector& v, Lane* to) {
   to[0] = v.x;
   to[1] = v.y;
   to[2] = v.z;
 }
 
 /// The last three rows, [v]x + w I; t and a are D^1/2 across the segment and along it.
-inline void put_bend(const LaneQuaternion& d, const Lane8& w, const Lane8& t, const Lane8& a, Side& out) {
-  const Lane8 tw = t * w, tz = t * d.z;
+inline void put_bend(const LaneQuaternion& d, const Lane& w, const Lane& t, const Lane& a, Side& out) {
+  const Lane tw = t * w, tz = t * d.z;
   put({tw, tz, -t * d.y}, out.column[0].row + 3);
   put({-tz, tw, t * d.x}, out.column[1].row + 3);
   put({a * d.y, -a * d.x, a * w}, out.column[2].row + 3);
@@ -31,14 +31,14 @@ inline void put_bend(const LaneQuaternion& d, const Lane8& w, const Lane8& t, co
 
 /// -S [arm_a]x, then [v]x - w I; and the shift.
 inline void put_side_a(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
-  const Lane8 &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial;
+  const Lane &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial;
   const LaneMatrix s = rotation_matrix(conjugate(d));
   const LaneVector arm = t * joint.arm_a;
   put(arm.y * s.z - arm.z * s.y, out.a.column[0].row);
   put(arm.z * s.x - arm.x * s.z, out.a.column[1].row);
   put((a * joint.arm_a.x) * s.y - (a * joint.arm_a.y) * s.x, out.a.column[2].row);
   put_bend(d, -d.w, t, a, out.a);
-  const Lane8 scale = -segment.inverse_mass * joint.inverse_length;
+  const Lane scale = -segment.inverse_mass * joint.inverse_length;
   put(scale * s.x, out.shift[0].row);
   put(scale * s.y, out.shift[1].row);
   put(scale * s.z, out.shift[2].row);
@@ -46,7 +46,7 @@ inline void put_side_a(const LaneQuaternion& d, const BatchedJoint& joint, const
 
 /// [arm_b]x, then [v]x + w I.
 inline void put_side_b(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
-  const Lane8 &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial, zero{};
+  const Lane &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial, zero{};
   const LaneVector arm = t * joint.arm_b;
   put({zero, arm.z, -arm.y}, out.b.column[0].row);
   put({-arm.z, zero, arm.x}, out.b.column[1].row);
@@ -89,7 +89,7 @@ inline void put_turned_compliance(const BatchedJacobian& jacobian, const LaneVec
 }
 
 /// A column of B_k: of side a of joint k, and of side b of the joint before, 1 / `inverse_length` long.
-inline LaneVector6 coupling(const Sides& sides, const Side& before, const Lane8& inverse_length, int c) {
+inline LaneVector6 coupling(const Sides& sides, const Side& before, const Lane& inverse_length, int c) {
   LaneVector6 out = sides.shift[c];
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) out[i] *= inverse_length;
@@ -103,7 +103,7 @@ inline LaneVector6 coupling(const Sides& sides, const Side& before, const Lane8&
 }  // namespace
 
 LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
-  LaneMask positive = Lane8{} < 1;
+  LaneMask positive = Lane{} < 1;
   if (columns_.empty()) return positive;
   std::size_t k = columns_.size() - 1;
   Sides sides[2];  // of joint k and of the one before, by the last bit of their numbers
@@ -140,7 +140,7 @@ LaneMask BatchedSystem::below(double tolerance) const {
 
 BatchedSystem::Outcome BatchedSystem::solve(const BatchedRods& rods) {
   const LaneMask positive = eliminate(rods);
-  Lane8 sum{};
+  Lane sum{};
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     Column& column = columns_[k];
     LaneVector6 y = column.solution;
@@ -157,7 +157,7 @@ void BatchedSystem::write_solution(int lane, double* solution) const {
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     const LaneVector6& y = columns_[k].solution;
     const LaneVector stretch = half_turn(linearization_.joints[k]) * LaneVector{y[0], y[1], y[2]};
-    for (const Lane8& row : {stretch.x, stretch.y, stretch.z, y[3], y[4], y[5]}) *solution++ = row[lane];
+    for (const Lane& row : {stretch.x, stretch.y, stretch.z, y[3], y[4], y[5]}) *solution++ = row[lane];
   }
 }
 

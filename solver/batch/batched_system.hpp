@@ -1,4 +1,4 @@
-// The linear system of a Newton iteration of eight equal chains at once, solved by block LDL^T: linear_system.hpp's
+// The linear system of a Newton iteration of several equal chains at once, solved by block LDL^T: linear_system.hpp's
 // equations, rod r in lane r.
 //
 // The stretch-shear rows, which the joint's frame has, are eliminated turned into that of its second segment: with

@@ -1,4 +1,4 @@
-// 6x6 blocks and vectors of six of eight rods at once, one rod per lane: the kernels of a block LDL^T.
+// 6x6 blocks and vectors of six of several rods at once, one rod per lane: the kernels of a block LDL^T.
 //
 // Of symmetric blocks only the lower triangle is touched, by rows; other blocks are arrays of six columns. L is unit
 // lower triangular, its rows below the diagonal one after the other. Loops over the entries of a triangle unroll, so
@@ -10,10 +10,10 @@
 namespace rodsweep {
 
 struct LaneVector6 {
-  Lane8 row[6];
+  Lane row[6];
 
-  const Lane8& operator[](int i) const { return row[i]; }
-  Lane8& operator[](int i) { return row[i]; }
+  const Lane& operator[](int i) const { return row[i]; }
+  Lane& operator[](int i) { return row[i]; }
 };
 
 /// Symmetric.
@@ -25,20 +25,20 @@ struct LaneBlock {
 };
 
 struct LaneFactor {
-  Lane8 l[15];
+  Lane l[15];
   LaneVector6 inverse_pivot;  ///< 1 / d
 
-  const Lane8& at(int row, int column) const { return l[row * (row - 1) / 2 + column]; }
-  Lane8& at(int row, int column) { return l[row * (row - 1) / 2 + column]; }
+  const Lane& at(int row, int column) const { return l[row * (row - 1) / 2 + column]; }
+  Lane& at(int row, int column) { return l[row * (row - 1) / 2 + column]; }
 };
 
 /// S = L D L^T; s is used up. Returns where all pivots are positive (false for NaN). Pivots come in pairs, the second
 /// as the determinant of both over the first, so that it need not wait for the first division.
 inline LaneMask factorise(LaneBlock& s, LaneFactor& out) {
-  LaneMask positive = Lane8{} < 1;
+  LaneMask positive = Lane{} < 1;
 #pragma GCC unroll 3
   for (int j = 0; j < 6; j += 2) {
-    const Lane8 determinant = s[j][j] * s[j + 1][j + 1] - s[j + 1][j] * s[j + 1][j];
+    const Lane determinant = s[j][j] * s[j + 1][j + 1] - s[j + 1][j] * s[j + 1][j];
     positive &= (s[j][j] > 0) & (determinant > 0);
     out.inverse_pivot[j] = 1 / s[j][j];
     out.inverse_pivot[j + 1] = s[j][j] / determinant;

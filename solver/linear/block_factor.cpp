@@ -17,7 +17,7 @@ inline void subtract_product(const Block6& from, const Block6& b, const Block6& 
     const RowSlice slice(x, p);
 #pragma GCC unroll 6
     for (int r = 0; r < 6; ++r) {
-      Slice row = slice_of(from.column[r], p);
+      Lane row = slice_of(from.column[r], p);
 #pragma GCC unroll 6
       for (int j = 0; j < 6; ++j) row -= reinterpret_cast<const double*>(&b.column[j])[r] * slice.row[j];
       set_slice(target.column[r], p, row);
@@ -216,7 +216,7 @@ bool BlockFactor::eliminate(const BlockMatrix& a, const double* b) {
       for (int p = 0; p < slices; ++p) {
         RowSlice rows(before, p);
         forward(factor, rows);
-        if (p == 6 / slice_width) rows.take_lane_6(s);
+        if (p == 6 / lane_width) rows.take_lane_6(s);
         rows.store(w, p);
         divide(factor, rows);
         rows.store(u, p);

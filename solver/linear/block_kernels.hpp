@@ -3,7 +3,7 @@
 //   W = L^-1 B     and     L^-T D^-1 W.
 //
 // Pivots come in pairs, the second as the determinant of both over the first, so that it need not wait for the first
-// division. All of it works on one register's columns after the other (Slice): six rows of a slice and a broadcast
+// division. All of it works on one register's columns after the other (Lane): six rows of a slice and a broadcast
 // factor fit into the registers of any processor.
 #pragma once
 
@@ -23,13 +23,13 @@ inline Lane8 in_lane_6(double value) { return Lane8{0, 0, 0, 0, 0, 0, value, 0};
 
 /// L below its diagonal of ones and 1 / D, every entry in all lanes.
 struct RowFactor {
-  Slice l[6][6];
-  Slice inverse_pivot[6];
+  Lane l[6][6];
+  Lane inverse_pivot[6];
 };
 
 /// One slice of the six rows of a block.
 struct RowSlice {
-  Slice row[6];
+  Lane row[6];
 
   RowSlice(const Block6& rows, int slice) {
 #pragma GCC unroll 6
@@ -37,9 +37,9 @@ struct RowSlice {
   }
   /// Of the slice that has it.
   void take_lane_6(const Block6& rows) {
-    const auto lane_6 = slice_of(in_lane_6(1), 6 / slice_width) > 0;
+    const auto lane_6 = slice_of(in_lane_6(1), 6 / lane_width) > 0;
 #pragma GCC unroll 6
-    for (int r = 0; r < 6; ++r) row[r] = lane_6 ? slice_of(rows.column[r], 6 / slice_width) : row[r];
+    for (int r = 0; r < 6; ++r) row[r] = lane_6 ? slice_of(rows.column[r], 6 / lane_width) : row[r];
   }
   void store(Block6& rows, int slice) const {
 #pragma GCC unroll 6
@@ -75,8 +75,8 @@ inline bool decompose(Block6& s, RowFactor& out) {
 #pragma GCC unroll 4
   for (int p = 0; p < slices; ++p) {
     RowSlice rows(s, p);
-    Slice(&row)[6] = rows.row;
-    const int begin = std::min(6, p * slice_width), end = std::min(6, begin + slice_width);
+    Lane(&row)[6] = rows.row;
+    const int begin = std::min(6, p * lane_width), end = std::min(6, begin + lane_width);
     forward(out, rows, begin);
 #pragma GCC unroll 3
     for (int j = begin; j < end; j += 2) {
@@ -85,13 +85,13 @@ inline bool decompose(Block6& s, RowFactor& out) {
       const double determinant = first * row[j + 1][lane + 1] - across * across;
       smallest = smallest < first ? smallest : first;
       smallest = smallest < determinant ? smallest : determinant;
-      out.inverse_pivot[j] = Slice{} + 1 / first;
-      out.inverse_pivot[j + 1] = Slice{} + first / determinant;
+      out.inverse_pivot[j] = Lane{} + 1 / first;
+      out.inverse_pivot[j + 1] = Lane{} + first / determinant;
 #pragma GCC unroll 2
       for (int c = j; c < j + 2; ++c)
 #pragma GCC unroll 6
         for (int k = c + 1; k < 6; ++k) {
-          out.l[k][c] = (Slice{} + row[k][c - begin]) * out.inverse_pivot[c];
+          out.l[k][c] = (Lane{} + row[k][c - begin]) * out.inverse_pivot[c];
           row[k] -= out.l[k][c] * row[c];
         }
     }
@@ -102,7 +102,7 @@ inline bool decompose(Block6& s, RowFactor& out) {
 
 /// S^-1 b of the rows L^-1 S that decompose() leaves, b in lane 6.
 inline Lane8 solution(const RowFactor& factor, const Block6& s) {
-  constexpr int slice = 6 / slice_width, lane = 6 % slice_width;
+  constexpr int slice = 6 / lane_width, lane = 6 % lane_width;
   RowSlice rows(s, slice);
   divide(factor, rows);
   backward(factor, rows);

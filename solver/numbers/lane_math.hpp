@@ -1,4 +1,5 @@
-// Vectors and quaternions of eight rods at once, rod r in lane r: the arithmetic of the batched step.
+// Vectors and quaternions of as many segments as a register has lanes, each in a lane of every number: segments of one
+// rod next to each other (lane_records.hpp), or the same one of as many rods (batch/).
 //
 // The rotation maps are those of rotation.hpp.
 #pragma once
@@ -9,21 +10,21 @@
 
 namespace rodsweep {
 
-using LaneMask = decltype(Lane8{} < Lane8{});  ///< every bit of a lane set, or none
+using LaneMask = decltype(Lane{} < Lane{});  ///< every bit of a lane set, or none
 
 struct LaneVector {
-  Lane8 x, y, z;
+  Lane x, y, z;
 };
 
 struct LaneQuaternion {
-  Lane8 w, x, y, z;
+  Lane w, x, y, z;
 };
 
 inline LaneVector operator+(const LaneVector& a, const LaneVector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline LaneVector operator-(const LaneVector& a, const LaneVector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline LaneVector operator-(const LaneVector& a) { return {-a.x, -a.y, -a.z}; }
-inline LaneVector operator*(const Lane8& s, const LaneVector& a) { return {s * a.x, s * a.y, s * a.z}; }
-inline Lane8 dot(const LaneVector& a, const LaneVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline LaneVector operator*(const Lane& s, const LaneVector& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Lane dot(const LaneVector& a, const LaneVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline LaneVector cross(const LaneVector& a, const LaneVector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -36,41 +37,41 @@ inline LaneQuaternion select(const LaneMask& where, const LaneQuaternion& a, con
   return {where ? a.w : b.w, where ? a.x : b.x, where ? a.y : b.y, where ? a.z : b.z};
 }
 
+inline Lane all_lanes(double value) { return Lane{} + value; }
+
 inline bool any(const LaneMask& mask) {
   bool out = false;
-  for (int lane = 0; lane < 8; ++lane) out |= mask[lane] != 0;
+  for (int lane = 0; lane < lane_width; ++lane) out |= mask[lane] != 0;
   return out;
 }
 
-inline Lane8 absolute(const Lane8& value) { return value < 0 ? -value : value; }
-inline Lane8 larger(const Lane8& a, const Lane8& b) { return a < b ? b : a; }
+inline Lane absolute(const Lane& value) { return value < 0 ? -value : value; }
+inline Lane larger(const Lane& a, const Lane& b) { return a < b ? b : a; }
 
 /// cos(2 pi t), to 1e-13: the sine of a quarter less the distance to the next whole number, by its series.
-inline Lane8 cosine_of_turns(const Lane8& t) {
+inline Lane cosine_of_turns(const Lane& t) {
   constexpr double whole = 0x1.8p52;  // what is added to it has no fraction
   constexpr double pi = 3.14159265358979323846;
-  const Lane8 angle = 2 * pi * (0.25 - absolute(t - ((t + whole) - whole)));
-  Lane8 sum{};
+  const Lane angle = 2 * pi * (0.25 - absolute(t - ((t + whole) - whole)));
+  Lane sum{};
   for (int n = 19; n > 1; n -= 2) sum = -angle * angle / (n * (n - 1)) * (1 + sum);
   return angle * (1 + sum);
 }
 
-inline Lane8 square_root(Lane8 value) {
-  Eigen::Map<Eigen::Array<double, 8, 1>, Eigen::Aligned64> entries(reinterpret_cast<double*>(&value));
+inline Lane square_root(Lane value) {
+  Eigen::Map<Eigen::Array<double, lane_width, 1>, sizeof(Lane)> entries(reinterpret_cast<double*>(&value));
   entries = entries.sqrt();
   return value;
 }
 
-inline Lane8 dot(const LaneQuaternion& a, const LaneQuaternion& b) {
+inline Lane dot(const LaneQuaternion& a, const LaneQuaternion& b) {
   return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline LaneQuaternion operator*(const Lane8& s, const LaneQuaternion& q) {
-  return {s * q.w, s * q.x, s * q.y, s * q.z};
-}
+inline LaneQuaternion operator*(const Lane& s, const LaneQuaternion& q) { return {s * q.w, s * q.x, s * q.y, s * q.z}; }
 
 /// q or -q, whichever is in the hemisphere of `pole`.
 inline LaneQuaternion in_hemisphere_of(const LaneQuaternion& pole, const LaneQuaternion& q) {
-  return (dot(pole, q) < 0 ? broadcast(-1) : broadcast(1)) * q;
+  return (dot(pole, q) < 0 ? all_lanes(-1) : all_lanes(1)) * q;
 }
 
 /// conj(a) b.
@@ -81,7 +82,7 @@ inline LaneQuaternion relative(const LaneQuaternion& a, const LaneQuaternion& b)
 
 /// normalise(q + [0, theta] q / 2).
 inline LaneQuaternion rotated(const LaneQuaternion& q, const LaneVector& theta) {
-  const LaneVector h = broadcast(0.5) * theta;
+  const LaneVector h = all_lanes(0.5) * theta;
   const LaneQuaternion turned = {q.w - h.x * q.x - h.y * q.y - h.z * q.z, q.x + h.x * q.w + h.y * q.z - h.z * q.y,
                                  q.y + h.y * q.w + h.z * q.x - h.x * q.z, q.z + h.z * q.w + h.x * q.y - h.y * q.x};
   return 1 / square_root(dot(turned, turned)) * turned;
@@ -89,7 +90,7 @@ inline LaneQuaternion rotated(const LaneQuaternion& q, const LaneVector& theta) 
 
 /// normalise(q + q [0, phi] / 2).
 inline LaneQuaternion turned(const LaneQuaternion& q, const LaneVector& phi) {
-  const LaneVector h = broadcast(0.5) * phi;
+  const LaneVector h = all_lanes(0.5) * phi;
   const LaneQuaternion moved = {q.w - h.x * q.x - h.y * q.y - h.z * q.z, q.x + h.x * q.w - h.y * q.z + h.z * q.y,
                                 q.y + h.y * q.w - h.z * q.x + h.x * q.z, q.z + h.z * q.w - h.x * q.y + h.y * q.x};
   return 1 / square_root(dot(moved, moved)) * moved;
@@ -105,11 +106,16 @@ inline LaneVector rotation(const LaneQuaternion& q, const LaneQuaternion& old) {
 
 /// R(q) v.
 inline LaneVector operator*(const LaneQuaternion& q, const LaneVector& v) {
-  const LaneVector axis = {q.x, q.y, q.z}, twice = broadcast(2) * cross(axis, v);
+  const LaneVector axis = {q.x, q.y, q.z}, twice = all_lanes(2) * cross(axis, v);
   return v + q.w * twice + cross(axis, twice);
 }
 
 inline LaneQuaternion conjugate(const LaneQuaternion& q) { return {q.w, -q.x, -q.y, -q.z}; }
+
+/// w - f (t . w) w x t: the spin of an axisymmetric body after gyroscopic torque, explicitly; t its axis.
+inline LaneVector gyrated(const LaneVector& w, const LaneVector& axis, const Lane& f) {
+  return w - (f * dot(axis, w)) * cross(w, axis);
+}
 
 /// A segment's local z in the world.
 inline LaneVector director(const LaneQuaternion& q) {
@@ -123,9 +129,9 @@ struct LaneMatrix {
 
 /// R(q).
 inline LaneMatrix rotation_matrix(const LaneQuaternion& q) {
-  const Lane8 x = 2 * q.x, y = 2 * q.y, z = 2 * q.z, one = broadcast(1);
-  const Lane8 wx = q.w * x, wy = q.w * y, wz = q.w * z;
-  const Lane8 xx = q.x * x, yy = q.y * y, zz = q.z * z, xy = q.x * y, xz = q.x * z, yz = q.y * z;
+  const Lane x = 2 * q.x, y = 2 * q.y, z = 2 * q.z, one = all_lanes(1);
+  const Lane wx = q.w * x, wy = q.w * y, wz = q.w * z;
+  const Lane xx = q.x * x, yy = q.y * y, zz = q.z * z, xy = q.x * y, xz = q.x * z, yz = q.y * z;
   return {{one - yy - zz, xy + wz, xz - wy}, {xy - wz, one - xx - zz, yz + wx}, {xz + wy, yz - wx, one - xx - yy}};
 }
 

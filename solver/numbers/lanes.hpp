@@ -15,22 +15,22 @@ using Lane4 = double __attribute__((vector_size(32)));  ///< a vector or quatern
 
 // What one register of the processor holds of a Lane8.
 #if defined(__AVX512F__)
-inline constexpr int slice_width = 8;
+inline constexpr int lane_width = 8;
 #elif defined(__AVX__)
-inline constexpr int slice_width = 4;
+inline constexpr int lane_width = 4;
 #else
-inline constexpr int slice_width = 2;
+inline constexpr int lane_width = 2;
 #endif
-inline constexpr int slices = 8 / slice_width;
-using Slice = double __attribute__((vector_size(8 * slice_width)));
+inline constexpr int slices = 8 / lane_width;
+using Lane = double __attribute__((vector_size(8 * lane_width)));
 
-inline Slice slice_of(const Lane8& value, int slice) {
-  Slice out;
-  std::memcpy(&out, reinterpret_cast<const Slice*>(&value) + slice, sizeof out);
+inline Lane slice_of(const Lane8& value, int slice) {
+  Lane out;
+  std::memcpy(&out, reinterpret_cast<const Lane*>(&value) + slice, sizeof out);
   return out;
 }
-inline void set_slice(Lane8& value, int slice, const Slice& to) {
-  std::memcpy(reinterpret_cast<Slice*>(&value) + slice, &to, sizeof to);
+inline void set_slice(Lane8& value, int slice, const Lane& to) {
+  std::memcpy(reinterpret_cast<Lane*>(&value) + slice, &to, sizeof to);
 }
 
 /// A 6x6 block: six columns (or six rows, where said so) of six entries and two zeros.

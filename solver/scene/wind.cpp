@@ -38,20 +38,21 @@ Wind::Wind(const WindParameters& parameters) : p_(parameters) {
   if (p_.turbulence_m_s == 0) return;
   SplitMix random(p_.seed);
   const double size = p_.turbulence_m_s * std::sqrt(6.0 / p_.turbulence_modes);
-  modes_.assign(static_cast<std::size_t>(p_.turbulence_modes + 7) / 8, Modes{});
+  modes_.assign(static_cast<std::size_t>((p_.turbulence_modes + lane_width - 1) / lane_width), Modes{});
   for (int m = 0; m < p_.turbulence_modes; ++m) {
     Vector3 wave;
     for (int i = 0; i < 3; ++i) wave[i] = normal(random) / p_.turbulence_length_m;
     const double around = 2 * pi * random.uniform();
     const Vector3 across = wave.unitOrthogonal();
     const Vector3 amplitude = size * (std::cos(around) * across + std::sin(around) * wave.cross(across) / wave.norm());
-    Modes& modes = modes_[static_cast<std::size_t>(m / 8)];
+    const int lane = m % lane_width;
+    Modes& modes = modes_[static_cast<std::size_t>(m / lane_width)];
     for (int i = 0; i < 3; ++i) {
-      modes.amplitude[i][m % 8] = amplitude[i];
-      modes.wave[i][m % 8] = wave[i] / (2 * pi);
+      modes.amplitude[i][lane] = amplitude[i];
+      modes.wave[i][lane] = wave[i] / (2 * pi);
     }
-    modes.rate[m % 8] = (p_.turbulence_m_s * wave.norm() * normal(random) - wave.dot(p_.mean_m_s)) / (2 * pi);
-    modes.phase[m % 8] = random.uniform();
+    modes.rate[lane] = (p_.turbulence_m_s * wave.norm() * normal(random) - wave.dot(p_.mean_m_s)) / (2 * pi);
+    modes.phase[lane] = random.uniform();
   }
 }
 
@@ -59,15 +60,15 @@ Vector3 Wind::velocity(const Vector3& position_m, double time_s) const {
   double mean = 1 + p_.gust_strength * std::sin(2 * pi * time_s / p_.gust_period_s);
   if (p_.profile_exponent != 0)
     mean *= std::pow(std::max(position_m.y(), 0.0) / p_.reference_height_m, p_.profile_exponent);
-  Lane8 turbulence[3] = {};
+  Lane turbulence[3] = {};
   for (const Modes& m : modes_) {
-    const Lane8 waves = m.wave[0] * position_m.x() + m.wave[1] * position_m.y() + m.wave[2] * position_m.z();
-    const Lane8 cosine = cosine_of_turns(waves + m.rate * time_s + m.phase);
+    const Lane waves = m.wave[0] * position_m.x() + m.wave[1] * position_m.y() + m.wave[2] * position_m.z();
+    const Lane cosine = cosine_of_turns(waves + m.rate * time_s + m.phase);
     for (int i = 0; i < 3; ++i) turbulence[i] += cosine * m.amplitude[i];
   }
   Vector3 out = mean * p_.mean_m_s;
   for (int i = 0; i < 3; ++i)
-    for (int lane = 0; lane < 8; ++lane) out[i] += turbulence[i][lane];
+    for (int lane = 0; lane < lane_width; ++lane) out[i] += turbulence[i][lane];
   return out;
 }
 

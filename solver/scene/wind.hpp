@@ -56,9 +56,9 @@ class Wind {
                double time_s, double dt) const;
 
  private:
-  /// Eight modes, one in each lane; rate w - k . U. Angles are in turns, an amplitude is zero where there is no mode.
+  /// A mode in each lane; rate w - k . U. Angles are in turns, an amplitude is zero where there is no mode.
   struct Modes {
-    Lane8 amplitude[3], wave[3], rate, phase;
+    Lane amplitude[3], wave[3], rate, phase;
   };
   WindParameters p_;
   std::vector<Modes> modes_;

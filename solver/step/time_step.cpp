@@ -20,9 +20,11 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     if (!scene.rods[static_cast<std::size_t>(clamp.rod)].segments[static_cast<std::size_t>(clamp.segment)].is_static)
       throw SceneError("a moving clamp needs a static segment; segment " + std::to_string(clamp.segment) + " is free");
   }
-  for (const Rod& rod : scene.rods)
-    old_.push_back({rod.position, rod.orientation, std::vector<Vector3>(rod.segments.size(), Vector3::Zero()),
-                    std::vector<Vector3>(rod.segments.size(), Vector3::Zero())});
+  for (const Rod& rod : scene.rods) {
+    flights_.emplace_back(rod);
+    const std::vector<Vector3> none(rod.segments.size(), Vector3::Zero());
+    loads_.push_back({none, none});
+  }
   if (scene.contact) contact_ = std::make_unique<ContactProjection>(scene, *scene.contact);
 }
 
@@ -59,7 +61,7 @@ StepReport TimeStepper::step(Projection& projection) {
     report.penetration = state.penetration;
     report.contact_residual = state.residual;
   }
-  update_velocities();
+  for (std::size_t r = 0; r < scene_.rods.size(); ++r) flights_[r].update_velocities(scene_.rods[r], settings_.dt);
   ++steps_;
   scene_.time_s = start_time_s_ + steps_ * settings_.dt;
   return report;
@@ -70,62 +72,42 @@ double constraint_dt(const Scene& scene, double dt) {
   return dt / std::sqrt(1 + scene.damping_per_s * dt);
 }
 
-void TimeStepper::predict() {
-  const double dt = settings_.dt;
-  const double damping = 1 / (1 + scene_.damping_per_s * dt);
+void TimeStepper::find_loads() {
+  if (scene_.wind)
+    for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
+      const Rod& rod = scene_.rods[r];
+      for (std::size_t s = 0; s < rod.segments.size(); ++s)
+        if (!rod.segments[s].is_static)
+          loads_[r].force_n[s] = scene_.wind->drag(rod.segments[s], rod.position[s], director(rod.orientation[s]),
+                                                   rod.velocity[s], scene_.time_s, settings_.dt);
+    }
   for (const PointLoad& load : scene_.loads) {
-    OldPose& old = old_[static_cast<std::size_t>(load.rod)];
+    SegmentLoads& loads = loads_[static_cast<std::size_t>(load.rod)];
     const std::size_t s = static_cast<std::size_t>(load.segment);
-    old.force[s].setZero();
-    old.torque[s].setZero();
+    if (!scene_.wind) loads.force_n[s].setZero();
+    loads.torque_nm[s].setZero();
   }
   for (const PointLoad& load : scene_.loads) {
-    OldPose& old = old_[static_cast<std::size_t>(load.rod)];
+    SegmentLoads& loads = loads_[static_cast<std::size_t>(load.rod)];
     const std::size_t s = static_cast<std::size_t>(load.segment);
     const Vector3 arm = scene_.rods[static_cast<std::size_t>(load.rod)].orientation[s] * load.arm_m;
-    old.force[s] += load.force_n;
-    old.torque[s] += load.torque_nm + arm.cross(load.force_n);
+    loads.force_n[s] += load.force_n;
+    loads.torque_nm[s] += load.torque_nm + arm.cross(load.force_n);
   }
-  for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
-    Rod& rod = scene_.rods[r];
-    OldPose& old = old_[r];
-    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-      old.position[s] = rod.position[s];
-      old.orientation[s] = rod.orientation[s];
-      const Segment& segment = rod.segments[s];
-      if (segment.is_static) continue;
-      // Axisymmetric inertia: w x I w = (i_a - i_t) (t.w) w x t, transverse to t, and I^-1 = i_t^-1 + excess t t^T.
-      const Vector3 axis = director(rod.orientation[s]);
-      const Vector3& w = rod.angular_velocity[s];
-      const double spin = (segment.inertia_axial - segment.inertia_transverse) * axis.dot(w);
-      const Vector3 torque = old.torque[s] - spin * w.cross(axis);
-      const double excess = segment.inverse_inertia_axial - segment.inverse_inertia_transverse;
-      const Vector3 turn = segment.inverse_inertia_transverse * torque + (excess * axis.dot(torque)) * axis;
-      Vector3 force = old.force[s];
-      if (scene_.wind) force += scene_.wind->drag(segment, rod.position[s], axis, rod.velocity[s], scene_.time_s, dt);
-      const Vector3 velocity = damping * (rod.velocity[s] + dt * (scene_.gravity_m_s2 + segment.inverse_mass * force));
-      rod.position[s] += dt * velocity;
-      rod.orientation[s] = rotated(rod.orientation[s], dt * damping * (w + dt * turn));
-    }
-    rod.lambda.setZero();
-  }
-  const double end = start_time_s_ + (steps_ + 1) * dt;
+}
+
+void TimeStepper::predict() {
+  const bool loaded = scene_.wind || !scene_.loads.empty();
+  if (loaded) find_loads();
+  for (std::size_t r = 0; r < scene_.rods.size(); ++r)
+    flights_[r].predict(scene_.rods[r], settings_.dt, scene_.damping_per_s, scene_.gravity_m_s2,
+                        loaded ? &loads_[r] : nullptr);
+  const double end = start_time_s_ + (steps_ + 1) * settings_.dt;
   for (const MovingClamp& clamp : scene_.clamps) {
     Rod& rod = scene_.rods[static_cast<std::size_t>(clamp.rod)];
     const Pose pose = clamp.pose(end);
     rod.position[static_cast<std::size_t>(clamp.segment)] = pose.position;
     rod.orientation[static_cast<std::size_t>(clamp.segment)] = pose.orientation.normalized();
-  }
-}
-
-void TimeStepper::update_velocities() {
-  const double inverse_dt = 1 / settings_.dt;
-  for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
-    Rod& rod = scene_.rods[r];
-    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-      rod.velocity[s] = inverse_dt * (rod.position[s] - old_[r].position[s]);
-      rod.angular_velocity[s] = inverse_dt * rotation(rod.orientation[s], old_[r].orientation[s]);
-    }
   }
 }
 

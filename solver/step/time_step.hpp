@@ -1,12 +1,11 @@
 // One time step of position-based Cosserat rods, the deck's algorithm (Shao et al. 2021; Deul et al. 2018):
 //
-//   v* = (v + dt a_ext) / (1 + c dt),  w* = (w + dt I^-1 (tau - w x I w)) / (1 + c dt)       explicit gyroscopic term
-//   x* = x + dt v*,  q* = normalise(q + dt [0, w*] q / 2);  held segments go to their pose at the end of the step
+//   free flight from v, w to x*, q* (free_flight.hpp); held segments go to their pose at the end of the step
 //   contacts, if the scene has any, are found from x and x*
 //   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance, then the contacts
 //   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
-//   v = (x - x_old) / dt,  w = (2 / dt) Im(d) / Re(d),  d = q conj(q_old)
-// a_ext: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
+//   v, w of what moved (free_flight.hpp)
+// Loads: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
 // allocates after construction, but for contacts (contact_projection.hpp).
 #pragma once
 
@@ -15,6 +14,7 @@
 
 #include "solver/contact/contact_projection.hpp"
 #include "solver/scene/scene.hpp"
+#include "solver/step/free_flight.hpp"
 #include "solver/step/projection.hpp"
 
 namespace rodsweep {
@@ -47,19 +47,15 @@ class TimeStepper {
   double constraint_dt() const { return rodsweep::constraint_dt(scene_, settings_.dt); }
 
  private:
+  void find_loads();
   void predict();
-  void update_velocities();
 
   Scene& scene_;
   StepSettings settings_;
   double start_time_s_;
   int steps_ = 0;
-  struct OldPose {
-    std::vector<Vector3> position;
-    std::vector<Quaternion> orientation;
-    std::vector<Vector3> force, torque;  ///< of the point loads, per segment
-  };
-  std::vector<OldPose> old_;
+  std::vector<FreeFlight> flights_;             ///< of every rod
+  std::vector<SegmentLoads> loads_;             ///< point loads and wind
   std::unique_ptr<ContactProjection> contact_;  ///< null in a scene without
 };
 

@@ -117,11 +117,11 @@ TEST_CASE("turbulence is as strong as asked for, and forgets over its length and
 TEST_CASE("cosines of eight angles at once are cosines") {
   test::Random random(1);
   for (int i = 0; i < 200; ++i) {
-    Lane8 turns;
-    for (int lane = 0; lane < 8; ++lane) turns[lane] = random.uniform(-3, 3);
+    Lane turns;
+    for (int lane = 0; lane < lane_width; ++lane) turns[lane] = random.uniform(-3, 3);
     turns[0] = i / 8.0 - 12;
-    const Lane8 cosine = cosine_of_turns(turns);
-    for (int lane = 0; lane < 8; ++lane) CHECK(std::abs(cosine[lane] - std::cos(2 * pi * turns[lane])) < 1e-13);
+    const Lane cosine = cosine_of_turns(turns);
+    for (int lane = 0; lane < lane_width; ++lane) CHECK(std::abs(cosine[lane] - std::cos(2 * pi * turns[lane])) < 1e-13);
   }
 }
 
