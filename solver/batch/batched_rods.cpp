@@ -75,10 +75,10 @@ void put(BatchedSegment& out, int lane, const Rod& rod, std::size_t s) {
 
 void put(BatchedJoint& out, int lane, const Rod& rod, std::size_t k, double dt) {
   const Joint& joint = rod.joints[k];
-  put(out.arm_a, lane, joint.arm_a / joint.length);
-  put(out.arm_b, lane, joint.arm_b / joint.length);
-  out.inverse_length[lane] = 1 / joint.length;
-  put(out.rest, lane, joint.rest);
+  put(out.shape.arm_a, lane, joint.arm_a / joint.length);
+  put(out.shape.arm_b, lane, joint.arm_b / joint.length);
+  out.shape.inverse_length[lane] = 1 / joint.length;
+  put(out.shape.rest, lane, joint.rest);
   for (int row = 0; row < 6; ++row) {
     out.compliance[row][lane] = joint.compliance[row] / (dt * dt);
     out.lambda[row][lane] = rod.lambda[static_cast<Eigen::Index>(6 * k) + row];

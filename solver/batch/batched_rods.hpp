@@ -10,6 +10,7 @@
 
 #include "solver/batch/lane_blocks.hpp"
 #include "solver/numbers/lane_math.hpp"
+#include "solver/rod/joint_constraint.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace rodsweep {
@@ -26,10 +27,8 @@ struct BatchedSegment {
 };
 
 struct BatchedJoint {
-  LaneVector arm_a, arm_b;  ///< divided by l
-  Lane inverse_length;      ///< 1/l [1/m]
-  LaneVector6 compliance;   ///< alpha~ [1/(kg m^2)]
-  LaneQuaternion rest;
+  JointShape<Lane> shape;
+  LaneVector6 compliance;  ///< alpha~ [1/(kg m^2)]
   LaneVector6 lambda;
 };
 

@@ -33,12 +33,12 @@ inline void put_bend(const LaneQuaternion& d, const Lane& w, const Lane& t, cons
 inline void put_side_a(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
   const Lane &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial;
   const LaneMatrix s = rotation_matrix(conjugate(d));
-  const LaneVector arm = t * joint.arm_a;
+  const LaneVector arm = t * joint.shape.arm_a;
   put(arm.y * s.z - arm.z * s.y, out.a.column[0].row);
   put(arm.z * s.x - arm.x * s.z, out.a.column[1].row);
-  put((a * joint.arm_a.x) * s.y - (a * joint.arm_a.y) * s.x, out.a.column[2].row);
+  put((a * joint.shape.arm_a.x) * s.y - (a * joint.shape.arm_a.y) * s.x, out.a.column[2].row);
   put_bend(d, -d.w, t, a, out.a);
-  const Lane scale = -segment.inverse_mass * joint.inverse_length;
+  const Lane scale = -segment.inverse_mass * joint.shape.inverse_length;
   put(scale * s.x, out.shift[0].row);
   put(scale * s.y, out.shift[1].row);
   put(scale * s.z, out.shift[2].row);
@@ -47,16 +47,16 @@ inline void put_side_a(const LaneQuaternion& d, const BatchedJoint& joint, const
 /// [arm_b]x, then [v]x + w I.
 inline void put_side_b(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
   const Lane &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial, zero{};
-  const LaneVector arm = t * joint.arm_b;
+  const LaneVector arm = t * joint.shape.arm_b;
   put({zero, arm.z, -arm.y}, out.b.column[0].row);
   put({-arm.z, zero, arm.x}, out.b.column[1].row);
-  put({a * joint.arm_b.y, -a * joint.arm_b.x, zero}, out.b.column[2].row);
+  put({a * joint.shape.arm_b.y, -a * joint.shape.arm_b.x, zero}, out.b.column[2].row);
   put_bend(d, d.w, t, a, out.b);
 }
 
 /// H^T diag(c) H, of the lower triangle's rows of stretch-shear.
-inline void put_turned_compliance(const BatchedJacobian& jacobian, const LaneVector6& c, LaneBlock& out) {
-  const LaneMatrix h = half_turn(jacobian);
+inline void put_turned_compliance(const JointTurn<Lane>& turn, const LaneVector6& c, LaneBlock& out) {
+  const LaneMatrix h = half_turn(turn);
   const LaneVector across = {c[0] * h.x.x, c[1] * h.x.y, c[2] * h.x.z}, up = {c[0] * h.y.x, c[1] * h.y.y, c[2] * h.y.z},
                    along = {c[0] * h.z.x, c[1] * h.z.y, c[2] * h.z.z};
   out[0][0] = dot(across, h.x);
@@ -68,19 +68,19 @@ inline void put_turned_compliance(const BatchedJacobian& jacobian, const LaneVec
 }
 
 /// A_kk but for what the joint after takes from it, and the sides of joint k.
-[[gnu::always_inline]] inline LaneBlock evaluate(const BatchedRods& rods, const BatchedJacobian& jacobian,
-                                                 std::size_t k, Sides& sides) {
+[[gnu::always_inline]] inline LaneBlock evaluate(const BatchedRods& rods, const JointTurn<Lane>& turn, std::size_t k,
+                                                 Sides& sides) {
   const BatchedJoint& joint = rods.joints[k];
   const BatchedSegment &a = rods.segments[k], &b = rods.segments[k + 1];
-  put_side_a(jacobian.turn, joint, a, sides);
-  put_side_b(jacobian.turn, joint, b, sides);
+  put_side_a(turn.d, joint, a, sides);
+  put_side_b(turn.d, joint, b, sides);
   LaneBlock out{};
 #pragma GCC unroll 6
   for (int i = 0; i < 6; ++i) out[i][i] = joint.compliance[i];
-  if (!rods.stretches_evenly) put_turned_compliance(jacobian, joint.compliance, out);
+  if (!rods.stretches_evenly) put_turned_compliance(turn, joint.compliance, out);
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i)
-    out[i][i] += (a.inverse_mass + b.inverse_mass) * joint.inverse_length * joint.inverse_length;
+    out[i][i] += (a.inverse_mass + b.inverse_mass) * joint.shape.inverse_length * joint.shape.inverse_length;
 #pragma GCC unroll 1
   for (const LaneVector6& column : sides.a.column) add_square(out, column);
 #pragma GCC unroll 1
@@ -123,7 +123,7 @@ LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
     LaneVector6 eliminated[6];  // W, by columns
 #pragma GCC unroll 1
     for (int c = 0; c < 6; ++c) {
-      LaneVector6 v = coupling(sides[k % 2], before.b, rods.joints[k - 1].inverse_length, c);
+      LaneVector6 v = coupling(sides[k % 2], before.b, rods.joints[k - 1].shape.inverse_length, c);
       forward(column.factor, v);
       eliminated[c] = v;
       column.u[c] = divided(column.factor, v);
@@ -162,37 +162,37 @@ void BatchedSystem::write_solution(int lane, double* solution) const {
 }
 
 void BatchedSystem::apply(BatchedRods& rods, const LaneMask& where) const {
-  LaneVector impulse{}, turn{};  // on this segment, from the joint before
+  LaneVector impulse{}, twist{};  // on this segment, from the joint before
   for (std::size_t s = 0; s < rods.segments.size(); ++s) {
     BatchedSegment& segment = rods.segments[s];
-    LaneVector next_impulse{}, next_turn{};
+    LaneVector next_impulse{}, next_twist{};
     if (s < columns_.size()) {
-      const BatchedJacobian& jacobian = linearization_.joints[s];
+      const JointTurn<Lane>& turn = linearization_.joints[s];
       const LaneVector6& y = columns_[s].solution;
       BatchedJoint& joint = rods.joints[s];
-      const LaneMatrix half = half_turn(jacobian);
+      const LaneMatrix half = half_turn(turn);
       const LaneVector on_b = {y[0], y[1], y[2]}, bend = {y[3], y[4], y[5]};
       const LaneVector stretch = half * on_b, on_a = half * stretch;
       const LaneVector6 x = {stretch.x, stretch.y, stretch.z, bend.x, bend.y, bend.z};
 #pragma GCC unroll 6
       for (int row = 0; row < 6; ++row) joint.lambda[row] = where ? joint.lambda[row] + x[row] : joint.lambda[row];
-      const LaneQuaternion& d = jacobian.turn;
+      const LaneQuaternion& d = turn.d;
       const LaneVector v = {d.x, d.y, d.z};
       const LaneVector along = d.w * bend, across = cross(v, bend);
-      impulse = impulse + joint.inverse_length * on_a;
-      turn = turn + cross(joint.arm_a, on_a) - along - across;
-      next_impulse = -joint.inverse_length * on_b;
-      next_turn = along - across - cross(joint.arm_b, on_b);
+      impulse = impulse + joint.shape.inverse_length * on_a;
+      twist = twist + cross(joint.shape.arm_a, on_a) - along - across;
+      next_impulse = -joint.shape.inverse_length * on_b;
+      next_twist = along - across - cross(joint.shape.arm_b, on_b);
     }
     if (!segment.is_static) {
-      const LaneVector phi = {segment.inverse_inertia_transverse * turn.x, segment.inverse_inertia_transverse * turn.y,
-                              segment.inverse_inertia_axial * turn.z};
+      const LaneVector phi = {segment.inverse_inertia_transverse * twist.x,
+                              segment.inverse_inertia_transverse * twist.y, segment.inverse_inertia_axial * twist.z};
       const LaneVector moved = segment.position + segment.orientation * (segment.inverse_mass * impulse);
       segment.position = select(where, moved, segment.position);
       segment.orientation = select(where, turned(segment.orientation, phi), segment.orientation);
     }
     impulse = next_impulse;
-    turn = next_turn;
+    twist = next_twist;
   }
 }
 

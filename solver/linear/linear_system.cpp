@@ -58,25 +58,22 @@ void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
     for (int u = side_start_[s]; u < side_start_[s + 1]; ++u) {
       const Side& at_u = sides_[static_cast<std::size_t>(u)];
       const JointSide side_u(linearization_.joints[static_cast<std::size_t>(at_u.joint)], at_u.is_b);
-      const WeightedSide weighted(side_u, segment);
-
       for (int v = side_start_[s]; v < side_start_[s + 1]; ++v, ++next) {
         const Side& at_v = sides_[static_cast<std::size_t>(v)];
         Block6& block = matrix_.blocks[static_cast<std::size_t>(next->block)];
-        Lane8 product[6];
-        if (u == v)
-          weighted.times_itself(product);
-        else
-          weighted.times(JointSide(linearization_.joints[static_cast<std::size_t>(at_v.joint)], at_v.is_b), product);
-        if (!next->first) {
-          for (int c = 0; c < 6; ++c) block.column[c] += product[c];
+        if (u == v) {
+          const Vector6 softness = inverse_dt2 * rod.joints[static_cast<std::size_t>(at_u.joint)].compliance;
+          if (next->first)
+            add_square<true>(side_u, segment, softness.data(), block);
+          else
+            add_square<false>(side_u, segment, nullptr, block);
           continue;
         }
-        if (at_u.joint == at_v.joint) {
-          const Vector6& alpha = rod.joints[static_cast<std::size_t>(at_u.joint)].compliance;
-          for (int c = 0; c < 6; ++c) product[c] += unit_lane[c] * (inverse_dt2 * alpha[c]);
-        }
-        for (int c = 0; c < 6; ++c) block.column[c] = product[c];
+        const JointSide side_v(linearization_.joints[static_cast<std::size_t>(at_v.joint)], at_v.is_b);
+        if (next->first)
+          add_product<true>(side_u, side_v, segment, block);
+        else
+          add_product<false>(side_u, side_v, segment, block);
       }
     }
   }

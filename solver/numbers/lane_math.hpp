@@ -1,5 +1,6 @@
 // Vectors and quaternions of as many segments as a register has lanes, each in a lane of every number: segments of one
-// rod next to each other (lane_records.hpp), or the same one of as many rods (batch/).
+// rod next to each other (lane_records.hpp), or the same one of as many rods (batch/). What a single joint needs as
+// well takes any number T, a double or a Lane.
 //
 // The rotation maps are those of rotation.hpp.
 #pragma once
@@ -12,20 +13,48 @@ namespace rodsweep {
 
 using LaneMask = decltype(Lane{} < Lane{});  ///< every bit of a lane set, or none
 
-struct LaneVector {
-  Lane x, y, z;
+template <class T>
+struct Triple {
+  T x, y, z;
 };
 
-struct LaneQuaternion {
-  Lane w, x, y, z;
+template <class T>
+struct Quad {
+  T w, x, y, z;
 };
 
-inline LaneVector operator+(const LaneVector& a, const LaneVector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline LaneVector operator-(const LaneVector& a, const LaneVector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline LaneVector operator-(const LaneVector& a) { return {-a.x, -a.y, -a.z}; }
-inline LaneVector operator*(const Lane& s, const LaneVector& a) { return {s * a.x, s * a.y, s * a.z}; }
-inline Lane dot(const LaneVector& a, const LaneVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline LaneVector cross(const LaneVector& a, const LaneVector& b) {
+/// A 3x3 matrix by its columns.
+template <class T>
+struct Triples {
+  Triple<T> x, y, z;
+};
+
+using LaneVector = Triple<Lane>;
+using LaneQuaternion = Quad<Lane>;
+using LaneMatrix = Triples<Lane>;
+
+template <class T>
+inline Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class T>
+inline Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class T>
+inline Triple<T> operator-(const Triple<T>& a) {
+  return {-a.x, -a.y, -a.z};
+}
+template <class T>
+inline Triple<T> operator*(const T& s, const Triple<T>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+template <class T>
+inline T dot(const Triple<T>& a, const Triple<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
@@ -64,18 +93,25 @@ inline Lane square_root(Lane value) {
   return value;
 }
 
-inline Lane dot(const LaneQuaternion& a, const LaneQuaternion& b) {
+template <class T>
+inline T dot(const Quad<T>& a, const Quad<T>& b) {
   return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline LaneQuaternion operator*(const Lane& s, const LaneQuaternion& q) { return {s * q.w, s * q.x, s * q.y, s * q.z}; }
+template <class T>
+inline Quad<T> operator*(const T& s, const Quad<T>& q) {
+  return {s * q.w, s * q.x, s * q.y, s * q.z};
+}
 
 /// q or -q, whichever is in the hemisphere of `pole`.
-inline LaneQuaternion in_hemisphere_of(const LaneQuaternion& pole, const LaneQuaternion& q) {
-  return (dot(pole, q) < 0 ? all_lanes(-1) : all_lanes(1)) * q;
+template <class T>
+inline Quad<T> in_hemisphere_of(const Quad<T>& pole, const Quad<T>& q) {
+  const T sign = dot(pole, q) < 0 ? T{} - 1 : T{} + 1;
+  return sign * q;
 }
 
 /// conj(a) b.
-inline LaneQuaternion relative(const LaneQuaternion& a, const LaneQuaternion& b) {
+template <class T>
+inline Quad<T> relative(const Quad<T>& a, const Quad<T>& b) {
   return {dot(a, b), a.w * b.x - a.x * b.w - a.y * b.z + a.z * b.y, a.w * b.y - a.y * b.w - a.z * b.x + a.x * b.z,
           a.w * b.z - a.z * b.w - a.x * b.y + a.y * b.x};
 }
@@ -105,12 +141,16 @@ inline LaneVector rotation(const LaneQuaternion& q, const LaneQuaternion& old) {
 }
 
 /// R(q) v.
-inline LaneVector operator*(const LaneQuaternion& q, const LaneVector& v) {
-  const LaneVector axis = {q.x, q.y, q.z}, twice = all_lanes(2) * cross(axis, v);
+template <class T>
+inline Triple<T> operator*(const Quad<T>& q, const Triple<T>& v) {
+  const Triple<T> axis = {q.x, q.y, q.z}, across = cross(axis, v), twice = across + across;
   return v + q.w * twice + cross(axis, twice);
 }
 
-inline LaneQuaternion conjugate(const LaneQuaternion& q) { return {q.w, -q.x, -q.y, -q.z}; }
+template <class T>
+inline Quad<T> conjugate(const Quad<T>& q) {
+  return {q.w, -q.x, -q.y, -q.z};
+}
 
 /// w - f (t . w) w x t: the spin of an axisymmetric body after gyroscopic torque, explicitly; t its axis.
 inline LaneVector gyrated(const LaneVector& w, const LaneVector& axis, const Lane& f) {
@@ -122,11 +162,6 @@ inline LaneVector director(const LaneQuaternion& q) {
   return {2 * (q.x * q.z + q.w * q.y), 2 * (q.y * q.z - q.w * q.x), 1 - 2 * (q.x * q.x + q.y * q.y)};
 }
 
-/// A 3x3 matrix by its columns.
-struct LaneMatrix {
-  LaneVector x, y, z;
-};
-
 /// R(q).
 inline LaneMatrix rotation_matrix(const LaneQuaternion& q) {
   const Lane x = 2 * q.x, y = 2 * q.y, z = 2 * q.z, one = all_lanes(1);
@@ -135,8 +170,12 @@ inline LaneMatrix rotation_matrix(const LaneQuaternion& q) {
   return {{one - yy - zz, xy + wz, xz - wy}, {xy - wz, one - xx - zz, yz + wx}, {xz + wy, yz - wx, one - xx - yy}};
 }
 
-inline LaneVector operator*(const LaneMatrix& m, const LaneVector& v) { return v.x * m.x + v.y * m.y + v.z * m.z; }
-inline LaneVector transposed_product(const LaneMatrix& m, const LaneVector& v) {
+template <class T>
+inline Triple<T> operator*(const Triples<T>& m, const Triple<T>& v) {
+  return v.x * m.x + v.y * m.y + v.z * m.z;
+}
+template <class T>
+inline Triple<T> transposed_product(const Triples<T>& m, const Triple<T>& v) {
   return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
 }
 

@@ -96,4 +96,21 @@ inline void store(const LaneQuaternion& q, Quaternion* to, int count) {
   store(out, to, count);
 }
 
+/// Of records of four that stand `stride` doubles apart, all of them.
+inline void scatter(const Lane (&v)[4], double* to, std::ptrdiff_t stride) {
+  using namespace lane_records;
+  const Lane out[4] = {part<0>(v, Indices()), part<1>(v, Indices()), part<2>(v, Indices()), part<3>(v, Indices())};
+#pragma GCC unroll 4
+  for (int r = 0; r < 4; ++r) {
+#if defined(__AVX512F__)
+    const Lane4 even = __builtin_shufflevector(out[r], out[r], 0, 1, 2, 3);
+    const Lane4 odd = __builtin_shufflevector(out[r], out[r], 4, 5, 6, 7);
+    std::memcpy(to + 2 * r * stride, &even, sizeof even);
+    std::memcpy(to + (2 * r + 1) * stride, &odd, sizeof odd);
+#else
+    std::memcpy(to + r * W / 4 * stride + r * W % 4, &out[r], sizeof out[r]);
+#endif
+  }
+}
+
 }  // namespace rodsweep

@@ -8,8 +8,6 @@
 
 namespace rodsweep {
 
-inline Lane4 lanes(const Vector3& v) { return Lane4{v.x(), v.y(), v.z(), 0}; }
-
 inline Lane4 lanes(const Quaternion& q) {
   Lane4 out;
   std::memcpy(&out, q.coeffs().data(), sizeof out);
@@ -30,20 +28,6 @@ inline double sum(const Lane4& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 inline Lane4 turned(const Quaternion& q, const Lane4& v) {
   const Lane4 axis = lanes(q), twice = 2 * cross(axis, v);
   return v + q.w() * twice + cross(axis, twice);
-}
-
-/// R(q)^T v.
-inline Lane4 turned_back(const Quaternion& q, const Lane4& v) {
-  const Lane4 axis = lanes(q), twice = 2 * cross(axis, v);
-  return v - q.w() * twice + cross(axis, twice);
-}
-
-/// conj(a) b.
-inline Lane4 relative(const Quaternion& a, const Quaternion& b) {
-  const Lane4 q = lanes(b);
-  return a.w() * q + a.x() * (Lane4{-1, 1, -1, 1} * __builtin_shufflevector(q, q, 3, 2, 1, 0)) +
-         a.y() * (Lane4{-1, -1, 1, 1} * __builtin_shufflevector(q, q, 2, 3, 0, 1)) +
-         a.z() * (Lane4{1, -1, -1, 1} * __builtin_shufflevector(q, q, 1, 0, 3, 2));
 }
 
 /// normalise(q + q [0, phi] / 2), rotation.hpp's rotated(q, R phi): phi in the segment's own frame.

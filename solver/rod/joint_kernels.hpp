@@ -21,42 +21,56 @@ struct JointSide {
         inverse_length(jacobian.inverse_length) {}
 };
 
-/// J M^-1 of one side and its segment.
-class WeightedSide {
- public:
-  WeightedSide(const JointSide& side, const Segment& segment) : side_(side), inverse_mass_(segment.inverse_mass) {
-    const double transverse = segment.inverse_inertia_transverse;
-    rotation_[0] = side.rotation[0] * transverse;
-    rotation_[1] = side.rotation[1] * transverse;
-    rotation_[2] = side.rotation[2] * segment.inverse_inertia_axial;
-  }
-
-  /// Columns of J M^-1 J^T with the same side; these are its rows as well.
-  void times_itself(Lane8 (&column)[6]) const {
-    turning(side_.rotation, column);
-    const double shifting = inverse_mass_ * side_.inverse_length * side_.inverse_length;  // H is orthogonal
-    for (int c = 0; c < 3; ++c) column[c] += unit_lane[c] * shifting;
-  }
-
-  /// Columns of J M^-1 J'^T with another joint's side on the same segment.
-  void times(const JointSide& other, Lane8 (&column)[6]) const {
-    turning(other.rotation, column);
-    for (int j = 0; j < 3; ++j) {
-      const Lane8 shift = widened(inverse_mass_ * side_.shift[j]);
-      for (int c = 0; c < 3; ++c) column[c] += shift * other.shift[j][c];
+/// block = or += J M^-1 J'^T of two joints' sides on one segment.
+template <bool first>
+inline void add_product(const JointSide& side, const JointSide& other, const Segment& segment, Block6& block) {
+  const double weight[3] = {segment.inverse_inertia_transverse, segment.inverse_inertia_transverse,
+                            segment.inverse_inertia_axial};
+#pragma GCC unroll 4
+  for (int p = 0; p < slices; ++p) {
+    Lane rotation[3], shift[3];
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j) rotation[j] = weight[j] * slice_of(side.rotation[j], p);
+    const bool shifts = p * lane_width < 3;
+    if (shifts)
+#pragma GCC unroll 3
+      for (int j = 0; j < 3; ++j) shift[j] = segment.inverse_mass * slice_of(side.shift[j], p);
+#pragma GCC unroll 6
+    for (int c = 0; c < 6; ++c) {
+      Lane column = first ? rotation[0] * entry(other.rotation[0], c)
+                          : slice_of(block.column[c], p) + rotation[0] * entry(other.rotation[0], c);
+      column += rotation[1] * entry(other.rotation[1], c);
+      column += rotation[2] * entry(other.rotation[2], c);
+      if (shifts && c < 3)
+#pragma GCC unroll 3
+        for (int j = 0; j < 3; ++j) column += shift[j] * entry(other.shift[j], c);
+      set_slice(block.column[c], p, column);
     }
   }
+}
 
- private:
-  void turning(const Lane8* other, Lane8 (&column)[6]) const {
-    for (int c = 0; c < 6; ++c)
-      column[c] = rotation_[0] * other[0][c] + rotation_[1] * other[1][c] + rotation_[2] * other[2][c];
+/// block = or += J M^-1 J^T of one side, to whose diagonal `diagonal` is added.
+template <bool first>
+inline void add_square(const JointSide& side, const Segment& segment, const double* diagonal, Block6& block) {
+  const double weight[3] = {segment.inverse_inertia_transverse, segment.inverse_inertia_transverse,
+                            segment.inverse_inertia_axial};
+  const double shift = segment.inverse_mass * side.inverse_length * side.inverse_length;  // H is orthogonal
+#pragma GCC unroll 4
+  for (int p = 0; p < slices; ++p) {
+    Lane rotation[3];
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j) rotation[j] = weight[j] * slice_of(side.rotation[j], p);
+#pragma GCC unroll 6
+    for (int c = 0; c < 6; ++c) {
+      Lane column = rotation[0] * entry(side.rotation[0], c);
+      column += rotation[1] * entry(side.rotation[1], c);
+      column += rotation[2] * entry(side.rotation[2], c);
+      if (!first) column += slice_of(block.column[c], p);
+      if (c / lane_width == p) column += ((first ? diagonal[c] : 0) + (c < 3 ? shift : 0)) * slice_of(unit_lane[c], p);
+      set_slice(block.column[c], p, column);
+    }
   }
-
-  const JointSide& side_;
-  double inverse_mass_;
-  Lane8 rotation_[3];
-};
+}
 
 /// J^T dlambda of one joint: the impulses on its two segments.
 inline void impulses(const JointJacobian& jacobian, const Lane8& multiplier, Lane8& on_a, Lane8& on_b) {

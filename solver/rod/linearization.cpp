@@ -1,101 +1,186 @@
 #include "solver/rod/linearization.hpp"
 
+#include <algorithm>
+
+#include "solver/numbers/lane_records.hpp"
 #include "solver/numbers/lane_vectors.hpp"
 
 namespace rodsweep {
 namespace {
 
-/// Lanes 0..3 of four, the others zero.
-inline Lane8 widened(const Lane4& v) { return __builtin_shufflevector(v, Lane4{}, 0, 1, 2, 3, 4, 4, 4, 4); }
-
-/// The columns of w I and [v]x, d = (v, w), which permute d, in lanes 0..2 and in lanes 3..5.
-struct TurnColumns {
-  Lane4 low[3];
-  Lane8 high[3];
-
-  explicit TurnColumns(const Lane4& d)
-      : low{__builtin_shufflevector(d, d, 3, 2, 1, 0), __builtin_shufflevector(d, d, 2, 3, 0, 1),
-            __builtin_shufflevector(d, d, 1, 0, 3, 2)},
-        high{__builtin_shufflevector(d, d, 3, 3, 3, 3, 2, 1, 0, 0),
-             __builtin_shufflevector(d, d, 2, 2, 2, 2, 3, 0, 1, 1),
-             __builtin_shufflevector(d, d, 1, 1, 1, 1, 0, 3, 2, 2)} {}
+/// A Jacobian by columns of its parts, on any number.
+template <class T>
+struct JacobianParts {
+  Triple<T> shift_a[3], shift_b[3];    // of dC_s/du
+  Triple<T> across_a[3], across_b[3];  // of dC_s/dphi
+  Triple<T> bend_a[3], bend_b[3];      // of dC_b/dphi
 };
 
-// Their signs in w I + [v]x (forth) and [v]x - w I (back).
-constexpr Lane4 forth_low[3] = {{1, 1, -1, 0}, {-1, 1, 1, 0}, {1, -1, 1, 0}};
-constexpr Lane4 back_low[3] = {{-1, 1, -1, 0}, {-1, -1, 1, 0}, {1, -1, -1, 0}};
-constexpr Lane8 forth_high[3] = {{0, 0, 0, 1, 1, -1}, {0, 0, 0, -1, 1, 1}, {0, 0, 0, 1, -1, 1}};
-constexpr Lane8 back_high[3] = {{0, 0, 0, -1, 1, -1}, {0, 0, 0, -1, -1, 1}, {0, 0, 0, 1, -1, -1}};
-
-inline Lane4 product(const Lane4 (&m)[3], const Lane4& v) { return m[0] * v[0] + m[1] * v[1] + m[2] * v[2]; }
-inline Lane4 product(const Lane4 (&m)[3], const Vector3& v) { return m[0] * v[0] + m[1] * v[1] + m[2] * v[2]; }
-
 /// The columns of -M [v]x.
-inline void product_with_cross(const Lane4 (&m)[3], const Vector3& v, Lane4 (&column)[3]) {
-  column[0] = v[1] * m[2] - v[2] * m[1];
-  column[1] = v[2] * m[0] - v[0] * m[2];
-  column[2] = v[0] * m[1] - v[1] * m[0];
+template <class T>
+inline void product_with_cross(const Triple<T> (&m)[3], const Triple<T>& v, Triple<T> (&column)[3]) {
+  column[0] = v.y * m[2] - v.z * m[1];
+  column[1] = v.z * m[0] - v.x * m[2];
+  column[2] = v.x * m[1] - v.y * m[0];
 }
 
-/// d of a joint, in the hemisphere of d0.
-inline Lane4 turn_of(const Rod& rod, const Joint& joint) {
-  const Lane4 d =
-      relative(rod.orientation[static_cast<std::size_t>(joint.a)], rod.orientation[static_cast<std::size_t>(joint.b)]);
-  return sum(d * lanes(joint.rest)) < 0 ? -d : d;
+/// The columns of [v]x + w I.
+template <class T>
+inline void put_bend(const Quad<T>& d, const T& w, Triple<T> (&column)[3]) {
+  column[0] = {w, d.z, -d.y};
+  column[1] = {-d.z, w, d.x};
+  column[2] = {d.y, -d.x, w};
 }
 
-inline void evaluate(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint) {
-  const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
-  const Lane4 d = turn_of(rod, joint);
-  const double inverse_length = 1 / joint.length;
-  const TurnColumns turn(d);
-  const Lane4 v = d * Lane4{1, 1, 1, 0}, scaled = v * (inverse_length / (1 + d[3]));
+template <class T>
+inline JacobianParts<T> parts_of(const JointTurn<T>& turn, const Triples<T>& half, const JointShape<T>& shape) {
+  JacobianParts<T> out;
+  const Triple<T> h[3] = {half.x, half.y, half.z};
+  const Triple<T> h_transposed[3] = {
+      {half.x.x, half.y.x, half.z.x}, {half.x.y, half.y.y, half.z.y}, {half.x.z, half.y.z, half.z.z}};
+  const T minus = -shape.inverse_length;
   for (int c = 0; c < 3; ++c) {
-    const Lane4 outer = scaled * v[c], column = inverse_length * turn.low[c];
-    jacobian.shift_a[c] = outer - back_low[c] * column;
-    jacobian.shift_b[c] = -outer - forth_low[c] * column;
+    out.shift_a[c] = shape.inverse_length * h_transposed[c];
+    out.shift_b[c] = minus * h[c];
   }
+  product_with_cross(h_transposed, shape.arm_a, out.across_a);
+  product_with_cross(h, -shape.arm_b, out.across_b);
+  put_bend(turn.d, -turn.d.w, out.bend_a);
+  put_bend(turn.d, turn.d.w, out.bend_b);
+  return out;
+}
 
-  const Lane4 apart = turned_back(rod.orientation[a], lanes(rod.position[a] - rod.position[b]));
-  const Lane4 stretch = product(jacobian.shift_a, apart) + product(jacobian.shift_a, joint.arm_a) +
-                        product(jacobian.shift_b, joint.arm_b);
-  const Lane4 bend = 2 * (d - lanes(joint.rest));
-  store6(constraint, __builtin_shufflevector(stretch, bend, 0, 1, 2, 4, 5, 6, 3, 3));
+inline void write(const Triple<double> (&column)[3], Lane4 (&to)[3]) {
+  for (int c = 0; c < 3; ++c) to[c] = Lane4{column[c].x, column[c].y, column[c].z, 0};
+}
+inline void write(const Triple<double> (&upper)[3], const Triple<double> (&lower)[3], Lane8 (&to)[3]) {
+  for (int c = 0; c < 3; ++c)
+    to[c] = Lane8{upper[c].x, upper[c].y, upper[c].z, lower[c].x, lower[c].y, lower[c].z, 0, 0};
+}
 
-  Lane4 across_a[3], across_b[3];
-  product_with_cross(jacobian.shift_a, joint.arm_a, across_a);
-  product_with_cross(jacobian.shift_b, joint.arm_b, across_b);
+constexpr std::ptrdiff_t stride = sizeof(JointJacobian) / sizeof(double);
+
+/// Of as many joints as there are lanes, the first of which has `to`.
+inline void write(const LaneVector (&column)[3], Lane4 (&to)[3]) {
+  for (int c = 0; c < 3; ++c)
+    scatter({column[c].x, column[c].y, column[c].z, Lane{}}, reinterpret_cast<double*>(&to[c]), stride);
+}
+inline void write(const LaneVector (&upper)[3], const LaneVector (&lower)[3], Lane8 (&to)[3]) {
   for (int c = 0; c < 3; ++c) {
-    jacobian.rotation_a[c] = widened(across_a[c]) + back_high[c] * turn.high[c];
-    jacobian.rotation_b[c] = widened(across_b[c]) + forth_high[c] * turn.high[c];
+    double* column = reinterpret_cast<double*>(&to[c]);
+    scatter({upper[c].x, upper[c].y, upper[c].z, lower[c].x}, column, stride);
+    scatter({lower[c].y, lower[c].z, Lane{}, Lane{}}, column + 4, stride);
   }
-  jacobian.inverse_length = inverse_length;
+}
+
+template <class T>
+inline void write(const JacobianParts<T>& parts, JointJacobian& to) {
+  write(parts.across_a, parts.bend_a, to.rotation_a);
+  write(parts.across_b, parts.bend_b, to.rotation_b);
+  write(parts.shift_a, to.shift_a);
+  write(parts.shift_b, to.shift_b);
+}
+
+inline Triple<double> numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+inline Quad<double> numbers(const Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+inline const Quaternion& orientation_of_a(const Rod& rod, const Joint& joint) {
+  return rod.orientation[static_cast<std::size_t>(joint.a)];
+}
+inline const Quaternion& orientation_of_b(const Rod& rod, const Joint& joint) {
+  return rod.orientation[static_cast<std::size_t>(joint.b)];
+}
+inline Vector3 apart(const Rod& rod, const Joint& joint) {
+  return rod.position[static_cast<std::size_t>(joint.a)] - rod.position[static_cast<std::size_t>(joint.b)];
+}
+
+JointTurn<double> turn_of(const Rod& rod, const Joint& joint) {
+  return joint_turn(numbers(orientation_of_a(rod, joint)), numbers(orientation_of_b(rod, joint)), numbers(joint.rest));
 }
 
 }  // namespace
 
-Linearization::Linearization(const Rod& rod)
-    : joints(rod.joints.size()), constraint(VectorX::Zero(6 * rod.joint_count())) {}
+Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.joint_count())) {
+  const std::size_t count = rod.joints.size();
+  for (std::size_t first = 0; first < count; first += lane_width) {
+    const Joint* joint[lane_width];
+    for (std::size_t lane = 0; lane < lane_width; ++lane) joint[lane] = &rod.joints[std::min(first + lane, count - 1)];
+    JointShape<Lane> shape;
+    const auto put = [&](LaneVector& out, const auto& v) {
+      for (int lane = 0; lane < lane_width; ++lane) {
+        const Vector3 value = v(*joint[lane]);
+        out.x[lane] = value.x();
+        out.y[lane] = value.y();
+        out.z[lane] = value.z();
+      }
+    };
+    put(shape.arm_a, [](const Joint& j) -> Vector3 { return j.arm_a / j.length; });
+    put(shape.arm_b, [](const Joint& j) -> Vector3 { return j.arm_b / j.length; });
+    for (int lane = 0; lane < lane_width; ++lane) {
+      shape.inverse_length[lane] = 1 / joint[lane]->length;
+      const Quaternion& rest = joint[lane]->rest;
+      shape.rest.w[lane] = rest.w();
+      shape.rest.x[lane] = rest.x();
+      shape.rest.y[lane] = rest.y();
+      shape.rest.z[lane] = rest.z();
+    }
+    shapes.push_back(shape);
+  }
+  joints.resize(shapes.size() * lane_width);
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    joints[k].inverse_length = 1 / rod.joints[std::min(k, count - 1)].length;
+}
 
 Quaternion relative_turn(const Rod& rod, const Joint& joint) {
-  const Lane4 d = turn_of(rod, joint);
-  return Quaternion(d[3], d[0], d[1], d[2]);
+  const Quad<double> d = turn_of(rod, joint).d;
+  return Quaternion(d.w, d.x, d.y, d.z);
 }
 
 Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_frame) {
-  const Lane4 d = turn_of(rod, joint), v = d * Lane4{1, 1, 1, 0}, local = lanes(in_joint_frame);
-  const Lane4 own = d[3] * local + cross(d, local) + v * (sum(v * local) / (1 + d[3]));
-  const Lane4 out = turned(rod.orientation[static_cast<std::size_t>(joint.a)], own);
-  return {out[0], out[1], out[2]};
+  const Triple<double> own = half_turn(turn_of(rod, joint)) * numbers(in_joint_frame);
+  return orientation_of_a(rod, joint) * Vector3(own.x, own.y, own.z);
 }
 
 void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint) {
-  evaluate(rod, joint, jacobian, constraint);
+  const double scale = 1 / joint.length;
+  const JointShape<double> shape = {numbers(joint.rest), numbers(scale * joint.arm_a), numbers(scale * joint.arm_b),
+                                    scale};
+  const JointTurn<double> turn = turn_of(rod, joint);
+  const Triples<double> half = half_turn(turn);
+  const Triple<double> gap =
+      stretch(half, numbers(orientation_of_a(rod, joint)), numbers(scale * apart(rod, joint)), shape);
+  const Triple<double> bent = bend(turn.d, shape.rest);
+  int row = 0;
+  for (const double value : {gap.x, gap.y, gap.z, bent.x, bent.y, bent.z}) constraint[row++] = value;
+  write(parts_of(turn, half, shape), jacobian);
+  jacobian.inverse_length = scale;
 }
 
 void linearize(const Rod& rod, Linearization& out) {
-  for (std::size_t k = 0; k < rod.joints.size(); ++k)
-    evaluate(rod, rod.joints[k], out.joints[k], out.constraint.data() + 6 * k);
+  const std::size_t count = rod.joints.size();
+  std::size_t first = 0;
+  for (const JointShape<Lane>& shape : out.shapes) {
+    const std::size_t here = std::min<std::size_t>(lane_width, count - first);
+    Quaternion of_a[lane_width], of_b[lane_width];
+    Vector3 gaps[lane_width];
+    for (std::size_t lane = 0; lane < lane_width; ++lane) {
+      const Joint& joint = rod.joints[first + std::min(lane, here - 1)];
+      of_a[lane] = orientation_of_a(rod, joint);
+      of_b[lane] = orientation_of_b(rod, joint);
+      gaps[lane] = apart(rod, joint);
+    }
+    const LaneQuaternion a = load(of_a, lane_width);
+    const JointTurn<Lane> turn = joint_turn(a, load(of_b, lane_width), shape.rest);
+    const LaneMatrix half = half_turn(turn);
+    const LaneVector gap = stretch(half, a, shape.inverse_length * load(gaps, lane_width), shape);
+    const LaneVector bent = bend(turn.d, shape.rest);
+    const Lane constraint[6] = {gap.x, gap.y, gap.z, bent.x, bent.y, bent.z};
+    for (std::size_t lane = 0; lane < here; ++lane)
+      for (int row = 0; row < 6; ++row)
+        out.constraint.data()[6 * (first + lane) + row] = reinterpret_cast<const double*>(&constraint[row])[lane];
+    write(parts_of(turn, half, shape), out.joints[first]);
+    first += lane_width;
+  }
 }
 
 }  // namespace rodsweep

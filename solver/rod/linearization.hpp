@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "solver/numbers/lanes.hpp"
+#include "solver/rod/joint_constraint.hpp"
 #include "solver/rod/rod.hpp"
 
 namespace rodsweep {
@@ -30,8 +31,9 @@ struct JointJacobian {
 };
 
 struct Linearization {
-  std::vector<JointJacobian> joints;
-  VectorX constraint;  ///< C, six per joint
+  std::vector<JointJacobian> joints;     ///< whole registers of them: copies of the last one fill up
+  VectorX constraint;                    ///< C, six per joint
+  std::vector<JointShape<Lane>> shapes;  ///< of as many joints as a register has lanes
 
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };
@@ -45,7 +47,7 @@ Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_fra
 /// One joint's Jacobian and the six values of its C at the rod's positions.
 void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint);
 
-/// Evaluates `out` at the rod's positions. Allocates nothing.
+/// Evaluates `out` at the positions of the rod that it was made for. Allocates nothing.
 void linearize(const Rod& rod, Linearization& out);
 
 }  // namespace rodsweep

@@ -4,16 +4,6 @@
 #include "solver/rod/joint_kernels.hpp"
 
 namespace rodsweep {
-namespace {
-
-/// S += J M^-1 J^T of one side of a joint, rows of S.
-void add_side(Lane8 (&s)[6], const JointJacobian& jacobian, bool is_b, const Segment& segment) {
-  Lane8 block[6];
-  WeightedSide(JointSide(jacobian, is_b), segment).times_itself(block);
-  for (int r = 0; r < 6; ++r) s[r] += block[r];
-}
-
-}  // namespace
 
 GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::vector<int>& order, double dt) const {
   const double inverse_dt2 = 1 / (dt * dt);
@@ -27,14 +17,12 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
     auto lambda = rod.lambda.segment<6>(6 * joint_index);
     const Vector6 softness = inverse_dt2 * joint.compliance;
     residual += softness.cwiseProduct(lambda);
-    Lane8 s[6];
-    for (int r = 0; r < 6; ++r) s[r] = unit_lane[r] * softness[r];
     iteration.meet(residual);
 
-    add_side(s, jacobian, false, rod.segments[a]);
-    add_side(s, jacobian, true, rod.segments[b]);
     Block6 rows;
-    for (int r = 0; r < 6; ++r) rows.column[r] = with_lane_6(s[r], broadcast(-residual[r]));
+    add_square<true>(JointSide(jacobian, false), rod.segments[a], softness.data(), rows);
+    add_square<false>(JointSide(jacobian, true), rod.segments[b], nullptr, rows);
+    for (int r = 0; r < 6; ++r) rows.column[r] = with_lane_6(rows.column[r], broadcast(-residual[r]));
     RowFactor factor;
     iteration.definite &= decompose(rows, factor);
     const Lane8 delta_lambda = solution(factor, rows);

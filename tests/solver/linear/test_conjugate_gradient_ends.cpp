@@ -162,7 +162,7 @@ TEST_CASE("after matrix_changed() the preconditioner is that of the new matrix")
   const Case first = moving_chain();
   Rod bent = first.rod;
   for (int s = 1; s < bent.segment_count(); ++s)
-    bent.orientation[s] = Eigen::AngleAxisd(0.3 * s, Vector3(1, 1, 0).normalized()) * bent.orientation[s];
+    bent.orientation[s] = Eigen::AngleAxisd(0.6 * s, Vector3(1, 1, 0).normalized()) * bent.orientation[s];
   const Case second(bent);
   for (const Preconditioner p : preconditioners) {
     if (p == Preconditioner::none) continue;

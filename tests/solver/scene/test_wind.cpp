@@ -121,7 +121,8 @@ TEST_CASE("cosines of eight angles at once are cosines") {
     for (int lane = 0; lane < lane_width; ++lane) turns[lane] = random.uniform(-3, 3);
     turns[0] = i / 8.0 - 12;
     const Lane cosine = cosine_of_turns(turns);
-    for (int lane = 0; lane < lane_width; ++lane) CHECK(std::abs(cosine[lane] - std::cos(2 * pi * turns[lane])) < 1e-13);
+    for (int lane = 0; lane < lane_width; ++lane)
+      CHECK(std::abs(cosine[lane] - std::cos(2 * pi * turns[lane])) < 1e-13);
   }
 }
 
