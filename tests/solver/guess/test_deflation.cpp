@@ -90,8 +90,9 @@ TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations,
   CHECK(with.outcome == SolveOutcome::converged);
   CHECK(with.iterations < 0.8 * without.iterations);
   CHECK((one.system.rhs() - one.a * deflated).norm() < 1e-7 * one.system.rhs().norm());
-  // Without the projection it finds again, in rounding, what the guess has taken away already.
-  CHECK(with.iterations <= one.solve(undeflated, true, 1e-8, nullptr).iterations);
+  // Without the projection it finds again, in rounding, what the guess has taken away already; one iteration more or
+  // less is rounding itself.
+  CHECK(with.iterations <= one.solve(undeflated, true, 1e-8, nullptr).iterations + 1);
 }
 
 TEST_CASE("the same CG deflates one system and not the next") {
