@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <set>
 
 #include "solver/linear/block_kernels.hpp"
@@ -45,6 +46,9 @@ inline Lane8 combined(const Block6& x, const Lane8& b) {
   return sum;
 }
 
+/// From about as many joints on, a matrix comes from memory, which likes to be read along the rod: branch after branch.
+constexpr int most_in_cache = 4096;
+
 }  // namespace
 
 std::vector<int> root_to_leaf_order(const Rod& rod) {
@@ -55,24 +59,31 @@ std::vector<int> root_to_leaf_order(const Rod& rod) {
   }
   std::vector<std::size_t> left(rod.segments.size());  // joints of a segment that are not eliminated
   for (std::size_t s = 0; s < left.size(); ++s) left[s] = joints_of[s].size();
-  std::vector<int> order;  // of elimination
+  std::deque<int> free;  // joints that no other one waits for
   std::vector<bool> seen(rod.joints.size(), false);
   const auto see = [&](int k) {
-    if (seen[static_cast<std::size_t>(k)]) return;
+    if (!seen[static_cast<std::size_t>(k)]) free.push_back(k);
     seen[static_cast<std::size_t>(k)] = true;
-    order.push_back(k);
   };
   const auto see_all_of = [&](std::size_t s) {
     for (const int k : joints_of[s]) see(k);
   };
   for (std::size_t s = 0; s < left.size(); ++s)
     if (left[s] == 1 || rod.segments[s].is_static) see_all_of(s);
-  for (std::size_t next = 0; next < order.size(); ++next) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(order[next])];
-    for (const int s : {joint.a, joint.b})
-      if (--left[static_cast<std::size_t>(s)] == 1) see_all_of(static_cast<std::size_t>(s));
-  }
+  std::vector<int> order;  // of elimination
+  const auto eliminate_free = [&] {
+    while (!free.empty()) {
+      const int k = rod.joint_count() > most_in_cache ? free.back() : free.front();
+      rod.joint_count() > most_in_cache ? free.pop_back() : free.pop_front();
+      order.push_back(k);
+      const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+      for (const int s : {joint.a, joint.b})
+        if (--left[static_cast<std::size_t>(s)] == 1) see_all_of(static_cast<std::size_t>(s));
+    }
+  };
+  eliminate_free();
   for (int k = 0; k < rod.joint_count(); ++k) see(k);  // of loops, and between them
+  eliminate_free();
   std::reverse(order.begin(), order.end());
   return order;
 }

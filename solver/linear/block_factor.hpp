@@ -3,8 +3,9 @@
 // All leaves come first, then what they leave as leaves, and so on to the middle: the remaining neighbours of an
 // eliminated joint share a segment with it and are coupled already, so no block fills in (as in the body-and-joint tree
 // of Deul et al. 2018), and joints that follow each other don't wait for each other: a chain is eliminated from both
-// ends at once, and the processor overlaps the two. Where joints close loops (rings, nets) a symbolic elimination finds
-// what fills in, in an order of minimum degree (elimination_order.hpp): a sparse Cholesky factorisation in blocks.
+// ends at once, and the processor overlaps the two (long rods one branch after the other, as memory likes it). Where
+// joints close loops (rings, nets) a symbolic elimination finds what fills in, in an order of minimum degree
+// (elimination_order.hpp): a sparse Cholesky factorisation in blocks.
 //
 // Per joint k, with S = L D L^T the block left on the diagonal and B_p the blocks towards the joints p eliminated
 // later:
