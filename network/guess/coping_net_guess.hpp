@@ -18,6 +18,7 @@ class CopingNetGuess : public InitialGuess {
   /// propose() throws SceneError where sweeps meet joints that close a loop.
   CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, double dt_c, int newton_iterations);
 
+  void prepare(const SolvePosition& at) override { base_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition& at, const VectorX& solution) override { base_->accept(at, solution); }
 

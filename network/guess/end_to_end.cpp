@@ -16,6 +16,7 @@ bool CopingNetIncrements::predict(const Rod& rod, const LinearSystem& system, co
   std::unique_ptr<CopingNetCorrection>& correction = corrections_[static_cast<std::size_t>(at.rod)];
   if (!correction) correction = std::make_unique<CopingNetCorrection>(model_, rod, system.matrix());
   const bool own_moves = model_->net.settings().moves;
+  base_->prepare(at);
   Proposal proposal = base_->propose(system, at, delta_lambda);
   if (!correction->correct(rod, system, at.newton, dt_c, proposal, delta_lambda, own_moves ? &moves : nullptr))
     return false;

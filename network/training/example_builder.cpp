@@ -69,6 +69,7 @@ void add_examples(const CopingNetSettings& settings, const StoredSimulation& sim
   for (std::size_t r = 0; r < scene.rods.size(); ++r) rods.emplace_back(settings, scene.rods[r], replay.systems()[r]);
   replay.run([&](const StoredSystem& stored, const Rod& rod, const LinearSystem& system) {
     RodExamples& of = rods[static_cast<std::size_t>(stored.at.rod)];
+    base->prepare(stored.at);
     base->propose(system, stored.at, of.base);
     system.matrix().multiply(of.base.data(), of.residual.data());
     of.residual = system.rhs() - of.residual;

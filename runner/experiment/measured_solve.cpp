@@ -5,26 +5,17 @@
 #include <utility>
 
 #include "runner/experiment/guesses.hpp"
+#include "runner/experiment/median.hpp"
 #include "runner/experiment/solve_rows.hpp"
+#include "runner/experiment/timed_guess.hpp"
 #include "runner/job/plan.hpp"
 #include "solver/linear/rounding_level.hpp"
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
-namespace {
-
-/// Of an even count the upper one, so that it is a time that was measured. Reorders.
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
-
 struct MeasuredSolve::Guess {
   std::size_t column;  ///< on the file's guess axis
-  std::unique_ptr<InitialGuess> guess;
+  TimedGuess guess;
 };
 
 /// Everything of one rod that is sized once.
@@ -33,7 +24,7 @@ struct MeasuredSolve::RodSolvers {
     ConjugateGradient timed;
     VectorX x0;
     Proposal proposal;
-    std::vector<double> guess_s, cg_s;  ///< [repeat]
+    std::vector<double> cg_s;  ///< [repeat]
     CgReport advanced;
   };
   ConjugateGradient tight;
@@ -60,7 +51,7 @@ struct MeasuredSolve::RodSolvers {
       tight_other->keep_history(true);
     }
     for (std::size_t g = 0; g < guess_count; ++g)
-      guesses.push_back({ConjugateGradient(a, settings(spec, spec.solve.norm)), exact, {}, direct_s, direct_s, {}});
+      guesses.push_back({ConjugateGradient(a, settings(spec, spec.solve.norm)), exact, {}, direct_s, {}});
   }
 
   static CgSettings settings(const TaskSpec& spec, Norm norm) {
@@ -84,7 +75,7 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
   const bool one = spec.own_guess >= 0;
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
     if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
-      guesses_.push_back({g, make_guess(spec.guesses[g], spec, scene)});
+      guesses_.push_back({g, TimedGuess(make_guess(spec.guesses[g], spec, scene))});
   const std::size_t tolerances = tolerance_ladder().size();
   for (const Guess& guess : guesses_) {
     const auto reset = [&](auto& sums) {
@@ -157,7 +148,8 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
   SolveOutcome failure = SolveOutcome::not_run;
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
     RodSolvers::PerGuess& own = solvers.guesses[g];
-    own.proposal = guesses_[g].guess->propose(system, at, own.x0);
+    guesses_[g].guess.prepare(at);
+    own.proposal = guesses_[g].guess.propose(system, at, own.x0);
     const int start = own.proposal.products + (own.proposal.nonzero ? 1 : 0);
     const auto tight_solve = [&](ConjugateGradient& cg, double reference, std::vector<std::int16_t>& iterations) {
       if (rounding) {
@@ -166,7 +158,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
       }
       solvers.x = own.x0;
       const CgReport report =
-          cg.solve(b, solvers.x, own.proposal.nonzero, ladder.back(), reference, guesses_[g].guess->deflation());
+          cg.solve(b, solvers.x, own.proposal.nonzero, ladder.back(), reference, guesses_[g].guess.deflation());
       if (cg.history().empty()) failure = report.outcome;  // its first residual was not a number
       iterations_to(cg.history(), reference, ladder, iterations.data());
       return report;
@@ -208,15 +200,13 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
     for (std::size_t k = 0; k < guesses_.size(); ++k) {
       const std::size_t g = (k + row + repeat) % guesses_.size();
       RodSolvers::PerGuess& own = solvers.guesses[g];
-      const Stopwatch guess_watch;
-      guesses_[g].guess->propose(system, at, own.x0);
-      own.guess_s[repeat] = guess_watch.seconds();
+      guesses_[g].guess.propose_timed(system, at, own.x0);
       solvers.x = own.x0;
       if (repeat > 0 && solvers.renewed) own.timed.matrix_changed();
       const Stopwatch watch;
       own.advanced = rounding ? CgReport{SolveOutcome::converged}
                               : own.timed.solve(system.rhs(), solvers.x, own.proposal.nonzero, tolerance,
-                                                solvers.reference, guesses_[g].guess->deflation());
+                                                solvers.reference, guesses_[g].guess.deflation());
       own.cg_s[repeat] = watch.seconds();
     }
 }
@@ -224,12 +214,10 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
 /// Guesses learn the solution that advances the rod; what they make of it belongs to their time.
 void MeasuredSolve::accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution) {
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
-    const Stopwatch watch;
-    guesses_[g].guess->accept(at, solution);
-    const double accept_s = watch.seconds();
+    guesses_[g].guess.accept(at, solution);
     if (!spec_.output.solves) continue;
     const std::size_t entry = row * spec_.guesses.size() + guesses_[g].column;
-    record_.guess_s[entry] = static_cast<float>(median(solvers.guesses[g].guess_s) + accept_s);
+    record_.guess_s[entry] = static_cast<float>(guesses_[g].guess.seconds());
     record_.cg_s[entry] = static_cast<float>(median(solvers.guesses[g].cg_s));
   }
 }

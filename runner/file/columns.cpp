@@ -155,8 +155,9 @@ std::vector<Column> all_columns() {
       column<&R::assemble_s>("/timing/solves/assemble_s", Rows::solve, none, "s", "assembly of A and b"),
       column<&R::direct_s>("/timing/solves/direct_s", Rows::solve, none, "s",
                            "block LDL^T factorisation and solve of the same system"),
-      column<&R::guess_s>("/timing/solves/guess_s", Rows::solve, guess, "s",
-                          "making the initial guess; median of solve.timing_repeats"),
+      column<&R::guess_s>(
+          "/timing/solves/guess_s", Rows::solve, guess, "s",
+          "making the initial guess, median of solve.timing_repeats, and what the guess does once for a solve"),
       column<&R::cg_s>("/timing/solves/cg_s", Rows::solve, guess, "s",
                        "preconditioner set-up and CG to the job's tolerance; median of solve.timing_repeats"),
       column<&R::rest_s>("/timing/steps/rest_s", Rows::step, none, "s",

@@ -58,6 +58,7 @@ ValidationRatio::Iterations ValidationRatio::count(const StoredSimulation& simul
   replay.run([&](const StoredSystem& stored, const Rod&, const LinearSystem& system) {
     if (stored.at.newton > 0) return;
     RodSolver& of = solvers[static_cast<std::size_t>(stored.at.rod)];
+    guess->prepare(stored.at);
     const Proposal proposal = guess->propose(system, stored.at, of.x);
     if (system.newton_residual() > rounding_level) {
       of.cg.matrix_changed();

@@ -1,7 +1,8 @@
 // Initial guesses for the CG solve of A dlambda = b, behind one interface.
 //
-// propose() writes x0 before a solve, accept() is told the solution after it. Sequences are kept per (rod, Newton
-// iteration): a history guess of Newton iteration j extrapolates the solutions of iteration j of the last steps,
+// prepare() comes once before a solve, propose() writes x0, accept() is told the solution after it. Sequences are kept
+// per (rod, Newton iteration): a history guess of Newton iteration j extrapolates the solutions of iteration j of the
+// last steps,
 //   previous  x1,      linear  2 x1 - x2,      quadratic  3 x1 - 3 x2 + x3        (x1 the newest),
 // and falls back to fewer terms, in the end to zero, where consecutive steps have no solution at that iteration.
 // A learned guess is one more implementation of this interface.
@@ -26,6 +27,8 @@ struct Proposal {
 class InitialGuess {
  public:
   virtual ~InitialGuess() = default;
+  /// Once before a system's first propose(): what proposing again need not repeat, so that it can be timed once.
+  virtual void prepare(const SolvePosition&) {}
   /// Writes x0. Calling it again for the same system gives the same x0.
   virtual Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) = 0;
   /// The solution of the system last proposed for.
@@ -88,6 +91,7 @@ class OracleGuess : public InitialGuess {
 class GuardedGuess : public InitialGuess {
  public:
   GuardedGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner, double threshold);
+  void prepare(const SolvePosition& at) override { inner_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition& at, const VectorX& solution) override { inner_->accept(at, solution); }
 

@@ -6,13 +6,13 @@ TotalsGuess::TotalsGuess(const Scene& scene, std::unique_ptr<InitialGuess> inner
   for (const Rod& rod : scene.rods) totals_.push_back({VectorX::Zero(6 * rod.joint_count())});
 }
 
-Proposal TotalsGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+void TotalsGuess::prepare(const SolvePosition& at) {
   Total& total = totals_[static_cast<std::size_t>(at.rod)];
   if (at.newton == 0 && !total.told) {
     inner_->accept({total.step, 0, at.rod}, total.sum);
     total.told = true;
   }
-  return inner_->propose(system, at, x0);
+  inner_->prepare(at);
 }
 
 void TotalsGuess::accept(const SolvePosition& at, const VectorX& solution) {

@@ -65,10 +65,12 @@ void classical(benchmark::State& state, Make make) {
     stepper.step(projection);
     system.assemble(scene.rods.front(), 0.02);
     direct.solve(system, at, 0, solution);
+    guess->prepare(at);
     guess->propose(system, at, x0);
     guess->accept(at, solution);
   }
   for (auto _ : state) {
+    guess->prepare(at);
     guess->propose(system, at, x0);
     guess->accept(at, solution);
     ++at.step;

@@ -33,6 +33,7 @@ class CgSolve : public LinearSolve {
     }
     cg_->matrix_changed();
     ++calls;
+    guess_->prepare(at);
     const bool nonzero = guess_->propose(system, at, delta_lambda).nonzero;
     const CgReport report =
         cg_->solve(system.rhs(), delta_lambda, nonzero, 1e-6, cg_->norm_of(system.rhs()), guess_->deflation());

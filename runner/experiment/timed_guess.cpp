@@ -1,0 +1,33 @@
+#include "runner/experiment/timed_guess.hpp"
+
+#include "runner/experiment/median.hpp"
+#include "solver/step/stopwatch.hpp"
+
+namespace rodsweep {
+
+void TimedGuess::prepare(const SolvePosition& at) {
+  proposals_s_.clear();
+  const Stopwatch watch;
+  guess_->prepare(at);
+  once_s_ = watch.seconds();
+}
+
+Proposal TimedGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+  return guess_->propose(system, at, x0);
+}
+
+void TimedGuess::propose_timed(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+  const Stopwatch watch;
+  guess_->propose(system, at, x0);
+  proposals_s_.push_back(watch.seconds());
+}
+
+void TimedGuess::accept(const SolvePosition& at, const VectorX& solution) {
+  const Stopwatch watch;
+  guess_->accept(at, solution);
+  once_s_ += watch.seconds();
+}
+
+double TimedGuess::seconds() { return once_s_ + median(proposals_s_); }
+
+}  // namespace rodsweep
