@@ -1,46 +1,74 @@
 #include "solver/guess/normal_equations.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rodsweep {
-
 namespace {
 
-constexpr double smallest_pivot = 1e-12;  // what is below is rounding error
+using Mask8 = long __attribute__((vector_size(64)));
+
+/// y -= a x.
+inline void subtract(Lane8* y, double a, const Lane8* x, std::size_t width) {
+  for (std::size_t w = 0; w < width; ++w) y[w] -= a * x[w];
+}
 
 }  // namespace
 
-NormalEquations::NormalEquations(int most) : gram_(most, most), pivot_(most), scale_(most), coefficients_(most) {}
+NormalEquations::NormalEquations(int most, double smallest_pivot)
+    : width_(static_cast<std::size_t>((most + 7) / 8)),
+      smallest_pivot_(smallest_pivot),
+      gram_(static_cast<std::size_t>(most) * width_),
+      lower_(gram_),
+      scale_(width_),
+      coefficients_(width_),
+      inverse_pivot_(static_cast<std::size_t>(most)) {}
 
 void NormalEquations::factorise(int count, double damping) {
   count_ = count;
-  for (int i = 0; i < count; ++i) {
-    const double squared = gram_(i, i);
-    scale_[i] = squared > 0 ? 1 / std::sqrt(squared) : 0;
-    pivot_[i] = squared > 0 ? 1 + damping * damping : 0;
-    for (int k = 0; k < i; ++k) {
-      double sum = scale_[i] * scale_[k] * gram_(i, k);
-      for (int m = 0; m < k; ++m) sum -= gram_(i, m) * gram_(k, m) * pivot_[m];
-      gram_(i, k) = pivot_[k] > 0 ? sum / pivot_[k] : 0;
-      pivot_[i] -= gram_(i, k) * gram_(i, k) * pivot_[k];
+  std::fill(scale_.begin(), scale_.end(), Lane8{});  // what is beyond `count` in a column is scaled away
+  for (int k = 0; k < count; ++k) {
+    const double squared = gram(k, k);
+    entries(scale_, 0)[k] = squared > 0 ? 1 / std::sqrt(squared) : 0;
+  }
+  for (int k = 0; k < count; ++k) {
+    Lane8* own = column(gram_, k);
+    for (std::size_t w = 0; w < width_; ++w) own[w] *= entries(scale_, 0)[k] * scale_[w];
+    gram(k, k) += damping * damping;
+  }
+  for (int k = 0; k < count; ++k) {
+    const double pivot = gram(k, k);
+    const bool kept = pivot > smallest_pivot_;
+    const double inverse = kept ? 1 / pivot : 0;
+    inverse_pivot_[static_cast<std::size_t>(k)] = inverse;
+    Lane8* own = column(gram_, k);
+    Lane8* below = column(lower_, k);
+    if (!kept) continue;
+    for (std::size_t w = 0; w < width_; ++w) {
+      const Mask8 row = Mask8{0, 1, 2, 3, 4, 5, 6, 7} + 8 * static_cast<long>(w);
+      below[w] = row > long{k} ? inverse * own[w] : Lane8{};
+      own[w] = row > long{k} ? Lane8{} : own[w];
     }
-    if (!(pivot_[i] > smallest_pivot)) pivot_[i] = 0;
+    for (int j = k + 1; j < count; ++j) subtract(column(gram_, j), gram(k, j), below, width_);
   }
 }
 
 void NormalEquations::solve() {
-  VectorX& c = coefficients_;
-  for (int i = 0; i < count_; ++i) {
-    c[i] *= scale_[i];
-    for (int k = 0; k < i; ++k) c[i] -= gram_(i, k) * c[k];
-    if (pivot_[i] == 0) c[i] = 0;
+  double* c = entries(coefficients_, 0);
+  for (std::size_t w = 0; w < width_; ++w) coefficients_[w] *= scale_[w];
+  const auto inverse = [&](int k) { return inverse_pivot_[static_cast<std::size_t>(k)]; };
+  for (int k = 0; k < count_; ++k)
+    if (inverse(k) > 0) subtract(coefficients_.data(), c[k], column(lower_, k), width_);
+  for (int k = count_ - 1; k >= 0; --k) {
+    if (inverse(k) > 0) {
+      const double own = inverse(k) * c[k];
+      subtract(coefficients_.data(), own, column(gram_, k), width_);
+      c[k] = own;
+    } else {
+      c[k] = 0;
+    }
   }
-  for (int i = count_ - 1; i >= 0; --i) {
-    if (pivot_[i] == 0) continue;
-    c[i] /= pivot_[i];
-    for (int k = i + 1; k < count_; ++k) c[i] -= gram_(k, i) * c[k];
-  }
-  for (int i = 0; i < count_; ++i) c[i] *= scale_[i];
+  for (std::size_t w = 0; w < width_; ++w) coefficients_[w] *= scale_[w];
 }
 
 }  // namespace rodsweep

@@ -43,7 +43,7 @@ Proposal RegressionGuess::propose(const LinearSystem& system, const SolvePositio
   const auto by_age = [&](int age) { return (h.newest - age + size_) % size_; };
   for (int i = 0; i < h.known; ++i) {
     equations_.right_side(i) = h.products[by_age(i)];
-    for (int k = 0; k <= i; ++k) equations_.gram(i, k) = h.gram(by_age(i), by_age(k));
+    for (int k = 0; k < h.known; ++k) equations_.gram(i, k) = h.gram(by_age(i), by_age(k));
   }
   equations_.factorise(h.known, noise_);
   equations_.solve();

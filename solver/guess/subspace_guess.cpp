@@ -8,6 +8,7 @@ SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size
     : newton_iterations_(newton_iterations),
       size_(size),
       window_(window),
+      order_(Eigen::VectorXi::Zero(size)),
       gram_(size, size),
       coefficients_(VectorX::Zero(size)),
       equations_(size) {
@@ -30,11 +31,9 @@ Proposal SubspaceGuess::propose(const LinearSystem& system, const SolvePosition&
     return {};
   }
   h.solutions.project(system.matrix(), system.rhs(), gram_, coefficients_);
-  for (int i = 0; i < h.known; ++i)
-    for (int k = 0; k <= i; ++k) {
-      const auto [column, row] = std::minmax({by_age(h, i), by_age(h, k)});
-      equations_.gram(i, k) = gram_(row, column);
-    }
+  for (int i = 0; i < h.known; ++i) order_[i] = by_age(h, i);
+  for (int k = 0; k < h.known; ++k)
+    for (int i = 0; i < h.known; ++i) equations_.gram(i, k) = gram_(order_[i], order_[k]);
   equations_.factorise(h.known);
   solve(h, coefficients_);
   h.solutions.combine(coefficients_, x0);
@@ -47,10 +46,10 @@ Proposal SubspaceGuess::propose(const LinearSystem& system, const SolvePosition&
 }
 
 void SubspaceGuess::solve(const History& h, VectorX& c) {
-  for (int i = 0; i < h.known; ++i) equations_.right_side(i) = c[by_age(h, i)];
+  for (int i = 0; i < h.known; ++i) equations_.right_side(i) = c[order_[i]];
   equations_.solve();
   c.setZero();
-  for (int i = 0; i < h.known; ++i) c[by_age(h, i)] = equations_.coefficient(i);
+  for (int i = 0; i < h.known; ++i) c[order_[i]] = equations_.coefficient(i);
 }
 
 void SubspaceGuess::project(double* z) {

@@ -44,8 +44,9 @@ class SubspaceGuess : public InitialGuess, private Deflation {
   int newton_iterations_, size_;
   Window window_;
   std::vector<History> histories_;
-  Eigen::MatrixXd gram_;  ///< E, lower triangle
-  VectorX coefficients_;  ///< V^T b, then c, in the order of V
+  Eigen::VectorXi order_;  ///< of V, the newest first; of the system last proposed for
+  Eigen::MatrixXd gram_;   ///< E
+  VectorX coefficients_;   ///< V^T b, then c, in the order of V
   NormalEquations equations_;
   std::vector<StoredVectors> products_;  ///< per rod: A V; empty unless deflating
   History* deflating_ = nullptr;         ///< of the system last proposed for, where its span is to be projected out

@@ -1,7 +1,12 @@
-// Some vectors of unknowns side by side, the same entry of all of them in neighbouring lanes, so that what is asked of
-// all of them with A takes one pass over A and over them: V^T A V and V^T b of a Galerkin projection, and V c.
+// Some vectors of unknowns side by side, the same entry of eight of them in neighbouring lanes (a panel), so that what
+// is asked of all of them with A takes one pass over A and over them: V^T A V and V^T b of a Galerkin projection, V c.
+// Up to three beyond whole panels stand alone, the six entries of a block row in one number of eight lanes: another
+// panel would cost as much as eight of them.
 //
-// As A is symmetric, V^T A V = G + G^T with G = sum_i V_i^T (A_ii V_i / 2 + sum_{j < i} A_ij V_j): half the blocks.
+// As A is symmetric, V^T A V = G + G^T with G = V^T H, H = (D / 2 + L) V, D the diagonal of A and L what is below it:
+// half the blocks, and half the entries of those on the diagonal. A pass forms H and G of one panel in registers, and
+// what the panel has to do with all others: 57 + 48 eight-lane multiply-adds a block row, 25 more for each vector that
+// stands alone.
 #pragma once
 
 #include <vector>
@@ -16,7 +21,7 @@ class StoredVectors {
 
   void set(int index, const VectorX& v);
 
-  /// Sets gram to V^T A V, of which the lower triangle is written, and right_side to V^T b. Sized by the caller: count.
+  /// Sets gram to V^T A V and right_side to V^T b. Sized by the caller: count.
   void project(const BlockMatrix& a, const VectorX& b, Eigen::MatrixXd& gram, VectorX& right_side);
 
   /// Sets these to A V of others, as many.
@@ -30,16 +35,25 @@ class StoredVectors {
   void subtract(const VectorX& c, double* x);
 
  private:
-  double* row(int unknown) { return entries_.data() + static_cast<std::size_t>(unknown) * width_; }
-  const double* row(int unknown) const { return entries_.data() + static_cast<std::size_t>(unknown) * width_; }
-  void set_factors(const VectorX& c);
-  Lane8 combined(int block_row) const;
+  const Lane8* panel(int index) const { return entries_.data() + static_cast<std::size_t>(index) * unknowns_; }
+  Lane8* panel(int index) { return entries_.data() + static_cast<std::size_t>(index) * unknowns_; }
+  const Lane8* single(int index) const { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
+  Lane8* single(int index) { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
 
-  int block_rows_, count_;
-  std::size_t width_;            ///< count, rounded up to whole lanes of four
-  std::vector<double> entries_;  ///< [unknowns, width]
-  std::vector<double> half_;     ///< [width, width] G
-  std::vector<double> dots_;     ///< [width] V^T b, or c
+  /// What A has to do with one panel, or a part of it: its rows of half_ and dots_, and all of the single vectors.
+  template <int singles>
+  void pass(const BlockMatrix& a, const VectorX& b, int panel, int part);
+  /// Calls take(block row, its six entries of V c).
+  template <class Take>
+  void combined(const VectorX& c, Take take);
+
+  std::size_t unknowns_;
+  int count_, panel_count_, single_count_;
+  std::vector<Lane8> entries_;     ///< [panel, unknown]
+  std::vector<Lane8> singles_;     ///< [single, block row]
+  std::vector<Lane8> half_;        ///< [vector, panel] G; of single vectors all of V^T A V
+  Eigen::Matrix3d among_singles_;  ///< lower triangle of V^T A V
+  std::vector<Lane8> dots_;        ///< [vector in lanes] V^T b, or c
 };
 
 }  // namespace rodsweep
