@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace rodsweep {
+namespace {
+
+constexpr double smallest_deflating_pivot = 1e-6;
+
+}  // namespace
 
 SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size, Window window, Use use)
     : newton_iterations_(newton_iterations),
@@ -11,7 +16,9 @@ SubspaceGuess::SubspaceGuess(const Scene& scene, int newton_iterations, int size
       order_(Eigen::VectorXi::Zero(size)),
       gram_(size, size),
       coefficients_(VectorX::Zero(size)),
-      equations_(size) {
+      equations_(size),
+      deflating_equations_(size, smallest_deflating_pivot),
+      of_residual_(VectorX::Zero(size)) {
   for (const Rod& rod : scene.rods) {
     const StoredVectors none(6 * rod.joint_count(), size);
     histories_.insert(histories_.end(), static_cast<std::size_t>(newton_iterations), History{none});
@@ -32,29 +39,36 @@ Proposal SubspaceGuess::propose(const LinearSystem& system, const SolvePosition&
   }
   h.solutions.project(system.matrix(), system.rhs(), gram_, coefficients_);
   for (int i = 0; i < h.known; ++i) order_[i] = by_age(h, i);
-  for (int k = 0; k < h.known; ++k)
-    for (int i = 0; i < h.known; ++i) equations_.gram(i, k) = gram_(order_[i], order_[k]);
-  equations_.factorise(h.known);
-  solve(h, coefficients_);
+  fill(h, equations_);
+  solve(h, equations_, coefficients_);
   h.solutions.combine(coefficients_, x0);
   if (!products_.empty()) {
     deflating_ = &h;
+    fill(h, deflating_equations_);
     deflating_products_ = &products_[static_cast<std::size_t>(at.rod)];
     deflating_products_->multiply(system.matrix(), h.solutions);
   }
   return {true, h.known};
 }
 
-void SubspaceGuess::solve(const History& h, VectorX& c) {
-  for (int i = 0; i < h.known; ++i) equations_.right_side(i) = c[order_[i]];
-  equations_.solve();
-  c.setZero();
-  for (int i = 0; i < h.known; ++i) c[order_[i]] = equations_.coefficient(i);
+void SubspaceGuess::fill(const History& h, NormalEquations& equations) {
+  for (int k = 0; k < h.known; ++k)
+    for (int i = 0; i < h.known; ++i) equations.gram(i, k) = gram_(order_[i], order_[k]);
+  equations.factorise(h.known);
 }
 
-void SubspaceGuess::project(double* z) {
+void SubspaceGuess::solve(const History& h, NormalEquations& equations, VectorX& c) {
+  for (int i = 0; i < h.known; ++i) equations.right_side(i) = c[order_[i]];
+  equations.solve();
+  c.setZero();
+  for (int i = 0; i < h.known; ++i) c[order_[i]] = equations.coefficient(i);
+}
+
+void SubspaceGuess::project(const double* r, double* z) {
   deflating_products_->dots(z, coefficients_);
-  solve(*deflating_, coefficients_);
+  deflating_->solutions.dots(r, of_residual_);
+  coefficients_ -= of_residual_;
+  solve(*deflating_, deflating_equations_, coefficients_);
   deflating_->solutions.subtract(coefficients_, z);
 }
 

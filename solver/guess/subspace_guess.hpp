@@ -4,9 +4,12 @@
 // A changes from solve to solve, so A V is formed anew: as many products with A as there are solutions, all in one pass
 // (stored_vectors.hpp). Newer solutions go before older ones (normal_equations.hpp).
 //
-// A deflating guess has CG project the same span out of every residual too, z <- z - V E^-1 (A V)^T z: search
-// directions are A-orthogonal to all stored solutions then, and what CG would find of them again, at the small
-// eigenvalues that it finds last, it need not look for (deflation.hpp). An iteration costs two passes over V more.
+// A deflating guess has CG project the same span out of every residual r too, z <- z - V E^-1 ((A V)^T z - V^T r):
+// search directions are A-orthogonal to all stored solutions then, and what CG would find of them again, at the small
+// eigenvalues that it finds last, it need not look for (deflation.hpp). V^T r is zero but for rounding, which stays
+// small only where it is taken away (A-DEF2 of Tang, Nabben, Vuik & Erlangga 2009, J. Sci. Comput. 39); and V leaves
+// out what is nearly spanned by newer solutions (pivot below 1e-6), which the guess itself has use for. An iteration
+// costs three passes over V more.
 #pragma once
 
 #include <vector>
@@ -37,9 +40,10 @@ class SubspaceGuess : public InitialGuess, private Deflation {
   };
   History& history(const SolvePosition& at);
   int by_age(const History& h, int age) const { return (h.newest - age + size_) % size_; }
+  void fill(const History& h, NormalEquations& equations);
   /// c <- E^-1 c, in the order of V.
-  void solve(const History& h, VectorX& c);
-  void project(double* z) override;
+  void solve(const History& h, NormalEquations& equations, VectorX& c);
+  void project(const double* r, double* z) override;
 
   int newton_iterations_, size_;
   Window window_;
@@ -47,7 +51,8 @@ class SubspaceGuess : public InitialGuess, private Deflation {
   Eigen::VectorXi order_;  ///< of V, the newest first; of the system last proposed for
   Eigen::MatrixXd gram_;   ///< E
   VectorX coefficients_;   ///< V^T b, then c, in the order of V
-  NormalEquations equations_;
+  NormalEquations equations_, deflating_equations_;
+  VectorX of_residual_;                  ///< V^T r
   std::vector<StoredVectors> products_;  ///< per rod: A V; empty unless deflating
   History* deflating_ = nullptr;         ///< of the system last proposed for, where its span is to be projected out
   StoredVectors* deflating_products_ = nullptr;

@@ -75,7 +75,7 @@ PetscErrorCode apply_projected(PC pc, Vec r, Vec z) noexcept {
   if (const PetscErrorCode error = PCShellGetContext(pc, &context)) return error;
   const Projected& projected = *static_cast<const Projected*>(context);
   if (const PetscErrorCode error = PCApply(projected.inner, r, z)) return error;
-  projected.deflation->project(vector_data(z));
+  projected.deflation->project(vector_data(r), vector_data(z));
   return entries_changed(z);
 }
 

@@ -65,13 +65,14 @@ TEST_CASE("a deflating guess starts where pod does, and projects to what is A-or
   VectorX z = random.entries(one.size());
   const VectorX before = z;
   REQUIRE(guess.deflation() != nullptr);
-  guess.deflation()->project(z.data());
+  const VectorX r = one.system.rhs() - one.a * x0;
+  guess.deflation()->project(r.data(), z.data());
   const auto cosine = [&](const VectorX& u, const VectorX& v) {
     return std::abs(u.dot(one.a * v)) / std::sqrt(u.dot(one.a * u) * v.dot(one.a * v));
   };
   for (int step = 2; step < 6; ++step) CHECK(cosine(z, stored[static_cast<std::size_t>(step)]) < 1e-9);
   CHECK(cosine(z, before) > 0.1);
-  guess.deflation()->project((x0 = z).data());
+  guess.deflation()->project(r.data(), (x0 = z).data());
   CHECK((x0 - z).norm() < 1e-9 * z.norm());  // a projection
 }
 
@@ -93,6 +94,25 @@ TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations,
   // Without the projection it finds again, in rounding, what the guess has taken away already; one iteration more or
   // less is rounding itself.
   CHECK(with.iterations <= one.solve(undeflated, true, 1e-8, nullptr).iterations + 1);
+}
+
+TEST_CASE("deflated by solutions that are nearly the same, CG reaches what its residual says") {
+  OneRod one;
+  test::Random random(11);
+  const VectorX exact = one.exact();
+  for (const double apart : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    INFO(apart);
+    SubspaceGuess guess = deflating(one.scene, 10);
+    for (int k = 0; k < 10; ++k)
+      guess.accept({k, 0, 0},
+                   0.9 * exact + std::pow(apart, 1 + k % 3) * random.entries(one.size()).cwiseProduct(exact));
+    VectorX x0(one.size()), plain = VectorX::Zero(one.size());
+    REQUIRE(guess.propose(one.system, {10, 0, 0}, x0).nonzero);
+    const CgReport with = one.solve(x0, true, 1e-9, guess.deflation());
+    CHECK(with.outcome == SolveOutcome::converged);
+    CHECK(with.iterations <= one.solve(plain, false, 1e-9, nullptr).iterations);
+    CHECK((one.system.rhs() - one.a * x0).norm() < 2e-9 * one.system.rhs().norm());
+  }
 }
 
 TEST_CASE("the same CG deflates one system and not the next") {
