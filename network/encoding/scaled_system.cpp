@@ -14,14 +14,6 @@ void write_scaled(const Block6& block, const double* row, const double* column, 
     for (int r = 0; r < 6; ++r) out[6 * c + r] = static_cast<float>(row[r] * block.column[c][r] * column[c]);
 }
 
-/// S = diag(A)^-1/2.
-VectorX inverse_root_diagonal(const BlockMatrix& a) {
-  VectorX s(a.unknowns());
-  for (int i = 0; i < a.block_rows(); ++i)
-    for (int r = 0; r < 6; ++r) s[6 * i + r] = 1 / std::sqrt(a.blocks[at(a.diagonal(i))].column[r][r]);
-  return s;
-}
-
 }  // namespace
 
 SystemPattern system_pattern(const JointForest& forest, const BlockMatrix& a) {
@@ -44,14 +36,8 @@ SystemPattern system_pattern(const JointForest& forest, const BlockMatrix& a) {
 }
 
 double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& scale) {
-  double sum = 0;
-  for (int i = 0; i < a.block_rows(); ++i)
-    for (int r = 0; r < 6; ++r) {
-      const double d = a.blocks[at(a.diagonal(i))].column[r][r], value = residual[6 * i + r];
-      scale[6 * i + r] = 1 / std::sqrt(d);
-      sum += value * value / d;
-    }
-  const double rho = std::sqrt(sum / a.unknowns());
+  inverse_root_diagonal(a, scale);
+  const double rho = std::sqrt(scale.cwiseProduct(residual).squaredNorm() / a.unknowns());
   scale *= rho;
   return rho;
 }
@@ -59,7 +45,9 @@ double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& 
 ScaledSystem<float> scaled_system(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
                                   const VectorX& error, double solution_energy) {
   const auto places = static_cast<int>(pattern.joint.size());
-  const VectorX s = inverse_root_diagonal(a), scaled = s.cwiseProduct(residual);
+  VectorX s(a.unknowns());
+  inverse_root_diagonal(a, s);
+  const VectorX scaled = s.cwiseProduct(residual);
   const double rho2 = scaled.squaredNorm() / a.unknowns(), inverse_rho = rho2 > 0 ? 1 / std::sqrt(rho2) : 0;
   ScaledSystem<float> out;
   out.diagonal.resize(36, places);

@@ -16,16 +16,6 @@ std::vector<VectorX> vectors_for(const Scene& scene) {
   return out;
 }
 
-/// r^T D^-1 r, D the diagonal of A.
-double jacobi_norm_squared(const BlockMatrix& a, const VectorX& r) {
-  double sum = 0;
-  for (int row = 0; row < a.block_rows(); ++row) {
-    const Block6& diagonal = a.blocks[static_cast<std::size_t>(a.diagonal(row))];
-    for (int i = 0; i < 6; ++i) sum += r[6 * row + i] * r[6 * row + i] / diagonal.column[i][i];
-  }
-  return sum;
-}
-
 }  // namespace
 
 ExtrapolationGuess::ExtrapolationGuess(const Scene& scene, int newton_iterations, int terms)

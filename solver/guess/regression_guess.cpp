@@ -1,7 +1,6 @@
 #include "solver/guess/regression_guess.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace rodsweep {
 
@@ -26,13 +25,7 @@ RegressionGuess::History& RegressionGuess::history(const SolvePosition& at) {
 Proposal RegressionGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   History& h = history(at);
   if (h.last_step != at.step - 1) h.known = 0;
-  if (h.known == 0) {
-    const BlockMatrix& a = system.matrix();
-    for (int row = 0; row < a.block_rows(); ++row) {
-      const Block6& diagonal = a.blocks[static_cast<std::size_t>(a.diagonal(row))];
-      for (int i = 0; i < 6; ++i) h.weight[6 * row + i] = 1 / std::sqrt(diagonal.column[i][i]);
-    }
-  }
+  if (h.known == 0) inverse_root_diagonal(system.matrix(), h.weight);
   h.right_side = h.weight.cwiseProduct(system.rhs());
   h.squared_norm = h.right_side.squaredNorm();
   h.products.head(h.known).noalias() = h.right_sides.leftCols(h.known).transpose() * h.right_side;

@@ -1,6 +1,7 @@
 #include "solver/linear/block_matrix.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rodsweep {
 
@@ -55,6 +56,18 @@ Eigen::MatrixXd BlockMatrix::dense() const {
         for (int r = 0; r < 6; ++r)
           out(6 * i + r, 6 * column(k) + c) = blocks[static_cast<std::size_t>(k)].column[c][r];
   return out;
+}
+
+void inverse_root_diagonal(const BlockMatrix& a, VectorX& s) {
+  for (int i = 0; i < a.block_rows(); ++i)
+    for (int r = 0; r < 6; ++r) s[6 * i + r] = 1 / std::sqrt(a.diagonal_entry(i, r));
+}
+
+double jacobi_norm_squared(const BlockMatrix& a, const VectorX& r) {
+  double sum = 0;
+  for (int i = 0; i < a.block_rows(); ++i)
+    for (int k = 0; k < 6; ++k) sum += r[6 * i + k] * r[6 * i + k] / a.diagonal_entry(i, k);
+  return sum;
 }
 
 double energy_norm_squared(const BlockMatrix& a, const VectorX& x, VectorX& scratch) {

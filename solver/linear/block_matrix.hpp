@@ -29,6 +29,9 @@ class BlockMatrix {
   /// y = A x. `x` and `y` hold unknowns() doubles and don't overlap.
   void multiply(const double* x, double* y) const;
 
+  double diagonal_entry(int block_row, int row) const {
+    return blocks[static_cast<std::size_t>(diagonal(block_row))].column[row][row];
+  }
   Eigen::MatrixXd dense() const;
 
   std::vector<Block6> blocks;  ///< columns of each block, in row order
@@ -36,6 +39,12 @@ class BlockMatrix {
  private:
   std::vector<int> row_start_{0}, columns_, diagonal_;
 };
+
+/// s = D^-1/2, D the diagonal of A: what Jacobi scales a system by. Sized by the caller.
+void inverse_root_diagonal(const BlockMatrix& a, VectorX& s);
+
+/// r^T D^-1 r.
+double jacobi_norm_squared(const BlockMatrix& a, const VectorX& r);
 
 /// x^T A x; `scratch` holds A x afterwards.
 double energy_norm_squared(const BlockMatrix& a, const VectorX& x, VectorX& scratch);

@@ -22,7 +22,7 @@ PetscErrorCode extract_diagonal(Mat m, Vec diagonal) noexcept {
   const BlockMatrix& a = static_cast<BlockOperator*>(m->data)->a;
   double* out = vector_data(diagonal);
   for (int row = 0; row < a.block_rows(); ++row)
-    for (int i = 0; i < 6; ++i) out[6 * row + i] = a.blocks[static_cast<std::size_t>(a.diagonal(row))].column[i][i];
+    for (int i = 0; i < 6; ++i) out[6 * row + i] = a.diagonal_entry(row, i);
   return entries_changed(diagonal);
 }
 

@@ -90,5 +90,14 @@ TEST_CASE("the energy norm is x^T A x and leaves A x behind") {
   CHECK((scratch - a.dense() * x).lpNorm<Eigen::Infinity>() < 1e-13);
 }
 
+TEST_CASE("what Jacobi makes of a matrix follows from its diagonal") {
+  const BlockMatrix a = test::random_matrix(test::tree(2, 3), 13, 1);
+  const VectorX diagonal = a.dense().diagonal(), r = test::Random(3).entries(a.unknowns());
+  VectorX s(a.unknowns());
+  inverse_root_diagonal(a, s);
+  CHECK((s - diagonal.cwiseSqrt().cwiseInverse()).norm() < 1e-14 * s.norm());
+  CHECK(jacobi_norm_squared(a, r) == Approx(r.cwiseProduct(s).squaredNorm()).epsilon(1e-13));
+}
+
 }  // namespace
 }  // namespace rodsweep
