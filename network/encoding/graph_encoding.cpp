@@ -9,7 +9,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double rigid_pa = 1e15;  // stands for the modulus of a joint without compliance
 
 /// Where the segments of a rod lie along it. Every connected piece has a root.

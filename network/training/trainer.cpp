@@ -11,8 +11,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Number `index`, from 1, of the sequence of a seed: the source of permutations that are the same everywhere.
 std::uint64_t random_bits(std::uint64_t seed, std::uint64_t index) {
   return split_mix(seed + (index - 1) * split_mix_increment);

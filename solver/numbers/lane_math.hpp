@@ -80,7 +80,6 @@ inline Lane larger(const Lane& a, const Lane& b) { return a < b ? b : a; }
 /// cos(2 pi t), to 1e-13: the sine of a quarter less the distance to the next whole number, by its series.
 inline Lane cosine_of_turns(const Lane& t) {
   constexpr double whole = 0x1.8p52;  // what is added to it has no fraction
-  constexpr double pi = 3.14159265358979323846;
   const Lane angle = 2 * pi * (0.25 - absolute(t - ((t + whole) - whole)));
   Lane sum{};
   for (int n = 19; n > 1; n -= 2) sum = -angle * angle / (n * (n - 1)) * (1 + sum);

@@ -25,4 +25,6 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;  // column-major, 36 contiguous dou
 using VectorX = Eigen::VectorXd;
 using Quaternion = Eigen::Quaterniond;
 
+inline constexpr double pi = 3.14159265358979323846;
+
 }  // namespace rodsweep

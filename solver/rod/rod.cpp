@@ -8,8 +8,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 [[noreturn]] void refuse(const std::string& what, int index, const std::string& quantity, double value,
                          const std::string& bound) {
   std::ostringstream text;

@@ -7,8 +7,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// The first places of a hexagonal lattice, of unit distance, from the middle outwards ring by ring.
 std::vector<Vector3> hexagonal_places(int count) {
   std::vector<Vector3> places{Vector3::Zero()};

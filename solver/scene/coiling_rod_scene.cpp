@@ -9,7 +9,6 @@ void CoilingRod::check() const { check_least("segments", segments, 2, ": the fir
 SceneSize CoilingRod::size() const { return {segments, segments - 1}; }
 
 void CoilingRod::build(Scene& scene) const {
-  constexpr double pi = 3.14159265358979323846;
   std::vector<Vector3> vertices;
   for (int i = 0; i <= segments; ++i) {
     const double along = static_cast<double>(i) / segments, turn = 2 * pi * along / 100;

@@ -6,7 +6,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double golden_turn = 2.39996322972865332;  // of the sunflower's seeds
 
 }  // namespace

@@ -7,7 +7,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double depth = 1.2;  // of the crossings
 constexpr double aside = 0.5;  // by which the ends pass each other
 constexpr double leading = 4;  // length of the straight ends

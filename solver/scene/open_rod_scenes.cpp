@@ -5,8 +5,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// A rod whose joints lie on `vertices`, and the force at its tip.
 void add_rod(const std::vector<Vector3>& vertices, const OpenRod& p, Scene& scene) {
   std::vector<SegmentSpec> segments = segments_through(vertices, p);

@@ -6,7 +6,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double open_ring_radii = 40;  // around the smallest ring through which the next one fits
 
 void move(Rod& rod, const Quaternion& turn, const Vector3& shift) {

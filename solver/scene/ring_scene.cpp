@@ -7,8 +7,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 Quaternion about_rod(double angle) { return Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitZ())); }
 
 }  // namespace

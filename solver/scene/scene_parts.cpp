@@ -8,7 +8,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double standard_gravity = 9.81;
 constexpr int most_segments = 10000000;
 

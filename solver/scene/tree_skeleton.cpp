@@ -11,7 +11,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double degree = pi / 180;
 constexpr double golden_angle = pi * (3 - 2.23606797749978969641);
 constexpr double most_edges = 1e7;

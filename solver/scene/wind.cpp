@@ -10,8 +10,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 void require(bool holds, const char* quantity, double value, const char* bound) {
   if (holds) return;
   std::ostringstream text;

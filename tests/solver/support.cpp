@@ -10,8 +10,6 @@
 namespace rodsweep::test {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// The rod with degree of freedom `dof` of one segment moved as a Newton update would.
 Rod nudged(Rod rod, int segment, int dof, double by) {
   if (dof < 3)

@@ -10,7 +10,6 @@ namespace rodsweep {
 namespace {
 
 constexpr double dt = 0.02;
-constexpr double pi = 3.14159265358979323846;
 
 struct Encoded {
   Tensor<float> nodes, edges;

@@ -116,7 +116,7 @@ TEST_CASE("rods that collide keep linear momentum, stay whole and give no energy
   p.torsion_modulus_pa = 4e7;
   std::vector<Rod> rods;
   for (int k = 0; k < 4; ++k) {
-    const Vector3 at(0.7 * std::cos(k * M_PI / 2), 0.03 * k, 0.7 * std::sin(k * M_PI / 2)), along(0.1, 0.5, 0.1 * k);
+    const Vector3 at(0.7 * std::cos(k * pi / 2), 0.03 * k, 0.7 * std::sin(k * pi / 2)), along(0.1, 0.5, 0.1 * k);
     rods.push_back(test::straight_rod(at - along, at + along, 12, p));
     for (Vector3& v : rods.back().velocity) v = -4 * at;
   }
@@ -137,7 +137,7 @@ TEST_CASE("rods that collide keep linear momentum, stay whole and give no energy
 
 /// A rod shot at another one, `radii` per step, at an angle between them; whether it ended before it.
 bool stays_before(double angle_deg, double radii, double offset, int segments) {
-  const double dt = 0.01, angle = angle_deg * M_PI / 180;
+  const double dt = 0.01, angle = angle_deg * pi / 180;
   const Vector3 along(0, std::sin(angle), std::cos(angle));
   RodParameters p;
   p.youngs_modulus_pa = 1e6;

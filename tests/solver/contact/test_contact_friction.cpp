@@ -86,12 +86,12 @@ double slip_of_rope(double friction, double ratio) {
   p.youngs_modulus_pa = 1e4;
   p.torsion_modulus_pa = 1e4;
   constexpr int arc = 48, leg = 10;
-  const double drum = 0.2, bent = (drum + p.radius_m) / std::cos(M_PI / (2 * arc)),
-               length = 2 * bent * std::sin(M_PI / (2 * arc));
+  const double drum = 0.2, bent = (drum + p.radius_m) / std::cos(pi / (2 * arc)),
+               length = 2 * bent * std::sin(pi / (2 * arc));
   std::vector<Vector3> vertices;
   for (int i = leg; i > 0; --i) vertices.emplace_back(-bent, -i * length, 0);
   for (int i = 0; i <= arc; ++i)
-    vertices.emplace_back(-bent * std::cos(i * M_PI / arc), bent * std::sin(i * M_PI / arc), 0);
+    vertices.emplace_back(-bent * std::cos(i * pi / arc), bent * std::sin(i * pi / arc), 0);
   for (int i = 1; i <= leg; ++i) vertices.emplace_back(bent, -i * length, 0);
   const std::vector<SegmentSpec> segments = segments_through(vertices, p);
   Scene scene = contact_scene({chain(segments, p, ratio)}, friction);
@@ -106,7 +106,7 @@ double slip_of_rope(double friction, double ratio) {
 
 TEST_CASE("a rope over half a drum holds a load of up to exp(mu pi) times the other (Euler 1769; Eytelwein 1808)") {
   for (const double friction : {0.2, 0.4}) {
-    const double most = std::exp(friction * M_PI);
+    const double most = std::exp(friction * pi);
     CHECK(std::abs(slip_of_rope(friction, 0.92 * most)) < 2e-3);
     CHECK(slip_of_rope(friction, 1.05 * most) > 0.02);
   }

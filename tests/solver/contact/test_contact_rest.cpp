@@ -84,7 +84,7 @@ TEST_CASE("a beam on two supports bends between them and sinks into neither") {
   t.run(150);
   CHECK(t.run(20) < 0.01);
   // 5 q L^4 / 384 EI of the span, less what the overhanging ends lift: q a^2 / 2 L^2 / 8 EI.
-  const double area = M_PI * r * r, ei = 1e8 * M_PI * std::pow(r, 4) / 4, q = 1000 * 9.81 * area;
+  const double area = pi * r * r, ei = 1e8 * pi * std::pow(r, 4) / 4, q = 1000 * 9.81 * area;
   const double sag = q / ei * (5 * std::pow(0.8, 4) / 384 - 0.1 * 0.1 / 2 * 0.8 * 0.8 / 8);
   const Rod& rod = t.scene.rods[0];
   CHECK(2 * r - (rod.position[14].y() + rod.position[15].y()) / 2 == Approx(sag).epsilon(0.05));

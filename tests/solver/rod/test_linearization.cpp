@@ -93,7 +93,7 @@ TEST_CASE("a quaternion and its negative give the same constraints and Jacobians
 TEST_CASE("bending by more than half a turn of the rest rotation is measured the short way round") {
   // Relative turns of 2 pi - 0.2 and of -0.2 are the same pose, and must give the same small constraint.
   Rod rod = build_scene(test::bending_rod(2, Clamp::free)).rods.front();
-  rod.orientation[1] = rod.orientation[0] * Eigen::AngleAxisd(2 * 3.14159265358979323846 - 0.2, Vector3::UnitX());
+  rod.orientation[1] = rod.orientation[0] * Eigen::AngleAxisd(2 * pi - 0.2, Vector3::UnitX());
   const VectorX c = linearized(rod).constraint;
   CHECK(c[3] == Approx(-2 * std::sin(0.1)).epsilon(1e-12));
   CHECK(std::abs(c[4]) < 1e-15);

@@ -10,8 +10,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Weightless, held by a wall, along +x.
 BendingRod rod_of(int segments, double youngs_modulus, double torsion_modulus, Stretch stretch) {
   BendingRod p;

@@ -11,8 +11,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 Ring ring(int segments, double twist_deg = 0, Ring::RestShape shape = Ring::RestShape::straight) {
   Ring p;
   p.segments = segments;

@@ -10,7 +10,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double golden_angle_deg = 137.50776405003785;
 
 TreeShape shape(int depth, int branches, int segments) {

@@ -11,8 +11,6 @@
 namespace rodsweep {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 WindParameters turbulence(int modes, std::uint64_t seed = 0) {
   WindParameters p;
   p.turbulence_m_s = 2;

@@ -12,8 +12,6 @@ namespace {
 
 using test::Random;
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Straight, of length 2, along +x.
 Rod straight(int segments, Clamp clamp) {
   BendingRod spec = test::bending_rod(segments, clamp);

@@ -15,7 +15,6 @@ using namespace rodsweep;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double length = 4, radius = 0.01, youngs_modulus = 1e9, torsion_modulus = 5e9;  // GJ = 10 EI
 constexpr double shortening = 0.2, end_turn = 9.02;  // of phi0 near 60 degrees, s* = L / 20
 // Newton leaves out how forces turn with the rod: in steps of 3 ms the twisting moment spins it for ever. Along the rod

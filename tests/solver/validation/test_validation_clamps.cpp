@@ -11,7 +11,6 @@ using namespace rodsweep;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr int count = 20;
 constexpr double segment_length = 0.1, radius = 0.05, youngs_modulus = 1e7, torsion_modulus = 4e6;
 constexpr double turning_time = 10, step = 0.5;

@@ -11,7 +11,6 @@ using namespace rodsweep;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double michell_deg = 360 * 1.7320508075688772;  // 2 pi sqrt(3) of a total twist, where EI = GJ
 
 /// Free, weightless, naturally straight, EI = GJ.

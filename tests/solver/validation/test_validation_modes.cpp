@@ -13,8 +13,6 @@ using namespace rodsweep;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Gives a straight wall-clamped rod the transverse velocities `at_vertices` (in `direction`), segments moving rigidly.
 void set_transverse_velocity(Rod& rod, const VectorX& at_vertices, const Vector3& direction) {
   for (std::size_t s = 1; s < rod.segments.size(); ++s) {

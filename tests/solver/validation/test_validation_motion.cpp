@@ -12,8 +12,6 @@ using namespace rodsweep;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// As the deck's bending rods: N = 20, 2 m, r = 0.05 m, held by its first segment, falling from 20 degrees.
 BendingRod deck_rod() {
   BendingRod p;

@@ -71,7 +71,7 @@ TEST_CASE("A straight rod with a curved rest shape curls into an arc of that cur
 TEST_CASE("A cantilever of an elliptic cross-section sags by the EI about the axis that it bends about") {
   const Section flat = elliptic_section(0.08, 0.02, 1e9, 4e8);
   const int n = 40;
-  const double length = 2, area = 3.14159265358979323846 * 0.05 * 0.05;  // of the segments' mass
+  const double length = 2, area = pi * 0.05 * 0.05;  // of the segments' mass
   const double w = 1000 * area * 9.81 / 30, law = 1 + 1.0 / (n * n);
   struct Case {
     Vector3 local_x;
@@ -88,7 +88,7 @@ TEST_CASE("A cantilever of an elliptic cross-section sags by the EI about the ax
 
 TEST_CASE("A cantilever whose axes are askew to its weight sags sideways too, as unsymmetric bending says") {
   const Section flat = elliptic_section(0.08, 0.04, 1e9, 4e8);
-  const double area = 3.14159265358979323846 * 0.05 * 0.05, w = 1000 * area * 9.81 / 300, length = 2;
+  const double area = pi * 0.05 * 0.05, w = 1000 * area * 9.81 / 300, length = 2;
   const int n = 40;
   const double law = 1 + 1.0 / (n * n);
   const double angle = 0.5;  // of local x from +z, about the rod

@@ -9,7 +9,6 @@ using namespace rodsweep;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double gravity = 9.81;
 
 double second_moment(double radius) { return pi * std::pow(radius, 4) / 4; }
