@@ -158,11 +158,12 @@ TEST_CASE("a solver that failed solves the next system as if new") {
 }
 
 TEST_CASE("after matrix_changed() the preconditioner is that of the new matrix") {
-  // The same rod in two poses. An old preconditioner still converges, only later: that is what to look for.
+  // The same rod in two poses, the second one crumpled, since joints that turn little change the diagonal little. An
+  // old preconditioner still converges, only later: that is what to look for.
   const Case first = moving_chain();
   Rod bent = first.rod;
   for (int s = 1; s < bent.segment_count(); ++s)
-    bent.orientation[s] = Eigen::AngleAxisd(0.6 * s, Vector3(1, 1, 0).normalized()) * bent.orientation[s];
+    bent.orientation[s] = Eigen::AngleAxisd(2.0 * s * s, Vector3(1, 0.3 * s, 0).normalized()) * bent.orientation[s];
   const Case second(bent);
   for (const Preconditioner p : preconditioners) {
     if (p == Preconditioner::none) continue;
@@ -177,7 +178,8 @@ TEST_CASE("after matrix_changed() the preconditioner is that of the new matrix")
     const Run fresh = run(second.a(), settings, second.b(), 1e-8), now = run(told, second.b(), 1e-8);
     CHECK(now.report.iterations == fresh.report.iterations);
     CHECK(now.x == fresh.x);
-    CHECK(run(forgot, second.b(), 1e-8).report.iterations > fresh.report.iterations);
+    // Jacobi's is the mildest: a sixth more.
+    CHECK(run(forgot, second.b(), 1e-8).report.iterations > 1.1 * fresh.report.iterations);
     if (p == Preconditioner::cholesky || p == Preconditioner::icc) CHECK(now.report.iterations == 1);
   }
 }
