@@ -64,11 +64,16 @@ void SubspaceGuess::solve(const History& h, NormalEquations& equations, VectorX&
   for (int i = 0; i < h.known; ++i) c[order_[i]] = equations.coefficient(i);
 }
 
-void SubspaceGuess::project(const double* r, double* z) {
-  deflating_products_->dots(z, coefficients_);
+void SubspaceGuess::reduce(double* r) {
   deflating_->solutions.dots(r, of_residual_);
-  coefficients_ -= of_residual_;
+  solve(*deflating_, deflating_equations_, of_residual_);
+  deflating_products_->subtract(of_residual_, r);
+}
+
+void SubspaceGuess::complete(double* z) {
+  deflating_products_->dots(z, coefficients_);
   solve(*deflating_, deflating_equations_, coefficients_);
+  coefficients_ -= of_residual_;
   deflating_->solutions.subtract(coefficients_, z);
 }
 

@@ -4,12 +4,11 @@
 // A changes from solve to solve, so A V is formed anew: as many products with A as there are solutions, all in one pass
 // (stored_vectors.hpp). Newer solutions go before older ones (normal_equations.hpp).
 //
-// A deflating guess has CG project the same span out of every residual r too, z <- z - V E^-1 ((A V)^T z - V^T r):
+// A deflating guess has CG project the same span out of every residual r too (deflation.hpp),
+//   c = E^-1 V^T r,  r <- r - A V c;   z <- z - V (E^-1 (A V)^T z - c):
 // search directions are A-orthogonal to all stored solutions then, and what CG would find of them again, at the small
-// eigenvalues that it finds last, it need not look for (deflation.hpp). V^T r is zero but for rounding, which stays
-// small only where it is taken away (A-DEF2 of Tang, Nabben, Vuik & Erlangga 2009, J. Sci. Comput. 39); and V leaves
-// out what is nearly spanned by newer solutions (pivot below 1e-6), which the guess itself has use for. An iteration
-// costs three passes over V more.
+// eigenvalues that it finds last, it need not look for. V leaves out what is nearly spanned by newer solutions (pivot
+// below 1e-6), which the guess itself has use for. An iteration costs four passes over V more.
 #pragma once
 
 #include <vector>
@@ -43,7 +42,8 @@ class SubspaceGuess : public InitialGuess, private Deflation {
   void fill(const History& h, NormalEquations& equations);
   /// c <- E^-1 c, in the order of V.
   void solve(const History& h, NormalEquations& equations, VectorX& c);
-  void project(const double* r, double* z) override;
+  void reduce(double* r) override;
+  void complete(double* z) override;
 
   int newton_iterations_, size_;
   Window window_;
@@ -52,7 +52,7 @@ class SubspaceGuess : public InitialGuess, private Deflation {
   Eigen::MatrixXd gram_;   ///< E
   VectorX coefficients_;   ///< V^T b, then c, in the order of V
   NormalEquations equations_, deflating_equations_;
-  VectorX of_residual_;                  ///< V^T r
+  VectorX of_residual_;                  ///< V^T r, then E^-1 of it
   std::vector<StoredVectors> products_;  ///< per rod: A V; empty unless deflating
   History* deflating_ = nullptr;         ///< of the system last proposed for, where its span is to be projected out
   StoredVectors* deflating_products_ = nullptr;

@@ -64,18 +64,22 @@ bool factorises(Preconditioner p) {
   return p == Preconditioner::icc || p == Preconditioner::cholesky || p == Preconditioner::lagged_cholesky;
 }
 
-/// A preconditioner behind whose answers a projection stands.
+/// A preconditioner with a projection around it.
 struct Projected {
   PC inner = nullptr;
   Deflation* deflation = nullptr;
+  Vec reduced = nullptr;
 };
 
 PetscErrorCode apply_projected(PC pc, Vec r, Vec z) noexcept {
   void* context = nullptr;
   if (const PetscErrorCode error = PCShellGetContext(pc, &context)) return error;
   const Projected& projected = *static_cast<const Projected*>(context);
-  if (const PetscErrorCode error = PCApply(projected.inner, r, z)) return error;
-  projected.deflation->project(vector_data(r), vector_data(z));
+  if (const PetscErrorCode error = VecCopy(r, projected.reduced)) return error;
+  projected.deflation->reduce(vector_data(projected.reduced));
+  if (const PetscErrorCode error = entries_changed(projected.reduced)) return error;
+  if (const PetscErrorCode error = PCApply(projected.inner, projected.reduced, z)) return error;
+  projected.deflation->complete(vector_data(z));
   return entries_changed(z);
 }
 
@@ -139,6 +143,7 @@ ConjugateGradient::Impl::~Impl() {
   PCDestroy(&plain);
   MatDestroy(&entries);
   MatDestroy(&product);
+  VecDestroy(&projected.reduced);
   VecDestroy(&scratch);
   VecDestroy(&x);
   VecDestroy(&b);
@@ -176,6 +181,7 @@ void ConjugateGradient::Impl::refresh() {
 
 void ConjugateGradient::Impl::use(Deflation* deflation) {
   if (deflation && !shell) {
+    projected.reduced = create_vector(a.unknowns());
     petsc_check(PCCreate(PETSC_COMM_SELF, &shell), "PCCreate");
     petsc_check(PCSetType(shell, PCSHELL), "PCSetType");
     petsc_check(PCSetOperators(shell, product, product), "PCSetOperators");
@@ -184,7 +190,8 @@ void ConjugateGradient::Impl::use(Deflation* deflation) {
   }
   if (shell && (deflation != nullptr) != (projected.deflation != nullptr))
     petsc_check(KSPSetPC(ksp, deflation ? shell : plain), "KSPSetPC");
-  projected = {plain, deflation};
+  projected.inner = plain;
+  projected.deflation = deflation;
 }
 
 void ConjugateGradient::Impl::copy_entries() {
