@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "solver/step/time_step.hpp"
@@ -120,6 +121,7 @@ void BatchedRods::write(int lane, Scene& scene) const {
     rod.velocity[s] = lane_of(segment.velocity, lane);
     rod.angular_velocity[s] = lane_of(segment.angular_velocity, lane);
     rod.orientation[s] = lane_of(segment.orientation, lane);
+    rod.free_position[s].setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   for (std::size_t k = 0; k < joints.size(); ++k)
     for (int row = 0; row < 6; ++row) rod.lambda[static_cast<Eigen::Index>(6 * k) + row] = joints[k].lambda[row][lane];

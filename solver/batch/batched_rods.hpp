@@ -39,7 +39,7 @@ struct BatchedRods {
   /// that are not equal chains, a joint between static segments, moving clamps or point loads.
   BatchedRods(const std::vector<Scene>& scenes, double dt);
 
-  /// Writes the state of rod `lane` into its scene.
+  /// Writes the state of rod `lane` into its scene; p*, which a batch does not keep, as NaN.
   void write(int lane, Scene& scene) const;
 
   int rods;

@@ -72,7 +72,7 @@ bool ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
   const std::vector<Pair>& pairs = broad_phase_.pairs(boxes_);
   auto pair = pairs.begin();
   for (int a = 0; a < bodies_.count(); ++a) {
-    if (bodies_.body(a).inverse_mass > 0)
+    if (bodies_.body(a).is_free)
       for (int plane = static_cast<int>(planes_.size()) - 1; plane >= 0; --plane) find_below(a, plane);
     for (; pair != pairs.end() && pair->a == a; ++pair) {
       while (last != contacts.end() && std::pair(last->a, last->b) < std::pair(a, pair->b)) ++last;

@@ -21,8 +21,7 @@ ContactBodies::ContactBodies(const Scene& scene) {
     const int first = count();
     for (int s = 0; s < rod.segment_count(); ++s) {
       const Segment& segment = rod.segments[static_cast<std::size_t>(s)];
-      bodies_.push_back({static_cast<int>(r), s, segment.radius_m, segment.length_m / 2, segment.inverse_mass,
-                         segment.inverse_inertia_transverse, segment.inverse_inertia_axial});
+      bodies_.push_back({static_cast<int>(r), s, segment.radius_m, segment.length_m / 2, segment.inverse_mass > 0});
     }
     excluded_.resize(bodies_.size());
     next_.resize(bodies_.size());
@@ -55,7 +54,7 @@ void ContactBodies::add(const Obstacle& obstacle) {
     if (!from.allFinite() || !to.allFinite()) throw SceneError("an obstacle's place is not finite");
     if (!(radius > 0) || !std::isfinite(radius))
       throw SceneError("an obstacle's radius is " + std::to_string(radius) + "; must be positive and finite");
-    bodies_.push_back({-1, -1, radius, (to - from).norm() / 2, 0, 0, 0});
+    bodies_.push_back({-1, -1, radius, (to - from).norm() / 2, false});
     obstacles_.push_back({(from + to) / 2, (to - from) / 2});
   };
   if (const auto* ball = std::get_if<Ball>(&obstacle)) add(ball->centre_m, ball->centre_m, ball->radius_m);
@@ -113,7 +112,7 @@ void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
 
 bool ContactBodies::matter(int a, int b) const {
   const Body &one = body(a), &other = body(b);
-  if (one.inverse_mass == 0 && other.inverse_mass == 0) return false;
+  if (!one.is_free && !other.is_free) return false;
   if (one.radius == 0 || other.radius == 0) return false;
   if (one.rod < 0) return true;
   const std::vector<int>& excluded = excluded_[static_cast<std::size_t>(a)];

@@ -21,7 +21,7 @@ namespace rodsweep {
 struct Body {
   int rod, segment;  ///< -1 of an obstacle
   double radius, half_length;
-  double inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;  ///< zero when static
+  bool is_free;  ///< to move
 };
 
 class ContactBodies {

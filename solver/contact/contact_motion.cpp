@@ -14,6 +14,13 @@ void move_in_world(Rod& rod, std::size_t segment, const Lane8& motion) {
   rod.orientation[segment] = rotated(rod.orientation[segment], Vector3(motion[3], motion[4], motion[5]));
 }
 
+/// I^-1 m of an axisymmetric segment.
+Vector3 turn(const Segment& segment, const Vector3& moment, const CapsuleAxis& axis) {
+  const Vector3 along = axis.half / (segment.length_m / 2);
+  return segment.turn_mobility * moment +
+         (segment.inverse_inertia_axial - segment.turn_mobility) * along.dot(moment) * along;
+}
+
 }  // namespace
 
 ContactMotion::ContactMotion(Scene& scene, const ContactBodies& bodies)
@@ -28,26 +35,24 @@ ContactMotion::ContactMotion(Scene& scene, const ContactBodies& bodies)
   }
 }
 
-// I^-1 m of an axisymmetric segment.
-Vector3 ContactMotion::turn(int body, const Vector3& moment, const CapsuleAxis& axis) const {
-  const Body& of = bodies_.body(body);
-  const Vector3 along = axis.half / of.half_length;
-  return of.inverse_inertia_transverse * moment +
-         (of.inverse_inertia_axial - of.inverse_inertia_transverse) * along.dot(moment) * along;
+const Segment& ContactMotion::segment(const Body& of) const {
+  return scene_.rods[static_cast<std::size_t>(of.rod)].segments[static_cast<std::size_t>(of.segment)];
 }
 
 Matrix3 ContactMotion::mobility(int body, const Vector3& arm, const CapsuleAxis& axis) const {
   Matrix3 w = Matrix3::Zero();
-  if (bodies_.body(body).inverse_mass == 0) return w;
-  for (int c = 0; c < 3; ++c) w.col(c) = turn(body, arm.cross(Vector3::Unit(c)), axis).cross(arm);
-  w.diagonal().array() += bodies_.body(body).inverse_mass;
+  if (!bodies_.body(body).is_free) return w;
+  const Segment& of = segment(bodies_.body(body));
+  for (int c = 0; c < 3; ++c) w.col(c) = turn(of, arm.cross(Vector3::Unit(c)), axis).cross(arm);
+  w.diagonal().array() += of.inverse_mass;
   return w;
 }
 
 void ContactMotion::push(int body, const Vector3& arm, const Vector3& impulse, const CapsuleAxis& axis) {
   const Body& of = bodies_.body(body);
-  if (of.inverse_mass == 0) return;
-  const Vector3 dx = of.inverse_mass * impulse, dtheta = turn(body, arm.cross(impulse), axis);
+  if (!of.is_free) return;
+  const Segment& pushed = segment(of);
+  const Vector3 dx = pushed.inverse_mass * impulse, dtheta = turn(pushed, arm.cross(impulse), axis);
   motion_[static_cast<std::size_t>(body)] += Lane8{dx.x(), dx.y(), dx.z(), dtheta.x(), dtheta.y(), dtheta.z(), 0, 0};
   rods_[static_cast<std::size_t>(of.rod)].pushed = true;
 }
@@ -74,18 +79,24 @@ void ContactMotion::settle(double constraint_dt) {
   }
 }
 
-void ContactMotion::apply() {
+void ContactMotion::apply(bool keeps_balance) {
   for (std::size_t r = 0; r < rods_.size(); ++r) {
     Coupled& coupled = rods_[r];
     if (!coupled.assembled) continue;
     coupled.assembled = false;
     Rod& rod = scene_.rods[r];
     rod.lambda += coupled.response->multipliers();
-    for (int s = 0; s < rod.segment_count(); ++s) {
-      const auto body = static_cast<std::size_t>(coupled.first_body + s);
-      move_in_world(rod, static_cast<std::size_t>(s), settled_[body]);
-      motion_[body] = settled_[body] = Lane8{};
-    }
+    const auto move = [&] {
+      for (int s = 0; s < rod.segment_count(); ++s) {
+        const auto body = static_cast<std::size_t>(coupled.first_body + s);
+        move_in_world(rod, static_cast<std::size_t>(s), settled_[body]);
+        motion_[body] = settled_[body] = Lane8{};
+      }
+    };
+    if (keeps_balance)
+      with_forces_held(rod, move);
+    else
+      move();
   }
 }
 

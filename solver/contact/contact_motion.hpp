@@ -27,8 +27,9 @@ class ContactMotion {
 
   void settle(double constraint_dt);
 
-  /// What has settled, once: afterwards nothing is in motion.
-  void apply();
+  /// What has settled, once: afterwards nothing is in motion. With the balance of momentum kept, joints keep their
+  /// forces in the world (momentum_balance.hpp).
+  void apply(bool keeps_balance);
 
   /// Forgets all pushes since nothing was in motion; none of them has settled.
   void clear();
@@ -39,7 +40,7 @@ class ContactMotion {
     std::optional<RodResponse> response{};  ///< once it was touched
     bool pushed = false, assembled = false;
   };
-  Vector3 turn(int body, const Vector3& moment, const CapsuleAxis& axis) const;
+  const Segment& segment(const Body& of) const;
 
   Scene& scene_;
   const ContactBodies& bodies_;

@@ -37,12 +37,17 @@ void ContactProjection::start_step() {
     for (std::size_t s = 0; s < rod.segments.size(); ++s) old_.push_back({rod.position[s], rod.orientation[s]});
 }
 
-bool ContactProjection::find() {
+bool ContactProjection::find(bool keeps_balance) {
   if (!finder_.find(scene_, contacts_)) return false;
   fresh_ = true;
+  keeps_balance_ = keeps_balance;
   linear_.resize(contacts_.size());
   before_.resize(contacts_.size());
   swept_.resize(contacts_.size());
+  if (keeps_balance_) {
+    linearise();
+    tell_impulses();
+  }
   return true;
 }
 
@@ -64,20 +69,24 @@ bool ContactProjection::project(double constraint_dt) {
     motion_.settle(constraint_dt);
     if (last) break;
   }
-  motion_.apply();
+  motion_.apply(keeps_balance_);
+  if (keeps_balance_) tell_impulses();
   return false;
 }
 
-// Contacts that last are pressed at once as they were in the last step. Returns whether that moves anything.
+// Contacts that last are pressed at once as they were in the last step, unless the balance of momentum has them
+// already. Returns whether that moves anything.
 bool ContactProjection::press(double constraint_dt) {
   if (!fresh_) return false;
   fresh_ = false;
   bool any = false;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Contact& contact = contacts_[c];
+    const Vector3 counted = keeps_balance_ ? contact.impulse : Vector3::Zero();
     contact.impulse = linear_[c].law.admissible(contact.impulse);
-    if (contact.impulse.isZero(0)) continue;
-    push(contact, linear_[c], contact.impulse);
+    const Vector3 change = contact.impulse - counted;
+    if (change.isZero(0)) continue;
+    push(contact, linear_[c], change);
     any = true;
   }
   motion_.settle(constraint_dt);
@@ -174,10 +183,31 @@ Vector3 ContactProjection::slip(int body, const Vector3& point) const {
   return point - (old.position + old.orientation * arm);
 }
 
+// Of all contacts, where they were linearised last.
+void ContactProjection::tell_impulses() {
+  for (Rod& rod : scene_.rods) std::fill(rod.contact_impulse.begin(), rod.contact_impulse.end(), Vector6::Zero());
+  const auto tell = [this](int body, const Vector3& arm, const Vector3& impulse) {
+    const Body& of = finder_.bodies().body(body);
+    if (!of.is_free) return;
+    Vector6& on = scene_.rods[static_cast<std::size_t>(of.rod)].contact_impulse[static_cast<std::size_t>(of.segment)];
+    on.head<3>() += impulse;
+    on.tail<3>() += arm.cross(impulse);
+  };
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    tell(contact.a, linear_[c].arm_a, contact.impulse);
+    if (contact.b >= 0) tell(contact.b, linear_[c].arm_b, -contact.impulse);
+  }
+}
+
 ContactState ContactProjection::state() {
   ContactState state;
-  if (contacts_.empty()) return state;
+  if (contacts_.empty()) {
+    if (!keeps_balance_) tell_impulses();
+    return state;
+  }
   linearise();
+  if (!keeps_balance_) tell_impulses();  // else they stay told as they acted, wherever the contacts have gone since
   for (const Linear& at : linear_) state.penetration = std::max(state.penetration, -at.width / at.size);
   state.residual = sweep();
   undo_sweep();

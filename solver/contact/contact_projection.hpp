@@ -36,15 +36,16 @@ class ContactProjection {
   /// To be called before the scene leaves p.
   void start_step();
 
-  /// To be called at p*: finds the contacts of the step. Returns false where p* is not finite.
-  bool find();
+  /// To be called at p*, or where else Newton starts: finds the contacts of the step. Returns false where p* is not
+  /// finite. Where the balance of momentum is kept, the impulses of contacts that last count in it from now on.
+  bool find(bool keeps_balance);
 
   /// To be called after the rods' projection. Returns whether the contacts had converged: then nothing is moved.
   bool project(double constraint_dt);
 
   const std::vector<Contact>& contacts() const { return contacts_; }
 
-  /// How the contacts of the step are met in the current state, which stays.
+  /// How the contacts of the step are met in the current state, which stays. Tells the rods their impulses.
   ContactState state();
 
  private:
@@ -60,6 +61,7 @@ class ContactProjection {
   bool press(double constraint_dt);
   double sweep();
   void undo_sweep();
+  void tell_impulses();
   void restart(double moved);
   void accelerate(double moved);
   void push(const Contact& contact, const Linear& at, const Vector3& impulse);
@@ -71,6 +73,7 @@ class ContactProjection {
   ContactMotion motion_;
   std::vector<Contact> contacts_;
   bool fresh_ = false;  ///< not projected yet
+  bool keeps_balance_ = false;
   std::vector<Linear> linear_;
   std::vector<CapsuleAxis> axes_;
   struct OldPose {

@@ -10,7 +10,10 @@
 namespace rodsweep {
 
 LinearSystem::LinearSystem(const Rod& rod)
-    : linearization_(rod), rhs_(VectorX::Zero(6 * rod.joint_count())), displacements_(rod.segments.size()) {
+    : linearization_(rod),
+      rhs_(VectorX::Zero(6 * rod.joint_count())),
+      displacements_(rod.segments.size()),
+      balance_(rod) {
   refuse_static_joints(rod);  // their rows would be alpha~ alone, and must not be singular
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
@@ -41,14 +44,35 @@ LinearSystem::LinearSystem(const Rod& rod)
 }
 
 void LinearSystem::assemble(const Rod& rod, double dt) {
-  const double inverse_dt2 = 1 / (dt * dt);
+  balanced_ = false;
   linearize(rod, linearization_);
+  assemble_linearized(rod, dt);
+}
+
+void LinearSystem::assemble_balanced(Rod& rod, double dt) {
+  balanced_ = true;
+  linearize(rod, linearization_);
+  balance_momentum(rod, linearization_, balance_);
+  stiffen(rod, balance_);
+  assemble_linearized(rod, dt);
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) displacements_[s] = motion(rod.segments[s], balance_.defect[s]);
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Joint& joint = rod.joints[k];
+    double* b = rhs_.data() + 6 * k;
+    store6(b, load6(b) + constraint_change(linearization_.joints[k], displacements_[static_cast<std::size_t>(joint.a)],
+                                           displacements_[static_cast<std::size_t>(joint.b)]));
+  }
+}
+
+void LinearSystem::assemble_linearized(const Rod& rod, double dt) {
+  const double inverse_dt2 = 1 / (dt * dt);
   assemble_matrix(rod, inverse_dt2);
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
     rhs_.segment<6>(row) = -linearization_.constraint.segment<6>(row) -
                            inverse_dt2 * rod.joints[k].compliance.cwiseProduct(rod.lambda.segment<6>(row));
   }
+  newton_residual_ = largest_rhs();
 }
 
 void LinearSystem::assemble_matrix(const Rod& rod, double inverse_dt2) {
@@ -93,7 +117,12 @@ void LinearSystem::displacements(const Rod& rod, const VectorX& delta_lambda, st
 
 void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
   displacements(rod, delta_lambda, displacements_);
-  move(rod, displacements_, delta_lambda);
+  if (!balanced_) return move(rod, displacements_, delta_lambda);
+  rod.lambda += delta_lambda;
+  with_forces_held(rod, [&] {
+    for (std::size_t s = 0; s < rod.segments.size(); ++s)
+      move(rod, s, displacements_[s] - motion(rod.segments[s], balance_.defect[s]));
+  });
 }
 
 void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda) {
@@ -111,7 +140,7 @@ void move(Rod& rod, std::size_t segment, const Lane8& displacement) {
   std::memcpy(q.coeffs().data(), &after, sizeof after);
 }
 
-double LinearSystem::newton_residual() const {
+double LinearSystem::largest_rhs() const {
   // maxCoeff() does not promise to see a NaN; the sum does.
   if (rhs_.size() == 0) return 0;  // a single segment has nothing to satisfy
   return std::isfinite(rhs_.sum()) ? rhs_.lpNorm<Eigen::Infinity>() : std::numeric_limits<double>::quiet_NaN();

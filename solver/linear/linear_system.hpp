@@ -3,6 +3,11 @@
 //   A dlambda = b,   A = J M^-1 J^T + alpha~,   b = -C - alpha~ lambda,   alpha~ = alpha / dt^2
 //   (u, phi) = M^-1 J^T dlambda,   lambda += dlambda,   x += R u,   q <- normalise(q + q [0, phi] / 2)
 //
+// Where the balance of momentum is kept, with its defect g and the geometric stiffness K (momentum_balance.hpp),
+//
+//   A = J (M + K)^-1 J^T + alpha~,   b = -C - alpha~ lambda + J (M + K)^-1 g
+//   (u, phi) = (M + K)^-1 (J^T dlambda - g)
+//
 // All in the segments' and joints' own frames (linearization.hpp): A and b are those of any turned or shifted rod.
 // (Deul et al. 2018; Shao et al. 2021.) A is symmetric positive definite, with one 6x6 block row per joint coupled to
 // all joints that share a dynamic segment with it; siblings at a branching couple too. Nothing allocates after
@@ -11,6 +16,7 @@
 
 #include "solver/linear/block_matrix.hpp"
 #include "solver/rod/linearization.hpp"
+#include "solver/rod/momentum_balance.hpp"
 
 namespace rodsweep {
 
@@ -20,6 +26,7 @@ class LinearSystem {
 
   /// Evaluates A and b at the rod's positions and multipliers.
   void assemble(const Rod& rod, double dt);
+  void assemble_balanced(Rod& rod, double dt);  ///< with g and K; stiffens the rod
 
   /// M^-1 J^T dlambda, per segment and in its frame: u in lanes 0..2, phi in lanes 3..5, zero where static.
   void displacements(const Rod& rod, const VectorX& delta_lambda, std::vector<Lane8>& out) const;
@@ -31,7 +38,11 @@ class LinearSystem {
   const VectorX& rhs() const { return rhs_; }
   const Linearization& linearization() const { return linearization_; }
   /// max |C + alpha~ lambda|, the residual that Newton drives to zero; NaN when any entry is.
-  double newton_residual() const;
+  double newton_residual() const { return newton_residual_; }
+  /// Of the balance of momentum (MomentumBalance::residual); 0 where it is not kept.
+  double momentum_residual() const { return balanced_ ? balance_.residual : 0; }
+  /// max |b|: with nothing to balance, the Newton residual.
+  double largest_rhs() const;
 
  private:
   /// One end of a joint on a segment.
@@ -44,6 +55,7 @@ class LinearSystem {
     int block;
     bool first;
   };
+  void assemble_linearized(const Rod& rod, double dt);
   void assemble_matrix(const Rod& rod, double inverse_dt2);
 
   Linearization linearization_;
@@ -53,6 +65,9 @@ class LinearSystem {
   std::vector<Side> sides_;
   std::vector<Contribution> contributions_;  ///< in the order in which assemble_matrix() visits them
   std::vector<Lane8> displacements_;
+  double newton_residual_ = 0;
+  bool balanced_ = false;
+  MomentumBalance balance_;
 };
 
 /// Moves a free segment by u (lanes 0..2) and phi (lanes 3..5) in its own frame; a static one stays.

@@ -24,8 +24,7 @@ struct JointSide {
 /// block = or += J M^-1 J'^T of two joints' sides on one segment.
 template <bool first>
 inline void add_product(const JointSide& side, const JointSide& other, const Segment& segment, Block6& block) {
-  const double weight[3] = {segment.inverse_inertia_transverse, segment.inverse_inertia_transverse,
-                            segment.inverse_inertia_axial};
+  const double weight[3] = {segment.turn_mobility, segment.turn_mobility, segment.inverse_inertia_axial};
 #pragma GCC unroll 4
   for (int p = 0; p < slices; ++p) {
     Lane rotation[3], shift[3];
@@ -52,8 +51,7 @@ inline void add_product(const JointSide& side, const JointSide& other, const Seg
 /// block = or += J M^-1 J^T of one side, to whose diagonal `diagonal` is added.
 template <bool first>
 inline void add_square(const JointSide& side, const Segment& segment, const double* diagonal, Block6& block) {
-  const double weight[3] = {segment.inverse_inertia_transverse, segment.inverse_inertia_transverse,
-                            segment.inverse_inertia_axial};
+  const double weight[3] = {segment.turn_mobility, segment.turn_mobility, segment.inverse_inertia_axial};
   const double shift = segment.inverse_mass * side.inverse_length * side.inverse_length;  // H is orthogonal
 #pragma GCC unroll 4
   for (int p = 0; p < slices; ++p) {
@@ -94,9 +92,9 @@ inline Lane8 constraint_change(const JointJacobian& jacobian, const Lane8& of_a,
   return change;
 }
 
-/// M^-1 times the impulse on a segment; zero where it is static.
+/// M^-1 (or (M + K)^-1) times the impulse on a segment; zero where it is static.
 inline Lane8 motion(const Segment& segment, const Lane8& impulse) {
-  const double m = segment.inverse_mass, transverse = segment.inverse_inertia_transverse;
+  const double m = segment.inverse_mass, transverse = segment.turn_mobility;
   return impulse * Lane8{m, m, m, transverse, transverse, segment.inverse_inertia_axial, 0, 0};
 }
 

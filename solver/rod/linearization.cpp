@@ -141,6 +141,12 @@ Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_fra
   return orientation_of_a(rod, joint) * Vector3(own.x, own.y, own.z);
 }
 
+Vector3 from_world(const Rod& rod, const Joint& joint, const Vector3& in_world) {
+  const Vector3 own = orientation_of_a(rod, joint).conjugate() * in_world;
+  const Triple<double> out = transposed_product(half_turn(turn_of(rod, joint)), numbers(own));
+  return {out.x, out.y, out.z};
+}
+
 void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint) {
   const double scale = 1 / joint.length;
   const JointShape<double> shape = {numbers(joint.rest), numbers(scale * joint.arm_a), numbers(scale * joint.arm_b),

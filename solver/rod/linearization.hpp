@@ -41,8 +41,9 @@ struct Linearization {
 /// d of a joint, in the hemisphere of d0.
 Quaternion relative_turn(const Rod& rod, const Joint& joint);
 
-/// R_m v of a joint: from its frame to the world.
+/// R_m v of a joint: from its frame to the world, and R_m^T v back.
 Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_frame);
+Vector3 from_world(const Rod& rod, const Joint& joint, const Vector3& in_world);
 
 /// One joint's Jacobian and the six values of its C at the rod's positions.
 void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint);

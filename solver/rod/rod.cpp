@@ -38,7 +38,7 @@ Segment make_segment(const SegmentSpec& s, int index) {
   out.inertia_axial = out.mass * s.radius_m * s.radius_m / 2;
   if (!s.is_static) {
     out.inverse_mass = 1 / out.mass;
-    out.inverse_inertia_transverse = 1 / out.inertia_transverse;
+    out.turn_mobility = out.inverse_inertia_transverse = 1 / out.inertia_transverse;
     out.inverse_inertia_axial = 1 / out.inertia_axial;
     if (!std::isfinite(out.inverse_mass) || !std::isfinite(out.inverse_inertia_axial))
       refuse("segment", index, "mass", out.mass, "large enough to be inverted");
@@ -81,6 +81,9 @@ Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointS
   velocity.assign(segments.size(), Vector3::Zero());
   angular_velocity.assign(segments.size(), Vector3::Zero());
   lambda = VectorX::Zero(6 * joint_count());
+  free_position = position;
+  free_orientation = orientation;
+  contact_impulse.assign(segments.size(), Vector6::Zero());
 }
 
 void refuse_static_joints(const Rod& rod) {

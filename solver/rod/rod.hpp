@@ -45,6 +45,8 @@ struct Segment {
   double inertia_transverse, inertia_axial;                                ///< [kg m^2]
   double inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;  ///< all zero when static
   bool is_static;
+  double turn_mobility;  ///< of turns across the axis, in A: inverse_inertia_transverse, or stiffened in a Newton
+                         ///< iteration that keeps the balance of momentum (momentum_balance.hpp)
 };
 
 struct Joint {
@@ -70,6 +72,12 @@ class Rod {
   std::vector<Vector3> position, velocity, angular_velocity;
   std::vector<Quaternion> orientation;
   VectorX lambda;
+
+  // Of the step: where segments would be without joints and contacts, p*, and the impulses of contacts on them: force
+  // and torque about the centre, in the world, times dt_c^2.
+  std::vector<Vector3> free_position;
+  std::vector<Quaternion> free_orientation;
+  std::vector<Vector6> contact_impulse;
 };
 
 /// Refuses a joint between two static segments, which nothing can move.

@@ -45,7 +45,28 @@ void FreeFlight::predict(Rod& rod, double dt, double damping_per_s, const Vector
           count);
     s += lane_width;
   }
-  rod.lambda.setZero();
+}
+
+void FreeFlight::extrapolate(Rod& rod, double dt) {
+  const Lane step = all_lanes(dt), twice = all_lanes(2);
+  std::size_t s = 0;
+  for (Group& group : groups_) {
+    const int count = rod.segment_count() - static_cast<int>(s);
+    const LaneVector velocity = load(&rod.velocity[s], count), spin = load(&rod.angular_velocity[s], count);
+    if (extrapolates_) {
+      const LaneVector position = load(&rod.position[s], count);
+      const LaneQuaternion orientation = load(&rod.orientation[s], count);
+      store(select(group.is_free, group.old_position + step * (twice * velocity - group.velocity_before), position),
+            &rod.position[s], count);
+      store(
+          select(group.is_free, rotated(group.old_orientation, step * (twice * spin - group.spin_before)), orientation),
+          &rod.orientation[s], count);
+    }
+    group.velocity_before = velocity;
+    group.spin_before = spin;
+    s += lane_width;
+  }
+  extrapolates_ = true;
 }
 
 void FreeFlight::update_velocities(Rod& rod, double dt) const {

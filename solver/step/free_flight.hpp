@@ -1,7 +1,7 @@
 // The two ends of a time step of one rod: free flight before its projections, velocities after them.
 //
 //   v* = (v + dt (g + f / m)) / (1 + c dt),  w* = (w + dt I^-1 (tau - w x I w)) / (1 + c dt)
-//   x* = x + dt v*,   q* = normalise(q + dt [0, w*] q / 2)        of free segments; lambda = 0
+//   x* = x + dt v*,   q* = normalise(q + dt [0, w*] q / 2)        of free segments
 //   v = (x - x_old) / dt,   w = (2 / dt) Im(d) / Re(d),  d = q conj(q_old)
 // I is axisymmetric: w x I w = (i_a - i_t) (t.w) w x t is transverse to the axis t, and I^-1 = i_t^-1 + excess t t^T.
 // As many segments at a time as a register has lanes. Nothing allocates after construction.
@@ -26,6 +26,10 @@ class FreeFlight {
   /// From the state at the start of the step, which is remembered. `loads` may be null.
   void predict(Rod& rod, double dt, double damping_per_s, const Vector3& gravity_m_s2, const SegmentLoads* loads);
 
+  /// Between these two: to x_old + dt (2 v - v_before), q likewise, v_before the velocities at the last call of this;
+  /// the first leaves the rod at p*.
+  void extrapolate(Rod& rod, double dt);
+
   void update_velocities(Rod& rod, double dt) const;
 
  private:
@@ -36,8 +40,10 @@ class FreeFlight {
     Lane gyration;  ///< (i_a - i_t) / i_t
     LaneVector old_position;
     LaneQuaternion old_orientation;
+    LaneVector velocity_before, spin_before;
   };
   std::vector<Group> groups_;
+  bool extrapolates_ = false;  ///< knows velocities before
 };
 
 }  // namespace rodsweep

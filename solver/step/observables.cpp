@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/numbers/rotation.hpp"
-#include "solver/rod/linearization.hpp"
+#include "solver/rod/momentum_balance.hpp"
 
 namespace rodsweep {
 namespace {
@@ -74,6 +74,14 @@ double newton_residual(const Rod& rod, double constraint_dt) {
     worst = std::max(worst, residual.lpNorm<Eigen::Infinity>());
   }
   return worst;
+}
+
+double momentum_residual(const Rod& rod) {
+  Linearization at(rod);
+  linearize(rod, at);
+  MomentumBalance balance(rod);
+  balance_momentum(rod, at, balance);
+  return balance.residual;
 }
 
 double elastic_energy(const Rod& rod) {

@@ -17,6 +17,9 @@ double joint_gap(const Rod& rod);
 /// max |C + alpha~ lambda|, alpha~ = alpha / constraint_dt^2 (TimeStepper::constraint_dt): what is left for Newton.
 double newton_residual(const Rod& rod, double constraint_dt);
 
+/// What the forces on a segment lack, relative to the greatest that a joint carries (MomentumBalance::residual).
+double momentum_residual(const Rod& rod);
+
 /// Sum over joints of C^T alpha^-1 C / 2 [J]; rows of zero compliance store nothing.
 double elastic_energy(const Rod& rod);
 

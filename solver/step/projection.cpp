@@ -4,7 +4,8 @@
 
 namespace rodsweep {
 
-LinearProjection::LinearProjection(const Scene& scene, LinearSolve& solve) : solve_(solve) {
+LinearProjection::LinearProjection(const Scene& scene, LinearSolve& solve, std::optional<double> momentum_tolerance)
+    : solve_(solve), momentum_tolerance_(momentum_tolerance) {
   for (const Rod& rod : scene.rods) {
     systems_.emplace_back(rod);
     delta_lambda_.push_back(VectorX::Zero(6 * rod.joint_count()));
@@ -15,11 +16,15 @@ ProjectionReport LinearProjection::project(Rod& rod, const SolvePosition& at, do
   LinearSystem& system = systems_[static_cast<std::size_t>(at.rod)];
   VectorX& delta_lambda = delta_lambda_[static_cast<std::size_t>(at.rod)];
   const Stopwatch watch;
-  system.assemble(rod, dt);
+  if (keeps_balance_)
+    system.assemble_balanced(rod, dt);
+  else
+    system.assemble(rod, dt);
   const double assemble_s = watch.seconds();
 
-  ProjectionReport report{SolveOutcome::not_run, system.newton_residual()};
-  if (report.newton_residual < newton_tolerance) return report;
+  ProjectionReport report{SolveOutcome::not_run, system.newton_residual(), system.momentum_residual()};
+  const bool balanced = !keeps_balance_ || report.momentum_residual < *momentum_tolerance_;
+  if (report.newton_residual < newton_tolerance && balanced) return report;
   report.outcome = solve_.solve(system, at, assemble_s, delta_lambda);
   if (report.outcome == SolveOutcome::converged || report.outcome == SolveOutcome::iteration_limit)
     system.apply(rod, delta_lambda);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "solver/linear/block_factor.hpp"
@@ -24,7 +25,8 @@ struct SolvePosition {
 
 struct ProjectionReport {
   SolveOutcome outcome = SolveOutcome::not_run;
-  double newton_residual = 0;  ///< max |C + alpha~ lambda| before the projection
+  double newton_residual = 0;    ///< max |C + alpha~ lambda| before the projection
+  double momentum_residual = 0;  ///< of the balance, where it is kept
 };
 
 class Projection {
@@ -32,6 +34,9 @@ class Projection {
   virtual ~Projection() = default;
   /// Projects unless the residual is below `newton_tolerance` already (outcome not_run).
   virtual ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) = 0;
+  /// Whether Newton is to go on, from now on, until momentum is in balance as well (momentum_balance.hpp). Returns
+  /// whether it does.
+  virtual bool keep_balance(bool) { return false; }
 };
 
 class LinearSolve {
@@ -44,8 +49,11 @@ class LinearSolve {
 
 class LinearProjection : public Projection {
  public:
-  LinearProjection(const Scene& scene, LinearSolve& solve);
+  /// `momentum_tolerance`, on the residual of the balance of momentum: can keep it.
+  LinearProjection(const Scene& scene, LinearSolve& solve, std::optional<double> momentum_tolerance = {});
+  /// With the balance kept, not_run where it holds too.
   ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override;
+  bool keep_balance(bool wanted) override { return keeps_balance_ = wanted && momentum_tolerance_; }
 
   const LinearSystem& system(int rod) const { return systems_[static_cast<std::size_t>(rod)]; }
 
@@ -53,6 +61,8 @@ class LinearProjection : public Projection {
   std::vector<LinearSystem> systems_;
   std::vector<VectorX> delta_lambda_;
   LinearSolve& solve_;
+  std::optional<double> momentum_tolerance_;
+  bool keeps_balance_ = false;
 };
 
 /// Deul et al.: the exact solution by block elimination.

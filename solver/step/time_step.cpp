@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/rotation.hpp"
 
 namespace rodsweep {
@@ -32,29 +33,31 @@ StepReport TimeStepper::step(Projection& projection) {
   if (contact_) contact_->start_step();
   predict();
   StepReport report;
-  if (contact_ && !contact_->find()) {
+  report.balanced = projection.keep_balance(true);
+  if (report.balanced)
+    start_from_last_step();
+  else
+    for (Rod& rod : scene_.rods) rod.lambda.setZero();
+  if (contact_ && !contact_->find(report.balanced)) {
     report.outcome = SolveOutcome::not_a_number;
     return report;
   }
-  const double dt_c = constraint_dt();
-  bool converged = false;
-  for (int newton = 0; newton < settings_.newton_iterations && !converged; ++newton) {
-    converged = true;
-    for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
-      const SolvePosition at{steps_, newton, static_cast<int>(r)};
-      const SolveOutcome outcome = projection.project(scene_.rods[r], at, dt_c, settings_.newton_tolerance).outcome;
-      if (outcome == SolveOutcome::not_run) continue;
-      converged = false;
-      report.newton_iterations = newton + 1;
-      if (outcome == SolveOutcome::converged) continue;
-      report.outcome = outcome;
-      if (outcome != SolveOutcome::iteration_limit) return report;
-    }
-    if (contact_ && !contact_->project(dt_c)) {
-      converged = false;
-      report.newton_iterations = newton + 1;
+  const int most = settings_.newton_iterations;
+  Newton newton = Newton::open;
+  if (report.balanced) {
+    newton = iterate(projection, (2 * most + 2) / 3, report);
+    if (newton == Newton::failed || (newton == Newton::open && is_lost())) {
+      take_back();
+      newton = Newton::open;
+      report.balanced = projection.keep_balance(false);
+      report.outcome = SolveOutcome::converged;
+      if (contact_) contact_->find(false);
     }
   }
+  if (newton == Newton::open) newton = iterate(projection, most, report);
+  if (report.balanced)
+    for (Rod& rod : scene_.rods) unstiffen(rod);
+  if (newton == Newton::failed) return report;
   if (contact_) {
     report.contacts = static_cast<int>(contact_->contacts().size());
     const ContactState state = contact_->state();
@@ -65,6 +68,49 @@ StepReport TimeStepper::step(Projection& projection) {
   ++steps_;
   scene_.time_s = start_time_s_ + steps_ * settings_.dt;
   return report;
+}
+
+void TimeStepper::start_from_last_step() {
+  for (std::size_t r = 0; r < scene_.rods.size(); ++r)
+    if (!scene_.rods[r].joints.empty())  // without, Newton has nothing to do, and p* is where the rod goes
+      flights_[r].extrapolate(scene_.rods[r], settings_.dt);
+}
+
+/// To p*, without multipliers.
+void TimeStepper::take_back() {
+  for (Rod& rod : scene_.rods) {
+    rod.position = rod.free_position;
+    rod.orientation = rod.free_orientation;
+    rod.lambda.setZero();
+    unstiffen(rod);
+  }
+}
+
+// From the iteration that the report has come to until that many have been made.
+TimeStepper::Newton TimeStepper::iterate(Projection& projection, int until, StepReport& report) {
+  const double dt_c = constraint_dt();
+  for (int newton = report.newton_iterations; newton < until; ++newton) {
+    bool converged = true;
+    newton_residual_ = momentum_residual_ = 0;
+    for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
+      const SolvePosition at{steps_, newton, static_cast<int>(r)};
+      const ProjectionReport done = projection.project(scene_.rods[r], at, dt_c, settings_.newton_tolerance);
+      newton_residual_ = larger_or_nan(newton_residual_, done.newton_residual);
+      momentum_residual_ = larger_or_nan(momentum_residual_, done.momentum_residual);
+      if (done.outcome == SolveOutcome::not_run) continue;
+      converged = false;
+      report.newton_iterations = newton + 1;
+      if (done.outcome == SolveOutcome::converged) continue;
+      report.outcome = done.outcome;
+      if (done.outcome != SolveOutcome::iteration_limit) return Newton::failed;
+    }
+    if (contact_ && !contact_->project(dt_c)) {
+      converged = false;
+      report.newton_iterations = newton + 1;
+    }
+    if (converged) return Newton::converged;
+  }
+  return Newton::open;
 }
 
 double constraint_dt(const Scene& scene, double dt) {
@@ -108,6 +154,10 @@ void TimeStepper::predict() {
     const Pose pose = clamp.pose(end);
     rod.position[static_cast<std::size_t>(clamp.segment)] = pose.position;
     rod.orientation[static_cast<std::size_t>(clamp.segment)] = pose.orientation.normalized();
+  }
+  for (Rod& rod : scene_.rods) {
+    rod.free_position = rod.position;
+    rod.free_orientation = rod.orientation;
   }
 }
 

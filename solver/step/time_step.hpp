@@ -5,6 +5,10 @@
 //   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance, then the contacts
 //   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
 //   v, w of what moved (free_flight.hpp)
+// Where the projection keeps the balance of momentum (momentum_balance.hpp), Newton starts from the last step's lambda,
+// from x + dt (2 v - v_before) and q likewise, and ends when momentum is in balance as well. A step in which two thirds
+// of the iterations come nowhere near that (a slender rod that hits the floor end-on can fold in many ways) is taken
+// back and made as above.
 // Loads: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
 // allocates after construction, but for contacts (contact_projection.hpp).
 #pragma once
@@ -28,6 +32,7 @@ struct StepSettings {
 struct StepReport {
   SolveOutcome outcome = SolveOutcome::converged;  ///< the last failure of a solve, else converged
   int newton_iterations = 0;                       ///< solves used, the most of any rod, or those of the contacts
+  bool balanced = false;                           ///< kept the balance of momentum
   int contacts = 0;                                ///< places where bodies are near each other
   double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
 };
@@ -47,16 +52,23 @@ class TimeStepper {
   double constraint_dt() const { return rodsweep::constraint_dt(scene_, settings_.dt); }
 
  private:
+  enum class Newton { converged, open, failed };
+
   void find_loads();
   void predict();
+  void start_from_last_step();
+  void take_back();
+  Newton iterate(Projection& projection, int until, StepReport& report);
+  bool is_lost() const { return !(newton_residual_ < 1e-6 && momentum_residual_ < 0.1); }
 
   Scene& scene_;
   StepSettings settings_;
   double start_time_s_;
   int steps_ = 0;
-  std::vector<FreeFlight> flights_;             ///< of every rod
-  std::vector<SegmentLoads> loads_;             ///< point loads and wind
-  std::unique_ptr<ContactProjection> contact_;  ///< null in a scene without
+  std::vector<FreeFlight> flights_;                     ///< of every rod
+  std::vector<SegmentLoads> loads_;                     ///< point loads and wind
+  double newton_residual_ = 0, momentum_residual_ = 0;  ///< the largest that the last iteration met
+  std::unique_ptr<ContactProjection> contact_;          ///< null in a scene without
 };
 
 }  // namespace rodsweep

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,20 +20,22 @@ inline Vector3 tip(const Rod& rod) {
 
 class Simulation {
  public:
-  /// Newton runs to its floor: the tolerance is that of rounding.
-  Simulation(Scene initial, double dt, int newton_iterations = 12)
+  /// Newton runs to its floor: the tolerance is that of rounding. With a tolerance on it, the balance of momentum is
+  /// kept.
+  Simulation(Scene initial, double dt, int newton_iterations = 12, std::optional<double> momentum_tolerance = {})
       : scene(std::move(initial)),
         dt_(dt),
         direct_(scene),
-        projection_(scene, direct_),
+        projection_(scene, direct_, momentum_tolerance),
         stepper_(scene, {dt, newton_iterations, 1e-14}) {}
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  void step() {
-    const SolveOutcome outcome = stepper_.step(projection_).outcome;
-    if (outcome != SolveOutcome::converged)
-      throw std::runtime_error(std::string("a step ended: ") + to_string(outcome));
+  StepReport step() {
+    const StepReport report = stepper_.step(projection_);
+    if (report.outcome != SolveOutcome::converged)
+      throw std::runtime_error(std::string("a step ended: ") + to_string(report.outcome));
+    return report;
   }
   void run(int steps) {
     for (int i = 0; i < steps; ++i) step();

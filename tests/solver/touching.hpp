@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,10 +47,10 @@ inline Scene contact_scene(std::vector<Rod> rods, double friction = 0, const Vec
 
 class Touching {
  public:
-  Touching(Scene initial, double dt, int newton_iterations = 10)
+  Touching(Scene initial, double dt, int newton_iterations = 10, std::optional<double> momentum_tolerance = {})
       : scene(std::move(initial)),
         direct_(scene),
-        projection_(scene, direct_),
+        projection_(scene, direct_, momentum_tolerance),
         stepper_(scene, {dt, newton_iterations, 1e-9}) {}
   Touching(const Touching&) = delete;
   Touching& operator=(const Touching&) = delete;

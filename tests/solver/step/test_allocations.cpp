@@ -118,6 +118,13 @@ TEST_CASE("a step with the direct solve allocates nothing") {
   CHECK(allocations_of(scene, direct) == 0);
 }
 
+TEST_CASE("a step that keeps the balance of momentum allocates nothing") {
+  Scene scene = loaded_scene();
+  DirectSolve direct(scene);
+  LinearProjection balanced(scene, direct, 1e-6);
+  CHECK(allocations_of(scene, balanced) == 0);
+}
+
 TEST_CASE("a batched step allocates nothing") {
   BatchedStepper batch({test::moving_scene(12), test::moving_scene(12, 3)}, {0.02, 4, 1e-9});
   const long before = test::allocations();

@@ -25,7 +25,7 @@ Rod straight_rod(int n, bool both_ends, double stretch) {
   if (!both_ends) return rod;
   Segment& last = rod.segments.back();
   last.is_static = true;
-  last.inverse_mass = last.inverse_inertia_transverse = last.inverse_inertia_axial = 0;
+  last.inverse_mass = last.inverse_inertia_transverse = last.turn_mobility = last.inverse_inertia_axial = 0;
   return rod;
 }
 

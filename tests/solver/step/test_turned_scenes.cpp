@@ -160,6 +160,12 @@ TEST_CASE("turned scenes move alike under every projection") {
               TimeStepper stepper(scene, {0.01, 20, 0});
               for (int step = 0; step < 10; ++step) stepper.step(pbd);
             }) < 1e-9);
+      CHECK(apart_after_ten_steps(each.scene, motion, [](Scene& scene) {
+              DirectSolve direct(scene);
+              LinearProjection balanced(scene, direct, 1e-9);
+              TimeStepper stepper(scene, {0.01, 20, 1e-12});
+              for (int step = 0; step < 10; ++step) stepper.step(balanced);
+            }) < 1e-9);
       if (!each.batched) continue;
       CHECK(apart_after_ten_steps(each.scene, motion, [](Scene& scene) {
               BatchedStepper stepper({scene}, {0.02, 6, 1e-9});

@@ -1,0 +1,58 @@
+// The balance of momentum over a time step, of every segment in its own frame,
+//
+//   g = M (p - p*) - J^T lambda - f_c
+//
+// and what keeps Newton steady when it drives g to zero. p - p* is R^T (x - x*) and 2 Im(d) / Re(d), d = conj(q*) q,
+// the rotation vector that the time step's update undoes (rotation.hpp; its axis is the same in both frames); f_c are
+// the contacts' impulses. With g = 0 a rod at rest is in equilibrium whatever the time step: p* - p is then M^-1 dt_c^2
+// times the loads. The deck's step (Deul et al. 2018; Shao et al. 2021) never looks at g; it takes p - p* = sum_j M^-1
+// J_j^T dlambda_j, with J at each Newton iteration's own positions.
+//
+// Geometric stiffness K = -d(J^T lambda)/dp: under the force f of a joint at its arm r a segment turns back by
+// (f.r) I - f r^T. Of that the diagonal part across the axis is kept, (f.r) of all its joints, tension times length on
+// a rod: M + K stays diagonal in the segment's frame and A keeps its pattern (Tournier et al. 2015, Stable Constrained
+// Dynamics; Andrews et al. 2017, Geometric Stiffness for Real-time Constrained Multibody Dynamics). Compression counts
+// down to half of the inertia, so that M + K stays positive.
+//
+// Stretch-shear multipliers stand for forces: while Newton turns the joints' frames, balanced iterations keep the force
+// and so turn the multipliers back (held_in_world).
+#pragma once
+
+#include <vector>
+
+#include "solver/rod/linearization.hpp"
+
+namespace rodsweep {
+
+struct MomentumBalance {
+  std::vector<Lane8> defect;    ///< g: lanes 0..2 [kg m], 3..5 [kg m^2]; zero where static
+  std::vector<double> tension;  ///< sum of f.r [kg m^2], of each segment
+  /// The largest |force| of g, or |torque| over the segment's length, relative to the largest that a joint carries (or
+  /// that moves its segment by a millionth of its length, where joints carry less). 0 of a rod without joints.
+  double residual = 0;
+
+  explicit MomentumBalance(const Rod& rod);  ///< sized, not evaluated
+};
+
+/// At the linearisation's positions. Allocates nothing.
+void balance_momentum(const Rod& rod, const Linearization& at, MomentumBalance& out);
+
+/// Sets the segments' turn_mobility to that of M + K.
+void stiffen(Rod& rod, const MomentumBalance& balance);
+void unstiffen(Rod& rod);  ///< that of M again
+
+/// Runs `move`, which moves segments, and keeps the forces of stretch-shear as they are in the world.
+template <class Move>
+void with_forces_held(Rod& rod, const Move& move) {
+  const auto turn = [&rod](auto&& turned) {
+    for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+      auto force = rod.lambda.segment<3>(static_cast<Eigen::Index>(6 * k));
+      force = turned(rod, rod.joints[k], Vector3(force));
+    }
+  };
+  turn(to_world);
+  move();
+  turn(from_world);
+}
+
+}  // namespace rodsweep
