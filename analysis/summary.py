@@ -155,6 +155,7 @@ def _warning(file, sims):
 
 
 STEP_COLUMNS = {"newton_iterations": "Newton its/step", "newton_residual": "Newton residual",
+                "momentum_residual": "momentum residual",
                 "length_drift": "length drift", "joint_gap": "joint gap/length", "penetration": "penetration/radius",
                 "contact_residual": "contact residual/radius"}
 

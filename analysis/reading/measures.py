@@ -146,13 +146,14 @@ class StepFigures:
     """[simulation, guess] over the steps of a simulation; a paired sweep has one trajectory for all guesses."""
     newton_iterations: np.ndarray   # mean per step
     newton_residual: np.ndarray     # largest at the end of a step
+    momentum_residual: np.ndarray   # largest at the end of a step
     length_drift: np.ndarray        # largest magnitude
     joint_gap: np.ndarray           # largest
     penetration: np.ndarray         # deepest; NaN without contact
     contact_residual: np.ndarray    # largest at the end of a step; NaN without contact
 
 
-LARGEST = ("newton_residual", "length_drift", "joint_gap", "penetration", "contact_residual")
+LARGEST = ("newton_residual", "momentum_residual", "length_drift", "joint_gap", "penetration", "contact_residual")
 
 
 def step_figures(file, sims):

@@ -127,7 +127,7 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
   }
   if (outcome == SolveOutcome::converged && !guesses_.empty()) {
     time(system, at, row, solvers);
-    if (spec_.own_guess >= 0 && system.newton_residual() > rounding_level) {
+    if (spec_.own_guess >= 0 && system.largest_rhs() > rounding_level) {
       delta_lambda = solvers.x;
       outcome = solvers.guesses.front().advanced.outcome;
     }
@@ -142,7 +142,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
                                   RodSolvers& solvers) {
   const VectorX& b = system.rhs();
   const std::vector<double>& ladder = tolerance_ladder();
-  const bool rounding = system.newton_residual() <= rounding_level;
+  const bool rounding = system.largest_rhs() <= rounding_level;
   solvers.reference = solvers.tight.norm_of(b);
   const double reference_other = solvers.tight_other ? solvers.tight_other->norm_of(b) : 0;
   SolveOutcome failure = SolveOutcome::not_run;
@@ -192,10 +192,10 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
 
 /// One solve each to the job's tolerance, in an order that rotates from system to system and repeat to repeat.
 void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers) {
-  const bool rounding = system.newton_residual() <= rounding_level;
+  const bool rounding = system.largest_rhs() <= rounding_level;
   const double tolerance = spec_.solve.forcing == Forcing::fixed
                                ? spec_.solve.tolerance
-                               : forcing_.next(at.rod, at.newton, solvers.reference, system.newton_residual());
+                               : forcing_.next(at.rod, at.newton, solvers.reference, system.largest_rhs());
   for (std::size_t repeat = 0; repeat < solvers.direct_s.size(); ++repeat)
     for (std::size_t k = 0; k < guesses_.size(); ++k) {
       const std::size_t g = (k + row + repeat) % guesses_.size();

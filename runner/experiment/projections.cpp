@@ -72,7 +72,9 @@ std::unique_ptr<Projection> make_projection(const Scene& scene, const TaskSpec& 
     case Method::xpbd:
       return std::make_unique<LoggedIterations>(scene, spec, record, std::make_unique<XpbdProjection>(scene));
   }
-  return std::make_unique<LinearProjection>(scene, solve);
+  const TimeSpec& time = spec.time;
+  return std::make_unique<LinearProjection>(scene, solve,
+                                            time.balance ? std::optional(time.momentum_tolerance) : std::nullopt);
 }
 
 const char* projection_failed(Method method) {

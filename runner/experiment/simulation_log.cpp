@@ -5,6 +5,7 @@
 
 #include "runner/experiment/projections.hpp"
 #include "runner/file/state_rows.hpp"
+#include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/narrow.hpp"
 #include "solver/step/observables.hpp"
 
@@ -27,12 +28,13 @@ TaskOutcome outcome_of(SolveOutcome solve) {
 /// Writes the observables of one finished step into row `step` of /steps.
 void log_step(TaskRecord& record, std::size_t step, const Scene& scene, const StepReport& report, double constraint_dt,
               double initial_length) {
-  double length = 0, gap = 0, residual = 0, kinetic = 0, potential = 0, elastic = 0;
+  double length = 0, gap = 0, residual = 0, imbalance = 0, kinetic = 0, potential = 0, elastic = 0;
   Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
   for (const Rod& rod : scene.rods) {
     length += rod_length(rod);
     gap = std::max(gap, joint_gap(rod));
-    residual = std::max(residual, newton_residual(rod, constraint_dt));
+    residual = larger_or_nan(residual, newton_residual(rod, constraint_dt));
+    imbalance = larger_or_nan(imbalance, momentum_residual(rod));
     kinetic += kinetic_energy(rod);
     potential += gravitational_energy(rod, scene.gravity_m_s2);
     elastic += elastic_energy(rod);
@@ -51,6 +53,7 @@ void log_step(TaskRecord& record, std::size_t step, const Scene& scene, const St
   }
   record.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
   record.step_newton_residual[step] = residual;
+  record.momentum_residual[step] = imbalance;
   if (!scene.contact) return;
   record.contacts[step] = report.contacts;
   record.penetration[step] = report.penetration;

@@ -112,6 +112,9 @@ std::vector<Column> all_columns() {
                                     "Newton (or Gauss-Seidel) iterations used"),
       column<&R::step_newton_residual>("/steps/newton_residual", Rows::step, none, "1",
                                        "max |C + alpha~ lambda| at the end of the step"),
+      column<&R::momentum_residual>("/steps/momentum_residual", Rows::step, none, "1",
+                                    "most that the forces on a segment lack at the end of the step, relative to the "
+                                    "greatest that a joint carries; NaN of rods stepped in batches, as for data sets"),
       column<&R::contacts>("/steps/contacts", Rows::contact_step, none, "1",
                            "places where bodies are near each other in this step; -1 without contact"),
       column<&R::penetration>(

@@ -53,7 +53,7 @@ struct TaskRecord {
   std::vector<double> time_s, length_drift, joint_gap, kinetic_energy_j, potential_energy_j, elastic_energy_j;
   std::vector<double> momentum_kg_m_s, angular_momentum_kg_m2_s;  ///< [row, 3]
   std::vector<std::int16_t> newton_iterations;
-  std::vector<double> step_newton_residual;
+  std::vector<double> step_newton_residual, momentum_residual;
   std::vector<std::int32_t> contacts;
   std::vector<double> penetration, contact_residual;
 

@@ -44,6 +44,7 @@ struct Place {
 
 // How a value is read where its key has one. Types of their own have overloads of their own, beside their tables.
 inline void read_value(const Place& at, double& value) { value = at.point.number(at.path); }
+inline void read_value(const Place& at, bool& value) { value = at.point.text(at.path) == "true"; }
 inline void read_value(const Place& at, int& value) { value = static_cast<int>(at.point.integer(at.path)); }
 inline void read_value(const Place& at, std::uint64_t& value) {
   value = static_cast<std::uint64_t>(at.point.integer(at.path));
@@ -62,6 +63,7 @@ template <class Value, class = std::enable_if_t<std::is_arithmetic_v<Value>>>
 nlohmann::ordered_json written(const Key&, Value value) {
   return number(static_cast<double>(value));
 }
+inline nlohmann::ordered_json written(const Key&, bool value) { return value; }
 inline nlohmann::ordered_json written(const Key& key, const Vector3& value) {
   return {written(key, value.x()), written(key, value.y()), written(key, value.z())};
 }

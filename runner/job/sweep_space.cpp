@@ -105,7 +105,7 @@ void SweepSpace::read(const Key& key, const Json& value, const std::string& path
       }
       return;
     case Key::Kind::guess: return read_guess(value, path, key, scope);
-    case Key::Kind::boolean: throw std::logic_error(path + ": true or false is no parameter of tasks");
+    case Key::Kind::boolean:
     case Key::Kind::integer:
     case Key::Kind::number:
     case Key::Kind::choice:
@@ -113,6 +113,8 @@ void SweepSpace::read(const Key& key, const Json& value, const std::string& path
       Fixed fixed{parameter(path, key), component, 0.0};
       if (value.is_string()) {
         fixed.value = value.get<std::string>();
+      } else if (value.is_boolean()) {
+        fixed.value = value.dump();
       } else {
         fixed.value = value.get<double>();
       }

@@ -61,6 +61,17 @@ KeyTable<TimeSpec> time_keys() {
   table.optional(
       number_key("newton_tolerance", "a step's iterations end when max |C + alpha~ lambda| is below it").from(0, 1),
       &TimeSpec::newton_tolerance);
+  table.optional(boolean_key("balance",
+                             "false: the paper's step; true: Newton goes on until momentum is in balance as well, from "
+                             "the last step's multipliers, so that equilibria do not depend on the step; helices want "
+                             "newton_iterations of 20 (direct and cg)"),
+                 &TimeSpec::balance);
+  table.optional(number_key("momentum_tolerance",
+                            "with `balance`: what the forces on a segment may lack, relative to the greatest force "
+                            "of a joint")
+                     .above(0)
+                     .at_most(1),
+                 &TimeSpec::momentum_tolerance);
   return table;
 }
 
@@ -170,6 +181,16 @@ OutputSpec output_spec(const Job& job) {
 }
 
 void check_method(const Point& point, const Job& job) {
+  if (point.has("time.balance") && point.text("time.balance") == "true") {
+    if (const Method own = method(point); own != Method::cg && own != Method::direct)
+      throw job_error(job.path, "time.balance",
+                      fmt::format("true is not allowed with solve.method \"{}\", which solves no linear system that "
+                                  "could hold the balance; must be with \"direct\" or \"cg\"",
+                                  point.text("solve.method")));
+    if (job.values["record"].contains("systems"))
+      throw job_error(job.path, "time.balance",
+                      "true is not allowed in a data set, whose systems are those of the paper's step; must be false");
+  }
   if (evaluation(point) == Evaluation::closed_loop) return;
   if (point.has("solve.forcing") && point.text("solve.forcing") != "fixed")
     throw job_error(job.path, "solve.forcing",

@@ -74,6 +74,17 @@ TEST_CASE("a system that is solved to rounding already takes no iteration, and i
   }
 }
 
+TEST_CASE("every step tells what its forces lack, and steps that keep the balance lack little") {
+  for (const bool balance : {false, true}) {
+    Json job = job_with(R"(["zero", "quadratic"])");
+    job["time"]["balance"] = balance;
+    job["time"]["newton_iterations"] = 20;
+    const TaskRecord r = evaluated(job);
+    REQUIRE(r.momentum_residual.size() == steps);
+    for (const double lacking : r.momentum_residual) CHECK((lacking < 1e-5) == balance);
+  }
+}
+
 TEST_CASE("steps and frames of a falling rod have its times, energies, length and poses") {
   Json job = job_with(R"(["zero"])");
   job["record"] = {{"trajectory_every", 2}};

@@ -1,0 +1,45 @@
+// Jobs whose steps keep the balance of momentum.
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/runner/job_examples.hpp"
+
+namespace rodsweep {
+namespace {
+
+using Catch::Contains;
+
+TEST_CASE("steps are the paper's unless they are to keep the balance, which may be swept") {
+  const Plan plan = plan_of(with("/time/balance", R"({"grid": [false, true]})"));
+  REQUIRE(plan.size() % 2 == 0);
+  for (const Task& task : plan.tasks()) {
+    const TimeSpec time = plan.spec(task.index).time;
+    CHECK(time.balance == (2 * task.index >= plan.size()));
+    CHECK(time.momentum_tolerance == 1e-5);
+  }
+  const auto parameters = plan.parameters();
+  const auto column = std::find_if(parameters.begin(), parameters.end(),
+                                   [](const ParameterColumn& each) { return each.path == "time.balance"; });
+  REQUIRE(column != parameters.end());
+  CHECK(column->swept);
+  CHECK(std::get<std::vector<std::string>>(column->values).front() == "false");
+  CHECK(std::get<std::vector<std::string>>(column->values).back() == "true");
+  CHECK_FALSE(plan_of(without("/guesses", with("/solve", R"({"method": "direct"})"))).spec(0).time.balance);
+}
+
+TEST_CASE("the balance is refused where no linear system could hold it, and in data sets") {
+  CHECK(refusal(with("/time/balance", "1")) == "job.json: time.balance: 1 is not allowed; must be true or false");
+  CHECK_THAT(refusal(with("/time/balance", R"({"uniform": [0, 1]})")), Contains("time.balance"));
+  CHECK_THAT(refusal(with("/time/momentum_tolerance", "0")), Contains("time.momentum_tolerance: 0 is not allowed"));
+  const Json closed = with("/evaluation", "\"closed_loop\"", without("/guesses", with("/time/balance", "true")));
+  for (const std::string method : {"pbd", "xpbd"})
+    CHECK(refusal(with("/solve", R"({"method": ")" + method + "\"}", closed)) ==
+          "job.json: time.balance: true is not allowed with solve.method \"" + method +
+              "\", which solves no linear system that could hold the balance; must be with \"direct\" or \"cg\"");
+  Json data = without("/guesses", with("/kind", "\"dataset\"", with("/time/balance", "true")));
+  data.erase("evaluation");
+  CHECK_THAT(refusal(data), Contains("time.balance: true is not allowed in a data set"));
+}
+
+}  // namespace
+}  // namespace rodsweep
