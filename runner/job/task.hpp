@@ -36,7 +36,7 @@ struct TimeSpec {
   int newton_iterations = 6;         ///< at most this many per step; Gauss-Seidel: its iterations
   double newton_tolerance = 1e-9;    ///< Newton ends when max |C + alpha~ lambda| falls below it
   bool balance = false;              ///< steps keep the balance of momentum (solver/rod/momentum_balance.hpp)
-  double momentum_tolerance = 1e-5;  ///< and Newton ends when its residual is below this as well
+  double momentum_tolerance = 1e-4;  ///< and Newton ends when its residual is below this as well
 };
 
 enum class Forcing { fixed, eisenstat_walker };

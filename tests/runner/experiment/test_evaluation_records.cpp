@@ -78,6 +78,7 @@ TEST_CASE("every step tells what its forces lack, and steps that keep the balanc
   for (const bool balance : {false, true}) {
     Json job = job_with(R"(["zero", "quadratic"])");
     job["time"]["balance"] = balance;
+    job["time"]["momentum_tolerance"] = 1e-5;
     job["time"]["newton_iterations"] = 20;
     const TaskRecord r = evaluated(job);
     REQUIRE(r.momentum_residual.size() == steps);

@@ -15,7 +15,7 @@ TEST_CASE("steps are the paper's unless they are to keep the balance, which may 
   for (const Task& task : plan.tasks()) {
     const TimeSpec time = plan.spec(task.index).time;
     CHECK(time.balance == (2 * task.index >= plan.size()));
-    CHECK(time.momentum_tolerance == 1e-5);
+    CHECK(time.momentum_tolerance == 1e-4);
   }
   const auto parameters = plan.parameters();
   const auto column = std::find_if(parameters.begin(), parameters.end(),
