@@ -28,7 +28,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo studies pictures test test-long bench sanitize schema format format-check tidy install clean
+.PHONY: help configure build demo studies pictures test test-long test-arm bench sanitize schema format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
@@ -36,6 +36,7 @@ help:
 	@echo 'make pictures      run jobs/pictures.json, draw its trajectories as stills and films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
+	@echo 'make test-arm      tests of the solver, but for CG, and the networks for 64-bit ARM, run in qemu, in $(BUILD)-arm/'
 	@echo 'make bench         build and run the benchmarks'
 	@echo 'make install       PREFIX=$(PREFIX): program, jobs and analysis scripts'
 	@echo 'make build         build only, into $(BUILD)/'
@@ -43,7 +44,7 @@ help:
 	@echo 'make schema        refresh jobs/schema.json after a change of the keys of jobs'
 	@echo 'make format        clang-format the tree; make format-check only looks'
 	@echo 'make tidy          clang-tidy'
-	@echo 'make clean         remove $(BUILD)/, $(BUILD)-sanitize/ and $(BUILD)-tidy/; results stay'
+	@echo 'make clean         remove $(BUILD)/, $(BUILD)-sanitize/, -tidy/ and -arm/; results stay'
 	@echo
 	@echo 'PORTABLE=1 builds for any processor of this kind, WERROR=1 makes warnings errors, SKIP_PACKAGES=1 leaves apt-get alone.'
 
@@ -93,6 +94,13 @@ test-long: configure
 	@cmake --build $(BUILD) -j $(CORES)
 	@ctest --test-dir $(BUILD) -j $(CORES) -L long --output-on-failure --no-tests=error
 
+# Two doubles in a register, another rounding and another compiler's code: what `make test` on x86 doesn't see.
+test-arm:
+	@$(call packages,build arm)
+	@$(call configure,$(BUILD)-arm,--toolchain cmake/aarch64.cmake -DRODSWEEP_PROGRAM=OFF -DRODSWEEP_NATIVE=OFF)
+	@cmake --build $(BUILD)-arm -j $(CORES)
+	@ctest --test-dir $(BUILD)-arm -j $(CORES) -L unit --output-on-failure --no-tests=error
+
 # The bench programs are outside of `all`: only this target builds and runs them.
 bench:
 	@$(call packages,build develop)
@@ -128,4 +136,4 @@ install: build
 	@cmake --install $(BUILD) --prefix "$$(realpath -m -- "$(PREFIX)")"
 
 clean:
-	@for folder in $(BUILD) $(BUILD)-sanitize $(BUILD)-tidy; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done
+	@for folder in $(BUILD) $(BUILD)-{sanitize,tidy,arm}; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done

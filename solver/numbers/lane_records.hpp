@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <utility>
 
 #include "solver/numbers/lane_math.hpp"
@@ -45,71 +47,78 @@ inline Lane part(const Lane (&v)[4], std::integer_sequence<int, i...>) {
   return __builtin_shufflevector(low, high, ((r * W + i) % 4 < 2 ? i : W + i)...);
 }
 
-/// Calls `visit` with lane_width records, those of `from` and copies of the last one.
-template <class Record, class Visit>
-inline auto padded(const Record* from, int count, const Visit& visit) {
-  if (count >= W) return visit(from);
+template <int size>
+using Registers = std::array<Lane, size>;
+
+/// The components of as many records of `size` entries as a register has lanes, of at most `count`: lanes that are too
+/// many have the last.
+template <int size, class Record, int... c>
+inline Registers<size> components(const Record* from, int count, std::integer_sequence<int, c...>) {
   Record copies[W];
-  for (int i = 0; i < W; ++i) copies[i] = from[std::min(i, count - 1)];
-  return visit(copies);
+  if (count < W) {
+    for (int i = 0; i < W; ++i) copies[i] = from[std::min(i, count - 1)];
+    from = copies;
+  }
+  Lane v[size];
+  std::memcpy(v, from, sizeof v);
+  return {component<c>(v, Indices())...};
+}
+template <int size, class Record>
+inline Registers<size> components(const Record* from, int count) {
+  return components<size>(from, count, std::make_integer_sequence<int, size>());
 }
 
-template <class Record, std::size_t size>
+/// The registers that the records with these components fill.
+template <int size, int... r>
+inline Registers<size> run(const Lane (&v)[size], std::integer_sequence<int, r...>) {
+  return {part<r>(v, Indices())...};
+}
+template <int size>
+inline Registers<size> run(const Lane (&v)[size]) {
+  return run(v, std::make_integer_sequence<int, size>());
+}
+
+template <int size, class Record>
 inline void store(const Lane (&v)[size], Record* to, int count) {
-  std::memcpy(reinterpret_cast<double*>(to), v, static_cast<std::size_t>(std::min(count, W)) * size * sizeof(double));
+  const Registers<size> records = run(v);
+  std::memcpy(reinterpret_cast<double*>(to), &records,
+              static_cast<std::size_t>(std::min(count, W)) * size * sizeof(double));
 }
 
 }  // namespace lane_records
 
 /// The first of `count` vectors, one in each lane; lanes that are too many have the last.
 inline LaneVector load(const Vector3* from, int count) {
-  using namespace lane_records;
-  return padded(from, count, [](const Vector3* records) {
-    Lane v[3];
-    std::memcpy(v, records, sizeof v);
-    return LaneVector{component<0>(v, Indices()), component<1>(v, Indices()), component<2>(v, Indices())};
-  });
+  const auto [x, y, z] = lane_records::components<3>(from, count);
+  return {x, y, z};
 }
-
 inline LaneQuaternion load(const Quaternion* from, int count) {
-  using namespace lane_records;
-  return padded(from, count, [](const Quaternion* records) {
-    Lane v[4];
-    std::memcpy(v, records, sizeof v);
-    return LaneQuaternion{component<3>(v, Indices()), component<0>(v, Indices()), component<1>(v, Indices()),
-                          component<2>(v, Indices())};
-  });
+  const auto [x, y, z, w] = lane_records::components<4>(from, count);
+  return {w, x, y, z};
 }
 
 /// To at most `count`.
-inline void store(const LaneVector& v, Vector3* to, int count) {
-  using namespace lane_records;
-  const Lane in[3] = {v.x, v.y, v.z};
-  const Lane out[3] = {part<0>(in, Indices()), part<1>(in, Indices()), part<2>(in, Indices())};
-  store(out, to, count);
-}
-
+inline void store(const LaneVector& v, Vector3* to, int count) { lane_records::store({v.x, v.y, v.z}, to, count); }
 inline void store(const LaneQuaternion& q, Quaternion* to, int count) {
-  using namespace lane_records;
-  const Lane in[4] = {q.x, q.y, q.z, q.w};
-  const Lane out[4] = {part<0>(in, Indices()), part<1>(in, Indices()), part<2>(in, Indices()), part<3>(in, Indices())};
-  store(out, to, count);
+  lane_records::store({q.x, q.y, q.z, q.w}, to, count);
 }
 
-/// Of records of four that stand `stride` doubles apart, all of them.
-inline void scatter(const Lane (&v)[4], double* to, std::ptrdiff_t stride) {
-  using namespace lane_records;
-  const Lane out[4] = {part<0>(v, Indices()), part<1>(v, Indices()), part<2>(v, Indices()), part<3>(v, Indices())};
+/// Of records of four that stand `stride` doubles apart, all of them. `Register` is Lane.
+template <class Register>
+inline void scatter(const Register (&v)[4], double* to, std::ptrdiff_t stride) {
+  const auto records = lane_records::run(v);
 #pragma GCC unroll 4
   for (int r = 0; r < 4; ++r) {
-#if defined(__AVX512F__)
-    const Lane4 even = __builtin_shufflevector(out[r], out[r], 0, 1, 2, 3);
-    const Lane4 odd = __builtin_shufflevector(out[r], out[r], 4, 5, 6, 7);
-    std::memcpy(to + 2 * r * stride, &even, sizeof even);
-    std::memcpy(to + (2 * r + 1) * stride, &odd, sizeof odd);
-#else
-    std::memcpy(to + r * W / 4 * stride + r * W % 4, &out[r], sizeof out[r]);
-#endif
+    const Register& here = records[r];
+    const std::ptrdiff_t first = r * lane_width;
+    if constexpr (sizeof(Register) == 2 * sizeof(Lane4)) {
+      const Lane4 even = __builtin_shufflevector(here, here, 0, 1, 2, 3);
+      const Lane4 odd = __builtin_shufflevector(here, here, 4, 5, 6, 7);
+      std::memcpy(to + first / 4 * stride, &even, sizeof even);
+      std::memcpy(to + (first / 4 + 1) * stride, &odd, sizeof odd);
+    } else {
+      std::memcpy(to + first / 4 * stride + first % 4, &here, sizeof here);
+    }
   }
 }
 

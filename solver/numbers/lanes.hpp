@@ -25,22 +25,21 @@ inline constexpr int lane_width = 2;
 inline constexpr int slices = 8 / lane_width;
 using Lane = double __attribute__((vector_size(8 * lane_width)));
 
-inline double entry(const Lane8& value, int i) { return reinterpret_cast<const double*>(&value)[i]; }
-inline double entry(const Lane4& value, int i) { return reinterpret_cast<const double*>(&value)[i]; }
-inline Lane slice_of(const Lane8& value, int slice) {
-  Lane out;
-  std::memcpy(&out, reinterpret_cast<const Lane*>(&value) + slice, sizeof out);
-  return out;
+template <class Lanes>
+inline double entry(const Lanes& value, int i) {
+  return reinterpret_cast<const double*>(&value)[i];
 }
-/// Of four lanes and zeros; the slice is one of those that four lanes have.
-inline Lane slice_of(const Lane4& value, [[maybe_unused]] int slice) {
-#if defined(__AVX512F__)
-  return __builtin_shufflevector(value, Lane4{}, 0, 1, 2, 3, 4, 4, 4, 4);
-#else
-  Lane out;
-  std::memcpy(&out, reinterpret_cast<const Lane*>(&value) + slice, sizeof out);
-  return out;
-#endif
+
+/// Of a Lane8, or of a Lane4 one of the slices that it has: what the register holds beyond four lanes is zero.
+template <class Lanes, class Register = Lane>
+inline Register slice_of(const Lanes& value, [[maybe_unused]] int slice) {
+  if constexpr (sizeof(Register) > sizeof value) {
+    return __builtin_shufflevector(value, Lanes{}, 0, 1, 2, 3, 4, 4, 4, 4);
+  } else {
+    Register out;
+    std::memcpy(&out, reinterpret_cast<const Register*>(&value) + slice, sizeof out);
+    return out;
+  }
 }
 inline void set_slice(Lane8& value, int slice, const Lane& to) {
   std::memcpy(reinterpret_cast<Lane*>(&value) + slice, &to, sizeof to);

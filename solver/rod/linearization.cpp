@@ -102,33 +102,26 @@ JointTurn<double> turn_of(const Rod& rod, const Joint& joint) {
 
 Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.joint_count())) {
   const std::size_t count = rod.joints.size();
+  const std::size_t groups = (count + lane_width - 1) / lane_width;
+  shapes.reserve(groups);
+  joints.reserve(groups * lane_width);
   for (std::size_t first = 0; first < count; first += lane_width) {
-    const Joint* joint[lane_width];
-    for (std::size_t lane = 0; lane < lane_width; ++lane) joint[lane] = &rod.joints[std::min(first + lane, count - 1)];
     JointShape<Lane> shape;
-    const auto put = [&](LaneVector& out, const auto& v) {
-      for (int lane = 0; lane < lane_width; ++lane) {
-        const Vector3 value = v(*joint[lane]);
-        out.x[lane] = value.x();
-        out.y[lane] = value.y();
-        out.z[lane] = value.z();
-      }
-    };
-    put(shape.arm_a, [](const Joint& j) -> Vector3 { return j.arm_a / j.length; });
-    put(shape.arm_b, [](const Joint& j) -> Vector3 { return j.arm_b / j.length; });
-    for (int lane = 0; lane < lane_width; ++lane) {
-      shape.inverse_length[lane] = 1 / joint[lane]->length;
-      const Quaternion& rest = joint[lane]->rest;
-      shape.rest.w[lane] = rest.w();
-      shape.rest.x[lane] = rest.x();
-      shape.rest.y[lane] = rest.y();
-      shape.rest.z[lane] = rest.z();
+    Quaternion rest[lane_width];
+    Vector3 arm_a[lane_width], arm_b[lane_width];
+    for (std::size_t lane = 0; lane < lane_width; ++lane) {
+      const Joint& joint = rod.joints[std::min(first + lane, count - 1)];
+      rest[lane] = joint.rest;
+      arm_a[lane] = joint.arm_a / joint.length;
+      arm_b[lane] = joint.arm_b / joint.length;
+      shape.inverse_length[lane] = 1 / joint.length;
+      joints.emplace_back().inverse_length = 1 / joint.length;
     }
+    shape.rest = load(rest, lane_width);
+    shape.arm_a = load(arm_a, lane_width);
+    shape.arm_b = load(arm_b, lane_width);
     shapes.push_back(shape);
   }
-  joints.resize(shapes.size() * lane_width);
-  for (std::size_t k = 0; k < joints.size(); ++k)
-    joints[k].inverse_length = 1 / rod.joints[std::min(k, count - 1)].length;
 }
 
 Quaternion relative_turn(const Rod& rod, const Joint& joint) {
@@ -181,9 +174,9 @@ void linearize(const Rod& rod, Linearization& out) {
     const LaneVector gap = stretch(half, a, shape.inverse_length * load(gaps, lane_width), shape);
     const LaneVector bent = bend(turn.d, shape.rest);
     const Lane constraint[6] = {gap.x, gap.y, gap.z, bent.x, bent.y, bent.z};
+    double* of_joint = out.constraint.data() + 6 * first;
     for (std::size_t lane = 0; lane < here; ++lane)
-      for (int row = 0; row < 6; ++row)
-        out.constraint.data()[6 * (first + lane) + row] = reinterpret_cast<const double*>(&constraint[row])[lane];
+      for (const Lane& row : constraint) *of_joint++ = entry(row, static_cast<int>(lane));
     write(parts_of(turn, half, shape), out.joints[first]);
     first += lane_width;
   }

@@ -1,0 +1,105 @@
+// Scenes to turn and shift as a whole, with all that acts on them, and their systems on the way.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <variant>
+#include <vector>
+
+#include "solver/step/projection.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep::test {
+
+struct RigidMotion {
+  Quaternion turn;
+  Vector3 shift;
+
+  Vector3 operator()(const Vector3& point) const { return turn * point + shift; }
+};
+
+inline Scene moved(Scene scene, const RigidMotion& to) {
+  for (Rod& rod : scene.rods)
+    for (int s = 0; s < rod.segment_count(); ++s) {
+      rod.position[s] = to(rod.position[s]);
+      rod.orientation[s] = to.turn * rod.orientation[s];
+      rod.velocity[s] = to.turn * rod.velocity[s];
+      rod.angular_velocity[s] = to.turn * rod.angular_velocity[s];
+    }
+  scene.gravity_m_s2 = to.turn * scene.gravity_m_s2;
+  for (PointLoad& load : scene.loads) {
+    load.force_n = to.turn * load.force_n;
+    load.torque_nm = to.turn * load.torque_nm;
+  }
+  for (MovingClamp& clamp : scene.clamps)
+    clamp.pose = [to, before = clamp.pose](double time_s) {
+      const Pose pose = before(time_s);
+      return Pose{to(pose.position), to.turn * pose.orientation};
+    };
+  for (Obstacle& obstacle : scene.obstacles) {
+    HalfSpace& floor = std::get<HalfSpace>(obstacle);
+    floor = {to(floor.point_m), to.turn * floor.normal};
+  }
+  return scene;
+}
+
+/// Moves the rods as the direct solve does; `look` sees every system.
+template <class Look>
+class Observer : public LinearSolve {
+ public:
+  Observer(const Scene& scene, const Look& look) : direct_(scene), look_(look) {}
+
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
+                     VectorX& delta_lambda) override {
+    look_(system);
+    return direct_.solve(system, at, assemble_s, delta_lambda);
+  }
+
+ private:
+  DirectSolve direct_;
+  const Look& look_;
+};
+
+/// Six steps of three Newton iterations.
+template <class Look>
+void observe(Scene& scene, const Look& look) {
+  Observer<Look> observer(scene, look);
+  LinearProjection projection(scene, observer);
+  TimeStepper stepper(scene, {0.02, 3, 0});
+  for (int step = 0; step < 6; ++step) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
+}
+
+struct TurnedCase {
+  const char* name;
+  Scene scene;
+  bool batched = false;
+};
+
+inline std::vector<TurnedCase> turned_cases() {
+  std::vector<TurnedCase> out;
+  BendingRod bending = bending_rod(12, Clamp::wall);
+  out.push_back({"bending rod", build_scene(bending), true});
+  bending.tip_force_n = {1, 2, -20};
+  bending.stretch = Stretch::physical;
+  out.push_back({"rod that stretches and shears", build_scene(bending)});
+  Helix helix;
+  helix.segments = 24;
+  out.push_back({"helix", build_scene(helix), true});
+  Ring ring;
+  ring.segments = 10;
+  out.push_back({"ring", build_scene(ring)});
+  Tree tree;
+  tree.shape.depth = 2;
+  tree.youngs_modulus_pa = tree.torsion_modulus_pa = 1e7;
+  tree.gravity_m_s2 = {3, -9, 1};
+  out.push_back({"tree", build_scene(tree)});
+  return out;
+}
+
+inline const RigidMotion motions[] = {
+    {Quaternion(Eigen::AngleAxisd(1.1, Vector3(1, 2, -1).normalized())), {0.3, -1, 2}},
+    {Quaternion(Eigen::AngleAxisd(3.1, Vector3(0, 1, 0.2).normalized())), {0, 0, 0}},
+    {Quaternion(Eigen::AngleAxisd(-2.0, Vector3(1, 0, 0.7).normalized())), {-2, 5, 1}},
+};
+
+}  // namespace rodsweep::test
