@@ -81,13 +81,13 @@ def accuracy(file, tasks):
     reference = _references(file, tasks, ok & np.array([way.method == "direct" for way in ways]))
     if (reference < 0).all():
         raise KeyNotFound(f"{file.path} has no task of the direct solve to compare the others with")
-    error, step_s = np.full(len(tasks), np.nan), np.full(len(tasks), np.nan)
+    error, cost_s = np.full(len(tasks), np.nan), np.full(len(tasks), np.nan)
     error[(reference >= 0) & ~ok] = np.inf
     for of in np.unique(reference[reference >= 0]):
-        exact = _positions(file, tasks[of])
+        exact = positions(file, tasks[of])
         for k in np.flatnonzero((reference == of) & ok):
-            error[k], step_s[k] = _error(file, tasks[k], exact), _step_s(file, tasks[k])
-    return Accuracy(tasks, ways, reference == np.arange(len(tasks)), error, step_s)
+            error[k], cost_s[k] = _error(file, tasks[k], exact), step_s(file, tasks[k])
+    return Accuracy(tasks, ways, reference == np.arange(len(tasks)), error, cost_s)
 
 
 def points(file, found, cell):
@@ -153,7 +153,7 @@ def _references(file, tasks, candidate):
     return found
 
 
-def _positions(file, task):
+def positions(file, task):
     """[frame, segment, 3]"""
     first = file.h5["/trajectories/first_row"][task]
     first = first[first >= 0]
@@ -164,12 +164,12 @@ def _positions(file, task):
 
 
 def _error(file, task, exact):
-    apart = np.sqrt((np.square(_positions(file, task) - exact).sum(axis=2)).mean(axis=1)).max()
+    apart = np.sqrt((np.square(positions(file, task) - exact).sum(axis=2)).mean(axis=1)).max()
     return apart / np.linalg.norm(np.ptp(exact[0], axis=0))
 
 
-def _step_s(file, task):
-    """Median over steps; a task at a time, whose rows are those of its steps one after the other."""
+def step_s(file, task):
+    """Wall time of a step of a task, the median: its rows are those of its steps one after the other."""
     def rows(path, first, count):
         return file.h5[path][first[task]:first[task] + count[task]].astype(float)
 

@@ -60,6 +60,7 @@ table summary stiffness --by scene.youngs_modulus_pa
 figures newton newton >"$out/newton.txt"
 figures solvers solvers >"$out/solvers.txt"
 figures work_precision work_precision >"$out/work_precision.txt"
+figures balance balance >"$out/balance.txt"
 figures long_term long_term >"$out/long_term.txt"
 figures long_term long_term_learned --log-time >"$out/long_term_learned.txt"
 sed -i '/\.\(png\|pdf\)$/d' "$out"/*.txt   # the paths of the figures

@@ -1,0 +1,136 @@
+#!/usr/bin/python3
+"""Figure and table of the two kinds of step over the time step: the paper's, and one that keeps the balance of momentum.
+
+A panel per kind of scene: the error at the end of a simulation over the wall time that a second of it takes, a point
+per time step. Error: the distance of a segment from where the balanced step of the smallest size has it, root mean
+square over segments, relative to the diagonal of the box around all segments at the start; medians over simulations.
+The table has, besides, the Newton iterations of a step and the largest momentum residual after the first step. Needs
+trajectories in the file (record.trajectory_every) that end with the simulation, and /solves (record.solves "all").
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from drawing import layout, study, style
+from reading import accuracy, commandline, intervals, texts
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
+
+EXAMPLES = """examples:
+  analysis/balance.py results/balance.h5
+  analysis/balance.py results/balance.h5 --scene helix"""
+KINDS = {"false": "the paper's step", "true": "in balance"}
+
+
+@dataclass(frozen=True)
+class Line:
+    """Of one kind of scene and step, over the time step, largest first; Estimates."""
+    step_s: list
+    second_ms: list      # wall time of a simulated second
+    error: list          # None of the reference
+    iterations: list
+    lacking: list        # momentum residual
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
+    study.add_figure_arguments(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        if "time.balance" not in file.parameters:
+            raise KeyNotFound(f"{file.path} has one kind of step: sweep time.balance over false and true")
+        shown = study.of_tasks(file, options)
+        panels = by_panel(file, np.unique(shown.sims.any_task))
+        print("\n".join(table(panels)) + "\n")
+        study.save(file, options, {"balance": figure(shown, panels)})
+
+
+def by_panel(file, tasks):
+    """{title: {kind: Line}}"""
+    scenes = _scenes(file, tasks)
+    return {title: {kind: _line(file, tasks[of], kind) for kind in KINDS} for title, of in scenes.items()}
+
+
+def _scenes(file, tasks):
+    """{title: mask}: by type, and by what holds or loads it where types are the same."""
+    keys = [key for key in ("scene.type", "scene.tip_force_n") if key in file.parameters]
+    codes = np.column_stack([file.parameters[key].codes()[tasks] for key in keys])
+    loaded = {}
+    for row in dict.fromkeys(map(tuple, codes.tolist())):
+        of = (codes == row).all(axis=1)
+        task = tasks[np.argmax(of)]
+        force = file.parameters[keys[-1]].values[task] if len(keys) > 1 else 0
+        name = file.parameters["scene.type"].text(task).replace("_", " ")
+        loaded[name + (" at rest under a tip load" if np.any(np.nan_to_num(force)) else "")] = of
+    return loaded
+
+
+def _line(file, tasks, kind):
+    step_s, balance = file.parameters["time.step_s"].values, file.parameters["time.balance"]
+    finest = step_s[tasks].min()
+    texts_of = np.array([balance.text(task) for task in tasks])
+    exact = {int(file.sample[task]): accuracy.positions(file, task)
+             for task in tasks[(texts_of == "true") & (step_s[tasks] == finest)]}
+    line = Line([], [], [], [], [])
+    for size in sorted(set(step_s[tasks].tolist()), reverse=True):
+        of = [task for task in tasks[(texts_of == kind) & (step_s[tasks] == size)] if int(file.sample[task]) in exact]
+        draws = file.sample[of]
+        is_reference = kind == "true" and size == finest
+        line.step_s.append(size)
+        line.second_ms.append(intervals.median([1e3 * accuracy.step_s(file, task) / size for task in of], draws))
+        line.error.append(None if is_reference else intervals.median(
+            [_error(accuracy.positions(file, task), exact[int(file.sample[task])]) for task in of], draws))
+        line.iterations.append(intervals.mean([_steps(file, task, "newton_iterations").mean() for task in of], draws))
+        line.lacking.append(intervals.median([_steps(file, task, "momentum_residual")[1:].max() for task in of], draws))
+    return line
+
+
+def _error(found, exact):
+    apart = np.square(found[-1] - exact[-1]).sum(axis=1)
+    return np.sqrt(apart.mean()) / np.linalg.norm(np.ptp(exact[0], axis=0))
+
+
+def _steps(file, task, name):
+    return file.h5[f"/steps/{name}"][file.first_step[task]:file.first_step[task] + file.steps[task]]
+
+
+def table(panels):
+    rows = [["", "time step (s)", "step", "error", "ms per simulated second", "Newton iterations", "momentum residual"]]
+    for title, lines in panels.items():
+        for k, size in enumerate(lines["true"].step_s):
+            for kind, line in lines.items():
+                error = f"{float(line.error[k].value):.2g}" if line.error[k] else "reference"
+                rows.append([title if not (k or kind == "true") else "", f"{size:g}" if kind == "false" else "",
+                             KINDS[kind], error, *(f"{float(values[k].value):.2g}"
+                                                   for values in (line.second_ms, line.iterations, line.lacking))])
+    return texts.aligned(rows)
+
+
+def figure(shown, panels):
+    looks = dict(zip(KINDS, style.series_styles(len(KINDS))))
+    points = [error for lines in panels.values() for line in lines.values() for error in line.error if error]
+    notes = [f"Medians of {study.sample_text(points, mark='')}. Along a line the time step halves from point to point, "
+             f"from {max(next(iter(panels.values()))['true'].step_s):g} s on the left. Reference: the smallest step in "
+             "balance.", shown.about()]
+    page = layout.Page(shown.width_mm, ["Error at the end"], len(panels), 3 if shown.wide else 1, 44,
+                       [look.handle(KINDS[kind]) for kind, look in looks.items()], notes, shown.timing_warning(),
+                       left_mm=13, gap_mm=3)
+    for column, (axes, (title, lines)) in enumerate(zip(page.axes[0], panels.items())):
+        for kind, line in lines.items():
+            kept = [k for k, error in enumerate(line.error) if error]
+            axes.plot([float(line.second_ms[k].value) for k in kept], [float(line.error[k].value) for k in kept],
+                      **looks[kind].line(), linewidth=0.9, markersize=3)
+        axes.set(xscale="log", yscale="log", ylim=(1e-13, 2))
+        page.title(axes, title)
+        page.label_y(axes, column, "error / size of the scene")
+    page.label_x(0, "wall time of a simulated second (ms)")
+    return page
+
+
+if __name__ == "__main__":
+    commandline.run(main)

@@ -1,0 +1,56 @@
+"""balance.py: errors against the finest step in balance, their times, and what is refused."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+import running
+
+STEPS, FRAMES, SEGMENTS, SAMPLES = 4, 3, 5, 2
+SIZES, KINDS = (0.02, 0.01), ("false", "true")
+OFF = {(0.02, "false"): 0.3, (0.02, "true"): 0.2, (0.01, "false"): 0.1, (0.01, "true"): 0}    # of a rod's length
+
+
+class Balance(running.Scripts):
+    def write(self, **settings):
+        super().write(**{"method": "direct", "scenes": ("helix",), "samples": SAMPLES, "steps": STEPS,
+                         "grid": {"time.step_s": SIZES, "time.balance": KINDS}, **settings})
+        with h5py.File(self.path, "a") as h5:
+            count = len(h5["tasks/state"])
+            planted = np.repeat([OFF[size, kind] for size in SIZES for kind in KINDS], SAMPLES)
+            position = np.zeros((count, FRAMES, SEGMENTS, 3))
+            position[..., 2] = np.linspace(0, 1, SEGMENTS)
+            position[:, :-1, :, 0] = 7    # the way there does not count
+            position[:, 0, :, 0] = 0
+            position[:, -1, :, 0] += np.resize(planted, count)[:, None]
+            h5["trajectories/position_m"] = position.reshape(-1, 3)
+            h5["trajectories/first_row"] = np.arange(count * FRAMES).reshape(count, FRAMES) * SEGMENTS
+            lacking = np.tile([1.0, 0.2, 0.3, 0.1], count)    # that of the first step does not count
+            h5["steps/momentum_residual"] = lacking
+
+    def table(self, *arguments):
+        said = running.run("balance.py", "sweep.h5", *arguments, files=True).stdout
+        return [" ".join(line.split()) for line in said.split("\n\n")[0].splitlines()]
+
+    def test_errors_are_those_of_the_end_against_the_finest_step_in_balance(self):
+        self.write()
+        self.assertEqual(self.table()[1:], ["helix 0.02 the paper's step 0.3 0.15 3 0.3",
+                                            "in balance 0.2 0.15 3 0.3",
+                                            "0.01 the paper's step 0.1 0.3 3 0.3",
+                                            "in balance reference 0.3 3 0.3"])
+
+    def test_scenes_have_panels_of_their_own(self):
+        self.write(scenes=("helix", "bending_rod"))
+        self.assertEqual([line.split(" 0.02")[0] for line in self.table() if " 0.02 " in line],
+                         ["helix", "bending rod"])
+
+    def test_a_file_with_one_kind_of_step_is_refused(self):
+        running.Scripts.write(self, method="direct", scenes=("helix",), samples=1, grid={"time.step_s": SIZES})
+        found = running.run("balance.py", "sweep.h5")
+        self.assertEqual(found.code, 2)
+        self.assertIn("sweep time.balance over false and true", found.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
