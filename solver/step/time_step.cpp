@@ -6,6 +6,11 @@
 #include "solver/numbers/rotation.hpp"
 
 namespace rodsweep {
+namespace {
+
+constexpr int fewest_to_share = 6;  // iterations of which a third is kept for a step that cannot be balanced
+
+}  // namespace
 
 TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     : scene_(scene), settings_(settings), start_time_s_(scene.time_s) {
@@ -45,8 +50,9 @@ StepReport TimeStepper::step(Projection& projection) {
   const int most = settings_.newton_iterations;
   Newton newton = Newton::open;
   if (report.balanced) {
-    newton = iterate(projection, (2 * most + 2) / 3, report);
-    if (newton == Newton::failed || (newton == Newton::open && is_lost())) {
+    newton = iterate(projection, most < fewest_to_share ? most : (2 * most + 2) / 3, report);
+    const bool lost = newton == Newton::failed || (newton == Newton::open && is_lost());
+    if (lost && report.newton_iterations < most) {
       take_back();
       newton = Newton::open;
       report.balanced = projection.keep_balance(false);
@@ -68,6 +74,11 @@ StepReport TimeStepper::step(Projection& projection) {
   ++steps_;
   scene_.time_s = start_time_s_ + steps_ * settings_.dt;
   return report;
+}
+
+bool TimeStepper::is_lost() const {
+  constexpr double open_joints = 1e-6, missing_force = 0.1;
+  return !(newton_residual_ < open_joints && momentum_residual_ < missing_force);
 }
 
 void TimeStepper::start_from_last_step() {

@@ -59,7 +59,7 @@ class TimeStepper {
   void start_from_last_step();
   void take_back();
   Newton iterate(Projection& projection, int until, StepReport& report);
-  bool is_lost() const { return !(newton_residual_ < 1e-6 && momentum_residual_ < 0.1); }
+  bool is_lost() const;  ///< Newton, on its way to the balance
 
   Scene& scene_;
   StepSettings settings_;

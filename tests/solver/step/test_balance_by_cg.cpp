@@ -1,0 +1,42 @@
+// Steps that keep the balance of momentum, with CG in the place of the direct solve.
+#include <catch2/catch.hpp>
+#include <optional>
+
+#include "solver/guess/initial_guess.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/step/time_step.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+TEST_CASE("cg from a history reaches the direct solve's balanced steps") {
+  const Scene start = build_scene(test::bending_rod(15));
+  Scene exact = start;
+  DirectSolve direct(exact);
+  LinearProjection by_direct(exact, direct, 1e-9);
+  TimeStepper direct_stepper(exact, {0.02, 20, 1e-12});
+  for (int step = 0; step < 20; ++step) direct_stepper.step(by_direct);
+
+  Scene scene = start;
+  struct CgSolve : LinearSolve {
+    explicit CgSolve(const Scene& scene) : guess(scene, 20, 3) {}
+    SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& x) override {
+      if (!cg) cg.emplace(system.matrix(), CgSettings{});
+      cg->matrix_changed();
+      const bool nonzero = guess.propose(system, at, x).nonzero;
+      const CgReport report = cg->solve(system.rhs(), x, nonzero, 1e-8, system.rhs().norm());
+      guess.accept(at, x);
+      return report.outcome;
+    }
+    ExtrapolationGuess guess;
+    std::optional<ConjugateGradient> cg;
+  } solve(scene);
+  LinearProjection by_cg(scene, solve, 1e-9);
+  TimeStepper stepper(scene, {0.02, 20, 1e-12});
+  for (int step = 0; step < 20; ++step) REQUIRE(stepper.step(by_cg).outcome == SolveOutcome::converged);
+  for (int s = 0; s < 15; ++s) CHECK((scene.rods[0].position[s] - exact.rods[0].position[s]).norm() < 1e-7);
+}
+
+}  // namespace
+}  // namespace rodsweep
