@@ -11,6 +11,7 @@ trajectories in the file (record.trajectory_every) that end with the simulation,
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from drawing import layout, study, style
 from reading import accuracy, commandline, intervals, texts
@@ -115,19 +116,24 @@ def figure(shown, panels):
     looks = dict(zip(KINDS, style.series_styles(len(KINDS))))
     points = [error for lines in panels.values() for line in lines.values() for error in line.error if error]
     notes = [f"Medians of {study.sample_text(points, mark='')}. Along a line the time step halves from point to point, "
-             f"from {max(next(iter(panels.values()))['true'].step_s):g} s on the left. Reference: the smallest step in "
-             "balance.", shown.about()]
+             f"from {max(next(iter(panels.values()))['true'].step_s):g} s on the left, to twice that of the reference, "
+             "the smallest step in balance.", shown.about()]
     page = layout.Page(shown.width_mm, ["Error at the end"], len(panels), 3 if shown.wide else 1, 44,
                        [look.handle(KINDS[kind]) for kind, look in looks.items()], notes, shown.timing_warning(),
-                       left_mm=13, gap_mm=3)
+                       left_mm=13, gap_mm=9)
     for column, (axes, (title, lines)) in enumerate(zip(page.axes[0], panels.items())):
         for kind, line in lines.items():
-            kept = [k for k, error in enumerate(line.error) if error]
+            kept = [k for k, size in enumerate(line.step_s) if size > min(line.step_s)]
             axes.plot([float(line.second_ms[k].value) for k in kept], [float(line.error[k].value) for k in kept],
                       **looks[kind].line(), linewidth=0.9, markersize=3)
-        axes.set(xscale="log", yscale="log", ylim=(1e-13, 2))
+        axes.set(xscale="log", yscale="log")
+        ticks = layout.log_ticks(*axes.get_xlim())
+        axes.xaxis.set_major_locator(FixedLocator(ticks))
+        axes.xaxis.set_minor_locator(NullLocator())
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
         page.title(axes, title)
-        page.label_y(axes, column, "error / size of the scene")
+        if column == 0:
+            axes.set_ylabel("error / size of the scene", labelpad=2)
     page.label_x(0, "wall time of a simulated second (ms)")
     return page
 
