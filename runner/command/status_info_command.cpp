@@ -81,6 +81,9 @@ std::string provenance_text(const FileSummary& file) {
   if (file.rerun_of_task) text += fmt::format("holds    task {} of the job alone, run again\n", *file.rerun_of_task);
   if (!file.guesses.empty()) text += fmt::format("guesses  {}\n", fmt::join(file.guesses, ", "));
   text += fmt::format("done     {} of {} tasks: {}\n", file.done, file.tasks, by_outcome(file));
+  if (file.momentum_residual)
+    text += fmt::format("momentum in a step, forces on a segment lack at most {:.2g} of the greatest of a joint\n",
+                        *file.momentum_residual);
   for (std::size_t i = 0; i < file.runs.size(); ++i) {
     const Provenance& p = file.runs[i].provenance;
     text += run_line(i, file.runs[i]);
@@ -146,6 +149,7 @@ ExitCode execute(const InfoOptions& options, Console& console) {
     json["plan_hash"] = file.plan_hash;
     if (file.rerun_of_task) json["rerun_of_task"] = *file.rerun_of_task;
     json["guesses"] = file.guesses;
+    json["momentum_residual"] = file.momentum_residual ? Json(*file.momentum_residual) : Json();
     json["tolerances"] = file.tolerances;
     if (options.verify) json["verified"] = {{"checked", verified.checked}, {"damaged", verified.damaged}};
     console.result(json.dump(2));

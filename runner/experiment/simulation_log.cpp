@@ -54,6 +54,7 @@ void log_step(TaskRecord& record, std::size_t step, const Scene& scene, const St
   record.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
   record.step_newton_residual[step] = residual;
   record.momentum_residual[step] = imbalance;
+  record.largest_momentum_residual[0] = std::fmax(record.largest_momentum_residual[0], imbalance);
   if (!scene.contact) return;
   record.contacts[step] = report.contacts;
   record.penetration[step] = report.penetration;

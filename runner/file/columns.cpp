@@ -40,6 +40,8 @@ std::vector<Column> all_columns() {
       column<&R::deepest_penetration>(
           "/tasks/penetration", Rows::contact_task, none, "1",
           "deepest overlap of two bodies after any step, over the smaller radius; NaN without contact"),
+      column<&R::largest_momentum_residual>("/tasks/momentum_residual", Rows::task, none, "1",
+                                            "largest /steps/momentum_residual; NaN of rods stepped in batches"),
       column<&R::counted, &Sums::iterations>(
           "/tasks/iterations_sum", Rows::task, ladder, "1",
           "CG iterations summed over the first Newton iteration of every step; solves that missed the tolerance count "

@@ -31,6 +31,15 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
   summary.pending = summary.tasks - summary.done;
 }
 
+void find_momentum_residual(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
+  const char* path = "/tasks/momentum_residual";
+  if (!hdf5::exists(file.id(), path)) return;  // of a program that did not measure it
+  const auto residuals = hdf5::read_all<double>(file.id(), path);
+  for (std::size_t task = 0; task < states.size(); ++task)
+    if (states[task] != 0 && residuals.at(task) >= summary.momentum_residual.value_or(0))
+      summary.momentum_residual = residuals[task];
+}
+
 }  // namespace
 
 FileSummary inspect(const fs::path& path) {
@@ -52,6 +61,7 @@ FileSummary inspect(const fs::path& path) {
     const std::vector<std::uint8_t> states = read_states(file, path);
     summary.runs = read_runs(file);
     count_tasks(file, states, summary);
+    find_momentum_residual(file, states, summary);
     return summary;
   });
 }

@@ -35,7 +35,8 @@ struct FileSummary {
   std::int64_t failed = 0;   ///< done with an outcome other than "ok"
   std::int64_t pending = 0;  ///< tasks - done
   std::map<std::string, std::int64_t> done_by_outcome;
-  std::vector<FailedTask> failures;  ///< in order of their index
+  std::vector<FailedTask> failures;         ///< in order of their index
+  std::optional<double> momentum_residual;  ///< the largest of finished tasks that measured it
   std::vector<RunRow> runs;
 };
 

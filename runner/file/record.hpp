@@ -35,10 +35,10 @@ struct TaskRecord {
   TaskOutcome outcome = TaskOutcome::pending;
   std::string message;  ///< for outcomes other than ok: what happened, at which step
 
-  std::vector<std::int32_t> steps_done;     ///< [1]
-  std::vector<double> deepest_penetration;  ///< [1]
-  CountSums counted, counted_all;           ///< of first Newton iterations; of all
-  CountSums counted_other_norm;             ///< of first ones, without matvecs
+  std::vector<std::int32_t> steps_done;                                ///< [1]
+  std::vector<double> deepest_penetration, largest_momentum_residual;  ///< [1]
+  CountSums counted, counted_all;                                      ///< of first Newton iterations; of all
+  CountSums counted_other_norm;                                        ///< of first ones, without matvecs
 
   // ---- /solves [row ...]
   std::vector<std::int32_t> step;

@@ -83,6 +83,7 @@ TEST_CASE("every step tells what its forces lack, and steps that keep the balanc
     const TaskRecord r = evaluated(job);
     REQUIRE(r.momentum_residual.size() == steps);
     for (const double lacking : r.momentum_residual) CHECK((lacking < 1e-5) == balance);
+    CHECK(r.largest_momentum_residual[0] == *std::max_element(r.momentum_residual.begin(), r.momentum_residual.end()));
   }
 }
 
