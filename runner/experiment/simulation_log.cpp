@@ -25,43 +25,6 @@ TaskOutcome outcome_of(SolveOutcome solve) {
   }
 }
 
-/// Writes the observables of one finished step into row `step` of /steps.
-void log_step(TaskRecord& record, std::size_t step, const Scene& scene, const StepReport& report, double constraint_dt,
-              double initial_length) {
-  double length = 0, gap = 0, residual = 0, imbalance = 0, kinetic = 0, potential = 0, elastic = 0;
-  Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
-  for (const Rod& rod : scene.rods) {
-    length += rod_length(rod);
-    gap = std::max(gap, joint_gap(rod));
-    residual = larger_or_nan(residual, newton_residual(rod, constraint_dt));
-    imbalance = larger_or_nan(imbalance, momentum_residual(rod));
-    kinetic += kinetic_energy(rod);
-    potential += gravitational_energy(rod, scene.gravity_m_s2);
-    elastic += elastic_energy(rod);
-    momentum += linear_momentum(rod);
-    spin += angular_momentum(rod);
-  }
-  record.time_s[step] = scene.time_s;
-  record.length_drift[step] = length / initial_length - 1;
-  record.joint_gap[step] = gap;
-  record.kinetic_energy_j[step] = kinetic;
-  record.potential_energy_j[step] = potential;
-  record.elastic_energy_j[step] = elastic;
-  for (std::size_t i = 0; i < 3; ++i) {
-    record.momentum_kg_m_s[3 * step + i] = momentum[static_cast<Eigen::Index>(i)];
-    record.angular_momentum_kg_m2_s[3 * step + i] = spin[static_cast<Eigen::Index>(i)];
-  }
-  record.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
-  record.step_newton_residual[step] = residual;
-  record.momentum_residual[step] = imbalance;
-  record.largest_momentum_residual[0] = std::fmax(record.largest_momentum_residual[0], imbalance);
-  if (!scene.contact) return;
-  record.contacts[step] = report.contacts;
-  record.penetration[step] = report.penetration;
-  record.contact_residual[step] = report.contact_residual;
-  record.deepest_penetration[0] = std::fmax(record.deepest_penetration[0], report.penetration);
-}
-
 /// What the segments of a trajectory's frames are.
 void log_segments(const Scene& scene, TaskRecord& record) {
   std::size_t row = 0;
@@ -80,13 +43,56 @@ void log_segments(const Scene& scene, TaskRecord& record) {
 
 SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)
     : task_(task), spec_(spec), record_(record) {
-  for (const Rod& rod : scene.rods) initial_length_ += rod_length(rod);
+  for (const Rod& rod : scene.rods) {
+    initial_length_ += rod_length(rod);
+    observed_.push_back({Linearization(rod), MomentumBalance(rod)});
+  }
   record_.outcome = TaskOutcome::ok;
   record_.steps_done[0] = 0;
   if (spec_.output.trajectory_every > 0) {
     log_segments(scene, record_);
     log_frame(0, scene);
   }
+}
+
+/// Writes the observables of one finished step into row `step` of /steps.
+void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepReport& report, double constraint_dt) {
+  double length = 0, gap = 0, residual = 0, imbalance = 0, kinetic = 0, potential = 0, elastic = 0;
+  Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
+  for (std::size_t r = 0; r < scene.rods.size(); ++r) {
+    const Rod& rod = scene.rods[r];
+    auto& [at, balance] = observed_[r];
+    linearize(rod, at);
+    balance_momentum(rod, at, balance);
+    length += rod_length(rod);
+    gap = std::max(gap, joint_gap(rod));
+    residual = larger_or_nan(residual, newton_residual(rod, at, constraint_dt));
+    imbalance = larger_or_nan(imbalance, balance.residual);
+    kinetic += kinetic_energy(rod);
+    potential += gravitational_energy(rod, scene.gravity_m_s2);
+    elastic += elastic_energy(rod, at);
+    momentum += linear_momentum(rod);
+    spin += angular_momentum(rod);
+  }
+  record_.time_s[step] = scene.time_s;
+  record_.length_drift[step] = length / initial_length_ - 1;
+  record_.joint_gap[step] = gap;
+  record_.kinetic_energy_j[step] = kinetic;
+  record_.potential_energy_j[step] = potential;
+  record_.elastic_energy_j[step] = elastic;
+  for (std::size_t i = 0; i < 3; ++i) {
+    record_.momentum_kg_m_s[3 * step + i] = momentum[static_cast<Eigen::Index>(i)];
+    record_.angular_momentum_kg_m2_s[3 * step + i] = spin[static_cast<Eigen::Index>(i)];
+  }
+  record_.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
+  record_.step_newton_residual[step] = residual;
+  record_.momentum_residual[step] = imbalance;
+  record_.largest_momentum_residual[0] = std::fmax(record_.largest_momentum_residual[0], imbalance);
+  if (!scene.contact) return;
+  record_.contacts[step] = report.contacts;
+  record_.penetration[step] = report.penetration;
+  record_.contact_residual[step] = report.contact_residual;
+  record_.deepest_penetration[0] = std::fmax(record_.deepest_penetration[0], report.penetration);
 }
 
 bool SimulationLog::out_of_time(int step, double elapsed_s) {
@@ -105,7 +111,7 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
     return false;
   }
   const auto row = static_cast<std::size_t>(step);
-  log_step(record_, row, scene, report, constraint_dt, initial_length_);
+  log_step(row, scene, report, constraint_dt);
   record_.steps_done[0] = step + 1;
   const int every = spec_.output.trajectory_every;
   if (every > 0 && (step + 1) % every == 0) log_frame(static_cast<std::size_t>((step + 1) / every), scene);

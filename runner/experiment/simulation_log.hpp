@@ -3,9 +3,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "runner/file/record.hpp"
 #include "runner/job/task.hpp"
+#include "solver/rod/momentum_balance.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/step/time_step.hpp"
 
@@ -23,12 +25,19 @@ class SimulationLog {
   bool finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt);
 
  private:
+  /// What several observables of a rod are made of.
+  struct Observed {
+    Linearization at;
+    MomentumBalance balance;
+  };
+  void log_step(std::size_t step, const Scene& scene, const StepReport& report, double constraint_dt);
   void fail(TaskOutcome outcome, int step, const std::string& why);
   void log_frame(std::size_t frame, const Scene& scene);
 
   const Task& task_;
   const TaskSpec& spec_;
   TaskRecord& record_;
+  std::vector<Observed> observed_;  ///< of every rod
   double initial_length_ = 0;
 };
 

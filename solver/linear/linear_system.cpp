@@ -13,7 +13,8 @@ LinearSystem::LinearSystem(const Rod& rod)
     : linearization_(rod),
       rhs_(VectorX::Zero(6 * rod.joint_count())),
       displacements_(rod.segments.size()),
-      balance_(rod) {
+      balance_(rod),
+      balancing_(rod.segments.size()) {
   refuse_static_joints(rod);  // their rows would be alpha~ alone, and must not be singular
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
@@ -55,12 +56,12 @@ void LinearSystem::assemble_balanced(Rod& rod, double dt) {
   balance_momentum(rod, linearization_, balance_);
   stiffen(rod, balance_);
   assemble_linearized(rod, dt);
-  for (std::size_t s = 0; s < rod.segments.size(); ++s) displacements_[s] = motion(rod.segments[s], balance_.defect[s]);
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) balancing_[s] = motion(rod.segments[s], balance_.defect[s]);
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Joint& joint = rod.joints[k];
     double* b = rhs_.data() + 6 * k;
-    store6(b, load6(b) + constraint_change(linearization_.joints[k], displacements_[static_cast<std::size_t>(joint.a)],
-                                           displacements_[static_cast<std::size_t>(joint.b)]));
+    store6(b, load6(b) + constraint_change(linearization_.joints[k], balancing_[static_cast<std::size_t>(joint.a)],
+                                           balancing_[static_cast<std::size_t>(joint.b)]));
   }
 }
 
@@ -120,8 +121,7 @@ void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
   if (!balanced_) return move(rod, displacements_, delta_lambda);
   rod.lambda += delta_lambda;
   with_forces_held(rod, [&] {
-    for (std::size_t s = 0; s < rod.segments.size(); ++s)
-      move(rod, s, displacements_[s] - motion(rod.segments[s], balance_.defect[s]));
+    for (std::size_t s = 0; s < rod.segments.size(); ++s) move(rod, s, displacements_[s] - balancing_[s]);
   });
 }
 

@@ -68,6 +68,7 @@ class LinearSystem {
   double newton_residual_ = 0;
   bool balanced_ = false;
   MomentumBalance balance_;
+  std::vector<Lane8> balancing_;  ///< (M + K)^-1 g of every segment
 };
 
 /// Moves a free segment by u (lanes 0..2) and phi (lanes 3..5) in its own frame; a static one stays.

@@ -15,7 +15,7 @@
 // down to half of the inertia, so that M + K stays positive.
 //
 // Stretch-shear multipliers stand for forces: while Newton turns the joints' frames, balanced iterations keep the force
-// and so turn the multipliers back (held_in_world).
+// and so turn the multipliers back (with_forces_held).
 #pragma once
 
 #include <vector>

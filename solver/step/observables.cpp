@@ -28,6 +28,12 @@ Vector3 spin_momentum(const Rod& rod, std::size_t s) {
   return segment.inertia_transverse * w + (segment.inertia_axial - segment.inertia_transverse) * axis.dot(w) * axis;
 }
 
+Linearization linearized(const Rod& rod) {
+  Linearization at(rod);
+  linearize(rod, at);
+  return at;
+}
+
 }  // namespace
 
 double rod_length(const Rod& rod) {
@@ -63,8 +69,10 @@ double joint_gap(const Rod& rod) {
 }
 
 double newton_residual(const Rod& rod, double constraint_dt) {
-  Linearization at(rod);
-  linearize(rod, at);
+  return newton_residual(rod, linearized(rod), constraint_dt);
+}
+
+double newton_residual(const Rod& rod, const Linearization& at, double constraint_dt) {
   double worst = 0;
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
@@ -77,16 +85,14 @@ double newton_residual(const Rod& rod, double constraint_dt) {
 }
 
 double momentum_residual(const Rod& rod) {
-  Linearization at(rod);
-  linearize(rod, at);
   MomentumBalance balance(rod);
-  balance_momentum(rod, at, balance);
+  balance_momentum(rod, linearized(rod), balance);
   return balance.residual;
 }
 
-double elastic_energy(const Rod& rod) {
-  Linearization at(rod);
-  linearize(rod, at);
+double elastic_energy(const Rod& rod) { return elastic_energy(rod, linearized(rod)); }
+
+double elastic_energy(const Rod& rod, const Linearization& at) {
   double energy = 0;
   for (std::size_t k = 0; k < rod.joints.size(); ++k)
     for (int row = 0; row < 6; ++row) {

@@ -1,6 +1,7 @@
 // What is measured on a scene: length, gaps, energies, momenta. Pure functions of the state; SI.
 #pragma once
 
+#include "solver/rod/linearization.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace rodsweep {
@@ -16,12 +17,14 @@ double joint_gap(const Rod& rod);
 
 /// max |C + alpha~ lambda|, alpha~ = alpha / constraint_dt^2 (TimeStepper::constraint_dt): what is left for Newton.
 double newton_residual(const Rod& rod, double constraint_dt);
+double newton_residual(const Rod& rod, const Linearization& at, double constraint_dt);  ///< linearised here already
 
 /// What the forces on a segment lack, relative to the greatest that a joint carries (MomentumBalance::residual).
 double momentum_residual(const Rod& rod);
 
 /// Sum over joints of C^T alpha^-1 C / 2 [J]; rows of zero compliance store nothing.
 double elastic_energy(const Rod& rod);
+double elastic_energy(const Rod& rod, const Linearization& at);
 
 /// m |v|^2 / 2 + w.I w / 2 over the dynamic segments [J].
 double kinetic_energy(const Rod& rod);
