@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "solver/rod/momentum_balance.hpp"
+
 namespace rodsweep {
 
 void restore(const StoredSystem& system, Rod& rod) {
@@ -15,6 +17,19 @@ void restore(const StoredSystem& system, Rod& rod) {
   rod.velocity = system.velocity;
   rod.angular_velocity = system.angular_velocity;
   rod.lambda = system.lambda;
+  unstiffen(rod);
+  if (!system.balance) return;
+  rod.free_position = system.balance->free_position;
+  rod.free_orientation = system.balance->free_orientation;
+  rod.contact_impulse = system.balance->contact_impulse;
+}
+
+void assemble_again(const StoredSystem& stored, double constraint_dt_s, Rod& rod, LinearSystem& system) {
+  restore(stored, rod);
+  if (stored.balance)
+    system.assemble_balanced(rod, constraint_dt_s);
+  else
+    system.assemble(rod, constraint_dt_s);
 }
 
 Replay::Replay(const StoredSimulation& simulation) : simulation_(simulation), scene_(simulation.scene) {

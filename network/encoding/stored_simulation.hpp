@@ -1,9 +1,10 @@
 // What a simulation leaves behind for learning: of every stored linear system the state that it was assembled from
 // and its exact solution, so that A, b and every feature can be formed again, bit for bit.
 //
-//   restore(system, rod);  LinearSystem::assemble(rod, constraint_dt_s)   gives A and b, and A solution = b
+//   assemble_again(system, constraint_dt_s, rod, linear_system)   gives A and b, and A solution = b
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,15 +13,23 @@
 
 namespace rodsweep {
 
+/// What the balance of momentum is kept against, an entry per segment.
+struct StoredBalance {
+  std::vector<Vector3> free_position;
+  std::vector<Quaternion> free_orientation;
+  std::vector<Vector6> contact_impulse;
+};
+
 /// One linear system. Vectors have an entry per segment, `lambda` and `solution` six per joint.
 struct StoredSystem {
   SolvePosition at;
   std::vector<Vector3> position;  ///< where the system was assembled [m]
   std::vector<Quaternion> orientation;
-  std::vector<Vector3> velocity;          ///< at the start of the step [m/s]
-  std::vector<Vector3> angular_velocity;  ///< at the start of the step [rad/s]
-  VectorX lambda;                         ///< before the solve [kg m^2]
-  VectorX solution;                       ///< the increment of lambda [kg m^2]
+  std::vector<Vector3> velocity;           ///< at the start of the step [m/s]
+  std::vector<Vector3> angular_velocity;   ///< at the start of the step [rad/s]
+  VectorX lambda;                          ///< before the solve [kg m^2]
+  VectorX solution;                        ///< the increment of lambda [kg m^2]
+  std::optional<StoredBalance> balance{};  ///< of a system with g and K (momentum_balance.hpp)
 };
 
 struct StoredSimulation {
@@ -34,6 +43,9 @@ struct StoredSimulation {
 /// Puts the rod `system.at.rod` of the scene into the state that the system was assembled from. Throws
 /// std::invalid_argument where the rod has another number of segments or joints.
 void restore(const StoredSystem& system, Rod& rod);
+
+/// Puts it there and assembles the system that was solved, with or without the balance of momentum.
+void assemble_again(const StoredSystem& stored, double constraint_dt_s, Rod& rod, LinearSystem& system);
 
 /// Goes through a simulation once more: one rod after the other is put into the state that a system was assembled from,
 /// and the system is assembled again.
@@ -49,8 +61,7 @@ class Replay {
   void run(Visit visit) {
     for (const StoredSystem& stored : simulation_.systems) {
       const auto r = static_cast<std::size_t>(stored.at.rod);
-      restore(stored, scene_.rods[r]);
-      systems_[r].assemble(scene_.rods[r], simulation_.constraint_dt_s);
+      assemble_again(stored, simulation_.constraint_dt_s, scene_.rods[r], systems_[r]);
       visit(stored, std::as_const(scene_.rods[r]), std::as_const(systems_[r]));
     }
   }

@@ -37,8 +37,8 @@ class SystemStore {
 
   bool holds(const SolvePosition& at) const { return rows_.holds(at); }
 
-  /// What the system is assembled from: the rod as it is.
-  void before(const Rod& rod, const SolvePosition& at);
+  /// What the system is assembled from: the rod as it is. `balanced`: with the balance of momentum.
+  void before(const Rod& rod, const SolvePosition& at, bool balanced);
 
   /// Where the solution belongs once there is one, six numbers a joint.
   double* solution(const SolvePosition& at) { return record_.system_solution.data() + 6 * rows_.place(at).joint; }

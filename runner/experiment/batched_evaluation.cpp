@@ -45,7 +45,7 @@ void log_before(const BatchedStepper& stepper, int lane, const SolvePosition& at
   }
   if (!member.systems.holds(at)) return;
   stepper.write(lane, member.scene);
-  member.systems.before(member.scene.rods.front(), at);
+  member.systems.before(member.scene.rods.front(), at, stepper.keeps_balance(lane));
 }
 
 /// One step of all that go on.
@@ -89,7 +89,8 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop) {
   std::vector<Scene> scenes;
   for (const Member& member : members) scenes.push_back(member.scene);
   const TimeSpec& time = members.front().run.spec.time;
-  BatchedStepper stepper(scenes, {time.step_s, time.newton_iterations, time.newton_tolerance});
+  BatchedStepper stepper(scenes, {time.step_s, time.newton_iterations, time.newton_tolerance},
+                         time.balance ? std::optional(time.momentum_tolerance) : std::nullopt);
 
   std::vector<int> left(members.size());  // lanes that go on
   std::iota(left.begin(), left.end(), 0);
@@ -141,7 +142,13 @@ bool steps_in_batches(const TaskSpec& spec) {
 BatchKey batch_key(const TaskSpec& spec) {
   const OpenRod& rod = *open_rod(spec.scene);
   const TimeSpec& time = spec.time;
-  return {rod.segments, rod.clamp, time.step_s, time.steps, time.newton_iterations, time.newton_tolerance};
+  return {rod.segments,
+          rod.clamp,
+          time.step_s,
+          time.steps,
+          time.newton_iterations,
+          time.newton_tolerance,
+          time.balance ? time.momentum_tolerance : 0};
 }
 
 bool evaluate_batch(const std::vector<TaskRun>& runs, const StopRequested& stop) {

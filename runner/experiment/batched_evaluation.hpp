@@ -22,7 +22,7 @@ struct TaskRun {
 bool steps_in_batches(const TaskSpec& spec);
 
 /// Such tasks fit together whose keys are equal: equal chains, and as many steps of the same kind.
-using BatchKey = std::tuple<int, Clamp, double, int, int, double>;
+using BatchKey = std::tuple<int, Clamp, double, int, int, double, double>;
 BatchKey batch_key(const TaskSpec& spec);
 
 /// evaluate() of all of them, one or more that fit together. False: abandoned on request, and so are all records.

@@ -116,7 +116,7 @@ std::vector<Column> all_columns() {
                                        "max |C + alpha~ lambda| at the end of the step"),
       column<&R::momentum_residual>("/steps/momentum_residual", Rows::step, none, "1",
                                     "most that the forces on a segment lack at the end of the step, relative to the "
-                                    "greatest that a joint carries; NaN of rods stepped in batches, as for data sets"),
+                                    "greatest that a joint carries"),
       column<&R::contacts>("/steps/contacts", Rows::contact_step, none, "1",
                            "places where bodies are near each other in this step; -1 without contact"),
       column<&R::penetration>(
@@ -151,6 +151,17 @@ std::vector<Column> all_columns() {
                                       "velocity at the start of the step"),
       column<&R::system_angular_velocity_rad_s>("/systems/segments/angular_velocity_rad_s", Rows::system_segment, xyz,
                                                 "rad/s", "angular velocity at the start of the step, world frame"),
+      column<&R::system_free_position_m>(
+          "/systems/segments/free_position_m", Rows::balanced_segment, xyz, "m",
+          "segment centre where it would be without joints and contacts, which the balance of momentum measures from; "
+          "NaN where it is not kept"),
+      column<&R::system_free_orientation>("/systems/segments/free_orientation", Rows::balanced_segment, wxyz, "1",
+                                          "segment orientation there"),
+      column<&R::system_contact_force>("/systems/segments/contact_force", Rows::balanced_segment, xyz, "kg m",
+                                       "contacts' force on the segment, times the square of the constraints' time "
+                                       "step, world frame"),
+      column<&R::system_contact_torque>("/systems/segments/contact_torque", Rows::balanced_segment, xyz, "kg m^2",
+                                        "their torque about its centre, times the same"),
       column<&R::system_lambda>(
           "/systems/joints/lambda", Rows::system_joint, six, "kg m^2",
           "Lagrange multipliers before the solve: stretch-shear (3), bend-twist (3), in the joint's frame"),

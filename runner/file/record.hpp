@@ -70,6 +70,8 @@ struct TaskRecord {
   std::vector<std::int16_t> system_newton, system_rod;        ///< [system]
   std::vector<double> system_position_m, system_orientation;  ///< [system x segment, 3], [.., 4] (w, x, y, z)
   std::vector<double> system_velocity_m_s, system_angular_velocity_rad_s;  ///< [system x segment, 3]
+  std::vector<double> system_free_position_m, system_free_orientation;     ///< [balanced_segment, 3], [.., 4]
+  std::vector<double> system_contact_force, system_contact_torque;         ///< [balanced_segment, 3]
   std::vector<double> system_lambda, system_solution;                      ///< [system x joint, 6]
 
   // ---- /timing: whatever may differ between two runs of the same job; ResultsFile adds rank, host, attempt, write_s

@@ -14,8 +14,7 @@ std::uint64_t task_checksum(std::int64_t task, const TaskRecord& record) {
   add(hdf5::fixed_text(record.message, message_bytes));
   for (const Column& column : columns()) {
     const std::string_view bytes = bytes_of(column, record);
-    const bool of_contact = column.rows == Rows::contact_task || column.rows == Rows::contact_step;
-    if (!is_timing(column) && !(of_contact && bytes.empty())) add(bytes);
+    if (!is_timing(column) && !(is_optional(column.rows) && bytes.empty())) add(bytes);
   }
   return sum.value();
 }

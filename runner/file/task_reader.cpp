@@ -31,6 +31,7 @@ std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) member(tasks[i]) = values[i];
   });
   const bool contact = hdf5::exists(file.id(), "/steps/contacts");
+  const bool balance = hdf5::exists(file.id(), "/systems/segments/free_position_m");
   for (std::size_t i = 0; i < count; ++i) {
     Task& task = tasks[i];
     auto& rows = task.rows;
@@ -38,6 +39,7 @@ std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
     task.steps = rows[Rows::step].count;
     rows[Rows::task] = {task.index, 1};
     if (contact) rows[Rows::contact_task] = rows[Rows::task], rows[Rows::contact_step] = rows[Rows::step];
+    if (balance) rows[Rows::balanced_segment] = rows[Rows::system_segment];
     rows[Rows::frame_segment].count = task.frames * task.segments;
     rows[Rows::segment].count = task.frames > 0 ? task.segments : 0;
   }

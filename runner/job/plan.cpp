@@ -74,7 +74,7 @@ Plan::Plan(Job job)
 void Plan::expand() {
   const std::int64_t points = point_count(space_, job_);
   const OutputSpec output = output_spec(job_);
-  bool contact = false;
+  bool contact = false, balance = false;
   Point values;
   for (std::int64_t point = 0; point < points; ++point) {
     fill(values, point);
@@ -83,6 +83,7 @@ void Plan::expand() {
     check_method(values, job_);
     contact = contact || rod_parameters(scene).contact;
     const TimeSpec time = time_spec(values, job_);
+    balance = balance || time.balance;
     Task task;
     task.point = point;
     task.sample = point % job_.samples;
@@ -98,10 +99,9 @@ void Plan::expand() {
       tasks_.push_back(task);
     }
   }
-  if (!contact) return;
   for (Task& task : tasks_) {
-    task.rows[Rows::contact_task].count = 1;
-    task.rows[Rows::contact_step].count = task.steps;
+    if (contact) task.rows[Rows::contact_task].count = 1, task.rows[Rows::contact_step].count = task.steps;
+    if (balance) task.rows[Rows::balanced_segment].count = task.rows[Rows::system_segment].count;
   }
 }
 

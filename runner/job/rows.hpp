@@ -19,9 +19,15 @@ enum class Rows {
   segment,        ///< of a trajectory
   system,         ///< of a data set: step-major, then stored Newton iterations, then rods
   system_segment,
-  system_joint
+  system_joint,
+  balanced_segment  ///< as system_segment, in files of jobs in any of whose tasks steps keep the balance of momentum
 };
-inline constexpr std::size_t row_kinds = static_cast<std::size_t>(Rows::system_joint) + 1;
+inline constexpr std::size_t row_kinds = static_cast<std::size_t>(Rows::balanced_segment) + 1;
+
+/// Columns of these rows are not in every file that could have them.
+constexpr bool is_optional(Rows rows) {
+  return rows == Rows::contact_task || rows == Rows::contact_step || rows == Rows::balanced_segment;
+}
 
 /// Rows [first, first + count) of a dataset.
 struct RowRange {

@@ -181,16 +181,12 @@ OutputSpec output_spec(const Job& job) {
 }
 
 void check_method(const Point& point, const Job& job) {
-  if (point.has("time.balance") && point.text("time.balance") == "true") {
-    if (const Method own = method(point); own != Method::cg && own != Method::direct)
-      throw job_error(job.path, "time.balance",
-                      fmt::format("true is not allowed with solve.method \"{}\", which solves no linear system that "
-                                  "could hold the balance; must be with \"direct\" or \"cg\"",
-                                  point.text("solve.method")));
-    if (job.values["record"].contains("systems"))
-      throw job_error(job.path, "time.balance",
-                      "true is not allowed in a data set, whose systems are those of the paper's step; must be false");
-  }
+  if (const Method own = method(point);
+      point.has("time.balance") && point.text("time.balance") == "true" && own != Method::cg && own != Method::direct)
+    throw job_error(job.path, "time.balance",
+                    fmt::format("true is not allowed with solve.method \"{}\", which solves no linear system that "
+                                "could hold the balance; must be with \"direct\" or \"cg\"",
+                                point.text("solve.method")));
   if (evaluation(point) == Evaluation::closed_loop) return;
   if (point.has("solve.forcing") && point.text("solve.forcing") != "fixed")
     throw job_error(job.path, "solve.forcing",

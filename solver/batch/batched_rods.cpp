@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "solver/step/time_step.hpp"
@@ -63,9 +62,9 @@ void put(BatchedSegment& out, int lane, const Rod& rod, std::size_t s) {
   const Segment& segment = rod.segments[s];
   out.is_static = segment.is_static;
   out.inverse_mass[lane] = segment.inverse_mass;
-  out.inverse_inertia_transverse[lane] = segment.inverse_inertia_transverse;
+  out.turn_mobility[lane] = segment.inverse_inertia_transverse;
   out.inverse_inertia_axial[lane] = segment.inverse_inertia_axial;
-  out.root_inverse_inertia_transverse[lane] = std::sqrt(segment.inverse_inertia_transverse);
+  out.root_turn_mobility[lane] = std::sqrt(segment.inverse_inertia_transverse);
   out.root_inverse_inertia_axial[lane] = std::sqrt(segment.inverse_inertia_axial);
   out.gyration[lane] = (segment.inertia_axial - segment.inertia_transverse) * segment.inverse_inertia_transverse;
   put(out.position, lane, rod.position[s]);
@@ -99,6 +98,7 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double dt) : rods(sta
   }
   segments.resize(scenes.front().rods.front().segments.size());
   joints.resize(segments.size() - 1);
+  free.resize(segments.size());
   for (int lane = 0; lane < lanes; ++lane) {
     const Scene& scene = scenes[static_cast<std::size_t>(std::min(lane, rods - 1))];
     const double dt_c = constraint_dt(scene, dt);
@@ -107,6 +107,7 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double dt) : rods(sta
     put(gravity, lane, scene.gravity_m_s2);
     damping[lane] = 1 / (1 + scene.damping_per_s * dt);
   }
+  for (std::size_t s = 0; s < segments.size(); ++s) free[s] = {segments[s].position, segments[s].orientation};
   stretches_evenly = std::all_of(joints.begin(), joints.end(), [](const BatchedJoint& joint) {
     const LaneVector6& c = joint.compliance;
     return !any((c[0] != c[1]) | (c[0] != c[2]));
@@ -121,7 +122,8 @@ void BatchedRods::write(int lane, Scene& scene) const {
     rod.velocity[s] = lane_of(segment.velocity, lane);
     rod.angular_velocity[s] = lane_of(segment.angular_velocity, lane);
     rod.orientation[s] = lane_of(segment.orientation, lane);
-    rod.free_position[s].setConstant(std::numeric_limits<double>::quiet_NaN());
+    rod.free_position[s] = lane_of(free[s].position, lane);
+    rod.free_orientation[s] = lane_of(free[s].orientation, lane);
   }
   for (std::size_t k = 0; k < joints.size(); ++k)
     for (int row = 0; row < 6; ++row) rod.lambda[static_cast<Eigen::Index>(6 * k) + row] = joints[k].lambda[row][lane];

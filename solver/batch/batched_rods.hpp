@@ -11,15 +11,17 @@
 #include "solver/batch/lane_blocks.hpp"
 #include "solver/numbers/lane_math.hpp"
 #include "solver/rod/joint_constraint.hpp"
+#include "solver/rod/momentum_balance.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace rodsweep {
 
 struct BatchedSegment {
   bool is_static;
-  Lane inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;
-  Lane root_inverse_inertia_transverse, root_inverse_inertia_axial;  ///< their square roots
-  Lane gyration;                                                     ///< (axial - transverse) / transverse inertia
+  Lane inverse_mass, inverse_inertia_axial;
+  Lane turn_mobility;                                   ///< Segment's
+  Lane root_turn_mobility, root_inverse_inertia_axial;  ///< square roots
+  Lane gyration;                                        ///< (axial - transverse) / transverse inertia
   LaneVector position, velocity, angular_velocity;
   LaneQuaternion orientation;
   LaneVector old_position;  ///< at the start of the step
@@ -39,12 +41,13 @@ struct BatchedRods {
   /// that are not equal chains, a joint between static segments, moving clamps or point loads.
   BatchedRods(const std::vector<Scene>& scenes, double dt);
 
-  /// Writes the state of rod `lane` into its scene; p*, which a batch does not keep, as NaN.
+  /// Writes the state of rod `lane` and its p* into its scene.
   void write(int lane, Scene& scene) const;
 
   int rods;
   std::vector<BatchedSegment> segments;
   std::vector<BatchedJoint> joints;
+  std::vector<SegmentPose<Lane>> free;  ///< p* of the segments
   LaneVector gravity;
   Lane damping;           ///< 1 / (1 + c dt)
   bool stretches_evenly;  ///< every joint is as compliant along its rod as across

@@ -4,6 +4,7 @@
 // left as it is for good. Nothing allocates after construction.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solver/batch/batched_system.hpp"
@@ -13,8 +14,10 @@ namespace rodsweep {
 
 class BatchedStepper {
  public:
-  /// Copies the scenes' rods; what it refuses is told by BatchedRods.
-  BatchedStepper(const std::vector<Scene>& scenes, const StepSettings& settings);
+  /// Copies the scenes' rods; what it refuses is told by BatchedRods. With a `momentum_tolerance` steps keep the
+  /// balance of momentum.
+  BatchedStepper(const std::vector<Scene>& scenes, const StepSettings& settings,
+                 std::optional<double> momentum_tolerance = {});
 
   /// Advances by dt all rods whose steps have not failed. One report per rod; a failed one repeats its outcome.
   const std::vector<StepReport>& step();
@@ -28,6 +31,7 @@ class BatchedStepper {
   /// Between linearize() and the next: is this one of the rods whose system is solved?
   bool iterates(int rod) const { return running_[rod] != 0; }
   const BatchedSystem& system() const { return system_; }
+  bool keeps_balance(int rod) const { return balanced_[rod] != 0; }
 
   /// This rod goes no further.
   void abandon(int rod) { sound_[rod] = 0; }
@@ -38,15 +42,25 @@ class BatchedStepper {
   void write(int rod, Scene& scene) const;
 
  private:
+  struct Motion {
+    LaneVector velocity, spin;
+  };
   void predict();
+  void forget_multipliers(const LaneMask& where);
+  void start_from_last_step();
+  void take_back(const LaneMask& rods);
   void update_velocities();
 
   StepSettings settings_;
   BatchedRods rods_;
   BatchedSystem system_;
-  LaneMask sound_;    ///< rods whose steps have not failed
-  LaneMask running_;  ///< of them, those that have not converged in this step
-  int newton_ = 0;    ///< solves of this step
+  LaneMask sound_;     ///< rods whose steps have not failed
+  LaneMask running_;   ///< of them, those that have not converged in this step
+  LaneMask balanced_;  ///< and those that keep the balance of momentum
+  std::optional<double> momentum_tolerance_;
+  std::vector<Motion> before_;  ///< of the segments, at the last step's start
+  bool has_before_ = false;
+  int newton_ = 0;  ///< solves of this step
   std::vector<double> start_time_s_;
   std::vector<int> steps_;
   std::vector<StepReport> reports_;

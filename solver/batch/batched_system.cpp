@@ -31,7 +31,7 @@ inline void put_bend(const LaneQuaternion& d, const Lane& w, const Lane& t, cons
 
 /// -S [arm_a]x, then [v]x - w I; and the shift.
 inline void put_side_a(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
-  const Lane &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial;
+  const Lane &t = segment.root_turn_mobility, &a = segment.root_inverse_inertia_axial;
   const LaneMatrix s = rotation_matrix(conjugate(d));
   const LaneVector arm = t * joint.shape.arm_a;
   put(arm.y * s.z - arm.z * s.y, out.a.column[0].row);
@@ -46,7 +46,7 @@ inline void put_side_a(const LaneQuaternion& d, const BatchedJoint& joint, const
 
 /// [arm_b]x, then [v]x + w I.
 inline void put_side_b(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
-  const Lane &t = segment.root_inverse_inertia_transverse, &a = segment.root_inverse_inertia_axial, zero{};
+  const Lane &t = segment.root_turn_mobility, &a = segment.root_inverse_inertia_axial, zero{};
   const LaneVector arm = t * joint.shape.arm_b;
   put({zero, arm.z, -arm.y}, out.b.column[0].row);
   put({-arm.z, zero, arm.x}, out.b.column[1].row);
@@ -100,7 +100,25 @@ inline LaneVector6 coupling(const Sides& sides, const Side& before, const Lane& 
   return out;
 }
 
+/// Of stretch-shear, in the world, while the segments of a joint turn.
+inline void hold_force(const JointTurn<Lane>& turn, const LaneVector& phi_a, const LaneVector& phi_b,
+                       const LaneMask& where, BatchedJoint& joint) {
+  const LaneMatrix half = half_turn(turn);
+  const LaneVector delta = all_lanes(0.5) * (transposed_product(half, phi_a) + half * phi_b);
+  LaneVector6& lambda = joint.lambda;
+  const LaneVector force = {lambda[0], lambda[1], lambda[2]};
+  const LaneVector held = select(where, turned_back(force, delta), force);
+  lambda[0] = held.x;
+  lambda[1] = held.y;
+  lambda[2] = held.z;
+}
+
 }  // namespace
+
+void BatchedSystem::linearize(BatchedRods& rods, const LaneMask& kept) {
+  rodsweep::linearize(rods, linearization_);
+  if (balance_) balance_->assemble(rods, linearization_, kept);
+}
 
 LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
   LaneMask positive = Lane{} < 1;
@@ -133,9 +151,10 @@ LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
   }
 }
 
-LaneMask BatchedSystem::below(double tolerance) const {
+LaneMask BatchedSystem::below(double tolerance, double momentum_tolerance) const {
   const LaneMask finite = linearization_.squared_norm <= std::numeric_limits<double>::max();
-  return finite & (linearization_.residual < tolerance);
+  const LaneMask closed = finite & (linearization_.residual < tolerance);
+  return balance_ ? closed & (balance_->residual() < momentum_tolerance) : closed;
 }
 
 BatchedSystem::Outcome BatchedSystem::solve(const BatchedRods& rods) {
@@ -162,37 +181,41 @@ void BatchedSystem::write_solution(int lane, double* solution) const {
 }
 
 void BatchedSystem::apply(BatchedRods& rods, const LaneMask& where) const {
-  LaneVector impulse{}, twist{};  // on this segment, from the joint before
+  Wrench<Lane> on_this{};  // from the joint before
+  LaneVector phi_before{};
   for (std::size_t s = 0; s < rods.segments.size(); ++s) {
     BatchedSegment& segment = rods.segments[s];
-    LaneVector next_impulse{}, next_twist{};
+    Wrench<Lane> on_next{};
     if (s < columns_.size()) {
       const JointTurn<Lane>& turn = linearization_.joints[s];
       const LaneVector6& y = columns_[s].solution;
       BatchedJoint& joint = rods.joints[s];
       const LaneMatrix half = half_turn(turn);
       const LaneVector on_b = {y[0], y[1], y[2]}, bend = {y[3], y[4], y[5]};
-      const LaneVector stretch = half * on_b, on_a = half * stretch;
+      const LaneVector stretch = half * on_b;
       const LaneVector6 x = {stretch.x, stretch.y, stretch.z, bend.x, bend.y, bend.z};
 #pragma GCC unroll 6
       for (int row = 0; row < 6; ++row) joint.lambda[row] = where ? joint.lambda[row] + x[row] : joint.lambda[row];
-      const LaneQuaternion& d = turn.d;
-      const LaneVector v = {d.x, d.y, d.z};
-      const LaneVector along = d.w * bend, across = cross(v, bend);
-      impulse = impulse + joint.shape.inverse_length * on_a;
-      twist = twist + cross(joint.shape.arm_a, on_a) - along - across;
-      next_impulse = -joint.shape.inverse_length * on_b;
-      next_twist = along - across - cross(joint.shape.arm_b, on_b);
+      const auto [next_of_a, next_of_b] = impulses(turn.d, joint.shape, half * stretch, on_b, bend);
+      on_this = {on_this.force + next_of_a.force, on_this.torque + next_of_a.torque};
+      on_next = next_of_b;
     }
+    LaneVector phi{};
     if (!segment.is_static) {
-      const LaneVector phi = {segment.inverse_inertia_transverse * twist.x,
-                              segment.inverse_inertia_transverse * twist.y, segment.inverse_inertia_axial * twist.z};
-      const LaneVector moved = segment.position + segment.orientation * (segment.inverse_mass * impulse);
+      if (balance_) {
+        const Wrench<Lane>& g = balance_->defect(s);
+        on_this = {on_this.force - g.force, on_this.torque - g.torque};
+      }
+      phi = {segment.turn_mobility * on_this.torque.x, segment.turn_mobility * on_this.torque.y,
+             segment.inverse_inertia_axial * on_this.torque.z};
+      const LaneVector moved = segment.position + segment.orientation * (segment.inverse_mass * on_this.force);
       segment.position = select(where, moved, segment.position);
       segment.orientation = select(where, turned(segment.orientation, phi), segment.orientation);
     }
-    impulse = next_impulse;
-    twist = next_twist;
+    if (balance_ && s > 0)
+      hold_force(linearization_.joints[s - 1], phi_before, phi, where & balance_->kept(), rods.joints[s - 1]);
+    phi_before = phi;
+    on_this = on_next;
   }
 }
 

@@ -19,21 +19,25 @@
 // A_k-1,k-1 is evaluated between the factors of A_kk, whose divisions wait for each other, and B_k.
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
-#include "solver/batch/batched_linearization.hpp"
+#include "solver/batch/batched_balance.hpp"
 
 namespace rodsweep {
 
 class BatchedSystem {
  public:
-  explicit BatchedSystem(const BatchedRods& rods) : linearization_(rods), columns_(rods.joints.size()) {}
+  /// `balance`: of systems that can keep the balance of momentum.
+  BatchedSystem(const BatchedRods& rods, std::optional<BatchedBalance> balance)
+      : linearization_(rods), columns_(rods.joints.size()), balance_(std::move(balance)) {}
 
-  /// Evaluates b and the Jacobians.
-  void linearize(const BatchedRods& rods) { rodsweep::linearize(rods, linearization_); }
+  /// Evaluates b and the Jacobians; in the lanes that keep the balance with g and K, which stiffens the rods.
+  void linearize(BatchedRods& rods, const LaneMask& kept);
 
-  /// The lanes in which all |b| are below the tolerance; NaN is not.
-  LaneMask below(double tolerance) const;
+  /// The lanes in which |C + alpha~ lambda| is below the tolerance, and what momentum lacks below its own; NaN is not.
+  LaneMask below(double tolerance, double momentum_tolerance) const;
   const BatchedLinearization& linearization() const { return linearization_; }
 
   struct Outcome {
@@ -59,6 +63,7 @@ class BatchedSystem {
 
   BatchedLinearization linearization_;
   std::vector<Column> columns_;
+  std::optional<BatchedBalance> balance_;
 };
 
 }  // namespace rodsweep

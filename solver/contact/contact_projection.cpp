@@ -185,7 +185,7 @@ Vector3 ContactProjection::slip(int body, const Vector3& point) const {
 
 // Of all contacts, where they were linearised last.
 void ContactProjection::tell_impulses() {
-  for (Rod& rod : scene_.rods) std::fill(rod.contact_impulse.begin(), rod.contact_impulse.end(), Vector6::Zero());
+  for (Rod& rod : scene_.rods) rod.contact_impulse.assign(rod.segments.size(), Vector6::Zero());
   const auto tell = [this](int body, const Vector3& arm, const Vector3& impulse) {
     const Body& of = finder_.bodies().body(body);
     if (!of.is_free) return;

@@ -118,11 +118,23 @@ void LinearSystem::displacements(const Rod& rod, const VectorX& delta_lambda, st
 
 void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
   displacements(rod, delta_lambda, displacements_);
-  if (!balanced_) return move(rod, displacements_, delta_lambda);
-  rod.lambda += delta_lambda;
-  with_forces_held(rod, [&] {
-    for (std::size_t s = 0; s < rod.segments.size(); ++s) move(rod, s, displacements_[s] - balancing_[s]);
-  });
+  if (balanced_)
+    for (std::size_t s = 0; s < rod.segments.size(); ++s) displacements_[s] -= balancing_[s];
+  move(rod, displacements_, delta_lambda);
+  if (balanced_) hold_forces(rod);
+}
+
+void LinearSystem::hold_forces(Rod& rod) const {
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Joint& joint = rod.joints[k];
+    const Lane4 delta = frame_turn(linearization_.joints[k], displacements_[static_cast<std::size_t>(joint.a)],
+                                   displacements_[static_cast<std::size_t>(joint.b)]);
+    double* lambda = rod.lambda.data() + 6 * k;
+    const Triple<double> held = turned_back<double>({lambda[0], lambda[1], lambda[2]}, {delta[0], delta[1], delta[2]});
+    lambda[0] = held.x;
+    lambda[1] = held.y;
+    lambda[2] = held.z;
+  }
 }
 
 void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda) {

@@ -34,6 +34,7 @@ class LinearSystem {
   /// Moves the rod by the solution of the assembled system.
   void apply(Rod& rod, const VectorX& delta_lambda);
 
+  bool keeps_balance() const { return balanced_; }  ///< was assembled with g and K
   const BlockMatrix& matrix() const { return matrix_; }
   const VectorX& rhs() const { return rhs_; }
   const Linearization& linearization() const { return linearization_; }
@@ -57,6 +58,7 @@ class LinearSystem {
   };
   void assemble_linearized(const Rod& rod, double dt);
   void assemble_matrix(const Rod& rod, double inverse_dt2);
+  void hold_forces(Rod& rod) const;  ///< of stretch-shear, after a move by displacements_
 
   Linearization linearization_;
   BlockMatrix matrix_;

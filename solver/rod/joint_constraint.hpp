@@ -2,6 +2,8 @@
 // many as a register has lanes. Lengths are over l.
 #pragma once
 
+#include <utility>
+
 #include "solver/numbers/lane_math.hpp"
 
 namespace rodsweep {
@@ -48,6 +50,22 @@ inline Triple<T> stretch(const Triples<T>& half, const Quad<T>& a, const Triple<
 template <class T>
 inline Triple<T> bend(const Quad<T>& d, const Quad<T>& rest) {
   return {2 * (d.x - rest.x), 2 * (d.y - rest.y), 2 * (d.z - rest.z)};
+}
+
+/// A force and a torque (or impulses) in a segment's frame.
+template <class T>
+struct Wrench {
+  Triple<T> force, torque;
+};
+
+/// J^T y on the segments of a joint, y turned into the frame of the second one: its stretch-shear rows `on_b` there,
+/// and `on_a`, R(d) on_b, in the frame of the first.
+template <class T>
+inline std::pair<Wrench<T>, Wrench<T>> impulses(const Quad<T>& d, const JointShape<T>& shape, const Triple<T>& on_a,
+                                                const Triple<T>& on_b, const Triple<T>& bend) {
+  const Triple<T> along = d.w * bend, across = cross(Triple<T>{d.x, d.y, d.z}, bend);
+  return {{shape.inverse_length * on_a, cross(shape.arm_a, on_a) - along - across},
+          {-shape.inverse_length * on_b, along - across - cross(shape.arm_b, on_b)}};
 }
 
 }  // namespace rodsweep

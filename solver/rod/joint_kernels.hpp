@@ -92,6 +92,14 @@ inline Lane8 constraint_change(const JointJacobian& jacobian, const Lane8& of_a,
   return change;
 }
 
+/// How far the frame R_m of one joint turns, in itself and to first order: the mean of its segments' turns. H^T and -H
+/// are l dC_s/du.
+inline Lane4 frame_turn(const JointJacobian& jacobian, const Lane8& of_a, const Lane8& of_b) {
+  Lane4 twice{};
+  for (int c = 0; c < 3; ++c) twice += jacobian.shift_a[c] * of_a[3 + c] - jacobian.shift_b[c] * of_b[3 + c];
+  return twice * (0.5 / jacobian.inverse_length);
+}
+
 /// M^-1 (or (M + K)^-1) times the impulse on a segment; zero where it is static.
 inline Lane8 motion(const Segment& segment, const Lane8& impulse) {
   const double m = segment.inverse_mass, transverse = segment.turn_mobility;

@@ -4,89 +4,117 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/numbers/lane_records.hpp"
 #include "solver/rod/joint_kernels.hpp"
 
 namespace rodsweep {
 namespace {
 
-constexpr double slightest = 1e-6;     ///< of a segment's length: joints that move theirs by less carry nothing
-constexpr double least_turning = 0.5;  ///< of the inertia that M + K keeps under compression
+constexpr double slightest = 1e-6;  ///< of a segment's length: joints that move theirs by less carry nothing
 
-struct Size {
-  double squared_force = 0, squared_torque = 0;  ///< the largest, torques over lengths
-};
-
-void enlarge(Size& size, const Lane8& impulse, double inverse_squared_length) {
-  const Lane8 squares = impulse * impulse;
-  size.squared_force = std::fmax(size.squared_force, squares[0] + squares[1] + squares[2]);
-  size.squared_torque = std::fmax(size.squared_torque, (squares[3] + squares[4] + squares[5]) * inverse_squared_length);
+/// |force|^2 in lane 0 and |torque|^2 over a squared length in lane 3; the others hold nothing larger.
+Lane8 squared_sizes(const Lane8& wrench, double inverse_squared_length) {
+  const double i = inverse_squared_length;
+  const Lane8 squares = wrench * wrench * Lane8{1, 1, 1, i, i, i, 0, 0};
+  const Lane8 sum = squares + __builtin_shufflevector(squares, squares, 1, 6, 6, 4, 6, 6, 6, 6) +
+                    __builtin_shufflevector(squares, squares, 2, 6, 6, 5, 6, 6, 6, 6);
+  return sum;
 }
 
-/// M (p - p*) - f_c.
-Lane8 defect_without_joints(const Rod& rod, std::size_t s) {
-  const Segment& segment = rod.segments[s];
-  const Quaternion& q = rod.orientation[s];
-  const Vector6& contact = rod.contact_impulse[s];
-  const Quaternion d = rod.free_orientation[s].conjugate() * q;
-  const Vector3 principal(segment.inertia_transverse, segment.inertia_transverse, segment.inertia_axial);
-  const Vector3 force =
-      q.conjugate() * Vector3(segment.mass * (rod.position[s] - rod.free_position[s]) - contact.head<3>());
-  const Vector3 torque = (2 / d.w()) * principal.cwiseProduct(d.vec()) - q.conjugate() * Vector3(contact.tail<3>());
-  return Lane8{force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z(), 0, 0};
+Lane8 larger_of(const Lane8& a, const Lane8& b) { return a < b ? b : a; }
+double largest(const Lane8& squared_sizes) { return std::sqrt(std::max(squared_sizes[0], squared_sizes[3])); }
+
+/// M (p - p*) of all segments.
+void put_inertial_impulses(const Rod& rod, MomentumBalance& out) {
+  constexpr std::ptrdiff_t stride = sizeof(Lane8) / sizeof(double);
+  std::size_t s = 0;
+  for (const Inertia<Lane>& inertia : out.inertia) {
+    const int count = rod.segment_count() - static_cast<int>(s);
+    const auto [force, torque] =
+        impulse_between({load(&rod.free_position[s], count), load(&rod.free_orientation[s], count)},
+                        {load(&rod.position[s], count), load(&rod.orientation[s], count)}, inertia);
+    double* defect = reinterpret_cast<double*>(&out.defect[s]);
+    scatter({force.x, force.y, force.z, torque.x}, defect, stride);
+    scatter({torque.y, torque.z, Lane{}, Lane{}}, defect + 4, stride);
+    s += lane_width;
+  }
+}
+
+void subtract_contacts(const Rod& rod, MomentumBalance& out) {
+  for (std::size_t s = 0; s < rod.contact_impulse.size(); ++s) {
+    const Vector6& contact = rod.contact_impulse[s];
+    const Vector3 force = rod.orientation[s].conjugate() * Vector3(contact.head<3>());
+    const Vector3 torque = rod.orientation[s].conjugate() * Vector3(contact.tail<3>());
+    out.defect[s] -= Lane8{force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z(), 0, 0};
+  }
+}
+
+/// The largest that a joint carries.
+double subtract_joints(const Rod& rod, const Linearization& at, MomentumBalance& out) {
+  std::fill(out.pull.begin(), out.pull.end(), Lane4{});
+  Lane8 carried{};
+  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
+    const Joint& joint = rod.joints[k];
+    const auto a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+    Lane8 on_a, on_b;
+    impulses(at.joints[k], load6(rod.lambda.data() + 6 * k), on_a, on_b);
+    out.defect[a] -= on_a;
+    out.defect[b] -= on_b;
+    const Lane4 force_a = __builtin_shufflevector(on_a, on_a, 0, 1, 2, 6);
+    const Lane4 force_b = __builtin_shufflevector(on_b, on_b, 0, 1, 2, 6);
+    out.pull[a] += force_a * Lane4{joint.arm_a.x(), joint.arm_a.y(), joint.arm_a.z(), 0};
+    out.pull[b] += force_b * Lane4{joint.arm_b.x(), joint.arm_b.y(), joint.arm_b.z(), 0};
+    const double scale = at.joints[k].inverse_length * at.joints[k].inverse_length;
+    carried = larger_of(carried, larger_of(squared_sizes(on_a, scale), squared_sizes(on_b, scale)));
+  }
+  return largest(carried);
 }
 
 }  // namespace
 
-MomentumBalance::MomentumBalance(const Rod& rod) : defect(rod.segments.size()), tension(rod.segments.size()) {}
+MomentumBalance::MomentumBalance(const Rod& rod) : pull(rod.segments.size()), least(0) {
+  const std::size_t count = rod.segments.size();
+  for (std::size_t first = 0; first < count; first += lane_width) {
+    Inertia<Lane>& group = inertia.emplace_back();
+    for (std::size_t lane = 0; lane < lane_width; ++lane) {
+      const Segment& segment = rod.segments[std::min(first + lane, count - 1)];
+      group.mass[lane] = segment.mass;
+      group.transverse[lane] = segment.inertia_transverse;
+      group.axial[lane] = segment.inertia_axial;
+    }
+  }
+  defect.resize(inertia.size() * lane_width);
+  for (const Segment& segment : rod.segments) {
+    inverse_squared_length.push_back(segment.is_static ? 0 : 1 / (segment.length_m * segment.length_m));
+    if (!segment.is_static) least = std::max(least, slightest * segment.mass * segment.length_m);
+  }
+}
 
 void balance_momentum(const Rod& rod, const Linearization& at, MomentumBalance& out) {
+  put_inertial_impulses(rod, out);
+  subtract_contacts(rod, out);
+  const double greatest = subtract_joints(rod, at, out);
+  Lane8 lacking{}, sum{};
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-    out.tension[s] = 0;
-    out.defect[s] = defect_without_joints(rod, s);
-  }
-  Size carried;
-  for (std::size_t k = 0; k < rod.joints.size(); ++k) {
-    const Joint& joint = rod.joints[k];
-    Lane8 on_a, on_b;
-    impulses(at.joints[k], load6(rod.lambda.data() + 6 * k), on_a, on_b);
-    const auto a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
-    out.defect[a] -= on_a;
-    out.defect[b] -= on_b;
-    out.tension[a] += on_a[0] * joint.arm_a.x() + on_a[1] * joint.arm_a.y() + on_a[2] * joint.arm_a.z();
-    out.tension[b] += on_b[0] * joint.arm_b.x() + on_b[1] * joint.arm_b.y() + on_b[2] * joint.arm_b.z();
-    const double inverse_squared_length = 1 / (joint.length * joint.length);
-    enlarge(carried, on_a, inverse_squared_length);
-    enlarge(carried, on_b, inverse_squared_length);
+    Lane8& defect = out.defect[s];
+    if (rod.segments[s].is_static) defect = Lane8{};
+    lacking = larger_of(lacking, squared_sizes(defect, out.inverse_squared_length[s]));
+    sum += defect;
   }
   if (rod.joints.empty()) {
     out.residual = 0;
     return;
   }
-
-  Size lacking;
-  double least = 0, sum = 0;
-  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-    const Segment& segment = rod.segments[s];
-    if (segment.is_static) {
-      out.defect[s] = Lane8{};
-      continue;
-    }
-    enlarge(lacking, out.defect[s], 1 / (segment.length_m * segment.length_m));
-    least = std::max(least, slightest * segment.mass * segment.length_m);
-    for (int lane = 0; lane < 6; ++lane) sum += out.defect[s][lane];
-  }
-  const double greatest = std::sqrt(std::max(carried.squared_force, carried.squared_torque));
-  out.residual = std::isfinite(sum)
-                     ? std::sqrt(std::max(lacking.squared_force, lacking.squared_torque)) / std::max(greatest, least)
-                     : std::numeric_limits<double>::quiet_NaN();
+  const bool finite = std::isfinite(sum[0] + sum[1] + sum[2] + sum[3] + sum[4] + sum[5]);
+  out.residual = finite ? largest(lacking) / std::max(greatest, out.least) : std::numeric_limits<double>::quiet_NaN();
 }
 
 void stiffen(Rod& rod, const MomentumBalance& balance) {
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     Segment& segment = rod.segments[s];
     if (segment.is_static) continue;
-    const double inertia = segment.inertia_transverse;
-    segment.turn_mobility = 1 / (inertia + std::max(balance.tension[s], (least_turning - 1) * inertia));
+    const Lane4& pull = balance.pull[s];
+    segment.turn_mobility = 1 / stiffened(segment.inertia_transverse, pull[0] + pull[1] + pull[2]);
   }
 }
 

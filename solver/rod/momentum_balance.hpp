@@ -15,7 +15,8 @@
 // down to half of the inertia, so that M + K stays positive.
 //
 // Stretch-shear multipliers stand for forces: while Newton turns the joints' frames, balanced iterations keep the force
-// and so turn the multipliers back (with_forces_held).
+// and so turn the multipliers back. By displacements this is done to second order (turned_back); contacts, which have
+// none at hand, go by the poses before and after (with_forces_held).
 #pragma once
 
 #include <vector>
@@ -24,14 +25,48 @@
 
 namespace rodsweep {
 
+/// What of a segment never changes: mass [kg] and principal inertia [kg m^2].
+template <class T>
+struct Inertia {
+  T mass, transverse, axial;
+};
+
+template <class T>
+struct SegmentPose {
+  Triple<T> position;
+  Quad<T> orientation;
+};
+
+/// M (p - p*), in the segment's own frame.
+template <class T>
+inline Wrench<T> impulse_between(const SegmentPose<T>& free, const SegmentPose<T>& p, const Inertia<T>& inertia) {
+  const Quad<T> d = relative(free.orientation, p.orientation);
+  const T scale = 2 / d.w, across = inertia.transverse * scale;
+  return {conjugate(p.orientation) * (inertia.mass * (p.position - free.position)),
+          {across * d.x, across * d.y, inertia.axial * scale * d.z}};
+}
+
+/// M + K across the axis of a segment on which joints pull by f.r in all.
+template <class T>
+inline T stiffened(const T& inertia, const T& pull) {
+  constexpr double least_turning = 0.5;  // of the inertia that is left under compression
+  const T least = (least_turning - 1) * inertia;
+  return inertia + (pull < least ? least : pull);
+}
+
 struct MomentumBalance {
-  std::vector<Lane8> defect;    ///< g: lanes 0..2 [kg m], 3..5 [kg m^2]; zero where static
-  std::vector<double> tension;  ///< sum of f.r [kg m^2], of each segment
+  std::vector<Lane8> defect;  ///< g: lanes 0..2 [kg m], 3..5 [kg m^2]; zero where static
+  std::vector<Lane4> pull;    ///< of each segment, the sum of force times arm by components: f.r is that of its lanes
   /// The largest |force| of g, or |torque| over the segment's length, relative to the largest that a joint carries (or
   /// that moves its segment by a millionth of its length, where joints carry less). 0 of a rod without joints.
   double residual = 0;
 
   explicit MomentumBalance(const Rod& rod);  ///< sized, not evaluated
+
+  /// What never changes of as many neighbours as a register has lanes.
+  std::vector<Inertia<Lane>> inertia;
+  std::vector<double> inverse_squared_length;  ///< 1/L^2 of each segment; 0 where static
+  double least;                                ///< what the residual is relative to at least [kg m]
 };
 
 /// At the linearisation's positions. Allocates nothing.
@@ -40,6 +75,14 @@ void balance_momentum(const Rod& rod, const Linearization& at, MomentumBalance& 
 /// Sets the segments' turn_mobility to that of M + K.
 void stiffen(Rod& rod, const MomentumBalance& balance);
 void unstiffen(Rod& rod);  ///< that of M again
+
+/// A vector of a frame that turns by delta, of which it has that much, and stays as it is in the world: to second
+/// order.
+template <class T>
+inline Triple<T> turned_back(const Triple<T>& v, const Triple<T>& delta) {
+  const Triple<T> across = cross(v, delta), again = cross(across, delta);
+  return {v.x + across.x + 0.5 * again.x, v.y + across.y + 0.5 * again.y, v.z + across.z + 0.5 * again.z};
+}
 
 /// Runs `move`, which moves segments, and keeps the forces of stretch-shear as they are in the world.
 template <class Move>

@@ -83,7 +83,6 @@ Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointS
   lambda = VectorX::Zero(6 * joint_count());
   free_position = position;
   free_orientation = orientation;
-  contact_impulse.assign(segments.size(), Vector6::Zero());
 }
 
 void refuse_static_joints(const Rod& rod) {

@@ -74,7 +74,7 @@ class Rod {
   VectorX lambda;
 
   // Of the step: where segments would be without joints and contacts, p*, and the impulses of contacts on them: force
-  // and torque about the centre, in the world, times dt_c^2.
+  // and torque about the centre, in the world, times dt_c^2; none in a scene without contact.
   std::vector<Vector3> free_position;
   std::vector<Quaternion> free_orientation;
   std::vector<Vector6> contact_impulse;

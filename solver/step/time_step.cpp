@@ -6,11 +6,11 @@
 #include "solver/numbers/rotation.hpp"
 
 namespace rodsweep {
-namespace {
 
-constexpr int fewest_to_share = 6;  // iterations of which a third is kept for a step that cannot be balanced
-
-}  // namespace
+int balancing_iterations(int most) {
+  constexpr int fewest_to_share = 6;
+  return most < fewest_to_share ? most : (2 * most + 2) / 3;
+}
 
 TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     : scene_(scene), settings_(settings), start_time_s_(scene.time_s) {
@@ -50,7 +50,7 @@ StepReport TimeStepper::step(Projection& projection) {
   const int most = settings_.newton_iterations;
   Newton newton = Newton::open;
   if (report.balanced) {
-    newton = iterate(projection, most < fewest_to_share ? most : (2 * most + 2) / 3, report);
+    newton = iterate(projection, balancing_iterations(most), report);
     const bool lost = newton == Newton::failed || (newton == Newton::open && is_lost());
     if (lost && report.newton_iterations < most) {
       take_back();
@@ -76,10 +76,7 @@ StepReport TimeStepper::step(Projection& projection) {
   return report;
 }
 
-bool TimeStepper::is_lost() const {
-  constexpr double open_joints = 1e-6, missing_force = 0.1;
-  return !(newton_residual_ < open_joints && momentum_residual_ < missing_force);
-}
+bool TimeStepper::is_lost() const { return !(newton_residual_ < lost_joints && momentum_residual_ < lost_momentum); }
 
 void TimeStepper::start_from_last_step() {
   for (std::size_t r = 0; r < scene_.rods.size(); ++r)

@@ -37,6 +37,12 @@ struct StepReport {
   double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
 };
 
+/// Of the iterations of a step those in which it may come near the balance of momentum before it is taken back; all
+/// where there are too few to share.
+int balancing_iterations(int most);
+/// What it is taken back for: joints that open farther than this, or as much of the forces lacking.
+constexpr double lost_joints = 1e-6, lost_momentum = 0.1;
+
 /// dt_c, which turns compliances into alpha~ and multipliers into forces, of steps of dt.
 double constraint_dt(const Scene& scene, double dt);
 

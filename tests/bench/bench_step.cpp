@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "solver/batch/batched_step.hpp"
@@ -41,7 +42,7 @@ Scene moving_scene(int segments, int variant = 0) {
 struct Single {
   Scene scene;
   DirectSolve direct;
-  LinearProjection projection;
+  LinearProjection projection, balanced;
   TimeStepper stepper;
   LinearSystem system;
   BlockFactor factor;
@@ -51,10 +52,13 @@ struct Single {
       : scene(moving_scene(segments)),
         direct(scene),
         projection(scene, direct),
+        balanced(scene, direct, 0),
         stepper(scene, one_iteration),
         system(rod()),
         factor(system.matrix(), root_to_leaf_order(rod())),
-        solution(VectorX::Zero(system.rhs().size())) {}
+        solution(VectorX::Zero(system.rhs().size())) {
+    balanced.keep_balance(true);
+  }
   Single(const Single&) = delete;
   Single& operator=(const Single&) = delete;
 
@@ -73,17 +77,27 @@ void step(benchmark::State& state) {
       state.SkipWithError("a solve failed");
 }
 
-void batched_step(benchmark::State& state) {
-  static std::map<int, BatchedStepper> made;
+void step_together(benchmark::State& state, std::map<int, BatchedStepper>& made,
+                   std::optional<double> momentum_tolerance) {
   auto at = made.find(segments_of(state));
   if (at == made.end()) {
     std::vector<Scene> scenes;
     for (int rod = 0; rod < BatchedRods::lanes; ++rod) scenes.push_back(moving_scene(segments_of(state), rod));
-    at = made.try_emplace(segments_of(state), scenes, one_iteration).first;
+    at = made.try_emplace(segments_of(state), scenes, one_iteration, momentum_tolerance).first;
   }
   for (auto _ : state)
     for (const StepReport& report : at->second.step())
       if (report.outcome != SolveOutcome::converged) state.SkipWithError("a solve failed");
+}
+
+void batched_step(benchmark::State& state) {
+  static std::map<int, BatchedStepper> made;
+  step_together(state, made, {});
+}
+
+void batched_balanced_step(benchmark::State& state) {
+  static std::map<int, BatchedStepper> made;
+  step_together(state, made, 0);
 }
 
 void linearize(benchmark::State& state) {
@@ -134,6 +148,12 @@ void newton(benchmark::State& state) {
   iterate(state, single.projection, rod);
 }
 
+void newton_balanced(benchmark::State& state) {
+  Single& single = Single::of(state);
+  Rod rod = single.rod();
+  iterate(state, single.balanced, rod);
+}
+
 void xpbd(benchmark::State& state) {
   const Scene& scene = Single::of(state).scene;
   XpbdProjection projection(scene);
@@ -148,8 +168,9 @@ void pbd(benchmark::State& state) {
   iterate(state, projection, rod);
 }
 
+double us(const Medians& median, const char* name, int n) { return median(name + ("/" + std::to_string(n))) / n * 1e6; }
+
 void print_summary(const Medians& median) {
-  const auto us = [&median](const char* name, int n) { return median(name + ("/" + std::to_string(n))) / n * 1e6; };
   std::printf(
       "\nDirect step, one Newton iteration, per segment (targets: at most 0.5 us from N = 30 on, assembly at most"
       " 25 %%, a batch of %d at least 3 times the throughput)\n",
@@ -157,10 +178,11 @@ void print_summary(const Medians& median) {
   std::printf("%6s %10s %15s %14s %16s %11s %13s %12s\n", "N", "step [us]", "linearise [%]", "assemble [%]",
               "factor+solve [%]", "update [%]", "batched [us]", "throughput");
   for (const int n : sizes) {
-    const double whole = us("step", n), assembly = us("assemble", n);
-    const double batched = us("batched_step", n) / BatchedRods::lanes;
-    std::printf("%6d %10.3f %15.0f %14.0f %16.0f %11.0f %13.3f %12.1f\n", n, whole, 100 * us("linearize", n) / whole,
-                100 * assembly / whole, 100 * us("factor_and_solve", n) / whole, 100 * us("update", n) / whole, batched,
+    const double whole = us(median, "step", n), assembly = us(median, "assemble", n);
+    const double batched = us(median, "batched_step", n) / BatchedRods::lanes;
+    std::printf("%6d %10.3f %15.0f %14.0f %16.0f %11.0f %13.3f %12.1f\n", n, whole,
+                100 * us(median, "linearize", n) / whole, 100 * assembly / whole,
+                100 * us(median, "factor_and_solve", n) / whole, 100 * us(median, "update", n) / whole, batched,
                 whole / batched);
   }
   std::printf(
@@ -168,9 +190,19 @@ void print_summary(const Medians& median) {
   std::printf("%6s %12s %10s %10s %14s %13s\n", "N", "direct [us]", "xpbd [us]", "pbd [us]", "xpbd / direct",
               "pbd / direct");
   for (const int n : sizes) {
-    const double direct = us("newton", n);
-    std::printf("%6d %12.3f %10.3f %10.3f %14.2f %13.2f\n", n, direct, us("xpbd", n), us("pbd", n),
-                us("xpbd", n) / direct, us("pbd", n) / direct);
+    const double direct = us(median, "newton", n);
+    std::printf("%6d %12.3f %10.3f %10.3f %14.2f %13.2f\n", n, direct, us(median, "xpbd", n), us(median, "pbd", n),
+                us(median, "xpbd", n) / direct, us(median, "pbd", n) / direct);
+  }
+}
+
+void print_balanced(const Medians& median) {
+  std::printf("\nOne Newton iteration in balance of momentum over one of the paper's step, alone and in a batch\n");
+  std::printf("%6s %10s %12s %8s %10s\n", "N", "paper [us]", "balance [us]", "ratio", "in a batch");
+  for (const int n : sizes) {
+    const double paper = us(median, "newton", n), balanced = us(median, "newton_balanced", n);
+    std::printf("%6d %10.3f %12.3f %8.2f %10.2f\n", n, paper, balanced, balanced / paper,
+                us(median, "batched_balanced_step", n) / us(median, "batched_step", n));
   }
 }
 
@@ -184,10 +216,13 @@ int main(int argc, char** argv) {
                                        {"factor_and_solve", factor_and_solve},
                                        {"update", update},
                                        {"newton", newton},
+                                       {"newton_balanced", newton_balanced},
+                                       {"batched_balanced_step", batched_balanced_step},
                                        {"xpbd", xpbd},
                                        {"pbd", pbd}})
     for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
   Medians medians;
   if (!run_benchmarks(argc, argv, medians)) return 2;
   print_summary(medians);
+  print_balanced(medians);
 }

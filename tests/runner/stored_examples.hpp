@@ -13,6 +13,7 @@ class SolveProbe : public LinearSolve {
  public:
   struct Solved {
     SolvePosition at;
+    bool balanced;
     BlockMatrix a;
     VectorX b, solution;
     std::vector<Vector3> velocity, angular_velocity;
@@ -24,7 +25,8 @@ class SolveProbe : public LinearSolve {
                      VectorX& delta_lambda) override {
     const SolveOutcome outcome = direct_.solve(system, at, assemble_s, delta_lambda);
     const Rod& rod = scene_.rods[static_cast<std::size_t>(at.rod)];
-    solved_.push_back({at, system.matrix(), system.rhs(), delta_lambda, rod.velocity, rod.angular_velocity});
+    solved_.push_back(
+        {at, system.keeps_balance(), system.matrix(), system.rhs(), delta_lambda, rod.velocity, rod.angular_velocity});
     return outcome;
   }
 
@@ -64,9 +66,9 @@ inline void check_same(const std::vector<StoredSystem>& systems, Scene scene, do
     CHECK(system.at.newton == solved[i].at.newton);
     CHECK(system.at.rod == solved[i].at.rod);
     Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
-    restore(system, rod);
     LinearSystem again(rod);
-    again.assemble(rod, constraint_dt_s);
+    assemble_again(system, constraint_dt_s, rod, again);
+    CHECK(again.keeps_balance() == solved[i].balanced);
     CHECK(same_bits(again.matrix(), solved[i].a));
     CHECK(again.rhs() == solved[i].b);
     CHECK(system.solution == solved[i].solution);

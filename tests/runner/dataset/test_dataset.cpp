@@ -67,11 +67,15 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
   const TemporaryFolder folder;
   Json loaded = ragged_job();
   loaded["scene"]["tip_force_n"] = {0, 0.1, 0};  // evaluated alone, by the same steps as below
-  for (const auto& [systems, scenes] :
-       {std::pair("first", loaded), std::pair("all", loaded), std::pair("all", forest_job())}) {
+  Json balanced = loaded;
+  balanced["time"]["balance"] = true;
+  for (const auto& [systems, scenes] : {std::pair("first", loaded), std::pair("all", loaded),
+                                        std::pair("all", forest_job()), std::pair("first", balanced)}) {
     Json job = scenes;
     job["record"] = {{"systems", systems}, {"solves", "summary"}};
-    const fs::path path = folder / (systems + job["scene"]["type"].get<std::string>() + ".h5");
+    const bool balance = job["time"].value("balance", false);
+    const fs::path path =
+        folder / (systems + job["scene"]["type"].get<std::string>() + (balance ? "_balanced.h5" : ".h5"));
     const Plan plan = make_data_set(path, job);
     const DatasetReader data(path);
     REQUIRE(data.size() == plan.size());
@@ -83,7 +87,7 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
       CHECK(simulation.newton_iterations == 3);
       Scene scene = build_scene(plan.spec(i).scene);
       SolveProbe probe(scene);
-      LinearProjection projection(scene, probe);
+      LinearProjection projection(scene, probe, balance ? std::optional(1e-4) : std::nullopt);
       TimeStepper stepper(scene, {0.02, 3, plan.spec(i).time.newton_tolerance});
       for (int step = 0; step < 4; ++step) stepper.step(projection);
       CHECK(simulation.constraint_dt_s == stepper.constraint_dt());

@@ -21,25 +21,31 @@ TaskRecord evaluated(const Plan& plan) {
 
 TEST_CASE("A, b, velocities and solution of a tree and a chain of another size come back to the last bit") {
   constexpr int steps = 3, iterations = 2;
+  const bool balance = GENERATE(false, true);
   Scene scene;
   scene.damping_per_s = 2;  // so that the constraints' dt is not the step
   scene.rods = {test::random_rod(test::tree(2, 2), {0}, 1), test::random_rod(test::chain(4), {}, 2)};
+  if (balance)
+    for (Rod& rod : scene.rods)
+      for (const Segment& segment : rod.segments) rod.contact_impulse.push_back(1e-3 * segment.mass * Vector6::Ones());
   const Scene start = scene;
   Task task;
   task.rows[Rows::system].count = steps * iterations * 2;
   task.rows[Rows::system_segment].count = steps * iterations * (7 + 4);
   task.rows[Rows::system_joint].count = steps * iterations * (6 + 3);
+  if (balance) task.rows[Rows::balanced_segment].count = task.rows[Rows::system_segment].count;
   TaskRecord record;
   record.prepare(task, {});
 
   SolveProbe probe(scene);
   StoringSolve recording(scene, iterations, probe, record);
-  LinearProjection projection(scene, recording);
+  LinearProjection projection(scene, recording, balance ? std::optional(1e-12) : std::nullopt);
   TimeStepper stepper(scene, {0.01, iterations + 1, 0});
   for (int step = 0; step < steps; ++step) stepper.step(projection);
 
   const std::vector<StoredSystem> systems = stored_systems(record, start, iterations);
   CHECK(systems.size() == steps * iterations * 2);
+  for (const StoredSystem& system : systems) CHECK(system.balance.has_value() == balance);
   check_same(systems, start, stepper.constraint_dt(), probe.first_iterations(iterations));
 }
 

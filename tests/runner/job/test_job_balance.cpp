@@ -27,7 +27,7 @@ TEST_CASE("steps are the paper's unless they are to keep the balance, which may 
   CHECK_FALSE(plan_of(without("/guesses", with("/solve", R"({"method": "direct"})"))).spec(0).time.balance);
 }
 
-TEST_CASE("the balance is refused where no linear system could hold it, and in data sets") {
+TEST_CASE("the balance is refused where no linear system could hold it") {
   CHECK(refusal(with("/time/balance", "1")) == "job.json: time.balance: 1 is not allowed; must be true or false");
   CHECK_THAT(refusal(with("/time/balance", R"({"uniform": [0, 1]})")), Contains("time.balance"));
   CHECK_THAT(refusal(with("/time/momentum_tolerance", "0")), Contains("time.momentum_tolerance: 0 is not allowed"));
@@ -36,9 +36,18 @@ TEST_CASE("the balance is refused where no linear system could hold it, and in d
     CHECK(refusal(with("/solve", R"({"method": ")" + method + "\"}", closed)) ==
           "job.json: time.balance: true is not allowed with solve.method \"" + method +
               "\", which solves no linear system that could hold the balance; must be with \"direct\" or \"cg\"");
-  Json data = without("/guesses", with("/kind", "\"dataset\"", with("/time/balance", "true")));
-  data.erase("evaluation");
-  CHECK_THAT(refusal(data), Contains("time.balance: true is not allowed in a data set"));
+}
+
+TEST_CASE("data sets have what the balance is kept against, where any task keeps it") {
+  for (const char* balance : {"false", "true", R"({"grid": [false, true]})"}) {
+    const Plan plan = plan_of(with("/time/balance", balance, data_job()));
+    const bool any = std::string(balance) != "false";
+    for (const Task& task : plan.tasks()) {
+      const std::int64_t segments = task.rows[Rows::system_segment].count;
+      CHECK(segments > 0);
+      CHECK(task.rows[Rows::balanced_segment].count == (any ? segments : 0));
+    }
+  }
 }
 
 }  // namespace

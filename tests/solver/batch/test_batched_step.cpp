@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,8 +80,8 @@ bool same_bits(const Rod& a, const Rod& b) {
 
 /// One scene stepped alone.
 struct Alone {
-  explicit Alone(const Scene& initial, const StepSettings& s = settings)
-      : scene(initial), direct(scene), projection(scene, direct), stepper(scene, s) {}
+  explicit Alone(const Scene& initial, const StepSettings& s = settings, std::optional<double> momentum_tolerance = {})
+      : scene(initial), direct(scene), projection(scene, direct, momentum_tolerance), stepper(scene, s) {}
   Alone(const Alone&) = delete;
   Alone& operator=(const Alone&) = delete;
   StepReport step() { return stepper.step(projection); }
@@ -92,10 +93,11 @@ struct Alone {
 };
 
 /// Steps the scenes together and alone; checks all reports, then states and times.
-void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepSettings& s = settings) {
+void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepSettings& s = settings,
+                 std::optional<double> momentum_tolerance = {}) {
   std::vector<std::unique_ptr<Alone>> alone;
-  for (const Scene& scene : scenes) alone.push_back(std::make_unique<Alone>(scene, s));
-  BatchedStepper batch(scenes, s);
+  for (const Scene& scene : scenes) alone.push_back(std::make_unique<Alone>(scene, s, momentum_tolerance));
+  BatchedStepper batch(scenes, s, momentum_tolerance);
   for (int i = 0; i < steps; ++i) {
     const std::vector<StepReport>& reports = batch.step();
     REQUIRE(reports.size() == scenes.size());
@@ -104,6 +106,7 @@ void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepS
       const StepReport expected = alone[r]->step();
       CHECK(reports[r].outcome == expected.outcome);
       CHECK(reports[r].newton_iterations == expected.newton_iterations);
+      CHECK(reports[r].balanced == expected.balanced);
     }
   }
   for (std::size_t r = 0; r < scenes.size(); ++r) {
@@ -114,6 +117,7 @@ void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepS
     CHECK(distance(rod, expected) < bound);
     CHECK(velocity_distance(rod, expected, s.dt) < bound / s.dt);
     CHECK((rod.lambda - expected.lambda).norm() <= 1e3 * bound * expected.lambda.norm());
+    CHECK(momentum_residual(rod) == Approx(momentum_residual(expected)).epsilon(1e-3).margin(1e4 * bound));
     CHECK(scenes[r].time_s == alone[r]->scene.time_s);
     CHECK(batch.steps_taken(static_cast<int>(r)) == steps);
   }
@@ -129,6 +133,26 @@ TEST_CASE("helices of different parameters step together as alone") {
   std::vector<Scene> scenes;
   for (int r = 0; r < lanes; ++r) scenes.push_back(helix_scene(45, r));
   check_equal(scenes, 50, 1e-10);
+}
+
+TEST_CASE("rods and helices that keep the balance of momentum step together as alone") {
+  const bool helices = GENERATE(false, true);
+  std::vector<Scene> scenes;
+  for (int r = 0; r < lanes; ++r) scenes.push_back(helices ? helix_scene(30, r) : bending_scene(20, r));
+  check_equal(scenes, 40, 1e-8, {0.02, 20, 1e-9}, 1e-4);
+}
+
+TEST_CASE("rods of a batch that cannot be balanced are taken back, each for itself, as alone") {
+  std::vector<Scene> scenes;
+  for (int r = 0; r < lanes; ++r) scenes.push_back(bending_scene(10, r));
+  const StepSettings s{0.02, 12, 1e-9};
+  const int wild = lanes / 2;
+  Rod& rod = scenes[wild].rods.front();
+  for (std::size_t i = 1; i < rod.velocity.size(); ++i) rod.velocity[i] = {0, i % 2 ? 60.0 : -60.0, 0};
+  check_equal(scenes, 1, 1e-8, s, 1e-6);
+  BatchedStepper batch(scenes, s, 1e-6);
+  const std::vector<StepReport>& reports = batch.step();
+  for (int r = 0; r < lanes; ++r) CHECK(reports[r].balanced == (r != wild));
 }
 
 TEST_CASE("rods that stretch more easily than they shear step together with some that don't, as alone") {
@@ -229,9 +253,10 @@ TEST_CASE("a step goes on from whatever state and time a scene has") {
 
 TEST_CASE("a step in parts shows every rod's system as the linear system of it alone has it") {
   constexpr int rods = std::min(3, lanes);
+  const std::optional<double> momentum_tolerance = GENERATE(std::optional<double>(), std::optional<double>(1e-6));
   std::vector<Scene> scenes;
   for (int r = 0; r < rods; ++r) scenes.push_back(bending_scene(8, r));
-  BatchedStepper batch(scenes, settings), whole(scenes, settings);
+  BatchedStepper batch(scenes, settings, momentum_tolerance), whole(scenes, settings, momentum_tolerance);
   const auto scene_of = [&](int rod) {
     Scene scene = scenes[static_cast<std::size_t>(rod)];
     batch.write(rod, scene);
@@ -244,9 +269,13 @@ TEST_CASE("a step in parts shows every rod's system as the linear system of it a
       std::vector<VectorX> exact(rods);
       for (int rod = 0; rod < rods; ++rod) {
         if (!batch.iterates(rod)) continue;
-        const Scene scene = scene_of(rod);
+        Scene scene = scene_of(rod);
         LinearSystem system(scene.rods.front());
-        system.assemble(scene.rods.front(), constraint_dt(scene, settings.dt));
+        CHECK(batch.keeps_balance(rod) == momentum_tolerance.has_value());
+        if (momentum_tolerance)
+          system.assemble_balanced(scene.rods.front(), constraint_dt(scene, settings.dt));
+        else
+          system.assemble(scene.rods.front(), constraint_dt(scene, settings.dt));
         const BatchedLinearization& seen = batch.system().linearization();
         CHECK(seen.residual[rod] == Approx(system.newton_residual()).margin(1e-14));
         CHECK(std::sqrt(seen.squared_norm[rod]) == Approx(system.rhs().norm()).margin(1e-14));

@@ -126,7 +126,8 @@ TEST_CASE("a step that keeps the balance of momentum allocates nothing") {
 }
 
 TEST_CASE("a batched step allocates nothing") {
-  BatchedStepper batch({test::moving_scene(12), test::moving_scene(12, 3)}, {0.02, 4, 1e-9});
+  const std::optional<double> momentum_tolerance = GENERATE(std::optional<double>(), std::optional<double>(1e-9));
+  BatchedStepper batch({test::moving_scene(12), test::moving_scene(12, 3)}, {0.02, 4, 1e-9}, momentum_tolerance);
   const long before = test::allocations();
   for (int step = 0; step < 10; ++step) batch.step();
   CHECK(test::allocations() == before);

@@ -17,6 +17,7 @@ constexpr double tolerance = 1e-5;
 Rod disturbed_rod(unsigned seed) {
   Rod rod = test::random_rod(test::tree(2, 2), {0}, seed);
   test::Random random(seed + 100);
+  rod.contact_impulse.resize(rod.segments.size());
   for (int s = 0; s < rod.segment_count(); ++s) {
     rod.free_position[s] = rod.position[s] + random.vector(0.1);
     rod.free_orientation[s] = rotated(rod.orientation[s], random.vector(0.4));
