@@ -32,12 +32,14 @@ ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settin
 
 void ContactProjection::start_step() {
   finder_.remember(scene_);
+  last_ = contacts_;
   old_.clear();
   for (const Rod& rod : scene_.rods)
     for (std::size_t s = 0; s < rod.segments.size(); ++s) old_.push_back({rod.position[s], rod.orientation[s]});
 }
 
 bool ContactProjection::find(bool keeps_balance) {
+  contacts_ = last_;  // Newton may have come to nothing since the step began
   if (!finder_.find(scene_, contacts_)) return false;
   fresh_ = true;
   keeps_balance_ = keeps_balance;

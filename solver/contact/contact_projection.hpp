@@ -72,7 +72,8 @@ class ContactProjection {
   ContactFinder finder_;
   ContactMotion motion_;
   std::vector<Contact> contacts_;
-  bool fresh_ = false;  ///< not projected yet
+  std::vector<Contact> last_;  ///< of the last step
+  bool fresh_ = false;         ///< not projected yet
   bool keeps_balance_ = false;
   std::vector<Linear> linear_;
   std::vector<CapsuleAxis> axes_;

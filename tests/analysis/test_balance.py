@@ -13,12 +13,12 @@ OFF = {(0.02, "false"): 0.3, (0.02, "true"): 0.2, (0.01, "false"): 0.1, (0.01, "
 
 
 class Balance(running.Scripts):
-    def write(self, **settings):
+    def write(self, sizes=SIZES, **settings):
         super().write(**{"method": "direct", "scenes": ("helix",), "samples": SAMPLES, "steps": STEPS,
-                         "grid": {"time.step_s": SIZES, "time.balance": KINDS}, **settings})
+                         "grid": {"time.step_s": sizes, "time.balance": KINDS}, **settings})
         with h5py.File(self.path, "a") as h5:
             count = len(h5["tasks/state"])
-            planted = np.repeat([OFF[size, kind] for size in SIZES for kind in KINDS], SAMPLES)
+            planted = np.repeat([OFF[size, kind] for size in sizes for kind in KINDS], SAMPLES)
             position = np.zeros((count, FRAMES, SEGMENTS, 3))
             position[..., 2] = np.linspace(0, 1, SEGMENTS)
             position[:, :-1, :, 0] = 7    # the way there does not count
@@ -44,6 +44,12 @@ class Balance(running.Scripts):
         self.write(scenes=("helix", "bending_rod"))
         self.assertEqual([line.split(" 0.02")[0] for line in self.table() if " 0.02 " in line],
                          ["helix", "bending rod"])
+
+    def test_of_one_time_step_there_is_a_table_and_no_figure(self):
+        self.write(sizes=SIZES[:1])
+        said = self.run_script("balance.py", "sweep.h5").stdout
+        self.assertEqual([" ".join(line.split()) for line in said.splitlines()[1:] if line],
+                         ["helix 0.02 the paper's step 0.1 0.15 3 0.3", "in balance reference 0.15 3 0.3"])
 
     def test_a_file_with_one_kind_of_step_is_refused(self):
         running.Scripts.write(self, method="direct", scenes=("helix",), samples=1, grid={"time.step_s": SIZES})
