@@ -61,6 +61,7 @@ figures newton newton >"$out/newton.txt"
 figures solvers solvers >"$out/solvers.txt"
 figures work_precision work_precision >"$out/work_precision.txt"
 figures balance balance >"$out/balance.txt"
+script balance balance_scenes >"$out/balance_scenes.txt"
 figures long_term long_term >"$out/long_term.txt"
 figures long_term long_term_learned --log-time >"$out/long_term_learned.txt"
 sed -i '/\.\(png\|pdf\)$/d' "$out"/*.txt   # the paths of the figures
