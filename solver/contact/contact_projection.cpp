@@ -43,6 +43,7 @@ bool ContactProjection::find(bool keeps_balance) {
   if (!finder_.find(scene_, contacts_)) return false;
   fresh_ = true;
   keeps_balance_ = keeps_balance;
+  last_.reserve(contacts_.capacity());
   linear_.resize(contacts_.size());
   before_.resize(contacts_.size());
   swept_.resize(contacts_.size());
