@@ -43,6 +43,41 @@ inline Scene moved(Scene scene, const RigidMotion& to) {
   return scene;
 }
 
+// The mirror image across x = 0, of segments' frames too: R' = S R S, S = diag(-1, 1, 1).
+inline Vector3 mirrored(const Vector3& v) { return {-v.x(), v.y(), v.z()}; }
+inline Vector3 mirrored_axis(const Vector3& v) { return {v.x(), -v.y(), -v.z()}; }  ///< of a turn
+inline Quaternion mirrored(const Quaternion& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
+/// Of a joint's six rows, which are in its frame: a vector, then an axis.
+inline const Vector6 mirrored_rows = (Vector6() << -1, 1, 1, 1, -1, -1).finished();
+
+inline Scene mirrored(Scene scene) {
+  for (Rod& rod : scene.rods) {
+    for (int s = 0; s < rod.segment_count(); ++s) {
+      rod.position[s] = mirrored(rod.position[s]);
+      rod.orientation[s] = mirrored(rod.orientation[s]);
+      rod.velocity[s] = mirrored(rod.velocity[s]);
+      rod.angular_velocity[s] = mirrored_axis(rod.angular_velocity[s]);
+    }
+    for (Joint& joint : rod.joints) {
+      joint.arm_a = mirrored(joint.arm_a);
+      joint.arm_b = mirrored(joint.arm_b);
+      joint.rest = mirrored(joint.rest);
+    }
+  }
+  scene.gravity_m_s2 = mirrored(scene.gravity_m_s2);
+  for (PointLoad& load : scene.loads) {
+    load.force_n = mirrored(load.force_n);
+    load.torque_nm = mirrored_axis(load.torque_nm);
+    load.arm_m = mirrored(load.arm_m);
+  }
+  for (MovingClamp& clamp : scene.clamps)
+    clamp.pose = [before = clamp.pose](double time_s) {
+      const Pose pose = before(time_s);
+      return Pose{mirrored(pose.position), mirrored(pose.orientation)};
+    };
+  return scene;
+}
+
 /// Moves the rods as the direct solve does; `look` sees every system.
 template <class Look>
 class Observer : public LinearSolve {

@@ -1,6 +1,7 @@
 // A scene that is turned and shifted as a whole, with all that acts on it, is the same scene: its linear systems are,
 // to rounding, and it moves alike.
 #include <catch2/catch.hpp>
+#include <optional>
 
 #include "solver/batch/batched_step.hpp"
 #include "solver/step/pbd_projection.hpp"
@@ -43,15 +44,55 @@ TEST_CASE("a turned scene has the same systems, entry by entry") {
   }
 }
 
-template <class P>
-double apart_after_ten_steps(const Scene& start, const RigidMotion& motion, P project) {
-  Scene scene = start, turned = moved(start, motion);
-  for (Scene* each : {&scene, &turned}) project(*each);
+TEST_CASE("a mirrored scene has the same systems, but for the signs of rows") {
+  for (const TurnedCase& each : test::turned_cases()) {
+    INFO(each.name);
+    Scene scene = each.scene, image = test::mirrored(each.scene);
+    const std::vector<System> original = systems_of(scene), systems = systems_of(image);
+    REQUIRE(systems.size() == original.size());
+    for (std::size_t i = 0; i < systems.size(); ++i) {
+      const VectorX signs = test::mirrored_rows.replicate(systems[i].b.size() / 6, 1);
+      CHECK(test::scaled_difference(signs.asDiagonal() * systems[i].a * signs.asDiagonal(), original[i].a) < 1e-9);
+      CHECK((systems[i].b.cwiseProduct(signs) - original[i].b).lpNorm<Eigen::Infinity>() < 1e-9);
+    }
+  }
+}
+
+/// The largest distance of `other` from where `image` has the points of `start`, both stepped.
+template <class Image, class P>
+double apart_from_image(const Scene& start, Scene other, const Image& image, P project) {
+  Scene scene = start;
+  for (Scene* each : {&scene, &other}) project(*each);
   double out = 0;
   for (std::size_t r = 0; r < scene.rods.size(); ++r)
     for (int s = 0; s < scene.rods[r].segment_count(); ++s)
-      out = std::max(out, (turned.rods[r].position[s] - motion(scene.rods[r].position[s])).norm());
+      out = std::max(out, (other.rods[r].position[s] - image(scene.rods[r].position[s])).norm());
   return out;
+}
+
+template <class P>
+double apart_after_ten_steps(const Scene& start, const RigidMotion& motion, P project) {
+  return apart_from_image(start, moved(start, motion), motion, project);
+}
+
+TEST_CASE("mirrored scenes move alike in both kinds of step, alone and in batches") {
+  for (const TurnedCase& each : test::turned_cases())
+    for (const std::optional<double> momentum_tolerance : {std::optional<double>(), std::optional<double>(1e-9)}) {
+      INFO(each.name << (momentum_tolerance ? ", in balance" : ""));
+      const auto image = [](const Vector3& x) { return test::mirrored(x); };
+      CHECK(apart_from_image(each.scene, test::mirrored(each.scene), image, [&](Scene& scene) {
+              DirectSolve direct(scene);
+              LinearProjection projection(scene, direct, momentum_tolerance);
+              TimeStepper stepper(scene, {0.01, 20, 1e-12});
+              for (int step = 0; step < 10; ++step) stepper.step(projection);
+            }) < 1e-9);
+      if (!each.batched) continue;
+      CHECK(apart_from_image(each.scene, test::mirrored(each.scene), image, [&](Scene& scene) {
+              BatchedStepper stepper({scene}, {0.01, 20, 1e-12}, momentum_tolerance);
+              for (int step = 0; step < 10; ++step) stepper.step();
+              stepper.write(0, scene);
+            }) < 1e-9);
+    }
 }
 
 TEST_CASE("turned scenes move alike under every projection") {
