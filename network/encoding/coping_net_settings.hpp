@@ -11,15 +11,15 @@ enum class Processor {
   message_passing  ///< hops over the graph (network/processor/message_passing.hpp)
 };
 
-/// The guess that the network corrects: none (zero), quadratic extrapolation in time, or projection onto the last
-/// `base_size` solutions.
-enum class BaseGuess { none, extrapolation, pod };
+/// The guess that the network corrects: none (zero), quadratic extrapolation in time, least squares of the last
+/// `base_size` right-hand sides, or projection onto the last `base_size` solutions.
+enum class BaseGuess { none, extrapolation, regression, pod };
 
 struct CopingNetSettings {
   Encoding encoding = Encoding::system;
   Processor processor = Processor::sweeps;
   BaseGuess base = BaseGuess::pod;
-  int base_size = 10;    ///< pod
+  int base_size = 10;    ///< regression, pod
   int latent = 32;       ///< width of hidden layers and states
   int steps = 6;         ///< message_passing: hops
   bool globals = false;  ///< message_passing: with a state of the whole graph

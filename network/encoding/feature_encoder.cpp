@@ -5,7 +5,7 @@
 namespace rodsweep {
 namespace {
 
-bool of_graphs(const CopingNetSettings& settings) { return settings.encoding != Encoding::system; }
+bool of_graphs(const CopingNetSettings& settings) { return is_of_graphs(settings.encoding); }
 
 int sum(const std::vector<int>& sizes) { return std::accumulate(sizes.begin(), sizes.end(), 0); }
 
@@ -40,6 +40,8 @@ FeatureEncoder::FeatureEncoder(const CopingNetSettings& settings, const Rod& rod
   if (of_graphs(settings)) {
     graph_ = std::make_unique<GraphEncoding>(settings.encoding, rod);
     by_joint_.resize(GraphEncoding::edge_features(settings.encoding), rod.joint_count());
+  } else if (settings.encoding == Encoding::canonical) {
+    canonical_ = std::make_unique<CanonicalEncoding>(pattern_);
   } else {
     system_ = std::make_unique<SystemEncoding>(pattern_);
     system_unit_.resize(a.unknowns());
@@ -52,6 +54,7 @@ void FeatureEncoder::encode(const Rod& rod, const LinearSystem& system, int newt
     system_->encode(system.matrix(), residual, edges, system_unit_);
     return;
   }
+  if (canonical_) return canonical_->encode(pattern_, system.matrix(), residual, edges);
   graph_->encode(rod, system, newton, dt_c, nodes, by_joint_);
   const Eigen::Index own = by_joint_.rows();
   for (Eigen::Index place = 0; place < edges.cols(); ++place) {

@@ -11,6 +11,7 @@
 
 #include <memory>
 
+#include "network/encoding/canonical_encoding.hpp"
 #include "network/encoding/coping_net_settings.hpp"
 #include "network/encoding/normalisation.hpp"
 #include "network/encoding/system_encoding.hpp"
@@ -48,13 +49,16 @@ class FeatureEncoder {
 
   /// Of the system last encoded by `system`: the unit, in the order of unknowns.
   const VectorX& system_unit() const { return system_unit_; }
+  /// Of `canonical`; else null.
+  const CanonicalEncoding* canonical() const { return canonical_.get(); }
 
  private:
   CopingNetSettings settings_;
   std::shared_ptr<const Topology> topology_;
   SystemPattern pattern_;
-  std::unique_ptr<GraphEncoding> graph_;    // deck, physics
-  std::unique_ptr<SystemEncoding> system_;  // system
+  std::unique_ptr<GraphEncoding> graph_;          // deck, physics
+  std::unique_ptr<SystemEncoding> system_;        // system
+  std::unique_ptr<CanonicalEncoding> canonical_;  // canonical
   Tensor<float> by_joint_;
   VectorX system_unit_;
 };

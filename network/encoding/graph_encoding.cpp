@@ -55,7 +55,7 @@ Eigen::Vector2d moduli_of(const Rod& rod, const Joint& joint) {
 const GraphEncoding::Groups& GraphEncoding::groups(Encoding encoding) {
   static const Groups deck{{3, 4, 1, 1, 1, 1, 1, 1, 1}, {3, 1, 1, 3, 3}};
   static const Groups physics{{3, 4, 1, 1, 1, 1, 1, 1, 1, 3, 3}, {3, 1, 1, 3, 3, 3}};
-  if (encoding == Encoding::system) throw std::invalid_argument("the encoding `system` is not one of graphs");
+  if (!is_of_graphs(encoding)) throw std::invalid_argument("an encoding of linear systems is not one of graphs");
   return encoding == Encoding::deck ? deck : physics;
 }
 

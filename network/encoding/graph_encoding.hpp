@@ -19,7 +19,11 @@
 
 namespace rodsweep {
 
-enum class Encoding { deck, physics, system };  ///< `system`: network/encoding/system_encoding.hpp
+/// `system`: network/encoding/system_encoding.hpp; `canonical`: network/encoding/canonical_encoding.hpp.
+enum class Encoding { deck, physics, system, canonical };
+
+/// Of segments and joints, not of the linear system.
+constexpr bool is_of_graphs(Encoding encoding) { return encoding == Encoding::deck || encoding == Encoding::physics; }
 
 class GraphEncoding {
  public:

@@ -15,7 +15,7 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
       d_(a.unknowns()),
       ad_(a.unknowns()) {
   const CopingNetSettings& settings = model_->net.settings();
-  if (settings.processor == Processor::sweeps && settings.encoding == Encoding::system &&
+  if (settings.processor == Processor::sweeps && !is_of_graphs(settings.encoding) &&
       SweepsInference::supports(settings.latent))
     sweeps_ = std::make_unique<SweepsInference>(model_->net.sweeps(), model_->net.parameters(), rod.joint_count());
   if (settings.processor == Processor::sweeps && encoder_.topology().forest.order.empty())
@@ -49,7 +49,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, in
 void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x,
                               bool with_moves) {
   const Topology& topology = encoder_.topology();
-  const bool graphs = model_->net.settings().encoding != Encoding::system;
+  const bool graphs = is_of_graphs(model_->net.settings().encoding);
   encoder_.encode(rod, system, newton, dt_c, x, residual_, nodes_, edges_);
   if (graphs) {
     model_->scales.nodes.apply(nodes_);
@@ -62,6 +62,12 @@ void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, int ne
   if (graphs) y_edges_.array().colwise() *= model_->scales.multipliers.deviation;
   for (Eigen::Index place = 0; place < y_edges_.cols(); ++place) {
     const Eigen::Index first = 6 * topology.joint[static_cast<std::size_t>(place)];
+    if (const CanonicalEncoding* canonical = encoder_.canonical()) {
+      const float* y = y_edges_.col(place).data();
+      store6(d_.data() + first,
+             canonical->from_unit(static_cast<int>(place), Lane8{y[0], y[1], y[2], y[3], y[4], y[5], 0, 0}));
+      continue;
+    }
     d_.segment<6>(first) = y_edges_.col(place).cast<double>();
     if (!graphs) d_.segment<6>(first).array() *= encoder_.system_unit().segment<6>(first).array();
   }

@@ -30,6 +30,34 @@ Tensor<float> by_place(const Topology& topology, const VectorX& values) {
   return out;
 }
 
+/// The system to learn from, and how outputs and their targets stand to it.
+void put_system(const CopingNetSettings& settings, const LinearSystem& system, const StoredSystem& stored,
+                RodExamples& of, Example& out) {
+  const SystemPattern& pattern = of.encoder.pattern();
+  const VectorX error = stored.solution - of.base;
+  const double solution_energy = stored.solution.dot(system.rhs());
+  if (const CanonicalEncoding* canonical = of.encoder.canonical()) {
+    out.system = canonical_system(pattern, canonical->frames(), system.matrix(), of.residual, error, solution_energy);
+    out.unit = Tensor<float>::Ones(6, out.edges.cols());
+    out.edge_target.resize(6, out.edges.cols());
+    for (int place = 0; place < static_cast<int>(out.edges.cols()); ++place) {
+      const int joint = pattern.joint[static_cast<std::size_t>(place)];
+      const Lane8 target = canonical->to_unit(place, load6(error.data() + 6 * joint));
+      for (int row = 0; row < 6; ++row) out.edge_target(row, place) = static_cast<float>(target[row]);
+    }
+    return;
+  }
+  out.system = scaled_system(pattern, system.matrix(), of.residual, error, solution_energy);
+  correction_scale(system.matrix(), of.residual, of.scale);
+  if (settings.encoding == Encoding::system) {
+    out.unit = Tensor<float>::Ones(6, out.edges.cols());
+    out.edge_target = by_place(*out.topology, error.cwiseQuotient(of.scale));
+  } else {
+    out.unit = by_place(*out.topology, of.scale.cwiseInverse());
+    out.edge_target = by_place(*out.topology, error);
+  }
+}
+
 Example example_of(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system,
                    const StoredSystem& stored, double dt_c, RodExamples& of) {
   Example out;
@@ -37,17 +65,7 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Line
   out.nodes.resize(node_features(settings), rod.segment_count());
   out.edges.resize(edge_features(settings), rod.joint_count());
   of.encoder.encode(rod, system, stored.at.newton, dt_c, of.base, of.residual, out.nodes, out.edges);
-  const VectorX error = stored.solution - of.base;
-  out.system =
-      scaled_system(of.encoder.pattern(), system.matrix(), of.residual, error, stored.solution.dot(system.rhs()));
-  correction_scale(system.matrix(), of.residual, of.scale);
-  if (settings.encoding == Encoding::system) {
-    out.unit = Tensor<float>::Ones(6, rod.joint_count());
-    out.edge_target = by_place(*out.topology, error.cwiseQuotient(of.scale));
-  } else {
-    out.unit = by_place(*out.topology, of.scale.cwiseInverse());
-    out.edge_target = by_place(*out.topology, error);
-  }
+  put_system(settings, system, stored, of, out);
   if (settings.moves) {
     out.node_target.resize(6, rod.segment_count());
     system.displacements(rod, stored.solution, of.moves);
@@ -80,7 +98,7 @@ void add_examples(const CopingNetSettings& settings, const StoredSimulation& sim
 }
 
 FeatureScales feature_scales(const CopingNetSettings& settings, const std::vector<Example>& examples) {
-  if (settings.encoding == Encoding::system) return {};
+  if (!is_of_graphs(settings.encoding)) return {};
   FeatureStatistics nodes(node_groups(settings)), edges(edge_groups(settings)), multipliers({3, 3}), moves({3, 3});
   for (const Example& example : examples) {
     nodes.accumulate(example.nodes);
@@ -93,7 +111,7 @@ FeatureScales feature_scales(const CopingNetSettings& settings, const std::vecto
 }
 
 void normalise(const CopingNetSettings& settings, const FeatureScales& scales, std::vector<Example>& examples) {
-  if (settings.encoding == Encoding::system) return;
+  if (!is_of_graphs(settings.encoding)) return;
   for (Example& example : examples) {
     scales.nodes.apply(example.nodes);
     scales.edges.apply(example.edges);

@@ -9,10 +9,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const Words<Encoding> encodings{{"deck", Encoding::deck}, {"physics", Encoding::physics}, {"system", Encoding::system}};
+const Words<Encoding> encodings{{"deck", Encoding::deck},
+                                {"physics", Encoding::physics},
+                                {"system", Encoding::system},
+                                {"canonical", Encoding::canonical}};
 const Words<Processor> processors{{"sweeps", Processor::sweeps}, {"message_passing", Processor::message_passing}};
-const Words<BaseGuess> bases{
-    {"none", BaseGuess::none}, {"extrapolation", BaseGuess::extrapolation}, {"pod", BaseGuess::pod}};
+const Words<BaseGuess> bases{{"none", BaseGuess::none},
+                             {"extrapolation", BaseGuess::extrapolation},
+                             {"regression", BaseGuess::regression},
+                             {"pod", BaseGuess::pod}};
 const Words<LossKind> losses{
     {"mse", LossKind::mse}, {"energy", LossKind::energy}, {"in_the_loop", LossKind::in_the_loop}};
 

@@ -67,17 +67,21 @@ Key network_key() {
   return object_key(
              "network", "the network that is trained",
              {
-                 choice_key("encoding",
-                            "what it is given of a linear system: the deck's features of segments and joints, more "
-                            "physical ones, or the scaled system itself",
-                            {"deck", "physics", "system"})
+                 choice_key(
+                     "encoding",
+                     "what it is given of a linear system: the deck's features of segments and joints, more "
+                     "physical ones, the scaled system itself, or that in frames that no turn, roll or mirror changes",
+                     {"deck", "physics", "system", "canonical"})
                      .defaults_to("system"),
                  choice_key("processor",
                             "sweeps: over the tree of joints, up and down; message_passing: over the graph",
                             {"sweeps", "message_passing"})
                      .defaults_to("sweeps"),
-                 choice_key("base", "the guess that it corrects", {"none", "extrapolation", "pod"}).defaults_to("pod"),
-                 integer_key("base_size", "pod: most solutions that span the subspace").from(1, 200).defaults_to(10),
+                 choice_key("base", "the guess that it corrects", {"none", "extrapolation", "regression", "pod"})
+                     .defaults_to("pod"),
+                 integer_key("base_size", "regression, pod: most solutions that span the subspace")
+                     .from(1, 200)
+                     .defaults_to(10),
                  integer_key("latent", "width of hidden layers and states").from(1, 1024).defaults_to(32),
                  integer_key("steps", "message_passing: hops over the graph")
                      .from(1, 100)

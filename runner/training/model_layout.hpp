@@ -82,7 +82,7 @@ inline constexpr std::array<ScalePlace, 4> scale_places{{
     {"/model/scales/moves/", &FeatureScales::moves, [](const CopingNetSettings& s) { return s.moves ? 6 : 0; }},
 }};
 inline int scale_size(const ScalePlace& place, const CopingNetSettings& settings) {
-  return settings.encoding == Encoding::system ? 0 : place.size(settings);
+  return !is_of_graphs(settings.encoding) ? 0 : place.size(settings);
 }
 
 }  // namespace rodsweep

@@ -20,9 +20,9 @@ inline std::shared_ptr<Model> random_model(const CopingNetSettings& settings, st
 /// A small one of every kind.
 inline std::vector<CopingNetSettings> kinds_of_networks() {
   std::vector<CopingNetSettings> out;
-  for (const Encoding encoding : {Encoding::deck, Encoding::physics, Encoding::system})
+  for (const Encoding encoding : {Encoding::deck, Encoding::physics, Encoding::system, Encoding::canonical})
     for (const Processor processor : {Processor::sweeps, Processor::message_passing})
-      for (const BaseGuess base : {BaseGuess::none, BaseGuess::extrapolation, BaseGuess::pod}) {
+      for (const BaseGuess base : {BaseGuess::none, BaseGuess::extrapolation, BaseGuess::regression, BaseGuess::pod}) {
         CopingNetSettings settings;
         settings.encoding = encoding;
         settings.processor = processor;

@@ -1,0 +1,31 @@
+// The linear system of a correction as features that turning, rolling and mirroring leave alone: the encoding
+// `canonical`. The numbers are those of system_encoding.hpp in the frames of canonical_frames.hpp.
+#pragma once
+
+#include <utility>
+
+#include "network/encoding/canonical_frames.hpp"
+
+namespace rodsweep {
+
+class CanonicalEncoding {
+ public:
+  static constexpr int size = 57;  ///< r^ (6), the upper triangle of A^_kk without its diagonal (15), A^_k,parent (36)
+
+  explicit CanonicalEncoding(const SystemPattern& pattern) : frames_(pattern) {}
+
+  /// Writes the features [57, places]. Allocates nothing.
+  void encode(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
+              Eigen::Ref<Tensor<float>> features);
+
+  const CanonicalFrames& frames() const { return frames_; }
+
+  /// d of a network's answer d^ for a place, in the joint's frame, or back.
+  Lane8 from_unit(int place, const Lane8& answer) const;
+  Lane8 to_unit(int place, const Lane8& correction) const;
+
+ private:
+  CanonicalFrames frames_;
+};
+
+}  // namespace rodsweep
