@@ -11,6 +11,12 @@ enum class Processor {
   message_passing  ///< hops over the graph (network/processor/message_passing.hpp)
 };
 
+/// What carries the sweeps' states from joint to joint.
+enum class Recurrence {
+  gated,  ///< gated recurrent units (network/layers/gru.hpp)
+  linear  ///< in the state (network/layers/linear_recurrence.hpp): cheaper
+};
+
 /// The guess that the network corrects: none (zero), quadratic extrapolation in time, least squares of the last
 /// `base_size` right-hand sides, or projection onto the last `base_size` solutions.
 enum class BaseGuess { none, extrapolation, regression, pod };
@@ -19,10 +25,11 @@ struct CopingNetSettings {
   Encoding encoding = Encoding::system;
   Processor processor = Processor::sweeps;
   BaseGuess base = BaseGuess::pod;
-  int base_size = 10;    ///< regression, pod
-  int latent = 32;       ///< width of hidden layers and states
-  int steps = 6;         ///< message_passing: hops
-  bool globals = false;  ///< message_passing: with a state of the whole graph
+  int base_size = 10;                         ///< regression, pod
+  int latent = 32;                            ///< width of hidden layers and states
+  Recurrence recurrence = Recurrence::gated;  ///< sweeps
+  int steps = 6;                              ///< message_passing: hops
+  bool globals = false;                       ///< message_passing: with a state of the whole graph
   bool best_length =
       true;            ///< the correction is scaled to what lowers the error most (network/training/energy_loss.hpp)
   bool moves = false;  ///< message_passing: also predicts the segments' moves, for `end_to_end`

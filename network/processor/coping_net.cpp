@@ -15,7 +15,7 @@ CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) :
   const int nodes = node_features(settings), edges = edge_features(settings);
   if (settings.processor == Processor::sweeps) {
     if (settings.moves) throw std::invalid_argument("CopingNet: sweeps predict no moves of segments");
-    sweeps_ = Sweeps<T>(parameters_, edges + 2 * nodes, settings.latent, 6, source);
+    sweeps_ = Sweeps<T>(parameters_, edges + 2 * nodes, settings.latent, 6, settings.recurrence, source);
   } else {
     typename MessagePassing<T>::Sizes sizes;
     sizes.node_in = nodes;

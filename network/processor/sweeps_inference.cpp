@@ -40,6 +40,25 @@ void gru_step(const float* u, const float* p, const float* h, float* out) {
   }
 }
 
+/// h' of one joint whose recurrence is linear: p has z and (1 - z) c.
+template <int H>
+void linear_step(const float*, const float* p, const float* h, float* out) {
+  for (int i = 0; i < H; i += lane_floats)
+    store_lane(out + i, load_lane(p + i) * load_lane(h + i) + load_lane(p + H + i));
+}
+
+/// P_z and P_c of all joints become z and (1 - z) c, where 1 - z = e / (1 + e), e = exp(-P_z).
+void close_gates(Eigen::Ref<Tensor<float>> gates) {
+  const Eigen::Index h = gates.rows() / 2;
+  for (Eigen::Index k = 0; k < gates.cols(); ++k)
+    for (Eigen::Index i = 0; i < h; i += lane_floats) {
+      float *z = gates.col(k).data() + i, *c = z + h;
+      const FloatLane e = clamped_exp(-load_lane(z)), open = 1.F / (1.F + e);
+      store_lane(z, open);
+      store_lane(c, e * open * load_lane(c));
+    }
+}
+
 /// Columns are multiples of 16 entries long.
 void silu_in_place(Eigen::Ref<Tensor<float>> x) {
   for (Eigen::Index c = 0; c < x.cols(); ++c)
@@ -60,15 +79,17 @@ void apply(const Linear<float>& layer, const Parameters<float>& weights, const T
 SweepsInference::SweepsInference(const Sweeps<float>& sweeps, const Parameters<float>& weights, int joints)
     : layers_(sweeps.layers()), weights_(weights) {
   const int h = sweeps.latent();
+  const bool gated = sweeps.recurrence() == Recurrence::gated;
   switch (h) {
-    case 16: step_ = gru_step<16>; break;
-    case 32: step_ = gru_step<32>; break;
-    case 48: step_ = gru_step<48>; break;
-    case 64: step_ = gru_step<64>; break;
+    case 16: step_ = gated ? gru_step<16> : linear_step<16>; break;
+    case 32: step_ = gated ? gru_step<32> : linear_step<32>; break;
+    case 48: step_ = gated ? gru_step<48> : linear_step<48>; break;
+    case 64: step_ = gated ? gru_step<64> : linear_step<64>; break;
     default: throw std::invalid_argument("SweepsInference: latent size " + std::to_string(h));
   }
   states_.resize(3 * h, joints);
-  gates_.resize(3 * h, joints);
+  gates_.resize((gated ? 3 : LinearRecurrence<float>::gates) * h, joints);
+  linear_ = !gated;
   incoming_.resize(h, joints);
   hidden_.resize(h, joints);
 }
@@ -80,7 +101,9 @@ void SweepsInference::run(const JointForest& forest, const TensorIn<float>& x, E
   silu_in_place(e);
 
   apply(layers_.to_up, weights_, e, gates_);
-  const float* u = weights_[layers_.up.recurrent()].data();
+  const auto recurrent = [this](const Gru<float>& gru) { return linear_ ? nullptr : weights_[gru.recurrent()].data(); };
+  if (linear_) close_gates(gates_);
+  const float* u = recurrent(layers_.up);
   incoming_.setZero();
   for (int i = forest.size() - 1; i >= 0; --i) {
     float* state = states_.col(i).data() + h;
@@ -90,7 +113,8 @@ void SweepsInference::run(const JointForest& forest, const TensorIn<float>& x, E
   }
 
   apply(layers_.to_down, weights_, states_.topRows(2 * h), gates_);
-  u = weights_[layers_.down.recurrent()].data();
+  if (linear_) close_gates(gates_);
+  u = recurrent(layers_.down);
   incoming_.col(0).setZero();  // what a root receives
   for (int i = 0; i < forest.size(); ++i) {
     const int parent = forest.parent[static_cast<std::size_t>(i)];

@@ -25,8 +25,9 @@ class SweepsInference {
   Sweeps<float>::Layers layers_;
   const Parameters<float>& weights_;
   Step step_;
+  bool linear_;
   Tensor<float> states_;    ///< [3 H, joints]: e, then both sweeps' states: what a product needs lies together
-  Tensor<float> gates_;     ///< [3 H, joints]: the gates' part that needs no recurrence
+  Tensor<float> gates_;     ///< [3 H or 2 H, joints]: the gates' part that needs no recurrence
   Tensor<float> incoming_;  ///< [H, joints]: sums of the children's states
   Tensor<float> hidden_;    ///< [H, joints] of the decoder
 };

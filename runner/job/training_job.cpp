@@ -14,6 +14,7 @@ const Words<Encoding> encodings{{"deck", Encoding::deck},
                                 {"system", Encoding::system},
                                 {"canonical", Encoding::canonical}};
 const Words<Processor> processors{{"sweeps", Processor::sweeps}, {"message_passing", Processor::message_passing}};
+const Words<Recurrence> recurrences{{"gated", Recurrence::gated}, {"linear", Recurrence::linear}};
 const Words<BaseGuess> bases{{"none", BaseGuess::none},
                              {"extrapolation", BaseGuess::extrapolation},
                              {"regression", BaseGuess::regression},
@@ -60,6 +61,7 @@ CopingNetSettings network_settings(const Json& values) {
   settings.base = value_of(bases, values["base"]);
   settings.base_size = values["base_size"];
   settings.latent = values["latent"];
+  settings.recurrence = value_of(recurrences, values.value("recurrence", "gated"));
   settings.steps = values.value("steps", settings.steps);
   settings.globals = values.value("globals", settings.globals);
   settings.best_length = values["best_length"];
@@ -74,6 +76,8 @@ Json network_json(const CopingNetSettings& settings) {
               {"base_size", settings.base_size},
               {"latent", settings.latent},
               {"best_length", settings.best_length}};
+  if (settings.processor == Processor::sweeps && settings.recurrence != Recurrence::gated)
+    values["recurrence"] = word_of(recurrences, settings.recurrence);  // absent in models from before it
   if (settings.processor == Processor::message_passing)
     values.update({{"steps", settings.steps}, {"globals", settings.globals}, {"moves", settings.moves}});
   return values;

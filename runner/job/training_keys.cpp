@@ -83,6 +83,12 @@ Key network_key() {
                      .from(1, 200)
                      .defaults_to(10),
                  integer_key("latent", "width of hidden layers and states").from(1, 1024).defaults_to(32),
+                 choice_key("recurrence",
+                            "sweeps: how states go from joint to joint, by gated recurrent units, or linear in the "
+                            "state, which is cheaper",
+                            {"gated", "linear"})
+                     .defaults_to("gated")
+                     .only({"sweeps"}),
                  integer_key("steps", "message_passing: hops over the graph")
                      .from(1, 100)
                      .defaults_to(6)

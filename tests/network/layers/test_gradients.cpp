@@ -41,10 +41,11 @@ JointForest some_forest() {
 }
 
 TEST_CASE("the gradients of sweeps are those of central differences") {
+  const Recurrence recurrence = GENERATE(Recurrence::gated, Recurrence::linear);
   const JointForest forest = some_forest();
   Parameters<double> p;
   WeightSource source(1);
-  const Sweeps<double> sweeps(p, 3, 5, 2, source);
+  const Sweeps<double> sweeps(p, 3, 5, 2, recurrence, source);
   for (double& v : p.values()) v += 0.05;
   const Matrix x = random_matrix(3, forest.size(), 2), weights = random_matrix(2, forest.size(), 3);
   Sweeps<double>::Tape tape;
@@ -63,7 +64,7 @@ TEST_CASE("gradients add up: a second backward doubles them") {
   const JointForest forest = some_forest();
   Parameters<double> p;
   WeightSource source(4);
-  const Sweeps<double> sweeps(p, 3, 4, 2, source);
+  const Sweeps<double> sweeps(p, 3, 4, 2, Recurrence::gated, source);
   const Matrix x = random_matrix(3, forest.size(), 5), dy = random_matrix(2, forest.size(), 6);
   Sweeps<double>::Tape tape;
   Matrix y;
@@ -76,10 +77,11 @@ TEST_CASE("gradients add up: a second backward doubles them") {
 }
 
 TEST_CASE("every output sees every input of its own tree, and none of another") {
+  const Recurrence recurrence = GENERATE(Recurrence::gated, Recurrence::linear);
   const JointForest forest = some_forest();
   Parameters<double> p;
   WeightSource source(7);
-  const Sweeps<double> sweeps(p, 3, 6, 2, source);
+  const Sweeps<double> sweeps(p, 3, 6, 2, recurrence, source);
   Matrix x = random_matrix(3, forest.size(), 8), before, after;
   Sweeps<double>::Tape tape;
   sweeps.forward(p, forest, x, tape, before);
@@ -109,7 +111,7 @@ TEST_CASE("a rod's outputs are the same alone and beside others") {
   const JointForest both = side_by_side({&tree, &chain});
   Parameters<double> p;
   WeightSource source(9);
-  const Sweeps<double> sweeps(p, 3, 6, 2, source);
+  const Sweeps<double> sweeps(p, 3, 6, 2, Recurrence::gated, source);
   const Matrix x = random_matrix(3, both.size(), 4);
   Matrix ordered(3, both.size()), together, alone;
   for (int i = 0; i < both.size(); ++i) ordered.col(i) = x.col(both.order[static_cast<std::size_t>(i)]);

@@ -25,13 +25,14 @@ TEST_CASE("the exponential of gates is exact to a few units of the last place, a
 }
 
 TEST_CASE("inference gives the training code's outputs, for chains and trees and every latent size") {
+  const Recurrence recurrence = GENERATE(Recurrence::gated, Recurrence::linear);
   for (const int latent : {16, 32, 48, 64}) {
     for (const test::Edges& edges : {test::chain(2), test::chain(20), test::tree(3, 2)}) {
       const JointForest one = joint_forest(test::random_rod(edges, {0}, 3));
       const JointForest forest = side_by_side({&one});
       Parameters<float> weights;
       WeightSource source(5);
-      const Sweeps<float> sweeps(weights, 57, latent, 6, source);
+      const Sweeps<float> sweeps(weights, 57, latent, 6, recurrence, source);
       for (float& w : weights.values()) w += 0.01F;  // biases too
       const Tensor<float> x = random_features(57, forest.size(), 2);
       Sweeps<float>::Tape tape;
@@ -47,7 +48,7 @@ TEST_CASE("inference gives the training code's outputs, for chains and trees and
 TEST_CASE("a latent size without a kernel is refused") {
   Parameters<float> weights;
   WeightSource source(1);
-  const Sweeps<float> sweeps(weights, 3, 24, 6, source);
+  const Sweeps<float> sweeps(weights, 3, 24, 6, Recurrence::gated, source);
   CHECK_THROWS_WITH(SweepsInference(sweeps, weights, 4), Catch::Contains("24"));
 }
 
