@@ -77,11 +77,13 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
     sum += r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3] + r[4] * r[4] + r[5] * r[5];
   }
   rho_ = std::sqrt(sum / a.unknowns());
+  const double noise = 1e-6 * rho_ * static_cast<double>(frames_.size());
   for (Tree& tree : trees_) {
     // The root of a complex number, as half of its angle; `first` becomes conj of the axis.
     const double angle = std::atan2(tree.second_y, tree.second_x) / 2;
     const double x = std::cos(angle), y = std::sin(angle);
     const double sign = x * tree.first_x + y * tree.first_y < 0 ? -1 : 1;
+    if (std::abs(tree.twist) < noise) tree.twist = sign * (x * tree.first_y - y * tree.first_x);
     tree.first_x = sign * x;
     tree.first_y = -sign * y;
   }

@@ -8,8 +8,9 @@
 //   as a whole    every tree is rolled so that the axis of largest second moment of its residual,
 //                 sqrt(sum (t s_k)^2 - (t m_k)^2), is x, towards sum t s_k; s_k, m_k are the transverse residuals of
 //                 stretch-shear and of bending (in planar motion in its plane, and across it)
-//   mirrored      across the xz plane, where the residuals of twist have a negative sum; rows of bend and twist are
-//                 those of an axis, which a mirror turns the other way
+//   mirrored      across the xz plane, where the residuals of twist have a negative sum, or where there are none and
+//                 sum t s_k is on the right of x; rows of bend and twist are those of an axis, which a mirror turns the
+//                 other way
 // T_k = diag(R(t_k), 1, R(t_k), 1), then signs. Residuals are scaled by scale(), which is one number for both
 // transverse rows of a kind, so that it does not know the roll either.
 #pragma once

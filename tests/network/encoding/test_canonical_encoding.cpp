@@ -1,0 +1,90 @@
+// The encoding `canonical`: a scene that is turned, mirrored, or whose frames are rolled, is the same to it.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "network/guess/coping_net_guess.hpp"
+#include "tests/network/models.hpp"
+#include "tests/solver/turned.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// The same scene, in which all segments' frames are rolled about their axes by one angle. (By angles of their own,
+/// joints would be twisted at rest, and a finite twist is not measured as a small one.)
+Scene rolled(Scene scene) {
+  const Quaternion roll(Eigen::AngleAxisd(2.1, Vector3::UnitZ()));
+  for (Rod& rod : scene.rods) {
+    for (Quaternion& q : rod.orientation) q = q * roll;
+    for (Joint& joint : rod.joints) {
+      joint.arm_a = roll.conjugate() * joint.arm_a;
+      joint.arm_b = roll.conjugate() * joint.arm_b;
+      joint.rest = roll.conjugate() * joint.rest * roll;
+    }
+  }
+  return scene;
+}
+
+CopingNetSettings settings_of(Recurrence recurrence) {
+  CopingNetSettings settings;
+  settings.encoding = Encoding::canonical;
+  settings.base = BaseGuess::none;
+  settings.recurrence = recurrence;
+  settings.latent = 16;
+  return settings;
+}
+
+/// What a network with random weights leaves of each system's error, in the energy norm, over the error of zero.
+std::vector<double> left(Scene scene, Recurrence recurrence) {
+  CopingNetGuess guess(test::random_model(settings_of(recurrence)), scene, 0.02, 3);
+  std::vector<double> out;
+  int seen = 0;
+  test::observe(scene, [&](const LinearSystem& system) {
+    VectorX x0(system.rhs().size()), solution(x0.size()), ax(x0.size());
+    BlockFactor(system.matrix(), root_to_leaf_order(scene.rods[0])).solve(system.matrix(), system.rhs(), solution);
+    guess.propose(system, {seen / 3, seen % 3, 0}, x0);
+    ++seen;
+    out.push_back(energy_norm_squared(system.matrix(), x0 - solution, ax) /
+                  energy_norm_squared(system.matrix(), solution, ax));
+  });
+  return out;
+}
+
+TEST_CASE("to a network with canonical frames turned, mirrored and rolled scenes are one") {
+  const Recurrence recurrence = GENERATE(Recurrence::gated, Recurrence::linear);
+  for (const test::TurnedCase& each : test::turned_cases()) {
+    if (std::string(each.name) == "ring") continue;  // sweeps need trees
+    INFO(each.name);
+    const std::vector<double> original = left(each.scene, recurrence);
+    std::vector<Scene> images{test::mirrored(each.scene), rolled(each.scene), rolled(test::mirrored(each.scene))};
+    for (const test::RigidMotion& motion : test::motions) images.push_back(moved(each.scene, motion));
+    for (const Scene& image : images) {
+      const std::vector<double> same = left(image, recurrence);
+      REQUIRE(same.size() == original.size());
+      for (std::size_t i = 0; i < same.size(); ++i) CHECK(same[i] == Approx(original[i]).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE("frames are orthogonal, and units come back") {
+  Scene scene = build_scene(test::bending_rod(6));
+  const Rod& rod = scene.rods[0];
+  test::observe(scene, [&](const LinearSystem& system) {
+    FeatureEncoder encoder(settings_of(Recurrence::gated), rod, system.matrix());
+    Tensor<float> nodes(0, 6), edges(CanonicalEncoding::size, 5);
+    encoder.encode(rod, system, 0, 0.02, VectorX(), system.rhs(), nodes, edges);
+    CHECK(edges.topRows(6).squaredNorm() / 30 == Approx(1).epsilon(1e-5));  // r^ has a root mean square of one
+    const Lane8 v = {0.3, -1, 2, 0.7, 5, -0.2, 0, 0};
+    for (int place = 0; place < 5; ++place) {
+      const CanonicalFrame& frame = encoder.canonical()->frames().frame(place);
+      const Lane8 turned = frame(v), back = frame.back(turned);
+      const Lane8 there = encoder.canonical()->to_unit(place, encoder.canonical()->from_unit(place, v));
+      for (int i = 0; i < 6; ++i) {
+        CHECK(back[i] == Approx(v[i]));
+        CHECK(there[i] == Approx(v[i]));
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace rodsweep
