@@ -7,11 +7,40 @@ namespace {
 
 using FloatLane8 = float __attribute__((vector_size(32)));
 
+float entry(const FloatLane8& values, int i) { return reinterpret_cast<const float*>(&values)[i]; }
+
+FloatLane8 narrowed(const Lane8& values) { return __builtin_convertvector(values, FloatLane8); }
+
+/// S T of a joint, in single precision: what features keep.
+struct ScaledFrame {
+  FloatLane8 along, across;
+
+  ScaledFrame(const CanonicalFrames& frames, int place)
+      : along(narrowed(frames.scale(place) * frames.frame(place).along)),
+        across(narrowed(frames.scale(place) * frames.frame(place).across)) {}
+
+  FloatLane8 operator()(const FloatLane8& v) const {
+    return along * v + across * __builtin_shufflevector(v, v, 1, 0, 2, 4, 3, 5, 6, 7);
+  }
+};
+
+/// Columns first to 5 of S_row T_row block T_column^T S_column.
+template <int first>
+void see(const Block6& block, const ScaledFrame& row, const ScaledFrame& column, FloatLane8 (&out)[6]) {
+  FloatLane8 half[6];
+#pragma GCC unroll 6
+  for (int c = 0; c < 6; ++c) half[c] = row(narrowed(block.column[c]));
+  constexpr int other[6] = {1, 0, 2, 4, 3, 5};
+#pragma GCC unroll 6
+  for (int c = first; c < 6; ++c)
+    out[c] = c == 2 || c == 5 ? entry(column.along, c) * half[c]
+                              : entry(column.along, c) * half[c] + entry(column.across, c) * half[other[c]];
+}
+
 /// `count` entries of a column.
 template <int count>
-float* put(float* to, const Lane8& values) {
-  const FloatLane8 narrow = __builtin_convertvector(values, FloatLane8);
-  std::memcpy(to, &narrow, count * sizeof(float));
+float* put(float* to, const FloatLane8& values) {
+  std::memcpy(to, &values, count * sizeof(float));
   return to + count;
 }
 
@@ -22,27 +51,25 @@ void CanonicalEncoding::encode(const SystemPattern& pattern, const BlockMatrix& 
   const auto at = [](int index) { return static_cast<std::size_t>(index); };
   frames_.find(pattern, a, residual);
   const double inverse_rho = frames_.rho() > 0 ? 1 / frames_.rho() : 0;
+  FloatLane8 seen[6];
   for (int i = 0; i < static_cast<int>(pattern.joint.size()); ++i) {
-    const CanonicalFrame& frame = frames_.frame(i);
-    const Lane8& scale = frames_.scale(i);
+    const ScaledFrame frame(frames_, i);
     float* out = features.col(i).data();
-    out = put<6>(out, inverse_rho * scale * frame(load6(residual.data() + 6 * pattern.joint[at(i)])));
-    const Block6 diagonal = seen(a.blocks[at(pattern.diagonal[at(i)])], frame, frame);
-    const auto column = [&](int c) { return diagonal.column[c] * scale * scale[c]; };
-    out = put<1>(out, column(1));
-    out = put<2>(out, column(2));
-    out = put<3>(out, column(3));
-    out = put<4>(out, column(4));
-    out = put<5>(out, column(5));
+    out = put<6>(out, frame(narrowed(inverse_rho * load6(residual.data() + 6 * pattern.joint[at(i)]))));
+    see<1>(a.blocks[at(pattern.diagonal[at(i)])], frame, frame, seen);
+    out = put<1>(out, seen[1]);
+    out = put<2>(out, seen[2]);
+    out = put<3>(out, seen[3]);
+    out = put<4>(out, seen[4]);
+    out = put<5>(out, seen[5]);
     const int k = pattern.to_parent[at(i)];
     if (k < 0) {
       std::fill(out, out + 36, 0.F);
       continue;
     }
     const SystemPattern::Coupling& coupling = pattern.couplings[at(k)];
-    const Block6 block = seen(a.blocks[at(coupling.block)], frame, frames_.frame(coupling.column));
-    const Lane8& parent = frames_.scale(coupling.column);
-    for (int c = 0; c < 6; ++c) out = put<6>(out, block.column[c] * scale * parent[c]);
+    see<0>(a.blocks[at(coupling.block)], frame, ScaledFrame(frames_, coupling.column), seen);
+    for (const FloatLane8& column : seen) out = put<6>(out, column);
   }
 }
 

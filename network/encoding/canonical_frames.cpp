@@ -11,12 +11,16 @@ CanonicalFrame frame_of(double c, double s, double hand) {
   return {Lane8{c, hand * c, 1, hand * c, c, hand, 0, 0}, Lane8{-s, hand * s, 0, -hand * s, s, 0, 0, 0}};
 }
 
-/// 1 / sqrt of the diagonal, the same for both transverse rows of a kind.
-Lane8 scale_of(const Block6& diagonal) {
-  const auto entry = [&](int i) { return diagonal.column[i][i]; };
-  const double shear = 1 / std::sqrt((entry(0) + entry(1)) / 2), stretch = 1 / std::sqrt(entry(2));
-  const double bend = 1 / std::sqrt((entry(3) + entry(4)) / 2), twist = 1 / std::sqrt(entry(5));
-  return Lane8{shear, shear, stretch, bend, bend, twist, 0, 0};
+/// Of the diagonal, one number for both transverse rows of a kind.
+Lane4 diagonal_of(const Block6& block) {
+  return Lane4{(block.column[0][0] + block.column[1][1]) / 2, block.column[2][2],
+               (block.column[3][3] + block.column[4][4]) / 2, block.column[5][5]};
+}
+
+Lane8 inverse_root(Lane8 values) {
+  Eigen::Map<Eigen::Array<double, 8, 1>, sizeof(Lane8)> entries(reinterpret_cast<double*>(&values));
+  entries = entries.sqrt();
+  return 1 / values;
 }
 
 void write_scaled(const Block6& block, const Lane8& row, const Lane8& column, float* out) {
@@ -53,14 +57,23 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
   for (Tree& tree : trees_) tree = {};
   double sum = 0;
   for (std::size_t place = 0; place < frames_.size(); ++place) {
-    const Lane8 scale = scales_[place] = scale_of(a.blocks[at(pattern.diagonal[place])]);
+    // All roots of a joint at once: of the diagonal, and of the size of what its roll is read from.
+    const Lane4 diagonal = diagonal_of(a.blocks[at(pattern.diagonal[place])]);
+    const int parent = parent_[place];
+    double re = 1, im = 0;
+    if (parent >= 0) {
+      const Block6& block = a.blocks[at(pattern.couplings[at(pattern.to_parent[place])].block)];
+      re = -(block.column[3][3] + block.column[4][4]);
+      im = block.column[4][3] - block.column[3][4];
+      if (re == 0 && im == 0) re = 1;
+    }
+    const Lane8 roots =
+        inverse_root(Lane8{diagonal[0], diagonal[1], diagonal[2], diagonal[3], re * re + im * im, 1, 1, 1});
+    const Lane8 scale = scales_[place] = __builtin_shufflevector(roots, Lane8{}, 0, 0, 1, 2, 2, 3, 8, 8);
     const Lane8 r = scale * load6(residual.data() + 6 * pattern.joint[place]);
     double x = 1, y = 0;
-    if (const int parent = parent_[place]; parent >= 0) {
-      const Block6& block = a.blocks[at(pattern.couplings[at(pattern.to_parent[place])].block)];
-      const double re = -(block.column[3][3] + block.column[4][4]), im = block.column[4][3] - block.column[3][4];
-      const double size = std::sqrt(re * re + im * im);
-      const double u = size > 0 ? re / size : 1, v = size > 0 ? im / size : 0;
+    if (parent >= 0) {
+      const double u = re * roots[4], v = im * roots[4];
       x = roll_x_[at(parent)] * u + roll_y_[at(parent)] * v;
       y = roll_y_[at(parent)] * u - roll_x_[at(parent)] * v;
     }
@@ -79,9 +92,10 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
   rho_ = std::sqrt(sum / a.unknowns());
   const double noise = 1e-6 * rho_ * static_cast<double>(frames_.size());
   for (Tree& tree : trees_) {
-    // The root of a complex number, as half of its angle; `first` becomes conj of the axis.
-    const double angle = std::atan2(tree.second_y, tree.second_x) / 2;
-    const double x = std::cos(angle), y = std::sin(angle);
+    // The root of a complex number, by half of its angle; `first` becomes conj of the axis.
+    const double size = std::hypot(tree.second_x, tree.second_y);
+    const double cosine = size > 0 ? tree.second_x / size : 1;
+    const double x = std::sqrt((1 + cosine) / 2), y = std::copysign(std::sqrt((1 - cosine) / 2), tree.second_y);
     const double sign = x * tree.first_x + y * tree.first_y < 0 ? -1 : 1;
     if (std::abs(tree.twist) < noise) tree.twist = sign * (x * tree.first_y - y * tree.first_x);
     tree.first_x = sign * x;

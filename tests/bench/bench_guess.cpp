@@ -21,6 +21,28 @@ using namespace rodsweep;
 constexpr std::array<int, 2> sizes{50, 100};           // segments
 constexpr std::array<int, 4> latents{16, 32, 48, 64};  // of sweeps
 
+/// The learned guesses: those of rods-large.h5 and of rods.h5 but for their latent size.
+struct Kind {
+  const char* name;
+  const char* words;
+  BaseGuess base;
+  int base_size;
+  Recurrence recurrence;
+};
+constexpr std::array<Kind, 2> kinds{
+    {{"gated", "base pod 10, gated sweeps", BaseGuess::pod, 10, Recurrence::gated},
+     {"linear", "base regression 6, linear sweeps", BaseGuess::regression, 6, Recurrence::linear}}};
+
+CopingNetSettings settings_of(const Kind& kind, int latent) {
+  CopingNetSettings settings;
+  settings.encoding = Encoding::canonical;
+  settings.base = kind.base;
+  settings.base_size = kind.base_size;
+  settings.recurrence = kind.recurrence;
+  settings.latent = latent;
+  return settings;
+}
+
 using MakeGuess = std::unique_ptr<InitialGuess> (*)(const Scene&);
 constexpr std::array<std::pair<const char*, MakeGuess>, 7> classical_guesses{{
     {"previous",
@@ -88,12 +110,11 @@ struct Case {
   VectorX x0;
   SolvePosition last;
 
-  Case(int segments, int latent) {
+  Case(const Kind& kind, int segments, int latent) {
     BendingRod spec;
     spec.segments = segments;
     scene = build_scene(spec);
-    CopingNetSettings settings;
-    settings.latent = latent;
+    const CopingNetSettings settings = settings_of(kind, latent);
     model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
     base = base_guess(settings, scene, 1);
     guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1);
@@ -114,37 +135,37 @@ struct Case {
   }
 };
 
-void whole(benchmark::State& state) {
-  Case c(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+void whole(benchmark::State& state, const Kind& kind) {
+  Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   for (auto _ : state) {
     c.guess->propose(*c.system, c.last, c.x0);
     benchmark::ClobberMemory();
   }
 }
 
-void base_alone(benchmark::State& state) {
-  Case c(static_cast<int>(state.range(0)), 16);
+void base_alone(benchmark::State& state, const Kind& kind) {
+  Case c(kind, static_cast<int>(state.range(0)), 16);
   for (auto _ : state) {
     c.base->propose(*c.system, c.last, c.x0);
     benchmark::ClobberMemory();
   }
 }
 
-void features(benchmark::State& state) {
-  Case c(static_cast<int>(state.range(0)), 16);
+void features(benchmark::State& state, const Kind& kind) {
+  Case c(kind, static_cast<int>(state.range(0)), 16);
   FeatureEncoder encoder(c.model->net.settings(), c.scene.rods.front(), c.system->matrix());
-  Tensor<float> nodes(0, c.scene.rods.front().segment_count()), edges(SystemEncoding::size, state.range(0) - 1);
+  Tensor<float> nodes(0, c.scene.rods.front().segment_count()), edges(CanonicalEncoding::size, state.range(0) - 1);
   for (auto _ : state) {
     encoder.encode(c.scene.rods.front(), *c.system, 0, 0.02, c.x0, c.system->rhs(), nodes, edges);
     benchmark::ClobberMemory();
   }
 }
 
-void network(benchmark::State& state) {
-  Case c(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+void network(benchmark::State& state, const Kind& kind) {
+  Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const Topology chain = topology(c.scene.rods.front());
   SweepsInference inference(c.model->net.sweeps(), c.model->net.parameters(), chain.forest.size());
-  const Tensor<float> x = Tensor<float>::Random(SystemEncoding::size, chain.forest.size());
+  const Tensor<float> x = Tensor<float>::Random(CanonicalEncoding::size, chain.forest.size());
   Tensor<float> y(6, chain.forest.size());
   for (auto _ : state) {
     inference.run(chain.forest, x, y);
@@ -162,21 +183,23 @@ void print_summary(const Medians& median) {
       std::printf(" %13.4f", median(std::string(name) + "/" + std::to_string(n)) / n * 1e6);
     std::printf("\n");
   }
-  std::printf("\nA learned guess (encoding system, sweeps, base pod 10), us per segment (target: at most 1.2)\n");
-  std::printf("%9s %7s %9s %7s %9s %9s %8s %9s\n", "segments", "latent", "weights", "base", "features", "network",
-              "GFLOP/s", "whole");
-  for (const int n : sizes)
-    for (const int latent : latents) {
-      const std::string size = "/" + std::to_string(n), both = size + "/" + std::to_string(latent);
-      CopingNetSettings settings;
-      settings.latent = latent;
-      const auto weights = static_cast<double>(CopingNet<float>(settings, 1).parameters().values().size());
-      const auto per_segment = [&](double seconds) { return seconds / n * 1e6; };
-      const double seconds = median("network" + both);
-      std::printf("%9d %7d %9.0f %7.3f %9.3f %9.3f %8.0f %9.3f\n", n, latent, weights,
-                  per_segment(median("base" + size)), per_segment(median("features" + size)), per_segment(seconds),
-                  2 * weights * n / seconds * 1e-9, per_segment(median("whole" + both)));
-    }
+  for (const Kind& kind : kinds) {
+    const std::string of = std::string("_") + kind.name;
+    std::printf("\nA learned guess (encoding canonical, %s), us per segment\n", kind.words);
+    std::printf("%9s %7s %9s %7s %9s %9s %8s %9s\n", "segments", "latent", "weights", "base", "features", "network",
+                "GFLOP/s", "whole");
+    for (const int n : sizes)
+      for (const int latent : latents) {
+        const std::string size = of + "/" + std::to_string(n), both = size + "/" + std::to_string(latent);
+        const CopingNet<float> net(settings_of(kind, latent), 1);
+        const auto weights = static_cast<double>(net.parameters().values().size());
+        const auto per_segment = [&](double seconds) { return seconds / n * 1e6; };
+        const double seconds = median("network" + both);
+        std::printf("%9d %7d %9.0f %7.3f %9.3f %9.3f %8.0f %9.3f\n", n, latent, weights,
+                    per_segment(median("base" + size)), per_segment(median("features" + size)), per_segment(seconds),
+                    2 * weights * n / seconds * 1e-9, per_segment(median("whole" + both)));
+      }
+  }
 }
 
 }  // namespace
@@ -185,11 +208,19 @@ int main(int argc, char** argv) {
   for (const int n : sizes) {
     for (const auto& [name, make] : classical_guesses)
       benchmark::RegisterBenchmark(name, [make = make](benchmark::State& state) { classical(state, make); })->Arg(n);
-    benchmark::RegisterBenchmark("base", base_alone)->Arg(n);
-    benchmark::RegisterBenchmark("features", features)->Arg(n);
-    for (const int latent : latents) {
-      benchmark::RegisterBenchmark("network", network)->Args({n, latent});
-      benchmark::RegisterBenchmark("whole", whole)->Args({n, latent});
+    for (const Kind& kind : kinds) {
+      const auto add = [&](const char* part, auto&& run, std::vector<std::int64_t> sizes_of) {
+        benchmark::RegisterBenchmark((std::string(part) + "_" + kind.name).c_str(), [run,
+                                                                                     &kind](benchmark::State& state) {
+          run(state, kind);
+        })->Args(sizes_of);
+      };
+      add("base", base_alone, {n});
+      add("features", features, {n});
+      for (const int latent : latents) {
+        add("network", network, {n, latent});
+        add("whole", whole, {n, latent});
+      }
     }
   }
   Medians medians;
