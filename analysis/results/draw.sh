@@ -14,7 +14,7 @@ for study in spatial_bending spatial_helix learned_bending learned_helix; do
   table summary $study
 done
 pretrained=network/pretrained
-/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful,tree,collision}.h5 -o $out >$out/pretrained.txt
+/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful,tree,collision,rods-large}.h5 -o $out >$out/pretrained.txt
 for study in tree_wind learned_tree; do
   figures spatial $study --x scene.depth
   table summary $study --by scene.depth
@@ -41,7 +41,8 @@ for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step
   table summary "$study" --by "${by#*:}"
 done
 table summary learned_closed_loop
-for study in deck_bending deck_helix learned_closed_loop; do
+table summary learned_rods
+for study in deck_bending deck_helix learned_closed_loop learned_rods; do
   echo >>"$out/$study.txt"
   script summary "$study" --newton all >>"$out/$study.txt"
 done
