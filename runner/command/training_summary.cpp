@@ -46,6 +46,10 @@ std::string ratio_table(const ModelCard& card) {
   };
   row("the model", card.cg_ratio);
   row("its base guess alone", card.base_cg_ratio);
+  for (const SceneRatios& of : card.scenes) {
+    row(of.scene.c_str(), of.cg_ratio);
+    row("  its base guess alone", of.base_cg_ratio);
+  }
   return text + '\n';
 }
 
@@ -98,6 +102,8 @@ Json to_json(const StoredModel& stored, const std::filesystem::path& path) {
             {"tolerances", ValidationRatio::tolerances()},
             {"cg_ratio", to_json(card.cg_ratio)},
             {"base_cg_ratio", to_json(card.base_cg_ratio)}};
+  for (const SceneRatios& of : card.scenes)
+    json["scenes"][of.scene] = {{"cg_ratio", to_json(of.cg_ratio)}, {"base_cg_ratio", to_json(of.base_cg_ratio)}};
   for (const TrainingStart& start : card.starts)
     json["starts"].push_back({{"begin", start.provenance.begin_utc},
                               {"end", start.end_utc.empty() ? Json() : Json(start.end_utc)},

@@ -34,6 +34,12 @@ struct TrainingStart {
   int exit_code = -1;   ///< -1 likewise
 };
 
+/// CG ratios on the validation simulations of one kind of scene.
+struct SceneRatios {
+  std::string scene;  ///< its type
+  ValidationRatio::Ratios cg_ratio, base_cg_ratio;
+};
+
 struct ModelCard {
   std::string name, job_text;        ///< of the job
   std::string data_path, data_hash;  ///< of the data set (DatasetReader::hash)
@@ -49,6 +55,7 @@ struct ModelCard {
   /// base guess alone.
   ValidationRatio::Ratios cg_ratio = ValidationRatio::unmeasured(), base_cg_ratio = ValidationRatio::unmeasured();
   std::int64_t ratio_simulations = 0;
+  std::vector<SceneRatios> scenes;  ///< the same of every kind of scene; empty where there is one
 
   std::vector<TrainingStart> starts;
 };

@@ -68,6 +68,19 @@ void write_epochs(hid_t file, const ModelCard& card) {
         "CG iterations over those from zero, mean over validation simulations; NaN: not measured after this epoch");
 }
 
+void write_scenes(hid_t file, const std::vector<SceneRatios>& scenes) {
+  if (scenes.empty()) return;
+  std::vector<std::string> types;
+  for (const SceneRatios& of : scenes) types.push_back(of.scene);
+  write_texts(file, scene_types_path, types);
+  for (const ScenePlace& place : scene_places) {
+    std::vector<double> ratios;
+    for (const SceneRatios& of : scenes)
+      ratios.insert(ratios.end(), (of.*place.member).begin(), (of.*place.member).end());
+    write(file, place.path, {scenes.size(), ValidationRatio::tolerance_count}, ratios, "1", place.meaning);
+  }
+}
+
 void write_card(hid_t file, const ModelCard& card) {
   hdf5::write_attribute(file, "program", "rodsweep");
   hdf5::write_attribute(file, "schema_version", model_schema_version);
@@ -83,6 +96,7 @@ void write_card(hid_t file, const ModelCard& card) {
   write_epochs(file, card);
   for (const RatioPlace& place : ratio_places)
     write(file, place.path, {ValidationRatio::tolerance_count}, card.*place.member, "1", place.meaning);
+  write_scenes(file, card.scenes);
   for (const CountPlace& place : count_places)
     hdf5::write_attribute(open_group(file, place.group).id(), place.name,
                           static_cast<std::int32_t>(card.*place.member));

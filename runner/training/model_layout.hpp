@@ -49,6 +49,20 @@ inline constexpr std::array<RatioPlace, 2> ratio_places{{
     {"/validation/base_cg_ratio", "the same of the model's base guess alone", &ModelCard::base_cg_ratio},
 }};
 
+/// Columns of a row per type of scene, in models that were judged by several.
+struct ScenePlace {
+  const char *path, *meaning;
+  ValidationRatio::Ratios SceneRatios::*member;
+};
+inline constexpr const char* scene_types_path = "/validation/scenes/type";
+inline constexpr std::array<ScenePlace, 2> scene_places{{
+    {"/validation/scenes/cg_ratio",
+     "CG iterations with the model over those from zero, mean over validation "
+     "simulations of the scene",
+     &SceneRatios::cg_ratio},
+    {"/validation/scenes/base_cg_ratio", "the same of the model's base guess alone", &SceneRatios::base_cg_ratio},
+}};
+
 /// Texts of a row per start.
 struct StartPlace {
   const char* path;

@@ -108,6 +108,20 @@ std::vector<Epoch> read_epochs(hid_t file) {
   return epochs;
 }
 
+std::vector<SceneRatios> read_scenes(hid_t file) {
+  constexpr std::size_t columns = ValidationRatio::tolerance_count;
+  std::vector<SceneRatios> scenes;
+  if (!hdf5::exists(file, scene_types_path)) return scenes;
+  for (std::string& type : hdf5::read_texts(file, scene_types_path)) scenes.push_back({std::move(type), {}, {}});
+  for (const ScenePlace& place : scene_places) {
+    const auto ratios = read<double>(file, place.path, {scenes.size(), columns});
+    for (std::size_t i = 0; i < scenes.size(); ++i)
+      std::copy_n(ratios.begin() + static_cast<std::ptrdiff_t>(i * columns), columns,
+                  (scenes[i].*place.member).begin());
+  }
+  return scenes;
+}
+
 ModelCard read_card(hid_t file) {
   ModelCard card;
   card.name = hdf5::read_text_attribute(file, "/job", "name");
@@ -123,6 +137,7 @@ ModelCard read_card(hid_t file) {
     const auto ratios = read<double>(file, place.path, {ValidationRatio::tolerance_count});
     std::copy(ratios.begin(), ratios.end(), (card.*place.member).begin());
   }
+  card.scenes = read_scenes(file);
   const std::string word = hdf5::read_text_attribute(file, "/training", "ending");
   const auto ending = std::find_if(endings.begin(), endings.end(), [&](const auto& e) { return word == e.second; });
   if (ending == endings.end()) throw Damage(fmt::format("the training is said to have ended \"{}\"", word));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "network/guess/base_guess.hpp"
 #include "network/guess/coping_net_guess.hpp"
@@ -83,7 +84,7 @@ void Training::end_epoch() {
   }
   const auto number = static_cast<std::int64_t>(card_.epochs.size()) + 1;
   if (settings_.ratio_every_epochs > 0 && number % settings_.ratio_every_epochs == 0)
-    epoch.cg_ratio = mean_ratio(model_);
+    epoch.cg_ratio = mean(ratios(model_));
   if (card_.best_epoch == 0 || epoch.validation_loss < best_epoch(card_).validation_loss) {
     card_.best_epoch = number;
     kept_->net.parameters().values() = model_->net.parameters().values();
@@ -114,43 +115,55 @@ double Training::validation_loss() {
   return sum / static_cast<double>(size);
 }
 
-ValidationRatio::Ratios Training::mean_ratio(const ValidationRatio::MakeGuess& make_guess) const {
+Training::SimulationRatios Training::ratios(const ValidationRatio::MakeGuess& make_guess) const {
   constexpr std::size_t columns = ValidationRatio::tolerance_count;
-  const auto count = static_cast<std::size_t>(card_.ratio_simulations);
-  std::vector<double> ratios(count * columns);
+  SimulationRatios out(static_cast<std::size_t>(card_.ratio_simulations));
+  std::vector<double> shared(out.size() * columns);
   for (std::size_t own = 0; own < ratio_.simulations(); ++own) {
     const ValidationRatio::Ratios of = ratio_.measure(own, make_guess);
     const std::size_t simulation =
         own * static_cast<std::size_t>(exchange_.ranks()) + static_cast<std::size_t>(exchange_.rank());
-    std::copy(of.begin(), of.end(), ratios.begin() + static_cast<std::ptrdiff_t>(simulation * columns));
+    std::copy(of.begin(), of.end(), shared.begin() + static_cast<std::ptrdiff_t>(simulation * columns));
   }
-  exchange_.share(ratios);
-  ValidationRatio::Ratios mean{};
-  for (std::size_t t = 0; t < columns; ++t) {
-    double sum = 0;
-    int measured = 0;
-    for (std::size_t simulation = 0; simulation < count; ++simulation) {
-      const double ratio = ratios[simulation * columns + t];
-      if (std::isnan(ratio)) continue;
-      sum += ratio;
-      ++measured;
-    }
-    mean[t] = sum / measured;  // NaN where nothing was
-  }
-  return mean;
+  exchange_.share(shared);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    std::copy_n(shared.begin() + static_cast<std::ptrdiff_t>(i * columns), columns, out[i].begin());
+  return out;
 }
 
-ValidationRatio::Ratios Training::mean_ratio(const std::shared_ptr<const Model>& model) const {
-  return mean_ratio([&](const Scene& scene, const StoredSimulation& simulation) {
+Training::SimulationRatios Training::ratios(const std::shared_ptr<const Model>& model) const {
+  return ratios([&](const Scene& scene, const StoredSimulation& simulation) {
     return std::make_unique<CopingNetGuess>(model, scene, simulation.constraint_dt_s, simulation.newton_iterations);
   });
 }
 
+ValidationRatio::Ratios Training::mean(const SimulationRatios& ratios, const std::string& scene) const {
+  ValidationRatio::Ratios mean{};
+  for (std::size_t t = 0; t < mean.size(); ++t) {
+    double sum = 0;
+    int measured = 0;
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      if (std::isnan(ratios[i][t]) || !(scene.empty() || data_.validation_scenes[i] == scene)) continue;
+      sum += ratios[i][t];
+      ++measured;
+    }
+    mean[t] = sum / measured;
+  }
+  return mean;
+}
+
 void Training::end() {
-  card_.cg_ratio = mean_ratio(kept_);
-  card_.base_cg_ratio = mean_ratio([&](const Scene& scene, const StoredSimulation& simulation) {
+  const SimulationRatios of_model = ratios(kept_);
+  const SimulationRatios of_base = ratios([&](const Scene& scene, const StoredSimulation& simulation) {
     return base_guess(settings_.network, scene, simulation.newton_iterations);
   });
+  card_.cg_ratio = mean(of_model);
+  card_.base_cg_ratio = mean(of_base);
+  const auto first = data_.validation_scenes.begin();
+  const std::set<std::string> scenes(first, first + static_cast<std::ptrdiff_t>(of_model.size()));
+  card_.scenes.clear();
+  if (scenes.size() < 2) return;
+  for (const std::string& scene : scenes) card_.scenes.push_back({scene, mean(of_model, scene), mean(of_base, scene)});
 }
 
 }  // namespace rodsweep

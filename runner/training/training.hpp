@@ -42,8 +42,11 @@ class Training {
  private:
   void end_epoch();
   double validation_loss();
-  ValidationRatio::Ratios mean_ratio(const ValidationRatio::MakeGuess& make_guess) const;
-  ValidationRatio::Ratios mean_ratio(const std::shared_ptr<const Model>& model) const;
+  using SimulationRatios = std::vector<ValidationRatio::Ratios>;
+  SimulationRatios ratios(const ValidationRatio::MakeGuess& make_guess) const;
+  SimulationRatios ratios(const std::shared_ptr<const Model>& model) const;
+  /// Over all simulations, or those of one type of scene; NaN where nothing was measured.
+  ValidationRatio::Ratios mean(const SimulationRatios& ratios, const std::string& scene = "") const;
   void diverge(const char* loss);
 
   const TrainingJob& settings_;

@@ -31,6 +31,10 @@ TrainingData training_data(const TrainingJob& training, const DatasetReader& dat
   data.note = dataset.note();
   data.validation_simulations = training.validation_simulations;
   data.training_simulations = dataset.size() - training.validation_simulations;
+  for (std::int64_t i = data.training_simulations; i < dataset.size(); ++i)
+    data.validation_scenes.emplace_back(
+        std::visit([](const auto& scene) { return std::decay_t<decltype(scene)>::name; },
+                   dataset.plan().spec(dataset.task(i).index).scene));
   for (std::int64_t i = 0; i < dataset.size(); ++i)
     add_examples(training.network, dataset.read(i), i < data.training_simulations ? data.training : data.validation);
   if (data.training.size() < static_cast<std::size_t>(training.training.batch) || data.validation.empty()) {

@@ -19,8 +19,9 @@ struct TrainingData {
   std::vector<Example> training, validation;  ///< normalised
   FeatureScales scales;
   std::int64_t training_simulations = 0, validation_simulations = 0;
-  std::string hash;  ///< of the data set (DatasetReader)
-  std::string note;  ///< what is to be said about it; empty: nothing
+  std::vector<std::string> validation_scenes;  ///< the type of each validation simulation's scene
+  std::string hash;                            ///< of the data set (DatasetReader)
+  std::string note;                            ///< what is to be said about it; empty: nothing
 };
 
 /// Opens the data set of a job. Throws JobError where it is missing or too small, FileError for what is wrong with it.

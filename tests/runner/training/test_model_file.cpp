@@ -37,6 +37,7 @@ ModelCard some_card() {
   card.cg_ratio = {0.1, 0.2, 0.3, 0.4};
   card.base_cg_ratio = {0.5, 0.6, 0.7, 0.8};
   card.ratio_simulations = 50;
+  card.scenes = {{"helix", {0.1, 0.3, 0.5, 0.7}, {0.2, 0.4, 0.6, 0.8}}, {"knot", {0, 0, 0, 1}, {1, 1, 1, 1}}};
   card.starts = {{test_provenance(), "2025-11-21T16:05:09Z", 4}, {test_provenance(), "", -1}};
   for (TrainingStart& start : card.starts) start.provenance.begin_utc = "2026-01-02T03:04:05Z";  // not now
   card.starts[1].provenance.oversubscribed = true;
@@ -80,6 +81,12 @@ void check_same(const ModelCard& a, const ModelCard& b) {
   CHECK(a.cg_ratio == b.cg_ratio);
   CHECK(a.base_cg_ratio == b.base_cg_ratio);
   CHECK(a.ratio_simulations == b.ratio_simulations);
+  REQUIRE(a.scenes.size() == b.scenes.size());
+  for (std::size_t i = 0; i < a.scenes.size(); ++i) {
+    CHECK(a.scenes[i].scene == b.scenes[i].scene);
+    CHECK(a.scenes[i].cg_ratio == b.scenes[i].cg_ratio);
+    CHECK(a.scenes[i].base_cg_ratio == b.scenes[i].base_cg_ratio);
+  }
   REQUIRE(a.epochs.size() == b.epochs.size());
   for (std::size_t i = 0; i < a.epochs.size(); ++i) {
     CHECK(a.epochs[i].training_loss == b.epochs[i].training_loss);

@@ -54,6 +54,32 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a model of several kinds of scene is judged on each, one of a single kind as a whole") {
+  Json rods = toy_data_job();
+  rods["samples"] = 4;
+  rods["scene"] = {{"zip", {toy_data_job()["scene"], toy_tree_data_job()["scene"]}}};
+  Json job = toy_train_job();
+  job["network"]["base"] = "pod";
+  job["training"]["ratio_simulations"] = 4;
+  const Toy toy(job, rods);
+  Training training = toy.run();
+  training.end();
+  const ModelCard& card = training.card();
+  REQUIRE(card.scenes.size() == 2);
+  CHECK(card.scenes[0].scene == "bending_rod");
+  CHECK(card.scenes[1].scene == "tree");
+  for (std::size_t t = 0; t < card.cg_ratio.size(); ++t) {  // two simulations of each
+    CHECK(card.cg_ratio[t] == Approx((card.scenes[0].cg_ratio[t] + card.scenes[1].cg_ratio[t]) / 2));
+    CHECK(card.base_cg_ratio[t] == Approx((card.scenes[0].base_cg_ratio[t] + card.scenes[1].base_cg_ratio[t]) / 2));
+  }
+  CHECK(card.scenes[0].base_cg_ratio != card.scenes[1].base_cg_ratio);
+
+  const Toy alone(toy_train_job());
+  Training single = alone.run();
+  single.end();
+  CHECK(single.card().scenes.empty());
+}
+
 TEST_CASE("ranks take turns with the simulations whose CG ratio is measured") {
   const Toy toy;
   const DatasetReader dataset = open_dataset(toy.training, toy.job);
