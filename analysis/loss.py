@@ -55,6 +55,10 @@ def table(trainings):
         rows.append([label + ("" if t.ended else " (has not ended)"), str(len(t.epochs)), str(t.best_epoch),
                      f"{t.best_loss:.4g}", f"{t.seconds:.0f}"] + ratio_texts(t.kept_ratio))
         rows.append(["  its base guess alone", "", "", "", ""] + ratio_texts(t.base_ratio))
+        for scene, (kept, base) in t.scenes.items():
+            name = scene.replace("_", " ")
+            rows.append([f"  {name}", "", "", "", ""] + ratio_texts(kept))
+            rows.append([f"  {name}, base", "", "", "", ""] + ratio_texts(base))
     return texts.aligned(rows)
 
 

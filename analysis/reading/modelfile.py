@@ -27,6 +27,7 @@ class Training:
     base_ratio: np.ndarray      # of its base guess alone
     simulations: int            # that ratios are means over
     seconds: float
+    scenes: dict                # {type of scene: (kept_ratio, base_ratio)}, where there are several
 
     @property
     def epochs(self):
@@ -55,9 +56,17 @@ def read(path):
                              h5["axes/tolerance"][:], training["training_loss"][:], training["validation_loss"][:],
                              training["rate"][:], training["cg_ratio"][:], int(training.attrs["best_epoch"]),
                              h5["validation/cg_ratio"][:], h5["validation/base_cg_ratio"][:],
-                             int(h5["validation"].attrs["simulations"]), float(h5["timing/epoch_s"][:].sum()))
+                             int(h5["validation"].attrs["simulations"]), float(h5["timing/epoch_s"][:].sum()),
+                             _scenes(h5["validation"]))
         except UNREADABLE as error:
             raise SweepFileError(f"{path} is damaged: {error}") from error
     if not len(found.training_loss):
         raise SweepFileError(f"{path} has nothing to show yet: no epoch has ended")
     return found
+
+
+def _scenes(validation):
+    if "scenes" not in validation:
+        return {}
+    of = validation["scenes"]
+    return dict(zip(map(as_text, of["type"][:]), zip(of["cg_ratio"][:], of["base_cg_ratio"][:])))

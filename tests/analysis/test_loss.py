@@ -106,6 +106,16 @@ class Script(Scripts):
         self.assertEqual(said.split()[-1], "out/net-and-1-more-loss-84mm.png")
         self.assertIn("other (has not ended)", said)
 
+    def test_the_table_has_a_row_for_every_kind_of_scene(self):
+        path = plant(os.path.join(self.folder, "several.h5"))
+        with h5py.File(path, "a") as h5:
+            h5["validation/scenes/type"] = np.array([b"helix", b"falling_rods"])
+            h5["validation/scenes/cg_ratio"] = [[0.11, 0.2, 0.3, 0.4], [0.5, 0.6, 0.7, 0.8]]
+            h5["validation/scenes/base_cg_ratio"] = [[0.12, 0.2, 0.3, 0.4], [0.5, 0.6, 0.7, np.nan]]
+        rows = [line.split() for line in loss.table([modelfile.read(path)])]
+        self.assertEqual(rows[3], ["helix", "0.110", "0.200", "0.300", "0.400"])
+        self.assertEqual(rows[6], ["falling", "rods,", "base", "0.500", "0.600", "0.700", "-"])
+
     def test_what_is_no_model_is_refused(self):
         self.write(samples=2)
         self.refused("loss.py", "sweep.h5", words="sweep.h5 holds the results of a sweep, not a model")
