@@ -27,6 +27,7 @@ TEST_CASE("the least that a training says is where its data are") {
   CHECK(job.network.encoding == Encoding::system);
   CHECK(job.network.processor == Processor::sweeps);
   CHECK(job.network.base == BaseGuess::pod);
+  CHECK(job.network.recurrence == Recurrence::gated);
   CHECK(job.network.best_length);
   CHECK(job.training.loss == LossKind::energy);
   CHECK(job.patience_epochs == 0);
@@ -40,6 +41,16 @@ TEST_CASE("data are looked for beside the job") {
   CHECK(training_job(job).data == "results/data.h5");
   const Job absolute = parse_job(with("/data", R"("/data.h5")", train_job()).dump(), "jobs/train.json");
   CHECK(training_job(absolute).data == "/data.h5");
+}
+
+TEST_CASE("sweeps may be linear in the state, and correct the guess of regression, in canonical frames") {
+  const TrainingJob job = training_of(
+      with("/network", R"({"encoding": "canonical", "recurrence": "linear", "base": "regression"})", train_job()));
+  CHECK(job.network.encoding == Encoding::canonical);
+  CHECK(job.network.recurrence == Recurrence::linear);
+  CHECK(job.network.base == BaseGuess::regression);
+  CHECK_THAT(refusal(with("/network", R"({"processor": "message_passing", "recurrence": "linear"})", train_job())),
+             Catch::Contains("network.recurrence"));
 }
 
 TEST_CASE("every key of a training arrives where it belongs") {
