@@ -114,7 +114,8 @@ TEST_CASE("misspelt and impossible values of a training are refused") {
   CHECK(refused("/network/best_length", "1") ==
         "job.json: network.best_length: 1 is not allowed; must be true or false");
   CHECK(refused("/network/encoding", "\"decks\"") ==
-        "job.json: network.encoding: \"decks\" is not allowed; must be one of \"deck\", \"physics\", \"system\"; did "
+        "job.json: network.encoding: \"decks\" is not allowed; must be one of \"deck\", \"physics\", \"system\", "
+        "\"canonical\"; did "
         "you mean \"deck\"?");
 }
 
@@ -137,9 +138,11 @@ TEST_CASE("values that do not go together are refused") {
 }
 
 TEST_CASE("the settings of every kind of network are the same after a round trip") {
-  for (const char* text : {"{}", R"({"encoding": "physics", "base": "none", "latent": 8, "best_length": false})",
-                           R"({"processor": "message_passing", "steps": 1, "globals": true})"}) {
-    const Json values = job_of(with("/network", text, train_job())).values["network"];
+  for (const char* text :
+       {"{}", R"({"encoding": "physics", "base": "none", "latent": 8, "best_length": false})",
+        R"({"recurrence": "linear"})", R"({"processor": "message_passing", "steps": 1, "globals": true})"}) {
+    Json values = job_of(with("/network", text, train_job())).values["network"];
+    if (values.value("recurrence", "") == "gated") values.erase("recurrence");  // models of before have no word for it
     const Json written = network_json(network_settings(values));
     CHECK(network_json(network_settings(written)) == written);
     CHECK(written.size() == values.size());
