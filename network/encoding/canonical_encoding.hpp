@@ -2,8 +2,6 @@
 // `canonical`. The numbers are those of system_encoding.hpp in the frames of canonical_frames.hpp.
 #pragma once
 
-#include <utility>
-
 #include "network/encoding/canonical_frames.hpp"
 
 namespace rodsweep {

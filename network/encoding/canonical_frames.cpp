@@ -23,11 +23,6 @@ Lane8 inverse_root(Lane8 values) {
   return 1 / values;
 }
 
-void write_scaled(const Block6& block, const Lane8& row, const Lane8& column, float* out) {
-  for (int c = 0; c < 6; ++c)
-    for (int r = 0; r < 6; ++r) out[6 * c + r] = static_cast<float>(row[r] * block.column[c][r] * column[c]);
-}
-
 }  // namespace
 
 Block6 seen(const Block6& block, const CanonicalFrame& row, const CanonicalFrame& column) {
@@ -40,16 +35,14 @@ Block6 seen(const Block6& block, const CanonicalFrame& row, const CanonicalFrame
 }
 
 CanonicalFrames::CanonicalFrames(const SystemPattern& pattern)
-    : parent_(pattern.joint.size(), -1),
-      frames_(pattern.joint.size()),
+    : frames_(pattern.joint.size()),
       scales_(pattern.joint.size()),
       roll_x_(pattern.joint.size()),
       roll_y_(pattern.joint.size()) {
   for (std::size_t place = 0; place < pattern.joint.size(); ++place) {
-    const int coupling = pattern.to_parent[place];
-    if (coupling >= 0) parent_[place] = pattern.couplings[at(coupling)].column;
-    tree_.push_back(coupling >= 0 ? tree_[at(parent_[place])] : static_cast<int>(trees_.size()));
-    if (coupling < 0) trees_.emplace_back();
+    const int k = pattern.to_parent[place];
+    tree_.push_back(k >= 0 ? tree_[at(pattern.couplings[at(k)].column)] : static_cast<int>(trees_.size()));
+    if (k < 0) trees_.emplace_back();
   }
 }
 
@@ -59,10 +52,11 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
   for (std::size_t place = 0; place < frames_.size(); ++place) {
     // All roots of a joint at once: of the diagonal, and of the size of what its roll is read from.
     const Lane4 diagonal = diagonal_of(a.blocks[at(pattern.diagonal[place])]);
-    const int parent = parent_[place];
+    const int k = pattern.to_parent[place];
+    const SystemPattern::Coupling* parent = k >= 0 ? &pattern.couplings[at(k)] : nullptr;
     double re = 1, im = 0;
-    if (parent >= 0) {
-      const Block6& block = a.blocks[at(pattern.couplings[at(pattern.to_parent[place])].block)];
+    if (parent) {
+      const Block6& block = a.blocks[at(parent->block)];
       re = -(block.column[3][3] + block.column[4][4]);
       im = block.column[4][3] - block.column[3][4];
       if (re == 0 && im == 0) re = 1;
@@ -72,10 +66,11 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
     const Lane8 scale = scales_[place] = __builtin_shufflevector(roots, Lane8{}, 0, 0, 1, 2, 2, 3, 8, 8);
     const Lane8 r = scale * load6(residual.data() + 6 * pattern.joint[place]);
     double x = 1, y = 0;
-    if (parent >= 0) {
+    if (parent) {
       const double u = re * roots[4], v = im * roots[4];
-      x = roll_x_[at(parent)] * u + roll_y_[at(parent)] * v;
-      y = roll_y_[at(parent)] * u - roll_x_[at(parent)] * v;
+      const double from_x = roll_x_[at(parent->column)], from_y = roll_y_[at(parent->column)];
+      x = from_x * u + from_y * v;
+      y = from_y * u - from_x * v;
     }
     roll_x_[place] = x;
     roll_y_[place] = y;
@@ -111,30 +106,18 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
 
 ScaledSystem<float> canonical_system(const SystemPattern& pattern, const CanonicalFrames& frames, const BlockMatrix& a,
                                      const VectorX& residual, const VectorX& error, double solution_energy) {
-  const auto places = static_cast<int>(pattern.joint.size());
   const double inverse_rho = frames.rho() > 0 ? 1 / frames.rho() : 0;
-  ScaledSystem<float> out;
-  out.diagonal.resize(36, places);
-  out.residual.resize(6, places);
-  for (int i = 0; i < places; ++i) {
-    const CanonicalFrame& frame = frames.frame(i);
-    write_scaled(seen(a.blocks[at(pattern.diagonal[at(i)])], frame, frame), frames.scale(i), frames.scale(i),
-                 out.diagonal.col(i).data());
-    const Lane8 r = inverse_rho * frames.scale(i) * frame(load6(residual.data() + 6 * pattern.joint[at(i)]));
-    for (int row = 0; row < 6; ++row) out.residual(row, i) = static_cast<float>(r[row]);
-  }
-  out.coupling.resize(36, static_cast<Eigen::Index>(pattern.couplings.size()));
-  out.couplings = pattern.couplings;
-  for (std::size_t k = 0; k < out.couplings.size(); ++k) {
-    SystemPattern::Coupling& c = out.couplings[k];
-    write_scaled(seen(a.blocks[at(c.block)], frames.frame(c.row), frames.frame(c.column)), frames.scale(c.row),
-                 frames.scale(c.column), out.coupling.col(static_cast<Eigen::Index>(k)).data());
-    c.block = static_cast<int>(k);
-  }
-  out.first_place = {0, places};
-  out.base_energy = {error.dot(residual) * inverse_rho * inverse_rho};
-  out.solution_energy = {solution_energy * inverse_rho * inverse_rho};
-  return out;
+  return scaled_system_of(
+      pattern, a, frames.rho(), error.dot(residual), solution_energy,
+      [&](int place, float* out) {
+        const Lane8 r = inverse_rho * frames.scale(place) *
+                        frames.frame(place)(load6(residual.data() + 6 * pattern.joint[at(place)]));
+        for (int row = 0; row < 6; ++row) out[row] = static_cast<float>(r[row]);
+      },
+      [&](const Block6& block, int row, int column, float* out) {
+        write_scaled(seen(block, frames.frame(row), frames.frame(column)), frames.scale(row), frames.scale(column),
+                     out);
+      });
 }
 
 }  // namespace rodsweep

@@ -52,7 +52,7 @@ class CanonicalFrames {
   struct Tree {
     double second_x, second_y, first_x, first_y, twist;
   };
-  std::vector<int> tree_, parent_;  ///< of each place; -1 at a root
+  std::vector<int> tree_;  ///< of each place
   std::vector<Tree> trees_;
   std::vector<CanonicalFrame> frames_;
   std::vector<Lane8> scales_;

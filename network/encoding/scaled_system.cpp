@@ -8,12 +8,6 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 template <class T>
 using Block = Eigen::Map<const Eigen::Matrix<T, 6, 6>>;
 
-/// S_row * block * S_column.
-void write_scaled(const Block6& block, const double* row, const double* column, float* out) {
-  for (int c = 0; c < 6; ++c)
-    for (int r = 0; r < 6; ++r) out[6 * c + r] = static_cast<float>(row[r] * block.column[c][r] * column[c]);
-}
-
 }  // namespace
 
 SystemPattern system_pattern(const JointForest& forest, const BlockMatrix& a) {
@@ -44,31 +38,20 @@ double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& 
 
 ScaledSystem<float> scaled_system(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
                                   const VectorX& error, double solution_energy) {
-  const auto places = static_cast<int>(pattern.joint.size());
   VectorX s(a.unknowns());
   inverse_root_diagonal(a, s);
   const VectorX scaled = s.cwiseProduct(residual);
   const double rho2 = scaled.squaredNorm() / a.unknowns(), inverse_rho = rho2 > 0 ? 1 / std::sqrt(rho2) : 0;
-  ScaledSystem<float> out;
-  out.diagonal.resize(36, places);
-  out.residual.resize(6, places);
-  for (int i = 0; i < places; ++i) {
-    const int joint = pattern.joint[at(i)];
-    write_scaled(a.blocks[at(pattern.diagonal[at(i)])], &s[6 * joint], &s[6 * joint], out.diagonal.col(i).data());
-    out.residual.col(i) = (scaled.segment<6>(6 * joint) * inverse_rho).cast<float>();
-  }
-  out.coupling.resize(36, static_cast<Eigen::Index>(pattern.couplings.size()));
-  out.couplings = pattern.couplings;
-  for (std::size_t k = 0; k < out.couplings.size(); ++k) {
-    SystemPattern::Coupling& c = out.couplings[k];
-    write_scaled(a.blocks[at(c.block)], &s[6 * pattern.joint[at(c.row)]], &s[6 * pattern.joint[at(c.column)]],
-                 out.coupling.col(static_cast<Eigen::Index>(k)).data());
-    c.block = static_cast<int>(k);
-  }
-  out.first_place = {0, places};
-  out.base_energy = {error.dot(residual) * inverse_rho * inverse_rho};
-  out.solution_energy = {solution_energy * inverse_rho * inverse_rho};
-  return out;
+  const auto scale = [&](int place) -> const double* { return &s[6 * pattern.joint[at(place)]]; };
+  return scaled_system_of(
+      pattern, a, std::sqrt(rho2), error.dot(residual), solution_energy,
+      [&](int place, float* out) {
+        Eigen::Map<Eigen::Matrix<float, 6, 1>> to(out);
+        to = (scaled.segment<6>(6 * pattern.joint[at(place)]) * inverse_rho).cast<float>();
+      },
+      [&](const Block6& block, int row, int column, float* out) {
+        write_scaled(block, scale(row), scale(column), out);
+      });
 }
 
 template <class T>

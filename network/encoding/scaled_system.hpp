@@ -51,6 +51,42 @@ double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& 
 ScaledSystem<float> scaled_system(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
                                   const VectorX& error, double solution_energy);
 
+/// The same in whatever frames and scales: put_residual(place, six floats) writes r^ of a place, put_block(block, row,
+/// column, 36 floats) a block of A^ between two places, of which `block` is that of A. `rho` as in correction_scale().
+template <class PutResidual, class PutBlock>
+ScaledSystem<float> scaled_system_of(const SystemPattern& pattern, const BlockMatrix& a, double rho, double base_energy,
+                                     double solution_energy, const PutResidual& put_residual,
+                                     const PutBlock& put_block) {
+  const auto block_at = [&](int index) -> const Block6& { return a.blocks[static_cast<std::size_t>(index)]; };
+  const auto places = static_cast<int>(pattern.joint.size());
+  ScaledSystem<float> out;
+  out.diagonal.resize(36, places);
+  out.residual.resize(6, places);
+  for (int i = 0; i < places; ++i) {
+    put_block(block_at(pattern.diagonal[static_cast<std::size_t>(i)]), i, i, out.diagonal.col(i).data());
+    put_residual(i, out.residual.col(i).data());
+  }
+  out.coupling.resize(36, static_cast<Eigen::Index>(pattern.couplings.size()));
+  out.couplings = pattern.couplings;
+  for (std::size_t k = 0; k < out.couplings.size(); ++k) {
+    SystemPattern::Coupling& c = out.couplings[k];
+    put_block(block_at(c.block), c.row, c.column, out.coupling.col(static_cast<Eigen::Index>(k)).data());
+    c.block = static_cast<int>(k);
+  }
+  out.first_place = {0, places};
+  const double inverse_rho = rho > 0 ? 1 / rho : 0;
+  out.base_energy = {base_energy * inverse_rho * inverse_rho};
+  out.solution_energy = {solution_energy * inverse_rho * inverse_rho};
+  return out;
+}
+
+/// S_row block S_column, column by column; both scales have six entries.
+template <class Scale>
+void write_scaled(const Block6& block, const Scale& row, const Scale& column, float* out) {
+  for (int c = 0; c < 6; ++c)
+    for (int r = 0; r < 6; ++r) out[6 * c + r] = static_cast<float>(row[r] * block.column[c][r] * column[c]);
+}
+
 template <class T>
 ScaledSystem<T> side_by_side(const std::vector<const ScaledSystem<float>*>& systems);
 

@@ -1,7 +1,6 @@
 #include "solver/batch/batched_step.hpp"
 
 namespace rodsweep {
-
 namespace {
 
 std::optional<BatchedBalance> balance_of(const std::vector<Scene>& scenes, const BatchedRods& rods, bool wanted) {

@@ -16,9 +16,8 @@ constexpr double slightest = 1e-6;  ///< of a segment's length: joints that move
 Lane8 squared_sizes(const Lane8& wrench, double inverse_squared_length) {
   const double i = inverse_squared_length;
   const Lane8 squares = wrench * wrench * Lane8{1, 1, 1, i, i, i, 0, 0};
-  const Lane8 sum = squares + __builtin_shufflevector(squares, squares, 1, 6, 6, 4, 6, 6, 6, 6) +
-                    __builtin_shufflevector(squares, squares, 2, 6, 6, 5, 6, 6, 6, 6);
-  return sum;
+  return squares + __builtin_shufflevector(squares, squares, 1, 6, 6, 4, 6, 6, 6, 6) +
+         __builtin_shufflevector(squares, squares, 2, 6, 6, 5, 6, 6, 6, 6);
 }
 
 Lane8 larger_of(const Lane8& a, const Lane8& b) { return a < b ? b : a; }
