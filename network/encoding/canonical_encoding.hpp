@@ -18,6 +18,8 @@ class CanonicalEncoding {
 
   const CanonicalFrames& frames() const { return frames_; }
 
+  /// r^ of a residual r in a place, by the frames and scales of the system last encoded.
+  Lane8 residual_to_unit(int place, const Lane8& residual) const;
   /// d of a network's answer d^ for a place, in the joint's frame, or back.
   Lane8 from_unit(int place, const Lane8& answer) const;
   Lane8 to_unit(int place, const Lane8& correction) const;

@@ -7,7 +7,8 @@ namespace rodsweep {
 
 /// The part between the features and the corrections.
 enum class Processor {
-  sweeps,          ///< two gated passes over the tree (network/processor/sweeps.hpp)
+  sweeps,          ///< two recurrent passes over the tree (network/processor/sweeps.hpp)
+  factors,         ///< factors of the matrix, and a solve with them (network/processor/factor_sweeps.hpp)
   message_passing  ///< hops over the graph (network/processor/message_passing.hpp)
 };
 

@@ -9,11 +9,10 @@ bool of_graphs(const CopingNetSettings& settings) { return is_of_graphs(settings
 
 int sum(const std::vector<int>& sizes) { return std::accumulate(sizes.begin(), sizes.end(), 0); }
 
-/// Of a rod whose joints close a loop, A has no tree of couplings.
+/// The places of a topology are those of its forest's order.
 SystemPattern pattern_of(const Topology& topology, const BlockMatrix& a) {
   JointForest forest = topology.forest;
   forest.order = topology.joint;
-  if (forest.parent.empty()) forest.parent.assign(topology.joint.size(), -1);
   return system_pattern(forest, a);
 }
 

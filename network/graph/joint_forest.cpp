@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <string>
 
 namespace rodsweep {
 namespace {
@@ -42,18 +41,14 @@ JointForest joint_forest(const Rod& rod) {
   const auto grow = [&] {
     for (std::size_t next = 0; next < queue.size(); ++next) {
       const auto [segment, from] = queue[next];
-      if (is_static(segment)) continue;  // nothing couples through it
-      int& seen = segment_seen[static_cast<std::size_t>(segment)];
-      if (seen++)
-        throw SceneError("joint " + std::to_string(from) +
-                         " closes a loop: sweeps need trees, message_passing does not");
+      if (is_static(segment)) continue;                                 // nothing couples through it
+      if (segment_seen[static_cast<std::size_t>(segment)]++) continue;  // a loop: cut here
+      int above = from;
       for (const int j : joints_of[static_cast<std::size_t>(segment)]) {
-        if (j == from) continue;
-        if (depth[static_cast<std::size_t>(j)] >= 0)
-          throw SceneError("joint " + std::to_string(j) +
-                           " closes a loop: sweeps need trees, message_passing does not");
-        parent[static_cast<std::size_t>(j)] = from;
-        depth[static_cast<std::size_t>(j)] = from < 0 ? 0 : depth[static_cast<std::size_t>(from)] + 1;
+        if (depth[static_cast<std::size_t>(j)] >= 0) continue;  // `from`, or a joint that closes a loop
+        parent[static_cast<std::size_t>(j)] = above;
+        depth[static_cast<std::size_t>(j)] = above < 0 ? 0 : depth[static_cast<std::size_t>(above)] + 1;
+        if (above < 0) above = j;
         const Joint& joint = rod.joints[static_cast<std::size_t>(j)];
         queue.emplace_back(joint.a == segment ? joint.b : joint.a, j);
       }

@@ -1,7 +1,8 @@
 // The joints of rods as a forest, for recurrences that run from the tips to the roots and back.
 //
 // A joint's parent is the joint through which it hangs from a static segment (or, where nothing is static, from the
-// first segment). Joints are renumbered so that those of one depth are neighbours: one matrix product a level.
+// first joint of the first segment). Loops are cut: the joint that closes one is a tip. Joints are renumbered so that
+// those of one depth are neighbours: one matrix product a level.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,6 @@
 
 namespace rodsweep {
 
-/// Throws SceneError if the joints of a rod close a loop.
 struct JointForest {
   std::vector<int> order;        ///< joint at each place (joints of several rods numbered on); by depth, then as given
   std::vector<int> parent;       ///< place of each place's parent, -1 at a root

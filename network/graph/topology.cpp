@@ -1,21 +1,11 @@
 #include "network/graph/topology.hpp"
 
-#include <algorithm>
-#include <numeric>
-
 namespace rodsweep {
 
 Topology topology(const Rod& rod) {
   Topology out;
   out.graph = rod_graph(rod);
-  JointForest forest;
-  try {
-    forest = joint_forest(rod);
-  } catch (const SceneError&) {
-    out.joint.resize(static_cast<std::size_t>(rod.joint_count()));
-    std::iota(out.joint.begin(), out.joint.end(), 0);
-    return out;
-  }
+  const JointForest forest = joint_forest(rod);
   out.joint = forest.order;
   out.forest = side_by_side(std::vector<const JointForest*>{&forest});
   const RodGraph by_joint = out.graph;
@@ -36,8 +26,7 @@ Topology side_by_side(const std::vector<const Topology*>& rods) {
   }
   Topology out;
   out.graph = side_by_side(graphs);
-  if (std::none_of(rods.begin(), rods.end(), [](const Topology* rod) { return rod->forest.order.empty(); }))
-    out.forest = side_by_side(forests);
+  out.forest = side_by_side(forests);
   return out;
 }
 

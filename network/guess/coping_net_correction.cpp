@@ -1,11 +1,15 @@
 #include "network/guess/coping_net_correction.hpp"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace rodsweep {
 
-CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a)
+CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a,
+                                         int corrections)
     : model_(std::move(model)),
+      corrections_(corrections),
       encoder_(model_->net.settings(), rod, a),
       nodes_(node_features(model_->net.settings()), rod.segment_count()),
       edges_(edge_features(model_->net.settings()), rod.joint_count()),
@@ -13,13 +17,17 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
       y_nodes_(6, rod.segment_count()),
       residual_(a.unknowns()),
       d_(a.unknowns()),
-      ad_(a.unknowns()) {
+      ad_(a.unknowns()),
+      previous_(a.unknowns()) {
   const CopingNetSettings& settings = model_->net.settings();
+  if (corrections > 1 && settings.processor != Processor::factors)
+    throw std::invalid_argument("CopingNetCorrection: " + std::to_string(corrections) + " corrections without factors");
   if (settings.processor == Processor::sweeps && !is_of_graphs(settings.encoding) &&
       SweepsInference::supports(settings.latent))
     sweeps_ = std::make_unique<SweepsInference>(model_->net.sweeps(), model_->net.parameters(), rod.joint_count());
-  if (settings.processor == Processor::sweeps && encoder_.topology().forest.order.empty())
-    throw SceneError("the joints close a loop: a network with sweeps needs trees, one with message passing does not");
+  if (settings.processor == Processor::factors && FactorInference::supports(settings.latent))
+    factors_ =
+        std::make_unique<FactorInference>(model_->net.factors(), model_->net.parameters(), encoder_.topology().forest);
 }
 
 bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, int newton, double dt_c,
@@ -32,30 +40,62 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, in
     residual_ = system.rhs();
   }
   run(rod, system, newton, dt_c, x, moves != nullptr);
-  double length = 1;
-  if (model_->net.settings().best_length) {
+  double length = 1, energy = 0;
+  if (model_->net.settings().best_length || corrections_ > 1) {
     system.matrix().multiply(d_.data(), ad_.data());
     ++proposal.products;
-    const double energy = d_.dot(ad_);
+    energy = d_.dot(ad_);
     length = energy == 0 ? 0 : d_.dot(residual_) / energy;
   }
   if (!std::isfinite(length) || !d_.allFinite() || (moves && !write(*moves))) return false;
   x += length * d_;
   proposal.nonzero = proposal.nonzero || length != 0;
+  for (int i = 1; i < corrections_ && energy > 0; ++i) {
+    residual_ -= length * ad_;
+    energy = correct_again(system.matrix(), energy, length);
+    ++proposal.products;
+    if (!std::isfinite(length)) break;
+    x += length * d_;
+  }
   return true;
+}
+
+/// The next direction of conjugate gradients, d_ = F r - (F r . A d_) / (d_ . A d_) d_, A d_, its energy, and the
+/// length that is best along it.
+double CopingNetCorrection::correct_again(const BlockMatrix& a, double energy, double& length) {
+  for (int place = 0; place < static_cast<int>(edges_.cols()); ++place) {
+    const int joint = encoder_.topology().joint[static_cast<std::size_t>(place)];
+    const Lane8 r = encoder_.canonical()->residual_to_unit(place, load6(residual_.data() + 6 * joint));
+    for (int row = 0; row < 6; ++row) edges_(row, place) = static_cast<float>(r[row]);
+  }
+  previous_.swap(d_);
+  answer(false);
+  d_ -= d_.dot(ad_) / energy * previous_;
+  a.multiply(d_.data(), ad_.data());
+  energy = d_.dot(ad_);
+  length = energy > 0 ? d_.dot(residual_) / energy : 0;
+  return energy;
 }
 
 /// Sets d_ and, on request, y_nodes_.
 void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x,
                               bool with_moves) {
-  const Topology& topology = encoder_.topology();
-  const bool graphs = is_of_graphs(model_->net.settings().encoding);
   encoder_.encode(rod, system, newton, dt_c, x, residual_, nodes_, edges_);
-  if (graphs) {
+  if (is_of_graphs(model_->net.settings().encoding)) {
     model_->scales.nodes.apply(nodes_);
     model_->scales.edges.apply(edges_);
   }
-  if (sweeps_)
+  if (factors_) factors_->factorise(edges_);
+  answer(with_moves);
+}
+
+/// Sets d_ and, on request, y_nodes_ from the features.
+void CopingNetCorrection::answer(bool with_moves) {
+  const Topology& topology = encoder_.topology();
+  const bool graphs = is_of_graphs(model_->net.settings().encoding);
+  if (factors_)
+    factors_->solve(edges_, y_edges_);
+  else if (sweeps_)
     sweeps_->run(topology.forest, edges_, y_edges_);
   else
     model_->net.forward(topology, nodes_, edges_, tape_, y_edges_, with_moves ? &y_nodes_ : nullptr);

@@ -1,13 +1,16 @@
 // What a COPINGNet adds to a base guess of one rod's linear system:
 //
 //   x = x_base + c d,   d = unit * y(features of the rod, A, r),   r = b - A x_base,
-//   c = d.r / d.A d with `best_length`, else 1
+//   c = d.r / d.A d with `best_length` or several corrections, else 1
+// Factors (network/processor/factor_sweeps.hpp), once predicted, answer to any residual: `corrections` of them are as
+// many steps of conjugate gradients with the factors as preconditioner, of which this is the first.
 // and, where the network predicts them, the segments' moves Delta p in their own frames, in metres and radians.
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "network/processor/factor_inference.hpp"
 #include "network/processor/model.hpp"
 #include "network/processor/sweeps_inference.hpp"
 #include "solver/guess/initial_guess.hpp"
@@ -16,8 +19,9 @@ namespace rodsweep {
 
 class CopingNetCorrection {
  public:
-  /// `a`: the matrix of the rod's systems. Throws SceneError where sweeps meet joints that close a loop.
-  CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a);
+  /// `a`: the matrix of the rod's systems.
+  /// `corrections` above 1 are for factors, std::invalid_argument else.
+  CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a, int corrections = 1);
 
   /// Corrects x, which holds x_base, of the system assembled at the rod's state with dt_c; sets `moves`, per segment,
   /// if given (models with settings.moves only). False, and x as it was, where the network's answer is not finite.
@@ -27,14 +31,18 @@ class CopingNetCorrection {
 
  private:
   void run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x, bool with_moves);
+  void answer(bool with_moves);
+  double correct_again(const BlockMatrix& a, double energy, double& length);
   bool write(std::vector<Lane8>& moves) const;
 
   std::shared_ptr<const Model> model_;
+  int corrections_;
   FeatureEncoder encoder_;
   std::unique_ptr<SweepsInference> sweeps_;
+  std::unique_ptr<FactorInference> factors_;
   CopingNet<float>::Tape tape_;
   Tensor<float> nodes_, edges_, y_edges_, y_nodes_;
-  VectorX residual_, d_, ad_;
+  VectorX residual_, d_, ad_, previous_;
 };
 
 }  // namespace rodsweep

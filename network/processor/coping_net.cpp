@@ -13,19 +13,26 @@ template <class T>
 CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) : settings_(settings) {
   WeightSource source(seed);
   const int nodes = node_features(settings), edges = edge_features(settings);
-  if (settings.processor == Processor::sweeps) {
-    if (settings.moves) throw std::invalid_argument("CopingNet: sweeps predict no moves of segments");
-    sweeps_ = Sweeps<T>(parameters_, edges + 2 * nodes, settings.latent, 6, settings.recurrence, source);
-  } else {
-    typename MessagePassing<T>::Sizes sizes;
-    sizes.node_in = nodes;
-    sizes.edge_in = edges;
-    sizes.latent = settings.latent;
-    sizes.steps = settings.steps;
-    sizes.edge_out = 6;
-    sizes.node_out = settings.moves ? 6 : 0;
-    sizes.has_globals = settings.globals;
-    messages_ = MessagePassing<T>(parameters_, sizes, source);
+  switch (settings.processor) {
+    case Processor::sweeps:
+      if (settings.moves) throw std::invalid_argument("CopingNet: sweeps predict no moves of segments");
+      sweeps_ = Sweeps<T>(parameters_, edges + 2 * nodes, settings.latent, 6, settings.recurrence, source);
+      break;
+    case Processor::factors:
+      if (settings.encoding != Encoding::canonical)
+        throw std::invalid_argument("CopingNet: factors need the encoding canonical");
+      factors_ = FactorSweeps<T>(parameters_, settings.latent, source);
+      break;
+    case Processor::message_passing:
+      typename MessagePassing<T>::Sizes sizes;
+      sizes.node_in = nodes;
+      sizes.edge_in = edges;
+      sizes.latent = settings.latent;
+      sizes.steps = settings.steps;
+      sizes.edge_out = 6;
+      sizes.node_out = settings.moves ? 6 : 0;
+      sizes.has_globals = settings.globals;
+      messages_ = MessagePassing<T>(parameters_, sizes, source);
   }
 }
 
@@ -36,7 +43,6 @@ void CopingNet<T>::forward(const Topology& topology, const TensorIn<T>& nodes, c
     messages_.forward(parameters_, topology.graph, nodes, edges, tape.messages, y_edges, y_nodes);
     return;
   }
-  if (topology.forest.order.empty()) throw SceneError("the joints close a loop: sweeps need trees");
   const Eigen::Index of_node = nodes.rows(), of_edge = edges.rows();
   tape.ordered.resize(of_edge + 2 * of_node, edges.cols());
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
@@ -45,7 +51,10 @@ void CopingNet<T>::forward(const Topology& topology, const TensorIn<T>& nodes, c
     tape.ordered.col(i).segment(of_edge, of_node) = nodes.col(topology.graph.sender[at(place)]);
     tape.ordered.col(i).tail(of_node) = nodes.col(topology.graph.receiver[at(place)]);
   }
-  sweeps_.forward(parameters_, topology.forest, tape.ordered, tape.sweeps, tape.y_ordered);
+  if (settings_.processor == Processor::factors)
+    factors_.forward(parameters_, topology.forest, tape.ordered, tape.factors, tape.y_ordered);
+  else
+    sweeps_.forward(parameters_, topology.forest, tape.ordered, tape.sweeps, tape.y_ordered);
   y_edges.resize(6, edges.cols());
   for (Eigen::Index i = 0; i < edges.cols(); ++i)
     y_edges.col(topology.forest.order[static_cast<std::size_t>(i)]) = tape.y_ordered.col(i);
@@ -61,7 +70,10 @@ void CopingNet<T>::backward(const Topology& topology, const TensorIn<T>& nodes, 
   tape.dy_ordered.resize(6, edges.cols());
   for (Eigen::Index i = 0; i < edges.cols(); ++i)
     tape.dy_ordered.col(i) = dy_edges.col(topology.forest.order[static_cast<std::size_t>(i)]);
-  sweeps_.backward(parameters_, topology.forest, tape.ordered, tape.sweeps, tape.dy_ordered, gradient);
+  if (settings_.processor == Processor::factors)
+    factors_.backward(parameters_, topology.forest, tape.ordered, tape.factors, tape.dy_ordered, gradient);
+  else
+    sweeps_.backward(parameters_, topology.forest, tape.ordered, tape.sweeps, tape.dy_ordered, gradient);
 }
 
 template class CopingNet<float>;

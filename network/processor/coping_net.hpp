@@ -1,11 +1,12 @@
 // COPINGNet: from the features of segments and joints to corrections of the Lagrange multipliers, and moves of the
-// segments where they are asked for, by one of two processors (network/encoding/coping_net_settings.hpp).
+// segments where they are asked for, by one of three processors (network/encoding/coping_net_settings.hpp).
 //
-// `sweeps` work on joints: the features of a joint's two segments are appended to its own.
+// `sweeps` and `factors` work on joints: the features of a joint's two segments are appended to its own.
 #pragma once
 
 #include "network/encoding/feature_encoder.hpp"
 #include "network/graph/topology.hpp"
+#include "network/processor/factor_sweeps.hpp"
 #include "network/processor/message_passing.hpp"
 #include "network/processor/sweeps.hpp"
 
@@ -15,8 +16,9 @@ template <class T>
 class CopingNet {
  public:
   struct Tape {
-    Tensor<T> ordered, y_ordered, dy_ordered;  ///< sweeps: by level
+    Tensor<T> ordered, y_ordered, dy_ordered;  ///< by level
     typename Sweeps<T>::Tape sweeps;
+    typename FactorSweeps<T>::Tape factors;
     typename MessagePassing<T>::Tape messages;
   };
 
@@ -35,11 +37,13 @@ class CopingNet {
                 const TensorIn<T>& dy_edges, const Tensor<T>* dy_nodes, Parameters<T>& gradient) const;
 
   const Sweeps<T>& sweeps() const { return sweeps_; }
+  const FactorSweeps<T>& factors() const { return factors_; }
 
  private:
   CopingNetSettings settings_;
   Parameters<T> parameters_;
   Sweeps<T> sweeps_;
+  FactorSweeps<T> factors_;
   MessagePassing<T> messages_;
 };
 

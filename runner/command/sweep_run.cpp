@@ -9,7 +9,7 @@
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/stop_signal.hpp"
-#include "runner/experiment/loop_check.hpp"
+#include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
@@ -100,7 +100,7 @@ Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pen
 ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
   const Plan plan = collectively(mpi.world(), [&] {
     Plan made(job);
-    check_loops(made);
+    check_guesses(made);
     return made;
   });
   const StopSignal signal;  // from here on a signal is a request, until the file is closed

@@ -31,6 +31,12 @@ KeyTable<Guess> regression_keys() {
 KeyTable<Guess> copingnet_keys() {
   KeyTable<Guess> table;
   table.required(file_key("model", "model file of a train job"), &Guess::model);
+  table.optional(integer_key("corrections",
+                             "models with factors: solves with them, each of what is left; every further one costs a "
+                             "product with A")
+                     .from(1, 100)
+                     .labelled_if_changed(),
+                 &Guess::corrections);
   return table;
 }
 

@@ -34,7 +34,8 @@ std::string default_label(const std::string& name, const Json& parameters) {
   for (const auto& [key, value] : parameters.items()) {
     if (key == guess_label_key().name || !sweep_word(value).empty()) continue;
     const Key* described = find_key(keys, key);
-    if (!described->labelled || (value.is_string() && described->preset == value)) continue;
+    if (!described->labelled || ((value.is_string() || !described->labelled_as_preset) && described->preset == value))
+      continue;
     if (value.is_object() && !value.empty()) {
       label += " " + default_label(value.begin().key(), value.begin().value());
     } else if (described->text == Key::Text::path) {

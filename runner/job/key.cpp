@@ -87,6 +87,11 @@ Key& Key::unlabelled() {
   return *this;
 }
 
+Key& Key::labelled_if_changed() {
+  labelled_as_preset = false;
+  return *this;
+}
+
 Key& Key::setting() {
   sweepable = false;
   parameter = false;

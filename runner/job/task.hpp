@@ -77,6 +77,7 @@ struct GuessSpec {
   int size = 10;                ///< fischer, pod: how many solutions span the subspace
   int window = 6;               ///< regression: on how many of the last systems
   std::filesystem::path model;  ///< copingnet
+  int corrections = 1;          ///< copingnet
   std::filesystem::path data;   ///< knn: the data set
   int simulations = 0;          ///< knn: of the data set, from the first; 0: all
   int neighbours = 3;           ///< knn

@@ -13,7 +13,8 @@ const Words<Encoding> encodings{{"deck", Encoding::deck},
                                 {"physics", Encoding::physics},
                                 {"system", Encoding::system},
                                 {"canonical", Encoding::canonical}};
-const Words<Processor> processors{{"sweeps", Processor::sweeps}, {"message_passing", Processor::message_passing}};
+const Words<Processor> processors{
+    {"sweeps", Processor::sweeps}, {"factors", Processor::factors}, {"message_passing", Processor::message_passing}};
 const Words<Recurrence> recurrences{{"gated", Recurrence::gated}, {"linear", Recurrence::linear}};
 const Words<BaseGuess> bases{{"none", BaseGuess::none},
                              {"extrapolation", BaseGuess::extrapolation},
@@ -43,6 +44,12 @@ void check(const TrainingJob& training, const std::filesystem::path& file) {
     throw job_error(
         file, "training.shards",
         fmt::format("{} is not allowed; must be a divisor of training.batch, {}", settings.shards, settings.batch));
+  }
+  if (training.network.processor == Processor::factors && training.network.encoding != Encoding::canonical) {
+    throw job_error(file, "network.encoding",
+                    fmt::format("\"{}\" is not allowed with network.processor \"factors\", which are those of a matrix "
+                                "in the rod's own frames; must be \"canonical\"",
+                                word_of(encodings, training.network.encoding)));
   }
   if (training.network.moves && settings.loss != LossKind::mse) {
     throw job_error(file, "network.moves",

@@ -73,9 +73,11 @@ Key network_key() {
                      "physical ones, the scaled system itself, or that in frames that no turn, roll or mirror changes",
                      {"deck", "physics", "system", "canonical"})
                      .defaults_to("system"),
-                 choice_key("processor",
-                            "sweeps: over the tree of joints, up and down; message_passing: over the graph",
-                            {"sweeps", "message_passing"})
+                 choice_key(
+                     "processor",
+                     "sweeps: over the tree of joints, up and down; factors: of the matrix, block by block, and a "
+                     "solve with them; message_passing: over the graph",
+                     {"sweeps", "factors", "message_passing"})
                      .defaults_to("sweeps"),
                  choice_key("base", "the guess that it corrects", {"none", "extrapolation", "regression", "pod"})
                      .defaults_to("pod"),

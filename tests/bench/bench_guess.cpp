@@ -6,6 +6,7 @@
 
 #include "network/guess/base_guess.hpp"
 #include "network/guess/coping_net_guess.hpp"
+#include "network/processor/factor_inference.hpp"
 #include "network/processor/sweeps_inference.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
@@ -21,23 +22,28 @@ using namespace rodsweep;
 constexpr std::array<int, 2> sizes{50, 100};           // segments
 constexpr std::array<int, 4> latents{16, 32, 48, 64};  // of sweeps
 
-/// The learned guesses: those of rods-large.h5 and of rods.h5 but for their latent size.
+/// Learned guesses: those of rods-large.h5 and of rods.h5 but for their latent size, and others.
 struct Kind {
   const char* name;
   const char* words;
   BaseGuess base;
   int base_size;
+  Processor processor;
   Recurrence recurrence;
 };
-constexpr std::array<Kind, 2> kinds{
-    {{"gated", "base pod 10, gated sweeps", BaseGuess::pod, 10, Recurrence::gated},
-     {"linear", "base regression 6, linear sweeps", BaseGuess::regression, 6, Recurrence::linear}}};
+constexpr std::array<Kind, 3> kinds{{
+    {"gated", "base pod 10, gated sweeps", BaseGuess::pod, 10, Processor::sweeps, Recurrence::gated},
+    {"linear", "base regression 6, linear sweeps", BaseGuess::regression, 6, Processor::sweeps, Recurrence::linear},
+    {"factors", "base regression 6, factors", BaseGuess::regression, 6, Processor::factors, Recurrence::gated},
+}};
+constexpr int many_corrections = 5;
 
 CopingNetSettings settings_of(const Kind& kind, int latent) {
   CopingNetSettings settings;
   settings.encoding = Encoding::canonical;
   settings.base = kind.base;
   settings.base_size = kind.base_size;
+  settings.processor = kind.processor;
   settings.recurrence = kind.recurrence;
   settings.latent = latent;
   return settings;
@@ -110,14 +116,14 @@ struct Case {
   VectorX x0;
   SolvePosition last;
 
-  Case(const Kind& kind, int segments, int latent) {
+  Case(const Kind& kind, int segments, int latent, int corrections = 1) {
     BendingRod spec;
     spec.segments = segments;
     scene = build_scene(spec);
     const CopingNetSettings settings = settings_of(kind, latent);
     model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
     base = base_guess(settings, scene, 1);
-    guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1);
+    guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1, corrections);
     system = std::make_unique<LinearSystem>(scene.rods.front());
     DirectSolve direct(scene);
     LinearProjection projection(scene, direct);
@@ -135,8 +141,9 @@ struct Case {
   }
 };
 
+template <int corrections>
 void whole(benchmark::State& state, const Kind& kind) {
-  Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), corrections);
   for (auto _ : state) {
     c.guess->propose(*c.system, c.last, c.x0);
     benchmark::ClobberMemory();
@@ -164,9 +171,19 @@ void features(benchmark::State& state, const Kind& kind) {
 void network(benchmark::State& state, const Kind& kind) {
   Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const Topology chain = topology(c.scene.rods.front());
-  SweepsInference inference(c.model->net.sweeps(), c.model->net.parameters(), chain.forest.size());
-  const Tensor<float> x = Tensor<float>::Random(CanonicalEncoding::size, chain.forest.size());
+  const Tensor<float> x = 0.1 * Tensor<float>::Random(CanonicalEncoding::size, chain.forest.size());
   Tensor<float> y(6, chain.forest.size());
+  const CopingNet<float>& net = c.model->net;
+  if (kind.processor == Processor::factors) {
+    FactorInference inference(net.factors(), net.parameters(), chain.forest);
+    for (auto _ : state) {
+      inference.factorise(x);
+      inference.solve(x, y);
+      benchmark::ClobberMemory();
+    }
+    return;
+  }
+  SweepsInference inference(net.sweeps(), net.parameters(), chain.forest.size());
   for (auto _ : state) {
     inference.run(chain.forest, x, y);
     benchmark::ClobberMemory();
@@ -198,6 +215,9 @@ void print_summary(const Medians& median) {
         std::printf("%9d %7d %9.0f %7.3f %9.3f %9.3f %8.0f %9.3f\n", n, latent, weights,
                     per_segment(median("base" + size)), per_segment(median("features" + size)), per_segment(seconds),
                     2 * weights * n / seconds * 1e-9, per_segment(median("whole" + both)));
+        if (kind.processor != Processor::factors) continue;
+        std::printf("%59s %.3f\n", "every further correction",
+                    per_segment(median("whole_again" + both) - median("whole" + both)) / (many_corrections - 1));
       }
   }
 }
@@ -219,7 +239,8 @@ int main(int argc, char** argv) {
       add("features", features, {n});
       for (const int latent : latents) {
         add("network", network, {n, latent});
-        add("whole", whole, {n, latent});
+        add("whole", whole<1>, {n, latent});
+        if (kind.processor == Processor::factors) add("whole_again", whole<many_corrections>, {n, latent});
       }
     }
   }

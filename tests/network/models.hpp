@@ -21,8 +21,9 @@ inline std::shared_ptr<Model> random_model(const CopingNetSettings& settings, st
 inline std::vector<CopingNetSettings> kinds_of_networks() {
   std::vector<CopingNetSettings> out;
   for (const Encoding encoding : {Encoding::deck, Encoding::physics, Encoding::system, Encoding::canonical})
-    for (const Processor processor : {Processor::sweeps, Processor::message_passing})
+    for (const Processor processor : {Processor::sweeps, Processor::factors, Processor::message_passing})
       for (const BaseGuess base : {BaseGuess::none, BaseGuess::extrapolation, BaseGuess::regression, BaseGuess::pod}) {
+        if (processor == Processor::factors && encoding != Encoding::canonical) continue;
         CopingNetSettings settings;
         settings.encoding = encoding;
         settings.processor = processor;

@@ -1,4 +1,5 @@
-// Joints as a forest: parents, depths, loops.
+// Joints as a forest: parents, depths, cut loops.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "network/graph/joint_forest.hpp"
@@ -32,18 +33,40 @@ TEST_CASE("a chain held in the middle is two trees, since nothing couples throug
   CHECK(forest.parent == std::vector<int>{-1, -1, 0, 1});
 }
 
-TEST_CASE("siblings share a parent, and a free tree's first joints are roots") {
+TEST_CASE("siblings share a parent, and a free tree hangs from its first joint") {
   const JointForest held = joint_forest(test::random_rod(test::tree(2, 2), {0}, 1));
   CHECK(held.level_begin == std::vector<int>{0, 2, 6});
   CHECK(held.parent == std::vector<int>{-1, -1, 0, 0, 1, 1});
-  CHECK(joint_forest(test::random_rod(test::tree(2, 2), {}, 1)).parent == held.parent);
+  const JointForest free = joint_forest(test::random_rod(test::tree(2, 2), {}, 1));
+  CHECK(free.order == std::vector<int>{0, 1, 2, 3, 4, 5});
+  CHECK(free.parent == std::vector<int>{-1, 0, 0, 0, 1, 1});
 }
 
-TEST_CASE("a loop is refused, except through a static segment, which couples nothing") {
-  CHECK_THROWS_WITH(joint_forest(test::random_rod(test::ring(6), {}, 1)),
-                    Catch::Contains("closes a loop: sweeps need trees, message_passing does not"));
+TEST_CASE("a ring is cut across from its first joint") {
+  const JointForest free = joint_forest(test::random_rod(test::ring(6), {}, 1));
+  CHECK(free.order == std::vector<int>{0, 1, 5, 2, 4, 3});
+  CHECK(free.parent == std::vector<int>{-1, 0, 0, 1, 2, 4});
   CHECK(joint_forest(test::random_rod(test::ring(6), {0}, 1)).parent == std::vector<int>{-1, 0, 1, 2, 3, 4});
-  CHECK_THROWS_AS(joint_forest(test::random_rod(test::net(3, 3), {0}, 1)), SceneError);
+}
+
+TEST_CASE("however many loops, every joint has one place, below a joint that shares a segment with it") {
+  const test::Edges edges = test::net(4, 3);
+  const JointForest forest = joint_forest(test::random_rod(edges, {0}, 1));
+  std::vector<int> joints = forest.order;
+  std::sort(joints.begin(), joints.end());
+  for (std::size_t i = 0; i < edges.size(); ++i) CHECK(joints[i] == static_cast<int>(i));
+  REQUIRE(joints.size() == edges.size());
+  int roots = 0;
+  for (int i = 0; i < forest.size(); ++i) {
+    const int up = forest.parent[static_cast<std::size_t>(i)];
+    roots += up < 0;
+    if (up < 0) continue;
+    CHECK(up < i);
+    const auto [a, b] = edges[static_cast<std::size_t>(forest.order[static_cast<std::size_t>(i)])];
+    const auto [c, d] = edges[static_cast<std::size_t>(forest.order[static_cast<std::size_t>(up)])];
+    CHECK((a == c || a == d || b == c || b == d));
+  }
+  CHECK(roots == 1);  // one of the joints of the corner that is held; the other is reached all round
 }
 
 TEST_CASE("side by side, forests keep their parents and share levels") {

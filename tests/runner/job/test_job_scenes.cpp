@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "runner/experiment/loop_check.hpp"
+#include "runner/experiment/guess_check.hpp"
 #include "tests/runner/job_examples.hpp"
 
 using namespace rodsweep;
@@ -25,10 +25,10 @@ Json net_job() {
                             "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
 }
 
-/// What check_loops() says of a job, "" if nothing.
+/// What check_guesses() says of a job, "" if nothing.
 std::string refusal_of_loops(const Json& job) {
   try {
-    check_loops(plan_of(job));
+    check_guesses(plan_of(job));
   } catch (const JobError& error) {
     return error.what();
   }
@@ -101,17 +101,11 @@ TEST_CASE("guesses that need rods without loops are refused before anything runs
         "segments of task 0 close a loop");
   CHECK(refusal_of_loops(rod).empty());
 
-  CHECK(refusal_of_loops(guess_of_model(ring_job())).empty());  // held, it hangs as two chains that meet
-  CHECK(refusal_of_loops(guess_of_model(with("/scene/clamp", "\"free\"", ring_job()))) ==
-        "job.json: guesses[2]: a network with \"sweeps\" is not allowed on rods with loops; must be one with "
-        "\"message_passing\"; the joints of the 12 segments of task 0 close a loop");
-  CHECK(refusal_of_loops(guess_of_model(net_job())) ==
-        "job.json: guesses[2]: a network with \"sweeps\" is not allowed on rods with loops; must be one with "
-        "\"message_passing\"; the joints of the 41 segments of task 0 close a loop");
-  Json guarded = net_job();
-  guarded["guesses"].push_back(
-      {{"guarded", {{"threshold", 1}, {"guess", guess_of_model(Json{{"guesses", Json::array()}})["guesses"][0]}}}});
-  CHECK_THAT(refusal_of_loops(guarded), Catch::StartsWith("job.json: guesses[2]: a network with \"sweeps\""));
+  CHECK(refusal_of_loops(guess_of_model(net_job())).empty());
+  Json several = guess_of_model(small_job());
+  several["guesses"].back()["copingnet"]["corrections"] = 2;
+  CHECK(refusal_of_loops(several) ==
+        "job.json: guesses[2]: corrections 2 is not allowed with bending.h5, a network without factors; must be 1");
 }
 
 TEST_CASE("contact is a key of every scene, and none where it is not asked for") {

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "runner/experiment/loop_check.hpp"
+#include "runner/experiment/guess_check.hpp"
 #include "runner/job/skeleton_file.hpp"
 #include "tests/runner/job_folder.hpp"
 
@@ -186,7 +186,7 @@ TEST_CASE("nearest neighbours are refused on a tree, but not on a trunk") {
   const auto refusal_of_neighbours = [](Json job) -> std::string {
     job["guesses"].push_back({{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}});  // the data are not read yet
     try {
-      check_loops(plan_of(job));
+      check_guesses(plan_of(job));
     } catch (const JobError& error) {
       return error.what();
     }

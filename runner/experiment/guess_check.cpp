@@ -1,22 +1,12 @@
-#include "runner/experiment/loop_check.hpp"
+#include "runner/experiment/guess_check.hpp"
 
 #include <fmt/format.h>
 
-#include "network/graph/joint_forest.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/job/key_path.hpp"
 
 namespace rodsweep {
 namespace {
-
-bool is_forest(const SceneSpec& scene) {
-  try {
-    for (const Rod& rod : build_scene(scene).rods) joint_forest(rod);
-    return true;
-  } catch (const SceneError&) {
-    return false;
-  }
-}
 
 bool branches(const SceneSpec& scene) {
   if (open_rod(scene)) return false;
@@ -29,10 +19,6 @@ bool branches(const SceneSpec& scene) {
   return false;
 }
 
-bool sweeps(const std::filesystem::path& model) {
-  return shared_model(model)->net.settings().processor == Processor::sweeps;
-}
-
 void refuse(const Plan& plan, const Task& task, const std::string& path, const std::string& what,
             const char* joints = "close a loop") {
   throw job_error(
@@ -41,11 +27,7 @@ void refuse(const Plan& plan, const Task& task, const std::string& path, const s
 }
 
 void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
-  constexpr const char* no_sweeps =
-      "a network with \"sweeps\" is not allowed on rods with loops; must be one with \"message_passing\"";
   const bool may_loop = task.joints > task.segments - rod_count(spec.scene);
-  if (may_loop && spec.solve.method == Method::end_to_end && sweeps(spec.solve.model) && !is_forest(spec.scene))
-    refuse(plan, task, "solve.model", no_sweeps);
   for (std::size_t i = 0; i < spec.guesses.size(); ++i)
     for (const GuessSpec* guess = &spec.guesses[i]; guess;
          guess = guess->inner.empty() ? nullptr : &guess->inner.front()) {
@@ -55,14 +37,16 @@ void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
       if (knn && branches(spec.scene))
         refuse(plan, task, element("guesses", i), "\"knn\" is not allowed on rods that branch; must be another guess",
                "form a tree");
-      if (may_loop && guess->kind == GuessSpec::Kind::copingnet && sweeps(guess->model) && !is_forest(spec.scene))
-        refuse(plan, task, element("guesses", i), no_sweeps);
+      if (guess->corrections > 1 && shared_model(guess->model)->net.settings().processor != Processor::factors)
+        throw job_error(plan.job().path, element("guesses", i),
+                        fmt::format("corrections {} is not allowed with {}, a network without factors; must be 1",
+                                    guess->corrections, guess->model.filename().string()));
     }
 }
 
 }  // namespace
 
-void check_loops(const Plan& plan) {
+void check_guesses(const Plan& plan) {
   if (plan.job().files.empty()) return;  // no network, no data of neighbours
   for (const Task& task : plan.tasks()) check(plan, task, plan.spec(task.index));
 }

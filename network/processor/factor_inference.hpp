@@ -1,0 +1,45 @@
+// The learned factors of network/processor/factor_sweeps.hpp for one rod at a time: no allocation, no tape.
+//
+// Factors are predicted for all joints at once; then M_k = T_k B_k is formed, and the two passes, which wait for the
+// joint before, multiply by one matrix each. The results differ from the training code's in rounding, and where that
+// refuses to carry on a state (FactorSweeps::longest_state).
+#pragma once
+
+#include "network/processor/factor_sweeps.hpp"
+
+namespace rodsweep {
+
+class FactorInference {
+ public:
+  /// Whether there are kernels for a latent size: multiples of 16.
+  static bool supports(int latent) { return latent > 0 && latent % 16 == 0; }
+
+  /// std::invalid_argument for a latent size without kernels. `weights` and `forest` must outlive this.
+  FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights, const JointForest& forest);
+
+  /// Sets the factors from the features [57, places] of a matrix, whatever the residual among them.
+  void factorise(const TensorIn<float>& x);
+
+  /// y [6, places] of a residual r [at least 6, places], by the factors.
+  void solve(const TensorIn<float>& r, Eigen::Ref<Tensor<float>> y);
+
+ private:
+  using Lane16 = float __attribute__((vector_size(64)));
+  struct alignas(64) Joint {
+    Lane16 n[3], m[3], m_transposed[3];  ///< columns 2 q and 2 q + 1, in lanes 0..5 and 8..13
+  };
+  void form(int place, const float* coupling);
+
+  FactorSweeps<float>::Layers layers_;
+  const Parameters<float>& weights_;
+  const JointForest& forest_;
+  Tensor<float> start_;      ///< [H, places] V t + b
+  Tensor<float> e_, f_, g_;  ///< [2 H, places] x_k and the sum of its children's; [H, places]
+  Tensor<float> last_;       ///< the weights of the factors in the order of `factors_`
+  Eigen::VectorXf last_bias_;
+  Tensor<float> factors_;  ///< [48, places]: triangles, N's 16 first entries, 5 last of N, 5 last of T, T's 16 first
+  std::vector<Joint> joints_;
+  std::vector<Lane16> h_, y_;  ///< states, twice each
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,219 @@
+#include "network/processor/factor_sweeps.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "network/layers/silu.hpp"
+
+namespace rodsweep {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+/// Six numbers and two zeros.
+template <class T>
+struct ColumnOf;
+template <>
+struct ColumnOf<float> {
+  using Type = float __attribute__((vector_size(32)));
+};
+template <>
+struct ColumnOf<double> {
+  using Type = double __attribute__((vector_size(64)));
+};
+template <class T>
+using Column = typename ColumnOf<T>::Type;
+template <class T>
+struct Block {
+  Column<T> column[6];
+};
+
+template <class T>
+Column<T> column(const T* six) {
+  Column<T> out{};
+  std::memcpy(&out, six, 6 * sizeof(T));
+  return out;
+}
+template <class T>
+void add(const Column<T>& v, T* six) {
+  for (int r = 0; r < 6; ++r) six[r] += v[r];
+}
+template <class T>
+Block<T> block(const T* entries) {
+  Block<T> out;
+  for (int c = 0; c < 6; ++c) out.column[c] = column(entries + 6 * c);
+  return out;
+}
+/// A symmetric matrix from its lower triangle.
+template <class T>
+Block<T> symmetric(const T* triangle) {
+  Block<T> out{};
+  for (int c = 0; c < 6; ++c)
+    for (int r = c; r < 6; ++r) out.column[r][c] = out.column[c][r] = *triangle++;
+  return out;
+}
+
+template <class T>
+Column<T> times(const Block<T>& a, const Column<T>& x) {
+  Column<T> y = x[0] * a.column[0];
+  for (int c = 1; c < 6; ++c) y += x[c] * a.column[c];
+  return y;
+}
+template <class T>
+T sum(const Column<T>& v) {
+  return ((v[0] + v[1]) + (v[2] + v[3])) + (v[4] + v[5]);
+}
+template <class T>
+Column<T> transposed_times(const Block<T>& a, const Column<T>& x) {
+  Column<T> y{};
+  for (int c = 0; c < 6; ++c) y[c] = sum<T>(a.column[c] * x);
+  return y;
+}
+
+/// Adds d(u^T N v) / dN to the derivatives by the triangle.
+template <class T>
+void add_derivatives(const Column<T>& u, const Column<T>& v, T* triangle) {
+  for (int c = 0; c < 6; ++c)
+    for (int r = c; r < 6; ++r) *triangle++ += r == c ? u[r] * v[r] : u[r] * v[c] + u[c] * v[r];
+}
+
+/// B_i.
+template <class T>
+Block<T> b(const TensorIn<T>& x, int i) {
+  return block(x.col(i).data() + FactorSweeps<T>::coupling);
+}
+
+/// [x_k; sum over children of x_c].
+template <class T>
+Tensor<T> with_children(const JointForest& forest, const Tensor<T>& x) {
+  const Eigen::Index h = x.rows();
+  Tensor<T> out = Tensor<T>::Zero(2 * h, x.cols());
+  out.topRows(h) = x;
+  for (int i = 0; i < forest.size(); ++i)
+    if (const int parent = forest.parent[at(i)]; parent >= 0) out.col(parent).tail(h) += x.col(i);
+  return out;
+}
+
+/// From the derivatives by [x_k; sum of x_c] to those by x.
+template <class T>
+Tensor<T> with_parents(const JointForest& forest, const Tensor<T>& d) {
+  const Eigen::Index h = d.rows() / 2;
+  Tensor<T> out = d.topRows(h);
+  for (int i = 0; i < forest.size(); ++i)
+    if (const int parent = forest.parent[at(i)]; parent >= 0) out.col(i) += d.col(parent).tail(h);
+  return out;
+}
+
+template <class T>
+void apply(const Linear<T>& layer, const Parameters<T>& p, const Tensor<T>& x, Tensor<T>& before, Tensor<T>& after) {
+  before.resize(layer.out(), x.cols());
+  layer.forward(p, x, before);
+  after = silu(before.array());
+}
+
+template <class T>
+Tensor<T> apply_back(const Linear<T>& layer, const Parameters<T>& p, const Tensor<T>& x, const Tensor<T>& before,
+                     const Tensor<T>& d_after, Parameters<T>& gradient) {
+  Tensor<T> out = Tensor<T>::Zero(x.rows(), x.cols());
+  layer.backward(p, x, d_after.cwiseProduct(silu_derivative(before.array()).matrix()), gradient, &out);
+  return out;
+}
+
+template <class T>
+bool carried(const Column<T>& state) {
+  return sum<T>(state * state) < FactorSweeps<T>::longest_state * FactorSweeps<T>::longest_state;
+}
+
+}  // namespace
+
+Tensor<float> height_features(const JointForest& forest) {
+  std::vector<int> height(at(forest.size()), 0);
+  Tensor<float> out(4, forest.size());
+  for (int i = forest.size() - 1; i >= 0; --i) {
+    const int parent = forest.parent[at(i)];
+    if (parent >= 0) height[at(parent)] = std::max(height[at(parent)], height[at(i)] + 1);
+    for (int q = 0; q < out.rows(); ++q)
+      out(q, i) = std::exp(-static_cast<float>(height[at(i)]) / static_cast<float>(1 << 2 * q));
+  }
+  return out;
+}
+
+template <class T>
+FactorSweeps<T>::FactorSweeps(Parameters<T>& parameters, int latent, WeightSource& source)
+    : latent_(latent),
+      encode_(parameters, "encode", block_features + height_features, latent, source),
+      join_(parameters, "join", 2 * latent, latent, source),
+      join_again_(parameters, "join_again", 2 * latent, latent, source),
+      factors_(parameters, "factors", latent, 2 * triangle, source, 0.3) {
+  T* bias = parameters[factors_.bias()].data();
+  for (int c = 0; c < 6; bias += 6 - c, ++c) *bias = 1;
+}
+
+template <class T>
+void FactorSweeps<T>::forward(const Parameters<T>& p, const JointForest& forest, const TensorIn<T>& x, Tape& t,
+                              Tensor<T>& y) const {
+  const Eigen::Index n = x.cols();
+  t.a.resize(block_features + height_features, n);
+  t.a.topRows(block_features) = x.bottomRows(block_features);
+  t.a.bottomRows(height_features) = rodsweep::height_features(forest).template cast<T>();
+  apply(encode_, p, t.a, t.before_e, t.e);
+  t.e = with_children(forest, t.e);
+  apply(join_, p, t.e, t.before_f, t.f);
+  t.f = with_children(forest, t.f);
+  apply(join_again_, p, t.f, t.before_g, t.g);
+  t.factors.resize(2 * triangle, n);
+  factors_.forward(p, t.g, t.factors);
+
+  t.h = x.topRows(residual_features);
+  for (int i = forest.size() - 1; i >= 0; --i) {
+    const int parent = forest.parent[at(i)];
+    const Column<T> h = column(&t.h(0, i));
+    if (parent >= 0 && carried<T>(h))
+      add<T>(-transposed_times(b(x, i), times(symmetric(&t.factors(triangle, i)), h)), &t.h(0, parent));
+  }
+  t.v.setZero(6, n);
+  y.setZero(6, n);
+  for (int i = 0; i < forest.size(); ++i) {
+    const int parent = forest.parent[at(i)];
+    add<T>(times(symmetric(&t.factors(0, i)), column(&t.h(0, i))), &y(0, i));
+    if (parent < 0 || !carried<T>(column(&y(0, parent)))) continue;
+    const Column<T> v = -times(b(x, i), column(&y(0, parent)));
+    add<T>(v, &t.v(0, i));
+    add<T>(times(symmetric(&t.factors(triangle, i)), v), &y(0, i));
+  }
+  t.y = y;
+}
+
+template <class T>
+void FactorSweeps<T>::backward(const Parameters<T>& p, const JointForest& forest, const TensorIn<T>& x, const Tape& t,
+                               const TensorIn<T>& dy, Parameters<T>& gradient) const {
+  const Eigen::Index n = x.cols();
+  Tensor<T> d = dy, dh = Tensor<T>::Zero(6, n), d_factors = Tensor<T>::Zero(2 * triangle, n);
+  for (int i = forest.size() - 1; i >= 0; --i) {
+    const Column<T> di = column(&d(0, i));
+    add<T>(times(symmetric(&t.factors(0, i)), di), &dh(0, i));
+    add_derivatives<T>(di, column(&t.h(0, i)), &d_factors(0, i));
+    const int parent = forest.parent[at(i)];
+    if (parent < 0 || !carried<T>(column(&t.y(0, parent)))) continue;
+    add_derivatives<T>(di, column(&t.v(0, i)), &d_factors(triangle, i));
+    add<T>(-transposed_times(b(x, i), times(symmetric(&t.factors(triangle, i)), di)), &d(0, parent));
+  }
+  for (int i = 0; i < forest.size(); ++i) {
+    const int parent = forest.parent[at(i)];
+    const Column<T> h = column(&t.h(0, i));
+    if (parent < 0 || !carried<T>(h)) continue;
+    const Column<T> dw = -times(b(x, i), column(&dh(0, parent)));
+    add_derivatives<T>(dw, h, &d_factors(triangle, i));
+    add<T>(times(symmetric(&t.factors(triangle, i)), dw), &dh(0, i));
+  }
+  Tensor<T> dg = Tensor<T>::Zero(latent_, n);
+  factors_.backward(p, t.g, d_factors, gradient, &dg);
+  const Tensor<T> df = with_parents(forest, apply_back(join_again_, p, t.f, t.before_g, dg, gradient));
+  const Tensor<T> de = with_parents(forest, apply_back(join_, p, t.e, t.before_f, df, gradient));
+  encode_.backward(p, t.a, de.cwiseProduct(silu_derivative(t.before_e.array()).matrix()), gradient, nullptr);
+}
+
+template class FactorSweeps<float>;
+template class FactorSweeps<double>;
+
+}  // namespace rodsweep

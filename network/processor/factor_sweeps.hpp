@@ -1,0 +1,62 @@
+// A learned block factorisation: an answer that is linear in the residual and symmetric, as A^-1 is.
+//
+// Block elimination of a tree's joints from the tips to the root (solver/linear/block_factor.hpp) needs the inverses of
+// the Schur complements S_k = A_kk - sum over children c of B_c^T S_c^-1 B_c, where B_c is A's block of a child's row
+// and its parent's column, and then solves A y = r by two passes. Here a network puts symmetric matrices in the place
+// of S_k^-1, N_k on the diagonal and T_k beside B_k, at one go for all joints, since it looks at three generations
+// alone:
+//   e_k = silu(W a_k + V t_k + b),   t_k = exp(-height_k / 1, 4, 16, 64)
+//   f_k = silu(W' [e_k; sum_c e_c] + b'),   g_k = silu(W'' [f_k; sum_c f_c] + b'')
+//   (N_k, T_k) = W* g_k + b*,  lower triangles by columns
+//   h_k = r_k - sum_c B_c^T T_c h_c                    tips to roots
+//   y_k = N_k h_k - T_k B_k y_parent                   roots to tips
+// a_k are the features of A's blocks and r_k those of the residual (network/encoding/canonical_encoding.hpp), height_k
+// is how many joints lie between k and the farthest tip. With N = T = S^-1 a chain is solved exactly; at first N = I
+// and T = 0, which is Jacobi's answer. Blocks between siblings are left out.
+//
+// A product of many T_k may grow without bound while they are learned: a state longer than `longest_state` is not
+// carried on.
+#pragma once
+
+#include "network/encoding/coping_net_settings.hpp"
+#include "network/graph/joint_forest.hpp"
+#include "network/layers/linear.hpp"
+
+namespace rodsweep {
+
+/// t_k of all places, [4, places].
+Tensor<float> height_features(const JointForest& forest);
+
+template <class T>
+class FactorSweeps {
+ public:
+  static constexpr int triangle = 21, residual_features = 6, block_features = 51, height_features = 4;
+  static constexpr int coupling = 21;  ///< the feature that B_k begins at, column-major
+  static constexpr T longest_state = 1e4;
+
+  struct Tape {
+    Tensor<T> a, before_e, e, before_f, f, before_g, g, factors, h, v, y;
+  };
+
+  FactorSweeps() = default;
+  FactorSweeps(Parameters<T>& parameters, int latent, WeightSource& source);
+
+  /// x [57, places] -> y [6, places], in the order of the forest.
+  void forward(const Parameters<T>& p, const JointForest& forest, const TensorIn<T>& x, Tape& tape, Tensor<T>& y) const;
+  /// Adds to `gradient`; inputs are data, so nothing flows to x.
+  void backward(const Parameters<T>& p, const JointForest& forest, const TensorIn<T>& x, const Tape& tape,
+                const TensorIn<T>& dy, Parameters<T>& gradient) const;
+
+  int latent() const { return latent_; }
+  /// What network/processor/factor_inference.cpp works with.
+  struct Layers {
+    const Linear<T>&encode, &join, &join_again, &factors;
+  };
+  Layers layers() const { return {encode_, join_, join_again_, factors_}; }
+
+ private:
+  int latent_ = 0;
+  Linear<T> encode_, join_, join_again_, factors_;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,128 @@
+// Learned factors: gradients, what their answers have in common with those of A^-1, and inference.
+#include <catch2/catch.hpp>
+
+#include "network/processor/factor_inference.hpp"
+#include "tests/network/gradient_check.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace {
+
+using namespace test;
+
+/// Two trees, a chain and a ring that is cut, side by side.
+JointForest some_forest() {
+  const JointForest a = joint_forest(random_rod(tree(2, 3), {0}, 1)), b = joint_forest(random_rod(chain(6), {0}, 2)),
+                    c = joint_forest(random_rod(tree(3, 2), {}, 3)), d = joint_forest(random_rod(ring(5), {}, 4));
+  return side_by_side({&a, &b, &c, &d});
+}
+
+template <class T>
+struct Net {
+  Parameters<T> weights;
+  FactorSweeps<T> sweeps;
+  typename FactorSweeps<T>::Tape tape;
+
+  /// With weights unlike those at the start, where T = 0.
+  explicit Net(int latent, std::uint64_t seed = 1) {
+    WeightSource source(seed);
+    sweeps = FactorSweeps<T>(weights, latent, source);
+    for (T& w : weights.values()) w += T(0.05);
+  }
+  Tensor<T> operator()(const JointForest& forest, const Tensor<T>& x) {
+    Tensor<T> y;
+    sweeps.forward(weights, forest, x, tape, y);
+    return y;
+  }
+};
+
+/// Features in places; couplings are small, as those of scaled systems.
+Matrix features(const JointForest& forest, unsigned seed, double size = 0.3) {
+  return size * random_matrix(57, forest.size(), seed);
+}
+
+TEST_CASE("the gradients of factors are those of central differences") {
+  const JointForest forest = some_forest();
+  Net<double> net(5);
+  const Matrix x = features(forest, 2), weights = random_matrix(6, forest.size(), 3);
+  const auto loss = [&] { return net(forest, x).cwiseProduct(weights).sum(); };
+  loss();
+  Parameters<double> gradient = net.weights.zeros();
+  net.sweeps.backward(net.weights, forest, x, net.tape, weights, gradient);
+  CHECK(gradient_error(net.weights.values(), gradient.values(), loss) < 1e-7);
+}
+
+TEST_CASE("answers are linear in the residual and symmetric, and see the whole tree") {
+  const JointForest forest = some_forest();
+  Net<double> net(6);
+  Matrix x = features(forest, 4);
+  const int n = forest.size();
+  Matrix operators(6 * n, 6 * n);
+  for (int i = 0; i < n; ++i)
+    for (int row = 0; row < 6; ++row) {
+      x.topRows(6).setZero();
+      x(row, i) = 1;
+      operators.col(6 * i + row) = net(forest, x).reshaped();
+    }
+  CHECK((operators - operators.transpose()).norm() < 1e-12 * operators.norm());
+  x.topRows(6) = random_matrix(6, n, 5);
+  CHECK((operators * x.topRows(6).reshaped() - net(forest, x).reshaped()).norm() < 1e-12 * operators.norm());
+  const auto root_of = [&](int place) {
+    while (forest.parent[static_cast<std::size_t>(place)] >= 0) place = forest.parent[static_cast<std::size_t>(place)];
+    return place;
+  };
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) CHECK((operators.block<6, 6>(6 * i, 6 * k).norm() > 0) == (root_of(i) == root_of(k)));
+}
+
+TEST_CASE("untrained factors are Jacobi's: the residual itself, whatever is beside the diagonal") {
+  const JointForest forest = some_forest();
+  Parameters<double> weights;
+  WeightSource source(3);
+  const FactorSweeps<double> sweeps(weights, 4, source);
+  weights[sweeps.layers().factors.weight()].setZero();
+  const Matrix x = features(forest, 6);
+  FactorSweeps<double>::Tape tape;
+  Matrix y;
+  sweeps.forward(weights, forest, x, tape, y);
+  CHECK(y == x.topRows(6));
+}
+
+TEST_CASE("a state that has grown too long is not carried on, and gradients stay finite") {
+  const JointForest forest = joint_forest(random_rod(chain(200), {0}, 1));
+  Net<float> net(4);
+  for (float& w : net.weights.values()) w *= 8;
+  const Tensor<float> x = features(forest, 7).cast<float>();
+  const Tensor<float> y = net(forest, x);
+  CHECK(y.allFinite());
+  CHECK(y.norm() > FactorSweeps<float>::longest_state);
+  Parameters<float> gradient = net.weights.zeros();
+  net.sweeps.backward(net.weights, forest, x, net.tape, y / y.norm(), gradient);
+  for (const float g : gradient.values()) REQUIRE(std::isfinite(g));
+}
+
+TEST_CASE("inference of factors gives the training code's answers, to further residuals too") {
+  for (const int latent : {16, 32, 48})
+    for (const Edges& edges : {chain(2), chain(20), tree(3, 2), ring(7)}) {
+      const JointForest one = joint_forest(random_rod(edges, {0}, 3)), forest = side_by_side({&one});
+      Net<float> net(latent);
+      Tensor<float> x = features(forest, 2, 0.05).cast<float>(), y(6, forest.size());
+      FactorInference inference(net.sweeps, net.weights, forest);
+      inference.factorise(x);
+      for (const unsigned seed : {2U, 9U}) {
+        x.topRows(6) = random_matrix(6, forest.size(), seed).cast<float>();
+        const Tensor<float> expected = net(forest, x);
+        inference.solve(x, y);
+        CHECK((y - expected).norm() < 1e-5F * expected.norm());
+      }
+    }
+}
+
+TEST_CASE("a latent size without a kernel for factors is refused") {
+  const Net<float> net(24);
+  const JointForest forest = some_forest();
+  CHECK_THROWS_WITH(FactorInference(net.sweeps, net.weights, forest), Catch::Contains("24"));
+}
+
+}  // namespace
+}  // namespace rodsweep
