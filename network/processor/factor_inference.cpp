@@ -66,11 +66,14 @@ Lane16 rows(const Lane16 (&m)[3]) {
   return __builtin_shufflevector(four, m[2], 0, 1, 2, 3, 16 + R, 24 + R, 0, 0, 8, 9, 10, 11, 16 + S, 24 + S, 0, 0);
 }
 
-/// silu(x + start) of `rows` entries of a column, multiples of a lane.
-void silu_column(const float* x, const float* start, Eigen::Index rows, float* out) {
+FloatLane larger(const FloatLane& a, float b) { return a > b ? a : broadcast_lane(b); }
+
+/// ramp(x + start) of `rows` entries of a column, multiples of a lane (network/layers/ramp.hpp).
+void ramp_column(const float* x, const float* start, Eigen::Index rows, float* out) {
   for (Eigen::Index r = 0; r < rows; r += lane_floats) {
-    const FloatLane a = load_lane(x + r) + load_lane(start + r);
-    store_lane(out + r, a / (clamped_exp(-a) + 1.F));
+    const FloatLane a = load_lane(x + r) + load_lane(start + r), t = larger(a, -1) * 0.5F + 0.5F;
+    const FloatLane half = t < 1.F ? t : broadcast_lane(1);
+    store_lane(out + r, half * half + larger(a - 1.F, 0));
   }
 }
 
@@ -114,7 +117,7 @@ void FactorInference::factorise(const TensorIn<float>& x) {
     out.bottomRows(h).setZero();
     for (int i = n - 1; i >= 0; --i) {
       float* to = out.col(i).data();
-      silu_column(before.col(i).data(), start(i), h, to);
+      ramp_column(before.col(i).data(), start(i), h, to);
       if (const int parent = forest_.parent[at(i)]; parent >= 0)
         out.col(parent).tail(h) += Eigen::Map<const Eigen::VectorXf>(to, h);
     }
@@ -128,7 +131,7 @@ void FactorInference::factorise(const TensorIn<float>& x) {
       g_, [&](int) { return weights_[layers_.join.bias()].data(); }, f_);
   multiply<float>(weights_[layers_.join_again.weight()], nullptr, f_, g_);
   for (int i = 0; i < n; ++i)
-    silu_column(g_.col(i).data(), weights_[layers_.join_again.bias()].data(), h, g_.col(i).data());
+    ramp_column(g_.col(i).data(), weights_[layers_.join_again.bias()].data(), h, g_.col(i).data());
   multiply<float>(last_, last_bias_.data(), g_, factors_);
   for (int i = 0; i < n; ++i) form(i, x.col(i).data() + Sweep::coupling);
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "network/layers/silu.hpp"
+#include "network/layers/ramp.hpp"
 
 namespace rodsweep {
 namespace {
@@ -108,14 +108,14 @@ template <class T>
 void apply(const Linear<T>& layer, const Parameters<T>& p, const Tensor<T>& x, Tensor<T>& before, Tensor<T>& after) {
   before.resize(layer.out(), x.cols());
   layer.forward(p, x, before);
-  after = silu(before.array());
+  after = ramp(before.array());
 }
 
 template <class T>
 Tensor<T> apply_back(const Linear<T>& layer, const Parameters<T>& p, const Tensor<T>& x, const Tensor<T>& before,
                      const Tensor<T>& d_after, Parameters<T>& gradient) {
   Tensor<T> out = Tensor<T>::Zero(x.rows(), x.cols());
-  layer.backward(p, x, d_after.cwiseProduct(silu_derivative(before.array()).matrix()), gradient, &out);
+  layer.backward(p, x, d_after.cwiseProduct(ramp_derivative(before.array()).matrix()), gradient, &out);
   return out;
 }
 
@@ -210,7 +210,7 @@ void FactorSweeps<T>::backward(const Parameters<T>& p, const JointForest& forest
   factors_.backward(p, t.g, d_factors, gradient, &dg);
   const Tensor<T> df = with_parents(forest, apply_back(join_again_, p, t.f, t.before_g, dg, gradient));
   const Tensor<T> de = with_parents(forest, apply_back(join_, p, t.e, t.before_f, df, gradient));
-  encode_.backward(p, t.a, de.cwiseProduct(silu_derivative(t.before_e.array()).matrix()), gradient, nullptr);
+  encode_.backward(p, t.a, de.cwiseProduct(ramp_derivative(t.before_e.array()).matrix()), gradient, nullptr);
 }
 
 template class FactorSweeps<float>;

@@ -5,8 +5,8 @@
 // and its parent's column, and then solves A y = r by two passes. Here a network puts symmetric matrices in the place
 // of S_k^-1, N_k on the diagonal and T_k beside B_k, at one go for all joints, since it looks at three generations
 // alone:
-//   e_k = silu(W a_k + V t_k + b),   t_k = exp(-height_k / 1, 4, 16, 64)
-//   f_k = silu(W' [e_k; sum_c e_c] + b'),   g_k = silu(W'' [f_k; sum_c f_c] + b'')
+//   e_k = ramp(W a_k + V t_k + b),   t_k = exp(-height_k / 1, 4, 16, 64)
+//   f_k = ramp(W' [e_k; sum_c e_c] + b'),   g_k = ramp(W'' [f_k; sum_c f_c] + b'')
 //   (N_k, T_k) = W* g_k + b*,  lower triangles by columns
 //   h_k = r_k - sum_c B_c^T T_c h_c                    tips to roots
 //   y_k = N_k h_k - T_k B_k y_parent                   roots to tips
