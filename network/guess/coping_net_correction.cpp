@@ -7,9 +7,9 @@
 namespace rodsweep {
 
 CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a,
-                                         int corrections)
+                                         FactorUse use)
     : model_(std::move(model)),
-      corrections_(corrections),
+      use_(use),
       encoder_(model_->net.settings(), rod, a),
       nodes_(node_features(model_->net.settings()), rod.segment_count()),
       edges_(edge_features(model_->net.settings()), rod.joint_count()),
@@ -20,8 +20,9 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
       ad_(a.unknowns()),
       previous_(a.unknowns()) {
   const CopingNetSettings& settings = model_->net.settings();
-  if (corrections > 1 && settings.processor != Processor::factors)
-    throw std::invalid_argument("CopingNetCorrection: " + std::to_string(corrections) + " corrections without factors");
+  if ((use.corrections > 1 || use.once_a_step) && settings.processor != Processor::factors)
+    throw std::invalid_argument("CopingNetCorrection: " + std::to_string(use.corrections) +
+                                " corrections without factors");
   if (settings.processor == Processor::sweeps && !is_of_graphs(settings.encoding) &&
       SweepsInference::supports(settings.latent))
     sweeps_ = std::make_unique<SweepsInference>(model_->net.sweeps(), model_->net.parameters(), rod.joint_count());
@@ -39,9 +40,12 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, in
   } else {
     residual_ = system.rhs();
   }
-  run(rod, system, newton, dt_c, x, moves != nullptr);
+  if (use_.once_a_step && newton > 0 && factorised_)
+    answer_to_residual();
+  else
+    run(rod, system, newton, dt_c, x, moves != nullptr);
   double length = 1, energy = 0;
-  if (model_->net.settings().best_length || corrections_ > 1) {
+  if (model_->net.settings().best_length || use_.corrections > 1) {
     system.matrix().multiply(d_.data(), ad_.data());
     ++proposal.products;
     energy = d_.dot(ad_);
@@ -50,7 +54,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, in
   if (!std::isfinite(length) || !d_.allFinite() || (moves && !write(*moves))) return false;
   x += length * d_;
   proposal.nonzero = proposal.nonzero || length != 0;
-  for (int i = 1; i < corrections_ && energy > 0; ++i) {
+  for (int i = 1; i < use_.corrections && energy > 0; ++i) {
     residual_ -= length * ad_;
     energy = correct_again(system.matrix(), energy, length);
     ++proposal.products;
@@ -63,18 +67,23 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, in
 /// The next direction of conjugate gradients, d_ = F r - (F r . A d_) / (d_ . A d_) d_, A d_, its energy, and the
 /// length that is best along it.
 double CopingNetCorrection::correct_again(const BlockMatrix& a, double energy, double& length) {
-  for (int place = 0; place < static_cast<int>(edges_.cols()); ++place) {
-    const int joint = encoder_.topology().joint[static_cast<std::size_t>(place)];
-    const Lane8 r = encoder_.canonical()->residual_to_unit(place, load6(residual_.data() + 6 * joint));
-    for (int row = 0; row < 6; ++row) edges_(row, place) = static_cast<float>(r[row]);
-  }
   previous_.swap(d_);
-  answer(false);
+  answer_to_residual();
   d_ -= d_.dot(ad_) / energy * previous_;
   a.multiply(d_.data(), ad_.data());
   energy = d_.dot(ad_);
   length = energy > 0 ? d_.dot(residual_) / energy : 0;
   return energy;
+}
+
+/// Sets d_ by the factors there are, in the frames of the system that they were made for.
+void CopingNetCorrection::answer_to_residual() {
+  for (int place = 0; place < static_cast<int>(edges_.cols()); ++place) {
+    const int joint = encoder_.topology().joint[static_cast<std::size_t>(place)];
+    const Lane8 r = encoder_.canonical()->residual_to_unit(place, load6(residual_.data() + 6 * joint));
+    for (int row = 0; row < 6; ++row) edges_(row, place) = static_cast<float>(r[row]);
+  }
+  answer(false);
 }
 
 /// Sets d_ and, on request, y_nodes_.
@@ -86,6 +95,7 @@ void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, int ne
     model_->scales.edges.apply(edges_);
   }
   if (factors_) factors_->factorise(edges_);
+  factorised_ = true;
   answer(with_moves);
 }
 

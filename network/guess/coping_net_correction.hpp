@@ -17,11 +17,16 @@
 
 namespace rodsweep {
 
+/// How a model with factors is used; others know the first of each alone.
+struct FactorUse {
+  int corrections = 1;
+  bool once_a_step = false;  ///< the factors of a step's first Newton iteration serve the others too
+};
+
 class CopingNetCorrection {
  public:
-  /// `a`: the matrix of the rod's systems.
-  /// `corrections` above 1 are for factors, std::invalid_argument else.
-  CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a, int corrections = 1);
+  /// `a`: the matrix of the rod's systems. std::invalid_argument where a use is for factors and the model has none.
+  CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a, FactorUse use = {});
 
   /// Corrects x, which holds x_base, of the system assembled at the rod's state with dt_c; sets `moves`, per segment,
   /// if given (models with settings.moves only). False, and x as it was, where the network's answer is not finite.
@@ -32,11 +37,13 @@ class CopingNetCorrection {
  private:
   void run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x, bool with_moves);
   void answer(bool with_moves);
+  void answer_to_residual();
   double correct_again(const BlockMatrix& a, double energy, double& length);
   bool write(std::vector<Lane8>& moves) const;
 
   std::shared_ptr<const Model> model_;
-  int corrections_;
+  FactorUse use_;
+  bool factorised_ = false;
   FeatureEncoder encoder_;
   std::unique_ptr<SweepsInference> sweeps_;
   std::unique_ptr<FactorInference> factors_;

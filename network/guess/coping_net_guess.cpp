@@ -5,11 +5,11 @@
 namespace rodsweep {
 
 CopingNetGuess::CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, double dt_c,
-                               int newton_iterations, int corrections)
+                               int newton_iterations, FactorUse use)
     : model_(std::move(model)),
       scene_(scene),
       dt_c_(dt_c),
-      corrections_of_each_(corrections),
+      use_(use),
       base_(base_guess(model_->net.settings(), scene, newton_iterations)),
       corrections_(scene.rods.size()) {}
 
@@ -17,7 +17,7 @@ Proposal CopingNetGuess::propose(const LinearSystem& system, const SolvePosition
   const auto r = static_cast<std::size_t>(at.rod);
   const Rod& rod = scene_.rods[r];
   if (!corrections_[r])
-    corrections_[r] = std::make_unique<CopingNetCorrection>(model_, rod, system.matrix(), corrections_of_each_);
+    corrections_[r] = std::make_unique<CopingNetCorrection>(model_, rod, system.matrix(), use_);
   Proposal proposal = base_->propose(system, at, x0);
   corrections_[r]->correct(rod, system, at.newton, dt_c_, proposal, x0, nullptr);
   return proposal;

@@ -16,7 +16,7 @@ class CopingNetGuess : public InitialGuess {
  public:
   /// Of the rods of the scene that the solves move: `deck` and `physics` read their state there.
   CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, double dt_c, int newton_iterations,
-                 int corrections = 1);
+                 FactorUse use = {});
 
   void prepare(const SolvePosition& at) override { base_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
@@ -26,7 +26,7 @@ class CopingNetGuess : public InitialGuess {
   std::shared_ptr<const Model> model_;
   const Scene& scene_;
   double dt_c_;
-  int corrections_of_each_;
+  FactorUse use_;
   std::unique_ptr<InitialGuess> base_;
   std::vector<std::unique_ptr<CopingNetCorrection>> corrections_;  ///< made at a rod's first solve
 };

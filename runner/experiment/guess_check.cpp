@@ -37,10 +37,12 @@ void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
       if (knn && branches(spec.scene))
         refuse(plan, task, element("guesses", i), "\"knn\" is not allowed on rods that branch; must be another guess",
                "form a tree");
-      if (guess->corrections > 1 && shared_model(guess->model)->net.settings().processor != Processor::factors)
+      if ((guess->corrections > 1 || guess->once_a_step) &&
+          shared_model(guess->model)->net.settings().processor != Processor::factors)
         throw job_error(plan.job().path, element("guesses", i),
-                        fmt::format("corrections {} is not allowed with {}, a network without factors; must be 1",
-                                    guess->corrections, guess->model.filename().string()));
+                        fmt::format("{} is not allowed with {}, a network without factors",
+                                    guess->corrections > 1 ? "corrections above 1" : "once_a_step",
+                                    guess->model.filename().string()));
     }
 }
 

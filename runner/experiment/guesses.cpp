@@ -37,7 +37,8 @@ std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task,
       return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window, noise);
     case Kind::copingnet:
       return std::make_unique<CopingNetGuess>(shared_model(guess.model), scene, constraint_dt(scene, task.time.step_s),
-                                              task.time.newton_iterations, guess.corrections);
+                                              task.time.newton_iterations,
+                                              FactorUse{guess.corrections, guess.once_a_step});
     case Kind::knn:
       return std::make_unique<KnnGuess>(shared_knn_set(guess.data, guess.simulations), scene,
                                         constraint_dt(scene, task.time.step_s), guess.neighbours);

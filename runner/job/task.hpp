@@ -78,6 +78,7 @@ struct GuessSpec {
   int window = 6;               ///< regression: on how many of the last systems
   std::filesystem::path model;  ///< copingnet
   int corrections = 1;          ///< copingnet
+  bool once_a_step = false;     ///< copingnet: factors of a step's first Newton iteration serve all
   std::filesystem::path data;   ///< knn: the data set
   int simulations = 0;          ///< knn: of the data set, from the first; 0: all
   int neighbours = 3;           ///< knn

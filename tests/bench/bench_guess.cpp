@@ -123,7 +123,7 @@ struct Case {
     const CopingNetSettings settings = settings_of(kind, latent);
     model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
     base = base_guess(settings, scene, 1);
-    guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1, corrections);
+    guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1, FactorUse{corrections});
     system = std::make_unique<LinearSystem>(scene.rods.front());
     DirectSolve direct(scene);
     LinearProjection projection(scene, direct);

@@ -136,7 +136,7 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
   double before = energy_norm_squared(system.matrix(), exact, scratch);
   const double all = before;
   for (const int corrections : {1, 2, 3, 5, 8, 200}) {
-    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1, corrections);
+    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1, {corrections});
     VectorX x0(exact.size());
     const Proposal proposal = guess.propose(system, {}, x0);
     CHECK((corrections < 200 ? proposal.products == corrections : proposal.products < 200));  // solved long before
@@ -149,7 +149,7 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
 
   settings.processor = Processor::sweeps;
   VectorX x0(exact.size());
-  CHECK_THROWS_WITH(CopingNetGuess(test::random_model(settings), scene, 0.02, 1, 2).propose(system, {}, x0),
+  CHECK_THROWS_WITH(CopingNetGuess(test::random_model(settings), scene, 0.02, 1, {2}).propose(system, {}, x0),
                     Catch::Contains("2 corrections without factors"));
 }
 

@@ -105,7 +105,7 @@ TEST_CASE("guesses that need rods without loops are refused before anything runs
   Json several = guess_of_model(small_job());
   several["guesses"].back()["copingnet"]["corrections"] = 2;
   CHECK(refusal_of_loops(several) ==
-        "job.json: guesses[2]: corrections 2 is not allowed with bending.h5, a network without factors; must be 1");
+        "job.json: guesses[2]: corrections above 1 is not allowed with bending.h5, a network without factors");
 }
 
 TEST_CASE("contact is a key of every scene, and none where it is not asked for") {
