@@ -108,8 +108,8 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
   for (std::size_t place = 0; place < frames_.size(); ++place) {
     const Tree& tree = trees_[at(tree_[place])];
     const double x = roll_x_[place], y = roll_y_[place];
-    frames_[place] = (tree.twist < 0 ? left : right)
-                         .frame(x * tree.first_x - y * tree.first_y, x * tree.first_y + y * tree.first_x);
+    frames_[place] =
+        (tree.twist < 0 ? left : right).frame(x * tree.first_x - y * tree.first_y, x * tree.first_y + y * tree.first_x);
   }
 }
 

@@ -16,8 +16,7 @@ CopingNetGuess::CopingNetGuess(std::shared_ptr<const Model> model, const Scene& 
 Proposal CopingNetGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   const auto r = static_cast<std::size_t>(at.rod);
   const Rod& rod = scene_.rods[r];
-  if (!corrections_[r])
-    corrections_[r] = std::make_unique<CopingNetCorrection>(model_, rod, system.matrix(), use_);
+  if (!corrections_[r]) corrections_[r] = std::make_unique<CopingNetCorrection>(model_, rod, system.matrix(), use_);
   Proposal proposal = base_->propose(system, at, x0);
   corrections_[r]->correct(rod, system, at.newton, dt_c_, proposal, x0, nullptr);
   return proposal;

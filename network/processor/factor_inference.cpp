@@ -5,7 +5,6 @@
 #include <string>
 
 #include "network/layers/float_lanes.hpp"
-#include "network/layers/product.hpp"
 
 namespace rodsweep {
 namespace {
@@ -68,71 +67,79 @@ Lane16 rows(const Lane16 (&m)[3]) {
 
 FloatLane larger(const FloatLane& a, float b) { return a > b ? a : broadcast_lane(b); }
 
-/// ramp(x + start) of `rows` entries of a column, multiples of a lane (network/layers/ramp.hpp).
-void ramp_column(const float* x, const float* start, Eigen::Index rows, float* out) {
-  for (Eigen::Index r = 0; r < rows; r += lane_floats) {
-    const FloatLane a = load_lane(x + r) + load_lane(start + r), t = larger(a, -1) * 0.5F + 0.5F;
-    const FloatLane half = t < 1.F ? t : broadcast_lane(1);
-    store_lane(out + r, half * half + larger(a - 1.F, 0));
-  }
+/// ramp(a) (network/layers/ramp.hpp).
+FloatLane ramp(const FloatLane& a) {
+  const FloatLane t = larger(a, -1) * 0.5F + 0.5F, half = t < 1.F ? t : broadcast_lane(1);
+  return half * half + larger(a - 1.F, 0);
 }
 
 }  // namespace
 
 FactorInference::FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights,
                                  const JointForest& forest)
-    : layers_(sweeps.layers()),
-      weights_(weights),
-      forest_(forest),
-      last_(Tensor<float>::Zero(48, sweeps.latent())),
-      last_bias_(Eigen::VectorXf::Zero(48)),
-      joints_(at(forest.size())),
-      h_(at(forest.size())),
-      y_(at(forest.size())) {
+    : forest_(forest), joints_(at(forest.size())), h_(at(forest.size())), y_(at(forest.size())) {
   using Sweep = FactorSweeps<float>;
   const int h = sweeps.latent(), n = forest.size();
   if (!supports(h)) throw std::invalid_argument("FactorInference: latent size " + std::to_string(h));
-  const auto encode = weights[layers_.encode.weight()];
+  const Sweep::Layers layers = sweeps.layers();
+  const auto encode = weights[layers.encode.weight()];
+  encode_ = NarrowMatrix(encode.leftCols(Sweep::block_features));
   start_ = encode.rightCols(Sweep::height_features) * height_features(forest);
-  start_.colwise() += weights[layers_.encode.bias()].col(0);
-  e_.resize(2 * h, n);
-  f_.resize(2 * h, n);
-  g_.resize(h, n);
-  factors_.resize(48, n);
+  start_.colwise() += weights[layers.encode.bias()].col(0);
+  join_ = NarrowMatrix(weights[layers.join.weight()]);
+  join_bias_ = weights[layers.join.bias()];
+  join_again_ = NarrowMatrix(weights[layers.join_again.weight()]);
+  join_again_bias_ = weights[layers.join_again.bias()];
+  Tensor<float> last = Tensor<float>::Zero(48, h);
+  last_bias_.setZero(48);
   for (int i = 0; i < 2 * Sweep::triangle; ++i) {
     const int entry = i % Sweep::triangle;
     const bool of_t = i >= Sweep::triangle;
     const int row = entry < 16 ? (of_t ? 32 : 0) + entry : (of_t ? 21 : 16) + entry - 16;
-    last_.row(row) = weights[layers_.factors.weight()].row(i);
-    last_bias_[row] = weights[layers_.factors.bias()](i, 0);
+    last.row(row) = weights[layers.factors.weight()].row(i);
+    last_bias_[row] = weights[layers.factors.bias()](i, 0);
   }
+  last_ = NarrowMatrix(last);
+  a_.setZero(narrow_length(Sweep::block_features), n);
+  e_.resize(2 * h, n);
+  f_.resize(2 * h, n);
+  g_.resize(h, n);
+  before_.resize(h, n);
+  sums_.resize(h, n);
+  factors_.resize(48, n);
 }
 
 void FactorInference::factorise(const TensorIn<float>& x) {
   using Sweep = FactorSweeps<float>;
   const Eigen::Index h = g_.rows();
   const int n = forest_.size();
-  /// The activations of a layer, and beside them the sums of the children's.
-  const auto activate = [&](const Tensor<float>& before, const auto& start, Tensor<float>& out) {
-    out.bottomRows(h).setZero();
+  /// The activations of a layer, and below them the sums of the children's.
+  const auto activate = [&](const auto& start, NarrowColumns& out) {
+    sums_.setZero();
     for (int i = n - 1; i >= 0; --i) {
-      float* to = out.col(i).data();
-      ramp_column(before.col(i).data(), start(i), h, to);
-      if (const int parent = forest_.parent[at(i)]; parent >= 0)
-        out.col(parent).tail(h) += Eigen::Map<const Eigen::VectorXf>(to, h);
+      const int parent = forest_.parent[at(i)];
+      const float *from = before_.col(i).data(), *begin = start(i), *children = sums_.col(i).data();
+      for (Eigen::Index r = 0; r < h; r += lane_floats) {
+        const FloatLane value = ramp(load_lane(from + r) + load_lane(begin + r));
+        store_narrow(out.col(i).data() + r, value);
+        store_narrow(out.col(i).data() + h + r, load_lane(children + r));
+        if (parent < 0) continue;
+        float* to = sums_.col(parent).data() + r;
+        store_lane(to, load_lane(to) + value);
+      }
     }
   };
-  multiply<float>(weights_[layers_.encode.weight()].leftCols(Sweep::block_features), nullptr,
-                  x.bottomRows(Sweep::block_features), g_);
-  activate(
-      g_, [&](int i) { return start_.col(i).data(); }, e_);
-  multiply<float>(weights_[layers_.join.weight()], nullptr, e_, g_);
-  activate(
-      g_, [&](int) { return weights_[layers_.join.bias()].data(); }, f_);
-  multiply<float>(weights_[layers_.join_again.weight()], nullptr, f_, g_);
   for (int i = 0; i < n; ++i)
-    ramp_column(g_.col(i).data(), weights_[layers_.join_again.bias()].data(), h, g_.col(i).data());
-  multiply<float>(last_, last_bias_.data(), g_, factors_);
+    narrow(x.col(i).data() + Sweep::residual_features, Sweep::block_features, a_.col(i).data());
+  encode_.multiply(nullptr, a_, before_);
+  activate([&](int i) { return start_.col(i).data(); }, e_);
+  join_.multiply(nullptr, e_, before_);
+  activate([&](int) { return join_bias_.data(); }, f_);
+  join_again_.multiply(join_again_bias_.data(), f_, before_);
+  for (int i = 0; i < n; ++i)
+    for (Eigen::Index r = 0; r < h; r += lane_floats)
+      store_narrow(g_.col(i).data() + r, ramp(load_lane(before_.col(i).data() + r)));
+  last_.multiply(last_bias_.data(), g_, factors_);
   for (int i = 0; i < n; ++i) form(i, x.col(i).data() + Sweep::coupling);
 }
 

@@ -1,10 +1,12 @@
 // The learned factors of network/processor/factor_sweeps.hpp for one rod at a time: no allocation, no tape.
 //
 // Factors are predicted for all joints at once; then M_k = T_k B_k is formed, and the two passes, which wait for the
-// joint before, multiply by one matrix each. The results differ from the training code's in rounding, and where that
-// refuses to carry on a state (FactorSweeps::longest_state).
+// joint before, multiply by one matrix each. Layers have operands of 16 bits (network/layers/narrow_product.hpp),
+// passes single precision. The results differ from the training code's in that, and where a state is too long for it
+// (FactorSweeps::longest_state).
 #pragma once
 
+#include "network/layers/narrow_product.hpp"
 #include "network/processor/factor_sweeps.hpp"
 
 namespace rodsweep {
@@ -14,7 +16,7 @@ class FactorInference {
   /// Whether there are kernels for a latent size: multiples of 16.
   static bool supports(int latent) { return latent > 0 && latent % 16 == 0; }
 
-  /// std::invalid_argument for a latent size without kernels. `weights` and `forest` must outlive this.
+  /// std::invalid_argument for a latent size without kernels. `forest` must outlive this.
   FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights, const JointForest& forest);
 
   /// Sets the factors from the features [57, places] of a matrix, whatever the residual among them.
@@ -30,13 +32,12 @@ class FactorInference {
   };
   void form(int place, const float* coupling);
 
-  FactorSweeps<float>::Layers layers_;
-  const Parameters<float>& weights_;
   const JointForest& forest_;
-  Tensor<float> start_;      ///< [H, places] V t + b
-  Tensor<float> e_, f_, g_;  ///< [2 H, places] x_k and the sum of its children's; [H, places]
-  Tensor<float> last_;       ///< the weights of the factors in the order of `factors_`
-  Eigen::VectorXf last_bias_;
+  NarrowMatrix encode_, join_, join_again_, last_;
+  Tensor<float> start_;  ///< [H, places] V t + b
+  Eigen::VectorXf join_bias_, join_again_bias_, last_bias_;
+  NarrowColumns a_, e_, f_, g_;  ///< [52, places]; [2 H, places] x_k and the sum of its children's; [H, places]
+  Tensor<float> before_, sums_;  ///< [H, places]
   Tensor<float> factors_;  ///< [48, places]: triangles, N's 16 first entries, 5 last of N, 5 last of T, T's 16 first
   std::vector<Joint> joints_;
   std::vector<Lane16> h_, y_;  ///< states, twice each

@@ -37,10 +37,10 @@ KeyTable<Guess> copingnet_keys() {
                      .from(1, 100)
                      .labelled_if_changed(),
                  &Guess::corrections);
-  table.optional(boolean_key("once_a_step",
-                             "models with factors: those of a step's first Newton iteration serve the others too")
-                     .labelled_if_changed(),
-                 &Guess::once_a_step);
+  table.optional(
+      boolean_key("once_a_step", "models with factors: those of a step's first Newton iteration serve the others too")
+          .labelled_if_changed(),
+      &Guess::once_a_step);
   return table;
 }
 

@@ -1,4 +1,5 @@
 // The product of narrow layers against Eigen's, for every shape of tile.
+#include "network/layers/narrow_product.hpp"
 #include "network/layers/product.hpp"
 #include "tests/network/gradient_check.hpp"
 
@@ -38,6 +39,25 @@ TEST_CASE("an item's product has the same bits alone and among others") {
     multiply<float>(weight, nullptr, x.col(i), one);
     CHECK(one == all.col(i));
   }
+}
+
+TEST_CASE("a product of narrow operands is that of the rounded ones, however many items there are") {
+  for (const int rows : {16, 32, 48, 80})
+    for (const int depth : {1, 16, 51})
+      for (const int items : {1, 3, 8, 49}) {
+        const Tensor<float> weight = Tensor<float>::Random(rows, depth), x = Tensor<float>::Random(depth, items);
+        const Eigen::VectorXf bias = Eigen::VectorXf::Random(rows);
+        NarrowColumns narrowed = NarrowColumns::Zero(narrow_length(depth), items);
+        for (int i = 0; i < items; ++i) narrow(x.col(i).data(), depth, narrowed.col(i).data());
+        Tensor<float> y(rows, items);
+        NarrowMatrix(weight).multiply(bias.data(), narrowed, y);
+        const Tensor<float> exact = (weight * x).colwise() + bias;
+        CHECK((y - exact).cwiseAbs().maxCoeff() < (narrow_bits == 16 ? 8e-3F : 2e-6F) * std::sqrt(depth));
+        NarrowMatrix(weight).multiply(nullptr, narrowed, y);
+        CHECK((y.colwise() + bias - exact).cwiseAbs().maxCoeff() <
+              (narrow_bits == 16 ? 8e-3F : 2e-6F) * std::sqrt(depth));
+      }
+  CHECK_THROWS_WITH(NarrowMatrix(Tensor<float>::Zero(6, 4)), Catch::Contains("6 rows"));
 }
 
 }  // namespace

@@ -101,7 +101,8 @@ TEST_CASE("a state that has grown too long is not carried on, and gradients stay
   for (const float g : gradient.values()) REQUIRE(std::isfinite(g));
 }
 
-TEST_CASE("inference of factors gives the training code's answers, to further residuals too") {
+TEST_CASE(
+    "inference of factors gives the training code's answers, as exactly as its operands, to further residuals too") {
   for (const int latent : {16, 32, 48})
     for (const Edges& edges : {chain(2), chain(20), tree(3, 2), ring(7)}) {
       const JointForest one = joint_forest(random_rod(edges, {0}, 3)), forest = side_by_side({&one});
@@ -114,7 +115,7 @@ TEST_CASE("inference of factors gives the training code's answers, to further re
         x.topRows(6) = random_matrix(6, forest.size(), seed).cast<float>();
         const Tensor<float> expected = net(forest, x);
         inference.solve(x, y);
-        CHECK((y - expected).norm() < 1e-5F * expected.norm());
+        CHECK((y - expected).norm() < (narrow_bits == 16 ? 2e-3F : 1e-5F) * expected.norm());
       }
     }
 }
