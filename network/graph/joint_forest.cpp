@@ -7,7 +7,7 @@ namespace rodsweep {
 namespace {
 
 /// Sorts joints by depth, keeping their order within a depth, and renumbers the parents.
-JointForest sorted(const std::vector<int>& parent, const std::vector<int>& depth) {
+JointForest sorted(const std::vector<int>& parent, const std::vector<int>& depth, const std::vector<int>& beside) {
   JointForest out;
   out.order.resize(parent.size());
   std::iota(out.order.begin(), out.order.end(), 0);
@@ -20,6 +20,7 @@ JointForest sorted(const std::vector<int>& parent, const std::vector<int>& depth
     const int joint = at(out.order, i);
     if (i > 0 && at(depth, joint) > at(depth, at(out.order, i - 1))) out.level_begin.push_back(i);
     out.parent.push_back(at(parent, joint) < 0 ? -1 : at(place, at(parent, joint)));
+    out.beside.push_back(at(beside, joint));
   }
   out.level_begin.push_back(out.size());
   return out;
@@ -67,15 +68,25 @@ JointForest joint_forest(const Rod& rod) {
     queue.emplace_back(s, -1);
     grow();
   }
-  return sorted(parent, depth);
+  std::vector<int> beside(joints, 0);
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (const int up = parent[j]; up >= 0) {
+      --beside[j];
+      --beside[static_cast<std::size_t>(up)];
+    }
+    for (const int segment : {rod.joints[j].a, rod.joints[j].b})
+      if (!is_static(segment)) beside[j] += static_cast<int>(joints_of[static_cast<std::size_t>(segment)].size()) - 1;
+  }
+  return sorted(parent, depth, beside);
 }
 
 JointForest side_by_side(const std::vector<const JointForest*>& forests) {
-  std::vector<int> parent, depth;
+  std::vector<int> parent, depth, beside;
   for (const JointForest* forest : forests) {
     const int first = static_cast<int>(parent.size());
     parent.resize(parent.size() + forest->order.size());
     depth.resize(parent.size());
+    beside.insert(beside.end(), forest->beside.begin(), forest->beside.end());
     for (int level = 0; level < forest->levels(); ++level)
       for (int i = forest->level_begin[static_cast<std::size_t>(level)];
            i < forest->level_begin[static_cast<std::size_t>(level) + 1]; ++i) {
@@ -85,7 +96,7 @@ JointForest side_by_side(const std::vector<const JointForest*>& forests) {
         depth[static_cast<std::size_t>(first + i)] = level;
       }
   }
-  return sorted(parent, depth);
+  return sorted(parent, depth, beside);
 }
 
 }  // namespace rodsweep

@@ -14,6 +14,8 @@ namespace rodsweep {
 struct JointForest {
   std::vector<int> order;        ///< joint at each place (joints of several rods numbered on); by depth, then as given
   std::vector<int> parent;       ///< place of each place's parent, -1 at a root
+  std::vector<int> beside;       ///< at each place, how many joints beside parent and children share a free segment
+                                 ///< with its joint: siblings, and those that close a loop
   std::vector<int> level_begin;  ///< first place of each depth, and the end
 
   int size() const { return static_cast<int>(order.size()); }

@@ -84,7 +84,7 @@ FactorInference::FactorInference(const FactorSweeps<float>& sweeps, const Parame
   const Sweep::Layers layers = sweeps.layers();
   const auto encode = weights[layers.encode.weight()];
   encode_ = NarrowMatrix(encode.leftCols(Sweep::block_features));
-  start_ = encode.rightCols(Sweep::height_features) * height_features(forest);
+  start_ = encode.rightCols(Sweep::place_features) * place_features(forest);
   start_.colwise() += weights[layers.encode.bias()].col(0);
   join_ = NarrowMatrix(weights[layers.join.weight()]);
   join_bias_ = weights[layers.join.bias()];

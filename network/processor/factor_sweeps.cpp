@@ -126,14 +126,15 @@ bool carried(const Column<T>& state) {
 
 }  // namespace
 
-Tensor<float> height_features(const JointForest& forest) {
+Tensor<float> place_features(const JointForest& forest) {
   std::vector<int> height(at(forest.size()), 0);
-  Tensor<float> out(4, forest.size());
+  Tensor<float> out(5, forest.size());
   for (int i = forest.size() - 1; i >= 0; --i) {
     const int parent = forest.parent[at(i)];
     if (parent >= 0) height[at(parent)] = std::max(height[at(parent)], height[at(i)] + 1);
-    for (int q = 0; q < out.rows(); ++q)
+    for (int q = 0; q < 4; ++q)
       out(q, i) = std::exp(-static_cast<float>(height[at(i)]) / static_cast<float>(1 << 2 * q));
+    out(4, i) = static_cast<float>(forest.beside[at(i)]) / 4;
   }
   return out;
 }
@@ -141,7 +142,7 @@ Tensor<float> height_features(const JointForest& forest) {
 template <class T>
 FactorSweeps<T>::FactorSweeps(Parameters<T>& parameters, int latent, WeightSource& source)
     : latent_(latent),
-      encode_(parameters, "encode", block_features + height_features, latent, source),
+      encode_(parameters, "encode", block_features + place_features, latent, source),
       join_(parameters, "join", 2 * latent, latent, source),
       join_again_(parameters, "join_again", 2 * latent, latent, source),
       factors_(parameters, "factors", latent, 2 * triangle, source, 0.3) {
@@ -153,9 +154,9 @@ template <class T>
 void FactorSweeps<T>::forward(const Parameters<T>& p, const JointForest& forest, const TensorIn<T>& x, Tape& t,
                               Tensor<T>& y) const {
   const Eigen::Index n = x.cols();
-  t.a.resize(block_features + height_features, n);
+  t.a.resize(block_features + place_features, n);
   t.a.topRows(block_features) = x.bottomRows(block_features);
-  t.a.bottomRows(height_features) = rodsweep::height_features(forest).template cast<T>();
+  t.a.bottomRows(place_features) = rodsweep::place_features(forest).template cast<T>();
   apply(encode_, p, t.a, t.before_e, t.e);
   t.e = with_children(forest, t.e);
   apply(join_, p, t.e, t.before_f, t.f);

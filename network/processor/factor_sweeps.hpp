@@ -5,14 +5,15 @@
 // and its parent's column, and then solves A y = r by two passes. Here a network puts symmetric matrices in the place
 // of S_k^-1, N_k on the diagonal and T_k beside B_k, at one go for all joints, since it looks at three generations
 // alone:
-//   e_k = ramp(W a_k + V t_k + b),   t_k = exp(-height_k / 1, 4, 16, 64)
+//   e_k = ramp(W a_k + V t_k + b),   t_k = exp(-height_k / 1, 4, 16, 64), beside_k / 4
 //   f_k = ramp(W' [e_k; sum_c e_c] + b'),   g_k = ramp(W'' [f_k; sum_c f_c] + b'')
 //   (N_k, T_k) = W* g_k + b*,  lower triangles by columns
 //   h_k = r_k - sum_c B_c^T T_c h_c                    tips to roots
 //   y_k = N_k h_k - T_k B_k y_parent                   roots to tips
 // a_k are the features of A's blocks and r_k those of the residual (network/encoding/canonical_encoding.hpp), height_k
-// is how many joints lie between k and the farthest tip. With N = T = S^-1 a chain is solved exactly; at first N = I
-// and T = 0, which is Jacobi's answer. Blocks between siblings are left out.
+// is how many joints lie between k and the farthest tip, beside_k with how many A couples k besides parent and
+// children. With N = T = S^-1 a chain is solved exactly; at first N = I and T = 0, which is Jacobi's answer. Those
+// blocks are left out.
 //
 // A product of many T_k may grow without bound while they are learned: a state longer than `longest_state` is not
 // carried on.
@@ -24,13 +25,13 @@
 
 namespace rodsweep {
 
-/// t_k of all places, [4, places].
-Tensor<float> height_features(const JointForest& forest);
+/// t_k of all places, [5, places].
+Tensor<float> place_features(const JointForest& forest);
 
 template <class T>
 class FactorSweeps {
  public:
-  static constexpr int triangle = 21, residual_features = 6, block_features = 51, height_features = 4;
+  static constexpr int triangle = 21, residual_features = 6, block_features = 51, place_features = 5;
   static constexpr int coupling = 21;  ///< the feature that B_k begins at, column-major
   static constexpr T longest_state = 1e4;
 

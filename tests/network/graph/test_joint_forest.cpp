@@ -49,6 +49,14 @@ TEST_CASE("a ring is cut across from its first joint") {
   CHECK(joint_forest(test::random_rod(test::ring(6), {0}, 1)).parent == std::vector<int>{-1, 0, 1, 2, 3, 4});
 }
 
+TEST_CASE("what stands beside a joint are its siblings and the joint across a cut") {
+  CHECK(joint_forest(test::random_rod(test::chain(5), {0}, 1)).beside == std::vector<int>{0, 0, 0, 0});
+  CHECK(joint_forest(test::random_rod(test::tree(2, 2), {0}, 1)).beside == std::vector<int>{0, 0, 1, 1, 1, 1});
+  const JointForest ring = joint_forest(test::random_rod(test::ring(6), {}, 1));
+  CHECK(ring.beside == std::vector<int>{0, 0, 0, 1, 0, 1});
+  CHECK(side_by_side({&ring}).beside == ring.beside);
+}
+
 TEST_CASE("however many loops, every joint has one place, below a joint that shares a segment with it") {
   const test::Edges edges = test::net(4, 3);
   const JointForest forest = joint_forest(test::random_rod(edges, {0}, 1));
