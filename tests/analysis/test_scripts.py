@@ -1,4 +1,4 @@
-"""spatial.py and summary.py as a user runs them: files made, numbers printed, plain errors with exit code 2."""
+"""spatial.py, front.py and summary.py as a user runs them: files made, numbers printed, plain errors with exit code 2."""
 
 import csv
 import io
@@ -7,8 +7,25 @@ import os
 import subprocess
 import unittest
 
+import front
+import numpy as np
 import synthetic
 from running import Scripts
+
+
+class Front(Scripts):
+    def test_costs_and_ratios_are_those_planted_and_what_is_beaten_in_both_is_off_the_line(self):
+        self.write(scenes=("helix",), guesses=("zero", "previous", "quadratic"))
+        printed = self.run_script("front.py", "sweep.h5", "--tolerance", "1e-2", files=True).stdout
+        rows = {line.split()[0]: line.split()[1:] for line in printed.splitlines() if line.startswith("  ")}
+        self.assertAlmostEqual(float(rows["previous"][1]), 0.5, delta=0.01)
+        self.assertAlmostEqual(float(rows["CG"][2]), 1, delta=0.05)
+        self.assertEqual(printed.split()[-2:], ["figures/sweep-front.pdf", "figures/sweep-front.png"])
+        np.testing.assert_array_equal(front.unbeaten(np.array([3, 1, 2, 4.]), np.array([.2, .5, .6, .3])), [1, 0])
+
+    def test_a_file_without_times_is_refused(self):
+        self.write(solves=False)
+        self.refused("front.py", "sweep.h5", words="has no times")
 
 
 class Spatial(Scripts):

@@ -1,0 +1,113 @@
+#!/usr/bin/python3
+"""What guesses cost and what they leave: CG ratio over the time of a guess, per segment and solve.
+
+A row of panels per scene type and value of any other grid, a panel per tolerance. Means over simulations of the CG
+ratio, medians of the time; whiskers are 95 % bootstrap intervals. The grey line joins what no other guess beats in
+both. On the dashed line guess and CG to the tolerance of the timed solves take as long as with the best of the classical
+guesses, if every iteration takes as long as from zero (drawn where that tolerance is a panel's): below it a guess is
+faster. Needs a file with times and a zero guess. Written as PDF and PNG; the paths are printed after the table.
+"""
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from drawing import layout, study, style
+from reading import commandline, groups, intervals, measures, texts, timings
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
+
+EXAMPLES = """examples:
+  analysis/front.py results/learned_rods.h5 --tolerance 1e-2,1e-3
+  analysis/front.py results/learned_rods.h5 --scene helix --newton all"""
+LEARNED = "copingnet"
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES)
+    study.add_figure_arguments(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        shown = study.of_guesses(file, options)
+        if not timings.timed(file):
+            raise KeyNotFound(f"{file.path} has no times: nothing is known of what guesses cost")
+        tolerances = commandline.chosen_tolerances(file, options)
+        panels = groups.panels(file, shown.sims, None, pooled="scene.", most=None)
+        found = [estimates(shown, panel.index) for panel in panels]
+        print("\n".join(table(shown, panels, found, tolerances)) + "\n")
+        study.save(file, options, {"front": figure(shown, panels, found, tolerances)})
+
+
+def estimates(shown, index):
+    """(ratio [guess, tolerance], guess [guess] and CG from zero in us per segment and solve) of some simulations."""
+    file, sims = shown.file, shown.sims.subset(index)
+    ratio = intervals.mean(measures.cg_ratios(file, sims, shown.newton).ratio, sims.sample)
+    spent = timings.times(file, sims)[shown.newton]
+    segments = file.results("segments", sims.any_task)[:, None]
+    guess = intervals.median(spent.guess_s / spent.solves / segments * 1e6, sims.sample)
+    zero = intervals.median((spent.zero_cg_s / spent.solves / segments * 1e6)[:, [file.zero]], sims.sample)
+    return ratio, guess, float(zero.value[0])
+
+
+def table(shown, panels, found, tolerances):
+    file = shown.file
+    labels = [texts.tolerance_label(file.tolerances[t]) for t in tolerances]
+    lines = [f"CG ratio over the cost of a guess, {measures.NEWTON[shown.newton]}"]
+    for panel, (ratio, guess, zero) in zip(panels, found):
+        rows = [[panel.title(), "us per segment"] + labels]
+        rows += [[f"  {file.guesses[g]}", f"{guess[g].value:.3f}"] +
+                 [f"{ratio[g, t].value:.3f} [{ratio[g, t].low:.3f}, {ratio[g, t].high:.3f}]" for t in tolerances]
+                 for g in shown.lines()]
+        rows.append(["  CG from zero", f"{zero:.3f}"] + [""] * len(labels))
+        lines += [""] + texts.aligned(rows)
+    return lines
+
+
+def figure(shown, panels, found, tolerances):
+    file = shown.file
+    lines = shown.lines()
+    handles = shown.handles(lines) + [Line2D([], [], color="#999999", linewidth=0.8, label="not beaten in both"),
+                                      Line2D([], [], color="#999999", linewidth=0.8, linestyle=(0, (3, 2)),
+                                             label="as fast as the best classical guess")]
+    notes = [f"CG ratio: {measures.NEWTON[shown.newton]}; mean over simulations; time: median; "
+             f"{study.sample_text([ratio for ratio, _, _ in found])}.", shown.about()]
+    page = layout.Page(shown.width_mm, [panel.title() for panel in panels], len(tolerances),
+                       len(tolerances) if shown.wide else 1, 42, handles, notes, shown.timing_warning(), left_mm=12,
+                       gap_mm=9, ticks_mm=5.5)
+    timed = shown.solve_tolerance()
+    for row, (ratio, guess, zero) in enumerate(found):
+        for k, (axes, t) in enumerate(zip(page.axes[row], tolerances)):
+            y, x = ratio[:, t].value, guess.value
+            for g in lines:
+                look = shown.style(g)
+                one = slice(g, g + 1)
+                axes.errorbar(x[one], y[one], xerr=style.whiskers(x[one], guess[one].low, guess[one].high),
+                              yerr=style.whiskers(y[one], ratio[one, t].low, ratio[one, t].high), **style.WHISKERS,
+                              **look.line())
+            axes.set(xscale="log", ylim=(0, None))
+            best = np.array(lines)[unbeaten(x[lines], y[lines])]
+            axes.plot(x[best], y[best], color="#999999", linewidth=0.8, zorder=1)
+            classical = [g for g in lines if not file.guesses[g].startswith((LEARNED, "oracle"))]
+            if timed == texts.tolerance_label(file.tolerances[t]) and classical:
+                fastest = (x[classical] + y[classical] * zero).min()
+                along = np.geomspace(x[lines].min(), fastest, 60)
+                axes.plot(along, (fastest - along) / zero, color="#999999", linewidth=0.8, linestyle=(0, (3, 2)), zorder=1)
+            axes.set_title(f"to {texts.tolerance_label(file.tolerances[t])}")
+            if k == 0:
+                axes.set_ylabel("CG ratio", labelpad=2)
+        page.label_x(row, "guess (µs per segment and solve)")
+    return page
+
+
+def unbeaten(x, y):
+    """Indices, by x, of the points that no other has both below and left of."""
+    order = np.lexsort((y, x))
+    best = np.minimum.accumulate(np.concatenate([[np.inf], y[order]]))[:-1]
+    return order[y[order] < best]
+
+
+if __name__ == "__main__":
+    commandline.run(main)
