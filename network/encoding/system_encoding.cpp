@@ -28,4 +28,23 @@ void SystemEncoding::encode(const BlockMatrix& a, const VectorX& residual, Eigen
   }
 }
 
+template <class T>
+Tensor<T> system_features(const ScaledSystem<T>& systems, const JointForest& forest) {
+  std::vector<int> parent(forest.order.size());
+  for (std::size_t i = 0; i < parent.size(); ++i)
+    parent[static_cast<std::size_t>(forest.order[i])] =
+        forest.parent[i] < 0 ? -1 : forest.order[static_cast<std::size_t>(forest.parent[i])];
+  Tensor<T> out = Tensor<T>::Zero(SystemEncoding::size, systems.diagonal.cols());
+  out.template topRows<6>() = systems.residual;
+  Eigen::Index row = 6;
+  for (int c = 1; c < 6; row += c, ++c) out.middleRows(row, c) = systems.diagonal.middleRows(6 * c, c);
+  for (const SystemPattern::Coupling& c : systems.couplings)
+    if (parent[static_cast<std::size_t>(c.row)] == c.column)
+      out.col(c.row).template tail<36>() = systems.coupling.col(c.block);
+  return out;
+}
+
+template Tensor<float> system_features<float>(const ScaledSystem<float>&, const JointForest&);
+template Tensor<double> system_features<double>(const ScaledSystem<double>&, const JointForest&);
+
 }  // namespace rodsweep

@@ -26,4 +26,9 @@ class SystemEncoding {
   SystemPattern pattern_;
 };
 
+/// The same features of scaled systems side by side, of one encoding or another, whose places hang together as `forest`
+/// says: [57, places].
+template <class T>
+Tensor<T> system_features(const ScaledSystem<T>& systems, const JointForest& forest);
+
 }  // namespace rodsweep

@@ -1,5 +1,7 @@
 #include "network/training/example.hpp"
 
+#include "network/encoding/system_encoding.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -28,13 +30,17 @@ Batch<T> make_batch(const std::vector<const Example*>& examples) {
     topologies.push_back(one->topology.get());
     systems.push_back(&one->system);
   }
-  return {side_by_side(topologies),
-          joined<T>(examples, &Example::nodes),
-          joined<T>(examples, &Example::edges),
-          side_by_side<T>(systems),
-          joined<T>(examples, &Example::unit),
-          joined<T>(examples, &Example::edge_target),
-          joined<T>(examples, &Example::node_target)};
+  const Example& first = *examples.front();
+  Batch<T> out;
+  out.topology = side_by_side(topologies);
+  out.systems = side_by_side<T>(systems);
+  out.nodes = joined<T>(examples, &Example::nodes);
+  out.edges = first.edges.size() > 0 ? joined<T>(examples, &Example::edges)
+                                     : system_features<T>(out.systems, out.topology.forest);
+  out.unit = first.unit.size() > 0 ? joined<T>(examples, &Example::unit) : Tensor<T>::Ones(6, out.edges.cols());
+  out.edge_target = joined<T>(examples, &Example::edge_target);
+  out.node_target = joined<T>(examples, &Example::node_target);
+  return out;
 }
 
 template Batch<float> make_batch<float>(const std::vector<const Example*>&);

@@ -13,6 +13,7 @@ struct RodExamples {
   FeatureEncoder encoder;
   VectorX base, residual, scale;
   std::vector<Lane8> moves;
+  Tensor<float> edges;
 
   RodExamples(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system)
       : encoder(settings, rod, system.matrix()),
@@ -38,9 +39,8 @@ void put_system(const CopingNetSettings& settings, const LinearSystem& system, c
   const double solution_energy = stored.solution.dot(system.rhs());
   if (const CanonicalEncoding* canonical = of.encoder.canonical()) {
     out.system = canonical_system(pattern, canonical->frames(), system.matrix(), of.residual, error, solution_energy);
-    out.unit = Tensor<float>::Ones(6, out.edges.cols());
-    out.edge_target.resize(6, out.edges.cols());
-    for (int place = 0; place < static_cast<int>(out.edges.cols()); ++place) {
+    out.edge_target.resize(6, out.system.residual.cols());
+    for (int place = 0; place < static_cast<int>(out.edge_target.cols()); ++place) {
       const int joint = pattern.joint[static_cast<std::size_t>(place)];
       const Lane8 target = canonical->to_unit(place, load6(error.data() + 6 * joint));
       for (int row = 0; row < 6; ++row) out.edge_target(row, place) = static_cast<float>(target[row]);
@@ -50,7 +50,6 @@ void put_system(const CopingNetSettings& settings, const LinearSystem& system, c
   out.system = scaled_system(pattern, system.matrix(), of.residual, error, solution_energy);
   correction_scale(system.matrix(), of.residual, of.scale);
   if (settings.encoding == Encoding::system) {
-    out.unit = Tensor<float>::Ones(6, out.edges.cols());
     out.edge_target = by_place(*out.topology, error.cwiseQuotient(of.scale));
   } else {
     out.unit = by_place(*out.topology, of.scale.cwiseInverse());
@@ -63,8 +62,9 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Line
   Example out;
   out.topology = of.encoder.shared_topology();
   out.nodes.resize(node_features(settings), rod.segment_count());
-  out.edges.resize(edge_features(settings), rod.joint_count());
-  of.encoder.encode(rod, system, stored.at.newton, dt_c, of.base, of.residual, out.nodes, out.edges);
+  of.edges.resize(edge_features(settings), rod.joint_count());
+  of.encoder.encode(rod, system, stored.at.newton, dt_c, of.base, of.residual, out.nodes, of.edges);
+  if (is_of_graphs(settings.encoding)) out.edges = of.edges;
   put_system(settings, system, stored, of, out);
   if (settings.moves) {
     out.node_target.resize(6, rod.segment_count());

@@ -90,6 +90,32 @@ TEST_CASE("the moves of segments are learned beside the multipliers") {
   CHECK(mean_loss(trainer, data.examples) < 0.05 * before);
 }
 
+TEST_CASE("a network learns from the features that a guess gives it, though no example keeps them") {
+  for (const Encoding encoding : {Encoding::system, Encoding::canonical}) {
+    CopingNetSettings settings = small_network();
+    settings.encoding = encoding;
+    settings.base = BaseGuess::none;
+    const StoredSimulation simulation = stored_simulation(sample_scene(3), 2);
+    std::vector<Example> examples;
+    add_examples(settings, simulation, examples);
+    REQUIRE(examples.size() > 2);
+    CHECK(examples.front().edges.size() == 0);
+    const Batch<float> batch = make_batch<float>({&examples[0], &examples[1]});
+    Replay replay(simulation);
+    Eigen::Index first = 0;
+    replay.run([&](const StoredSystem& stored, const Rod& rod, const LinearSystem& system) {
+      if (first == batch.edges.cols()) return;
+      FeatureEncoder encoder(settings, rod, system.matrix());
+      Tensor<float> nodes(0, rod.segment_count()), edges(edge_features(settings), rod.joint_count());
+      const VectorX zero = VectorX::Zero(system.rhs().size());
+      encoder.encode(rod, system, stored.at.newton, simulation.constraint_dt_s, zero, system.rhs(), nodes, edges);
+      CHECK((batch.edges.middleCols(first, edges.cols()) - edges).cwiseAbs().maxCoeff() < 1e-6F);
+      first += edges.cols();
+    });
+    CHECK(first == batch.edges.cols());
+  }
+}
+
 TEST_CASE("weights have the same bits however the shards are divided among ranks") {
   for (const Processor processor : {Processor::sweeps, Processor::message_passing}) {
     const Examples data = sample_examples(small_network(processor), 3, 4);

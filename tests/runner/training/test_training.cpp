@@ -177,7 +177,7 @@ TEST_CASE("without a better validation loss the training ends when its patience 
 TEST_CASE("a loss that is not finite ends the training; the best model so far is kept") {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Toy toy;
-  toy.data.validation[5].edges(0, 0) = nan;
+  toy.data.validation[5].system.residual(0, 0) = nan;
   Training at_once = toy.run();
   CHECK(at_once.card().ending == Ending::diverged);
   CHECK(at_once.card().message == "the validation loss is not finite any more in epoch 1: try a lower training.rate");
@@ -187,7 +187,7 @@ TEST_CASE("a loss that is not finite ends the training; the best model so far is
   Training training = later.begin();
   for (int i = 0; i < 4; ++i) training.step(false);
   const auto kept = training.kept().net.parameters().values();
-  for (Example& example : later.data.training) example.edges(0, 0) = nan;
+  for (Example& example : later.data.training) example.system.residual(0, 0) = nan;
   Toy::finish(training);
   CHECK(training.card().ending == Ending::diverged);
   CHECK(training.card().message == "the training loss is not finite any more in epoch 2: try a lower training.rate");
