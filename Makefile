@@ -24,7 +24,8 @@ configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G N
 studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
   temporal_bending temporal_helix learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
-  solvers work_precision balance balance_scenes tree_wind learned_tree forest tree_long_term learned_collision learned_rods \
+  solvers work_precision balance balance_scenes tree_wind learned_tree forest tree_long_term learned_collision \
+  learned_rods learned_rods_length learned_rods_closed \
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 

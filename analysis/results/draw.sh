@@ -14,7 +14,7 @@ for study in spatial_bending spatial_helix learned_bending learned_helix; do
   table summary $study
 done
 pretrained=network/pretrained
-/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful,tree,collision,rods-large}.h5 -o $out >$out/pretrained.txt
+/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful,tree,collision,rods,rods-large}.h5 -o $out >$out/pretrained.txt
 for study in tree_wind learned_tree; do
   figures spatial $study --x scene.depth
   table summary $study --by scene.depth
@@ -42,7 +42,11 @@ for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step
 done
 table summary learned_closed_loop
 table summary learned_rods
-for study in deck_bending deck_helix learned_closed_loop learned_rods; do
+for scene in bending_rod helix knot; do figures front learned_rods --scene $scene --tolerance 1e-2,1e-3,1e-4; done
+table summary learned_rods_length --by scene.segments
+figures spatial learned_rods_length
+table summary learned_rods_closed --by scene.segments
+for study in deck_bending deck_helix learned_closed_loop learned_rods learned_rods_closed; do
   echo >>"$out/$study.txt"
   script summary "$study" --newton all >>"$out/$study.txt"
 done
