@@ -38,12 +38,16 @@ JointForest joint_forest(const Rod& rod) {
   const auto is_static = [&](int segment) { return rod.segments[static_cast<std::size_t>(segment)].is_static; };
   std::vector<int> parent(joints, -1), depth(joints, -1), segment_seen(joints_of.size(), 0);
   std::vector<std::pair<int, int>> queue;  // segment to continue from, joint that led there
+  bool cut = false;
 
   const auto grow = [&] {
     for (std::size_t next = 0; next < queue.size(); ++next) {
       const auto [segment, from] = queue[next];
-      if (is_static(segment)) continue;                                 // nothing couples through it
-      if (segment_seen[static_cast<std::size_t>(segment)]++) continue;  // a loop: cut here
+      if (is_static(segment)) continue;  // nothing couples through it
+      if (segment_seen[static_cast<std::size_t>(segment)]++) {
+        cut = true;
+        continue;
+      }
       int above = from;
       for (const int j : joints_of[static_cast<std::size_t>(segment)]) {
         if (depth[static_cast<std::size_t>(j)] >= 0) continue;  // `from`, or a joint that closes a loop
@@ -77,7 +81,9 @@ JointForest joint_forest(const Rod& rod) {
     for (const int segment : {rod.joints[j].a, rod.joints[j].b})
       if (!is_static(segment)) beside[j] += static_cast<int>(joints_of[static_cast<std::size_t>(segment)].size()) - 1;
   }
-  return sorted(parent, depth, beside);
+  JointForest out = sorted(parent, depth, beside);
+  out.cut = cut;
+  return out;
 }
 
 JointForest side_by_side(const std::vector<const JointForest*>& forests) {
@@ -96,7 +102,9 @@ JointForest side_by_side(const std::vector<const JointForest*>& forests) {
         depth[static_cast<std::size_t>(first + i)] = level;
       }
   }
-  return sorted(parent, depth, beside);
+  JointForest out = sorted(parent, depth, beside);
+  out.cut = std::any_of(forests.begin(), forests.end(), [](const JointForest* forest) { return forest->cut; });
+  return out;
 }
 
 }  // namespace rodsweep

@@ -17,6 +17,7 @@ struct JointForest {
   std::vector<int> beside;       ///< at each place, how many joints beside parent and children share a free segment
                                  ///< with its joint: siblings, and those that close a loop
   std::vector<int> level_begin;  ///< first place of each depth, and the end
+  bool cut = false;              ///< are there loops that were cut?
 
   int size() const { return static_cast<int>(order.size()); }
   int levels() const { return static_cast<int>(level_begin.size()) - 1; }

@@ -45,13 +45,18 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, in
   else
     run(rod, system, newton, dt_c, x, moves != nullptr);
   double length = 1, energy = 0;
-  if (model_->net.settings().best_length || use_.corrections > 1) {
+  const bool best_length = model_->net.settings().best_length || use_.corrections > 1;
+  const bool may_harm = encoder_.topology().forest.cut && !moves;
+  if (best_length || may_harm) {
     system.matrix().multiply(d_.data(), ad_.data());
     ++proposal.products;
+  }
+  if (best_length) {
     energy = d_.dot(ad_);
     length = energy == 0 ? 0 : d_.dot(residual_) / energy;
   }
   if (!std::isfinite(length) || !d_.allFinite() || (moves && !write(*moves))) return false;
+  if (may_harm && harms(system.matrix(), length)) return true;
   x += length * d_;
   proposal.nonzero = proposal.nonzero || length != 0;
   for (int i = 1; i < use_.corrections && energy > 0; ++i) {
@@ -62,6 +67,12 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, in
     x += length * d_;
   }
   return true;
+}
+
+/// Does the residual grow where d_ is added, times `length`?
+bool CopingNetCorrection::harms(const BlockMatrix& a, double length) {
+  previous_ = residual_ - length * ad_;
+  return jacobi_norm_squared(a, previous_) > jacobi_norm_squared(a, residual_);
 }
 
 /// The next direction of conjugate gradients, d_ = F r - (F r . A d_) / (d_ . A d_) d_, A d_, its energy, and the

@@ -2,6 +2,8 @@
 //
 //   x = x_base + c d,   d = unit * y(features of the rod, A, r),   r = b - A x_base,
 //   c = d.r / d.A d with `best_length` or several corrections, else 1
+// Where loops were cut, of which the network knows nothing, d is only added if it lowers the residual as well, in the
+// natural norm sqrt(r^T D^-1 r).
 // Factors (network/processor/factor_sweeps.hpp), once predicted, answer to any residual: `corrections` of them are as
 // many steps of conjugate gradients with the factors as preconditioner, of which this is the first.
 // and, where the network predicts them, the segments' moves Delta p in their own frames, in metres and radians.
@@ -38,6 +40,7 @@ class CopingNetCorrection {
   void run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x, bool with_moves);
   void answer(bool with_moves);
   void answer_to_residual();
+  bool harms(const BlockMatrix& a, double length);
   double correct_again(const BlockMatrix& a, double energy, double& length);
   bool write(std::vector<Lane8>& moves) const;
 

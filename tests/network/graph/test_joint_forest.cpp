@@ -55,6 +55,9 @@ TEST_CASE("what stands beside a joint are its siblings and the joint across a cu
   const JointForest ring = joint_forest(test::random_rod(test::ring(6), {}, 1));
   CHECK(ring.beside == std::vector<int>{0, 0, 0, 1, 0, 1});
   CHECK(side_by_side({&ring}).beside == ring.beside);
+  CHECK(ring.cut);
+  CHECK(side_by_side({&ring}).cut);
+  CHECK_FALSE(joint_forest(test::random_rod(test::ring(6), {0}, 1)).cut);
 }
 
 TEST_CASE("however many loops, every joint has one place, below a joint that shares a segment with it") {
