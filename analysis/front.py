@@ -12,14 +12,14 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from drawing import layout, study, style
-from reading import commandline, groups, intervals, measures, texts, timings
+from reading import commandline, groups, intervals, measures, remarks, texts, timings
 from reading.errors import KeyNotFound
 from reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/front.py results/learned_rods.h5 --tolerance 1e-2,1e-3
   analysis/front.py results/learned_rods.h5 --scene helix --newton all"""
-LEARNED = "copingnet"
+INFORMED = ("copingnet", "knn", "oracle")   # in their labels: neither history nor extrapolation alone
 
 
 def arguments():
@@ -77,8 +77,8 @@ def figure(shown, panels, found, tolerances):
     page = layout.Page(shown.width_mm, [panel.title() for panel in panels], len(tolerances),
                        len(tolerances) if shown.wide else 1, 42, handles, notes, shown.timing_warning(), left_mm=12,
                        gap_mm=9, ticks_mm=5.5)
-    timed = shown.solve_tolerance()
-    for row, (ratio, guess, zero) in enumerate(found):
+    for row, (panel, (ratio, guess, zero)) in enumerate(zip(panels, found)):
+        timed = remarks.solve_tolerance(file, shown.sims.any_task[panel.index])
         for k, (axes, t) in enumerate(zip(page.axes[row], tolerances)):
             y, x = ratio[:, t].value, guess.value
             for g in lines:
@@ -88,12 +88,13 @@ def figure(shown, panels, found, tolerances):
                               yerr=style.whiskers(y[one], ratio[one, t].low, ratio[one, t].high), **style.WHISKERS,
                               **look.line())
             axes.set(xscale="log", ylim=(0, None))
-            best = np.array(lines)[unbeaten(x[lines], y[lines])]
+            there = [g for g in lines if np.isfinite(x[g]) and np.isfinite(y[g])]
+            best = np.array(there, dtype=int)[unbeaten(x[there], y[there])]
             axes.plot(x[best], y[best], color="#999999", linewidth=0.8, zorder=1)
-            classical = [g for g in lines if not file.guesses[g].startswith((LEARNED, "oracle"))]
+            classical = [g for g in there if not any(word in file.guesses[g] for word in INFORMED)]
             if timed == texts.tolerance_label(file.tolerances[t]) and classical:
                 fastest = (x[classical] + y[classical] * zero).min()
-                along = np.geomspace(x[lines].min(), fastest, 60)
+                along = np.geomspace(x[there].min(), fastest, 60)
                 axes.plot(along, (fastest - along) / zero, color="#999999", linewidth=0.8, linestyle=(0, (3, 2)), zorder=1)
             axes.set_title(f"to {texts.tolerance_label(file.tolerances[t])}")
             if k == 0:

@@ -3,12 +3,14 @@
 #pragma once
 
 #include "network/encoding/canonical_frames.hpp"
+#include "network/encoding/system_encoding.hpp"
 
 namespace rodsweep {
 
 class CanonicalEncoding {
  public:
-  static constexpr int size = 57;  ///< r^ (6), the upper triangle of A^_kk without its diagonal (15), A^_k,parent (36)
+  static constexpr int size =
+      SystemEncoding::size;  ///< r^ (6), the upper triangle of A^_kk without its diagonal (15), A^_k,parent (36)
 
   explicit CanonicalEncoding(const SystemPattern& pattern) : frames_(pattern) {}
 

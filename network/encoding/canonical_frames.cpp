@@ -57,6 +57,8 @@ CanonicalFrames::CanonicalFrames(const SystemPattern& pattern)
 void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual) {
   for (Tree& tree : trees_) tree = {};
   double sum = 0;
+  // What rolls are read from, without its unit, so that its square is a single-precision number of any rod.
+  const double unit = frames_.empty() ? 1 : 1 / diagonal_of(a.blocks[at(pattern.diagonal[0])])[2];
   for (std::size_t place = 0; place < frames_.size(); ++place) {
     // All roots of a joint at once: of the diagonal, and of the size of what its roll is read from.
     const Lane4 diagonal = diagonal_of(a.blocks[at(pattern.diagonal[place])]);
@@ -65,8 +67,8 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
     double re = 1, im = 0;
     if (parent) {
       const Block6& block = a.blocks[at(parent->block)];
-      re = -(block.column[3][3] + block.column[4][4]);
-      im = block.column[4][3] - block.column[3][4];
+      re = -unit * (block.column[3][3] + block.column[4][4]);
+      im = unit * (block.column[4][3] - block.column[3][4]);
       if (re == 0 && im == 0) re = 1;
     }
     const Lane8 roots =

@@ -20,9 +20,9 @@ void SystemEncoding::encode(const BlockMatrix& a, const VectorX& residual, Eigen
       std::fill(out, out + 36, 0.F);
       continue;
     }
-    const SystemPattern::Coupling& coupling = pattern_.couplings[at(k)];
-    const Block6& block = a.blocks[at(coupling.block)];
-    const double* parent = &scale[6 * pattern_.joint[at(coupling.column)]];
+    const SystemPattern::Coupling& up = pattern_.couplings[at(k)];
+    const Block6& block = a.blocks[at(up.block)];
+    const double* parent = &scale[6 * pattern_.joint[at(up.column)]];
     for (int c = 0; c < 6; ++c)
       for (int r = 0; r < 6; ++r) *out++ = static_cast<float>(block.column[c][r] * s[r] * parent[c] * inverse_rho2);
   }

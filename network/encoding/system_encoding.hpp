@@ -4,7 +4,7 @@
 //   r^ (6), the off-diagonal entries of its diagonal block of A^ (15), its block with its parent joint (36; 0 at
 //   roots).
 // They determine a chain's d^ completely, and are the same for a rod scaled in length, mass or time. Couplings between
-// siblings at a branching are left out, and all those of joints that close a loop.
+// siblings at a branching are left out, and those across the cut of a loop.
 #pragma once
 
 #include <utility>
@@ -15,7 +15,7 @@ namespace rodsweep {
 
 class SystemEncoding {
  public:
-  static constexpr int size = 57;
+  static constexpr int size = 57, coupling = 21;  ///< features, and the one that the block with the parent begins at
 
   explicit SystemEncoding(SystemPattern pattern) : pattern_(std::move(pattern)) {}
 

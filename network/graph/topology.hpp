@@ -1,7 +1,7 @@
 // How the joints of a rod, or of several side by side, hang together, for every kind of processor.
 //
 // Edges (joints) are numbered by places: of one rod, the places of its JointForest; of several, those of one rod after
-// those of the other. A rod whose joints close a loop has no forest; its places are its joints.
+// those of the other.
 #pragma once
 
 #include "network/graph/joint_forest.hpp"
@@ -11,7 +11,7 @@ namespace rodsweep {
 
 struct Topology {
   RodGraph graph;          ///< an edge per place
-  JointForest forest;      ///< levels of places: forest.order[i] is a place; empty where there is a loop
+  JointForest forest;      ///< levels of places: forest.order[i] is a place
   std::vector<int> joint;  ///< of one rod: the joint at each place
 };
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 namespace rodsweep {
 
@@ -21,34 +20,39 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
       previous_(a.unknowns()) {
   const CopingNetSettings& settings = model_->net.settings();
   if ((use.corrections > 1 || use.once_a_step) && settings.processor != Processor::factors)
-    throw std::invalid_argument("CopingNetCorrection: " + std::to_string(use.corrections) +
-                                " corrections without factors");
+    throw std::invalid_argument("CopingNetCorrection: corrections or once_a_step without factors");
   if (settings.processor == Processor::sweeps && !is_of_graphs(settings.encoding) &&
       SweepsInference::supports(settings.latent))
     sweeps_ = std::make_unique<SweepsInference>(model_->net.sweeps(), model_->net.parameters(), rod.joint_count());
-  if (settings.processor == Processor::factors && FactorInference::supports(settings.latent))
+  if (settings.processor == Processor::factors)
     factors_ =
         std::make_unique<FactorInference>(model_->net.factors(), model_->net.parameters(), encoder_.topology().forest);
+  may_harm_ = encoder_.topology().forest.cut && settings.processor != Processor::message_passing;
+  if (may_harm_) base_.resize(a.unknowns());
 }
 
-bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, int newton, double dt_c,
+bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c,
                                   Proposal& proposal, VectorX& x, std::vector<Lane8>* moves) {
+  const BlockMatrix& a = system.matrix();
   if (proposal.nonzero) {
-    system.matrix().multiply(x.data(), residual_.data());
+    a.multiply(x.data(), residual_.data());
     residual_ = system.rhs() - residual_;
     ++proposal.products;
   } else {
     residual_ = system.rhs();
   }
-  if (use_.once_a_step && newton > 0 && factorised_)
+  const bool may_harm = may_harm_ && !moves;
+  const double before = may_harm ? jacobi_norm_squared(a, residual_) : 0;
+  if (may_harm) base_ = x;
+
+  if (use_.once_a_step && factorised_at_ && at.step == factorised_at_->step && at.newton > factorised_at_->newton)
     answer_to_residual();
   else
-    run(rod, system, newton, dt_c, x, moves != nullptr);
+    run(rod, system, at, dt_c, x, moves != nullptr);
   double length = 1, energy = 0;
   const bool best_length = model_->net.settings().best_length || use_.corrections > 1;
-  const bool may_harm = encoder_.topology().forest.cut && !moves;
   if (best_length || may_harm) {
-    system.matrix().multiply(d_.data(), ad_.data());
+    a.multiply(d_.data(), ad_.data());
     ++proposal.products;
   }
   if (best_length) {
@@ -56,23 +60,26 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, in
     length = energy == 0 ? 0 : d_.dot(residual_) / energy;
   }
   if (!std::isfinite(length) || !d_.allFinite() || (moves && !write(*moves))) return false;
-  if (may_harm && harms(system.matrix(), length)) return true;
   x += length * d_;
-  proposal.nonzero = proposal.nonzero || length != 0;
   for (int i = 1; i < use_.corrections && energy > 0; ++i) {
     residual_ -= length * ad_;
-    energy = correct_again(system.matrix(), energy, length);
+    energy = correct_again(a, energy, length);
     ++proposal.products;
-    if (!std::isfinite(length)) break;
+    if (!(energy > 0) || !std::isfinite(length)) {
+      length = 0;
+      break;
+    }
     x += length * d_;
   }
+  if (may_harm) {
+    if (length != 0) residual_ -= length * ad_;
+    if (!(jacobi_norm_squared(a, residual_) <= before)) {
+      x = base_;
+      return true;
+    }
+  }
+  proposal.nonzero = true;
   return true;
-}
-
-/// Does the residual grow where d_ is added, times `length`?
-bool CopingNetCorrection::harms(const BlockMatrix& a, double length) {
-  previous_ = residual_ - length * ad_;
-  return jacobi_norm_squared(a, previous_) > jacobi_norm_squared(a, residual_);
 }
 
 /// The next direction of conjugate gradients, d_ = F r - (F r . A d_) / (d_ . A d_) d_, A d_, its energy, and the
@@ -98,15 +105,15 @@ void CopingNetCorrection::answer_to_residual() {
 }
 
 /// Sets d_ and, on request, y_nodes_.
-void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x,
-                              bool with_moves) {
-  encoder_.encode(rod, system, newton, dt_c, x, residual_, nodes_, edges_);
+void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c,
+                              const VectorX& x, bool with_moves) {
+  encoder_.encode(rod, system, at.newton, dt_c, x, residual_, nodes_, edges_);
   if (is_of_graphs(model_->net.settings().encoding)) {
     model_->scales.nodes.apply(nodes_);
     model_->scales.edges.apply(edges_);
   }
   if (factors_) factors_->factorise(edges_);
-  factorised_ = true;
+  factorised_at_ = at;
   answer(with_moves);
 }
 

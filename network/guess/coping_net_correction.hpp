@@ -2,14 +2,15 @@
 //
 //   x = x_base + c d,   d = unit * y(features of the rod, A, r),   r = b - A x_base,
 //   c = d.r / d.A d with `best_length` or several corrections, else 1
-// Where loops were cut, of which the network knows nothing, d is only added if it lowers the residual as well, in the
-// natural norm sqrt(r^T D^-1 r).
-// Factors (network/processor/factor_sweeps.hpp), once predicted, answer to any residual: `corrections` of them are as
-// many steps of conjugate gradients with the factors as preconditioner, of which this is the first.
-// and, where the network predicts them, the segments' moves Delta p in their own frames, in metres and radians.
+// Sweeps and factors know nothing of what lies across the cut of a loop: there x_base stays unless the residual falls
+// as well, in the natural norm sqrt(r^T D^-1 r). Factors (network/processor/factor_sweeps.hpp), once predicted, answer
+// to any residual: `corrections` of them are as many steps of conjugate gradients with the factors as preconditioner,
+// of which this is the first. and, where the network predicts them, the segments' moves Delta p in their own frames, in
+// metres and radians.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "network/processor/factor_inference.hpp"
@@ -27,32 +28,34 @@ struct FactorUse {
 
 class CopingNetCorrection {
  public:
-  /// `a`: the matrix of the rod's systems. std::invalid_argument where a use is for factors and the model has none.
+  /// `a`: the matrix of the rod's systems. std::invalid_argument where a use is for factors and the model has none, or
+  /// factors of a latent size without kernels.
   CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a, FactorUse use = {});
 
   /// Corrects x, which holds x_base, of the system assembled at the rod's state with dt_c; sets `moves`, per segment,
   /// if given (models with settings.moves only). False, and x as it was, where the network's answer is not finite.
   /// Adds its products with A to `proposal`, which is of x_base. Allocates nothing after a first call.
-  bool correct(const Rod& rod, const LinearSystem& system, int newton, double dt_c, Proposal& proposal, VectorX& x,
-               std::vector<Lane8>* moves);
+  bool correct(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, Proposal& proposal,
+               VectorX& x, std::vector<Lane8>* moves);
 
  private:
-  void run(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& x, bool with_moves);
+  void run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, const VectorX& x,
+           bool with_moves);
   void answer(bool with_moves);
   void answer_to_residual();
-  bool harms(const BlockMatrix& a, double length);
   double correct_again(const BlockMatrix& a, double energy, double& length);
   bool write(std::vector<Lane8>& moves) const;
 
   std::shared_ptr<const Model> model_;
   FactorUse use_;
-  bool factorised_ = false;
+  bool may_harm_ = false;                       ///< loops were cut
+  std::optional<SolvePosition> factorised_at_;  ///< of the last features
   FeatureEncoder encoder_;
   std::unique_ptr<SweepsInference> sweeps_;
   std::unique_ptr<FactorInference> factors_;
   CopingNet<float>::Tape tape_;
   Tensor<float> nodes_, edges_, y_edges_, y_nodes_;
-  VectorX residual_, d_, ad_, previous_;
+  VectorX residual_, d_, ad_, previous_, base_;
 };
 
 }  // namespace rodsweep

@@ -18,7 +18,7 @@ Proposal CopingNetGuess::propose(const LinearSystem& system, const SolvePosition
   const Rod& rod = scene_.rods[r];
   if (!corrections_[r]) corrections_[r] = std::make_unique<CopingNetCorrection>(model_, rod, system.matrix(), use_);
   Proposal proposal = base_->propose(system, at, x0);
-  corrections_[r]->correct(rod, system, at.newton, dt_c_, proposal, x0, nullptr);
+  corrections_[r]->correct(rod, system, at, dt_c_, proposal, x0, nullptr);
   return proposal;
 }
 

@@ -18,8 +18,7 @@ bool CopingNetIncrements::predict(const Rod& rod, const LinearSystem& system, co
   const bool own_moves = model_->net.settings().moves;
   base_->prepare(at);
   Proposal proposal = base_->propose(system, at, delta_lambda);
-  if (!correction->correct(rod, system, at.newton, dt_c, proposal, delta_lambda, own_moves ? &moves : nullptr))
-    return false;
+  if (!correction->correct(rod, system, at, dt_c, proposal, delta_lambda, own_moves ? &moves : nullptr)) return false;
   if (!own_moves) system.displacements(rod, delta_lambda, moves);
   base_->accept(at, delta_lambda);
   return delta_lambda.allFinite();

@@ -13,9 +13,10 @@ template <class T>
 CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) : settings_(settings) {
   WeightSource source(seed);
   const int nodes = node_features(settings), edges = edge_features(settings);
+  if (settings.moves && settings.processor != Processor::message_passing)
+    throw std::invalid_argument("CopingNet: sweeps and factors predict no moves of segments");
   switch (settings.processor) {
     case Processor::sweeps:
-      if (settings.moves) throw std::invalid_argument("CopingNet: sweeps predict no moves of segments");
       sweeps_ = Sweeps<T>(parameters_, edges + 2 * nodes, settings.latent, 6, settings.recurrence, source);
       break;
     case Processor::factors:

@@ -48,7 +48,7 @@ Lane16 columns(const Lane16& first, const Lane16& last) {
 #undef RODSWEEP_ENTRY
 }
 
-/// Columns of T B: T's columns, each in both halves, times rows I and J of ... lanes of `b`.
+/// Two columns of T B: `t` T's columns, each in both halves; B's columns begin at lanes C and D of `b`.
 template <int C, int D>
 Lane16 product(const Lane16 (&t)[6], const Lane16& b) {
   return (t[0] * spread<C, D>(b) + t[1] * spread<C + 1, D + 1>(b)) +

@@ -10,16 +10,16 @@
 //   (N_k, T_k) = W* g_k + b*,  lower triangles by columns
 //   h_k = r_k - sum_c B_c^T T_c h_c                    tips to roots
 //   y_k = N_k h_k - T_k B_k y_parent                   roots to tips
-// a_k are the features of A's blocks and r_k those of the residual (network/encoding/canonical_encoding.hpp), height_k
-// is how many joints lie between k and the farthest tip, beside_k with how many A couples k besides parent and
-// children. With N = T = S^-1 a chain is solved exactly; at first N = I and T = 0, which is Jacobi's answer. Those
-// blocks are left out.
+// a_k are the features of A's blocks and r_k those of the residual (network/encoding/system_encoding.hpp), height_k is
+// how many joints lie between k and the farthest tip, beside_k with how many A couples k besides parent and children:
+// those blocks are left out. With N = T = S^-1 a chain is solved exactly; at first N = I and T = 0, which is Jacobi's
+// answer, but for small random weights.
 //
 // A product of many T_k may grow without bound while they are learned: a state longer than `longest_state` is not
 // carried on.
 #pragma once
 
-#include "network/encoding/coping_net_settings.hpp"
+#include "network/encoding/system_encoding.hpp"
 #include "network/graph/joint_forest.hpp"
 #include "network/layers/linear.hpp"
 
@@ -31,8 +31,9 @@ Tensor<float> place_features(const JointForest& forest);
 template <class T>
 class FactorSweeps {
  public:
-  static constexpr int triangle = 21, residual_features = 6, block_features = 51, place_features = 5;
-  static constexpr int coupling = 21;  ///< the feature that B_k begins at, column-major
+  static constexpr int triangle = 21, place_features = 5;
+  static constexpr int residual_features = 6, block_features = SystemEncoding::size - residual_features;
+  static constexpr int coupling = SystemEncoding::coupling;  ///< the feature that B_k begins at
   static constexpr T longest_state = 1e4;
 
   struct Tape {

@@ -41,7 +41,7 @@ std::string default_label(const std::string& name, const Json& parameters) {
     } else if (described->text == Key::Text::path) {
       label += " " + std::filesystem::path(value.get<std::string>()).stem().native();
     } else {
-      label += " " + (value.is_string() ? value.get<std::string>() : value.dump());
+      label += " " + (value.is_boolean() ? key : value.is_string() ? value.get<std::string>() : value.dump());
     }
   }
   return label;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "network/processor/factor_inference.hpp"
 #include "runner/job/words.hpp"
 
 namespace rodsweep {
@@ -50,6 +51,11 @@ void check(const TrainingJob& training, const std::filesystem::path& file) {
                     fmt::format("\"{}\" is not allowed with network.processor \"factors\", which are those of a matrix "
                                 "in the rod's own frames; must be \"canonical\"",
                                 word_of(encodings, training.network.encoding)));
+  }
+  if (training.network.processor == Processor::factors && !FactorInference::supports(training.network.latent)) {
+    throw job_error(file, "network.latent",
+                    fmt::format("{} is not allowed with network.processor \"factors\"; must be a multiple of 16",
+                                training.network.latent));
   }
   if (training.network.moves && settings.loss != LossKind::mse) {
     throw job_error(file, "network.moves",

@@ -102,7 +102,7 @@ Key network_key() {
                      .defaults_to(true),
                  boolean_key("moves", "message_passing: also predict the moves of segments")
                      .defaults_to(false)
-                     .only({"message_passing"}, "sweeps work on joints alone"),
+                     .only({"message_passing"}, "sweeps and factors work on joints alone"),
              },
              "processor")
       .defaults_to(Json::object());

@@ -24,18 +24,19 @@ Scene rolled(Scene scene) {
   return scene;
 }
 
-CopingNetSettings settings_of(Recurrence recurrence) {
+CopingNetSettings settings_of(Processor processor, Recurrence recurrence = Recurrence::gated) {
   CopingNetSettings settings;
   settings.encoding = Encoding::canonical;
   settings.base = BaseGuess::none;
+  settings.processor = processor;
   settings.recurrence = recurrence;
   settings.latent = 16;
   return settings;
 }
 
 /// What a network with random weights leaves of each system's error, in the energy norm, over the error of zero.
-std::vector<double> left(Scene scene, Recurrence recurrence) {
-  CopingNetGuess guess(test::random_model(settings_of(recurrence)), scene, 0.02, 3);
+std::vector<double> left(Scene scene, const CopingNetSettings& settings) {
+  CopingNetGuess guess(test::random_model(settings), scene, 0.02, 3);
   std::vector<double> out;
   int seen = 0;
   test::observe(scene, [&](const LinearSystem& system) {
@@ -50,18 +51,19 @@ std::vector<double> left(Scene scene, Recurrence recurrence) {
 }
 
 TEST_CASE("to a network with canonical frames turned, mirrored and rolled scenes are one") {
-  const Recurrence recurrence = GENERATE(Recurrence::gated, Recurrence::linear);
+  const CopingNetSettings settings = GENERATE(settings_of(Processor::sweeps), settings_of(Processor::factors),
+                                              settings_of(Processor::sweeps, Recurrence::linear));
   for (const test::TurnedCase& each : test::turned_cases()) {
-    if (std::string(each.name) == "ring") continue;  // sweeps need trees
+    if (std::string(each.name) == "ring") continue;  // its residual has neither an axis nor a hand but by rounding
     INFO(each.name);
-    const std::vector<double> original = left(each.scene, recurrence);
+    const std::vector<double> original = left(each.scene, settings);
     std::vector<Scene> images{test::mirrored(each.scene), rolled(each.scene), rolled(test::mirrored(each.scene))};
     for (const test::RigidMotion& motion : test::motions) images.push_back(moved(each.scene, motion));
     for (const Scene& image : images) {
-      const std::vector<double> same = left(image, recurrence);
+      const std::vector<double> same = left(image, settings);
       REQUIRE(same.size() == original.size());
       // In the first step a helix's residual is in one plane, and its hand that of rounding.
-      for (std::size_t i = 0; i < same.size(); ++i) CHECK(same[i] == Approx(original[i]).epsilon(i < 3 ? 2e-2 : 1e-3));
+      for (std::size_t i = 0; i < same.size(); ++i) CHECK(same[i] == Approx(original[i]).epsilon(i < 3 ? 3e-2 : 1e-3));
     }
   }
 }
@@ -70,7 +72,7 @@ TEST_CASE("frames are orthogonal, and units come back") {
   Scene scene = build_scene(test::bending_rod(6));
   const Rod& rod = scene.rods[0];
   test::observe(scene, [&](const LinearSystem& system) {
-    FeatureEncoder encoder(settings_of(Recurrence::gated), rod, system.matrix());
+    FeatureEncoder encoder(settings_of(Processor::sweeps), rod, system.matrix());
     Tensor<float> nodes(0, 6), edges(CanonicalEncoding::size, 5);
     encoder.encode(rod, system, 0, 0.02, VectorX(), system.rhs(), nodes, edges);
     CHECK(edges.topRows(6).squaredNorm() / 30 == Approx(1).epsilon(1e-5));  // r^ has a root mean square of one

@@ -122,7 +122,7 @@ TEST_CASE("misspelt and impossible values of a training are refused") {
 TEST_CASE("keys that the network or the loss has no use for are refused, also where its kind is the default") {
   CHECK(refused("/network/moves", "true") ==
         "job.json: network.moves: this key belongs to network.processor \"message_passing\", not to \"sweeps\"; "
-        "sweeps work on joints alone");
+        "sweeps and factors work on joints alone");
   CHECK(refused("/network", R"({"processor": "sweeps", "steps": 3})") ==
         "job.json: network.steps: this key belongs to network.processor \"message_passing\", not to \"sweeps\"");
   CHECK(refused("/training/cg_steps", "3") ==
