@@ -45,8 +45,8 @@ table summary learned_rods
 for scene in bending_rod helix knot; do figures front learned_rods --scene $scene --tolerance 1e-2,1e-3,1e-4; done
 table summary learned_rods_length --by scene.segments
 figures spatial learned_rods_length
-table summary learned_rods_closed --by scene.segments
-for study in deck_bending deck_helix learned_closed_loop learned_rods learned_rods_closed; do
+table summary learned_rods_closed --by scene.segments --newton all
+for study in deck_bending deck_helix learned_closed_loop learned_rods; do
   echo >>"$out/$study.txt"
   script summary "$study" --newton all >>"$out/$study.txt"
 done
