@@ -42,9 +42,9 @@ for by in stiffness:scene.youngs_modulus_pa length:scene.length_m step:time.step
 done
 table summary learned_closed_loop
 table summary learned_rods
-for scene in bending_rod helix knot; do figures front learned_rods --scene $scene --tolerance 1e-2,1e-3,1e-4; done
+for scene in bending_rod helix; do figures front learned_rods --scene $scene --tolerance 1e-2,1e-3,1e-4; done
 table summary learned_rods_length --by scene.segments
-figures spatial learned_rods_length
+figures spatial learned_rods_length && rm $out/learned_rods_length-{speedup,time}.png
 table summary learned_rods_closed --by scene.segments --newton all
 for study in deck_bending deck_helix learned_closed_loop learned_rods; do
   echo >>"$out/$study.txt"
