@@ -50,6 +50,7 @@ for study in deck_bending deck_helix learned_closed_loop learned_rods; do
   echo >>"$out/$study.txt"
   script summary "$study" --newton all >>"$out/$study.txt"
 done
+{ echo; script summary learned_rods --scene ring --by scene.clamp; } >>"$out/learned_rods.txt"
 for scene in bending_rod:bending helix:helix; do
   model=${scene#*:}
   figures spatial guarded --scene "${scene%%:*}" --x 'guesses[4].guarded.threshold' \
