@@ -7,9 +7,9 @@ import os
 import subprocess
 import unittest
 
+import synthetic
 import front
 import numpy as np
-import synthetic
 from running import Scripts
 
 
