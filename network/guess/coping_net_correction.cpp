@@ -60,6 +60,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
     length = energy == 0 ? 0 : d_.dot(residual_) / energy;
   }
   if (!std::isfinite(length) || !d_.allFinite() || (moves && !write(*moves))) return false;
+  const bool moved = length != 0;
   x += length * d_;
   for (int i = 1; i < use_.corrections && energy > 0; ++i) {
     residual_ -= length * ad_;
@@ -78,7 +79,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
       return true;
     }
   }
-  proposal.nonzero = true;
+  proposal.nonzero = proposal.nonzero || moved;
   return true;
 }
 

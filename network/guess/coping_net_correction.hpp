@@ -2,11 +2,14 @@
 //
 //   x = x_base + c d,   d = unit * y(features of the rod, A, r),   r = b - A x_base,
 //   c = d.r / d.A d with `best_length` or several corrections, else 1
+//
+// and, where the network predicts them, the segments' moves Delta p in their own frames, in metres and radians.
+//
 // Sweeps and factors know nothing of what lies across the cut of a loop: there x_base stays unless the residual falls
-// as well, in the natural norm sqrt(r^T D^-1 r). Factors (network/processor/factor_sweeps.hpp), once predicted, answer
-// to any residual: `corrections` of them are as many steps of conjugate gradients with the factors as preconditioner,
-// of which this is the first. and, where the network predicts them, the segments' moves Delta p in their own frames, in
-// metres and radians.
+// as well, in the natural norm sqrt(r^T D^-1 r).
+//
+// Factors (network/processor/factor_sweeps.hpp), once predicted, answer to any residual: `corrections` of them are as
+// many steps of conjugate gradients with the factors as preconditioner, of which this is the first.
 #pragma once
 
 #include <memory>

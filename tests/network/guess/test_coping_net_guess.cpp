@@ -100,9 +100,10 @@ TEST_CASE("a right-hand side of zero is answered with zero") {
     LinearSystem system(scene.rods.front());
     system.assemble(scene.rods.front(), 0.02);
     VectorX x0(system.rhs().size());
-    guess.propose(system, {}, x0);
+    const Proposal proposal = guess.propose(system, {}, x0);
     CHECK(x0.allFinite());
     CHECK(x0.norm() < 1e-12);
+    CHECK(proposal.nonzero == (x0.norm() > 0));
   }
 }
 
