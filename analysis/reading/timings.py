@@ -3,12 +3,14 @@
 A row holds the times of the parts of a solve: assembly, each guess and its CG to the job's tolerance, the direct solve.
 They last microseconds, and the operating system's interruptions milliseconds: one would outweigh a whole simulation.
 A row is left out, for all guesses, where a part took over INTERRUPTED times its median and FLOOR_S longer (CG: its
-median per iteration, with FIXED iterations for what every solve costs; the rest of a step: per Newton iteration, with
-one for prediction and velocities); sums are scaled up to all rows. The median is over the simulation's rows of the same
-Newton iteration, since a guess may be made in another way there (the nearest data of a first one, no history of a
-late one); where they are fewer than FEW, that of an iteration before it or of all stands in. A lagged preconditioner is
-factored anew in rows of their own kind: those are not judged, and stay. Times.interrupted counts the rows left out;
-where they are more than SUSPICIOUS of all, the sentence that says so says also what it means.
+median per iteration, with FIXED iterations for what every solve costs; a guess: per product with A before the first
+iteration, with one for the rest; the rest of a step: per Newton iteration, with one for prediction and velocities);
+sums are scaled up to all rows. The median is over the simulation's rows of the same Newton iteration, since a guess may
+be made in another way there (the nearest data of a first one, no history of a late one); where they are fewer than FEW,
+that of an iteration before it or of all stands in. Some parts are judged by each other alone, and not where they are
+fewer than FEW: CG without an iteration, and what made anew a preconditioner or factors that lag (/solves/renewed).
+Times.interrupted counts the rows left out; where they are more than SUSPICIOUS of all, the sentence
+that says so says also what it means.
 """
 
 from dataclasses import dataclass
@@ -16,7 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 COLUMNS = ("/timing/solves/assemble_s", "/timing/solves/direct_s", "/timing/solves/guess_s", "/timing/solves/cg_s")
-ROWS = ("/solves/newton", "/solves/step", "/solves/iterations")
+ROWS = ("/solves/newton", "/solves/iterations", "/solves/start_matvecs")
+RENEWED = "/solves/renewed"
 SPEEDUPS = {"cg": "CG only", "guess_cg": "guess + CG", "step": "whole step"}
 INTERRUPTED = 5
 FLOOR_S = 5e-6
@@ -54,8 +57,9 @@ def times(file, sims):
     tasks, guesses, zero = sims.tasks(), len(file.guesses), file.zero
     names = ("solves", "kept", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept", "zero_guess_s", "zero_cg_s")
     sums = {which: {name: np.zeros((file.task_count, guesses)) for name in names} for which in ("first", "later")}
-    rung, lag = _timed_rung(file), _lag_steps(file)
-    for owners, starts, rows in file.solve_blocks(tasks, COLUMNS + ROWS):
+    rung = _timed_rung(file)
+    optional = (RENEWED,) if file.has(RENEWED) else ()
+    for owners, starts, rows in file.solve_blocks(tasks, COLUMNS + ROWS + optional):
         assemble, direct, guess, cg = (rows[path].astype(float) for path in COLUMNS)
         assemble, direct = assemble[:, None], direct[:, None]
         owner = np.repeat(owners, np.diff(np.append(starts, len(cg))))
@@ -65,10 +69,14 @@ def times(file, sims):
         iterations = rows["/solves/iterations"][np.arange(len(cg)), :, rung[owner]].astype(float)
         parts = np.concatenate([assemble, direct, guess, cg], axis=1)
         work = np.ones(parts.shape)
+        work[:, -2 * guesses:-guesses] = np.maximum(rows["/solves/start_matvecs"], 0) + 1.0
         work[:, -guesses:] = np.where(iterations >= 0, iterations + FIXED, np.nan)
         first = (rows["/solves/newton"] == 0)[:, None]
-        renewed = first[:, 0] & (lag[owner] > 0) & (rows["/solves/step"] % np.maximum(lag[owner], 1) == 0)
-        smooth = ~_interrupted(starts, parts, work, rows["/solves/newton"], ~renewed)[:, None]
+        apart = np.zeros(parts.shape, dtype=np.int8)
+        apart[:, -guesses:] = iterations == 0
+        if optional:
+            apart[:, -2 * guesses:] += 2 * np.tile(rows[RENEWED] == 1, 2).astype(np.int8)
+        smooth = ~_interrupted(starts, parts, work, rows["/solves/newton"], apart)[:, None]
         for which, counted in (("first", valid & first), ("later", valid & ~first)):
             kept = counted & smooth
             with_direct = kept & np.isfinite(direct)
@@ -94,34 +102,37 @@ def _timed_rung(file):
     return np.argmin(np.abs(np.log(parameter.values[:, None] / file.tolerances[None, :])), axis=1)
 
 
-def _lag_steps(file):
-    """Per task, steps from one factorisation of a lagged preconditioner to the next; 0 for the others."""
-    names = ("solve.preconditioner", "solve.lag_steps")
-    if any(name not in file.parameters for name in names):
-        return np.zeros(file.task_count, dtype=int)
-    preconditioner, steps = (file.parameters[name].values for name in names)
-    return np.where(preconditioner == "lagged_cholesky", steps, 0)
-
-
-def _interrupted(starts, parts, work, kind=None, judged=None):
-    """Rows judged in which some part lasted far longer than its median per work over the task's rows of that kind."""
+def _interrupted(starts, parts, work, kind=None, apart=None):
+    """Rows in which some part lasted far longer than its median per work over the task's rows of that kind. Parts of
+    one number above 0 in `apart` are judged by each other."""
     found = np.zeros(len(parts), dtype=bool)
     kind = np.zeros(len(parts)) if kind is None else kind
-    judged = ~found if judged is None else judged
+    apart = np.zeros(parts.shape, dtype=np.int8) if apart is None else apart
+    none = np.full(parts.shape[1], np.nan)
     for begin, end in zip(starts, np.append(starts[1:], len(parts))):
-        of_task = begin + np.flatnonzero(judged[begin:end])
-        rate = parts[of_task] / work[of_task]
-        usual = np.full(parts.shape[1], np.nan)
-        there = np.isfinite(rate).any(axis=0)
-        usual[there] = np.nanmedian(rate[:, there], axis=0)
-        for one in np.unique(kind[of_task]):
-            rows = of_task[kind[of_task] == one]
-            rate = parts[rows] / work[rows]
-            enough = np.isfinite(rate).sum(axis=0) >= FEW
-            usual[enough] = np.nanmedian(rate[:, enough], axis=0)
-            expected = usual * work[rows]
-            found[rows] = ((parts[rows] > INTERRUPTED * expected) & (parts[rows] > expected + FLOOR_S)).any(axis=1)
+        numbers, rate = apart[begin:end], parts[begin:end] / work[begin:end]
+        usual = np.empty(rate.shape)
+        for number in np.unique(numbers):
+            of_number = np.where(numbers == number, rate, np.nan)
+            medians = _medians(of_number, none, FEW if number else 1)
+            for one in np.unique(kind[begin:end]):
+                rows = kind[begin:end] == one
+                if number == 0:
+                    medians = _medians(of_number[rows], medians, FEW)
+                usual[rows] = np.where(numbers[rows] == number, medians, usual[rows])
+        expected = usual * work[begin:end]
+        long = (parts[begin:end] > INTERRUPTED * expected) & (parts[begin:end] > expected + FLOOR_S)
+        found[begin:end] = long.any(axis=1)
     return found
+
+
+def _medians(rates, otherwise, fewest=1):
+    """Of each part, over its finite rates; `otherwise` where they are fewer than `fewest`."""
+    enough = np.isfinite(rates).sum(axis=0) >= fewest
+    medians = otherwise.copy()
+    if enough.any():
+        medians[enough] = np.nanmedian(rates[:, enough], axis=0)
+    return medians
 
 
 def _scaled(sums):

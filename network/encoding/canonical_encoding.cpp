@@ -73,10 +73,6 @@ void CanonicalEncoding::encode(const SystemPattern& pattern, const BlockMatrix& 
   }
 }
 
-Lane8 CanonicalEncoding::residual_to_unit(int place, const Lane8& residual) const {
-  return frames_.frame(place)((frames_.rho() > 0 ? 1 / frames_.rho() : 0) * frames_.scale(place) * residual);
-}
-
 Lane8 CanonicalEncoding::from_unit(int place, const Lane8& answer) const {
   return frames_.rho() * frames_.scale(place) * frames_.frame(place).back(answer);
 }

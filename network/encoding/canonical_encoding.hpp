@@ -12,7 +12,7 @@ class CanonicalEncoding {
   static constexpr int size =
       SystemEncoding::size;  ///< r^ (6), the upper triangle of A^_kk without its diagonal (15), A^_k,parent (36)
 
-  explicit CanonicalEncoding(const SystemPattern& pattern) : frames_(pattern) {}
+  CanonicalEncoding(const SystemPattern& pattern, Alignment alignment) : frames_(pattern, alignment) {}
 
   /// Writes the features [57, places]. Allocates nothing.
   void encode(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
@@ -20,9 +20,7 @@ class CanonicalEncoding {
 
   const CanonicalFrames& frames() const { return frames_; }
 
-  /// r^ of a residual r in a place, by the frames and scales of the system last encoded.
-  Lane8 residual_to_unit(int place, const Lane8& residual) const;
-  /// d of a network's answer d^ for a place, in the joint's frame, or back.
+  /// d of a network's answer d^ for a place, in the joint's frame, or back, of the system last encoded.
   Lane8 from_unit(int place, const Lane8& answer) const;
   Lane8 to_unit(int place, const Lane8& correction) const;
 

@@ -1,5 +1,6 @@
 #include "network/encoding/canonical_frames.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rodsweep {
@@ -22,6 +23,11 @@ Lane4 diagonal_of(const Block6& block) {
                (block.column[3][3] + block.column[4][4]) / 2, block.column[5][5]};
 }
 
+/// One over what bending rows have on the diagonal, of a rod with joints.
+double bending_unit(const SystemPattern& pattern, const BlockMatrix& a) {
+  return pattern.diagonal.empty() ? 1 : 1 / diagonal_of(a.blocks[at(pattern.diagonal[0])])[2];
+}
+
 /// In single precision, which is enough for scales and a third of the time.
 Lane8 inverse_root(const Lane8& values) {
   using FloatLane8 = float __attribute__((vector_size(32)));
@@ -42,11 +48,12 @@ Block6 seen(const Block6& block, const CanonicalFrame& row, const CanonicalFrame
   return out;
 }
 
-CanonicalFrames::CanonicalFrames(const SystemPattern& pattern)
-    : frames_(pattern.joint.size()),
+CanonicalFrames::CanonicalFrames(const SystemPattern& pattern, Alignment alignment)
+    : alignment_(alignment),
+      frames_(pattern.joint.size()),
       scales_(pattern.joint.size()),
-      roll_x_(pattern.joint.size()),
-      roll_y_(pattern.joint.size()) {
+      roll_(pattern.joint.size()),
+      bent_(pattern.joint.size()) {
   for (std::size_t place = 0; place < pattern.joint.size(); ++place) {
     const int k = pattern.to_parent[place];
     tree_.push_back(k >= 0 ? tree_[at(pattern.couplings[at(k)].column)] : static_cast<int>(trees_.size()));
@@ -56,9 +63,24 @@ CanonicalFrames::CanonicalFrames(const SystemPattern& pattern)
 
 void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual) {
   for (Tree& tree : trees_) tree = {};
+  carry(pattern, a, residual);
+  if (alignment_ == Alignment::matrix) orient_by_matrix(pattern, a);
+  const auto known = [](const Tree& tree) { return (tree.axis.x != 0 || tree.axis.y != 0) && tree.hand != 0; };
+  if (!std::all_of(trees_.begin(), trees_.end(), known)) orient_by_residual(pattern, residual);
+  const Hand right(1), left(-1);
+  for (std::size_t place = 0; place < frames_.size(); ++place) {
+    const Tree& tree = trees_[at(tree_[place])];
+    const auto [x, y] = roll_[place];
+    frames_[place] =
+        (tree.hand < 0 ? left : right).frame(x * tree.axis.x + y * tree.axis.y, y * tree.axis.x - x * tree.axis.y);
+  }
+}
+
+/// Sets scales, rho and the rolls along the trees.
+void CanonicalFrames::carry(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual) {
   double sum = 0;
   // What rolls are read from, without its unit, so that its square is a single-precision number of any rod.
-  const double unit = frames_.empty() ? 1 : 1 / diagonal_of(a.blocks[at(pattern.diagonal[0])])[2];
+  const double unit = bending_unit(pattern, a);
   for (std::size_t place = 0; place < frames_.size(); ++place) {
     // All roots of a joint at once: of the diagonal, and of the size of what its roll is read from.
     const Lane4 diagonal = diagonal_of(a.blocks[at(pattern.diagonal[place])]);
@@ -73,46 +95,79 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
     }
     const Lane8 roots =
         inverse_root(Lane8{diagonal[0], diagonal[1], diagonal[2], diagonal[3], re * re + im * im, 1, 1, 1});
-    const Lane8 scale = scales_[place] = __builtin_shufflevector(roots, Lane8{}, 0, 0, 1, 2, 2, 3, 8, 8);
-    const Lane8 r = scale * load6(residual.data() + 6 * pattern.joint[place]);
-    double x = 1, y = 0;
-    if (parent) {
-      const double u = re * roots[4], v = im * roots[4];
-      const double from_x = roll_x_[at(parent->column)], from_y = roll_y_[at(parent->column)];
-      x = from_x * u + from_y * v;
-      y = from_y * u - from_x * v;
-    }
-    roll_x_[place] = x;
-    roll_y_[place] = y;
-    const double shear_x = x * r[0] - y * r[1], shear_y = x * r[1] + y * r[0];
-    const double bend_x = x * r[3] - y * r[4], bend_y = x * r[4] + y * r[3];
-    Tree& tree = trees_[at(tree_[place])];
-    tree.second_x += shear_x * shear_x - shear_y * shear_y - bend_x * bend_x + bend_y * bend_y;
-    tree.second_y += 2 * (shear_x * shear_y - bend_x * bend_y);
-    tree.first_x += shear_x;
-    tree.first_y += shear_y;
-    tree.twist += r[5];
+    scales_[place] = __builtin_shufflevector(roots, Lane8{}, 0, 0, 1, 2, 2, 3, 8, 8);
+    const Lane8 r = scales_[place] * load6(residual.data() + 6 * pattern.joint[place]);
     sum += r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3] + r[4] * r[4] + r[5] * r[5];
+    roll_[place] = {1, 0};
+    if (!parent) continue;
+    const double u = re * roots[4], v = im * roots[4];
+    const Pair& from = roll_[at(parent->column)];
+    roll_[place] = {from.x * u + from.y * v, from.y * u - from.x * v};
   }
   rho_ = std::sqrt(sum / a.unknowns());
+}
+
+/// Sets the axes of trees that are bent, and the hands of those that are not flat.
+void CanonicalFrames::orient_by_matrix(const SystemPattern& pattern, const BlockMatrix& a) {
+  const double unit = bending_unit(pattern, a);
+  for (std::size_t place = 0; place < frames_.size(); ++place) {
+    const int k = pattern.to_parent[place];
+    bent_[place] = {};
+    if (k < 0) continue;
+    const SystemPattern::Coupling& parent = pattern.couplings[at(k)];
+    const Lane8& column = a.blocks[at(parent.block)].column[5];
+    const Pair& roll = roll_[place];
+    const Pair& before = bent_[at(parent.column)];
+    const double v = unit * column[3], w = unit * column[4];
+    const Pair here = bent_[place] = {roll.x * v - roll.y * w, roll.x * w + roll.y * v};
+    Moments& moments = trees_[at(tree_[place])].moments;
+    moments.second.x += here.x * here.x - here.y * here.y;
+    moments.second.y += 2 * here.x * here.y;
+    moments.first.x += here.x;
+    moments.first.y += here.y;
+    moments.size += here.x * here.x + here.y * here.y;
+    moments.hand += before.x * here.y - before.y * here.x;
+  }
+  for (Tree& tree : trees_) {
+    constexpr double straight = 1e-12, flat = 1e-6;  // sum of squared angles; sine of the angle between planes
+    if (tree.moments.size < straight * static_cast<double>(frames_.size())) continue;
+    set_axis(tree);
+    if (std::abs(tree.moments.hand) > flat * tree.moments.size) tree.hand = tree.moments.hand;
+  }
+}
+
+/// Sets the axes and hands that are not known yet.
+void CanonicalFrames::orient_by_residual(const SystemPattern& pattern, const VectorX& residual) {
+  for (Tree& tree : trees_) tree.moments = {};
+  for (std::size_t place = 0; place < frames_.size(); ++place) {
+    const Lane8 r = scales_[place] * load6(residual.data() + 6 * pattern.joint[place]);
+    const auto [x, y] = roll_[place];
+    const double shear_x = x * r[0] - y * r[1], shear_y = x * r[1] + y * r[0];
+    const double bend_x = x * r[3] - y * r[4], bend_y = x * r[4] + y * r[3];
+    Moments& moments = trees_[at(tree_[place])].moments;
+    moments.second.x += shear_x * shear_x - shear_y * shear_y - bend_x * bend_x + bend_y * bend_y;
+    moments.second.y += 2 * (shear_x * shear_y - bend_x * bend_y);
+    moments.first.x += shear_x;
+    moments.first.y += shear_y;
+    moments.hand += r[5];
+  }
   const double noise = 1e-6 * rho_ * static_cast<double>(frames_.size());
   for (Tree& tree : trees_) {
-    // The root of a complex number, by half of its angle; `first` becomes conj of the axis.
-    const double size = std::hypot(tree.second_x, tree.second_y);
-    const double cosine = size > 0 ? tree.second_x / size : 1;
-    const double x = std::sqrt((1 + cosine) / 2), y = std::copysign(std::sqrt((1 - cosine) / 2), tree.second_y);
-    const double sign = x * tree.first_x + y * tree.first_y < 0 ? -1 : 1;
-    if (std::abs(tree.twist) < noise) tree.twist = sign * (x * tree.first_y - y * tree.first_x);
-    tree.first_x = sign * x;
-    tree.first_y = -sign * y;
+    if (tree.axis.x == 0 && tree.axis.y == 0) set_axis(tree);
+    if (tree.hand != 0) continue;
+    const bool twisted = std::abs(tree.moments.hand) >= noise;
+    tree.hand = twisted ? tree.moments.hand : tree.axis.x * tree.moments.first.y - tree.axis.y * tree.moments.first.x;
   }
-  const Hand right(1), left(-1);
-  for (std::size_t place = 0; place < frames_.size(); ++place) {
-    const Tree& tree = trees_[at(tree_[place])];
-    const double x = roll_x_[place], y = roll_y_[place];
-    frames_[place] =
-        (tree.twist < 0 ? left : right).frame(x * tree.first_x - y * tree.first_y, x * tree.first_y + y * tree.first_x);
-  }
+}
+
+/// The root of the second moment, by half of its angle, on the side of the first.
+void CanonicalFrames::set_axis(Tree& tree) {
+  const auto& [first, second, size, hand] = tree.moments;
+  const double length = std::hypot(second.x, second.y);
+  const double cosine = length > 0 ? second.x / length : 1;
+  const double x = std::sqrt((1 + cosine) / 2), y = std::copysign(std::sqrt((1 - cosine) / 2), second.y);
+  const double sign = x * first.x + y * first.y < 0 ? -1 : 1;
+  tree.axis = {sign * x, sign * y};
 }
 
 ScaledSystem<float> canonical_system(const SystemPattern& pattern, const CanonicalFrames& frames, const BlockMatrix& a,

@@ -5,12 +5,17 @@
 // With transverse pairs (x, y) as complex numbers, the frame of joint k is rolled by the unit number t_k:
 //   along a tree  t_k = t_parent conj(u),  u = -(B_00 + B_11 + i (B_10 - B_01)) / |.|,  B the transverse bend block of
 //                 the coupling of k with its parent: frames are carried along the rod without roll
-//   as a whole    every tree is rolled so that the axis of largest second moment of its residual,
-//                 sqrt(sum (t s_k)^2 - (t m_k)^2), is x, towards sum t s_k; s_k, m_k are the transverse residuals of
-//                 stretch-shear and of bending (in planar motion in its plane, and across it)
-//   mirrored      across the xz plane, where the residuals of twist have a negative sum, or where there are none and
-//                 sum t s_k is on the right of x; rows of bend and twist are those of an axis, which a mirror turns the
-//                 other way
+//   as a whole    every tree is rolled so that x is the axis of largest second moment of its transverse vectors v_k,
+//                 sqrt(sum (t v_k)^2), towards sum t v_k
+//   mirrored      across the xz plane, where the tree's hand is negative; rows of bend and twist are those of an axis,
+//                 which a mirror turns the other way
+// Where from, is an Alignment:
+//   residual      v_k of stretch-shear, and of bending a quarter turn on (in planar motion in its plane, and across
+//   it);
+//                 the hand is the sum of twists, or where there are none, that sum t v_k is on the left of x
+//   matrix        v_k = (B_02, B_12), by which the joint is bent against its parent, and the hand is that in which they
+//                 turn along the tree, sum Im conj(t v_parent) t v_k: the frames of a matrix whatever its residual. A
+//                 tree that is straight, or flat, takes its axis, or its hand, from the residual.
 // T_k = diag(R(t_k), 1, R(t_k), 1), then signs. Residuals are scaled by scale(), which is one number for both
 // transverse rows of a kind, so that it does not know the roll either.
 #pragma once
@@ -36,9 +41,11 @@ struct CanonicalFrame {
 /// T_row block T_column^T.
 Block6 seen(const Block6& block, const CanonicalFrame& row, const CanonicalFrame& column);
 
+enum class Alignment { residual, matrix };
+
 class CanonicalFrames {
  public:
-  explicit CanonicalFrames(const SystemPattern& pattern);
+  CanonicalFrames(const SystemPattern& pattern, Alignment alignment);
 
   /// Sets the frames and scales of a system and its residual. Allocates nothing.
   void find(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual);
@@ -49,14 +56,31 @@ class CanonicalFrames {
   double rho() const { return rho_; }  ///< root mean square of S r
 
  private:
-  struct Tree {
-    double second_x, second_y, first_x, first_y, twist;
+  struct Pair {
+    double x = 0, y = 0;  ///< of a complex number
   };
+  /// Sums over a tree: of a vector, of its square, of its absolute square, and what tells the hand.
+  struct Moments {
+    Pair first, second;
+    double size = 0, hand = 0;
+  };
+  struct Tree {
+    Moments moments;
+    Pair axis;        ///< the direction that becomes x, of length one; none: zero
+    double hand = 0;  ///< its sign counts; zero: none yet
+  };
+  void carry(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual);
+  void orient_by_matrix(const SystemPattern& pattern, const BlockMatrix& a);
+  void orient_by_residual(const SystemPattern& pattern, const VectorX& residual);
+  static void set_axis(Tree& tree);
+
+  Alignment alignment_;
   std::vector<int> tree_;  ///< of each place
   std::vector<Tree> trees_;
   std::vector<CanonicalFrame> frames_;
   std::vector<Lane8> scales_;
-  std::vector<double> roll_x_, roll_y_;  ///< t
+  std::vector<Pair> roll_;  ///< t
+  std::vector<Pair> bent_;  ///< t v of the matrix
   double rho_ = 0;
 };
 

@@ -40,7 +40,8 @@ FeatureEncoder::FeatureEncoder(const CopingNetSettings& settings, const Rod& rod
     graph_ = std::make_unique<GraphEncoding>(settings.encoding, rod);
     by_joint_.resize(GraphEncoding::edge_features(settings.encoding), rod.joint_count());
   } else if (settings.encoding == Encoding::canonical) {
-    canonical_ = std::make_unique<CanonicalEncoding>(pattern_);
+    canonical_ = std::make_unique<CanonicalEncoding>(
+        pattern_, settings.processor == Processor::factors ? Alignment::matrix : Alignment::residual);
   } else {
     system_ = std::make_unique<SystemEncoding>(pattern_);
     system_unit_.resize(a.unknowns());

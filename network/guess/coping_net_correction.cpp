@@ -19,14 +19,14 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
       ad_(a.unknowns()),
       previous_(a.unknowns()) {
   const CopingNetSettings& settings = model_->net.settings();
-  if ((use.corrections > 1 || use.once_a_step) && settings.processor != Processor::factors)
-    throw std::invalid_argument("CopingNetCorrection: corrections or once_a_step without factors");
+  if ((use.corrections > 1 || use.lag_steps > 0 || use.stop_at > 0) && settings.processor != Processor::factors)
+    throw std::invalid_argument("CopingNetCorrection: corrections, lag_steps or stop_at without factors");
   if (settings.processor == Processor::sweeps && !is_of_graphs(settings.encoding) &&
       SweepsInference::supports(settings.latent))
     sweeps_ = std::make_unique<SweepsInference>(model_->net.sweeps(), model_->net.parameters(), rod.joint_count());
   if (settings.processor == Processor::factors)
-    factors_ =
-        std::make_unique<FactorInference>(model_->net.factors(), model_->net.parameters(), encoder_.topology().forest);
+    factors_ = std::make_unique<FactorInference>(model_->net.factors(), model_->net.parameters(),
+                                                 encoder_.topology().forest, encoder_.pattern());
   may_harm_ = encoder_.topology().forest.cut && settings.processor != Processor::message_passing;
   if (may_harm_) base_.resize(a.unknowns());
 }
@@ -45,13 +45,20 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
   const double before = may_harm ? jacobi_norm_squared(a, residual_) : 0;
   if (may_harm) base_ = x;
 
-  if (use_.once_a_step && factorised_at_ && at.step == factorised_at_->step && at.newton > factorised_at_->newton)
-    answer_to_residual();
-  else
+  const double enough = use_.stop_at * use_.stop_at * system.rhs().squaredNorm();
+  if (use_.stop_at > 0 && residual_.squaredNorm() <= enough) {
+    proposal.residual = &residual_;
+    return true;
+  }
+  if (factors_serve(at)) {
+    factors_->solve(residual_, d_);
+  } else {
     run(rod, system, at, dt_c, x, moves != nullptr);
+    proposal.renewed = use_.lag_steps > 0;
+  }
   double length = 1, energy = 0;
-  const bool best_length = model_->net.settings().best_length || use_.corrections > 1;
-  if (best_length || may_harm) {
+  const bool best_length = model_->net.settings().best_length || use_.corrections > 1, known = best_length || may_harm;
+  if (known) {
     a.multiply(d_.data(), ad_.data());
     ++proposal.products;
   }
@@ -59,50 +66,47 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
     energy = d_.dot(ad_);
     length = energy == 0 ? 0 : d_.dot(residual_) / energy;
   }
+  proposal.residual = &residual_;  // of x, so far
   if (!std::isfinite(length) || !d_.allFinite() || (moves && !write(*moves))) return false;
+  const auto move = [&] {
+    x += length * d_;
+    if (known) residual_ -= length * ad_;
+  };
   const bool moved = length != 0;
-  x += length * d_;
+  move();
   for (int i = 1; i < use_.corrections && energy > 0; ++i) {
-    residual_ -= length * ad_;
+    if (use_.stop_at > 0 && residual_.squaredNorm() <= enough) break;
     energy = correct_again(a, energy, length);
     ++proposal.products;
-    if (!(energy > 0) || !std::isfinite(length)) {
-      length = 0;
-      break;
-    }
-    x += length * d_;
+    if (!(energy > 0) || !std::isfinite(length)) break;
+    move();
   }
-  if (may_harm) {
-    if (length != 0) residual_ -= length * ad_;
-    if (!(jacobi_norm_squared(a, residual_) <= before)) {
-      x = base_;
-      return true;
-    }
+  if (!known) proposal.residual = nullptr;
+  if (may_harm && !(jacobi_norm_squared(a, residual_) <= before)) {
+    x = base_;
+    proposal.residual = nullptr;
+    return true;
   }
   proposal.nonzero = proposal.nonzero || moved;
   return true;
+}
+
+/// Whether there are factors for a solve; not where they are its own, so that proposing again takes as long.
+bool CopingNetCorrection::factors_serve(const SolvePosition& at) const {
+  if (!factorised_at_ || at.step - factorised_at_->step >= use_.lag_steps) return false;
+  return at.step != factorised_at_->step || at.newton != factorised_at_->newton;
 }
 
 /// The next direction of conjugate gradients, d_ = F r - (F r . A d_) / (d_ . A d_) d_, A d_, its energy, and the
 /// length that is best along it.
 double CopingNetCorrection::correct_again(const BlockMatrix& a, double energy, double& length) {
   previous_.swap(d_);
-  answer_to_residual();
+  factors_->solve(residual_, d_);
   d_ -= d_.dot(ad_) / energy * previous_;
   a.multiply(d_.data(), ad_.data());
   energy = d_.dot(ad_);
   length = energy > 0 ? d_.dot(residual_) / energy : 0;
   return energy;
-}
-
-/// Sets d_ by the factors there are, in the frames of the system that they were made for.
-void CopingNetCorrection::answer_to_residual() {
-  for (int place = 0; place < static_cast<int>(edges_.cols()); ++place) {
-    const int joint = encoder_.topology().joint[static_cast<std::size_t>(place)];
-    const Lane8 r = encoder_.canonical()->residual_to_unit(place, load6(residual_.data() + 6 * joint));
-    for (int row = 0; row < 6; ++row) edges_(row, place) = static_cast<float>(r[row]);
-  }
-  answer(false);
 }
 
 /// Sets d_ and, on request, y_nodes_.
@@ -113,18 +117,17 @@ void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, const 
     model_->scales.nodes.apply(nodes_);
     model_->scales.edges.apply(edges_);
   }
-  if (factors_) factors_->factorise(edges_);
+  if (!factors_) return answer(with_moves);
+  factors_->factorise(edges_, encoder_.canonical()->frames(), system.matrix());
   factorised_at_ = at;
-  answer(with_moves);
+  factors_->solve(residual_, d_);
 }
 
 /// Sets d_ and, on request, y_nodes_ from the features.
 void CopingNetCorrection::answer(bool with_moves) {
   const Topology& topology = encoder_.topology();
   const bool graphs = is_of_graphs(model_->net.settings().encoding);
-  if (factors_)
-    factors_->solve(edges_, y_edges_);
-  else if (sweeps_)
+  if (sweeps_)
     sweeps_->run(topology.forest, edges_, y_edges_);
   else
     model_->net.forward(topology, nodes_, edges_, tape_, y_edges_, with_moves ? &y_nodes_ : nullptr);

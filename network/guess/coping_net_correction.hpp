@@ -9,7 +9,8 @@
 // as well, in the natural norm sqrt(r^T D^-1 r).
 //
 // Factors (network/processor/factor_sweeps.hpp), once predicted, answer to any residual: `corrections` of them are as
-// many steps of conjugate gradients with the factors as preconditioner, of which this is the first.
+// many steps of conjugate gradients with the factors as preconditioner, of which this is the first. In the frames of
+// the joints a matrix changes slowly, so that they may also serve the solves of some later time steps: they lag.
 #pragma once
 
 #include <memory>
@@ -26,7 +27,8 @@ namespace rodsweep {
 /// How a model with factors is used; others know the first of each alone.
 struct FactorUse {
   int corrections = 1;
-  bool once_a_step = false;  ///< the factors of a step's first Newton iteration serve the others too
+  int lag_steps = 0;   ///< so many time steps factors serve; 0: the solve that they were made for
+  double stop_at = 0;  ///< no correction once ||r||_2 is at most this times ||b||_2
 };
 
 class CopingNetCorrection {
@@ -45,14 +47,14 @@ class CopingNetCorrection {
   void run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, const VectorX& x,
            bool with_moves);
   void answer(bool with_moves);
-  void answer_to_residual();
+  bool factors_serve(const SolvePosition& at) const;
   double correct_again(const BlockMatrix& a, double energy, double& length);
   bool write(std::vector<Lane8>& moves) const;
 
   std::shared_ptr<const Model> model_;
   FactorUse use_;
-  bool may_harm_ = false;                       ///< loops were cut
-  std::optional<SolvePosition> factorised_at_;  ///< of the last features
+  bool may_harm_ = false;  ///< loops were cut
+  std::optional<SolvePosition> factorised_at_;
   FeatureEncoder encoder_;
   std::unique_ptr<SweepsInference> sweeps_;
   std::unique_ptr<FactorInference> factors_;

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "network/layers/float_lanes.hpp"
 
@@ -24,6 +25,47 @@ template <int I, int J>
 Lane16 spread(const Lane16& v) {
   return __builtin_shufflevector(v, v, I, I, I, I, I, I, I, I, J, J, J, J, J, J, J, J);
 }
+
+template <int R>
+using Row = std::integral_constant<int, R>;
+
+using Lane8Float = float __attribute__((vector_size(32)));
+
+Lane16 halves(const Lane8Float& low, const Lane8Float& high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+Lane16 twice(const Lane8& v) {
+  const Lane8Float once = __builtin_convertvector(v, Lane8Float);
+  return halves(once, once);
+}
+
+/// P = T S of a joint, in both halves, and what acts on pairs of columns by it.
+struct ScaledFrame {
+  Lane16 along, across;
+
+  ScaledFrame(const CanonicalFrames& frames, int place)
+      : along(twice(frames.scale(place) * frames.frame(place).along)),
+        across(twice(frames.scale(place) * frames.frame(place).across)) {}
+
+  /// x and y of both transverse pairs exchanged.
+  static Lane16 exchanged(const Lane16& v) {
+    return __builtin_shufflevector(v, v, 1, 0, 2, 4, 3, 5, 6, 7, 9, 8, 10, 12, 11, 13, 14, 15);
+  }
+  Lane16 apply(const Lane16& v) const { return along * v + across * exchanged(v); }
+  Lane16 transposed(const Lane16& v) const { return along * v + exchanged(across * v); }
+  /// M <- P^T M P.
+  void around(Lane16 (&m)[3]) const {
+    const Lane16 other[3] = {
+        __builtin_shufflevector(m[0], m[0], 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7),
+        __builtin_shufflevector(m[1], m[2], 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23),
+        __builtin_shufflevector(m[1], m[2], 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31)};
+    const Lane16 of_other = exchanged(across);
+    m[0] = transposed(spread<0, 1>(along) * m[0] + spread<0, 1>(of_other) * other[0]);
+    m[1] = transposed(spread<2, 3>(along) * m[1] + spread<2, 3>(of_other) * other[1]);
+    m[2] = transposed(spread<4, 5>(along) * m[2] + spread<4, 5>(of_other) * other[2]);
+  }
+};
 
 /// A v, twice; v in lanes 0..5.
 Lane16 times(const Lane16 (&a)[3], const Lane16& v) {
@@ -48,12 +90,14 @@ Lane16 columns(const Lane16& first, const Lane16& last) {
 #undef RODSWEEP_ENTRY
 }
 
-/// Two columns of T B: `t` T's columns, each in both halves; B's columns begin at lanes C and D of `b`.
-template <int C, int D>
+/// Two columns of T B: `t` T's columns, each in both halves; `b` two columns of B.
 Lane16 product(const Lane16 (&t)[6], const Lane16& b) {
-  return (t[0] * spread<C, D>(b) + t[1] * spread<C + 1, D + 1>(b)) +
-         (t[2] * spread<C + 2, D + 2>(b) + t[3] * spread<C + 3, D + 3>(b)) +
-         (t[4] * spread<C + 4, D + 4>(b) + t[5] * spread<C + 5, D + 5>(b));
+  const auto entries = [&](auto row) {
+    constexpr int r = decltype(row)::value;
+    return t[r] * spread<r, 8 + r>(b);
+  };
+  return (entries(Row<0>{}) + entries(Row<1>{})) + (entries(Row<2>{}) + entries(Row<3>{})) +
+         (entries(Row<4>{}) + entries(Row<5>{}));
 }
 
 /// Rows R and R + 1 of a matrix given by pairs of columns.
@@ -76,8 +120,8 @@ FloatLane ramp(const FloatLane& a) {
 }  // namespace
 
 FactorInference::FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights,
-                                 const JointForest& forest)
-    : forest_(forest), joints_(at(forest.size())), h_(at(forest.size())), y_(at(forest.size())) {
+                                 const JointForest& forest, const SystemPattern& pattern)
+    : forest_(forest), pattern_(pattern), joints_(at(forest.size())), h_(at(forest.size())), d_(at(forest.size())) {
   using Sweep = FactorSweeps<float>;
   const int h = sweeps.latent(), n = forest.size();
   if (!supports(h)) throw std::invalid_argument("FactorInference: latent size " + std::to_string(h));
@@ -109,7 +153,7 @@ FactorInference::FactorInference(const FactorSweeps<float>& sweeps, const Parame
   factors_.resize(48, n);
 }
 
-void FactorInference::factorise(const TensorIn<float>& x) {
+void FactorInference::factorise(const TensorIn<float>& x, const CanonicalFrames& frames, const BlockMatrix& a) {
   using Sweep = FactorSweeps<float>;
   const Eigen::Index h = g_.rows();
   const int n = forest_.size();
@@ -140,44 +184,48 @@ void FactorInference::factorise(const TensorIn<float>& x) {
     for (Eigen::Index r = 0; r < h; r += lane_floats)
       store_narrow(g_.col(i).data() + r, ramp(load_lane(before_.col(i).data() + r)));
   last_.multiply(last_bias_.data(), g_, factors_);
-  for (int i = 0; i < n; ++i) form(i, x.col(i).data() + Sweep::coupling);
+  for (int i = 0; i < n; ++i) form(i, frames, a);
 }
 
-void FactorInference::form(int place, const float* coupling) {
+void FactorInference::form(int place, const CanonicalFrames& frames, const BlockMatrix& a) {
   Joint& joint = joints_[at(place)];
+  const ScaledFrame frame(frames, place);
   const float* triangles = factors_.col(place).data();
   const Lane16 n = load16(triangles), rest = load16(triangles + 16);
   joint.n[0] = columns<0, 1, 16>(n, rest);
   joint.n[1] = columns<2, 3, 16>(n, rest);
   joint.n[2] = columns<4, 5, 16>(n, rest);
-  if (forest_.parent[at(place)] < 0) return;
+  frame.around(joint.n);
+  const int coupling = pattern_.to_parent[at(place)];
+  if (coupling < 0) return;
   const Lane16 t = load16(triangles + 32);
-  const Lane16 twice[6] = {columns<0, 0, 21>(t, rest), columns<1, 1, 21>(t, rest), columns<2, 2, 21>(t, rest),
-                           columns<3, 3, 21>(t, rest), columns<4, 4, 21>(t, rest), columns<5, 5, 21>(t, rest)};
-  joint.m[0] = product<0, 6>(twice, load16(coupling));
-  joint.m[1] = product<0, 6>(twice, load16(coupling + 12));
-  joint.m[2] = product<4, 10>(twice, load16(coupling + 20));  // not beyond the block
+  const Lane16 each[6] = {columns<0, 0, 21>(t, rest), columns<1, 1, 21>(t, rest), columns<2, 2, 21>(t, rest),
+                          columns<3, 3, 21>(t, rest), columns<4, 4, 21>(t, rest), columns<5, 5, 21>(t, rest)};
+  const Block6& block = a.blocks[at(pattern_.couplings[at(coupling)].block)];
+  for (int q = 0; q < 3; ++q) {
+    const Lane16 b = halves(__builtin_convertvector(block.column[2 * q], Lane8Float),
+                            __builtin_convertvector(block.column[2 * q + 1], Lane8Float));
+    joint.m[q] = frame.transposed(product(each, frame.apply(b)));
+  }
   joint.m_transposed[0] = rows<0>(joint.m);
   joint.m_transposed[1] = rows<2>(joint.m);
   joint.m_transposed[2] = rows<4>(joint.m);
 }
 
-void FactorInference::solve(const TensorIn<float>& r, Eigen::Ref<Tensor<float>> y) {
+void FactorInference::solve(const VectorX& r, VectorX& d) {
   const int n = forest_.size();
-  for (int i = 0; i < n; ++i) {
-    h_[at(i)] = Lane16{};
-    std::memcpy(&h_[at(i)], r.col(i).data(), 6 * sizeof(float));
-  }
+  for (int i = 0; i < n; ++i) h_[at(i)] = twice(load6(r.data() + 6 * pattern_.joint[at(i)]));
   for (int i = n - 1; i >= 0; --i)
     if (const int parent = forest_.parent[at(i)]; parent >= 0)
       h_[at(parent)] -= times(joints_[at(i)].m_transposed, h_[at(i)]);
   for (int i = 0; i < n; ++i) {
     const Joint& joint = joints_[at(i)];
     const int parent = forest_.parent[at(i)];
-    Lane16& out = y_[at(i)];
+    Lane16& out = d_[at(i)];
     out = times(joint.n, h_[at(i)]);
-    if (parent >= 0) out -= times(joint.m, y_[at(parent)]);
-    std::memcpy(y.col(i).data(), &out, 6 * sizeof(float));
+    if (parent >= 0) out -= times(joint.m, d_[at(parent)]);
+    const Lane8Float half = __builtin_shufflevector(out, out, 0, 1, 2, 3, 4, 5, 6, 7);
+    store6(d.data() + 6 * pattern_.joint[at(i)], __builtin_convertvector(half, Lane8));
   }
 }
 

@@ -1,11 +1,15 @@
 // The learned factors of network/processor/factor_sweeps.hpp for one rod at a time: no allocation, no tape.
 //
-// Factors are predicted for all joints at once; then M_k = T_k B_k is formed, and the two passes, which wait for the
-// joint before, multiply by one matrix each. Layers have operands of 16 bits (network/layers/narrow_product.hpp),
-// passes single precision. The results differ from the training code's in that, and where a state is too long for it
-// (FactorSweeps::longest_state).
+// Factors are predicted for all joints at once, in canonical frames, and brought to the joints' own with M_k = T_k B_k
+// formed: with P_k = T_k S_k, the turn to a canonical frame and the scale in it
+// (network/encoding/canonical_frames.hpp),
+//   N_k <- P_k^T N_k P_k,   M_k <- P_k^T T_k P_k B_k
+// so that a solve is of residuals as they are, in two passes that wait for the joint before and multiply by one matrix
+// each. Layers have operands of 16 bits (network/layers/narrow_product.hpp), passes single precision. The results
+// differ from the training code's in that, and where a state is too long for it (FactorSweeps::longest_state).
 #pragma once
 
+#include "network/encoding/canonical_frames.hpp"
 #include "network/layers/narrow_product.hpp"
 #include "network/processor/factor_sweeps.hpp"
 
@@ -16,23 +20,25 @@ class FactorInference {
   /// Whether there are kernels for a latent size: multiples of 16.
   static bool supports(int latent) { return latent > 0 && latent % 16 == 0; }
 
-  /// std::invalid_argument for a latent size without kernels. `forest` must outlive this.
-  FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights, const JointForest& forest);
+  /// std::invalid_argument for a latent size without kernels. `forest` and `pattern` must outlive this.
+  FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights, const JointForest& forest,
+                  const SystemPattern& pattern);
 
-  /// Sets the factors from the features [57, places] of a matrix, whatever the residual among them.
-  void factorise(const TensorIn<float>& x);
+  /// Sets the factors of a matrix from its features [57, places], whatever the residual among them, and its frames.
+  void factorise(const TensorIn<float>& x, const CanonicalFrames& frames, const BlockMatrix& a);
 
-  /// y [6, places] of a residual r [at least 6, places], by the factors.
-  void solve(const TensorIn<float>& r, Eigen::Ref<Tensor<float>> y);
+  /// d, which the factors answer to a residual r of the matrix.
+  void solve(const VectorX& r, VectorX& d);
 
  private:
   using Lane16 = float __attribute__((vector_size(64)));
   struct alignas(64) Joint {
     Lane16 n[3], m[3], m_transposed[3];  ///< columns 2 q and 2 q + 1, in lanes 0..5 and 8..13
   };
-  void form(int place, const float* coupling);
+  void form(int place, const CanonicalFrames& frames, const BlockMatrix& a);
 
   const JointForest& forest_;
+  const SystemPattern& pattern_;
   NarrowMatrix encode_, join_, join_again_, last_;
   Tensor<float> start_;  ///< [H, places] V t + b
   Eigen::VectorXf join_bias_, join_again_bias_, last_bias_;
@@ -40,7 +46,7 @@ class FactorInference {
   Tensor<float> before_, sums_;  ///< [H, places]
   Tensor<float> factors_;  ///< [48, places]: triangles, N's 16 first entries, 5 last of N, 5 last of T, T's 16 first
   std::vector<Joint> joints_;
-  std::vector<Lane16> h_, y_;  ///< states, twice each
+  std::vector<Lane16> h_, d_;  ///< states, twice each
 };
 
 }  // namespace rodsweep

@@ -37,11 +37,13 @@ void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
       if (knn && branches(spec.scene))
         refuse(plan, task, element("guesses", i), "\"knn\" is not allowed on rods that branch; must be another guess",
                "form a tree");
-      if ((guess->corrections > 1 || guess->once_a_step) &&
-          shared_model(guess->model)->net.settings().processor != Processor::factors)
+      const char* for_factors = guess->corrections > 1        ? "corrections above 1"
+                                : guess->factor_lag_steps > 0 ? "lag_steps"
+                                : guess->stop_at > 0          ? "stop_at"
+                                                              : nullptr;
+      if (for_factors && shared_model(guess->model)->net.settings().processor != Processor::factors)
         throw job_error(plan.job().path, element("guesses", i),
-                        fmt::format("{} is not allowed with {}, a network without factors",
-                                    guess->corrections > 1 ? "corrections above 1" : "once_a_step",
+                        fmt::format("{} is not allowed with {}, a network without factors", for_factors,
                                     guess->model.filename().string()));
     }
 }

@@ -13,6 +13,12 @@
 #include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
+namespace {
+
+bool lags(const TaskSpec& spec) { return spec.solve.preconditioner == Preconditioner::lagged_cholesky; }
+
+}  // namespace
+
 struct MeasuredSolve::Guess {
   std::size_t column;  ///< on the file's guess axis
   TimedGuess guess;
@@ -120,8 +126,7 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
   }
   delta_lambda = solvers.exact;
   if (outcome == SolveOutcome::converged && !guesses_.empty()) {
-    const bool lagged = spec_.solve.preconditioner == Preconditioner::lagged_cholesky;
-    solvers.renewed = !lagged || (at.newton == 0 && at.step % spec_.solve.lag_steps == 0);
+    solvers.renewed = !lags(spec_) || (at.newton == 0 && at.step % spec_.solve.lag_steps == 0);
     if (solvers.renewed) solvers.renew_preconditioners();
     outcome = count(system, at, row, solvers);
   }
@@ -150,7 +155,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     RodSolvers::PerGuess& own = solvers.guesses[g];
     guesses_[g].guess.prepare(at);
     own.proposal = guesses_[g].guess.propose(system, at, own.x0);
-    const int start = own.proposal.products + (own.proposal.nonzero ? 1 : 0);
+    const int start = own.proposal.start_products();
     const auto tight_solve = [&](ConjugateGradient& cg, double reference, std::vector<std::int16_t>& iterations) {
       if (rounding) {
         std::fill(iterations.begin(), iterations.end(), std::int16_t{0});
@@ -158,7 +163,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
       }
       solvers.x = own.x0;
       const CgReport report =
-          cg.solve(b, solvers.x, own.proposal.nonzero, ladder.back(), reference, guesses_[g].guess.deflation());
+          cg.solve(b, solvers.x, own.proposal.start(), ladder.back(), reference, guesses_[g].guess.deflation());
       if (cg.history().empty()) failure = report.outcome;  // its first residual was not a number
       iterations_to(cg.history(), reference, ladder, iterations.data());
       return report;
@@ -180,6 +185,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     if (!spec_.output.solves) continue;
     record_.reason[entry] = static_cast<std::int8_t>(report.outcome);
     record_.start_matvecs[entry] = static_cast<std::int16_t>(start);
+    record_.renewed[entry] = own.proposal.renewed || (lags(spec_) && solvers.renewed) ? 1 : 0;
     std::copy(solvers.iterations.begin(), solvers.iterations.end(),
               record_.iterations.begin() + static_cast<std::ptrdiff_t>(entry * ladder.size()));
     if (rounding) continue;
@@ -205,7 +211,7 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
       if (repeat > 0 && solvers.renewed) own.timed.matrix_changed();
       const Stopwatch watch;
       own.advanced = rounding ? CgReport{SolveOutcome::converged}
-                              : own.timed.solve(system.rhs(), solvers.x, own.proposal.nonzero, tolerance,
+                              : own.timed.solve(system.rhs(), solvers.x, own.proposal.start(), tolerance,
                                                 solvers.reference, guesses_[g].guess.deflation());
       own.cg_s[repeat] = watch.seconds();
     }

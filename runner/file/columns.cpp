@@ -92,7 +92,10 @@ std::vector<Column> all_columns() {
                          "iteration limit, 4 diverged, 5 indefinite, 6 not a number"),
       column<&R::start_matvecs>("/solves/start_matvecs", Rows::solve, guess, "1",
                                 "products with A before the first iteration: those of the guess itself, and "
-                                "one for the residual if it is nonzero; -1 not run"),
+                                "one for the residual if it is nonzero and its residual not known; -1 not run"),
+      column<&R::renewed>("/solves/renewed", Rows::solve, guess, "1",
+                          "1 where what lags was made anew for the solve, the preconditioner or a network's factors; "
+                          "else 0"),
       column<&R::iterations>("/solves/iterations", Rows::solve, ladder, "1",
                              "CG iterations to each tolerance; -1 not reached or not run"),
 

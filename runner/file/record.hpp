@@ -47,6 +47,7 @@ struct TaskRecord {
   std::vector<double> initial_residual, final_residual;  ///< [row, guess] relative to ||b||, in the job's norm
   std::vector<std::int8_t> reason;                       ///< [row, guess] SolveOutcome
   std::vector<std::int16_t> start_matvecs;               ///< [row, guess]
+  std::vector<std::int8_t> renewed;                      ///< [row, guess]
   std::vector<std::int16_t> iterations;                  ///< [row, guess, tolerance]
 
   // ---- /steps [row ...]

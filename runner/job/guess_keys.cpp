@@ -37,10 +37,17 @@ KeyTable<Guess> copingnet_keys() {
                      .from(1, 100)
                      .labelled_if_changed(),
                  &Guess::corrections);
+  table.optional(integer_key("lag_steps",
+                             "models with factors: so many time steps a prediction of them serves; 0: the solve that "
+                             "it was made for")
+                     .from(0, 1000000)
+                     .labelled_if_changed("lag"),
+                 &Guess::factor_lag_steps);
   table.optional(
-      boolean_key("once_a_step", "models with factors: those of a step's first Newton iteration serve the others too")
-          .labelled_if_changed(),
-      &Guess::once_a_step);
+      number_key("stop_at", "models with factors: no correction once the residual is at most this, relative to ||b||")
+          .from(0, 1)
+          .labelled_if_changed("to"),
+      &Guess::stop_at);
   return table;
 }
 

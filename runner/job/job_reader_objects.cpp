@@ -41,7 +41,8 @@ std::string default_label(const std::string& name, const Json& parameters) {
     } else if (described->text == Key::Text::path) {
       label += " " + std::filesystem::path(value.get<std::string>()).stem().native();
     } else {
-      label += " " + (value.is_boolean() ? key : value.is_string() ? value.get<std::string>() : value.dump());
+      if (!described->label_word.empty()) label += " " + described->label_word;
+      label += " " + (value.is_string() ? value.get<std::string>() : value.dump());
     }
   }
   return label;

@@ -87,8 +87,9 @@ Key& Key::unlabelled() {
   return *this;
 }
 
-Key& Key::labelled_if_changed() {
+Key& Key::labelled_if_changed(const char* word) {
   labelled_as_preset = false;
+  label_word = word;
   return *this;
 }
 

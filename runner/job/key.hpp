@@ -45,6 +45,7 @@ struct Key {
   std::optional<nlohmann::ordered_json> preset;  ///< value if the key is absent; none: the key is required
   bool labelled = true;                          ///< of a guess: part of its label?
   bool labelled_as_preset = true;                ///< also where it has its preset value?
+  std::string label_word;                        ///< what a label says before its value
   bool sweepable = true;                         ///< may its value be a sweep?
   bool parameter = true;                         ///< part of a task's parameters, not a setting of the whole job?
   std::string no_sweep_advice;                   ///< what to do instead of sweeping it
@@ -71,7 +72,7 @@ struct Key {
   Key& also_called(std::vector<std::string> words);
   Key& unswept(const char* advice = "");
   Key& unlabelled();
-  Key& labelled_if_changed();
+  Key& labelled_if_changed(const char* word = "");  ///< "word value"
   Key& setting();  ///< concerns the whole job: neither swept nor a parameter of its tasks
 };
 

@@ -78,7 +78,8 @@ struct GuessSpec {
   int window = 6;               ///< regression: on how many of the last systems
   std::filesystem::path model;  ///< copingnet
   int corrections = 1;          ///< copingnet
-  bool once_a_step = false;     ///< copingnet: factors of a step's first Newton iteration serve all
+  int factor_lag_steps = 0;     ///< copingnet: time steps that a prediction of factors serves; 0: one solve
+  double stop_at = 0;           ///< copingnet: no correction where ||r|| is at most this times ||b||
   std::filesystem::path data;   ///< knn: the data set
   int simulations = 0;          ///< knn: of the data set, from the first; 0: all
   int neighbours = 3;           ///< knn

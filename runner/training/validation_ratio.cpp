@@ -63,7 +63,7 @@ ValidationRatio::Iterations ValidationRatio::count(const StoredSimulation& simul
     if (system.largest_rhs() > rounding_level) {
       of.cg.matrix_changed();
       const double reference = of.cg.norm_of(system.rhs());
-      const CgReport report = of.cg.solve(system.rhs(), of.x, proposal.nonzero, tolerances().back(), reference);
+      const CgReport report = of.cg.solve(system.rhs(), of.x, proposal.start(), tolerances().back(), reference);
       iterations_to(of.cg.history(), reference, tolerances(), reached.data());
       if (of.cg.history().empty())
         sums.fill(std::numeric_limits<double>::infinity());  // its first residual is no number

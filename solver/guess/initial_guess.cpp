@@ -91,12 +91,17 @@ Proposal GuardedGuess::propose(const LinearSystem& system, const SolvePosition& 
   const Proposal inner = inner_->propose(system, at, x0);
   if (!inner.nonzero) return inner;
   VectorX& residual = scratch_[static_cast<std::size_t>(at.rod)];
-  system.matrix().multiply(x0.data(), residual.data());
-  residual = system.rhs() - residual;
+  if (inner.residual) {
+    residual = *inner.residual;
+  } else {
+    system.matrix().multiply(x0.data(), residual.data());
+    residual = system.rhs() - residual;
+  }
+  const int products = inner.start_products();
   const double limit = threshold_ * threshold_ * jacobi_norm_squared(system.matrix(), system.rhs());
-  if (jacobi_norm_squared(system.matrix(), residual) < limit) return {true, inner.products + 1};
+  if (jacobi_norm_squared(system.matrix(), residual) < limit) return {true, products, &residual, inner.renewed};
   x0.setZero();
-  return {false, inner.products + 1};
+  return {false, products, nullptr, inner.renewed};
 }
 
 }  // namespace rodsweep

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "solver/linear/block_factor.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
 #include "solver/linear/deflation.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/step/projection.hpp"
@@ -20,8 +21,14 @@
 namespace rodsweep {
 
 struct Proposal {
-  bool nonzero = false;  ///< false: x0 is zero
-  int products = 0;      ///< products with A that the guess itself took
+  bool nonzero = false;               ///< false: x0 is zero
+  int products = 0;                   ///< products with A that the guess itself took
+  const VectorX* residual = nullptr;  ///< b - A x0, where the guess knows it; until it proposes for the rod again
+  bool renewed = false;               ///< it made anew what serves later systems too
+
+  /// What CG starts from, and the products with A before its first iteration.
+  CgStart start() const { return {nonzero, residual}; }
+  int start_products() const { return products + (nonzero && !residual ? 1 : 0); }
 };
 
 class InitialGuess {

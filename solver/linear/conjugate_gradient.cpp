@@ -218,18 +218,23 @@ ConjugateGradient& ConjugateGradient::operator=(ConjugateGradient&&) noexcept = 
 
 void ConjugateGradient::matrix_changed() { impl_->stale = true; }
 
-CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, bool nonzero, double tolerance, double reference,
-                                  Deflation* deflation) {
+CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance,
+                                  double reference, Deflation* deflation) {
   Impl& s = *impl_;
   s.refresh();
   s.use(deflation);
   s.target = {tolerance, reference};
-  copy(b, s.b);
+  // With its residual known, what is missing from x is solved for, from zero.
+  const bool known = start.nonzero && start.residual, nonzero = start.nonzero && !known;
+  copy(known ? *start.residual : b, s.b);
   if (nonzero) copy(x, s.x);
   s.op.products = 0;
   petsc_check(KSPSetInitialGuessNonzero(s.ksp, nonzero ? PETSC_TRUE : PETSC_FALSE), "KSPSetInitialGuessNonzero");
   petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
-  copy(s.x, x);
+  if (known)
+    add(s.x, x);
+  else
+    copy(s.x, x);
 
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   PetscInt iterations = 0;

@@ -30,10 +30,18 @@ struct CgSettings {
   int max_iterations = 0;  ///< 0: ten times the number of unknowns
 };
 
+/// What a solve starts from.
+struct CgStart {
+  bool nonzero = false;               ///< from x; else from zero
+  const VectorX* residual = nullptr;  ///< b - A x, where somebody knows it
+
+  CgStart(bool is_nonzero, const VectorX* known_residual = nullptr) : nonzero(is_nonzero), residual(known_residual) {}
+};
+
 struct CgReport {
   SolveOutcome outcome = SolveOutcome::not_run;
   int iterations = 0;
-  int products = 0;  ///< with A: one for each iteration, one more for the residual of a nonzero guess
+  int products = 0;  ///< with A: one for each iteration, one more for the residual of a nonzero guess, if not known
 };
 
 class ConjugateGradient {
@@ -48,9 +56,9 @@ class ConjugateGradient {
   /// products always take the entries as they are.
   void matrix_changed();
 
-  /// From x (or from zero, if !nonzero) until the norm is below tolerance * reference. x receives the solution.
+  /// Until the norm is below tolerance * reference. x receives the solution.
   /// With `deflation` every preconditioned residual is projected; the first residual has no part in its space then.
-  CgReport solve(const VectorX& b, VectorX& x, bool nonzero, double tolerance, double reference,
+  CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
                  Deflation* deflation = nullptr);
 
   /// The norm of b in which `reference` is to be given: ||b||_2, or the natural one.

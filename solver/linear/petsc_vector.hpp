@@ -25,5 +25,6 @@ PetscErrorCode entries_changed(Vec v);
 
 void copy(const VectorX& from, Vec to);
 void copy(Vec from, VectorX& to);
+void add(Vec from, VectorX& to);
 
 }  // namespace rodsweep

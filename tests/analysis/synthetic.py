@@ -161,6 +161,7 @@ class Sweep:
                       for name in ("guess_s", "cg_s")})
         found.update({f"timing/solves/{name}": np.zeros(rows, dtype=np.float32) for name in ("assemble_s", "direct_s")})
         found["solves/iterations"] = np.zeros((rows,) + shape[1:], dtype=np.int16)
+        found["solves/start_matvecs"] = np.zeros((rows, shape[1]), dtype=np.int16)
         found.update({f"solves/{name}": np.zeros(rows, dtype=np.int32) for name in ("step", "newton")})
         found.update({f"solves/{name}": np.zeros(rows) for name in LEVELS})
         found.update({f"steps/{name}": np.zeros(count * steps) for name in (*LEVELS, *ALONG, "time_s")})
@@ -250,7 +251,8 @@ def write_large(path, tasks, steps, newton, closed_loop=False, guesses=GUESSES, 
                   "timing/solves/direct_s": np.full(len(j), 8e-6, np.float32)}
         of_guess = {"timing/solves/guess_s": np.full((len(j), len(guesses)), 1e-6, np.float32),
                     "timing/solves/cg_s": np.tile((1e-6 * (counts[:, 0] + 4)).astype(np.float32), (len(j), 1)),
-                    "solves/iterations": np.tile(counts.astype(np.int16), (len(j), 1, 1))}
+                    "solves/iterations": np.tile(counts.astype(np.int16), (len(j), 1, 1)),
+                    "solves/start_matvecs": np.zeros((len(j), len(guesses)), dtype=np.int16)}
         for name, values in {**along, **solved, **of_guess}.items():
             if name in h5:
                 del h5[name]

@@ -222,13 +222,13 @@ class Interruptions(Tables):
         np.testing.assert_allclose(times.cg_s[0, 0], (4 + 14) * 20e-6, rtol=1e-5)
 
     def test_a_solve_that_renews_a_lagged_factor_is_not_one(self):
-        grid = {"scene.segments": [20], "solve.lag_steps": [2]}
-        file, sims, _ = self.open(grid=grid, scenes=("helix",), steps=5, newton=3)
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
 
         def renew(h5):
-            del h5["tasks/parameters/solve.preconditioner"]
-            h5["tasks/parameters/solve.preconditioner"] = np.array([b"lagged_cholesky"] * 4)
-            for row in (0, 6, 12, 9):   # the first Newton iteration of steps 0, 2 and 4, and one of step 3
+            renewed = np.zeros(h5["timing/solves/cg_s"].shape, dtype="i1")
+            renewed[[0, 6, 12]] = 1     # the first Newton iterations of steps 0, 2 and 4
+            h5["solves/renewed"] = renewed
+            for row in (0, 6, 12, 9):   # and one of step 3
                 h5["timing/solves/cg_s"][row, 0] += 1e-3
 
         times = timings.times(self.changed(file, renew), sims)["all"]
@@ -249,6 +249,24 @@ class Interruptions(Tables):
         np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
         np.testing.assert_allclose(after["first"].guess_s[:, 2], 40 * before["first"].guess_s[:, 2], rtol=1e-6)
         self.assertNotIn("trusted", timings.interruptions(after["all"], sims))
+
+    def test_a_guess_that_is_slow_where_its_factors_are_made_anew_loses_nothing_there(self):
+        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=40, newton=3)
+        before = timings.times(file, sims)
+
+        def slow(h5):
+            renewed = np.zeros(h5["timing/solves/guess_s"].shape, dtype="i1")
+            renewed[0:120:24, 2] = 1
+            h5["solves/renewed"] = renewed
+            h5["timing/solves/guess_s"][0:120:24, 2] *= 40
+            h5["timing/solves/guess_s"][3, 2] = 4e-3   # interrupted, where nothing is made anew
+            h5["timing/solves/guess_s"][24, 2] = 40e-3  # and where it is
+
+        after = timings.times(self.changed(file, slow), sims)
+        self.assertEqual(after["all"].interrupted[0, 0], 2)
+        np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
+        ratio = after["first"].guess_s[0, 2] / before["first"].guess_s[0, 2]
+        np.testing.assert_allclose(ratio, (4 * 40 + 34) / 38, rtol=1e-6)  # scaled from 38 rows, 4 of which are slow
 
     def test_an_iteration_that_few_steps_reach_is_judged_by_the_one_before_it(self):
         file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=20, newton=3)

@@ -54,11 +54,14 @@ TEST_CASE("with the best length what is left of the error is A-orthogonal to the
       const Proposal without = base->propose(system, at, alone);
       const Proposal with = guess.propose(system, at, x0);
       CHECK(with.products == without.products + (without.nonzero ? 1 : 0) + 1);
+      REQUIRE(with.residual);
+      VectorX product(x0.size());
+      system.matrix().multiply(x0.data(), product.data());
+      CHECK((system.rhs() - product - *with.residual).norm() < 1e-11 * system.rhs().norm() + 1e-24);
       const double before = energy_error(system, alone, solution), after = energy_error(system, x0, solution);
       CHECK(after <= before * (1 + 1e-6) + 1e-24);
       // Any other length of the same correction is worse: (x0 - x) is A-orthogonal to it.
       const VectorX correction = x0 - alone;
-      VectorX product(x0.size());
       system.matrix().multiply(correction.data(), product.data());
       const double length = std::sqrt(correction.dot(product));
       CHECK(std::abs(product.dot(x0 - solution)) <= 1e-6 * length * std::sqrt(before) + 1e-24);
@@ -116,17 +119,19 @@ TEST_CASE("where loops are cut a network proposes what lowers the residual, or n
   int proposed = 0;
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
     CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1);
-    proposed += guess.propose(system, {}, x0).nonzero;
+    const Proposal proposal = guess.propose(system, {}, x0);
+    proposed += proposal.nonzero;
     CHECK(x0.allFinite());
     if (settings.processor == Processor::message_passing) continue;  // which sees loops
     system.matrix().multiply(x0.data(), residual.data());
     residual = system.rhs() - residual;
     CHECK(jacobi_norm_squared(system.matrix(), residual) <= jacobi_norm_squared(system.matrix(), system.rhs()));
+    if (proposal.residual) CHECK((residual - *proposal.residual).norm() < 1e-11 * system.rhs().norm());
   }
   CHECK(proposed > 0);
 }
 
-TEST_CASE("factors once a step are those of the step's first solve, whichever Newton iteration that is of") {
+TEST_CASE("factors that lag are those of the first solve of every so many steps") {
   CopingNetSettings settings;
   settings.encoding = Encoding::canonical;
   settings.processor = Processor::factors;
@@ -138,21 +143,50 @@ TEST_CASE("factors once a step are those of the step's first solve, whichever Ne
   for (int i = 0; i < 3; ++i) {
     systems.emplace_back(scene.rods.front());
     systems.back().assemble(scene.rods.front(), 0.02);
-    for (std::size_t s = 1; s < scene.rods.front().segments.size(); ++s)
+    for (std::size_t s = 1; s < scene.rods.front().segments.size(); ++s) {
+      const double bend = 0.02 * static_cast<double>(s * s);
+      Quaternion& q = scene.rods.front().orientation[s];
+      q = Quaternion(Eigen::AngleAxisd(bend, Vector3(1, 0.3, 0.2).normalized())) * q;
       scene.rods.front().position[s] += Vector3(0.01, -0.03, 0.02) * static_cast<double>(s);
+    }
   }
   const auto proposed = [&](CopingNetGuess& guess, int system, const SolvePosition& at) {
     VectorX x0(systems.front().rhs().size());
     guess.propose(systems[static_cast<std::size_t>(system)], at, x0);
     return x0;
   };
-  CopingNetGuess once(model, scene, 0.02, 1, {1, true}), always(model, scene, 0.02, 1);
-  CHECK(proposed(once, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // the first of its step
-  CHECK(proposed(once, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // and again
-  const VectorX shared = proposed(once, 1, {4, 2, 0});
-  CHECK(shared == proposed(once, 1, {4, 2, 0}));
-  CHECK(shared != proposed(always, 1, {4, 2, 0}));
-  CHECK(proposed(once, 2, {5, 1, 0}) == proposed(always, 2, {5, 1, 0}));  // another step
+  CopingNetGuess lagging(model, scene, 0.02, 1, {1, 3}), always(model, scene, 0.02, 1);
+  CHECK(proposed(lagging, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // there are none before
+  CHECK(proposed(lagging, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // and again
+  const VectorX later = proposed(lagging, 1, {4, 2, 0});
+  CHECK(later == proposed(lagging, 1, {6, 0, 0}));
+  CHECK(later != proposed(always, 1, {6, 0, 0}));
+  CHECK(proposed(lagging, 2, {7, 0, 0}) == proposed(always, 2, {7, 0, 0}));
+  VectorX x0(systems.front().rhs().size());
+  CHECK(lagging.propose(systems[2], {7, 0, 0}, x0).renewed);
+  CHECK_FALSE(lagging.propose(systems[2], {7, 1, 0}, x0).renewed);
+  CHECK_FALSE(always.propose(systems[2], {7, 0, 0}, x0).renewed);
+}
+
+TEST_CASE("corrections stop where the residual is small enough") {
+  CopingNetSettings settings;
+  settings.encoding = Encoding::canonical;
+  settings.processor = Processor::factors;
+  settings.base = BaseGuess::none;
+  settings.latent = 16;
+  Scene scene = build_scene(test::bending_rod(9));
+  LinearSystem system(scene.rods.front());
+  system.assemble(scene.rods.front(), 0.02);
+  const auto left = [&](double stop_at, int corrections) {
+    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1, {corrections, 0, stop_at});
+    VectorX x0(system.rhs().size());
+    const Proposal proposal = guess.propose(system, {}, x0);
+    return std::pair(proposal.products, proposal.residual->norm() / system.rhs().norm());
+  };
+  CHECK(left(1, 100) == std::pair(0, 1.0));  // zero is good enough
+  const auto [products, residual] = left(0.1, 100);
+  CHECK(residual <= 0.1);
+  CHECK(left(0.1, products - 1).second > 0.1);  // no correction too many
 }
 
 TEST_CASE("corrections with factors are steps of conjugate gradients: each lowers the energy, all of them solve") {
@@ -185,7 +219,7 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
   settings.processor = Processor::sweeps;
   VectorX x0(exact.size());
   CHECK_THROWS_WITH(CopingNetGuess(test::random_model(settings), scene, 0.02, 1, {2}).propose(system, {}, x0),
-                    Catch::Contains("corrections or once_a_step without factors"));
+                    Catch::Contains("corrections, lag_steps or stop_at without factors"));
 }
 
 TEST_CASE("the joints' order does not matter") {

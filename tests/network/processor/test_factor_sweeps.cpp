@@ -1,6 +1,7 @@
 // Learned factors: gradients, what their answers have in common with those of A^-1, and inference.
 #include <catch2/catch.hpp>
 
+#include "network/encoding/feature_encoder.hpp"
 #include "network/processor/factor_inference.hpp"
 #include "tests/network/gradient_check.hpp"
 #include "tests/solver/support.hpp"
@@ -101,21 +102,35 @@ TEST_CASE("a state that has grown too long is not carried on, and gradients stay
   for (const float g : gradient.values()) REQUIRE(std::isfinite(g));
 }
 
-TEST_CASE(
-    "inference of factors gives the training code's answers, as exactly as its operands, to further residuals too") {
+TEST_CASE("inference of factors gives the training code's answers, as exactly as its operands, to any residual") {
+  CopingNetSettings settings;
+  settings.encoding = Encoding::canonical;
+  settings.processor = Processor::factors;
   for (const int latent : {16, 32, 48})
-    for (const Edges& edges : {chain(2), chain(20), tree(3, 2), ring(7)}) {
-      const JointForest one = joint_forest(random_rod(edges, {0}, 3)), forest = side_by_side({&one});
+    for (const Edges& edges : {chain(5), chain(20), tree(3, 2), ring(7)}) {
+      const Rod rod = random_rod(edges, {0}, 3);
+      LinearSystem system(rod);
+      system.assemble(rod, 0.02);
+      FeatureEncoder encoder(settings, rod, system.matrix());
+      const JointForest& forest = encoder.topology().forest;
       Net<float> net(latent);
-      net.weights[net.sweeps.layers().factors.weight()] *= 0.1F;  // or states grow too long to be carried on
-      Tensor<float> x = features(forest, 2, 0.05).cast<float>(), y(6, forest.size());
-      FactorInference inference(net.sweeps, net.weights, forest);
-      inference.factorise(x);
+      net.weights[net.sweeps.layers().factors.weight()] *= 0.02F;  // or states grow too long to be carried on
+      FactorInference inference(net.sweeps, net.weights, forest, encoder.pattern());
+      Tensor<float> nodes(0, rod.segment_count()), x(CanonicalEncoding::size, forest.size());
       for (const unsigned seed : {2U, 9U}) {
-        x.topRows(6) = random_matrix(6, forest.size(), seed).cast<float>();
-        const Tensor<float> expected = net(forest, x);
-        inference.solve(x, y);
-        CHECK((y - expected).norm() < (narrow_bits == 16 ? 2e-3F : 1e-5F) * expected.norm());
+        const VectorX r = random_matrix(6 * forest.size(), 1, seed).col(0);
+        encoder.encode(rod, system, 0, 0.02, VectorX(), r, nodes, x);
+        const Tensor<float> y = net(forest, x);
+        VectorX expected(r.size()), d(r.size());
+        for (int place = 0; place < forest.size(); ++place) {
+          Lane8 answer{};
+          for (int row = 0; row < 6; ++row) answer[row] = y(row, place);
+          store6(expected.data() + 6 * encoder.pattern().joint[static_cast<std::size_t>(place)],
+                 encoder.canonical()->from_unit(place, answer));
+        }
+        if (seed == 2) inference.factorise(x, encoder.canonical()->frames(), system.matrix());
+        inference.solve(r, d);
+        CHECK((d - expected).norm() < (narrow_bits == 16 ? 3e-3 : 1e-5) * expected.norm());
       }
     }
 }
@@ -123,7 +138,8 @@ TEST_CASE(
 TEST_CASE("a latent size without a kernel for factors is refused") {
   const Net<float> net(24);
   const JointForest forest = some_forest();
-  CHECK_THROWS_WITH(FactorInference(net.sweeps, net.weights, forest), Catch::Contains("24"));
+  const SystemPattern pattern;
+  CHECK_THROWS_WITH(FactorInference(net.sweeps, net.weights, forest, pattern), Catch::Contains("24"));
 }
 
 }  // namespace

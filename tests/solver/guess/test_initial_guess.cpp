@@ -237,6 +237,7 @@ TEST_CASE("guarded passes a guess on just below its threshold and replaces it by
   const Proposed kept = propose(above, rods, {0, 0, 0});
   CHECK(kept.nonzero);
   CHECK(kept.products == 4);  // the inner guess's, and one for the residual
+  CHECK((*kept.residual - r).norm() < 1e-12 * b.norm());
   CHECK(kept.x0 == x0);
   GuardedGuess below(rods.scene, std::make_unique<Fixed>(x0), ratio * (1 - 1e-9));
   const Proposed rejected = propose(below, rods, {0, 0, 0});

@@ -33,6 +33,23 @@ TEST_CASE("products with the matrix are counted: one for each iteration, one for
   CHECK(from_guess.report.products == from_guess.report.iterations + 1);
 }
 
+TEST_CASE("a guess whose residual is known saves the product, and is solved from in the same iterations") {
+  const Case c = moving_chain();
+  const VectorX guess = 0.9 * c.exact, residual = c.b() - c.a().dense() * guess;
+  for (const Preconditioner p : preconditioners)
+    for (const Norm norm : norms) {
+      INFO(name(p));
+      ConjugateGradient cg(c.a(), {p, norm, 0});
+      const Run computed = run(cg, c.b(), 1e-8, &guess);
+      VectorX x = guess;
+      const CgReport known = cg.solve(c.b(), x, {true, &residual}, 1e-8, cg.norm_of(c.b()));
+      CHECK(known.outcome == SolveOutcome::converged);
+      CHECK(known.iterations == computed.report.iterations);
+      CHECK(known.products == computed.report.products - 1);
+      CHECK((x - computed.x).norm() < 1e-6 * c.exact.norm());
+    }
+}
+
 TEST_CASE("a lagged factor solves the next matrix in fewer iterations than jacobi, and its own in one") {
   const Rod rod = moving_scene(12).rods.front();
   LinearSystem system(rod);
