@@ -1,11 +1,13 @@
 #include "network/training/trainer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include "network/training/mse_loss.hpp"
+#include "network/training/threads.hpp"
 #include "solver/numbers/split_mix.hpp"
 
 namespace rodsweep {
@@ -18,14 +20,17 @@ std::uint64_t random_bits(std::uint64_t seed, std::uint64_t index) {
 
 }  // namespace
 
-Trainer::Trainer(CopingNet<float>& net, const std::vector<Example>& examples, const TrainingSettings& settings)
+Trainer::Trainer(CopingNet<float>& net, const std::vector<Example>& examples, const TrainingSettings& settings,
+                 int threads)
     : net_(net),
       examples_(examples),
       settings_(settings),
       order_(examples.size()),
       adam_(net.parameters().values().size(), {0.9, 0.999, 1e-8, settings.weight_decay}),
-      energy_(settings.loss == LossKind::in_the_loop ? settings.cg_steps : 0, net.settings().best_length),
-      gradient_(net.parameters().zeros()) {
+      sum_(net.parameters().zeros()) {
+  const EnergyLoss<float> energy(settings.loss == LossKind::in_the_loop ? settings.cg_steps : 0,
+                                 net.settings().best_length);
+  for (int i = 0; i < threads; ++i) workspaces_.push_back({energy, net.parameters().zeros(), {}, {}, {}, {}, {}, {}});
   if (settings.shards < 1 || settings.batch % settings.shards != 0)
     throw std::invalid_argument("Trainer: a batch of " + std::to_string(settings.batch) + " cannot be divided into " +
                                 std::to_string(settings.shards) + " equal shards");
@@ -55,21 +60,26 @@ void Trainer::shuffle(std::int64_t epoch) {
   shuffled_epoch_ = epoch;
 }
 
-void Trainer::compute(int shard, float* out) {
+void Trainer::compute(const std::vector<Shard>& shards) {
   shuffle(step_ / steps_per_epoch_);
   const auto size = static_cast<std::size_t>(settings_.batch / settings_.shards);
-  const std::size_t first =
-      static_cast<std::size_t>(step_ % steps_per_epoch_) * static_cast<std::size_t>(settings_.batch) +
-      static_cast<std::size_t>(shard) * size;
-  std::vector<const Example*> chosen;
-  for (std::size_t i = first; i < first + size; ++i) chosen.push_back(&examples_[order_[i]]);
-  std::fill(gradient_.values().begin(), gradient_.values().end(), 0.F);
-  out[0] = static_cast<float>(evaluate(chosen, &gradient_));
-  std::copy(gradient_.values().begin(), gradient_.values().end(), out + 1);
+  const std::size_t begin =
+      static_cast<std::size_t>(step_ % steps_per_epoch_) * static_cast<std::size_t>(settings_.batch);
+  in_parallel(static_cast<int>(shards.size()), static_cast<int>(workspaces_.size()), [&](int item, int thread) {
+    const Shard& shard = shards[static_cast<std::size_t>(item)];
+    Workspace& with = workspaces_[static_cast<std::size_t>(thread)];
+    const std::size_t first = begin + static_cast<std::size_t>(shard.number) * size;
+    std::vector<const Example*> chosen;
+    for (std::size_t i = first; i < first + size; ++i) chosen.push_back(&examples_[order_[i]]);
+    AlignedVector<float>& gradient = with.gradient.values();
+    std::fill(gradient.begin(), gradient.end(), 0.F);
+    shard.out[0] = static_cast<float>(evaluate(chosen, with, true));
+    std::copy(gradient.begin(), gradient.end(), shard.out + 1);
+  });
 }
 
 double Trainer::update(const std::vector<const float*>& shards) {
-  AlignedVector<float>& sum = gradient_.values();
+  AlignedVector<float>& sum = sum_.values();
   std::fill(sum.begin(), sum.end(), 0.F);
   double loss = 0, square = 0;
   for (const float* shard : shards) {
@@ -90,29 +100,39 @@ double Trainer::update(const std::vector<const float*>& shards) {
   return loss * mean;
 }
 
-double Trainer::loss(const std::vector<Example>& examples, std::size_t first, std::size_t count) {
-  std::vector<const Example*> chosen;
-  for (std::size_t i = first; i < first + count; ++i) chosen.push_back(&examples[i]);
-  return evaluate(chosen, nullptr);
+std::vector<double> Trainer::losses(const std::vector<Example>& examples,
+                                    const std::function<bool(int batch)>& wanted) {
+  const auto batch = static_cast<std::size_t>(settings_.batch);
+  std::vector<double> sums((examples.size() + batch - 1) / batch);
+  in_parallel(static_cast<int>(sums.size()), static_cast<int>(workspaces_.size()), [&](int item, int thread) {
+    if (!wanted(item)) return;
+    const std::size_t first = static_cast<std::size_t>(item) * batch;
+    std::vector<const Example*> chosen;
+    for (std::size_t i = first; i < std::min(first + batch, examples.size()); ++i) chosen.push_back(&examples[i]);
+    sums[static_cast<std::size_t>(item)] = evaluate(chosen, workspaces_[static_cast<std::size_t>(thread)], false);
+  });
+  return sums;
 }
 
-/// The sum of losses; adds to the gradient if there is one.
-double Trainer::evaluate(const std::vector<const Example*>& examples, Parameters<float>* gradient) {
+/// The sum of losses; adds to the workspace's gradient on request.
+double Trainer::evaluate(const std::vector<const Example*>& examples, Workspace& with, bool with_gradient) const {
   const Batch<float> batch = make_batch<float>(examples);
   const bool moves = net_.settings().moves;
-  net_.forward(batch.topology, batch.nodes, batch.edges, tape_, y_, moves ? &y_nodes_ : nullptr);
+  net_.forward(batch.topology, batch.nodes, batch.edges, with.tape, with.y, moves ? &with.y_nodes : nullptr);
   double loss = 0;
   if (settings_.loss == LossKind::mse) {
-    loss = mse_loss<float>(y_, batch.edge_target, edge_entries_, gradient ? &dy_ : nullptr);
-    if (moves) loss += mse_loss<float>(y_nodes_, batch.node_target, node_entries_, gradient ? &dy_nodes_ : nullptr);
+    loss = mse_loss<float>(with.y, batch.edge_target, edge_entries_, with_gradient ? &with.dy : nullptr);
+    if (moves)
+      loss += mse_loss<float>(with.y_nodes, batch.node_target, node_entries_, with_gradient ? &with.dy_nodes : nullptr);
   } else {
-    if (moves && gradient) dy_nodes_.setZero(6, batch.nodes.cols());
-    d_ = batch.unit.cwiseProduct(y_);
-    loss = energy_(batch.systems, d_, gradient ? &dy_ : nullptr);
-    if (gradient) dy_.array() *= batch.unit.array();
+    if (moves && with_gradient) with.dy_nodes.setZero(6, batch.nodes.cols());
+    with.d = batch.unit.cwiseProduct(with.y);
+    loss = with.energy(batch.systems, with.d, with_gradient ? &with.dy : nullptr);
+    if (with_gradient) with.dy.array() *= batch.unit.array();
   }
-  if (gradient)
-    net_.backward(batch.topology, batch.nodes, batch.edges, tape_, dy_, moves ? &dy_nodes_ : nullptr, *gradient);
+  if (with_gradient)
+    net_.backward(batch.topology, batch.nodes, batch.edges, with.tape, with.dy, moves ? &with.dy_nodes : nullptr,
+                  with.gradient);
   return loss;
 }
 

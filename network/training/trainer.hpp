@@ -1,12 +1,15 @@
 // Trains a COPINGNet on examples: mini-batches in a fixed number of shards, whose gradients are summed in a fixed
 // order, so that any distribution of the shards over processes gives the same bits.
 //
+// The shards of a step, and the parts of a loss, are shared by threads, which all read the same examples.
+//
 // Step t of an epoch takes the next `batch` examples of a permutation that depends on (seed, epoch) alone; its shards
 // are equal parts of it. Adam, its rate rising linearly over the first `warm_up` of all steps and falling along a
 // cosine to zero; the gradient's norm is clipped.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "network/processor/coping_net.hpp"
 #include "network/training/adam.hpp"
@@ -37,22 +40,27 @@ struct TrainingSettings {
 class Trainer {
  public:
   /// `net` and `examples` must outlive the trainer. Throws std::invalid_argument for settings that make no sense.
-  Trainer(CopingNet<float>& net, const std::vector<Example>& examples, const TrainingSettings& settings);
+  Trainer(CopingNet<float>& net, const std::vector<Example>& examples, const TrainingSettings& settings,
+          int threads = 1);
 
   std::int64_t steps_per_epoch() const { return steps_per_epoch_; }
   std::int64_t steps() const { return steps_per_epoch_ * settings_.epochs; }
   std::int64_t step() const { return step_; }  ///< steps taken
 
-  /// What a shard contributes to the next step: its loss, then its gradient. `out` has shard_size() entries.
+  /// What shards contribute to the next step: a loss, then its gradient. `out` has shard_size() entries.
+  struct Shard {
+    int number;
+    float* out;
+  };
   std::size_t shard_size() const { return 1 + net_.parameters().values().size(); }
-  void compute(int shard, float* out);
+  void compute(const std::vector<Shard>& shards);
   /// Takes the step from the contributions of all shards in order; its mean loss.
   double update(const std::vector<const float*>& shards);
 
   double rate() const { return rate_; }  ///< of the last step
 
-  /// Sum of the losses of `count` examples from `first` on, without gradients.
-  double loss(const std::vector<Example>& examples, std::size_t first, std::size_t count);
+  /// Sums of the losses of consecutive batches of examples, without gradients; of those for which wanted(batch).
+  std::vector<double> losses(const std::vector<Example>& examples, const std::function<bool(int batch)>& wanted);
 
   /// All that must be kept to go on exactly from here, beside the parameters.
   struct State {
@@ -63,7 +71,14 @@ class Trainer {
   void restore(const State& state);
 
  private:
-  double evaluate(const std::vector<const Example*>& examples, Parameters<float>* gradient);
+  /// What a thread works with.
+  struct Workspace {
+    EnergyLoss<float> energy;
+    Parameters<float> gradient;
+    CopingNet<float>::Tape tape;
+    Tensor<float> y, y_nodes, d, dy, dy_nodes;
+  };
+  double evaluate(const std::vector<const Example*>& examples, Workspace& with, bool with_gradient) const;
   void shuffle(std::int64_t epoch);
   void count_entries();
 
@@ -75,10 +90,8 @@ class Trainer {
   double edge_entries_ = 0, node_entries_ = 0;  ///< outputs of an example, on average: mse is per entry
   std::vector<std::uint32_t> order_;
   Adam adam_;
-  EnergyLoss<float> energy_;
-  Parameters<float> gradient_;
-  CopingNet<float>::Tape tape_;
-  Tensor<float> y_, y_nodes_, d_, dy_, dy_nodes_;
+  Parameters<float> sum_;  ///< of the shards' gradients
+  std::vector<Workspace> workspaces_;
 };
 
 }  // namespace rodsweep

@@ -74,12 +74,16 @@ double seconds_of_step(Trainer& trainer, int shard_count) {
   std::vector<std::vector<float>> shards(static_cast<std::size_t>(shard_count),
                                          std::vector<float>(trainer.shard_size()));
   std::vector<const float*> gradients;
-  for (const std::vector<float>& shard : shards) gradients.push_back(shard.data());
+  std::vector<Trainer::Shard> parts;
+  for (std::vector<float>& shard : shards) {
+    parts.push_back({static_cast<int>(parts.size()), shard.data()});
+    gradients.push_back(shard.data());
+  }
   int steps = -1;  // the first one touches its memory for the first time
   Stopwatch watch;
   for (; steps < 3 || watch.seconds() < probed_s; ++steps) {
     if (steps == 0) watch = Stopwatch();
-    for (std::size_t i = 0; i < shards.size(); ++i) trainer.compute(static_cast<int>(i), shards[i].data());
+    trainer.compute(parts);
     trainer.update(gradients);
   }
   return watch.seconds() / steps;
@@ -104,8 +108,8 @@ Probe probe(const TrainingJob& job, const DatasetReader& dataset, const Extent& 
   Trainer trainer(model.net, examples, job.training);
   probe.training_s = seconds_of_step(trainer, job.training.shards) * static_cast<double>(extent.steps);
   const Stopwatch forward;
-  for (int i = 0; i < 3; ++i) trainer.loss(examples, 0, static_cast<std::size_t>(job.training.batch));
-  probe.validation_s = forward.seconds() / (3 * job.training.batch) * static_cast<double>(extent.validation_examples) *
+  const auto judged = trainer.losses(examples, [](int batch) { return batch < 3; }).size();
+  probe.validation_s = forward.seconds() / (std::min<double>(3, static_cast<double>(judged)) * job.training.batch) * static_cast<double>(extent.validation_examples) *
                        job.training.epochs;
   probe.validation_s += seconds_of_ratio(job, model, dataset.read(all));
   return probe;
@@ -132,7 +136,7 @@ nlohmann::ordered_json to_json(const Job& job, const TrainingJob& training, cons
 std::string to_text(const PlanOptions& options, const Job& job, const TrainingJob& training, const Extent& extent,
                     const std::optional<Probe>& probe) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int ranks = std::min(cores, training.training.shards);
+  const int threads = std::min(cores, training.training.shards);
   RunOptions run;
   run.job = options.job;
   run.program = options.program;
@@ -145,11 +149,12 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
   text += fmt::format("steps     {}: {} in each of {} epochs\n", extent.steps, extent.steps_per_epoch,
                       training.training.epochs);
   if (probe) {
-    const double seconds = probe->reading_s + (probe->training_s + probe->validation_s) / ranks;
-    text += fmt::format("memory    about {} on each rank\n", bytes_text(static_cast<std::int64_t>(probe->bytes)));
-    text += fmt::format("time      about {} on {} core{} here\n", duration_text(seconds), ranks, ranks == 1 ? "" : "s");
+    const double seconds = probe->reading_s + (probe->training_s + probe->validation_s) / threads;
+    text += fmt::format("memory    about {}, once for all threads of a rank\n", bytes_text(static_cast<std::int64_t>(probe->bytes)));
+    text += fmt::format("time      about {} on {} core{} here\n", duration_text(seconds), threads,
+                        threads == 1 ? "" : "s");
   }
-  return text + "next      " + run_line(run, ranks);
+  return text + "next      " + run_line(run, 1);
 }
 
 }  // namespace

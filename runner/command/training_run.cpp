@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "network/training/threads.hpp"
 #include "runner/command/next_line.hpp"
 #include "runner/command/training_resume.hpp"
 #include "runner/command/training_summary.hpp"
@@ -30,13 +33,21 @@ ExitCode exit_code_of(Ending ending) {
 class TrainingRun {
  public:
   TrainingRun(const RunOptions& options, const Job& job, const fs::path& path, const MpiSession& mpi, Console& console)
-      : options_(options), job_(job), path_(path), training_job_(training_job(job)), mpi_(mpi), console_(console) {}
+      : options_(options),
+        job_(job),
+        path_(path),
+        training_job_(training_job(job)),
+        mpi_(mpi),
+        console_(console),
+        where_(placement(mpi.world(), Share::all_work)),
+        threads_(std::min({where_.threads, available_threads(), shards_of_a_rank()})) {}
 
   void prepare(const std::optional<StoredModel>& earlier);
   ExitCode run(const StopSignal& signal);
 
  private:
-  void advise(const Placement& where);
+  void advise();
+  int shards_of_a_rank() const { return (training_job_.training.shards + mpi_.size() - 1) / mpi_.size(); }
   void show_progress();
   void report(const StopSignal& signal);
   void save();
@@ -49,6 +60,8 @@ class TrainingRun {
   const TrainingJob training_job_;
   const MpiSession& mpi_;
   Console& console_;
+  const Placement where_;
+  const int threads_;  ///< of this rank
   TrainingData data_;
   std::optional<Training> training_;
   std::optional<ModelFile> file_;
@@ -68,39 +81,38 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
     if (earlier && earlier->card.data_hash != dataset.hash())
       throw FileError(fmt::format("{} cannot be continued: {} is not the data set that it was begun with",
                                   path_.native(), training_job_.data.native()));
-    data_ = training_data(training_job_, dataset);
+    data_ = training_data(training_job_, dataset, threads_);
     simulations = ratio_simulations(training_job_, dataset, mpi_.rank(), mpi_.size());
   });
   collectively(mpi_.world(),
-               [&] { training_.emplace(job_, training_job_, data_, std::move(simulations), mpi_.world()); });
+               [&] { training_.emplace(job_, training_job_, data_, std::move(simulations), threads_, mpi_.world()); });
   if (earlier) {
     starts_ = earlier->card.starts;
     training_->restore(earlier->card, *earlier->model, *earlier->checkpoint);
   }
   first_step_ = training_->trainer().step();
 
-  const Placement where = placement(mpi_.world(), Share::all_work);
-  starts_.push_back({provenance_of(options_, mpi_, where), "", -1});
+  starts_.push_back({provenance_of(options_, mpi_, where_), "", -1});
   collectively(mpi_.world(), [&] {
     if (!writes()) return;
     file_.emplace(path_, earlier.has_value());
     save();
   });
-  advise(where);
+  advise();
 }
 
-void TrainingRun::advise(const Placement& where) {
+void TrainingRun::advise() {
   if (!data_.note.empty()) console_.warn(data_.note);
   const int shards = training_job_.training.shards;
-  if (where.oversubscribed) {
+  if (where_.oversubscribed) {
     console_.warn(fmt::format("{} ranks share {} cores and wait for each other: use as many ranks as cores",
-                              mpi_.size(), where.cores));
+                              mpi_.size(), where_.cores));
   } else if (mpi_.size() > shards) {
     console_.note(fmt::format("a step has {} shards (training.shards): {} of {} ranks have nothing to do", shards,
                               mpi_.size() - shards, mpi_.size()));
-  } else if (const int useful = std::min(where.cores, shards); mpi_.size() < useful) {
-    console_.note(fmt::format("{} of {} cores will work; for {} of them: {}", mpi_.size(), where.cores, useful,
-                              run_line(options_, useful)));
+  } else if (const int working = mpi_.size() * threads_; working < std::min(where_.cores, shards)) {
+    console_.note(fmt::format("{} of {} cores will work: see OMP_NUM_THREADS, and mpirun's --bind-to", working,
+                              where_.cores));
   }
   const Trainer& trainer = training_->trainer();
   const ModelCard& card = training_->card();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sched.h>
 
+#include <algorithm>
 #include <array>
 #include <thread>
 
@@ -17,7 +18,8 @@ void check_mpi(int code, const char* call) {
 }
 
 MpiSession::MpiSession() {
-  check_mpi(MPI_Init(nullptr, nullptr), "MPI_Init");
+  int provided = 0;  // a training has threads, of which the first alone speaks to others
+  check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
   // Set on the predefined communicators, so that those derived from them (HDF5's and PETSc's too) return their errors.
   check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   check_mpi(MPI_Comm_set_errhandler(MPI_COMM_SELF, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
@@ -87,7 +89,8 @@ Placement placement(MPI_Comm comm, Share share) {
   const int host_cores = CPU_COUNT(&ours);
   std::array<int, 3> part{works, host_rank == 0 ? host_cores : 0, host_workers > host_cores}, sum{};
   check_mpi(MPI_Allreduce(part.data(), sum.data(), 3, MPI_INT, MPI_SUM, comm), "MPI_Allreduce");
-  return {sum[0], sum[1], sum[2] > 0};
+  const int threads = std::min(CPU_COUNT(&mine), host_cores / std::max(host_workers, 1));
+  return {sum[0], sum[1], std::max(threads, 1), sum[2] > 0};
 }
 
 }  // namespace rodsweep

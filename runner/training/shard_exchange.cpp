@@ -25,10 +25,12 @@ ShardExchange::ShardExchange(MPI_Comm comm, int shards, std::size_t size) : comm
     shards_.push_back(numbers_.data() + first_of(shard % ranks_) + 1 + static_cast<std::size_t>(shard / ranks_) * size);
 }
 
-bool ShardExchange::gather(const std::function<void(int, float*)>& compute, bool stop) {
+bool ShardExchange::gather(const Compute& compute, bool stop) {
   float* own = numbers_.data() + first_of(rank_);
   *own++ = stop ? 1.F : 0.F;
-  for (int shard = rank_; shard < count_; shard += ranks_, own += size_) compute(shard, own);
+  std::vector<Trainer::Shard> shards;
+  for (int shard = rank_; shard < count_; shard += ranks_, own += size_) shards.push_back({shard, own});
+  compute(shards);
   if (ranks_ == 1) return stop;
   check_mpi(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, numbers_.data(), length_.data(), first_.data(),
                            MPI_FLOAT, comm_),

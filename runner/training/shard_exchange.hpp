@@ -10,6 +10,8 @@
 #include <functional>
 #include <vector>
 
+#include "network/training/trainer.hpp"
+
 namespace rodsweep {
 
 class ShardExchange {
@@ -24,7 +26,8 @@ class ShardExchange {
   }  ///< a shard, or anything else that is shared
 
   /// Collective: computes this rank's shards and gathers all. Returns whether any rank was given `stop`.
-  bool gather(const std::function<void(int shard, float* out)>& compute, bool stop);
+  using Compute = std::function<void(const std::vector<Trainer::Shard>& own)>;
+  bool gather(const Compute& compute, bool stop);
   /// As gathered last, in order.
   const std::vector<const float*>& shards() const { return shards_; }
 

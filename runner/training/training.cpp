@@ -33,12 +33,12 @@ ModelCard new_card(const Job& job, const TrainingJob& settings, const TrainingDa
 }  // namespace
 
 Training::Training(const Job& job, const TrainingJob& settings, const TrainingData& data,
-                   std::vector<StoredSimulation> simulations, MPI_Comm comm)
+                   std::vector<StoredSimulation> simulations, int threads, MPI_Comm comm)
     : settings_(settings),
       data_(data),
       model_(std::make_shared<Model>(Model{CopingNet<float>(settings.network, settings.training.seed), data.scales})),
       kept_(std::make_shared<Model>(*model_)),
-      trainer_(model_->net, data.training, settings.training),
+      trainer_(model_->net, data.training, settings.training, threads),
       exchange_(comm, settings.training.shards, trainer_.shard_size()),
       ratio_(std::move(simulations)),
       card_(new_card(job, settings, data)) {}
@@ -59,7 +59,7 @@ Checkpoint Training::checkpoint() const {
 
 bool Training::step(bool stop) {
   const Stopwatch watch;
-  const bool stops = exchange_.gather([&](int shard, float* out) { trainer_.compute(shard, out); }, stop);
+  const bool stops = exchange_.gather([&](const std::vector<Trainer::Shard>& own) { trainer_.compute(own); }, stop);
   const double loss = trainer_.update(exchange_.shards());
   epoch_loss_ += loss;
   if (!std::isfinite(loss)) {
@@ -104,15 +104,12 @@ void Training::diverge(const char* loss) {
 
 /// Batches are shared among the ranks, and summed in their order.
 double Training::validation_loss() {
-  const std::size_t batch = static_cast<std::size_t>(settings_.training.batch), size = data_.validation.size();
-  std::vector<double> sums((size + batch - 1) / batch);
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    if (exchange_.is_mine(static_cast<std::int64_t>(i)))
-      sums[i] = trainer_.loss(data_.validation, i * batch, std::min(batch, size - i * batch));
+  std::vector<double> sums =
+      trainer_.losses(data_.validation, [&](int batch) { return exchange_.is_mine(batch); });
   exchange_.share(sums);
   double sum = 0;
   for (const double part : sums) sum += part;
-  return sum / static_cast<double>(size);
+  return sum / static_cast<double>(data_.validation.size());
 }
 
 Training::SimulationRatios Training::ratios(const ValidationRatio::MakeGuess& make_guess) const {

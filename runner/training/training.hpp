@@ -20,7 +20,7 @@ class Training {
  public:
   /// All arguments must outlive this; `simulations` are this rank's part. Collective, like step() and end().
   Training(const Job& job, const TrainingJob& settings, const TrainingData& data,
-           std::vector<StoredSimulation> simulations, MPI_Comm comm);
+           std::vector<StoredSimulation> simulations, int threads, MPI_Comm comm);
 
   /// Goes on from where a training with these settings was left.
   void restore(const ModelCard& card, const Model& kept, const Checkpoint& checkpoint);

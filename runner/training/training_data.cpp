@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "network/training/example_builder.hpp"
+#include "network/training/threads.hpp"
 
 namespace rodsweep {
 
@@ -25,7 +27,25 @@ DatasetReader open_dataset(const TrainingJob& training, const Job& job) {
   return dataset;
 }
 
-TrainingData training_data(const TrainingJob& training, const DatasetReader& dataset) {
+namespace {
+
+/// The examples of simulations in their order, made by threads, a few simulations at a time.
+void add_all(const CopingNetSettings& network, const DatasetReader& dataset, std::int64_t first, std::int64_t end,
+             int threads, std::vector<Example>& out) {
+  for (std::int64_t begin = first; begin < end; begin += threads) {
+    const std::vector<StoredSimulation> simulations =
+        dataset.read(begin, std::min<std::int64_t>(threads, end - begin));
+    std::vector<std::vector<Example>> examples(simulations.size());
+    in_parallel(static_cast<int>(simulations.size()), threads, [&](int i, int) {
+      add_examples(network, simulations[static_cast<std::size_t>(i)], examples[static_cast<std::size_t>(i)]);
+    });
+    for (std::vector<Example>& of : examples) std::move(of.begin(), of.end(), std::back_inserter(out));
+  }
+}
+
+}  // namespace
+
+TrainingData training_data(const TrainingJob& training, const DatasetReader& dataset, int threads) {
   TrainingData data;
   data.hash = dataset.hash();
   data.note = dataset.note();
@@ -35,8 +55,8 @@ TrainingData training_data(const TrainingJob& training, const DatasetReader& dat
     data.validation_scenes.emplace_back(
         std::visit([](const auto& scene) { return std::decay_t<decltype(scene)>::name; },
                    dataset.plan().spec(dataset.task(i).index).scene));
-  for (std::int64_t i = 0; i < dataset.size(); ++i)
-    add_examples(training.network, dataset.read(i), i < data.training_simulations ? data.training : data.validation);
+  add_all(training.network, dataset, 0, data.training_simulations, threads, data.training);
+  add_all(training.network, dataset, data.training_simulations, dataset.size(), threads, data.validation);
   if (data.training.size() < static_cast<std::size_t>(training.training.batch) || data.validation.empty()) {
     throw FileError(fmt::format("{} gives {} examples for training and {} for validation: too few for batches of {}",
                                 training.data.native(), data.training.size(), data.validation.size(),

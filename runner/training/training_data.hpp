@@ -27,7 +27,7 @@ struct TrainingData {
 /// Opens the data set of a job. Throws JobError where it is missing or too small, FileError for what is wrong with it.
 DatasetReader open_dataset(const TrainingJob& training, const Job& job);
 
-TrainingData training_data(const TrainingJob& training, const DatasetReader& dataset);
+TrainingData training_data(const TrainingJob& training, const DatasetReader& dataset, int threads);
 
 /// The validation simulations on which CG ratios are measured: those whose number leaves `part` of `parts`.
 std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const DatasetReader& dataset, int part,

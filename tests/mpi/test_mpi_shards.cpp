@@ -14,10 +14,12 @@ TEST_CASE("every rank has all shards, in order, each computed by one rank") {
     for (const int step : {0, 1}) {
       std::vector<int> mine;
       const bool stops = exchange.gather(
-          [&](int shard, float* out) {
-            mine.push_back(shard);
-            for (std::size_t i = 0; i < size; ++i)
-              out[i] = static_cast<float>(100 * step + 10 * shard) + static_cast<float>(i);
+          [&](const std::vector<Trainer::Shard>& own) {
+            for (const auto& [shard, out] : own) {
+              mine.push_back(shard);
+              for (std::size_t i = 0; i < size; ++i)
+                out[i] = static_cast<float>(100 * step + 10 * shard) + static_cast<float>(i);
+            }
           },
           false);
       CHECK_FALSE(stops);
@@ -36,7 +38,9 @@ TEST_CASE("every rank has all shards, in order, each computed by one rank") {
 
 TEST_CASE("one rank that wants to stop stops all, also one that has no shard") {
   ShardExchange exchange(MPI_COMM_WORLD, 2, 1);
-  const auto compute = [](int, float* out) { *out = 1; };
+  const auto compute = [](const std::vector<Trainer::Shard>& own) {
+    for (const Trainer::Shard& shard : own) *shard.out = 1;
+  };
   for (int rank = 0; rank < exchange.ranks(); ++rank) {
     CHECK(exchange.gather(compute, exchange.rank() == rank));
     CHECK_FALSE(exchange.gather(compute, false));

@@ -34,11 +34,11 @@ Toy::Toy(const Json& values, const Json& rods) {
   job = parse_job(values.dump(), folder / "job.json");
   training = training_job(job);
   const DatasetReader dataset = open_dataset(training, job);
-  data = training_data(training, dataset);
+  data = training_data(training, dataset, 2);
   simulations = ratio_simulations(training, dataset, 0, 1);
 }
 
-Training Toy::begin() const { return Training(job, training, data, simulations, MPI_COMM_SELF); }
+Training Toy::begin() const { return Training(job, training, data, simulations, 1, MPI_COMM_SELF); }
 
 Training Toy::run() const {
   Training result = begin();

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "network/training/threads.hpp"
 #include "network/training/trainer.hpp"
 #include "tests/network/models.hpp"
 #include "tests/network/stored.hpp"
@@ -36,7 +37,7 @@ double step(Trainer& trainer, int shards, int ranks = 1) {
     for (int shard = rank; shard < shards; shard += ranks) {
       auto& out = contributions[static_cast<std::size_t>(shard)];
       out.resize(trainer.shard_size());
-      trainer.compute(shard, out.data());
+      trainer.compute({{shard, out.data()}});
     }
   std::vector<const float*> in_order;
   for (const auto& contribution : contributions) in_order.push_back(contribution.data());
@@ -44,7 +45,9 @@ double step(Trainer& trainer, int shards, int ranks = 1) {
 }
 
 double mean_loss(Trainer& trainer, const std::vector<Example>& examples) {
-  return trainer.loss(examples, 0, examples.size()) / static_cast<double>(examples.size());
+  double sum = 0;
+  for (const double part : trainer.losses(examples, [](int) { return true; })) sum += part;
+  return sum / static_cast<double>(examples.size());
 }
 
 TEST_CASE("a few examples are learned by heart, with every processor and loss") {
@@ -129,6 +132,42 @@ TEST_CASE("weights have the same bits however the shards are divided among ranks
       CHECK(net.parameters().values() == first);
     }
   }
+}
+
+TEST_CASE("weights and losses have the same bits on any number of threads") {
+  for (const Processor processor : {Processor::sweeps, Processor::message_passing}) {
+    const Examples data = sample_examples(small_network(processor), 3, 4);
+    AlignedVector<float> first;
+    std::vector<double> losses;
+    for (const int threads : {1, 2, 3, 6}) {
+      CAPTURE(static_cast<int>(processor), threads);
+      CopingNet<float> net(small_network(processor), 1);
+      Trainer trainer(net, data.examples, small_training(), threads);
+      std::vector<std::vector<float>> out(4, std::vector<float>(trainer.shard_size()));
+      while (trainer.step() < trainer.steps()) {
+        trainer.compute({{0, out[0].data()}, {1, out[1].data()}, {2, out[2].data()}, {3, out[3].data()}});
+        trainer.update({out[0].data(), out[1].data(), out[2].data(), out[3].data()});
+      }
+      const std::vector<double> judged = trainer.losses(data.examples, [](int batch) { return batch != 1; });
+      if (first.empty()) first = net.parameters().values();
+      if (losses.empty()) losses = judged;
+      CHECK(net.parameters().values() == first);
+      CHECK(judged == losses);
+      CHECK(judged.at(1) == 0);
+    }
+  }
+}
+
+TEST_CASE("work on threads is done once each, and what it throws arrives") {
+  std::vector<int> done(50);
+  const auto work = [&](int item, int thread) {
+    if (thread < 0 || thread > 3) throw std::logic_error("no such thread");
+    ++done[static_cast<std::size_t>(item)];
+    if (item == 7) throw std::runtime_error("seven");
+  };
+  CHECK_THROWS_WITH(in_parallel(50, 4, work), "seven");
+  CHECK(done == std::vector<int>(50, 1));
+  in_parallel(0, 4, work);
 }
 
 TEST_CASE("a trainer restored in the middle goes on to the same bits") {

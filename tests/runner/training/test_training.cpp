@@ -96,7 +96,7 @@ TEST_CASE("data that are missing or too few are refused with what to do") {
              Contains("validation_simulations: 8 is not allowed, since ") && Contains("holds 8 simulations"));
   toy.training.validation_simulations = 7;
   toy.training.training.batch = 8;
-  CHECK_THAT(message_of<FileError>([&] { training_data(toy.training, open_dataset(toy.training, toy.job)); }),
+  CHECK_THAT(message_of<FileError>([&] { training_data(toy.training, open_dataset(toy.training, toy.job), 1); }),
              Contains("gives 6 examples for training and 42 for validation: too few for batches of 8"));
   toy.training.data = toy.folder / "nowhere.h5";
   CHECK_THAT(message_of<JobError>([&] { open_dataset(toy.training, toy.job); }),
@@ -120,7 +120,7 @@ TEST_CASE("losses fall, the model kept is that of the least validation loss") {
   Model kept = training.kept();
   Trainer judge(kept.net, toy.data.training, toy.training.training);
   double sum = 0;
-  for (std::size_t i = 0; i < 24; i += 8) sum += judge.loss(toy.data.validation, i, 8);
+  for (const double part : judge.losses(toy.data.validation, [](int) { return true; })) sum += part;
   CHECK(sum / 24 == best->validation_loss);
 }
 
