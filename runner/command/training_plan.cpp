@@ -23,7 +23,7 @@ constexpr double probed_s = 0.5;
 /// What is known without computing anything.
 struct Extent {
   std::size_t parameters = 0;
-  std::int64_t training_simulations = 0;
+  std::int64_t training_simulations = 0, validation_simulations = 0;
   std::int64_t training_examples = 0, validation_examples = 0;  ///< at most
   std::int64_t steps_per_epoch = 0, steps = 0;
 };
@@ -36,13 +36,14 @@ struct Probe {
   double validation_s = 0;  ///< of all losses and CG ratios
 };
 
-Extent extent_of(const TrainingJob& job, const DatasetReader& dataset) {
+Extent extent_of(const TrainingJob& job, const TrainingSets& sets) {
   Extent extent;
   extent.parameters = CopingNet<float>(job.network, 0).parameters().values().size();
-  extent.training_simulations = dataset.size() - job.validation_simulations;
-  for (std::int64_t i = 0; i < dataset.size(); ++i)
-    (i < extent.training_simulations ? extent.training_examples : extent.validation_examples) +=
-        dataset.task(i).rows[Rows::system].count;
+  extent.training_simulations = static_cast<std::int64_t>(sets.training().size());
+  extent.validation_simulations = static_cast<std::int64_t>(sets.validation().size());
+  for (const TrainingSets::Simulation& simulation : sets.training()) extent.training_examples += systems_of(simulation);
+  for (const TrainingSets::Simulation& simulation : sets.validation())
+    extent.validation_examples += systems_of(simulation);
   extent.steps_per_epoch = extent.training_examples / job.training.batch;
   extent.steps = extent.steps_per_epoch * job.training.epochs;
   return extent;
@@ -58,7 +59,8 @@ double bytes_of(const Example& example) {
          static_cast<double>(system.couplings.size() * sizeof(SystemPattern::Coupling) + sizeof(Example));
 }
 
-double seconds_of_ratio(const TrainingJob& job, const Model& model, StoredSimulation simulation) {
+double seconds_of_ratio(const TrainingJob& job, const Model& model, StoredSimulation simulation,
+                        std::int64_t simulations) {
   const ValidationRatio ratio({std::move(simulation)});
   const auto shared = std::make_shared<const Model>(model);
   const Stopwatch watch;
@@ -66,7 +68,7 @@ double seconds_of_ratio(const TrainingJob& job, const Model& model, StoredSimula
     return std::make_unique<CopingNetGuess>(shared, scene, of.constraint_dt_s, of.newton_iterations);
   });
   const int times = 1 + (job.ratio_every_epochs > 0 ? job.training.epochs / job.ratio_every_epochs : 0);
-  return watch.seconds() * times * static_cast<double>(std::min(job.ratio_simulations, job.validation_simulations));
+  return watch.seconds() * times * static_cast<double>(std::min(job.ratio_simulations, simulations));
 }
 
 /// Of one step of the optimiser.
@@ -89,19 +91,20 @@ double seconds_of_step(Trainer& trainer, int shard_count) {
   return watch.seconds() / steps;
 }
 
-Probe probe(const TrainingJob& job, const DatasetReader& dataset, const Extent& extent) {
+Probe probe(const TrainingJob& job, const TrainingSets& sets, const Extent& extent) {
   Probe probe;
   const std::int64_t all = extent.training_simulations;
   const std::int64_t for_a_batch = 1 + job.training.batch * all / std::max<std::int64_t>(extent.training_examples, 1);
   const std::int64_t tried = std::min(all, std::max(fewest_simulations, for_a_batch));
   std::vector<Example> examples;
   const Stopwatch reading;
-  for (std::int64_t i = 0; i < tried; ++i) add_examples(job.network, dataset.read(i * all / tried), examples);
-  const double share = static_cast<double>(dataset.size()) / static_cast<double>(tried);
+  for (std::int64_t i = 0; i < tried; ++i)
+    add_examples(job.network, read(sets.training()[static_cast<std::size_t>(i * all / tried)]), examples);
+  const double share = static_cast<double>(all + extent.validation_simulations) / static_cast<double>(tried);
   probe.reading_s = share * reading.seconds();
   for (const Example& example : examples) probe.bytes += share * bytes_of(example);
   if (static_cast<int>(examples.size()) < job.training.batch)
-    throw FileError(fmt::format("{} has too few examples for a batch of {}", job.data.native(), job.training.batch));
+    throw FileError(fmt::format("{} has too few examples for a batch of {}", paths_of(job.data), job.training.batch));
 
   Model model{CopingNet<float>(job.network, job.training.seed), feature_scales(job.network, examples)};
   normalise(job.network, model.scales, examples);
@@ -109,9 +112,9 @@ Probe probe(const TrainingJob& job, const DatasetReader& dataset, const Extent& 
   probe.training_s = seconds_of_step(trainer, job.training.shards) * static_cast<double>(extent.steps);
   const Stopwatch forward;
   const auto judged = trainer.losses(examples, [](int batch) { return batch < 3; }).size();
-  probe.validation_s = forward.seconds() / (std::min<double>(3, static_cast<double>(judged)) * job.training.batch) * static_cast<double>(extent.validation_examples) *
-                       job.training.epochs;
-  probe.validation_s += seconds_of_ratio(job, model, dataset.read(all));
+  probe.validation_s = forward.seconds() / (std::min<double>(3, static_cast<double>(judged)) * job.training.batch) *
+                       static_cast<double>(extent.validation_examples) * job.training.epochs;
+  probe.validation_s += seconds_of_ratio(job, model, read(sets.validation().front()), extent.validation_simulations);
   return probe;
 }
 
@@ -119,10 +122,10 @@ nlohmann::ordered_json to_json(const Job& job, const TrainingJob& training, cons
                                const std::optional<Probe>& probe) {
   nlohmann::ordered_json json{{"job", job.path.native()},
                               {"name", job.name},
-                              {"data", training.data.native()},
+                              {"data", paths_of(training.data)},
                               {"parameters", extent.parameters},
                               {"training_simulations", extent.training_simulations},
-                              {"validation_simulations", training.validation_simulations},
+                              {"validation_simulations", extent.validation_simulations},
                               {"most_training_examples", extent.training_examples},
                               {"most_validation_examples", extent.validation_examples},
                               {"epochs", training.training.epochs},
@@ -141,18 +144,19 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
   run.job = options.job;
   run.program = options.program;
   std::string text = fmt::format("job       {} ({})\n", job.name, job.path.native());
-  text += fmt::format("data      {}\n", training.data.native());
+  text += fmt::format("data      {}\n", paths_of(training.data));
   text += fmt::format("examples  {} of {} simulations to learn from, {} of {} to validate with, at most\n",
                       extent.training_examples, extent.training_simulations, extent.validation_examples,
-                      training.validation_simulations);
+                      extent.validation_simulations);
   text += fmt::format("network   {} parameters\n", extent.parameters);
   text += fmt::format("steps     {}: {} in each of {} epochs\n", extent.steps, extent.steps_per_epoch,
                       training.training.epochs);
   if (probe) {
     const double seconds = probe->reading_s + (probe->training_s + probe->validation_s) / threads;
-    text += fmt::format("memory    about {}, once for all threads of a rank\n", bytes_text(static_cast<std::int64_t>(probe->bytes)));
-    text += fmt::format("time      about {} on {} core{} here\n", duration_text(seconds), threads,
-                        threads == 1 ? "" : "s");
+    text += fmt::format("memory    about {}, once for all threads of a rank\n",
+                        bytes_text(static_cast<std::int64_t>(probe->bytes)));
+    text +=
+        fmt::format("time      about {} on {} core{} here\n", duration_text(seconds), threads, threads == 1 ? "" : "s");
   }
   return text + "next      " + run_line(run, 1);
 }
@@ -161,10 +165,10 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
 
 ExitCode show_training_plan(const PlanOptions& options, const Job& job, Console& console) {
   const TrainingJob training = training_job(job);
-  const DatasetReader dataset = open_dataset(training, job);
-  const Extent extent = extent_of(training, dataset);
+  const TrainingSets sets(training, job);
+  const Extent extent = extent_of(training, sets);
   std::optional<Probe> probed;
-  if (options.probe) probed = probe(training, dataset, extent);
+  if (options.probe) probed = probe(training, sets, extent);
   console.result(options.json ? to_json(job, training, extent, probed).dump(2)
                               : to_text(options, job, training, extent, probed));
   return ExitCode::ok;

@@ -74,15 +74,15 @@ class TrainingRun {
 
 /// Collective: reads the data and creates the file, or goes on from it.
 void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
-  console_.note(fmt::format("reading {}", training_job_.data.native()));
+  console_.note(fmt::format("reading {}", paths_of(training_job_.data)));
   std::vector<StoredSimulation> simulations;
   collectively(mpi_.world(), [&] {
-    const DatasetReader dataset = open_dataset(training_job_, job_);
-    if (earlier && earlier->card.data_hash != dataset.hash())
-      throw FileError(fmt::format("{} cannot be continued: {} is not the data set that it was begun with",
-                                  path_.native(), training_job_.data.native()));
-    data_ = training_data(training_job_, dataset, threads_);
-    simulations = ratio_simulations(training_job_, dataset, mpi_.rank(), mpi_.size());
+    const TrainingSets sets(training_job_, job_);
+    if (earlier && earlier->card.data_hash != sets.hash())
+      throw FileError(fmt::format("{} cannot be continued: {} is not the data that it was begun with", path_.native(),
+                                  paths_of(training_job_.data)));
+    data_ = training_data(training_job_, sets, threads_);
+    simulations = ratio_simulations(training_job_, sets, mpi_.rank(), mpi_.size());
   });
   collectively(mpi_.world(),
                [&] { training_.emplace(job_, training_job_, data_, std::move(simulations), threads_, mpi_.world()); });
@@ -111,8 +111,8 @@ void TrainingRun::advise() {
     console_.note(fmt::format("a step has {} shards (training.shards): {} of {} ranks have nothing to do", shards,
                               mpi_.size() - shards, mpi_.size()));
   } else if (const int working = mpi_.size() * threads_; working < std::min(where_.cores, shards)) {
-    console_.note(fmt::format("{} of {} cores will work: see OMP_NUM_THREADS, and mpirun's --bind-to", working,
-                              where_.cores));
+    console_.note(
+        fmt::format("{} of {} cores will work: see OMP_NUM_THREADS, and mpirun's --bind-to", working, where_.cores));
   }
   const Trainer& trainer = training_->trainer();
   const ModelCard& card = training_->card();

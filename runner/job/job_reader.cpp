@@ -60,6 +60,7 @@ void JobReader::throw_mistakes() const {
 
 Json JobReader::read(const Key& key, const Json& value, const std::string& path) {
   if (!sweep_word(value).empty()) return read_sweep(key, value, path);
+  if (key.or_list && value.is_array() && !value.empty()) return read_items(item_key(key), value, path);
   switch (key.kind) {
     case Key::Kind::object: return value.is_string() ? read_text(key, value, path) : read_object(key, value, path);
     case Key::Kind::integer:

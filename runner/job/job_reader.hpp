@@ -33,6 +33,7 @@ class JobReader {
   Json read_range(const Key& key, const std::string& word, const Json& ends, const std::string& path);
   Json read_object(const Key& key, const Json& value, const std::string& path);
   Json read_variant(const Key& key, const Json& value, const std::string& path);
+  Json read_items(const Key& item, const Json& values, const std::string& path);
   Json read_list(const Key& key, const Json& value, const std::string& path);
   Json read_number(const Key& key, const Json& value, const std::string& path);
   Json read_text(const Key& key, const Json& value, const std::string& path);

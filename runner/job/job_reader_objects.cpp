@@ -109,8 +109,12 @@ Json JobReader::read_list(const Key& key, const Json& value, const std::string& 
     refuse(key, value, path);
     return value;
   }
+  return read_items(key.keys.front(), value, path);
+}
+
+Json JobReader::read_items(const Key& item, const Json& values, const std::string& path) {
   Json result = Json::array();
-  for (std::size_t i = 0; i < value.size(); ++i) result.push_back(read(key.keys.front(), value[i], element(path, i)));
+  for (std::size_t i = 0; i < values.size(); ++i) result.push_back(read(item, values[i], element(path, i)));
   return result;
 }
 

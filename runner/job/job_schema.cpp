@@ -98,6 +98,10 @@ class SchemaWriter {
 
   /// A value itself, not a sweep.
   Json value(const Key& key, const std::string& path) {
+    if (key.or_list) {
+      const Json item = value(item_key(key), path);
+      return {{"anyOf", Json::array({item, Json{{"type", "array"}, {"items", item}, {"minItems", 1}}})}};
+    }
     switch (key.kind) {
       case Key::Kind::object: return or_words(object(key, path), key);
       case Key::Kind::integer: return bounded("integer", key);

@@ -82,6 +82,10 @@ Key& Key::unswept(const char* advice) {
   no_sweep_advice = advice;
   return *this;
 }
+Key& Key::or_list_of_such() {
+  or_list = true;
+  return *this;
+}
 Key& Key::unlabelled() {
   labelled = false;
   return *this;
@@ -129,6 +133,12 @@ Key list_key(const char* name, const char* help, Key item) {
 Key guess_key(const char* name, const char* help) { return make(Key::Kind::guess, name, help); }
 Key guesses_key(const char* name, const char* help) { return make(Key::Kind::guesses, name, help); }
 
+Key item_key(const Key& listed) {
+  Key key = listed;
+  key.or_list = false;
+  return key;
+}
+
 Key component_key(const Key& vector) {
   Key key = vector;
   key.kind = Key::Kind::number;
@@ -147,6 +157,7 @@ std::string quoted_list(const std::vector<std::string>& words) {
 }
 
 std::string allowed(const Key& key) {
+  if (key.or_list) return allowed(item_key(key)) + ", or a list of at least one such";
   switch (key.kind) {
     case Key::Kind::object: return "an object {...}" + (key.choices.empty() ? "" : ", or " + quoted_list(key.choices));
     case Key::Kind::integer: return "an integer" + bounds(key);

@@ -48,6 +48,7 @@ struct Key {
   std::string label_word;                        ///< what a label says before its value
   bool sweepable = true;                         ///< may its value be a sweep?
   bool parameter = true;                         ///< part of a task's parameters, not a setting of the whole job?
+  bool or_list = false;                          ///< or a list of at least one such value
   std::string no_sweep_advice;                   ///< what to do instead of sweeping it
   std::vector<std::string> synonyms;             ///< other words for it: suggested, never accepted
   std::vector<std::string> only_for;  ///< the values of the enclosing `tag`, of its own object or one further out, that
@@ -71,6 +72,7 @@ struct Key {
   Key& of_form(Text form);
   Key& also_called(std::vector<std::string> words);
   Key& unswept(const char* advice = "");
+  Key& or_list_of_such();
   Key& unlabelled();
   Key& labelled_if_changed(const char* word = "");  ///< "word value"
   Key& setting();  ///< concerns the whole job: neither swept nor a parameter of its tasks
@@ -88,6 +90,9 @@ Key variant_key(const char* name, const char* help, std::vector<Key> kinds);
 Key list_key(const char* name, const char* help, Key item);
 Key guess_key(const char* name, const char* help);
 Key guesses_key(const char* name, const char* help);
+
+/// The key of one value of a list, where `or_list` allows one.
+Key item_key(const Key& listed);
 
 /// The key of one component of a vector.
 Key component_key(const Key& vector);

@@ -99,7 +99,9 @@ Json network_json(const CopingNetSettings& settings) {
 TrainingJob training_job(const Job& job) {
   const Json& training = job.values["training"];
   TrainingJob out;
-  out.data = (job.path.parent_path() / job.values["data"].get<std::string>()).lexically_normal();
+  const Json& data = job.values["data"];
+  for (const Json& set : data.is_array() ? data : Json::array({data}))
+    out.data.push_back((job.path.parent_path() / set.get<std::string>()).lexically_normal());
   out.validation_simulations = job.values["validation_simulations"];
   out.network = network_settings(job.values["network"]);
   out.training = training_settings(training, job.seed);

@@ -12,7 +12,7 @@
 namespace rodsweep {
 
 struct TrainingJob {
-  std::filesystem::path data;  ///< of the data set
+  std::vector<std::filesystem::path> data;  ///< of the data sets
   std::int64_t validation_simulations = 100;
   CopingNetSettings network;
   TrainingSettings training;

@@ -112,9 +112,10 @@ std::vector<Key> training_keys() {
   std::vector<Key> keys{
       text_key("data", "data set to learn from: the file of a job of kind \"dataset\"")
           .at_most(4000)
-          .of_form(Key::Text::line),
+          .of_form(Key::Text::line)
+          .or_list_of_such(),
       integer_key("validation_simulations",
-                  "the last so many simulations, of the data set's last samples, are not learned from")
+                  "the last so many simulations of every data set, of its last samples, are not learned from")
           .from(1, 1000000)
           .defaults_to(100),
       network_key(), training()};

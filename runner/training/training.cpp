@@ -19,7 +19,10 @@ ModelCard new_card(const Job& job, const TrainingJob& settings, const TrainingDa
   ModelCard card;
   card.name = job.name;
   card.job_text = job.text;
-  card.data_path = std::filesystem::absolute(settings.data).lexically_normal().native();
+  std::vector<std::filesystem::path> paths;
+  for (const std::filesystem::path& path : settings.data)
+    paths.push_back(std::filesystem::absolute(path).lexically_normal());
+  card.data_path = paths_of(paths);
   card.data_hash = data.hash;
   card.training_simulations = data.training_simulations;
   card.validation_simulations = data.validation_simulations;
@@ -104,8 +107,7 @@ void Training::diverge(const char* loss) {
 
 /// Batches are shared among the ranks, and summed in their order.
 double Training::validation_loss() {
-  std::vector<double> sums =
-      trainer_.losses(data_.validation, [&](int batch) { return exchange_.is_mine(batch); });
+  std::vector<double> sums = trainer_.losses(data_.validation, [&](int batch) { return exchange_.is_mine(batch); });
   exchange_.share(sums);
   double sum = 0;
   for (const double part : sums) sum += part;

@@ -1,7 +1,5 @@
-// What a training reads of its data set: examples to learn from, examples to judge by, and simulations to solve.
-//
-// Simulations are taken in the order of DatasetReader, the last `validation_simulations` for validation; scales are
-// those of the training examples alone. The same on every rank.
+// What a training reads of its data sets: examples to learn from, examples to judge by, and simulations to solve.
+// Scales are those of the training examples alone. The same on every rank.
 #pragma once
 
 #include <string>
@@ -10,8 +8,7 @@
 #include "network/encoding/feature_encoder.hpp"
 #include "network/encoding/stored_simulation.hpp"
 #include "network/training/example.hpp"
-#include "runner/dataset/dataset_reader.hpp"
-#include "runner/job/training_job.hpp"
+#include "runner/training/training_sets.hpp"
 
 namespace rodsweep {
 
@@ -20,17 +17,15 @@ struct TrainingData {
   FeatureScales scales;
   std::int64_t training_simulations = 0, validation_simulations = 0;
   std::vector<std::string> validation_scenes;  ///< the type of each validation simulation's scene
-  std::string hash;                            ///< of the data set (DatasetReader)
+  std::string hash;                            ///< of the data sets
   std::string note;                            ///< what is to be said about it; empty: nothing
 };
 
-/// Opens the data set of a job. Throws JobError where it is missing or too small, FileError for what is wrong with it.
-DatasetReader open_dataset(const TrainingJob& training, const Job& job);
-
-TrainingData training_data(const TrainingJob& training, const DatasetReader& dataset, int threads);
+/// Throws FileError where there are too few examples.
+TrainingData training_data(const TrainingJob& training, const TrainingSets& sets, int threads);
 
 /// The validation simulations on which CG ratios are measured: those whose number leaves `part` of `parts`.
-std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const DatasetReader& dataset, int part,
+std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const TrainingSets& sets, int part,
                                                 int parts);
 
 }  // namespace rodsweep

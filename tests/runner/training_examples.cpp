@@ -33,9 +33,9 @@ Toy::Toy(const Json& values, const Json& rods) {
   make_data_set(folder / "data.h5", rods);
   job = parse_job(values.dump(), folder / "job.json");
   training = training_job(job);
-  const DatasetReader dataset = open_dataset(training, job);
-  data = training_data(training, dataset, 2);
-  simulations = ratio_simulations(training, dataset, 0, 1);
+  const TrainingSets sets(training, job);
+  data = training_data(training, sets, 2);
+  simulations = ratio_simulations(training, sets, 0, 1);
 }
 
 Training Toy::begin() const { return Training(job, training, data, simulations, 1, MPI_COMM_SELF); }

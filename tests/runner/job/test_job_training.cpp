@@ -8,6 +8,8 @@ using namespace rodsweep;
 
 namespace {
 
+using Paths = std::vector<std::filesystem::path>;
+
 TrainingJob training_of(const Json& job) { return training_job(job_of(job)); }
 
 /// Refusal of the training job with that value.
@@ -22,7 +24,7 @@ std::string refused(const std::string& pointer, const std::string& value) {
 
 TEST_CASE("the least that a training says is where its data are") {
   const TrainingJob job = training_of(train_job());
-  CHECK(job.data == "data.h5");
+  CHECK(job.data == Paths{"data.h5"});
   CHECK(job.validation_simulations == 100);
   CHECK(job.network.encoding == Encoding::system);
   CHECK(job.network.processor == Processor::sweeps);
@@ -33,14 +35,18 @@ TEST_CASE("the least that a training says is where its data are") {
   CHECK(job.patience_epochs == 0);
   CHECK(refusal(without("/data", train_job())) ==
         "job.json: data: missing: data set to learn from: the file of a job of kind \"dataset\", a text of 1 to 4000 "
-        "characters on one line");
+        "characters on one line, or a list of at least one such");
 }
 
 TEST_CASE("data are looked for beside the job") {
   const Job job = parse_job(with("/data", R"("../results/data.h5")", train_job()).dump(), "jobs/train.json");
-  CHECK(training_job(job).data == "results/data.h5");
+  CHECK(training_job(job).data == Paths{"results/data.h5"});
   const Job absolute = parse_job(with("/data", R"("/data.h5")", train_job()).dump(), "jobs/train.json");
-  CHECK(training_job(absolute).data == "/data.h5");
+  CHECK(training_job(absolute).data == Paths{"/data.h5"});
+  const Job several = parse_job(with("/data", R"(["../a.h5", "b.h5"])", train_job()).dump(), "jobs/train.json");
+  CHECK(training_job(several).data == Paths{"a.h5", "jobs/b.h5"});
+  CHECK_THAT(refused("/data", "[]"), Catch::Contains("data: ") && Catch::Contains("or a list of at least one such"));
+  CHECK_THAT(refused("/data", R"(["a.h5", 5])"), Catch::Contains("data[1]: 5 is not allowed"));
 }
 
 TEST_CASE("sweeps may be linear in the state, and correct the guess of regression, in canonical frames") {

@@ -80,9 +80,32 @@ TEST_CASE("a model of several kinds of scene is judged on each, one of a single 
   CHECK(single.card().scenes.empty());
 }
 
+TEST_CASE("several data sets are learned from one after the other, and judged by in turns") {
+  Toy toy;
+  Json trees = toy_tree_data_job();
+  trees["samples"] = 7;
+  make_data_set(toy.folder / "trees.h5", trees);
+  const std::string alone = toy.data.hash;
+  toy.training.data.push_back(toy.folder / "trees.h5");
+  const TrainingSets sets(toy.training, toy.job);
+  CHECK(sets.training().size() == 4 + 3);
+  REQUIRE(sets.validation().size() == 4 + 4);
+  const TrainingData both = training_data(toy.training, sets, 2);
+  CHECK(both.hash != alone);
+  CHECK(both.training_simulations == 7);
+  for (std::size_t i = 0; i < 8; ++i) CHECK(both.validation_scenes[i] == (i % 2 == 0 ? "bending_rod" : "tree"));
+  const auto judged = ratio_simulations(toy.training, sets, 0, 1);
+  REQUIRE(judged.size() == 3);
+  CHECK(judged[0].systems[3].solution == toy.simulations[0].systems[3].solution);
+  CHECK(judged[2].systems[3].solution == toy.simulations[1].systems[3].solution);
+  REQUIRE(both.training.size() > toy.data.training.size());
+  for (std::size_t i = 0; i < toy.data.training.size(); i += 5)  // made by two threads, in order
+    CHECK(both.training[i].system.residual == toy.data.training[i].system.residual);
+}
+
 TEST_CASE("ranks take turns with the simulations whose CG ratio is measured") {
   const Toy toy;
-  const DatasetReader dataset = open_dataset(toy.training, toy.job);
+  const TrainingSets dataset(toy.training, toy.job);
   const auto second = ratio_simulations(toy.training, dataset, 1, 2);
   REQUIRE(second.size() == 1);
   CHECK(second[0].systems[3].solution == toy.simulations[1].systems[3].solution);
@@ -92,14 +115,14 @@ TEST_CASE("ranks take turns with the simulations whose CG ratio is measured") {
 TEST_CASE("data that are missing or too few are refused with what to do") {
   Toy toy;
   toy.training.validation_simulations = 8;
-  CHECK_THAT(message_of<JobError>([&] { open_dataset(toy.training, toy.job); }),
+  CHECK_THAT(message_of<JobError>([&] { TrainingSets(toy.training, toy.job); }),
              Contains("validation_simulations: 8 is not allowed, since ") && Contains("holds 8 simulations"));
   toy.training.validation_simulations = 7;
   toy.training.training.batch = 8;
-  CHECK_THAT(message_of<FileError>([&] { training_data(toy.training, open_dataset(toy.training, toy.job), 1); }),
+  CHECK_THAT(message_of<FileError>([&] { training_data(toy.training, TrainingSets(toy.training, toy.job), 1); }),
              Contains("gives 6 examples for training and 42 for validation: too few for batches of 8"));
-  toy.training.data = toy.folder / "nowhere.h5";
-  CHECK_THAT(message_of<JobError>([&] { open_dataset(toy.training, toy.job); }),
+  toy.training.data = {toy.folder / "nowhere.h5"};
+  CHECK_THAT(message_of<JobError>([&] { TrainingSets(toy.training, toy.job); }),
              Contains("data: there is no file ") && Contains("make the data set first"));
 }
 

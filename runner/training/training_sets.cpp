@@ -1,0 +1,59 @@
+#include "runner/training/training_sets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runner/job/checksum.hpp"
+
+namespace rodsweep {
+namespace {
+
+DatasetReader opened(const std::filesystem::path& path, const TrainingJob& training, const Job& job) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw job_error(job.path, "data",
+                    fmt::format("there is no file {}: make the data set first, with `rodsweep run` and a job of kind "
+                                "\"dataset\"",
+                                path.native()));
+  }
+  DatasetReader set(path);
+  if (set.size() <= training.validation_simulations) {
+    throw job_error(job.path, "validation_simulations",
+                    fmt::format("{} is not allowed, since {} holds {} simulations and some must be left to learn from",
+                                training.validation_simulations, path.native(), set.size()));
+  }
+  return set;
+}
+
+}  // namespace
+
+TrainingSets::TrainingSets(const TrainingJob& training, const Job& job) {
+  for (const std::filesystem::path& path : training.data) sets_.push_back(opened(path, training, job));
+  Checksum sum;
+  for (const DatasetReader& set : sets_) {
+    sum.add(set.hash().data(), set.hash().size());
+    if (!set.note().empty()) note_ += (note_.empty() ? "" : "; ") + set.note();
+    for (std::int64_t i = 0; i < set.size() - training.validation_simulations; ++i) training_.push_back({&set, i});
+  }
+  hash_ = sets_.size() == 1 ? sets_.front().hash() : fmt::format("{:016x}", sum.value());
+  for (std::int64_t i = training.validation_simulations; i > 0; --i)
+    for (const DatasetReader& set : sets_) validation_.push_back({&set, set.size() - i});
+}
+
+std::string scene_of(const TrainingSets::Simulation& simulation) {
+  const TaskSpec spec = simulation.set->plan().spec(simulation.set->task(simulation.number).index);
+  return std::visit([](const auto& scene) { return std::string(std::decay_t<decltype(scene)>::name); }, spec.scene);
+}
+
+std::int64_t systems_of(const TrainingSets::Simulation& simulation) {
+  return simulation.set->task(simulation.number).rows[Rows::system].count;
+}
+
+std::string paths_of(const std::vector<std::filesystem::path>& sets) {
+  std::string text;
+  for (const std::filesystem::path& path : sets) text += (text.empty() ? "" : ", ") + path.native();
+  return text;
+}
+
+}  // namespace rodsweep
