@@ -24,16 +24,17 @@ configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G N
 studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
   temporal_bending temporal_helix learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
-  solvers work_precision balance balance_scenes tree_wind learned_tree forest tree_long_term learned_collision \
+  solvers work_precision balance balance_scenes tree_wind forest tree_long_term \
   learned_rods learned_rods_length learned_rods_closed \
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo studies pictures test test-long test-arm bench sanitize schema format format-check tidy install clean
+.PHONY: help configure build demo studies variants pictures test test-long test-arm bench sanitize schema format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (an hour; continued if it was stopped)'
+	@echo 'make variants      train what rods.h5 could have been, draw how it was chosen (half an hour; continued likewise)'
 	@echo 'make pictures      run jobs/pictures.json, draw its trajectories as stills and films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
@@ -72,6 +73,15 @@ studies: build
 	  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$$study.json -o results/$$study.h5 $$resume </dev/null || [ $$? = 3 ]; \
 	done
 	@analysis/results/draw.sh results
+
+# The settings of network/pretrained/rods.h5, changed one at a time: what was chosen on validation, and what each costs.
+variants: build
+	@mkdir -p results; for study in rods_data rods_variants rods_front; do \
+	  [ $$study != rods_variants ] || { analysis/results/variants.py $(BUILD)/rodsweep results; continue; }; \
+	  [ -e results/$$study.h5 ] && resume=--resume || resume=; \
+	  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$$study.json -o results/$$study.h5 $$resume </dev/null || [ $$? = 3 ]; \
+	done
+	@analysis/results/draw.sh results variants
 
 # By task of jobs/pictures.json; a film of the forest would take as long as all of these. What exists is not drawn again.
 pictures = 0:helix:along 1:net:rod 2:ring:along 3:tree:radius 4:falling:rod 5:knot:along 6:drape:rod

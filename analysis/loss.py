@@ -20,8 +20,8 @@ from drawing import layout, study, style
 from reading import commandline, modelfile, texts
 
 EXAMPLES = """examples:
-  analysis/loss.py results/train_bending.h5
-  analysis/loss.py results/train_bending.h5 results/train_bending_faithful.h5 -o figures --width 84"""
+  analysis/loss.py results/train_rods.h5
+  analysis/loss.py results/train_rods.h5 results/train_rods_large.h5 -o figures --width 84"""
 
 
 def arguments():

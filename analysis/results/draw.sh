@@ -2,26 +2,28 @@
 # Draws the figures and tables of this folder from the files of the studies in RESULTS: `make studies` calls it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-results=${1:?usage: analysis/results/draw.sh RESULTS}
+results=${1:?usage: analysis/results/draw.sh RESULTS [variants]}
 out=analysis/results
 
 script() { /usr/bin/python3 "analysis/$1.py" "$results/$2.h5" "${@:3}"; }
 figures() { script "$@" -o $out; }
 table() { script "$@" >"$out/$2.txt"; }
 
+if [ "${2:-}" = variants ]; then
+  /usr/bin/python3 analysis/loss.py "$results"/rods_variants/*.h5 -o "$results/rods_variants" >$out/rods_variants.txt
+  table summary rods_front
+  for scene in bending_rod helix; do figures front rods_front --scene $scene --tolerance 1e-2,1e-3 >>$out/rods_front.txt; done
+  exit
+fi
 for study in spatial_bending spatial_helix learned_bending learned_helix; do
   figures spatial $study
   table summary $study
 done
 pretrained=network/pretrained
-/usr/bin/python3 analysis/loss.py $pretrained/{bending,bending-faithful,helix,helix-faithful,tree,collision,rods,rods-large}.h5 -o $out >$out/pretrained.txt
-for study in tree_wind learned_tree; do
-  figures spatial $study --x scene.depth
-  table summary $study --by scene.depth
-done
+/usr/bin/python3 analysis/loss.py $pretrained/{rods,rods-large,bending-faithful,helix-faithful}.h5 -o $out >$out/pretrained.txt
+figures spatial tree_wind --x scene.depth
+table summary tree_wind --by scene.depth
 table summary forest
-table summary learned_collision
-figures spatial learned_collision --x scene.type
 figures spatial knot --x scene.contact
 for study in collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot; do
   table summary $study --by scene.contact.friction
@@ -51,10 +53,9 @@ for study in deck_bending deck_helix learned_closed_loop learned_rods; do
   script summary "$study" --newton all >>"$out/$study.txt"
 done
 { echo; script summary learned_rods --scene ring --by scene.clamp; } >>"$out/learned_rods.txt"
-for scene in bending_rod:bending helix:helix; do
-  model=${scene#*:}
-  figures spatial guarded --scene "${scene%%:*}" --x 'guesses[4].guarded.threshold' \
-    --guess "zero,quadratic,copingnet $model,guarded quadratic,guarded $model"
+for scene in bending_rod helix; do
+  figures spatial guarded --scene $scene --x 'guesses[4].guarded.threshold' \
+    --guess "zero,quadratic,copingnet rods-large,guarded quadratic,guarded rods-large"
 done
 table summary guarded --by 'guesses[4].guarded.threshold'
 figures heatmap step_size --x time.step_s --y tolerance

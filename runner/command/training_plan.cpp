@@ -36,13 +36,13 @@ struct Probe {
   double validation_s = 0;  ///< of all losses and CG ratios
 };
 
-Extent extent_of(const TrainingJob& job, const TrainingSets& sets) {
+Extent extent_of(const TrainingJob& job, const LearningSets& sets) {
   Extent extent;
   extent.parameters = CopingNet<float>(job.network, 0).parameters().values().size();
   extent.training_simulations = static_cast<std::int64_t>(sets.training().size());
   extent.validation_simulations = static_cast<std::int64_t>(sets.validation().size());
-  for (const TrainingSets::Simulation& simulation : sets.training()) extent.training_examples += systems_of(simulation);
-  for (const TrainingSets::Simulation& simulation : sets.validation())
+  for (const LearningSets::Simulation& simulation : sets.training()) extent.training_examples += systems_of(simulation);
+  for (const LearningSets::Simulation& simulation : sets.validation())
     extent.validation_examples += systems_of(simulation);
   extent.steps_per_epoch = extent.training_examples / job.training.batch;
   extent.steps = extent.steps_per_epoch * job.training.epochs;
@@ -91,7 +91,7 @@ double seconds_of_step(Trainer& trainer, int shard_count) {
   return watch.seconds() / steps;
 }
 
-Probe probe(const TrainingJob& job, const TrainingSets& sets, const Extent& extent) {
+Probe probe(const TrainingJob& job, const LearningSets& sets, const Extent& extent) {
   Probe probe;
   const std::int64_t all = extent.training_simulations;
   const std::int64_t for_a_batch = 1 + job.training.batch * all / std::max<std::int64_t>(extent.training_examples, 1);
@@ -165,7 +165,7 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
 
 ExitCode show_training_plan(const PlanOptions& options, const Job& job, Console& console) {
   const TrainingJob training = training_job(job);
-  const TrainingSets sets(training, job);
+  const LearningSets sets(training, job);
   const Extent extent = extent_of(training, sets);
   std::optional<Probe> probed;
   if (options.probe) probed = probe(training, sets, extent);

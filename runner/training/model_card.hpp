@@ -42,7 +42,7 @@ struct SceneRatios {
 
 struct ModelCard {
   std::string name, job_text;        ///< of the job
-  std::string data_path, data_hash;  ///< of the data sets (TrainingSets::hash)
+  std::string data_path, data_hash;  ///< of the data sets (LearningSets::hash)
   std::int64_t training_simulations = 0, validation_simulations = 0;
   std::int64_t training_examples = 0, validation_examples = 0;
 

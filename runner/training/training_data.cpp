@@ -14,7 +14,7 @@ namespace {
 
 /// The examples of simulations in their order, made by threads, a few simulations at a time.
 std::vector<Example> examples_of(const CopingNetSettings& network,
-                                 const std::vector<TrainingSets::Simulation>& simulations, int threads) {
+                                 const std::vector<LearningSets::Simulation>& simulations, int threads) {
   std::vector<Example> out;
   for (std::size_t begin = 0; begin < simulations.size(); begin += static_cast<std::size_t>(threads)) {
     std::vector<StoredSimulation> read_now;  // by one thread: HDF5 is for one at a time
@@ -31,13 +31,13 @@ std::vector<Example> examples_of(const CopingNetSettings& network,
 
 }  // namespace
 
-TrainingData training_data(const TrainingJob& training, const TrainingSets& sets, int threads) {
+TrainingData training_data(const TrainingJob& training, const LearningSets& sets, int threads) {
   TrainingData data;
   data.hash = sets.hash();
   data.note = sets.note();
   data.validation_simulations = static_cast<std::int64_t>(sets.validation().size());
   data.training_simulations = static_cast<std::int64_t>(sets.training().size());
-  for (const TrainingSets::Simulation& simulation : sets.validation())
+  for (const LearningSets::Simulation& simulation : sets.validation())
     data.validation_scenes.push_back(scene_of(simulation));
   data.training = examples_of(training.network, sets.training(), threads);
   data.validation = examples_of(training.network, sets.validation(), threads);
@@ -52,7 +52,7 @@ TrainingData training_data(const TrainingJob& training, const TrainingSets& sets
   return data;
 }
 
-std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const TrainingSets& sets, int part,
+std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const LearningSets& sets, int part,
                                                 int parts) {
   const auto all = static_cast<std::int64_t>(sets.validation().size());
   std::vector<StoredSimulation> out;

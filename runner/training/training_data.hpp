@@ -8,7 +8,7 @@
 #include "network/encoding/feature_encoder.hpp"
 #include "network/encoding/stored_simulation.hpp"
 #include "network/training/example.hpp"
-#include "runner/training/training_sets.hpp"
+#include "runner/training/learning_sets.hpp"
 
 namespace rodsweep {
 
@@ -22,10 +22,10 @@ struct TrainingData {
 };
 
 /// Throws FileError where there are too few examples.
-TrainingData training_data(const TrainingJob& training, const TrainingSets& sets, int threads);
+TrainingData training_data(const TrainingJob& training, const LearningSets& sets, int threads);
 
 /// The validation simulations on which CG ratios are measured: those whose number leaves `part` of `parts`.
-std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const TrainingSets& sets, int part,
+std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const LearningSets& sets, int part,
                                                 int parts);
 
 }  // namespace rodsweep

@@ -87,7 +87,7 @@ TEST_CASE("several data sets are learned from one after the other, and judged by
   make_data_set(toy.folder / "trees.h5", trees);
   const std::string alone = toy.data.hash;
   toy.training.data.push_back(toy.folder / "trees.h5");
-  const TrainingSets sets(toy.training, toy.job);
+  const LearningSets sets(toy.training, toy.job);
   CHECK(sets.training().size() == 4 + 3);
   REQUIRE(sets.validation().size() == 4 + 4);
   const TrainingData both = training_data(toy.training, sets, 2);
@@ -105,7 +105,7 @@ TEST_CASE("several data sets are learned from one after the other, and judged by
 
 TEST_CASE("ranks take turns with the simulations whose CG ratio is measured") {
   const Toy toy;
-  const TrainingSets dataset(toy.training, toy.job);
+  const LearningSets dataset(toy.training, toy.job);
   const auto second = ratio_simulations(toy.training, dataset, 1, 2);
   REQUIRE(second.size() == 1);
   CHECK(second[0].systems[3].solution == toy.simulations[1].systems[3].solution);
@@ -115,14 +115,14 @@ TEST_CASE("ranks take turns with the simulations whose CG ratio is measured") {
 TEST_CASE("data that are missing or too few are refused with what to do") {
   Toy toy;
   toy.training.validation_simulations = 8;
-  CHECK_THAT(message_of<JobError>([&] { TrainingSets(toy.training, toy.job); }),
+  CHECK_THAT(message_of<JobError>([&] { LearningSets(toy.training, toy.job); }),
              Contains("validation_simulations: 8 is not allowed, since ") && Contains("holds 8 simulations"));
   toy.training.validation_simulations = 7;
   toy.training.training.batch = 8;
-  CHECK_THAT(message_of<FileError>([&] { training_data(toy.training, TrainingSets(toy.training, toy.job), 1); }),
+  CHECK_THAT(message_of<FileError>([&] { training_data(toy.training, LearningSets(toy.training, toy.job), 1); }),
              Contains("gives 6 examples for training and 42 for validation: too few for batches of 8"));
   toy.training.data = {toy.folder / "nowhere.h5"};
-  CHECK_THAT(message_of<JobError>([&] { TrainingSets(toy.training, toy.job); }),
+  CHECK_THAT(message_of<JobError>([&] { LearningSets(toy.training, toy.job); }),
              Contains("data: there is no file ") && Contains("make the data set first"));
 }
 

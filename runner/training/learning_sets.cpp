@@ -1,4 +1,4 @@
-#include "runner/training/training_sets.hpp"
+#include "runner/training/learning_sets.hpp"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ DatasetReader opened(const std::filesystem::path& path, const TrainingJob& train
 
 }  // namespace
 
-TrainingSets::TrainingSets(const TrainingJob& training, const Job& job) {
+LearningSets::LearningSets(const TrainingJob& training, const Job& job) {
   for (const std::filesystem::path& path : training.data) sets_.push_back(opened(path, training, job));
   Checksum sum;
   for (const DatasetReader& set : sets_) {
@@ -41,12 +41,12 @@ TrainingSets::TrainingSets(const TrainingJob& training, const Job& job) {
     for (const DatasetReader& set : sets_) validation_.push_back({&set, set.size() - i});
 }
 
-std::string scene_of(const TrainingSets::Simulation& simulation) {
+std::string scene_of(const LearningSets::Simulation& simulation) {
   const TaskSpec spec = simulation.set->plan().spec(simulation.set->task(simulation.number).index);
   return std::visit([](const auto& scene) { return std::string(std::decay_t<decltype(scene)>::name); }, spec.scene);
 }
 
-std::int64_t systems_of(const TrainingSets::Simulation& simulation) {
+std::int64_t systems_of(const LearningSets::Simulation& simulation) {
   return simulation.set->task(simulation.number).rows[Rows::system].count;
 }
 

@@ -12,7 +12,7 @@
 
 namespace rodsweep {
 
-class TrainingSets {
+class LearningSets {
  public:
   struct Simulation {
     const DatasetReader* set;
@@ -20,9 +20,9 @@ class TrainingSets {
   };
 
   /// Throws JobError where a set is missing or too small, FileError for what is wrong with one.
-  TrainingSets(const TrainingJob& training, const Job& job);
-  TrainingSets(const TrainingSets&) = delete;
-  TrainingSets& operator=(const TrainingSets&) = delete;
+  LearningSets(const TrainingJob& training, const Job& job);
+  LearningSets(const LearningSets&) = delete;
+  LearningSets& operator=(const LearningSets&) = delete;
 
   const std::vector<Simulation>& training() const { return training_; }
   const std::vector<Simulation>& validation() const { return validation_; }
@@ -38,13 +38,13 @@ class TrainingSets {
   std::string hash_, note_;
 };
 
-inline StoredSimulation read(const TrainingSets::Simulation& simulation) {
+inline StoredSimulation read(const LearningSets::Simulation& simulation) {
   return simulation.set->read(simulation.number);
 }
 /// The type of its scene.
-std::string scene_of(const TrainingSets::Simulation& simulation);
+std::string scene_of(const LearningSets::Simulation& simulation);
 /// How many linear systems it holds.
-std::int64_t systems_of(const TrainingSets::Simulation& simulation);
+std::int64_t systems_of(const LearningSets::Simulation& simulation);
 
 /// The paths as a text, for messages.
 std::string paths_of(const std::vector<std::filesystem::path>& sets);
