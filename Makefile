@@ -25,7 +25,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   temporal_bending temporal_helix learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
   solvers work_precision balance balance_scenes tree_wind forest tree_long_term \
-  learned_rods learned_rods_length learned_rods_closed \
+  learned_rods learned_rods_length learned_rods_closed learned_rods_preconditioned \
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 

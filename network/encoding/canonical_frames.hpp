@@ -10,14 +10,12 @@
 //   mirrored      across the xz plane, where the tree's hand is negative; rows of bend and twist are those of an axis,
 //                 which a mirror turns the other way
 // Where from, is an Alignment:
-//   residual      v_k of stretch-shear, and of bending a quarter turn on (in planar motion in its plane, and across
-//   it);
+//   residual      v_k of stretch-shear, and of bending a quarter turn on (in planar motion in and across its plane);
 //                 the hand is the sum of twists, or where there are none, that sum t v_k is on the left of x
-//   matrix        v_k = (B_02, B_12), by which the joint is bent against its parent, and the hand is that in which they
-//                 turn along the tree, sum Im conj(t v_parent) t v_k: the frames of a matrix whatever its residual. A
-//                 tree that is straight, or flat, takes its axis, or its hand, from the residual.
-// T_k = diag(R(t_k), 1, R(t_k), 1), then signs. Residuals are scaled by scale(), which is one number for both
-// transverse rows of a kind, so that it does not know the roll either.
+//   matrix        v_k = (B_35, B_45) of the coupling, by which the joint is bent against its parent, and the hand is
+//                 that in which they turn along the tree, sum Im conj(t v_parent) t v_k: the frames of a matrix
+//                 whatever its residual. A tree that is straight, or flat, takes its axis, or its hand, from the
+//                 residual.
 #pragma once
 
 #include "network/encoding/scaled_system.hpp"
