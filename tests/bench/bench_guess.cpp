@@ -116,14 +116,14 @@ struct Case {
   VectorX x0;
   SolvePosition last;
 
-  Case(const Kind& kind, int segments, int latent, int corrections = 1) {
+  Case(const Kind& kind, int segments, int latent, FactorUse use = {}) {
     BendingRod spec;
     spec.segments = segments;
     scene = build_scene(spec);
     const CopingNetSettings settings = settings_of(kind, latent);
     model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
     base = base_guess(settings, scene, 1);
-    guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1, FactorUse{corrections});
+    guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1, use);
     system = std::make_unique<LinearSystem>(scene.rods.front());
     DirectSolve direct(scene);
     LinearProjection projection(scene, direct);
@@ -141,9 +141,10 @@ struct Case {
   }
 };
 
-template <int corrections>
+/// `lag`: with the factors of an earlier step.
+template <int corrections, bool lag = false>
 void whole(benchmark::State& state, const Kind& kind) {
-  Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), corrections);
+  Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), {corrections, lag ? 1000000 : 0, 0});
   for (auto _ : state) {
     c.guess->propose(*c.system, c.last, c.x0);
     benchmark::ClobberMemory();
@@ -175,10 +176,14 @@ void network(benchmark::State& state, const Kind& kind) {
   Tensor<float> y(6, chain.forest.size());
   const CopingNet<float>& net = c.model->net;
   if (kind.processor == Processor::factors) {
-    FactorInference inference(net.factors(), net.parameters(), chain.forest);
+    const Rod& rod = c.scene.rods.front();
+    FeatureEncoder encoder(net.settings(), rod, c.system->matrix());
+    Tensor<float> nodes(0, rod.segment_count()), features(CanonicalEncoding::size, chain.forest.size());
+    encoder.encode(rod, *c.system, 0, 0.02, c.x0, c.system->rhs(), nodes, features);
+    FactorInference inference(net.factors(), net.parameters(), encoder.topology().forest, encoder.pattern());
     for (auto _ : state) {
-      inference.factorise(x);
-      inference.solve(x, y);
+      inference.factorise(features, encoder.canonical()->frames(), c.system->matrix());
+      inference.solve(c.system->rhs(), c.x0);
       benchmark::ClobberMemory();
     }
     return;
@@ -216,8 +221,9 @@ void print_summary(const Medians& median) {
                     per_segment(median("base" + size)), per_segment(median("features" + size)), per_segment(seconds),
                     2 * weights * n / seconds * 1e-9, per_segment(median("whole" + both)));
         if (kind.processor != Processor::factors) continue;
-        std::printf("%59s %.3f\n", "every further correction",
-                    per_segment(median("whole_again" + both) - median("whole" + both)) / (many_corrections - 1));
+        std::printf("%59s %.3f, with factors of an earlier step %.3f\n", "every further correction",
+                    per_segment(median("whole_again" + both) - median("whole" + both)) / (many_corrections - 1),
+                    per_segment(median("whole_lagging" + both)));
       }
   }
 }
@@ -240,7 +246,9 @@ int main(int argc, char** argv) {
       for (const int latent : latents) {
         add("network", network, {n, latent});
         add("whole", whole<1>, {n, latent});
-        if (kind.processor == Processor::factors) add("whole_again", whole<many_corrections>, {n, latent});
+        if (kind.processor != Processor::factors) continue;
+        add("whole_again", whole<many_corrections>, {n, latent});
+        add("whole_lagging", whole<1, true>, {n, latent});
       }
     }
   }

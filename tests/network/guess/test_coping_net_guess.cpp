@@ -131,13 +131,17 @@ TEST_CASE("where loops are cut a network proposes what lowers the residual, or n
   CHECK(proposed > 0);
 }
 
-TEST_CASE("factors that lag are those of the first solve of every so many steps") {
+CopingNetSettings with_factors() {
   CopingNetSettings settings;
   settings.encoding = Encoding::canonical;
   settings.processor = Processor::factors;
   settings.base = BaseGuess::none;
   settings.latent = 16;
-  const auto model = test::random_model(settings);
+  return settings;
+}
+
+TEST_CASE("factors that lag are those of the first solve of every so many steps") {
+  const auto model = test::random_model(with_factors());
   Scene scene = build_scene(test::bending_rod(9));
   std::vector<LinearSystem> systems;
   for (int i = 0; i < 3; ++i) {
@@ -169,16 +173,11 @@ TEST_CASE("factors that lag are those of the first solve of every so many steps"
 }
 
 TEST_CASE("corrections stop where the residual is small enough") {
-  CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
-  settings.processor = Processor::factors;
-  settings.base = BaseGuess::none;
-  settings.latent = 16;
   Scene scene = build_scene(test::bending_rod(9));
   LinearSystem system(scene.rods.front());
   system.assemble(scene.rods.front(), 0.02);
   const auto left = [&](double stop_at, int corrections) {
-    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1, {corrections, 0, stop_at});
+    CopingNetGuess guess(test::random_model(with_factors()), scene, 0.02, 1, {corrections, 0, stop_at});
     VectorX x0(system.rhs().size());
     const Proposal proposal = guess.propose(system, {}, x0);
     return std::pair(proposal.products, proposal.residual->norm() / system.rhs().norm());
@@ -197,11 +196,7 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
   BlockFactor factor(system.matrix(), {0, 1, 2, 3, 4, 5, 6, 7});
   REQUIRE(factor.factorise(system.matrix()));
   factor.substitute(exact);
-  CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
-  settings.processor = Processor::factors;
-  settings.base = BaseGuess::none;
-  settings.latent = 16;
+  CopingNetSettings settings = with_factors();
   double before = energy_norm_squared(system.matrix(), exact, scratch);
   const double all = before;
   for (const int corrections : {1, 2, 3, 5, 8, 200}) {
