@@ -12,7 +12,13 @@ table() { script "$@" >"$out/$2.txt"; }
 if [ "${2:-}" = variants ]; then
   /usr/bin/python3 analysis/loss.py "$results"/rods_variants/*.h5 -o "$results/rods_variants" >$out/rods_variants.txt
   table summary rods_front
-  for scene in bending_rod helix; do figures front rods_front --scene $scene --tolerance 1e-2,1e-3 >>$out/rods_front.txt; done
+  for scene in bending_rod helix; do  # all in the table, those that a figure can tell apart in it
+    figures front rods_front --scene $scene --tolerance 1e-2,1e-3 >>$out/rods_front.txt
+    figures front rods_front --scene $scene --tolerance 1e-2,1e-3 --guess "zero,pod 10,regression 6,copingnet factors_16,\
+copingnet factors_64,copingnet gated_32,copingnet rods 3 to 0.01" >/dev/null
+  done
+  sed -i '/\.\(png\|pdf\)$/d' $out/rods_front.txt
+  rm -f $out/*.pdf
   exit
 fi
 for study in spatial_bending spatial_helix learned_bending learned_helix; do
