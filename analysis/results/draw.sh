@@ -17,7 +17,7 @@ if [ "${2:-}" = variants ]; then
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 --guess "zero,pod 10,regression 6,copingnet factors_16,\
 copingnet factors_64,copingnet gated_32,copingnet rods 3 to 0.01" >/dev/null
   done
-  sed -i '/\.\(png\|pdf\)$/d' $out/rods_front.txt
+  sed -i '/\.\(png\|pdf\)$/d' $out/rods_{front,variants}.txt
   rm -f $out/*.pdf
   exit
 fi
