@@ -23,7 +23,7 @@ class Page:
     """
 
     def __init__(self, width_mm, row_titles, panels_per_row, columns, panel_height_mm, handles, notes, warning="",
-                 left_mm=11, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5, bar_mm=0, row_handles=()):
+                 left_mm=12, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5, bar_mm=0, row_handles=()):
         style.use()
         self.figure = plt.figure(figsize=(width_mm * style.MM, 100 * style.MM))
         legend, legend_mm = self._legend(handles, width_mm)
