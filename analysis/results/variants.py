@@ -4,8 +4,8 @@
     analysis/results/variants.py PROGRAM RESULTS
 
 Every variant is jobs/train_rods.json for EPOCHS epochs with one setting changed (of its processor, those that belong to
-it); its job and model are RESULTS/rods_variants/NAME.json and .h5. What is trained is left alone, what was stopped goes
-on.
+it), or all of it from another seed; its job and model are RESULTS/rods_variants/NAME.json and .h5. What is trained is
+left alone, what was stopped goes on.
 """
 
 import json
@@ -30,6 +30,8 @@ VARIANTS = {
     "factors_16_in_the_loop": {"loss": "in_the_loop"},
     "factors_16_rate_2e-3": {"rate": 2e-3},
     "factors_16_rate_8e-3": {"rate": 8e-3},
+    "rods_seed_2": {"seed": 2},
+    "rods_seed_3": {"seed": 3},
 }
 
 
@@ -38,6 +40,8 @@ def job_of(name, changes, data):
         job = json.load(file)
     del job["$schema"]
     job.update(name=name, description="A variant of train_rods.", data=data)
+    if "seed" in changes:
+        return {**job, **changes}
     job["training"]["epochs"] = EPOCHS
     for key, value in changes.items():
         job["training" if key in ("loss", "rate") else "network"][key] = value

@@ -97,9 +97,13 @@ Probe probe(const TrainingJob& job, const LearningSets& sets, const Extent& exte
   const std::int64_t for_a_batch = 1 + job.training.batch * all / std::max<std::int64_t>(extent.training_examples, 1);
   const std::int64_t tried = std::min(all, std::max(fewest_simulations, for_a_batch));
   std::vector<Example> examples;
+  std::int64_t systems = 0;  // those whose base guess is the solution are no examples
   const Stopwatch reading;
-  for (std::int64_t i = 0; i < tried; ++i)
-    add_examples(job.network, read(sets.training()[static_cast<std::size_t>(i * all / tried)]), examples);
+  for (std::int64_t i = 0; i < tried; ++i) {
+    const LearningSets::Simulation& simulation = sets.training()[static_cast<std::size_t>(i * all / tried)];
+    add_examples(job.network, read(simulation), examples);
+    systems += systems_of(simulation);
+  }
   const double share = static_cast<double>(all + extent.validation_simulations) / static_cast<double>(tried);
   probe.reading_s = share * reading.seconds();
   for (const Example& example : examples) probe.bytes += share * bytes_of(example);
@@ -109,11 +113,12 @@ Probe probe(const TrainingJob& job, const LearningSets& sets, const Extent& exte
   Model model{CopingNet<float>(job.network, job.training.seed), feature_scales(job.network, examples)};
   normalise(job.network, model.scales, examples);
   Trainer trainer(model.net, examples, job.training);
-  probe.training_s = seconds_of_step(trainer, job.training.shards) * static_cast<double>(extent.steps);
+  const double learned = static_cast<double>(examples.size()) / static_cast<double>(systems);
+  probe.training_s = seconds_of_step(trainer, job.training.shards) * learned * static_cast<double>(extent.steps);
   const Stopwatch forward;
   const auto judged = trainer.losses(examples, [](int batch) { return batch < 3; }).size();
   probe.validation_s = forward.seconds() / (std::min<double>(3, static_cast<double>(judged)) * job.training.batch) *
-                       static_cast<double>(extent.validation_examples) * job.training.epochs;
+                       learned * static_cast<double>(extent.validation_examples) * job.training.epochs;
   probe.validation_s += seconds_of_ratio(job, model, read(sets.validation().front()), extent.validation_simulations);
   return probe;
 }
