@@ -79,8 +79,8 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   collectively(mpi_.world(), [&] {
     const LearningSets sets(training_job_, job_);
     if (earlier && earlier->card.data_hash != sets.hash())
-      throw FileError(fmt::format("{} cannot be continued: {} is not the data set that it was begun with", path_.native(),
-                                  paths_of(training_job_.data)));
+      throw FileError(fmt::format("{} cannot be continued: {} is not the data set that it was begun with",
+                                  path_.native(), paths_of(training_job_.data)));
     data_ = training_data(training_job_, sets, threads_);
     simulations = ratio_simulations(training_job_, sets, mpi_.rank(), mpi_.size());
   });
