@@ -21,6 +21,9 @@ packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt
 configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G Ninja) -DCMAKE_BUILD_TYPE=$(BUILD_TYPE) \
   -DRODSWEEP_NATIVE=$(if $(call yes,$(PORTABLE)),OFF,ON) -DRODSWEEP_WERROR=$(if $(call yes,$(WERROR)),ON,OFF) $(2) 2>&1) \
   || { echo "$$log"; exit 1; }
+# $(call study,NAME): a job that is done is not run again, one that was stopped goes on.
+study = [ -e results/$(1).h5 ] && resume=--resume || resume=; \
+  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$(1).json -o results/$(1).h5 $$resume </dev/null || [ $$? = 3 ]
 studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
   temporal_bending temporal_helix learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
@@ -66,21 +69,18 @@ demo: build
 	$(PYTHON) analysis/summary.py results/demo.h5; \
 	exit $$code
 
-# Everything under analysis/results but its README: a job that is done is not run again.
+# Everything under analysis/results but its README.
 studies: build
 	@mkdir -p results; for study in $(studies); do \
-	  [ -e results/$$study.h5 ] && resume=--resume || resume=; \
-	  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$$study.json -o results/$$study.h5 $$resume </dev/null || [ $$? = 3 ]; \
+	  $(call study,$$study); \
 	done
 	@analysis/results/draw.sh results
 
 # The settings of network/pretrained/rods.h5, changed one at a time: what was chosen on validation, and what each costs.
 variants: build
-	@mkdir -p results; for study in rods_data rods_variants rods_front; do \
-	  [ $$study != rods_variants ] || { analysis/results/variants.py $(BUILD)/rodsweep results; continue; }; \
-	  [ -e results/$$study.h5 ] && resume=--resume || resume=; \
-	  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$$study.json -o results/$$study.h5 $$resume </dev/null || [ $$? = 3 ]; \
-	done
+	@mkdir -p results; $(call study,rods_data)
+	@analysis/results/variants.py $(BUILD)/rodsweep results
+	@$(call study,rods_front)
 	@analysis/results/draw.sh results variants
 
 # By task of jobs/pictures.json; a film of the forest would take as long as all of these. What exists is not drawn again.

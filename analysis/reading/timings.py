@@ -9,8 +9,8 @@ sums are scaled up to all rows. The median is over the simulation's rows of the 
 be made in another way there (the nearest data of a first one, no history of a late one); where they are fewer than FEW,
 that of an iteration before it or of all stands in. Some parts are judged by each other alone, and not where they are
 fewer than FEW: CG without an iteration, and what made anew a preconditioner or factors that lag (/solves/renewed).
-Times.interrupted counts the rows left out; where they are more than SUSPICIOUS of all, the sentence
-that says so says also what it means.
+Times.interrupted counts the rows left out; where they are more than SUSPICIOUS of all, the sentence that says so says
+also what it means.
 """
 
 from dataclasses import dataclass

@@ -8,6 +8,7 @@ out=analysis/results
 script() { /usr/bin/python3 "analysis/$1.py" "$results/$2.h5" "${@:3}"; }
 figures() { script "$@" -o $out; }
 table() { script "$@" >"$out/$2.txt"; }
+trap 'sed -i "/\.\(png\|pdf\)\$/d" $out/*.txt; rm -f $out/*.pdf' EXIT  # no paths of figures, no PDFs
 
 if [ "${2:-}" = variants ]; then
   /usr/bin/python3 analysis/loss.py "$results"/rods_variants/*.h5 -o "$results/rods_variants" >$out/rods_variants.txt
@@ -17,8 +18,6 @@ if [ "${2:-}" = variants ]; then
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 --guess "zero,pod 10,regression 6,copingnet factors_16,\
 copingnet factors_64,copingnet gated_32,copingnet rods 3 to 0.01" >/dev/null
   done
-  sed -i '/\.\(png\|pdf\)$/d' $out/rods_{front,variants}.txt
-  rm -f $out/*.pdf
   exit
 fi
 for study in spatial_bending spatial_helix learned_bending learned_helix; do
@@ -78,5 +77,3 @@ figures balance balance >"$out/balance.txt"
 script balance balance_scenes >"$out/balance_scenes.txt"
 figures long_term long_term >"$out/long_term.txt"
 figures long_term long_term_learned --log-time >"$out/long_term_learned.txt"
-sed -i '/\.\(png\|pdf\)$/d' "$out"/*.txt   # the paths of the figures
-rm -f $out/*.pdf

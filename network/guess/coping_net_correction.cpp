@@ -45,8 +45,9 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
   const double before = may_harm ? jacobi_norm_squared(a, residual_) : 0;
   if (may_harm) base_ = x;
 
-  const double enough = use_.stop_at * use_.stop_at * system.rhs().squaredNorm();
-  if (use_.stop_at > 0 && residual_.squaredNorm() <= enough) {
+  const double most = use_.stop_at > 0 ? use_.stop_at * use_.stop_at * system.rhs().squaredNorm() : 0;
+  const auto small_enough = [&] { return use_.stop_at > 0 && residual_.squaredNorm() <= most; };
+  if (small_enough()) {
     proposal.residual = &residual_;
     return true;
   }
@@ -74,8 +75,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
   };
   const bool moved = length != 0;
   move();
-  for (int i = 1; i < use_.corrections && energy > 0; ++i) {
-    if (use_.stop_at > 0 && residual_.squaredNorm() <= enough) break;
+  for (int i = 1; i < use_.corrections && energy > 0 && !small_enough(); ++i) {
     energy = correct_again(a, energy, length);
     ++proposal.products;
     if (!(energy > 0) || !std::isfinite(length)) break;

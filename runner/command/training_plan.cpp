@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "network/guess/coping_net_guess.hpp"
 #include "network/training/example_builder.hpp"
+#include "network/training/threads.hpp"
 #include "runner/command/next_line.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/training_data.hpp"
@@ -143,8 +143,7 @@ nlohmann::ordered_json to_json(const Job& job, const TrainingJob& training, cons
 
 std::string to_text(const PlanOptions& options, const Job& job, const TrainingJob& training, const Extent& extent,
                     const std::optional<Probe>& probe) {
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int threads = std::min(cores, training.training.shards);
+  const int threads = std::min(available_threads(), training.training.shards);
   RunOptions run;
   run.job = options.job;
   run.program = options.program;

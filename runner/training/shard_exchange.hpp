@@ -25,8 +25,9 @@ class ShardExchange {
     return part % ranks_ == rank_;
   }  ///< a shard, or anything else that is shared
 
-  /// Collective: computes this rank's shards and gathers all. Returns whether any rank was given `stop`.
   using Compute = std::function<void(const std::vector<Trainer::Shard>& own)>;
+
+  /// Collective: computes this rank's shards and gathers all. Returns whether any rank was given `stop`.
   bool gather(const Compute& compute, bool stop);
   /// As gathered last, in order.
   const std::vector<const float*>& shards() const { return shards_; }
