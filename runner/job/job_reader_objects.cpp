@@ -152,8 +152,8 @@ void JobReader::fill_absent(const Key& key, const std::string& path, Json& resul
       groups[child.alternative_group].push_back(&child);
     } else if (result.contains(child.name)) {
       continue;
-    } else if (child.preset) {
-      result[child.name] = read(child, *child.preset, member(path, child.name));
+    } else if (const auto preset = preset_of(child, tag_.value)) {
+      result[child.name] = read(child, *preset, member(path, child.name));
     } else {
       mistake(member(path, child.name), "missing: " + describe(child));
     }

@@ -168,11 +168,14 @@ class SchemaWriter {
       if (!child.only_for.empty() && belongs(child, tag_value) && !child.preset && child.alternative_group.empty())
         required.push_back(child.name);
     }
-    const Json refused = refusals(key, tag_value);
-    if (required.empty() && refused.empty()) return;
+    Json properties = refusals(key, tag_value);
+    for (const Key& child : key.keys)
+      if (const auto own = child.preset_for.find(tag_value); own != child.preset_for.end())
+        properties[child.name] = {{"default", own->second}};
+    if (required.empty() && properties.empty()) return;
     Json condition{{"properties", {{key.tag, {{"const", tag_value}}}}}};
     if (find_key(key.keys, key.tag)->preset != tag_value) condition["required"] = Json::array({key.tag});
-    rules.push_back({{"if", condition}, {"then", {{"required", required}, {"properties", refused}}}});
+    rules.push_back({{"if", condition}, {"then", {{"required", required}, {"properties", properties}}}});
   }
 
   /// The keys of other values of the tag, also those of objects within that have no tag of their own.

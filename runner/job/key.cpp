@@ -192,6 +192,11 @@ std::string describe(const Key& key) {
   return key.help + (key.unit.empty() ? "" : " [" + key.unit + "]") + ", " + allowed(key);
 }
 
+std::optional<nlohmann::ordered_json> preset_of(const Key& key, const std::string& tag_value) {
+  const auto own = key.preset_for.find(tag_value);
+  return own == key.preset_for.end() ? key.preset : own->second;
+}
+
 bool belongs(const Key& key, const std::string& tag_value) {
   return key.only_for.empty() || std::find(key.only_for.begin(), key.only_for.end(), tag_value) != key.only_for.end();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -42,15 +43,16 @@ struct Key {
   bool above_low = false;  ///< `low` itself is excluded
   std::vector<std::string> choices;
   Text text = Text::any;
-  std::optional<nlohmann::ordered_json> preset;  ///< value if the key is absent; none: the key is required
-  bool labelled = true;                          ///< of a guess: part of its label?
-  bool labelled_as_preset = true;                ///< also where it has its preset value?
-  std::string label_word;                        ///< what a label says before its value
-  bool sweepable = true;                         ///< may its value be a sweep?
-  bool parameter = true;                         ///< part of a task's parameters, not a setting of the whole job?
-  bool or_list = false;                          ///< or a list of at least one such value
-  std::string no_sweep_advice;                   ///< what to do instead of sweeping it
-  std::vector<std::string> synonyms;             ///< other words for it: suggested, never accepted
+  std::optional<nlohmann::ordered_json> preset;              ///< value if the key is absent; none: the key is required
+  std::map<std::string, nlohmann::ordered_json> preset_for;  ///< another one, for these values of the enclosing `tag`
+  bool labelled = true;                                      ///< of a guess: part of its label?
+  bool labelled_as_preset = true;                            ///< also where it has its preset value?
+  std::string label_word;                                    ///< what a label says before its value
+  bool sweepable = true;                                     ///< may its value be a sweep?
+  bool parameter = true;              ///< part of a task's parameters, not a setting of the whole job?
+  bool or_list = false;               ///< or a list of at least one such value
+  std::string no_sweep_advice;        ///< what to do instead of sweeping it
+  std::vector<std::string> synonyms;  ///< other words for it: suggested, never accepted
   std::vector<std::string> only_for;  ///< the values of the enclosing `tag`, of its own object or one further out, that
                                       ///< have this key; none: all have
   std::string only_advice;            ///< what to do where the tag has another value
@@ -108,6 +110,9 @@ const Key* find_key(const std::vector<Key>& keys, const std::string& name);
 
 /// Does a key belong to this value of the tag?
 bool belongs(const Key& key, const std::string& tag_value);
+
+/// Its value where it is absent.
+std::optional<nlohmann::ordered_json> preset_of(const Key& key, const std::string& tag_value);
 
 /// As a job has it: 1 rather than 1.0.
 nlohmann::ordered_json number(double value);

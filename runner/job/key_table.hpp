@@ -5,9 +5,10 @@
 //   table.optional(integer_key("seed", "which turbulence").at_least(0), &WindParameters::seed);
 //
 // The reader of jobs, the schema and help texts follow from keys(); fill() reads a parameter point. An optional key's
-// default is what its member is without it. Between key and member stand the Words of an enumeration, or the table of a
-// part that is an object or the word that stands for none (std::optional). A member is what std::invoke() takes with an
-// Owner: a pointer to it, or a function that returns a reference. Bugs in a table throw std::logic_error.
+// default is what its member is without it, for each kind of Owner. Between key and member stand the Words of an
+// enumeration, or the table of a part that is an object or the word that stands for none (std::optional). A member is
+// what std::invoke() takes with an Owner: a pointer to it, or a function that returns a reference. Bugs in a table
+// throw std::logic_error.
 //
 // An Owner that is a std::variant is an object with a tag, whose value is the `name` of one of its structs: a key
 // belongs to those that have a member for it.
@@ -164,7 +165,13 @@ class KeyTable {
       using Kind = decltype(kind);
       if constexpr ((std::is_invocable_v<const Member&, Kind&> || ...)) {
         if constexpr (KindsOf<Owner>::tagged) having.emplace_back(Kind::name);
-        if constexpr (is_optional) default_to(key, write(key, member_of(kind, member...)));
+        if constexpr (is_optional) {
+          auto preset = write(key, member_of(kind, member...));
+          if (!key.preset)
+            key.preset = std::move(preset);
+          else if constexpr (KindsOf<Owner>::tagged)
+            if (*key.preset != preset) key.preset_for[Kind::name] = std::move(preset);
+        }
       } else {
         all = false;
       }
@@ -178,11 +185,6 @@ class KeyTable {
       KindsOf<Owner>::visit(read_if_given, owner);
     });
     keys_.push_back(std::move(key));
-  }
-
-  static void default_to(Key& key, nlohmann::ordered_json value) {
-    if (key.preset && *key.preset != value) throw std::logic_error(key.name + " has more than one default");
-    key.preset = std::move(value);
   }
 
   std::vector<Key> keys_;

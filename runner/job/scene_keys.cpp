@@ -24,6 +24,7 @@ using Rods = RodParameters;
 
 // Members of many scenes: of whichever has them, or a tree's shape.
 const auto segments = [](auto& scene) -> decltype((scene.segments)) { return scene.segments; };
+const auto tip_force_n = [](auto& scene) -> decltype((scene.tip_force_n)) { return scene.tip_force_n; };
 const auto length_m = [](auto& scene) -> decltype((scene.length_m)) { return scene.length_m; };
 template <class Value>
 auto shape(Value TreeShape::*value) {
@@ -45,20 +46,21 @@ void add_shapes(Table& table) {
           .otherwise("a net is \"held\", trees stand on the ground"),
       Words<Clamp>{{"segment", Clamp::segment}, {"wall", Clamp::wall}, {"free", Clamp::free}}, &OpenRod::clamp,
       &Ring::clamp);
-  table.optional(
-      choice_key("held",
-                 "what of a net is held: the first segments of all its rods along z, the end segments of the outermost "
-                 "two of them, or nothing")
-          .otherwise("a rod's end has a \"clamp\""),
-      Words<Net::Held>{{"side", Net::Held::side}, {"corners", Net::Held::corners}, {"free", Net::Held::free}},
-      &Net::held);
-  table.required(integer_key("segments",
-                             "number of segments of the rod, or of each of them, without a wall's static one; of a net "
-                             "from one crossing to the next; of a tree's trunk and of each of its branches")
-                     .from(1, 1000000)
-                     .also_called({"n", "number_of_segments", "elements"})
-                     .otherwise("a skeleton has one for every edge"),
-                 segments, shape(&TreeShape::segments));
+  table.optional(choice_key("held",
+                            "what is held, of a net: the first segments of all its rods along z (side), the end "
+                            "segments of the outermost two of them (corners), or nothing; of a lattice: the nodes of "
+                            "the least x (side), its eight corners, or nothing")
+                     .otherwise("a rod's end has a \"clamp\""),
+                 Words<Held>{{"side", Held::side}, {"corners", Held::corners}, {"free", Held::free}}, &Net::held,
+                 &Lattice::held);
+  table.required(
+      integer_key("segments",
+                  "number of segments of the rod, or of each of them, without a wall's static one; of nets and "
+                  "lattices from one crossing to the next; of a tree's trunk and of each of its branches")
+          .from(1, 1000000)
+          .also_called({"n", "number_of_segments", "elements"})
+          .otherwise("a skeleton has one for every edge"),
+      segments, shape(&TreeShape::segments));
   table.required(length_key("length_m", "length of the rod; of a tree's trunk"), length_m, shape(&TreeShape::length_m));
   table.optional(
       angle_key("twist_deg", "total angle by which a ring was twisted before its ends were joined", -1e6, 1e6),
@@ -70,7 +72,25 @@ void add_shapes(Table& table) {
                  &Forest::rows);
   table.required(integer_key("columns", "rods of a net along z; trees in a row of a forest").from(1, 1000),
                  &Net::columns, &Forest::columns);
-  table.required(length_key("mesh_m", "distance of neighbouring rods of a net"), &Net::mesh_m);
+  table.required(length_key("mesh_m", "distance of neighbouring rods of a net; edge of a lattice's cell"), &Net::mesh_m,
+                 &Lattice::mesh_m);
+  table.optional(choice_key("cell",
+                            "where the rods of a lattice run: along the edges of its cells, along their "
+                            "diagonals, or along the diagonals of their faces"),
+                 Words<Lattice::Cell>{{"cubic", Lattice::Cell::cubic},
+                                      {"body_centred", Lattice::Cell::body_centred},
+                                      {"octet", Lattice::Cell::octet}},
+                 &Lattice::cell);
+  table.required(integer_key("nodes_x", "corners of a lattice's cells along x").from(2, 1000), &Lattice::nodes_x);
+  table.optional(integer_key("nodes_y", "corners of a lattice's cells along y; 0: as many as along x").from(0, 1000),
+                 &Lattice::nodes_y);
+  table.optional(integer_key("nodes_z", "corners of a lattice's cells along z; 0: as many as along x").from(0, 1000),
+                 &Lattice::nodes_z);
+  table.optional(
+      number_key("node_stiffness", "how stiff the joints of a lattice's nodes are, over a piece of rod two radii long")
+          .above(0)
+          .at_most(1e9),
+      &Lattice::node_stiffness);
   table.required(length_key("helix_radius_m", "radius of the helix"), &Helix::helix_radius_m);
   table.required(length_key("helix_height_m", "height of the helix"), &Helix::helix_height_m);
   table.required(number_key("windings", "turns of the helix").above(0).at_most(1e6).also_called({"turns"}),
@@ -101,13 +121,16 @@ void add_rods(Table& table) {
   table.optional(
       angle_key("initial_angle_deg",
                 "angle from the horizontal at the start; of a bundle's outermost rods from the vertical", -360, 360),
-      &BendingRod::initial_angle_deg, &Bundle::initial_angle_deg);
+      &BendingRod::initial_angle_deg, &Bundle::initial_angle_deg, &Lattice::initial_angle_deg);
   table.optional(vector_key("gravity_m_s2", "acceleration of gravity").in("m/s^2").from(-1e6, 1e6),
                  &Rods::gravity_m_s2);
   table.optional(number_key("damping_per_s", "viscous damping: velocities decay at this rate").in("1/s").from(0, 1e6),
                  &Rods::damping_per_s);
-  table.optional(vector_key("tip_force_n", "constant force at the free end").in("N").from(-1e12, 1e12),
-                 &OpenRod::tip_force_n);
+  table.optional(vector_key("tip_force_n",
+                            "constant force at the free end; on the nodes of a lattice with the greatest x together")
+                     .in("N")
+                     .from(-1e12, 1e12),
+                 tip_force_n);
   table.optional(choice_key("stretch",
                             "stretching and shearing: held back by a stiffness chosen from the expected forces, or by "
                             "EA and kappa G A (Timoshenko's coefficient of a circle)"),

@@ -49,14 +49,9 @@ void Net::build(Scene& scene) const {
       joints.push_back(joint_between(all, on_z(column, i - 1), on_z(column, i), *this, force));
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      JointSpec crossing = joint_between(all, on_x(row, column * segments), on_z(column, row * segments), *this, force);
-      crossing.arm_a_m = crossing.arm_b_m = Vector3::Zero();
-      crossing.compliance_per_j[2] = crossing.compliance_per_j[0];  // it has no direction of its own
-      // EI / l about every axis. A joint that rests at a right angle about local y measures a further turn about it,
-      // 2 Im(d) - 2 Im(d0), by 1 / sqrt 2 only.
-      const double turning = crossing.compliance_per_j[3];
-      crossing.compliance_per_j.tail<3>() = Vector3(turning, turning / 2, turning);
-      joints.push_back(crossing);
+      const int a = on_x(row, column * segments), b = on_z(column, row * segments);
+      const JointSpec along = joint_between(all, a, b, *this, force);
+      joints.push_back(crossing_between(all, a, b, 1 / along.compliance_per_j[3], along.compliance_per_j[0]));
     }
   scene.rods.emplace_back(all, joints);
 }

@@ -15,6 +15,12 @@ SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, dou
 /// an "inextensible" joint has to hold.
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p, double force_n);
 
+/// Two segments whose centres coincide, as stiff about every axis as said [Nm] and as soft in its three stretch-shear
+/// rows [1/J]. The bend-twist constraint measures a turn about the axis by which the two differ at rest, by an angle
+/// theta, by cos(theta / 2) only: compliance makes up for that where this is an axis of the frames.
+JointSpec crossing_between(const std::vector<SegmentSpec>& segments, int a, int b, double stiffness_nm,
+                           double stretch_per_j);
+
 /// Weight of the segments, under standard gravity at least [N].
 double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p);
 

@@ -1,6 +1,6 @@
 // The scenes that jobs name, each a struct of its parameters (SI units): the deck's bending rod and hanging helix, a
-// ring, a net, trees, and rods that touch each other. A scene's struct has the name by which jobs know it and, in a
-// source of its own:
+// ring, nets and lattices, trees, and rods that touch each other. A scene's struct has the name by which jobs know it
+// and, in a source of its own:
 //
 //   check()  throws SceneError where parameters do not fit together, with the bound
 //   size()   counts, without building anything
@@ -97,17 +97,52 @@ struct Ring : RodParameters {
   void build(Scene& scene) const;
 };
 
+/// What does not move of a net or a lattice.
+enum class Held {
+  side,     ///< the first segments of all rods of a net along z; the nodes of a lattice with the least x
+  corners,  ///< the first and last segments of a net's outermost rods along z; the eight corners of a lattice's box
+  free      ///< nothing
+};
+
 /// `rows` rods along x and `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where
 /// rods cross, the centres of their segments are joined at the angle that they have there, with the stiffness EI / l
 /// about every axis: one rod of many loops.
 struct Net : RodParameters {
   static constexpr const char* name = "net";
-  /// The first segments of all rods along z; the first and last ones of the outermost two; nothing.
-  enum class Held { side, corners, free };
   int rows = 5, columns = 5;
   int segments = 1;  ///< from one crossing to the next
   double mesh_m = 0.2;
   Held held = Held::corners;
+  void check() const;
+  SceneSize size() const;
+  void build(Scene& scene) const;
+};
+
+/// Straight rods through all nodes of a crystal lattice in a box, the first corner in the origin; the box is raised by
+/// `initial_angle_deg` about z, from x towards y. Where rods cross, the centres of their segments are joined to that of
+/// the first of them, each joint as stiff as `node_stiffness` rods two radii long: EI / 2r against turning, about every
+/// axis (but about the one by which the two rods differ it is so only where that is an axis of their frames, as in the
+/// cubic lattice; else it is up to a third off), kappa G A / 2r against shifting. Every rod goes half a segment beyond
+/// its last nodes, so the material of a node counts once for every rod through it. One rod of many loops, with more
+/// constraints than freedoms: stretch is `physical` unless a job says otherwise, since multipliers of joints that do
+/// not give way are not unique.
+struct Lattice : RodParameters {
+  static constexpr const char* name = "lattice";
+  enum class Cell {
+    cubic,         ///< rods along the edges of the cells
+    body_centred,  ///< along their diagonals: nodes are corners and centres
+    octet          ///< along the diagonals of their faces: nodes are corners and centres of faces
+  };
+  Cell cell = Cell::cubic;
+  int nodes_x = 4;               ///< corners of cells along x
+  int nodes_y = 0, nodes_z = 0;  ///< 0: as many
+  double mesh_m = 0.2;           ///< edge of a cell
+  int segments = 3;              ///< from one node to the next
+  Held held = Held::corners;
+  double node_stiffness = 1;
+  double initial_angle_deg = 0;
+  Vector3 tip_force_n{0, 0, 0};  ///< shared by the nodes with the greatest x
+  Lattice() { stretch = Stretch::physical; }
   void check() const;
   SceneSize size() const;
   void build(Scene& scene) const;
@@ -215,8 +250,8 @@ struct Bundle : RodParameters {
   void build(Scene& scene) const;
 };
 
-using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Tree, Forest, SkeletonTree, FallingRods, CoilingRod, Knot,
-                               RingChain, Bundle>;
+using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Lattice, Tree, Forest, SkeletonTree, FallingRods,
+                               CoilingRod, Knot, RingChain, Bundle>;
 
 /// The scene's rod where it is one with two ends, else null.
 const OpenRod* open_rod(const SceneSpec& spec);

@@ -65,10 +65,10 @@ TEST_CASE("a net's keys and their defaults become a net, whose joints the plan c
   CHECK(net.columns == 4);
   CHECK(net.segments == 2);
   CHECK(net.mesh_m == 0.5);
-  CHECK(net.held == Net::Held::corners);
+  CHECK(net.held == Held::corners);
   CHECK(plan.task(0).segments == 41);
   CHECK(plan.task(0).joints == 46);
-  CHECK(std::get<Net>(plan_of(with("/scene/held", "\"side\"", net_job())).spec(0).scene).held == Net::Held::side);
+  CHECK(std::get<Net>(plan_of(with("/scene/held", "\"side\"", net_job())).spec(0).scene).held == Held::side);
 }
 
 TEST_CASE("rods stretch physically where the job says so") {

@@ -106,7 +106,7 @@ TEST_CASE("a net's rods cross where they should, and half a segment stands out o
 
 TEST_CASE("a crossing turns against EI / l about every axis") {
   Net p;
-  p.held = Net::Held::free;
+  p.held = Held::free;
   const Rod start = build_scene(p).rods.front();
   const double angle = 1e-4, stiffness = 1e5 * pi * std::pow(0.05, 4) / 4 / p.mesh_m;
   for (const Vector3& axis : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1), Vector3(1, -2, 2)}) {
@@ -123,22 +123,21 @@ TEST_CASE("a net is held at a side, at its corners, or not at all") {
   Net p;
   p.rows = 3;
   p.columns = 4;
-  for (const auto& [held, count] :
-       std::map<Net::Held, int>{{Net::Held::side, 4}, {Net::Held::corners, 4}, {Net::Held::free, 0}}) {
+  for (const auto& [held, count] : std::map<Held, int>{{Held::side, 4}, {Held::corners, 4}, {Held::free, 0}}) {
     p.held = held;
     const Rod rod = build_scene(p).rods.front();
     CHECK(held_segments(rod) == count);
     double far = 0;
     for (int s = 0; s < rod.segment_count(); ++s)
       if (rod.segments[s].is_static) far = std::max(far, rod.position[s].z());
-    CHECK(far == Approx(held == Net::Held::corners ? 2 * p.mesh_m : 0).margin(1e-14));
+    CHECK(far == Approx(held == Held::corners ? 2 * p.mesh_m : 0).margin(1e-14));
     CHECK_NOTHROW(LinearSystem(rod));  // no joint between two that are held
   }
 }
 
 TEST_CASE("stretching the rods of a net makes it longer, a joint opened at a crossing does not") {
   Net p;
-  p.held = Net::Held::free;
+  p.held = Held::free;
   Rod rod = build_scene(p).rods.front();
   const double length = rod_length(rod);
   for (int s = 5 * 5; s < rod.segment_count(); ++s) rod.position[s].y() += 0.1;  // the rods along z

@@ -169,7 +169,7 @@ TEST_CASE("A hanging ring and hanging nets settle, and what holds them carries t
   ring.youngs_modulus_pa = ring.torsion_modulus_pa = 1e6;
   ring.rest_shape = Ring::RestShape::circle;
   Net side = small_net();
-  side.held = Net::Held::side;
+  side.held = Held::side;
   for (const SceneSpec& spec : {SceneSpec(ring), SceneSpec(small_net()), SceneSpec(side)}) {
     Scene scene = build_scene(spec);
     const double before = potential_energy(scene);
