@@ -1,7 +1,7 @@
 #include "runner/experiment/measured_solve.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 #include <utility>
 
 #include "runner/experiment/guesses.hpp"
@@ -9,6 +9,7 @@
 #include "runner/experiment/solve_rows.hpp"
 #include "runner/experiment/timed_guess.hpp"
 #include "runner/job/plan.hpp"
+#include "solver/linear/cg_solver.hpp"
 #include "solver/linear/rounding_level.hpp"
 #include "solver/step/stopwatch.hpp"
 
@@ -16,6 +17,11 @@ namespace rodsweep {
 namespace {
 
 bool lags(const TaskSpec& spec) { return spec.solve.preconditioner == Preconditioner::lagged_cholesky; }
+
+/// A condensed system has one norm.
+bool has_other_norm(const TaskSpec& spec) {
+  return spec.output.other_norm && spec.solve.preconditioner != Preconditioner::condensed;
+}
 
 }  // namespace
 
@@ -27,14 +33,14 @@ struct MeasuredSolve::Guess {
 /// Everything of one rod that is sized once.
 struct MeasuredSolve::RodSolvers {
   struct PerGuess {
-    ConjugateGradient timed;
+    std::unique_ptr<CgSolver> timed;
     VectorX x0;
     Proposal proposal;
     std::vector<double> cg_s;  ///< [repeat]
     CgReport advanced;
   };
-  ConjugateGradient tight;
-  std::optional<ConjugateGradient> tight_other;  ///< in the other norm
+  std::unique_ptr<CgSolver> tight;
+  std::unique_ptr<CgSolver> tight_other;  ///< in the other norm, or none
   std::vector<PerGuess> guesses;
   std::vector<double> direct_s;  ///< [repeat]
   std::vector<std::int16_t> iterations, iterations_other;
@@ -42,22 +48,22 @@ struct MeasuredSolve::RodSolvers {
   bool renewed = false;  ///< the preconditioners are of this system
   VectorX exact, x, residual;
 
-  RodSolvers(const BlockMatrix& a, const TaskSpec& spec, std::size_t guess_count)
-      : tight(a, settings(spec, spec.solve.norm)),
+  RodSolvers(const Rod& rod, const LinearSystem& system, const TaskSpec& spec, std::size_t guess_count)
+      : tight(make_cg(rod, system, settings(spec, spec.solve.norm))),
         direct_s(static_cast<std::size_t>(spec.solve.timing_repeats)),
         iterations(tolerance_ladder().size()),
         iterations_other(iterations),
-        exact(VectorX::Zero(a.unknowns())),
+        exact(VectorX::Zero(system.matrix().unknowns())),
         x(exact),
         residual(exact) {
-    tight.keep_history(true);
-    if (spec.output.other_norm) {
+    tight->keep_history(true);
+    if (has_other_norm(spec)) {
       const Norm other = spec.solve.norm == Norm::natural ? Norm::true_residual : Norm::natural;
-      tight_other.emplace(a, settings(spec, other));
+      tight_other = make_cg(rod, system, settings(spec, other));
       tight_other->keep_history(true);
     }
     for (std::size_t g = 0; g < guess_count; ++g)
-      guesses.push_back({ConjugateGradient(a, settings(spec, spec.solve.norm)), exact, {}, direct_s, {}});
+      guesses.push_back({make_cg(rod, system, settings(spec, spec.solve.norm)), exact, {}, direct_s, {}});
   }
 
   static CgSettings settings(const TaskSpec& spec, Norm norm) {
@@ -65,9 +71,9 @@ struct MeasuredSolve::RodSolvers {
   }
 
   void renew_preconditioners() {
-    tight.matrix_changed();
+    tight->matrix_changed();
     if (tight_other) tight_other->matrix_changed();
-    for (PerGuess& guess : guesses) guess.timed.matrix_changed();
+    for (PerGuess& guess : guesses) guess.timed->matrix_changed();
   }
 };
 
@@ -92,7 +98,7 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
       reset(sums->matvecs);
       reset(sums->unreached);
     }
-    if (!spec.output.other_norm) continue;
+    if (!has_other_norm(spec)) continue;
     reset(record_.counted_other_norm.iterations);
     reset(record_.counted_other_norm.unreached);
   }
@@ -102,7 +108,8 @@ MeasuredSolve::~MeasuredSolve() = default;
 
 MeasuredSolve::RodSolvers& MeasuredSolve::solvers_for(const LinearSystem& system, int rod) {
   std::unique_ptr<RodSolvers>& solvers = solvers_[static_cast<std::size_t>(rod)];
-  if (!solvers) solvers = std::make_unique<RodSolvers>(system.matrix(), spec_, guesses_.size());
+  if (!solvers)
+    solvers = std::make_unique<RodSolvers>(scene_.rods[static_cast<std::size_t>(rod)], system, spec_, guesses_.size());
   return *solvers;
 }
 
@@ -148,7 +155,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
   const VectorX& b = system.rhs();
   const std::vector<double>& ladder = tolerance_ladder();
   const bool rounding = system.largest_rhs() <= rounding_level;
-  solvers.reference = solvers.tight.norm_of(b);
+  solvers.reference = solvers.tight->norm_of(b);
   const double reference_other = solvers.tight_other ? solvers.tight_other->norm_of(b) : 0;
   SolveOutcome failure = SolveOutcome::not_run;
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
@@ -156,7 +163,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     guesses_[g].guess.prepare(at);
     own.proposal = guesses_[g].guess.propose(system, at, own.x0);
     const int start = own.proposal.start_products();
-    const auto tight_solve = [&](ConjugateGradient& cg, double reference, std::vector<std::int16_t>& iterations) {
+    const auto tight_solve = [&](CgSolver& cg, double reference, std::vector<std::int16_t>& iterations) {
       if (rounding) {
         std::fill(iterations.begin(), iterations.end(), std::int16_t{0});
         return CgReport{SolveOutcome::zero_rhs};
@@ -170,7 +177,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     };
     CgReport other;
     if (solvers.tight_other) other = tight_solve(*solvers.tight_other, reference_other, solvers.iterations_other);
-    const CgReport report = tight_solve(solvers.tight, solvers.reference, solvers.iterations);
+    const CgReport report = tight_solve(*solvers.tight, solvers.reference, solvers.iterations);
     const std::size_t column = guesses_[g].column, entry = row * spec_.guesses.size() + column;
     if (failure != SolveOutcome::not_run) {
       if (spec_.output.solves) record_.reason[entry] = static_cast<std::int8_t>(failure);
@@ -190,7 +197,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
               record_.iterations.begin() + static_cast<std::ptrdiff_t>(entry * ladder.size()));
     if (rounding) continue;
     system.matrix().multiply(solvers.x.data(), solvers.residual.data());
-    record_.initial_residual[entry] = solvers.tight.history().front() / solvers.reference;
+    record_.initial_residual[entry] = solvers.tight->history().front() / solvers.reference;
     record_.final_residual[entry] = (b - solvers.residual).norm() / b.norm();
   }
   return SolveOutcome::converged;
@@ -208,11 +215,11 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
       RodSolvers::PerGuess& own = solvers.guesses[g];
       guesses_[g].guess.propose_timed(system, at, own.x0);
       solvers.x = own.x0;
-      if (repeat > 0 && solvers.renewed) own.timed.matrix_changed();
+      if (repeat > 0 && solvers.renewed) own.timed->matrix_changed();
       const Stopwatch watch;
       own.advanced = rounding ? CgReport{SolveOutcome::converged}
-                              : own.timed.solve(system.rhs(), solvers.x, own.proposal.start(), tolerance,
-                                                solvers.reference, guesses_[g].guess.deflation());
+                              : own.timed->solve(system.rhs(), solvers.x, own.proposal.start(), tolerance,
+                                                 solvers.reference, guesses_[g].guess.deflation());
       own.cg_s[repeat] = watch.seconds();
     }
 }

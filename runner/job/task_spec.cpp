@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runner/job/guess_keys.hpp"
+#include "runner/job/key_path.hpp"
 #include "runner/job/key_table.hpp"
 
 namespace rodsweep {
@@ -100,13 +102,16 @@ KeyTable<SolveSpec> solve_keys() {
                      .from(0, 1)
                      .only({"pbd"}, "moduli of the scene say how stiff a rod is"),
                  bending);
-  table.optional(choice_key("preconditioner", "preconditioner of cg"),
+  table.optional(choice_key("preconditioner",
+                            "preconditioner of cg; condensed: cg on the motions of the segments where rods cross, all "
+                            "others eliminated (nets, lattices)"),
                  Words<Preconditioner>{{"none", Preconditioner::none},
                                        {"jacobi", Preconditioner::jacobi},
                                        {"point_block_jacobi", Preconditioner::point_block_jacobi},
                                        {"icc", Preconditioner::icc},
                                        {"cholesky", Preconditioner::cholesky},
-                                       {"lagged_cholesky", Preconditioner::lagged_cholesky}},
+                                       {"lagged_cholesky", Preconditioner::lagged_cholesky},
+                                       {"condensed", Preconditioner::condensed}},
                  &SolveSpec::preconditioner);
   table.optional(integer_key("lag_steps",
                              "lagged_cholesky: time steps from one factorisation, of the first Newton iteration's "
@@ -180,7 +185,22 @@ OutputSpec output_spec(const Job& job) {
   return spec;
 }
 
+/// What cg on motions, which solves for no multipliers, has not.
+static void check_condensed(const Point& point, const Job& job) {
+  if (method(point) != Method::cg || point.text("solve.preconditioner") != "condensed") return;
+  constexpr const char* not_allowed = "not allowed with the preconditioner \"condensed\", whose unknowns are motions";
+  if (point.text("solve.norm") != "true_residual")
+    throw job_error(job.path, "solve.norm",
+                    fmt::format("\"{}\" is {}; must be \"true_residual\"", point.text("solve.norm"), not_allowed));
+  const std::vector<GuessSpec> guesses = guess_specs(point, job);
+  for (std::size_t i = 0; i < guesses.size(); ++i)
+    if (guesses[i].kind == GuessSpec::Kind::deflation)
+      throw job_error(job.path, element("guesses", i),
+                      fmt::format("\"deflation\" is {}; must be another guess, such as \"pod\"", not_allowed));
+}
+
 void check_method(const Point& point, const Job& job) {
+  check_condensed(point, job);
   if (const Method own = method(point);
       point.has("time.balance") && point.text("time.balance") == "true" && own != Method::cg && own != Method::direct)
     throw job_error(job.path, "time.balance",

@@ -55,6 +55,7 @@ PCType pc_type(Preconditioner p) {
     case Preconditioner::icc: return PCICC;
     case Preconditioner::cholesky:
     case Preconditioner::lagged_cholesky: return PCCHOLESKY;
+    case Preconditioner::condensed: break;  // see make_cg()
   }
   return PCNONE;
 }
@@ -273,14 +274,5 @@ void ConjugateGradient::keep_history(bool on) {
 }
 
 const std::vector<double>& ConjugateGradient::history() const { return impl_->history; }
-
-void iterations_to(const std::vector<double>& history, double reference, const std::vector<double>& tolerances,
-                   std::int16_t* out) {
-  for (std::size_t t = 0; t < tolerances.size(); ++t) {
-    out[t] = -1;
-    for (std::size_t i = 0; i < history.size() && out[t] < 0; ++i)
-      if (history[i] <= tolerances[t] * reference) out[t] = static_cast<std::int16_t>(i);
-  }
-}
 
 }  // namespace rodsweep

@@ -1,80 +1,37 @@
 // Conjugate gradients on A x = b by PETSc's KSPCG, instrumented: iterations to any tolerance from the residual history.
 //
 // The operator is BlockMatrix::multiply (petsc_operator.hpp); a preconditioner that needs entries gets a copy of
-// the blocks in PETSc's own format. Convergence: the norm of the residual relative to that of b (`reference`), also
-// with a nonzero guess; growth is a failure only past 1e30 times that: a history guess may start far above a
-// late, tiny b. One solver per guess and rod. Needs PETSc initialised (PetscSession). Throws PetscError when a call
-// fails.
+// the blocks in PETSc's own format. Growth of the residual is a failure only past 1e30 times `reference`: a history
+// guess may start far above a late, tiny b. Products: one for each iteration, one more for the residual of a nonzero
+// guess, if not known. Needs PETSc initialised (PetscSession). Throws PetscError when a call fails.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "solver/linear/block_matrix.hpp"
-#include "solver/linear/deflation.hpp"
-#include "solver/linear/solve_outcome.hpp"
+#include "solver/linear/cg_solver.hpp"
 
 namespace rodsweep {
 
-/// none; jacobi: the diagonal; point_block_jacobi: the 6x6 diagonal blocks; icc: incomplete Cholesky without fill,
-/// joints in the rod's order (exact on an unbranched chain); cholesky: complete; lagged_cholesky: the same of an
-/// earlier matrix, that of the last matrix_changed().
-enum class Preconditioner { none, jacobi, point_block_jacobi, icc, cholesky, lagged_cholesky };
-
-/// The norm of r = b - A x that decides convergence: its 2-norm, or (r^T P^-1 r)^1/2 with the preconditioner P.
-enum class Norm { true_residual, natural };
-
-struct CgSettings {
-  Preconditioner preconditioner = Preconditioner::jacobi;
-  Norm norm = Norm::true_residual;
-  int max_iterations = 0;  ///< 0: ten times the number of unknowns
-};
-
-/// What a solve starts from.
-struct CgStart {
-  bool nonzero = false;               ///< from x; else from zero
-  const VectorX* residual = nullptr;  ///< b - A x, where somebody knows it
-
-  CgStart(bool is_nonzero, const VectorX* known_residual = nullptr) : nonzero(is_nonzero), residual(known_residual) {}
-};
-
-struct CgReport {
-  SolveOutcome outcome = SolveOutcome::not_run;
-  int iterations = 0;
-  int products = 0;  ///< with A: one for each iteration, one more for the residual of a nonzero guess, if not known
-};
-
-class ConjugateGradient {
+class ConjugateGradient : public CgSolver {
  public:
   /// Solves with `a`, whose entries may change (say so with matrix_changed()), and which must outlive this.
   ConjugateGradient(const BlockMatrix& a, const CgSettings& settings);
-  ~ConjugateGradient();
+  ~ConjugateGradient() override;
   ConjugateGradient(ConjugateGradient&&) noexcept;
   ConjugateGradient& operator=(ConjugateGradient&&) noexcept;
 
-  /// The preconditioner is rebuilt in the next solve (and its time counted there). Without it the old one is kept;
-  /// products always take the entries as they are.
-  void matrix_changed();
-
-  /// Until the norm is below tolerance * reference. x receives the solution.
-  /// With `deflation` every preconditioned residual is projected; the first residual has no part in its space then.
+  void matrix_changed() override;  ///< products always take the entries as they are
   CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
-                 Deflation* deflation = nullptr);
-
-  /// The norm of b in which `reference` is to be given: ||b||_2, or the natural one.
-  double norm_of(const VectorX& b);
-
-  /// Norms of the residual, [0] before the first iteration; of the last solve, if it was kept.
-  void keep_history(bool on);
-  const std::vector<double>& history() const;
+                 Deflation* deflation = nullptr) override;
+  double norm_of(const VectorX& b) override;
+  void keep_history(bool on) override;
+  const std::vector<double>& history() const override;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// For each tolerance, the first entry of the history at or below tolerance * reference, -1 where there is none.
-void iterations_to(const std::vector<double>& history, double reference, const std::vector<double>& tolerances,
-                   std::int16_t* out);
 
 }  // namespace rodsweep

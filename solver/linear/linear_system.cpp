@@ -66,6 +66,7 @@ void LinearSystem::assemble_balanced(Rod& rod, double dt) {
 }
 
 void LinearSystem::assemble_linearized(const Rod& rod, double dt) {
+  dt_ = dt;
   const double inverse_dt2 = 1 / (dt * dt);
   assemble_matrix(rod, inverse_dt2);
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {

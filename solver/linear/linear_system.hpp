@@ -38,6 +38,7 @@ class LinearSystem {
   const BlockMatrix& matrix() const { return matrix_; }
   const VectorX& rhs() const { return rhs_; }
   const Linearization& linearization() const { return linearization_; }
+  double dt() const { return dt_; }  ///< of the assembly
   /// max |C + alpha~ lambda|, the residual that Newton drives to zero; NaN when any entry is.
   double newton_residual() const { return newton_residual_; }
   /// Of the balance of momentum (MomentumBalance::residual); 0 where it is not kept.
@@ -67,7 +68,7 @@ class LinearSystem {
   std::vector<Side> sides_;
   std::vector<Contribution> contributions_;  ///< in the order in which assemble_matrix() visits them
   std::vector<Lane8> displacements_;
-  double newton_residual_ = 0;
+  double dt_ = 0, newton_residual_ = 0;
   bool balanced_ = false;
   MomentumBalance balance_;
   std::vector<Lane8> balancing_;  ///< (M + K)^-1 g of every segment

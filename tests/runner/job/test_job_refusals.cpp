@@ -36,13 +36,25 @@ TEST_CASE("a value that its key does not take is refused with what is allowed") 
 TEST_CASE("a mistyped choice is refused with the nearest one") {
   CHECK(refusal(with("/solve", R"({"preconditioner": "jacoby"})")) ==
         "job.json: solve.preconditioner: \"jacoby\" is not allowed; must be one of \"none\", \"jacobi\", "
-        "\"point_block_jacobi\", \"icc\", \"cholesky\", \"lagged_cholesky\"; did you mean \"jacobi\"?");
+        "\"point_block_jacobi\", \"icc\", \"cholesky\", \"lagged_cholesky\", \"condensed\"; did you mean \"jacobi\"?");
   CHECK(refusal(with("/evaluation", "\"pared\"")) ==
         "job.json: evaluation: \"pared\" is not allowed; must be one of \"paired\", \"closed_loop\"; did you mean "
         "\"paired\"?");
   CHECK(refusal(with("/kind", "\"swep\"")) ==
         "job.json: kind: \"swep\" is not allowed; must be one of \"sweep\", \"dataset\", \"train\"; did you mean "
         "\"sweep\"?");
+}
+
+TEST_CASE("a condensed system has no other norm and no multipliers to project") {
+  Json job = with("/solve", R"({"preconditioner": "condensed", "norm": "natural"})");
+  CHECK(refusal(job) ==
+        "job.json: solve.norm: \"natural\" is not allowed with the preconditioner \"condensed\", whose unknowns are "
+        "motions; must be \"true_residual\"");
+  job["solve"].erase("norm");
+  job["guesses"] = Json::parse(R"(["zero", "deflation"])");
+  CHECK(refusal(job) ==
+        "job.json: guesses[1]: \"deflation\" is not allowed with the preconditioner \"condensed\", whose unknowns are "
+        "motions; must be another guess, such as \"pod\"");
 }
 
 TEST_CASE("an unknown key is refused with the nearest known one, or with all of them") {

@@ -1,0 +1,191 @@
+#include "solver/linear/condensed_cg.hpp"
+
+#include <petscksp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "solver/linear/block_factor.hpp"
+#include "solver/linear/condensation.hpp"
+#include "solver/linear/petsc_check.hpp"
+#include "solver/linear/petsc_operator.hpp"
+#include "solver/linear/petsc_vector.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// The couplings of a matrix within the nodes of a graph.
+BlockMatrix within_nodes(const StrutGraph& graph, const BlockMatrix& s) {
+  std::vector<std::pair<int, int>> couplings;
+  for (int row = 0; row < s.block_rows(); ++row)
+    for (int k = s.row_begin(row); k < s.row_end(row); ++k)
+      if (graph.node[static_cast<std::size_t>(row)] == graph.node[static_cast<std::size_t>(s.column(k))])
+        couplings.emplace_back(row, s.column(k));
+  return BlockMatrix(s.block_rows(), couplings);
+}
+
+/// Crossings with many links before those with few: nodes are stars, eliminated from their tips to their middles.
+std::vector<int> middles_first(const BlockMatrix& nodes) {
+  std::vector<int> order(static_cast<std::size_t>(nodes.block_rows()));
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return nodes.row_end(a) - nodes.row_begin(a) > nodes.row_end(b) - nodes.row_begin(b);
+  });
+  return order;
+}
+
+}  // namespace
+
+struct CondensedCg::Impl {
+  const Rod& rod;
+  const LinearSystem& system;
+  Condensation condensation;
+  BlockMatrix nodes;
+  std::vector<int> source;  ///< of each block of `nodes`: that of S
+  BlockFactor factor;
+  BlockOperator op;
+  int max_iterations;
+  bool stale = true, positive = true;
+  VectorX scratch, g, d, residual;
+  Mat product = nullptr;
+  KSP ksp = nullptr;
+  Vec rhs = nullptr, y = nullptr;
+  double goal = 0, norm = 0;
+  bool keeps_history = false;
+  std::vector<double> history;
+
+  Impl(const Rod& r, const LinearSystem& of, int most)
+      : rod(r),
+        system(of),
+        condensation(r),
+        nodes(within_nodes(condensation.graph(), condensation.matrix())),
+        factor(nodes, middles_first(nodes)),
+        op{condensation.matrix()},
+        max_iterations(most > 0 ? most
+                                : std::min(10 * of.matrix().unknowns(), int{std::numeric_limits<std::int16_t>::max()})),
+        scratch(VectorX::Zero(op.a.unknowns())),
+        g(scratch),
+        d(VectorX::Zero(of.matrix().unknowns())),
+        residual(d) {
+    for (int row = 0; row < nodes.block_rows(); ++row)
+      for (int k = nodes.row_begin(row); k < nodes.row_end(row); ++k) source.push_back(op.a.find(row, nodes.column(k)));
+    if (op.a.block_rows() == 0) return;
+    product = create_operator(op);
+    rhs = create_vector(op.a.unknowns());
+    y = create_vector(op.a.unknowns());
+    petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
+    petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");
+    petsc_check(KSPSetNormType(ksp, KSP_NORM_NATURAL), "KSPSetNormType");
+    PC pc = nullptr;
+    petsc_check(KSPGetPC(ksp, &pc), "KSPGetPC");
+    petsc_check(PCSetType(pc, PCSHELL), "PCSetType");
+    petsc_check(PCShellSetContext(pc, this), "PCShellSetContext");
+    petsc_check(PCShellSetApply(pc, apply), "PCShellSetApply");
+    petsc_check(KSPSetOperators(ksp, product, product), "KSPSetOperators");
+    petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, max_iterations), "KSPSetTolerances");
+    petsc_check(KSPSetConvergenceTest(ksp, test, this, nullptr), "KSPSetConvergenceTest");
+  }
+  ~Impl() {
+    KSPDestroy(&ksp);
+    MatDestroy(&product);
+    VecDestroy(&y);
+    VecDestroy(&rhs);
+  }
+
+  /// KSPCG applies it to each of its residuals before it asks whether that is small enough.
+  static PetscErrorCode apply(PC pc, Vec p, Vec z) noexcept {
+    void* context = nullptr;
+    if (const PetscErrorCode error = PCShellGetContext(pc, &context)) return error;
+    Impl& self = *static_cast<Impl*>(context);
+    self.norm = self.condensation.residual_norm(vector_data(p));
+    std::copy_n(vector_data(p), self.scratch.size(), self.scratch.data());
+    self.factor.substitute(self.scratch);
+    std::copy_n(self.scratch.data(), self.scratch.size(), vector_data(z));
+    return entries_changed(z);
+  }
+  static PetscErrorCode test(KSP, PetscInt, PetscReal natural, KSPConvergedReason* reason, void* context) noexcept {
+    Impl& self = *static_cast<Impl*>(context);
+    if (self.keeps_history) self.history.push_back(self.norm);
+    *reason = KSP_CONVERGED_ITERATING;
+    if (!std::isfinite(natural) || !std::isfinite(self.norm))
+      *reason = KSP_DIVERGED_NANORINF;
+    else if (self.norm <= self.goal)
+      *reason = KSP_CONVERGED_RTOL;
+    return 0;
+  }
+
+  void refresh() {
+    if (!std::exchange(stale, false)) return;
+    positive = condensation.assemble(rod, system.linearization(), system.dt());
+    for (std::size_t k = 0; k < source.size(); ++k) nodes.blocks[k] = op.a.blocks[static_cast<std::size_t>(source[k])];
+    positive &= factor.factorise(nodes);
+  }
+};
+
+CondensedCg::CondensedCg(const Rod& rod, const LinearSystem& system, int max_iterations)
+    : impl_(std::make_unique<Impl>(rod, system, max_iterations)) {}
+CondensedCg::~CondensedCg() = default;
+
+void CondensedCg::matrix_changed() { impl_->stale = true; }
+
+CgReport CondensedCg::solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
+                            Deflation* deflation) {
+  if (deflation) throw std::logic_error("a condensed system has no space of multipliers to deflate");
+  Impl& s = *impl_;
+  s.history.clear();
+  CgReport report{SolveOutcome::converged, 0, 0};
+  const bool known = start.nonzero && start.residual;
+  if (start.nonzero && !known) {
+    s.system.matrix().multiply(x.data(), s.residual.data());
+    s.residual = b - s.residual;
+    report.products = 1;
+  } else {
+    s.residual = known ? *start.residual : b;
+  }
+  s.goal = tolerance * reference;
+  const double first = s.residual.norm();
+  if (s.keeps_history) s.history.push_back(first);
+  if (!start.nonzero) x.setZero(b.size());
+  if (!std::isfinite(first)) return {SolveOutcome::not_a_number, 0, report.products};
+  if (first <= s.goal) return report;
+
+  s.refresh();
+  if (!s.positive) return {SolveOutcome::indefinite, 0, report.products};
+  s.condensation.condense(s.residual, s.g);
+  report.iterations = 1;
+  if (!s.ksp) {
+    s.condensation.expand(s.residual, nullptr, s.d);
+    if (s.keeps_history) s.history.push_back(0);
+    x += s.d;
+    return report;
+  }
+  copy(s.g, s.rhs);
+  petsc_check(KSPSolve(s.ksp, s.rhs, s.y), "KSPSolve");
+  s.condensation.expand(s.residual, vector_data(s.y), s.d);
+  x += s.d;
+  PetscInt iterations = 0;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  petsc_check(KSPGetIterationNumber(s.ksp, &iterations), "KSPGetIterationNumber");
+  petsc_check(KSPGetConvergedReason(s.ksp, &reason), "KSPGetConvergedReason");
+  report.iterations += static_cast<int>(iterations);
+  report.outcome = reason > 0                        ? SolveOutcome::converged
+                   : reason == KSP_DIVERGED_ITS      ? SolveOutcome::iteration_limit
+                   : reason == KSP_DIVERGED_NANORINF ? SolveOutcome::not_a_number
+                   : reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC
+                       ? SolveOutcome::indefinite
+                       : SolveOutcome::diverged;
+  return report;
+}
+
+void CondensedCg::keep_history(bool on) {
+  impl_->keeps_history = on;
+  impl_->history.clear();
+  impl_->history.reserve(on ? static_cast<std::size_t>(impl_->max_iterations) + 2 : 0);
+}
+
+const std::vector<double>& CondensedCg::history() const { return impl_->history; }
+
+}  // namespace rodsweep

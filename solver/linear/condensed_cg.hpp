@@ -1,0 +1,37 @@
+// Conjugate gradients on a condensed system (condensation.hpp) by PETSc's KSPCG: struts exactly, crossings by
+// iteration, preconditioned by the exact answer of every node on its own (its crossings and the links between them,
+// a block LDL^T each; Jacobi with blocks as large as nodes).
+//
+// It solves A d = r for what multipliers lack, whose residual is r, and stops at the norm of A's residual, so its
+// accuracy is that of ConjugateGradient. The first iteration is the elimination of struts: residuals are known before
+// it (entry 0 of the history), and after every further one. Needs PETSc initialised. Throws PetscError when a call
+// fails.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/linear/cg_solver.hpp"
+
+namespace rodsweep {
+
+class CondensedCg : public CgSolver {
+ public:
+  /// `rod` and `system` must outlive this.
+  CondensedCg(const Rod& rod, const LinearSystem& system, int max_iterations = 0);
+  ~CondensedCg() override;
+
+  void matrix_changed() override;
+  /// Products with A: one for the residual of a nonzero guess, if not known. `deflation` must be null.
+  CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
+                 Deflation* deflation = nullptr) override;
+  double norm_of(const VectorX& b) override { return b.norm(); }
+  void keep_history(bool on) override;
+  const std::vector<double>& history() const override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rodsweep
