@@ -13,6 +13,28 @@ namespace {
 
 constexpr double half_pi = 1.57079632679489661923;
 
+/// In r_a + r_b, how near segments at rest are beyond which others may overlap: in a fork of an angle theta, the way
+/// from one that overlaps to the node and back leads as far as 1 / sin(theta) away.
+constexpr double far = 3;
+
+/// Of a segment, where no joint is strained.
+struct RestPose {
+  Vector3 centre{0, 0, 0};
+  Quaternion orientation = Quaternion::Identity();
+};
+
+/// Of the other segment of a joint.
+RestPose beyond(const Joint& joint, int from, const RestPose& pose) {
+  const bool forwards = from == joint.a;
+  const Quaternion turned = pose.orientation * (forwards ? joint.rest : joint.rest.conjugate());
+  const Vector3 &here = forwards ? joint.arm_a : joint.arm_b, &there = forwards ? joint.arm_b : joint.arm_a;
+  return {pose.centre + pose.orientation * here - turned * there, turned};
+}
+
+CapsuleAxis axis(const RestPose& pose, const Segment& segment) {
+  return {pose.centre, segment.length_m / 2 * director(pose.orientation)};
+}
+
 }  // namespace
 
 ContactBodies::ContactBodies(const Scene& scene) {
@@ -61,7 +83,8 @@ void ContactBodies::add(const Obstacle& obstacle) {
   if (const auto* capsule = std::get_if<Capsule>(&obstacle)) add(capsule->from_m, capsule->to_m, capsule->radius_m);
 }
 
-// Shortest ways (Dijkstra) over the joints from each segment, no farther than the widest pair needs.
+// Shortest ways (Dijkstra) over the joints from each segment, no farther than the widest pair needs, but onwards from
+// what is near at rest. Poses at rest are in the frame of the segment at which the ways start.
 void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
   struct Place {
     int joint;
@@ -76,36 +99,48 @@ void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
   double widest = 0;
   for (const Segment& segment : rod.segments) widest = std::max(widest, segment.radius_m);
 
+  struct Reached {
+    double way = HUGE_VAL;
+    int from = 0;   ///< the segment through which
+    RestPose pose;  ///< its
+  };
   using Way = std::pair<double, int>;  // length, joint
   std::priority_queue<Way, std::vector<Way>, std::greater<>> open;
-  std::vector<double> length(rod.joints.size(), HUGE_VAL);
+  std::vector<Reached> known(rod.joints.size());
   std::vector<int> reached;
   for (int start = 0; start < rod.segment_count(); ++start) {
-    const double radius = rod.segments[static_cast<std::size_t>(start)].radius_m;
-    const auto arrive = [&](int joint, double way) {
-      double& known = length[static_cast<std::size_t>(joint)];
-      if (way >= half_pi * (radius + widest) || way >= known) return;
-      if (known == HUGE_VAL) reached.push_back(joint);
-      known = way;
+    const Segment& at_start = rod.segments[static_cast<std::size_t>(start)];
+    const double farthest = half_pi * (at_start.radius_m + widest);
+    const auto arrive = [&](int joint, double way, int from, const RestPose& pose) {
+      Reached& there = known[static_cast<std::size_t>(joint)];
+      if (way >= there.way) return;
+      if (there.way == HUGE_VAL) reached.push_back(joint);
+      there = {way, from, pose};
       open.push({way, joint});
     };
-    for (const Place& place : joints_of[static_cast<std::size_t>(start)]) arrive(place.joint, 0);
+    for (const Place& place : joints_of[static_cast<std::size_t>(start)]) arrive(place.joint, 0, start, {});
     std::vector<int>& excluded = excluded_[static_cast<std::size_t>(first_body + start)];
     while (!open.empty()) {
       const auto [way, through] = open.top();
       open.pop();
-      if (way > length[static_cast<std::size_t>(through)]) continue;
+      const Reached here = known[static_cast<std::size_t>(through)];
+      if (way > here.way) continue;
       const Joint& joint = rod.joints[static_cast<std::size_t>(through)];
       for (const auto& [segment, arm] : {std::pair{joint.a, joint.arm_a}, std::pair{joint.b, joint.arm_b}}) {
-        const double touching = half_pi * (radius + rod.segments[static_cast<std::size_t>(segment)].radius_m);
-        if (segment > start && way < touching) excluded.push_back(first_body + segment);
-        for (const Place& place : joints_of[static_cast<std::size_t>(segment)])
-          arrive(place.joint, way + (place.arm - arm).norm());
+        const Segment& found = rod.segments[static_cast<std::size_t>(segment)];
+        const RestPose pose = segment == here.from ? here.pose : beyond(joint, here.from, here.pose);
+        const double touching = at_start.radius_m + found.radius_m;
+        const double apart = separation(axis({}, at_start), axis(pose, found)).norm();
+        if (segment > start && (way < half_pi * touching || apart < touching)) excluded.push_back(first_body + segment);
+        for (const Place& place : joints_of[static_cast<std::size_t>(segment)]) {
+          const double next = way + (place.arm - arm).norm();
+          if (next < farthest || apart < far * touching) arrive(place.joint, next, segment, pose);
+        }
       }
     }
     std::sort(excluded.begin(), excluded.end());
     excluded.erase(std::unique(excluded.begin(), excluded.end()), excluded.end());
-    for (const int joint : reached) length[static_cast<std::size_t>(joint)] = HUGE_VAL;
+    for (const int joint : reached) known[static_cast<std::size_t>(joint)].way = HUGE_VAL;
     reached.clear();
   }
 }

@@ -5,8 +5,9 @@
 // Two segments of a rod matter to each other only if the way between them along the axes of the rod, from joint to
 // joint, is at least (pi / 2) (r_a + r_b): nearer ones could touch only where the rod is bent more tightly than its own
 // radius. That excludes those that a joint joins and all that meet in one point, and where segments are shorter than
-// they are wide also the next but one and so on, whose capsules overlap in a straight rod. Two static bodies never
-// matter to each other. Throws SceneError where an obstacle is none.
+// they are wide also the next but one and so on, whose capsules overlap in a straight rod. Farther ones do not matter
+// either while their capsules overlap where no joint is strained, as beside a node where rods meet at a sharp angle.
+// Two static bodies never matter to each other. Throws SceneError where an obstacle is none.
 #pragma once
 
 #include <algorithm>

@@ -149,13 +149,13 @@ void Lattice::build(Scene& scene) const {
   const Vector3 first_axis = vector(all.lines.front().direction, 1).normalized();
   const Quaternion first_frame = turn_between(Vector3::UnitZ(), first_axis);
   std::vector<SegmentSpec> segments_;
-  std::vector<int> loaded;
+  std::map<Place, std::vector<int>> loaded;
   for (const Line& line : all.lines) {
     const Vector3 strut = vector(line.direction, mesh_m), start = vector(line.first, mesh_m);
     const Quaternion frame = raised * turn_between(first_axis, strut) * first_frame;
     for (int i = 0; i < segments_of(*this, line); ++i) {
-      if (i % segments == 0 && moved(line.first, line.direction, i / segments)[0] == all.last[0])
-        loaded.push_back(static_cast<int>(segments_.size()));
+      const Place at = moved(line.first, line.direction, i / segments);
+      if (i % segments == 0 && at[0] == all.last[0]) loaded[at].push_back(static_cast<int>(segments_.size()));
       segments_.push_back(segment_at(raised * (start + static_cast<double>(i) / segments * strut), frame,
                                      strut.norm() / segments, *this));
     }
@@ -177,8 +177,10 @@ void Lattice::build(Scene& scene) const {
       });
   scene.rods.emplace_back(segments_, joints);
   if (tip_force_n.isZero()) return;
-  for (const int s : loaded)
-    scene.loads.push_back({0, s, tip_force_n / static_cast<double>(loaded.size()), Vector3::Zero(), Vector3::Zero()});
+  for (const auto& [at, crossed] : loaded)
+    for (const int s : crossed)
+      scene.loads.push_back(
+          {0, s, tip_force_n / static_cast<double>(loaded.size() * crossed.size()), Vector3::Zero(), Vector3::Zero()});
 }
 
 }  // namespace rodsweep

@@ -123,6 +123,12 @@ inline std::vector<TurnedCase> turned_cases() {
   Ring ring;
   ring.segments = 10;
   out.push_back({"ring", build_scene(ring)});
+  Lattice lattice;
+  lattice.cell = Lattice::Cell::body_centred;
+  lattice.nodes_x = 2;
+  lattice.segments = 1;
+  lattice.held = Held::side;
+  out.push_back({"lattice", build_scene(lattice)});
   Tree tree;
   tree.shape.depth = 2;
   tree.youngs_modulus_pa = tree.torsion_modulus_pa = 1e7;

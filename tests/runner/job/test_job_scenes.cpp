@@ -1,4 +1,4 @@
-// Rings, nets and physical stretch in jobs: what they become, and what is refused before anything runs.
+// Rings, nets, lattices and physical stretch in jobs: what they become, and what is refused before anything runs.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -22,6 +22,11 @@ Json ring_job() {
 
 Json net_job() {
   return job_with_scene(R"({"type": "net", "rows": 3, "columns": 4, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05,
+                            "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
+}
+
+Json lattice_job() {
+  return job_with_scene(R"({"type": "lattice", "nodes_x": 3, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05,
                             "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
 }
 
@@ -71,6 +76,47 @@ TEST_CASE("a net's keys and their defaults become a net, whose joints the plan c
   CHECK(std::get<Net>(plan_of(with("/scene/held", "\"side\"", net_job())).spec(0).scene).held == Held::side);
 }
 
+TEST_CASE("a lattice's keys and their defaults become a lattice, whose joints the plan counts") {
+  const Plan plan = plan_of(lattice_job());
+  const Lattice plain = std::get<Lattice>(plan.spec(0).scene);
+  CHECK(plain.cell == Lattice::Cell::cubic);
+  CHECK(plain.nodes_x == 3);
+  CHECK(plain.segments == 2);
+  CHECK(plain.mesh_m == 0.5);
+  CHECK(plain.held == Held::corners);
+  CHECK(plain.node_stiffness == 1);
+  CHECK(plain.initial_angle_deg == 0);
+  CHECK(plain.tip_force_n.isZero(0));
+  CHECK(plan.task(0).segments == 27 * 5);
+  CHECK(plan.task(0).joints == 27 * 4 + 27 * 2 - 8 * 2);  // what is held at the corners is not joined
+
+  Json job = with("/scene/cell", R"({"grid": ["body_centred", "octet"]})", lattice_job());
+  job["scene"].update({{"nodes_y", 2},
+                       {"nodes_z", 4},
+                       {"held", "side"},
+                       {"node_stiffness", 7},
+                       {"initial_angle_deg", 20},
+                       {"tip_force_n", {0, -2, 1}}});
+  const Plan other = plan_of(job);
+  CHECK(std::get<Lattice>(other.spec(0).scene).cell == Lattice::Cell::body_centred);
+  const Lattice octet = std::get<Lattice>(other.spec(1).scene);
+  CHECK(octet.cell == Lattice::Cell::octet);
+  CHECK(octet.nodes_y == 2);
+  CHECK(octet.nodes_z == 4);
+  CHECK(octet.held == Held::side);
+  CHECK(octet.node_stiffness == 7);
+  CHECK(octet.initial_angle_deg == 20);
+  CHECK(octet.tip_force_n == Vector3(0, -2, 1));
+  CHECK(other.task(1).joints == joint_count(octet));
+}
+
+TEST_CASE("a lattice stretches physically unless the job says otherwise, a net the other way round") {
+  CHECK(std::get<Lattice>(plan_of(lattice_job()).spec(0).scene).stretch == Stretch::physical);
+  CHECK(std::get<Lattice>(plan_of(with("/scene/stretch", "\"inextensible\"", lattice_job())).spec(0).scene).stretch ==
+        Stretch::inextensible);
+  CHECK(std::get<Net>(plan_of(net_job()).spec(0).scene).stretch == Stretch::inextensible);
+}
+
 TEST_CASE("rods stretch physically where the job says so") {
   const Plan plan = plan_of(with("/scene/stretch", R"({"grid": ["inextensible", "physical"]})"));
   CHECK(std::get<BendingRod>(plan.spec(0).scene).stretch == Stretch::inextensible);
@@ -85,6 +131,13 @@ TEST_CASE("scenes whose values do not fit together are refused with what is wron
   CHECK(refusal(with("/scene/clamp", "\"wall\"", ring_job())) ==
         "job.json: scene: a ring has no end that the clamp \"wall\" could hold");
   CHECK(refusal(with("/scene/rows", "1", net_job())) == "job.json: scene: rows is 1; must be at least 2");
+  CHECK(refusal(with("/scene/nodes_z", "1", lattice_job())) == "job.json: scene: nodes_z is 1; must be at least 2");
+  CHECK_THAT(refusal(with("/scene/nodes_x", "1", lattice_job())),
+             Catch::StartsWith("job.json: scene.nodes_x: 1 is not allowed"));
+  CHECK_THAT(refusal(with("/scene/node_stiffness", "0", lattice_job())),
+             Catch::StartsWith("job.json: scene.node_stiffness: 0 is not allowed"));
+  CHECK_THAT(refusal(with("/scene/cell", "\"fcc\"", lattice_job())),
+             Catch::StartsWith("job.json: scene.cell: \"fcc\" is not allowed"));
   CHECK(
       refusal(with("/scene/clamp", "\"free\"", net_job())) ==
       "job.json: scene.clamp: this key belongs to scene.type \"bending_rod\" or \"helix\" or \"ring\", not to \"net\"; "

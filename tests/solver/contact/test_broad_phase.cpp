@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solver/contact/contact_bodies.hpp"
+#include "solver/scene/scene_parts.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -115,7 +116,77 @@ TEST_CASE("static pairs and segments without radius never touch; branches that l
   CHECK_FALSE(ContactBodies(fork).matter(1, 2));
   joints[1].arm_a_m = {0, 0, 0.3};
   fork.rods = {Rod(segments, joints)};
+  CHECK_FALSE(ContactBodies(fork).matter(1, 2));  // inside each other
+  joints[1].rest = Quaternion(Eigen::AngleAxisd(pi / 2, Vector3::UnitX()));
+  fork.rods = {Rod(segments, joints)};
   CHECK(ContactBodies(fork).matter(1, 2));
+}
+
+/// Pairs that are to be kept apart although they overlap.
+int overlapping_pairs(const Scene& scene) {
+  const ContactBodies bodies(scene);
+  std::vector<CapsuleAxis> axes;
+  bodies.place(scene, axes);
+  int count = 0;
+  for (int a = 0; a < bodies.count(); ++a)
+    for (int b = a + 1; b < bodies.count(); ++b)
+      count += bodies.matter(a, b) &&
+               separation(axes[a], axes[b]).norm() < (1 - 1e-9) * (bodies.body(a).radius + bodies.body(b).radius);
+  return count;
+}
+
+TEST_CASE("what overlaps beside a sharp fork where no joint is strained never touches; its tips may") {
+  for (const double angle : {0.4, 1.0, 1.5})
+    for (const double length : {0.02, 0.05, 0.17}) {
+      const double radius = 0.05;
+      const int pieces = static_cast<int>(1 / length);
+      RodParameters p;
+      p.radius_m = radius;
+      std::vector<SegmentSpec> segments{segment_at(Vector3::Zero(), Quaternion::Identity(), length, p)};
+      std::vector<JointSpec> joints;
+      for (const double side : {-0.5, 0.5}) {
+        const Quaternion turn(Eigen::AngleAxisd(side * angle, Vector3::UnitX()));
+        const Vector3 along = turn * Vector3(0, 0, length);
+        for (int i = 0; i < pieces; ++i) {
+          const int b = static_cast<int>(segments.size());
+          segments.push_back(segment_at(Vector3(0, 0, length / 2) + (i + 0.5) * along, turn, length, p));
+          joints.push_back(joint_between(segments, i == 0 ? 0 : b - 1, b, p, 1));
+        }
+      }
+      Scene scene;
+      scene.rods.emplace_back(segments, joints);
+      CHECK(overlapping_pairs(scene) == 0);
+      CHECK(ContactBodies(scene).matter(pieces, 2 * pieces));
+    }
+}
+
+TEST_CASE("nothing in a lattice at rest touches, however thick its rods and however they are divided") {
+  for (const auto cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet})
+    for (const int segments : {1, 2, 5, 8})
+      for (const double radius : {0.01, 0.02, 0.03}) {
+        Lattice p;
+        p.cell = cell;
+        p.nodes_x = 2;
+        p.segments = segments;
+        p.radius_m = radius;
+        p.held = Held::free;
+        CHECK(overlapping_pairs(build_scene(p)) == 0);
+      }
+}
+
+TEST_CASE("which segments may touch does not depend on how the rods are bent") {
+  Lattice p;
+  p.cell = Lattice::Cell::octet;
+  p.nodes_x = 2;
+  p.radius_m = 0.02;
+  Scene scene = build_scene(p);
+  const ContactBodies before(scene);
+  test::Random random(5);
+  for (Quaternion& q : scene.rods[0].orientation) q = random.quaternion();
+  for (Vector3& x : scene.rods[0].position) x = random.vector(1);
+  const ContactBodies after(scene);
+  for (int a = 0; a < before.count(); ++a)
+    for (int b = a + 1; b < before.count(); ++b) CHECK(before.matter(a, b) == after.matter(a, b));
 }
 
 TEST_CASE("obstacles that are none are refused") {

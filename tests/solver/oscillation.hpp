@@ -1,0 +1,33 @@
+// Frequency and decay of a sampled oscillation.
+//
+// Implicit Euler turns exp(i w dt) into 1 / (1 - i w dt): the frequency seen is atan(w dt) / dt, and a step keeps
+// (1 + w^2 dt^2)^-1/2 of the amplitude.
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "tests/solver/dense.hpp"
+
+namespace rodsweep {
+
+/// exp of the mean phase and logarithm of amplitude per step of a sampled oscillation y'' ~ -w^2 y: the least-squares
+/// fit of y(k + 1) - 2 Re(z) y(k) + |z|^2 y(k - 1) = 0 to every `stride`-th sample.
+inline std::complex<double> factor_per_step(const std::vector<double>& samples, std::size_t stride) {
+  const std::size_t rows = samples.size() - 2 * stride;
+  test::MatrixX known(rows, 2);
+  VectorX next(rows);
+  for (std::size_t k = 0; k < rows; ++k) {
+    const Eigen::Index row = static_cast<Eigen::Index>(k);
+    known(row, 0) = samples[k + stride];
+    known(row, 1) = -samples[k];
+    next[row] = samples[k + 2 * stride];
+  }
+  const VectorX fit = test::least_squares(known, next);
+  const double size = std::sqrt(fit[1]);
+  return std::polar(std::pow(size, 1.0 / static_cast<double>(stride)),
+                    std::acos(fit[0] / (2 * size)) / static_cast<double>(stride));
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,474 @@
+// Lattices against frames of Timoshenko beams (timoshenko_frame.hpp): cantilevers of stiff nodes under end loads and
+// their first bending frequency; exact states of strain; what a free lattice keeps; symmetric sag.
+//
+// A frame has the rods' half segments beyond the last nodes as beams of their own, so that its mass is the lattice's.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "solver/rod/linearization.hpp"
+#include "solver/step/observables.hpp"
+#include "tests/solver/oscillation.hpp"
+#include "tests/solver/simulation.hpp"
+#include "tests/solver/timoshenko_frame.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+using Cell = Lattice::Cell;
+using test::TimoshenkoFrame;
+
+/// A place in halves of a cell's edge.
+using Place = std::array<int, 3>;
+
+Place moved(const Place& p, const Place& by, int times = 1) {
+  return {p[0] + times * by[0], p[1] + times * by[1], p[2] + times * by[2]};
+}
+
+Vector3 point(const Place& at, const Lattice& p) { return p.mesh_m / 2 * Vector3(at[0], at[1], at[2]); }
+
+/// Corners of cells, their centres, or the centres of their faces.
+std::set<Place> nodes_of(const Lattice& p) {
+  std::set<Place> nodes;
+  for (int x = 0; x <= 2 * p.nodes_x - 2; ++x)
+    for (int y = 0; y <= 2 * p.nodes_y - 2; ++y)
+      for (int z = 0; z <= 2 * p.nodes_z - 2; ++z) {
+        const int odd = x % 2 + y % 2 + z % 2;
+        if (odd == 0 || (p.cell == Cell::body_centred && odd == 3) || (p.cell == Cell::octet && odd == 2))
+          nodes.insert({x, y, z});
+      }
+  return nodes;
+}
+
+/// Half of the ways to nearest neighbours, one of any two that are opposite.
+std::vector<Place> ways_of(Cell cell) {
+  const int square = cell == Cell::cubic ? 4 : cell == Cell::body_centred ? 3 : 2;
+  std::vector<Place> out;
+  for (int x = -2; x <= 2; ++x)
+    for (int y = -2; y <= 2; ++y)
+      for (int z = -2; z <= 2; ++z)
+        if (x * x + y * y + z * z == square && Place{x, y, z} > Place{0, 0, 0}) out.push_back({x, y, z});
+  return out;
+}
+
+/// Held at its side, of stiff nodes, weightless.
+Lattice cantilever(Cell cell, int nodes_x, int across, int segments) {
+  Lattice p;
+  p.cell = cell;
+  p.nodes_x = nodes_x;
+  p.nodes_y = p.nodes_z = across;
+  p.segments = segments;
+  p.held = Held::side;
+  p.radius_m = 0.02;
+  p.youngs_modulus_pa = 1e7;
+  p.torsion_modulus_pa = 4e6;
+  p.node_stiffness = 1e6;
+  p.gravity_m_s2.setZero();
+  return p;
+}
+
+/// The frame of a lattice, and where it has the lattice's nodes.
+struct LatticeFrame {
+  TimoshenkoFrame frame;
+  std::map<Place, int> nodes;
+
+  LatticeFrame(const Lattice& p, int beams_of_strut)
+      : frame(test::round_beam(p.radius_m, p.density_kg_m3, p.youngs_modulus_pa, p.torsion_modulus_pa)) {
+    for (const Place& at : nodes_of(p)) {
+      nodes[at] = frame.add_node(point(at, p));
+      if (at[0] == 0) frame.hold(nodes[at]);
+    }
+    for (const auto& [at, node] : nodes)
+      for (const Place& way : ways_of(p.cell)) {
+        const bool there = nodes.count(moved(at, way)), before = nodes.count(moved(at, way, -1));
+        if (there) {
+          int last = node;
+          for (int i = 1; i < beams_of_strut; ++i) {
+            const int next = frame.add_node(point(at, p) + static_cast<double>(i) / beams_of_strut * point(way, p));
+            frame.add_beam(last, next);
+            last = next;
+          }
+          frame.add_beam(last, nodes[moved(at, way)]);
+        }
+        if (there != before && at[0] > 0)
+          frame.add_beam(node, frame.add_node(point(at, p) + (there ? -0.5 : 0.5) / p.segments * point(way, p)));
+      }
+    frame.assemble();
+  }
+
+  /// Shared by the nodes with the greatest x.
+  VectorX end_load(const Lattice& p, const Vector3& force) {
+    VectorX loads = frame.no_load();
+    int count = 0;
+    for (const auto& [at, node] : nodes) count += at[0] == 2 * p.nodes_x - 2;
+    for (const auto& [at, node] : nodes)
+      if (at[0] == 2 * p.nodes_x - 2) frame.of(loads, node).head<3>() += force / count;
+    return loads;
+  }
+};
+
+/// Of the face with the greatest x: how far it sinks, and the slope of the straight line that fits it best.
+struct End {
+  double sinking = 0, slope = 0;
+};
+
+/// `shift_of`: of a place.
+template <class Shift>
+End end_of(const Lattice& p, const Shift& shift_of) {
+  double count = 0, sinking = 0, height = 0, height_square = 0, along = 0, product = 0;
+  for (const Place& at : nodes_of(p)) {
+    if (at[0] != 2 * p.nodes_x - 2) continue;
+    const Vector3 shift = shift_of(at);
+    const double y = point(at, p).y();
+    count += 1;
+    sinking -= shift.y();
+    height += y;
+    height_square += y * y;
+    along += shift.x();
+    product += y * shift.x();
+  }
+  return {sinking / count, (product - height * along / count) / (height_square - height * height / count)};
+}
+
+/// A segment at every node.
+std::map<Place, int> segments_at_nodes(const Lattice& p, const Rod& rod) {
+  std::map<Place, int> out;
+  for (const Place& at : nodes_of(p))
+    for (int s = 0; s < rod.segment_count(); ++s)
+      if ((rod.position[static_cast<std::size_t>(s)] - point(at, p)).norm() < 1e-9) out[at] = s;
+  return out;
+}
+
+/// End of the lattice over that of its frame, minus one, under an end load across it that lets it sink by a thousandth
+/// of its length.
+End static_error(Lattice p) {
+  LatticeFrame frame(p, 1);
+  const Vector3 down(0, -1, 0);
+  const VectorX unit = frame.frame.displacements(frame.end_load(p, down));
+  const End expected =
+      end_of(p, [&](const Place& at) { return Vector3(frame.frame.at(unit, frame.nodes[at]).head<3>()); });
+  const double force = 1e-3 * (p.nodes_x - 1) * p.mesh_m / expected.sinking;
+  p.tip_force_n = force * down;
+  Scene scene = build_scene(p);
+  const Rod start = scene.rods.front();
+  const auto segments = segments_at_nodes(p, start);
+  Simulation simulation(std::move(scene), 5);
+  simulation.relax(1e-10);
+  const End found = end_of(p, [&](const Place& at) {
+    const auto s = static_cast<std::size_t>(segments.at(at));
+    return Vector3(simulation.rod().position[s] - start.position[s]);
+  });
+  return {found.sinking / (force * expected.sinking) - 1, found.slope / (force * expected.slope) - 1};
+}
+
+/// Angular frequency of the first bending mode over that of the frame, minus one: of a small free oscillation from the
+/// frame's shape.
+double frequency_error(const Lattice& p) {
+  LatticeFrame frame(p, p.segments);  // nodes of the frame at the centres of segments
+  const TimoshenkoFrame::Mode mode = frame.frame.lowest_mode(frame.end_load(p, Vector3(0, -1, 0)));
+  const double w = mode.angular_frequency, dt = 2 * pi / w / 200;
+  Scene scene = build_scene(p);
+  Rod& start = scene.rods.front();
+  const double amplitude = 1e-5 * p.mesh_m;  // of the mode's greatest entry [m, rad]
+  for (std::size_t s = 0; s < start.segments.size(); ++s) {
+    if (start.segments[s].is_static) continue;
+    const Vector6 shape = amplitude * w * frame.frame.at(mode.shape, frame.frame.node_at(start.position[s]));
+    start.velocity[s] = shape.head<3>();
+    start.angular_velocity[s] = shape.tail<3>();
+  }
+  const std::vector<Vector3> weight = start.velocity, rest = start.position;
+  Simulation simulation(std::move(scene), dt);
+  std::vector<double> samples;
+  for (int i = 0; i < 200; ++i) {
+    simulation.step();
+    double sum = 0;
+    for (std::size_t s = 0; s < rest.size(); ++s) sum += weight[s].dot(simulation.rod().position[s] - rest[s]);
+    samples.push_back(sum);
+  }
+  const std::complex<double> z = factor_per_step(samples, 40);
+  return std::tan(std::arg(z)) / dt / w - 1;
+}
+
+/// From the errors of N and 2 N segments.
+double order(double coarse, double fine) { return std::log2(coarse / fine); }
+/// Of an error in 1 / N^2 and 1 / N^4, that for ever more segments.
+double limit(double coarse, double fine) { return (4 * fine - coarse) / 3; }
+
+VectorX constraint_of(const Rod& rod) {
+  Linearization at(rod);
+  linearize(rod, at);
+  return at.constraint;
+}
+
+bool is_crossing(const Joint& joint) { return joint.arm_a.isZero(); }
+
+/// Three nodes along every edge, free.
+Lattice block(Cell cell, int segments = 2) {
+  Lattice p = cantilever(cell, 3, 3, segments);
+  p.held = Held::free;
+  p.node_stiffness = 1;
+  return p;
+}
+
+/// Force along the rod in every joint [N], and the greatest of all other forces and moments (over a radius) [N].
+struct Tension {
+  std::vector<double> along;
+  double other = 0;
+};
+Tension tension_of(const Rod& rod, const Lattice& p) {
+  const VectorX c = constraint_of(rod);
+  Tension out;
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    Vector6 load = c.segment<6>(6 * k).cwiseQuotient(joint.compliance);
+    load.head<3>() /= joint.length;
+    load.tail<3>() /= p.radius_m;
+    out.along.push_back(is_crossing(joint) ? 0 : -load[2]);
+    if (!is_crossing(joint)) load[2] = 0;
+    out.other = std::max(out.other, load.lpNorm<Eigen::Infinity>());
+  }
+  return out;
+}
+
+const Vector3 a_turn(0.3, 1, 2);
+
+/// On its way, turning about its middle.
+Scene thrown(const Lattice& p) {
+  Scene scene = build_scene(p);
+  Rod& rod = scene.rods.front();
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    rod.angular_velocity[s] = a_turn;
+    rod.velocity[s] = a_turn.cross(rod.position[s]) + Vector3(1, 2, 3);
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("A single beam of a frame bends, stretches and twists as Timoshenko's, whatever it is divided into") {
+  const double length = 0.7, e = 1e7, g = 4e6, radius = 0.02;
+  const Section s = circular_section(radius, e, g);
+  const Vector3 along = Vector3(1, 2, -2) / 3, across = Vector3(2, 1, 2) / 3, other = along.cross(across);
+  for (const int beams : {1, 3}) {
+    TimoshenkoFrame frame(test::round_beam(radius, 1000, e, g));
+    int last = frame.add_node(Vector3(1, 1, 1));
+    frame.hold(last);
+    for (int i = 1; i <= beams; ++i) {
+      const int next = frame.add_node(Vector3(1, 1, 1) + length * i / beams * along);
+      frame.add_beam(last, next);
+      last = next;
+    }
+    frame.assemble();
+    const auto tip_under = [&](const Vector3& force, const Vector3& moment) {
+      VectorX loads = frame.no_load();
+      frame.of(loads, last) << force, moment;
+      return frame.at(frame.displacements(loads), last);
+    };
+    const double bent = std::pow(length, 3) / (3 * s.bending_x_nm2) + length / s.shear_n;
+    const double slope = length * length / (2 * s.bending_x_nm2);
+    Vector6 expected;
+    expected << bent * across, slope * other;
+    CHECK((tip_under(across, Vector3::Zero()) - expected).norm() < 1e-9 * expected.norm());
+    expected << slope * across, length / s.bending_x_nm2 * other;
+    CHECK((tip_under(Vector3::Zero(), other) - expected).norm() < 1e-9 * expected.norm());
+    expected << length / s.axial_n * along, length / s.torsion_nm2 * along;
+    CHECK((tip_under(along, along) - expected).norm() < 1e-9 * expected.norm());
+  }
+}
+
+TEST_CASE("A slender beam of a frame swings as Euler and Bernoulli's, less Rayleigh's part") {
+  const double length = 1, e = 1e7, radius = 0.01, b = 1.875104;
+  TimoshenkoFrame frame(test::round_beam(radius, 1000, e, 1e12));  // does not shear
+  frame.hold(frame.add_node(Vector3::Zero()));
+  for (int i = 1; i <= 8; ++i) {
+    frame.add_node(i / 8.0 * Vector3::UnitX());
+    frame.add_beam(i - 1, i);
+  }
+  frame.assemble();
+  VectorX start = frame.no_load();
+  frame.of(start, 8)[1] = 1;
+  const double euler = b * b * std::sqrt(e * radius * radius / 4 / 1000) / (length * length);
+  CHECK(frame.lowest_mode(start).angular_frequency / euler ==
+        Approx(1 - 4.6478 / 2 * std::pow(radius / 2 / length, 2)).epsilon(1e-5));
+}
+
+TEST_CASE("A cantilever of a lattice sinks and tilts as a frame of Timoshenko beams, with an error of second order") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    const End coarse = static_error(cantilever(cell, 4, 2, 8)), fine = static_error(cantilever(cell, 4, 2, 16));
+    CAPTURE(cell, coarse.sinking, fine.sinking, coarse.slope, fine.slope);
+    CHECK(std::abs(fine.sinking) < 4e-3);
+    CHECK(std::abs(fine.slope) < 4e-3);
+    CHECK(order(coarse.sinking, fine.sinking) == Approx(2).margin(0.05));
+    CHECK(order(coarse.slope, fine.slope) == Approx(2).margin(0.05));
+    CHECK(std::abs(limit(coarse.sinking, fine.sinking)) < 1e-4);
+    CHECK(std::abs(limit(coarse.slope, fine.slope)) < 1e-4);
+  }
+}
+
+TEST_CASE("A cantilever of a lattice swings as a frame of Timoshenko beams, with an error of second order") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    const double coarse = frequency_error(cantilever(cell, 4, 2, 8)),
+                 fine = frequency_error(cantilever(cell, 4, 2, 16));
+    CAPTURE(cell, coarse, fine);
+    CHECK(std::abs(fine) < 2e-3);
+    CHECK(order(coarse, fine) == Approx(2).margin(0.05));
+    CHECK(std::abs(limit(coarse, fine)) < 1e-4);
+  }
+}
+
+TEST_CASE("A cantilever of two by two by four cells sinks, tilts and swings as a frame does", "[.long]") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    const Lattice p = cantilever(cell, 5, 3, 16);
+    const End end = static_error(p);
+    const double frequency = frequency_error(p);
+    CAPTURE(cell, end.sinking, end.slope, frequency);
+    CHECK(std::abs(end.sinking) < 5e-3);
+    CHECK(std::abs(end.slope) < 5e-3);
+    CHECK(std::abs(frequency) < 3e-3);
+  }
+}
+
+TEST_CASE("A cubic lattice stretched along x has the same tension in all rods along x and nothing else anywhere") {
+  const Lattice p = block(Cell::cubic);
+  Rod rod = build_scene(p).rods.front();
+  const double strain = 1e-3, axial = p.youngs_modulus_pa * pi * p.radius_m * p.radius_m;
+  for (Vector3& x : rod.position) x.x() *= 1 + strain;
+  const Tension tension = tension_of(rod, p);
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    const bool along_x = std::abs(director(rod.orientation[static_cast<std::size_t>(joint.a)]).x()) > 0.5;
+    CHECK(tension.along[static_cast<std::size_t>(k)] ==
+          Approx(along_x && !is_crossing(joint) ? strain * axial : 0).epsilon(1e-9).margin(1e-9 * axial));
+  }
+  CHECK(tension.other < 1e-9 * strain * axial);
+}
+
+TEST_CASE("A lattice pulled at both ends of its rods along x comes to rest stretched evenly") {
+  const Lattice p = block(Cell::cubic);
+  Scene scene = build_scene(p);
+  const Rod start = scene.rods.front();
+  const double axial = p.youngs_modulus_pa * pi * p.radius_m * p.radius_m, strain = 1e-3, end = 2 * p.mesh_m;
+  for (int s = 0; s < start.segment_count(); ++s) {
+    const auto i = static_cast<std::size_t>(s);
+    const double x = start.position[i].x();
+    if (director(start.orientation[i]).x() > 0.5 && (x < 1e-9 || x > end - 1e-9))
+      scene.loads.push_back(
+          {0, s, Vector3(x < 1e-9 ? -1 : 1, 0, 0) * strain * axial, Vector3::Zero(), Vector3::Zero()});
+  }
+  REQUIRE(scene.loads.size() == 18);
+  Simulation simulation(std::move(scene), 0.2);
+  simulation.relax(1e-11);
+  const Vector3 middle(p.mesh_m, p.mesh_m, p.mesh_m);
+  for (std::size_t s = 0; s < start.position.size(); ++s) {
+    const Vector3 from = start.position[s] - middle;
+    CHECK((simulation.rod().position[s] - middle - from - Vector3(strain * from.x(), 0, 0)).norm() < 1e-8 * p.mesh_m);
+  }
+  CHECK(tension_of(simulation.rod(), p).other < 1e-6 * strain * axial);
+}
+
+TEST_CASE("A lattice grown evenly in all directions has the same tension in all rods and nothing else anywhere") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    const Lattice p = block(cell);
+    Rod rod = build_scene(p).rods.front();
+    const double strain = 1e-3, axial = p.youngs_modulus_pa * pi * p.radius_m * p.radius_m;
+    for (Vector3& x : rod.position) x *= 1 + strain;
+    const Tension tension = tension_of(rod, p);
+    for (int k = 0; k < rod.joint_count(); ++k)
+      if (!is_crossing(rod.joints[static_cast<std::size_t>(k)]))
+        CHECK(tension.along[static_cast<std::size_t>(k)] == Approx(strain * axial).epsilon(1e-9));
+    CHECK(tension.other < 1e-9 * strain * axial);
+  }
+}
+
+TEST_CASE("A lattice that is moved and turned as a whole has no strain") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    Rod rod = build_scene(block(cell)).rods.front();
+    const Quaternion turn(Eigen::AngleAxisd(2.5, a_turn.normalized()));
+    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+      rod.position[s] = turn * rod.position[s] + Vector3(3, -2, 1);
+      rod.orientation[s] = turn * rod.orientation[s];
+    }
+    CHECK(constraint_of(rod).lpNorm<Eigen::Infinity>() < 1e-13);
+  }
+}
+
+TEST_CASE("A thrown lattice keeps its linear momentum, and its angular momentum to the order of the step") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    const auto drift = [&](double dt) {
+      Simulation simulation(thrown(block(cell)), dt);
+      const Vector3 momentum = linear_momentum(simulation.rod()), turning = angular_momentum(simulation.rod());
+      simulation.run(static_cast<int>(std::round(0.1 / dt)));
+      CHECK((linear_momentum(simulation.rod()) - momentum).norm() < 1e-12 * momentum.norm());
+      return (angular_momentum(simulation.rod()) - turning).norm() / turning.norm();
+    };
+    const double coarse = drift(2e-3), fine = drift(1e-3);
+    CAPTURE(cell, coarse, fine);
+    CHECK(coarse < 1e-2);
+    CHECK(coarse / fine > 1.8);
+  }
+}
+
+TEST_CASE("The energy of a disturbed lattice never grows") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    Scene scene = build_scene(block(cell));
+    Rod& rod = scene.rods.front();
+    for (std::size_t s = 0; s < rod.segments.size(); ++s)
+      rod.velocity[s] = Vector3(std::sin(3.0 * static_cast<double>(s)), std::cos(5.0 * static_cast<double>(s)), 0.3);
+    Simulation simulation(std::move(scene), 1e-3);
+    double before = kinetic_energy(simulation.rod());
+    const double start = before;
+    for (int i = 0; i < 100; ++i) {
+      simulation.step();
+      const double now = kinetic_energy(simulation.rod()) + elastic_energy(simulation.rod());
+      CHECK(now < before * (1 + 1e-6));
+      before = now;
+    }
+    CHECK(before < start);
+  }
+}
+
+TEST_CASE("A free lattice falls as a stone does") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    Lattice p = block(cell);
+    p.gravity_m_s2 = Vector3(0, -9.81, 0);
+    Simulation simulation(build_scene(p), 0.01);
+    const std::vector<Vector3> start = simulation.rod().position;
+    simulation.run(50);
+    const double fallen = 9.81 * 1e-4 * 50 * 51 / 2;  // of implicit Euler
+    for (std::size_t s = 0; s < start.size(); ++s)
+      CHECK((simulation.rod().position[s] - start[s] + Vector3(0, fallen, 0)).norm() < 1e-11);
+  }
+}
+
+// Of stiff nodes: soft ones know which rod is the first, since any two others are joined by way of it.
+TEST_CASE("A lattice held at its corners sags symmetrically") {
+  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+    Lattice p = block(cell);
+    p.held = Held::corners;
+    p.node_stiffness = 1e5;
+    p.gravity_m_s2 = Vector3(0, -9.81, 0);
+    Scene scene = build_scene(p);
+    const Rod start = scene.rods.front();
+    const auto segments = segments_at_nodes(p, start);
+    Simulation simulation(std::move(scene), 1);
+    simulation.relax(1e-11);
+    const auto shift = [&](const Place& at) {
+      const auto s = static_cast<std::size_t>(segments.at(at));
+      return Vector3(simulation.rod().position[s] - start.position[s]);
+    };
+    CHECK(shift({2, 4, 2}).y() < -1e-4);
+    for (const auto& [at, s] : segments) {
+      const Vector3 here = shift(at), across_x = shift({4 - at[0], at[1], at[2]}),
+                    across_z = shift({at[0], at[1], 4 - at[2]}), swapped = shift({at[2], at[1], at[0]});
+      const double margin = 1e-3 * std::abs(shift({2, 4, 2}).y());
+      CAPTURE(cell, at[0], at[1], at[2]);
+      CHECK((across_x - Vector3(-here.x(), here.y(), here.z())).norm() < margin);
+      CHECK((across_z - Vector3(here.x(), here.y(), -here.z())).norm() < margin);
+      CHECK((swapped - Vector3(here.z(), here.y(), here.x())).norm() < margin);
+    }
+  }
+}
