@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "solver/batch/lane_blocks.hpp"
+#include "solver/numbers/lane_blocks.hpp"
 #include "solver/numbers/lane_math.hpp"
 #include "solver/rod/joint_constraint.hpp"
 #include "solver/rod/momentum_balance.hpp"

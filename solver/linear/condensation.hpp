@@ -19,9 +19,9 @@
 
 #include <vector>
 
-#include "solver/batch/lane_blocks.hpp"
 #include "solver/linear/block_matrix.hpp"
 #include "solver/linear/strut_graph.hpp"
+#include "solver/numbers/lane_blocks.hpp"
 #include "solver/rod/linearization.hpp"
 
 namespace rodsweep {
