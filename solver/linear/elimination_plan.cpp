@@ -24,7 +24,7 @@ std::int64_t lower_blocks(const BlockMatrix& pattern) { return (pattern.block_co
 
 std::string gibibytes(double bytes) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.1f GiB", bytes / (1024.0 * 1024 * 1024));
+  std::snprintf(text, sizeof text, "%.3g GiB", bytes / (1024.0 * 1024 * 1024));
   return text;
 }
 
@@ -51,14 +51,14 @@ EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<i
   return plan;
 }
 
-FactorTooLarge::FactorTooLarge(int rows, double needed)
+FactorTooLarge::FactorTooLarge(int rows, double needed, double most)
     : std::runtime_error("a direct solve of " + std::to_string(rows) + " joints would need " + gibibytes(needed) +
-                         " for its factor; the most is " + gibibytes(most_factor_bytes)),
+                         " for its factor; the most is " + gibibytes(most)),
       block_rows(rows),
       bytes(needed) {}
 
-void refuse_too_large(const EliminationPlan& plan) {
-  if (plan.bytes > most_factor_bytes) throw FactorTooLarge(static_cast<int>(plan.order.size()), plan.bytes);
+void refuse_too_large(const EliminationPlan& plan, double most_bytes) {
+  if (plan.bytes > most_bytes) throw FactorTooLarge(static_cast<int>(plan.order.size()), plan.bytes, most_bytes);
 }
 
 }  // namespace rodsweep

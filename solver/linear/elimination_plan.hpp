@@ -29,14 +29,14 @@ struct EliminationPlan {
 
 EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<int>& preferred);
 
-/// A factor would need more than most_factor_bytes.
+/// A factor would need more than it may have.
 struct FactorTooLarge : std::runtime_error {
-  FactorTooLarge(int block_rows, double bytes);
+  FactorTooLarge(int block_rows, double bytes, double most_bytes);
   int block_rows;
   double bytes;
 };
 
 /// Throws FactorTooLarge.
-void refuse_too_large(const EliminationPlan& plan);
+void refuse_too_large(const EliminationPlan& plan, double most_bytes = most_factor_bytes);
 
 }  // namespace rodsweep

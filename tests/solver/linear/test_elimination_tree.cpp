@@ -158,7 +158,7 @@ TEST_CASE("a factor that would need too much memory is refused with its size, be
   plan.bytes = 1.5 * most_factor_bytes;
   CHECK_THROWS_AS(refuse_too_large(plan), FactorTooLarge);
   CHECK_THROWS_WITH(refuse_too_large(plan),
-                    "a direct solve of 1000 joints would need 6.0 GiB for its factor; the most is 4.0 GiB");
+                    "a direct solve of 1000 joints would need 6 GiB for its factor; the most is 4 GiB");
   EliminationTree dense;  // 14,000 rows, all coupled to each other
   for (int k = 0; k < 14000; ++k) {
     dense.row.push_back(k);
