@@ -15,8 +15,6 @@ std::size_t lanes_for(std::size_t doubles) { return (doubles + 7) / 8; }
 inline const Lane8& lane8_at(const double* from) { return *reinterpret_cast<const Lane8*>(from); }
 inline Lane8& lane8_at(double* from) { return *reinterpret_cast<Lane8*>(from); }
 
-double sum(const Lane8& v) { return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])); }
-
 /// x -= the columns of a tile times `factors`.
 void subtract_columns(const double* tile, const double* factors, int columns, double* x) {
   Lane8 even[3]{}, odd[3]{};
@@ -28,12 +26,17 @@ void subtract_columns(const double* tile, const double* factors, int columns, do
   for (int v = 0; v < 3; ++v) lane8_at(x + 8 * v) -= even[v] + odd[v];
 }
 
-/// products += the columns of a tile, transposed, times x, before their sums over lanes.
-void add_products(const double* tile, const double* x, int columns, Lane8* products) {
-  const Lane8 known[3] = {lane8_at(x), lane8_at(x + 8), lane8_at(x + 16)};
-  for (int c = 0; c < columns; ++c)
-    products[c] += lane8_at(tile + c * tile_rows) * known[0] + lane8_at(tile + c * tile_rows + 8) * known[1] +
-                   lane8_at(tile + c * tile_rows + 16) * known[2];
+/// Six columns of `tiles` tiles that follow each other, transposed, times x.
+Lane8 six_products(const double* columns, std::size_t tile_size, const double* x, int tiles) {
+  Lane8 sums[6]{};
+  for (int t = 0; t < tiles; ++t, columns += tile_size, x += tile_rows)
+#pragma GCC unroll 3
+    for (int v = 0; v < 3; ++v) {
+      const Lane8 known = lane8_at(x + 8 * v);
+#pragma GCC unroll 6
+      for (int c = 0; c < 6; ++c) sums[c] += lane8_at(columns + c * tile_rows + 8 * v) * known;
+    }
+  return sum_lanes(sums);
 }
 
 }  // namespace
@@ -43,8 +46,10 @@ MultifrontalFactor::MultifrontalFactor(const BlockMatrix& pattern, AssemblyTree 
   std::vector<int> column_of(tree_.row.size()), place(tree_.row.size());
   for (std::size_t k = 0; k < tree_.row.size(); ++k) column_of[at(tree_.row[k])] = static_cast<int>(k);
   int widest = 0;
+  std::size_t tallest = 0;
   for (const Supernode& node : tree_.supernodes) {
     widest = std::max(widest, node.columns);
+    tallest = std::max(tallest, node.panel_size() / at(6 * node.columns));
     const int end = node.first + node.columns;
     for (int k = node.first; k < end; ++k) place[at(k)] = k - node.first;
     for (int r = 0; r < node.row_count; ++r) place[at(tree_.rows[at(node.row_begin + r)])] = node.columns + r;
@@ -64,7 +69,7 @@ MultifrontalFactor::MultifrontalFactor(const BlockMatrix& pattern, AssemblyTree 
   inverse_pivot_.resize(6 * tree_.row.size());
   solution_.resize(6 * tree_.row.size());
   pivots_.resize(lanes_for(at(tile_rows * tiles_of(widest))));
-  products_.resize(at(6 * widest));
+  known_.resize(lanes_for(tallest));
 }
 
 bool MultifrontalFactor::factorise(const BlockMatrix& a) {
@@ -146,23 +151,23 @@ void MultifrontalFactor::forward(const Supernode& node) {
 /// x <- L^-T (y - R^T x of the later rows).
 void MultifrontalFactor::backward(const Supernode& node) {
   const Panel panel(node, entries(panels_) + node.panel);
-  const int width = 6 * node.columns;
   double* const own = solution_.data() + 6 * node.first;
-  std::fill_n(products_.begin(), width, Lane8{});
-  for (int t = 0; t < node.row_tiles(); ++t) {
-    alignas(64) double known[tile_rows]{};
-    const int* const row = tree_.rows.data() + node.row_begin + tile_blocks * t;
-    for (int r = 0; r < std::min(tile_blocks, node.row_count - tile_blocks * t); ++r)
-      std::copy_n(solution_.data() + 6 * row[r], 6, known + 6 * r);
-    add_products(panel.row_tile(t), known, width, products_.data());
-  }
-  for (int t = node.pivot_tiles(); t-- > 0;) {
-    alignas(64) double known[tile_rows]{};
-    for (int c = std::min(width, tile_rows * (t + 1)); c-- > tile_rows * t;) {
-      add_products(Panel::column(panel.tile(t), c), known, 1, products_.data() + c);
-      own[c] = known[c - tile_rows * t] = (own[c] - sum(products_[at(c)])) * inverse_pivot_[at(6 * node.first + c)];
+  double* const known = entries(known_);  // of every row of the panel; zero until it is
+  std::fill_n(known, node.panel_size() / at(6 * node.columns), 0.0);
+  for (int r = 0; r < node.row_count; ++r)
+    std::copy_n(solution_.data() + 6 * tree_.rows[at(node.row_begin + r)], 6,
+                known + tile_rows * node.pivot_tiles() + 6 * r);
+  for (int block = node.columns; block-- > 0;) {
+    const int t = block / tile_blocks, row = 6 * block;
+    const double* const column = Panel::column(panel.tile(t), row);
+    const Lane8 later =
+        six_products(column, node.tile_size(), known + tile_rows * t, node.pivot_tiles() + node.row_tiles() - t);
+    const double* const l = column + row % tile_rows;
+    for (int c = 6; c-- > 0;) {
+      double x = own[row + c] - later[c];
+      for (int k = c + 1; k < 6; ++k) x -= l[c * tile_rows + k] * known[row + k];
+      own[row + c] = known[row + c] = x * inverse_pivot_[at(6 * node.first + row + c)];
     }
-    add_products(panel.tile(t), known, tile_rows * t, products_.data());
   }
 }
 

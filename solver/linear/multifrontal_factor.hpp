@@ -45,7 +45,7 @@ class MultifrontalFactor {
   std::vector<double> inverse_pivot_;
   std::vector<double> solution_;  ///< in the order of elimination
   std::vector<Lane8> pivots_;     ///< of one front, of the solution
-  std::vector<Lane8> products_;   ///< of one front's columns with what is known, to be summed over lanes
+  std::vector<Lane8> known_;      ///< of one front's rows, of the solution
 };
 
 }  // namespace rodsweep
