@@ -11,6 +11,7 @@
 #include "runner/command/plan_estimate.hpp"
 #include "runner/command/training_plan.hpp"
 #include "runner/experiment/batched_evaluation.hpp"
+#include "runner/experiment/factor_check.hpp"
 #include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/inputs.hpp"
 #include "runner/file/file_creation.hpp"
@@ -115,6 +116,7 @@ ExitCode execute(const PlanOptions& options, Console& console) {
   if (is_training(job)) return show_training_plan(options, job, console);
   const Plan plan(job);
   check_guesses(plan);
+  check_factors(plan);
   const std::vector<Probe> probes = options.probe ? probe(plan, evaluate_among_equals) : std::vector<Probe>();
   console.result(options.json ? to_json(plan, probes).dump(2) : to_text(plan, probes, options));
   return ExitCode::ok;

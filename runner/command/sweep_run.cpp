@@ -9,6 +9,7 @@
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/stop_signal.hpp"
+#include "runner/experiment/factor_check.hpp"
 #include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/file/extension.hpp"
@@ -101,6 +102,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const Plan plan = collectively(mpi.world(), [&] {
     Plan made(job);
     check_guesses(made);
+    check_factors(made);
     return made;
   });
   const StopSignal signal;  // from here on a signal is a request, until the file is closed

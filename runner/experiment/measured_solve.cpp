@@ -1,7 +1,9 @@
 #include "runner/experiment/measured_solve.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "runner/experiment/guesses.hpp"
@@ -27,6 +29,7 @@ bool has_other_norm(const TaskSpec& spec) {
 
 struct MeasuredSolve::Guess {
   std::size_t column;  ///< on the file's guess axis
+  bool is_zero;
   TimedGuess guess;
 };
 
@@ -47,6 +50,7 @@ struct MeasuredSolve::RodSolvers {
   double reference = 0;  ///< norm of b
   bool renewed = false;  ///< the preconditioners are of this system
   VectorX exact, x, residual;
+  std::optional<SolveOutcome> exact_outcome;  ///< of `exact`, once this system has it
 
   RodSolvers(const Rod& rod, const LinearSystem& system, const TaskSpec& spec, std::size_t guess_count)
       : tight(make_cg(rod, system, settings(spec, spec.solve.norm))),
@@ -81,13 +85,14 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
     : scene_(scene),
       spec_(spec),
       record_(record),
-      direct_(scene),
       forcing_(static_cast<int>(scene.rods.size()), spec.solve.tolerance, spec.time.newton_tolerance),
       solvers_(scene.rods.size()) {
+  if (spec.solve.is_direct()) direct_.emplace(scene);
   const bool one = spec.own_guess >= 0;
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
     if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
-      guesses_.push_back({g, TimedGuess(make_guess(spec.guesses[g], spec, scene))});
+      guesses_.push_back(
+          {g, spec.guesses[g].kind == GuessSpec::Kind::zero, TimedGuess(make_guess(spec.guesses[g], spec, scene))});
   const std::size_t tolerances = tolerance_ladder().size();
   for (const Guess& guess : guesses_) {
     const auto reset = [&](auto& sums) {
@@ -120,24 +125,22 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
   RodSolvers& solvers = solvers_for(system, at.rod);
   const std::size_t row = solve_row(spec_, solvers_.size(), at);
 
-  SolveOutcome outcome = SolveOutcome::not_run;
-  for (double& seconds : solvers.direct_s) {
-    const Stopwatch watch;
-    outcome = direct_.solve(system, at, 0, solvers.exact);
-    seconds = watch.seconds();
-  }
+  solvers.exact_outcome.reset();
+  SolveOutcome outcome = std::isfinite(system.largest_rhs()) ? SolveOutcome::converged : SolveOutcome::not_a_number;
+  if (direct_) outcome = solve_directly(system, at, solvers);
   if (spec_.output.solves) {
     log_system(system, scene_.rods[static_cast<std::size_t>(at.rod)], at, row, record_);
     record_.assemble_s[row] = static_cast<float>(assemble_s);
-    record_.direct_s[row] = static_cast<float>(median(solvers.direct_s));
+    if (direct_) record_.direct_s[row] = static_cast<float>(median(solvers.direct_s));
   }
-  delta_lambda = solvers.exact;
   if (outcome == SolveOutcome::converged && !guesses_.empty()) {
     solvers.renewed = !lags(spec_) || (at.newton == 0 && at.step % spec_.solve.lag_steps == 0);
     if (solvers.renewed) solvers.renew_preconditioners();
     outcome = count(system, at, row, solvers);
   }
-  if (outcome == SolveOutcome::converged && !guesses_.empty()) {
+  if (outcome == SolveOutcome::converged && !direct_) outcome = solve_reference(system, solvers);
+  delta_lambda = solvers.exact;
+  if ((outcome == SolveOutcome::converged || outcome == SolveOutcome::iteration_limit) && !guesses_.empty()) {
     time(system, at, row, solvers);
     if (spec_.own_guess >= 0 && system.largest_rhs() > rounding_level) {
       delta_lambda = solvers.x;
@@ -147,6 +150,25 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
   }
   elapsed_s_ += whole.seconds();
   return outcome;
+}
+
+SolveOutcome MeasuredSolve::solve_directly(const LinearSystem& system, const SolvePosition& at, RodSolvers& solvers) {
+  SolveOutcome outcome = SolveOutcome::not_run;
+  for (double& seconds : solvers.direct_s) {
+    const Stopwatch watch;
+    outcome = direct_->solve(system, at, 0, solvers.exact);
+    seconds = watch.seconds();
+  }
+  return outcome;
+}
+
+/// The tightest solution of CG from zero where it is wanted and the zero guess has not found it.
+SolveOutcome MeasuredSolve::solve_reference(const LinearSystem& system, RodSolvers& solvers) const {
+  if (solvers.exact_outcome) return *solvers.exact_outcome;
+  solvers.exact.setZero();
+  if (spec_.own_guess >= 0 || system.largest_rhs() <= rounding_level) return SolveOutcome::converged;
+  return solvers.tight->solve(system.rhs(), solvers.exact, CgStart(false), tolerance_ladder().back(), solvers.reference)
+      .outcome;
 }
 
 /// One tight solve for each guess and norm, untimed. Not converged: a solve could not start from its guess.
@@ -183,6 +205,10 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
       if (spec_.output.solves) record_.reason[entry] = static_cast<std::int8_t>(failure);
       unusable_ = spec_.guesses[column].label;
       return failure;
+    }
+    if (!direct_ && guesses_[g].is_zero && !rounding) {
+      solvers.exact = solvers.x;
+      solvers.exact_outcome = report.outcome;
     }
     if (solvers.tight_other && at.newton == 0)
       add(record_.counted_other_norm, column, solvers.iterations_other, other.iterations, start);

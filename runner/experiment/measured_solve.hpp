@@ -1,5 +1,6 @@
 // The linear solve of an experiment: solves each system directly and with CG from every guess under test, counts,
-// times, and lets one of the solutions advance the trajectory.
+// times, and lets one of the solutions advance the trajectory. With the reference "cg" nothing is solved directly: in
+// place of the direct solution stands that of CG from zero, which the zero guess's untimed solve finds anyway.
 //
 // Per system and guess: one untimed solve to the tightest tolerance of the ladder, in each norm, whose residual history
 // gives the iterations to every tolerance; `timing_repeats` timed solves to the job's tolerance (or as its forcing
@@ -11,6 +12,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +46,8 @@ class MeasuredSolve : public LinearSolve {
   struct Guess;       // one guess under test
   struct RodSolvers;  // the solvers of one rod
   RodSolvers& solvers_for(const LinearSystem& system, int rod);
+  SolveOutcome solve_directly(const LinearSystem& system, const SolvePosition& at, RodSolvers& solvers);
+  SolveOutcome solve_reference(const LinearSystem& system, RodSolvers& solvers) const;
   SolveOutcome count(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers);
   void accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution);
@@ -53,7 +57,7 @@ class MeasuredSolve : public LinearSolve {
   const Scene& scene_;
   const TaskSpec& spec_;
   TaskRecord& record_;
-  DirectSolve direct_;
+  std::optional<DirectSolve> direct_;  ///< unless nothing is solved directly
   ForcingTerms forcing_;
   std::vector<Guess> guesses_;
   std::vector<std::unique_ptr<RodSolvers>> solvers_;  // made at a rod's first solve

@@ -173,7 +173,7 @@ std::vector<Column> all_columns() {
 
       column<&R::assemble_s>("/timing/solves/assemble_s", Rows::solve, none, "s", "assembly of A and b"),
       column<&R::direct_s>("/timing/solves/direct_s", Rows::solve, none, "s",
-                           "block LDL^T factorisation and solve of the same system"),
+                           "factorisation and solve of the same system; NaN where solve.reference is cg"),
       column<&R::guess_s>(
           "/timing/solves/guess_s", Rows::solve, guess, "s",
           "making the initial guess, median of solve.timing_repeats, and what the guess does once for a solve"),

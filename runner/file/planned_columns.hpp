@@ -20,7 +20,7 @@ void visit_planned_columns(Holds&& holds, Visit&& visit) {
   visit(
       "/tasks/sample", "which draw of the random parameters, from 0", [](auto& task) -> auto& { return task.sample; });
   visit(
-      "/tasks/own_guess", "index into /axes/guess of the guess that advances the rods; -1 the direct solve does",
+      "/tasks/own_guess", "index into /axes/guess of the guess that advances the rods; -1 solve.reference does",
       [](auto& task) -> auto& { return task.own_guess; });
   visit(
       "/tasks/segments", "segments of the scene", [](auto& task) -> auto& { return task.segments; });

@@ -16,7 +16,7 @@
 namespace rodsweep {
 
 enum class Evaluation {
-  paired,      ///< one trajectory advanced by the direct solve; every guess is tried on every system
+  paired,      ///< one trajectory advanced by the reference; every guess is tried on every system
   closed_loop  ///< the task's own guess (or the direct solve) advances its own trajectory
 };
 
@@ -39,6 +39,12 @@ struct TimeSpec {
   double momentum_tolerance = 1e-4;  ///< and Newton ends when its residual is below this as well
 };
 
+/// Whose solution a guess is measured against, and in a paired evaluation advances the rod.
+enum class Reference {
+  direct,  ///< of the direct solve, which is timed as well
+  cg       ///< of cg from zero to the tightest tolerance: nothing is factorised
+};
+
 enum class Forcing { fixed, eisenstat_walker };
 
 struct SolveSpec {
@@ -47,12 +53,17 @@ struct SolveSpec {
   Norm norm = Norm::true_residual;
   double tolerance =
       1e-2;  ///< of the timed solves and, in a closed loop, of the solves that advance the rod; relative to ||b||
-  Forcing forcing = Forcing::fixed;  ///< else `tolerance` is that of a step's first solves (forcing_terms.hpp)
-  int max_iterations = 0;            ///< 0: ten times the number of unknowns
-  int lag_steps = 10;                ///< lagged_cholesky: time steps from one factorisation to the next
-  int timing_repeats = 1;            ///< times are medians over so many repeats of guess, solve and direct solve
-  std::filesystem::path model;       ///< end_to_end
-  PbdStiffness stiffness;            ///< pbd
+  Forcing forcing = Forcing::fixed;         ///< else `tolerance` is that of a step's first solves (forcing_terms.hpp)
+  int max_iterations = 0;                   ///< 0: ten times the number of unknowns
+  int lag_steps = 10;                       ///< lagged_cholesky: time steps from one factorisation to the next
+  int timing_repeats = 1;                   ///< times are medians over so many repeats of guess, solve and direct solve
+  std::filesystem::path model;              ///< end_to_end
+  PbdStiffness stiffness;                   ///< pbd
+  Reference reference = Reference::direct;  ///< cg
+
+  bool is_direct() const {
+    return method == Method::direct || (method == Method::cg && reference == Reference::direct);
+  }
 };
 
 /// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.

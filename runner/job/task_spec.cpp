@@ -120,6 +120,11 @@ KeyTable<SolveSpec> solve_keys() {
                  &SolveSpec::lag_steps);
   table.optional(choice_key("norm", "residual norm of the stopping test of cg"),
                  Words<Norm>{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}}, &SolveSpec::norm);
+  table.optional(choice_key("reference",
+                            "what advances the rods in a paired evaluation of cg. direct: the direct solve, timed "
+                            "beside cg in every evaluation; cg: the solution from zero to the tightest tolerance, and "
+                            "no direct solve at all, for large nets and lattices"),
+                 Words<Reference>{{"direct", Reference::direct}, {"cg", Reference::cg}}, &SolveSpec::reference);
   table.optional(number_key("tolerance",
                             "tolerance of the timed solves, relative to ||b||; in a closed loop also of those that "
                             "advance the rod")
@@ -210,7 +215,7 @@ void check_method(const Point& point, const Job& job) {
   if (evaluation(point) == Evaluation::closed_loop) return;
   if (point.has("solve.forcing") && point.text("solve.forcing") != "fixed")
     throw job_error(job.path, "solve.forcing",
-                    fmt::format("\"{}\" is not allowed with evaluation \"paired\", in which the direct solve advances "
+                    fmt::format("\"{}\" is not allowed with evaluation \"paired\", in which the reference advances "
                                 "the rod, whatever the tolerance of cg; must be with \"closed_loop\"",
                                 point.text("solve.forcing")));
   const Method own = method(point);

@@ -1,23 +1,20 @@
-// Direct solution of A x = b by block elimination from the leaves of a rod to its root, O(n) on chains and trees.
+// Direct solution of A x = b by elimination from the leaves of a rod to its root, O(n) on chains and trees.
 //
 // All leaves come first, then what they leave as leaves, and so on to the middle: the remaining neighbours of an
 // eliminated joint share a segment with it and are coupled already, so no block fills in (as in the body-and-joint tree
 // of Deul et al. 2018), and joints that follow each other don't wait for each other: a chain is eliminated from both
 // ends at once, and the processor overlaps the two (long rods one branch after the other, as memory likes it). Where
-// joints close loops (rings, nets) a symbolic elimination finds what fills in, in an order of minimum degree
-// (elimination_order.hpp): a sparse Cholesky factorisation in blocks.
-//
-// Per joint k, with S = L D L^T the block left on the diagonal and B_p the blocks towards the joints p eliminated
-// later:
-//   W_p = L^-1 B_p,  U_p = D^-1 W_p,  X_p = L^-T U_p,  y = S^-1 b_k,
-//   A_pp -= W_p^T U_p,  A_pq -= X_p^T B_q,  b_p -= X_p^T b_k     and backwards   x_k = y - sum_p X_p x_p.
-// A factor that is kept needs S^-1 and the X_p alone. b rides along in a spare lane of the rows, so the forward
-// substitution costs nothing. A pivot in D that is not positive means that A is not positive definite.
+// joints close loops (rings, nets, lattices), elimination_plan.hpp finds the order that fills in least: with little
+// fill the blocks are eliminated one by one (block_elimination.hpp), with more in dense fronts
+// (multifrontal_factor.hpp).
 #pragma once
 
+#include <variant>
 #include <vector>
 
-#include "solver/linear/block_matrix.hpp"
+#include "solver/linear/block_elimination.hpp"
+#include "solver/linear/elimination_plan.hpp"
+#include "solver/linear/multifrontal_factor.hpp"
 #include "solver/linear/solve_outcome.hpp"
 #include "solver/rod/rod.hpp"
 
@@ -29,8 +26,8 @@ std::vector<int> root_to_leaf_order(const Rod& rod);
 
 class BlockFactor {
  public:
-  /// `preferred`: block rows, eliminated from the last to the first; an order that fills in gives way to minimum
-  /// degree.
+  /// `preferred`: block rows, eliminated from the last to the first; an order that fills in gives way to a better one.
+  /// Throws FactorTooLarge before it asks for more memory than a factor may have.
   BlockFactor(const BlockMatrix& pattern, const std::vector<int>& preferred);
 
   /// Factorises and solves. `a` has the pattern of construction. On anything but `converged`, x is not to be used.
@@ -44,36 +41,13 @@ class BlockFactor {
 
   /// Off-diagonal blocks that are not in the matrix; zero for chains and trees.
   int fill_in() const { return fill_in_; }
+  bool has_fronts() const { return std::holds_alternative<MultifrontalFactor>(factor_); }
 
  private:
-  struct Column {            ///< one elimination, in the order of elimination
-    int row;                 ///< block row of A
-    int off_begin, off_end;  ///< its later neighbours: entries of off_
-    int update_begin;        ///< its pairs of later neighbours: entries of updates_
-    int diagonal_source;     ///< block of A
-    bool updated;            ///< by earlier eliminations: then it stands in diagonal_work_
-  };
-  struct Off {
-    int position;  ///< of the neighbour in the elimination order
-    int source;    ///< block of A whose columns are this block's rows; -1 for fill
-    bool updated;  ///< by earlier eliminations: then it stands in off_work_
-    bool first;    ///< to update the neighbour's diagonal block
-  };
-  struct Update {
-    int target;  ///< of A_pq -= B_p^T X_q: entry of off_
-    bool first;  ///< to update it
-  };
-  template <bool keep_inverse>
-  bool eliminate(const BlockMatrix& a, const double* b);  ///< null: none
+  BlockFactor(const BlockMatrix& pattern, EliminationPlan plan);
 
-  std::vector<Column> columns_;
-  std::vector<Off> off_;
-  std::vector<Update> updates_;        ///< for every q, its p < q
-  std::vector<Block6> diagonal_work_;  ///< rows, lane 6 the right-hand side
-  std::vector<Block6> off_work_;       ///< rows of B_p before, of X_p after its elimination
-  std::vector<Block6> inverse_;        ///< rows of S^-1, of factorise()
-  std::vector<Lane8> solution_;        ///< y, then x; lane 6 is -1 for the back substitution
-  int fill_in_ = 0;
+  std::variant<BlockElimination, MultifrontalFactor> factor_;
+  int fill_in_;
 };
 
 }  // namespace rodsweep

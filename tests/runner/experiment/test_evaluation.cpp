@@ -50,6 +50,44 @@ TEST_CASE("an exact guess takes no iteration, one product with the matrix for ea
   }
 }
 
+TEST_CASE("with CG as the reference the counts are those beside the direct solve, which is not run") {
+  for (const char* guesses : {R"(["zero", "previous", "quadratic"])", R"(["previous", "zero"])"}) {
+    const TaskRecord direct = evaluated(job_with(guesses));
+    const TaskRecord by_cg = evaluated(job_with(guesses, R"({"reference": "cg"})"));
+    const std::size_t guess_count = by_cg.cg_s.size() / by_cg.newton.size();
+    CHECK(by_cg.newton == direct.newton);
+    CHECK(by_cg.counted.iterations.size() == direct.counted.iterations.size());
+    for (std::size_t i = 0; i < by_cg.counted_all.iterations.size(); ++i)
+      CHECK(std::abs(by_cg.counted_all.iterations[i] - direct.counted_all.iterations[i]) <=
+            2 + direct.counted_all.iterations[i] / 50);
+    for (std::size_t row = 0; row < by_cg.newton.size(); ++row) {
+      CHECK(std::isnan(by_cg.direct_s[row]));
+      CHECK(std::isnan(direct.direct_s[row]) == (direct.newton[row] < 0));
+      CHECK(std::isnan(by_cg.cg_s[row * guess_count]) == (by_cg.newton[row] < 0));
+    }
+  }
+}
+
+TEST_CASE("with CG as the reference a closed loop is what it is beside the direct solve, bit by bit") {
+  Json job = job_with(R"(["zero"])");
+  job["evaluation"] = "closed_loop";
+  const TaskRecord direct = evaluated(job);
+  job["solve"]["reference"] = "cg";
+  const TaskRecord by_cg = evaluated(job);
+  CHECK(by_cg.iterations == direct.iterations);
+  CHECK(by_cg.newton == direct.newton);
+  for (std::size_t row = 0; row < by_cg.newton.size(); ++row)
+    if (by_cg.newton[row] >= 0) CHECK(by_cg.final_residual[row] == direct.final_residual[row]);
+  CHECK(std::all_of(by_cg.direct_s.begin(), by_cg.direct_s.end(), [](float s) { return std::isnan(s); }));
+}
+
+TEST_CASE("a reference that runs out of iterations advances the rod all the same, and its task says so") {
+  const TaskRecord r =
+      evaluated(job_with(R"(["zero"])", R"({"reference": "cg", "max_iterations": 12})"), TaskOutcome::iteration_limit);
+  CHECK(r.counted_all.unreached.back() > 0);
+  CHECK(r.steps_done.front() == 5);
+}
+
 TEST_CASE("sums are those of the rows, of first Newton iterations and of all") {
   const TaskRecord r = evaluated(job_with(R"(["zero", "previous", {"guarded": {"guess": "linear", "threshold": 1}}])"));
   REQUIRE(solves_of(r) > 5);

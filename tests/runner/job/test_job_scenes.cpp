@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "runner/experiment/factor_check.hpp"
 #include "runner/experiment/guess_check.hpp"
 #include "tests/runner/job_examples.hpp"
 
@@ -197,4 +198,32 @@ TEST_CASE("the scenes that are made for contact are read from their keys, and co
   const Plan bundle = plan(R"("type": "bundle", "rods": 7, "segments": 4, "length_m": 1, "initial_angle_deg": 30)");
   CHECK(std::get<Bundle>(bundle.spec(0).scene).initial_angle_deg == 30);
   CHECK(bundle.task(0).segments == 28);
+}
+
+TEST_CASE("a scene whose factor needs too much memory is refused before it runs, with what does without") {
+  constexpr double little = 1e6;
+  const auto refusal_of_factors = [](const Json& job) -> std::string {
+    try {
+      check_factors(plan_of(job), little);
+    } catch (const JobError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Json job = job_with_scene(R"({"type": "lattice", "nodes_x": 4, "segments": 2, "mesh_m": 0.2, "radius_m": 0.01,
+                                "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
+  CHECK_THAT(refusal_of_factors(job),
+             Catch::Contains("solve: task 0: a direct solve of 400 joints would need 0.00") &&
+                 Catch::Contains("; the most is 0.000931 GiB; must be a smaller scene, or method \"cg\" with "
+                                 "\"reference\": \"cg\", which factorises nothing"));
+  job["solve"]["reference"] = "cg";
+  CHECK(refusal_of_factors(job) == "");
+  job["guesses"] = Json::parse(R"(["zero", {"guarded": {"guess": {"oracle": {"error": 0.1}}, "threshold": 1}}])");
+  CHECK_THAT(refusal_of_factors(job), Catch::Contains("guesses: task 0: ") && Catch::Contains("no \"oracle\""));
+  job["guesses"] = {"zero"};
+  job["scene"]["contact"] = Json::object();
+  CHECK_THAT(refusal_of_factors(job), Catch::Contains("scene.contact: task 0: ") && Catch::Contains("without contact"));
+  CHECK_NOTHROW(check_factors(plan_of(job)));
+  // Chains and trees need in proportion to their size, and are not looked at.
+  CHECK(refusal_of_factors(with("/scene/segments", "100000")) == "");
 }

@@ -93,7 +93,7 @@ TEST_CASE("the factor counts the fill of the order that it takes, and that of a 
   CHECK(factor.fill_in() < 0.4 * breadth_first);
 }
 
-TEST_CASE("an order that fills in gives way to minimum degree, one that does not is kept") {
+TEST_CASE("an order that fills in gives way to a better one, one that does not is kept") {
   const BlockMatrix chain = pattern_of(test::chain(9), {0});
   const std::vector<int> bad = {0, 4, 2, 6, 1, 3, 5, 7};
   REQUIRE(fill_of(chain, bad) > 0);

@@ -118,6 +118,15 @@ TEST_CASE("a step with the direct solve allocates nothing") {
   CHECK(allocations_of(scene, direct) == 0);
 }
 
+TEST_CASE("a step of a lattice, whose matrix is factorised in fronts, allocates nothing") {
+  Lattice lattice;
+  lattice.nodes_x = 5;
+  Scene scene = build_scene(lattice);
+  DirectSolve direct(scene);
+  REQUIRE(BlockFactor(LinearSystem(scene.rods[0]).matrix(), root_to_leaf_order(scene.rods[0])).has_fronts());
+  CHECK(allocations_of(scene, direct) == 0);
+}
+
 TEST_CASE("a step that keeps the balance of momentum allocates nothing") {
   Scene scene = loaded_scene();
   DirectSolve direct(scene);

@@ -1,0 +1,60 @@
+#include "runner/experiment/factor_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+#include "solver/linear/block_factor.hpp"
+#include "solver/linear/linear_system.hpp"
+
+namespace rodsweep {
+namespace {
+
+bool is_oracle(const GuessSpec& guess) {
+  return guess.kind == GuessSpec::Kind::oracle || std::any_of(guess.inner.begin(), guess.inner.end(), is_oracle);
+}
+
+/// What a task factorises for, and what it could do instead; null: nothing.
+struct Need {
+  const char *for_what, *instead;
+};
+Need need(const TaskSpec& spec) {
+  if (spec.solve.is_direct())
+    return {"solve", "a smaller scene, or method \"cg\" with \"reference\": \"cg\", which factorises nothing"};
+  if (rod_parameters(spec.scene).contact) return {"scene.contact", "a smaller scene, or one without contact"};
+  if (std::any_of(spec.guesses.begin(), spec.guesses.end(), is_oracle))
+    return {"guesses", "a smaller scene, or no \"oracle\""};
+  return {nullptr, nullptr};
+}
+
+/// Would a factor with every block of its lower half be too large?
+bool may_be_too_large(std::int64_t joints, double most_bytes) {
+  const auto n = static_cast<double>(joints);
+  return sizeof(double) * 36 * n * n / 2 > most_bytes / 2;  // fronts are padded
+}
+
+}  // namespace
+
+void check_factors(const Plan& plan, double most_bytes) {
+  std::set<std::tuple<std::size_t, std::int64_t, std::int64_t>> seen;
+  for (const Task& task : plan.tasks()) {
+    if (!may_be_too_large(task.joints, most_bytes)) continue;
+    const TaskSpec spec = plan.spec(task.index);
+    const bool loops = task.joints > task.segments - rod_count(spec.scene);
+    const Need factor = need(spec);
+    if (!loops || !factor.for_what || !seen.emplace(spec.scene.index(), task.segments, task.joints).second) continue;
+    for (const Rod& rod : build_scene(spec.scene).rods) {
+      if (!may_be_too_large(rod.joint_count(), most_bytes)) continue;
+      try {
+        refuse_too_large(plan_elimination(LinearSystem(rod).matrix(), root_to_leaf_order(rod)), most_bytes);
+      } catch (const FactorTooLarge& error) {
+        throw job_error(plan.job().path, factor.for_what,
+                        fmt::format("task {}: {}; must be {}", task.index, error.what(), factor.instead));
+      }
+    }
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,32 @@
+// What an elimination will cost, before any of it is stored: the elimination tree and how many blocks every column of L
+// has, in time nearly linear in the blocks of A and independent of the fill.
+//
+// The parent of a column is its first later neighbour, fill included (Liu 1990); counts are those of Gilbert, Ng &
+// Peyton 1994: leaves of the row subtrees less their common ancestors. Columns are numbered in a postorder, which every
+// order of elimination can be brought to without another block of fill.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "solver/linear/block_matrix.hpp"
+
+namespace rodsweep {
+
+struct EliminationTree {
+  std::vector<int> row;     ///< block row of A that is eliminated k-th
+  std::vector<int> parent;  ///< -1 of a root
+  std::vector<int> count;   ///< blocks of a column of L, the diagonal one included
+
+  int columns() const { return static_cast<int>(row.size()); }
+  std::int64_t blocks() const;  ///< of L
+  double flops() const;         ///< of a factorisation, to leading order
+};
+
+/// Of an elimination from the last to the first row of `order`.
+EliminationTree elimination_tree(const BlockMatrix& pattern, const std::vector<int>& order);
+
+/// Children before parents, each subtree in one piece; siblings in the order of their numbers.
+std::vector<int> postorder(const std::vector<int>& parent);
+
+}  // namespace rodsweep
