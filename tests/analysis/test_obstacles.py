@@ -72,9 +72,11 @@ class Obstacles(Scripts):
         self.assertEqual(self.staged().floor, 0)
 
     def test_what_moves_is_drawn_where_it_is_at_the_time_and_is_no_floor(self):
-        self.plant({"obstacles[0].half_space.point_m": [[0, -1, 0]] * 3, "obstacles[0].half_space.normal": [[0, 1, 0]] * 3,
+        self.plant({"obstacles[0].half_space.point_m": [[0, -1, 0]] * 3,
+                    "obstacles[0].half_space.normal": [[0, 1, 0]] * 3,
                     "obstacles[0].half_space.velocity_m_s": [[0, 2, 0]] * 3,
-                    "obstacles[1].half_space.point_m": [[0, -3, 0]] * 3, "obstacles[1].half_space.normal": [[0, 1, 0]] * 3,
+                    "obstacles[1].half_space.point_m": [[0, -3, 0]] * 3,
+                    "obstacles[1].half_space.normal": [[0, 1, 0]] * 3,
                     "obstacles[1].half_space.velocity_m_s": [[0, 0, 0]] * 3,
                     "obstacles[2].ball.centre_m": [[0.3, 1, 0]] * 3, "obstacles[2].ball.radius_m": [0.1] * 3,
                     "obstacles[2].ball.velocity_m_s": [[0, 0, 5]] * 3})
