@@ -38,7 +38,7 @@ help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (an hour; continued if it was stopped)'
 	@echo 'make variants      train what rods.h5 could have been, draw how it was chosen (half an hour; continued likewise)'
-	@echo 'make pictures      run jobs/pictures.json, draw its trajectories as stills and films (installs ffmpeg, for MP4)'
+	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind), draw their films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
 	@echo 'make test-arm      tests of the solver, but for CG, and the networks for 64-bit ARM, run in qemu, in $(BUILD)-arm/'
@@ -83,17 +83,22 @@ variants: build
 	@$(call study,rods_front)
 	@analysis/results/draw.sh results variants
 
-# By task of jobs/pictures.json; a film of the forest would take as long as all of these. What exists is not drawn again.
-pictures = 0:helix:along 1:net:rod 2:ring:along 3:tree:radius 4:falling:rod 5:knot:along 6:drape:rod
+# By job and task; a film of the forest would take as long as all of these. What exists is not drawn again.
+picture_jobs = pictures lattice_sag lattice_dropped lattice_pressed net_wind
+pictures = pictures:0:helix:along pictures:1:net:rod pictures:2:ring:along pictures:3:tree:radius \
+  pictures:4:falling:rod pictures:5:knot:along pictures:6:drape:rod \
+  lattice_sag:0:lattice:along lattice_dropped:0:dropped:along lattice_pressed:0:pressed:along net_wind:0:wind:along
 pictures: build
 	@$(call packages,pictures)
-	@mkdir -p results/figures; [ -e results/pictures.h5 ] && resume=--resume || resume=; \
-	$(BUILD)/rodsweep run jobs/pictures.json -o results/pictures.h5 $$resume </dev/null
-	@for picture in $(pictures); do IFS=: read task name colour <<<$$picture; \
+	@mkdir -p results/figures; for job in $(picture_jobs); do [ -e results/$$job.h5 ] && resume=--resume || resume=; \
+	  $(BUILD)/rodsweep run jobs/$$job.json -o results/$$job.h5 $$resume </dev/null; \
+	done
+	@for picture in $(pictures); do IFS=: read job task name colour <<<$$picture; \
 	  for film in mp4 'gif --every 2 --rate 12'; do path=results/figures/$$name.$${film%% *}; \
-	    [ -e $$path ] || $(PYTHON) analysis/render.py results/pictures.h5 --task $$task --movie $$film --size 480x360 \
+	    [ -e $$path ] || $(PYTHON) analysis/render.py results/$$job.h5 --task $$task --movie $$film --size 480x360 \
 	      --colour $$colour $$([ $$name != tree ] || echo --fine) -o $$path; \
-	done; done
+	  done; \
+	done
 
 # Two tests a core, since those under mpirun mostly wait. SANITIZE=1: the unit tests are those of `make sanitize` and no
 # others, so that they are built once, as in .ci/run.

@@ -65,9 +65,18 @@ def document(shown, reference, touched=()):
             rows.add(attribute(grid, name, "Scalar"), f"{trajectory.SEGMENTS}/{column}", shown.first_segment)
     if touched:
         low, high, _ = staging.bounds(shown, range(shown.frames()))
-        parts = [surfaces.surface(obstacle, (low + high) / 2, float(np.linalg.norm(high - low)))
-                 for obstacle in touched]
-        solids(domain, *surfaces.joined(parts))
+
+        def surface(time):
+            return surfaces.joined([surfaces.surface(obstacle.at(time), (low + high) / 2,
+                                                     float(np.linalg.norm(high - low))) for obstacle in touched])
+
+        if any(obstacle.velocity.any() for obstacle in touched):
+            moving = ElementTree.SubElement(domain, "Grid", Name="obstacles", GridType="Collection",
+                                            CollectionType="Temporal")
+            for time in shown.time_s:
+                solids(moving, *surface(time), time)
+        else:
+            solids(domain, *surface(0.0))
     ElementTree.indent(root, " ")
     return ElementTree.ElementTree(root)
 
@@ -84,9 +93,11 @@ def topology(parent, pairs, segments):
     numbers(lines, pairs, NumberType="Int")
 
 
-def solids(domain, points, triangles):
-    """Triangles as a grid that stands still."""
-    grid = ElementTree.SubElement(domain, "Grid", Name="obstacles", GridType="Uniform")
+def solids(parent, points, triangles, time=None):
+    """Triangles as a grid, at a time or always there."""
+    grid = ElementTree.SubElement(parent, "Grid", Name="obstacles", GridType="Uniform")
+    if time is not None:
+        ElementTree.SubElement(grid, "Time", Value=repr(float(time)))
     faces = ElementTree.SubElement(grid, "Topology", TopologyType="Triangle", NumberOfElements=str(len(triangles)))
     numbers(faces, triangles, NumberType="Int")
     numbers(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"), points, NumberType="Float", Precision="8")

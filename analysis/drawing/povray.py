@@ -26,7 +26,8 @@ SLAB = 0.02   # thickness of a slope's disc, of its radius
 
 def scene(trajectory, stage, colouring, frame):
     """The text of one frame. colouring: palette and numbers of staging.colours()."""
-    return surroundings(stage) + obstacles(stage) + tubes(trajectory, *colouring, frame)
+    return (surroundings(stage) + obstacles(stage, trajectory.time_s[frame]) +
+            tubes(trajectory, *colouring, frame))
 
 
 def surroundings(stage):
@@ -64,15 +65,15 @@ def turned_from_y(up):
     return "rotate 90*x" if abs(up[2]) > 0.9 else "rotate 90*z"
 
 
-def obstacles(stage):
-    """Balls, capsules and slopes."""
+def obstacles(stage, time_s=0.0):
+    """Balls, capsules and slopes at a time."""
     parts = []
-    for solid in stage.solids:
+    for solid in (solid.at(time_s) for solid in stage.solids):
         ends = [f"sphere{{{vector(end)},{number(solid.radius)}}}" for end in (solid.start, solid.end)]
         body = f"cylinder{{{vector(solid.start)},{vector(solid.end)},{number(solid.radius)}}}"
         parts.append(f"union{{{' '.join([*ends, body])} {STONE}}}\n" if (solid.start != solid.end).any() else
                      f"object{{{ends[0]} {STONE}}}\n")
-    for slope in stage.slopes:
+    for slope in (slope.at(time_s) for slope in stage.slopes):
         middle, radius = slope.disc(stage.centre, stage.extent)
         behind = (stage.camera.eye - middle) @ slope.normal < 0
         parts.append(f"cylinder{{{vector(middle - SLAB * radius * slope.normal)},{vector(middle)},{number(radius)} "

@@ -32,7 +32,7 @@ class Stage:
     centre: np.ndarray    # of the scene
     extent: float         # diagonal of its bounding box
     solids: list          # Capsules among the obstacles
-    slopes: list          # HalfSpaces among them that are not level: of level ones the highest is the floor
+    slopes: list          # HalfSpaces among them that are no floor: of those that are the highest is drawn
 
 
 def upwards(file, task):
@@ -63,10 +63,11 @@ def staged(trajectory, frames, up, view, size, floor="auto", touched=()):
     framing = camera.Framing(camera.direction(*angles, up), up, size)
     solids = [obstacle for obstacle in touched if isinstance(obstacle, obstacles.Capsule)]
     slopes = [obstacle for obstacle in touched if isinstance(obstacle, obstacles.HalfSpace) and
-              not obstacle.is_level(up)]
+              not obstacle.is_floor(up)]
     centre, extent = (low + high) / 2, float(np.linalg.norm(high - low))
-    still = [(solid.spheres(centre, extent), solid.radius) for solid in solids]
-    still += [(rim(slope, centre, extent), 0.0) for slope in slopes]
+    times = np.unique(trajectory.time_s[list(frames)][[0, -1]])
+    still = [(solid.at(time).spheres(centre, extent), solid.radius) for solid in solids for time in times]
+    still += [(rim(slope.at(time), centre, extent), 0.0) for slope in slopes for time in times]
     still = [(points, reach) for points, reach in still if len(points)]
     for points, reach in still:
         low, high = np.minimum(low, points.min(axis=0) - reach), np.maximum(high, points.max(axis=0) + reach)

@@ -18,12 +18,14 @@ struct Kind {
 };
 
 Key place(const char* name, const char* help) { return vector_key(name, help).in("m").from(-1e6, 1e6); }
+Key velocity() { return vector_key("velocity_m_s", "its velocity, from the start").in("m/s").from(-1e6, 1e6); }
 Key radius() { return number_key("radius_m", "radius").in("m").above(0).at_most(1e6); }
 
 KeyTable<HalfSpace> half_space_keys() {
   KeyTable<HalfSpace> table;
   table.optional(place("point_m", "a point of the plane"), &HalfSpace::point_m);
   table.optional(vector_key("normal", "direction out of the solid, of any length").from(-1e6, 1e6), &HalfSpace::normal);
+  table.optional(velocity(), &HalfSpace::velocity_m_s);
   return table;
 }
 
@@ -31,6 +33,7 @@ KeyTable<Ball> ball_keys() {
   KeyTable<Ball> table;
   table.required(place("centre_m", "its centre"), &Ball::centre_m);
   table.required(radius(), &Ball::radius_m);
+  table.optional(velocity(), &Ball::velocity_m_s);
   return table;
 }
 
@@ -39,6 +42,7 @@ KeyTable<Capsule> capsule_keys() {
   table.required(place("from_m", "one end of the line"), &Capsule::from_m);
   table.required(place("to_m", "the other end"), &Capsule::to_m);
   table.required(radius(), &Capsule::radius_m);
+  table.optional(velocity(), &Capsule::velocity_m_s);
   return table;
 }
 
@@ -73,7 +77,7 @@ Key obstacles_key() {
     return std::vector<Key>{object_key(kind.name, kind.help, kind.table.keys())...};
   };
   return list_key("obstacles", "what rods with \"contact\" touch besides each other and the scene's own floor",
-                  variant_key("obstacle", "a solid that rests", std::apply(keys, kinds())));
+                  variant_key("obstacle", "a solid that rests or moves evenly", std::apply(keys, kinds())));
 }
 
 void read_value(const Place& list, std::vector<Obstacle>& obstacles) {

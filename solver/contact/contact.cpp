@@ -48,12 +48,13 @@ ContactFinder::ContactFinder(const Scene& scene, double recovery)
     if (const auto* half_space = std::get_if<HalfSpace>(&obstacle)) {
       if (!half_space->point_m.allFinite() || !(half_space->normal.norm() > 0) || !half_space->normal.allFinite())
         throw SceneError("an obstacle's half-space needs a finite point and normal; the normal must not be zero");
-      planes_.push_back({half_space->point_m, half_space->normal.normalized()});
+      if (!half_space->velocity_m_s.allFinite()) throw SceneError("an obstacle's velocity is not finite");
+      planes_.push_back({half_space->point_m, half_space->normal.normalized(), half_space->velocity_m_s});
     }
 }
 
 bool ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
-  bodies_.place(scene, free_);
+  place(scene, free_);
   if (!std::all_of(free_.begin(), free_.end(), is_finite)) {
     contacts.clear();
     return false;
@@ -150,8 +151,7 @@ void ContactFinder::find_below(int a, int half_space) {
   const auto ia = static_cast<std::size_t>(a);
   for (const auto place : {Contact::Place::low, Contact::Place::high}) {
     const double s = place == Contact::Place::low ? -1 : 1;
-    const double height =
-        std::min(plane.normal.dot(start_[ia].at(s) - plane.point), plane.normal.dot(free_[ia].at(s) - plane.point));
+    const double height = std::min(plane.height(start_[ia].at(s), start_s_), plane.height(free_[ia].at(s), end_s_));
     if (height < reach_[ia]) add({a, -1 - half_space, place, s, plane.normal}, true);
   }
 }
@@ -159,19 +159,24 @@ void ContactFinder::find_below(int a, int half_space) {
 void ContactFinder::add(Contact contact, bool sided) {
   Contact at_start = contact;
   if (!sided) at_start.normal.setZero();  // nothing is on the wrong side: what counts is the distance
-  const double width = std::min(0.0, follow(at_start, start_).width);
+  const double width = std::min(0.0, follow(at_start, start_, start_s_).width);
   contact.allowed =
       std::min((1 - recovery_) * width, width + most_recovered * bodies_.smaller_radius(contact.a, contact.b));
   found_.push_back(contact);
 }
 
-Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const {
+Vector3 ContactFinder::motion(int obstacle) const {
+  return (end_s_ - start_s_) *
+         (obstacle < 0 ? planes_[static_cast<std::size_t>(-1 - obstacle)].velocity : bodies_.velocity(obstacle));
+}
+
+Gap ContactFinder::follow(Contact& contact, const std::vector<CapsuleAxis>& axes, double time_s) const {
   const CapsuleAxis& a = axes[static_cast<std::size_t>(contact.a)];
   const double radius = bodies_.body(contact.a).radius;
   if (contact.b < 0) {
     const Plane& plane = planes_[static_cast<std::size_t>(-1 - contact.b)];
     const Vector3 end = a.at(contact.s);
-    const double width = plane.normal.dot(end - plane.point) - radius;
+    const double width = plane.height(end, time_s) - radius;
     return {width, end - (radius + width / 2) * plane.normal};
   }
   const CapsuleAxis& b = axes[static_cast<std::size_t>(contact.b)];

@@ -49,17 +49,27 @@ class ContactFinder {
 
   const ContactBodies& bodies() const { return bodies_; }
 
-  /// To be called at the start of a step.
-  void remember(const Scene& scene) { bodies_.place(scene, start_); }
+  /// To be called at the start of a step, with the time at its end.
+  void remember(const Scene& scene, double end_s) {
+    start_s_ = scene.time_s;
+    end_s_ = end_s;
+    bodies_.place(scene, start_);
+  }
 
   /// To be called when the scene has moved on to p*. Replaces the contacts of the last step by those of this one,
   /// sorted by bodies and place; those that last keep their impulses. Returns false, and finds none, where p* is not
   /// finite.
   bool find(const Scene& scene, std::vector<Contact>& contacts);
 
-  /// With the bodies' axes as they are now.
-  Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const;
+  /// The bodies' axes as they are now, those of obstacles at the end of the step.
+  void place(const Scene& scene, std::vector<CapsuleAxis>& axes) const { bodies_.place(scene, end_s_, axes); }
+
+  /// With these axes.
+  Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const { return follow(contact, axes, end_s_); }
   const std::vector<CapsuleAxis>& start() const { return start_; }
+
+  /// By how much an obstacle, or a half-space from -1 downwards, moves in the step.
+  Vector3 motion(int obstacle) const;
 
  private:
   void find_pair(int a, int b, const Vector3* side);
@@ -67,14 +77,17 @@ class ContactFinder {
   bool nearer_beyond(int body, int other, double s, const Vector3& away, double time) const;
   void add(Contact contact, bool sided);
   void keep_impulses(const std::vector<Contact>& last);
+  Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes, double time_s) const;
 
   struct Plane {
-    Vector3 point, normal;
+    Vector3 point, normal, velocity;
+    double height(const Vector3& of, double time_s) const { return normal.dot(of - point - time_s * velocity); }
   };
   ContactBodies bodies_;
   std::vector<Plane> planes_;
   BroadPhase broad_phase_;
   double recovery_;
+  double start_s_ = 0, end_s_ = 0;         ///< of the step
   std::vector<CapsuleAxis> start_, free_;  ///< at p and p*
   std::vector<double> reach_;              ///< of every body, how far from its axis its contacts begin [m]
   std::vector<Box> boxes_;

@@ -72,15 +72,18 @@ void ContactBodies::connect(const Rod& rod, int first_body) {
 }
 
 void ContactBodies::add(const Obstacle& obstacle) {
-  const auto add = [this](const Vector3& from, const Vector3& to, double radius) {
+  const auto add = [this](const Vector3& from, const Vector3& to, double radius, const Vector3& velocity) {
     if (!from.allFinite() || !to.allFinite()) throw SceneError("an obstacle's place is not finite");
+    if (!velocity.allFinite()) throw SceneError("an obstacle's velocity is not finite");
     if (!(radius > 0) || !std::isfinite(radius))
       throw SceneError("an obstacle's radius is " + std::to_string(radius) + "; must be positive and finite");
     bodies_.push_back({-1, -1, radius, (to - from).norm() / 2, false});
-    obstacles_.push_back({(from + to) / 2, (to - from) / 2});
+    obstacles_.push_back({{(from + to) / 2, (to - from) / 2}, velocity});
   };
-  if (const auto* ball = std::get_if<Ball>(&obstacle)) add(ball->centre_m, ball->centre_m, ball->radius_m);
-  if (const auto* capsule = std::get_if<Capsule>(&obstacle)) add(capsule->from_m, capsule->to_m, capsule->radius_m);
+  if (const auto* ball = std::get_if<Ball>(&obstacle))
+    add(ball->centre_m, ball->centre_m, ball->radius_m, ball->velocity_m_s);
+  if (const auto* capsule = std::get_if<Capsule>(&obstacle))
+    add(capsule->from_m, capsule->to_m, capsule->radius_m, capsule->velocity_m_s);
 }
 
 // Shortest ways (Dijkstra) over the joints from each segment, no farther than the widest pair needs, but onwards from
@@ -154,13 +157,14 @@ bool ContactBodies::matter(int a, int b) const {
   return !std::binary_search(excluded.begin(), excluded.end(), b);
 }
 
-void ContactBodies::place(const Scene& scene, std::vector<CapsuleAxis>& axes) const {
+void ContactBodies::place(const Scene& scene, double time_s, std::vector<CapsuleAxis>& axes) const {
   axes.resize(bodies_.size());
   auto out = axes.begin();
   for (const Rod& rod : scene.rods)
     for (std::size_t s = 0; s < rod.segments.size(); ++s)
       *out++ = {rod.position[s], rod.segments[s].length_m / 2 * director(rod.orientation[s])};
-  std::copy(obstacles_.begin(), obstacles_.end(), out);
+  for (const Moving& obstacle : obstacles_)
+    *out++ = {obstacle.at_time_0.centre + time_s * obstacle.velocity, obstacle.at_time_0.half};
 }
 
 }  // namespace rodsweep

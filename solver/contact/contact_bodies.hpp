@@ -48,8 +48,14 @@ class ContactBodies {
   };
   const std::vector<Next>& next(int i) const { return next_[static_cast<std::size_t>(i)]; }
 
-  /// Axes in the current state of the scene, one for each body.
-  void place(const Scene& scene, std::vector<CapsuleAxis>& axes) const;
+  /// Axes in the current state of the scene, one for each body; those of obstacles at a time.
+  void place(const Scene& scene, double time_s, std::vector<CapsuleAxis>& axes) const;
+  void place(const Scene& scene, std::vector<CapsuleAxis>& axes) const { place(scene, scene.time_s, axes); }
+
+  /// Of an obstacle [m/s].
+  const Vector3& velocity(int obstacle) const {
+    return obstacles_[static_cast<std::size_t>(obstacle) - (bodies_.size() - obstacles_.size())].velocity;
+  }
 
  private:
   void add(const Obstacle& obstacle);
@@ -57,7 +63,11 @@ class ContactBodies {
   void exclude_neighbours(const Rod& rod, int first_body);
 
   std::vector<Body> bodies_;
-  std::vector<CapsuleAxis> obstacles_;
+  struct Moving {
+    CapsuleAxis at_time_0;
+    Vector3 velocity;
+  };
+  std::vector<Moving> obstacles_;
   std::vector<std::vector<Next>> next_;     ///< of every body
   std::vector<std::vector<int>> excluded_;  ///< of every segment, the later ones that it cannot touch, sorted
 };

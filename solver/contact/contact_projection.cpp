@@ -30,8 +30,8 @@ ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settin
     throw SceneError("recovery is " + std::to_string(settings.recovery) + "; must be at most 1");
 }
 
-void ContactProjection::start_step() {
-  finder_.remember(scene_);
+void ContactProjection::start_step(double end_s) {
+  finder_.remember(scene_, end_s);
   last_ = contacts_;
   old_.clear();
   for (const Rod& rod : scene_.rods)
@@ -97,7 +97,7 @@ bool ContactProjection::press(double constraint_dt) {
 }
 
 void ContactProjection::linearise() {
-  finder_.bodies().place(scene_, axes_);
+  finder_.place(scene_, axes_);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Contact& contact = contacts_[c];
     Linear& at = linear_[c];
@@ -113,6 +113,8 @@ void ContactProjection::linearise() {
       at.arm_b = gap.middle - b.centre;
       at.slip -= slip(contact.b, gap.middle);
       mobility += motion_.mobility(contact.b, at.arm_b, b);
+    } else {
+      at.slip -= finder_.motion(contact.b);
     }
     at.law = CoulombContact(contact.normal, mobility, settings_.friction);
   }
@@ -178,7 +180,7 @@ void ContactProjection::push(const Contact& contact, const Linear& at, const Vec
 // How far the body's material at a point has come since the start of the step.
 Vector3 ContactProjection::slip(int body, const Vector3& point) const {
   const Body& of = finder_.bodies().body(body);
-  if (of.rod < 0) return Vector3::Zero();
+  if (of.rod < 0) return finder_.motion(body);
   const Rod& rod = scene_.rods[static_cast<std::size_t>(of.rod)];
   const auto s = static_cast<std::size_t>(of.segment);
   const OldPose& old = old_[static_cast<std::size_t>(body)];

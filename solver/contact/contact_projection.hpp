@@ -33,8 +33,8 @@ class ContactProjection {
  public:
   ContactProjection(Scene& scene, const ContactSettings& settings);
 
-  /// To be called before the scene leaves p.
-  void start_step();
+  /// To be called before the scene leaves p, with the time at the end of the step.
+  void start_step(double end_s);
 
   /// To be called at p*, or where else Newton starts: finds the contacts of the step. Returns false where p* is not
   /// finite. Where the balance of momentum is kept, the impulses of contacts that last count in it from now on.

@@ -7,24 +7,29 @@
 
 namespace rodsweep {
 
+// Solids are where they are given at time 0, and go on from there at their velocity without turning.
+
 /// All points x with (x - point).normal <= 0 are solid. The normal need not be of unit length.
 struct HalfSpace {
   Vector3 point_m{0, 0, 0};
   Vector3 normal{0, 1, 0};
+  Vector3 velocity_m_s{0, 0, 0};
 };
 
 struct Ball {
   Vector3 centre_m{0, 0, 0};
   double radius_m = 1;
+  Vector3 velocity_m_s{0, 0, 0};
 };
 
 /// All points nearer than the radius to the line between two points.
 struct Capsule {
   Vector3 from_m{0, 0, 0}, to_m{0, 0, 1};
   double radius_m = 1;
+  Vector3 velocity_m_s{0, 0, 0};
 };
 
-/// Solid, and at rest.
+/// Solid; nothing that touches it moves it.
 using Obstacle = std::variant<HalfSpace, Ball, Capsule>;
 
 struct ContactSettings {

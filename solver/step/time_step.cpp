@@ -35,7 +35,7 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
 }
 
 StepReport TimeStepper::step(Projection& projection) {
-  if (contact_) contact_->start_step();
+  if (contact_) contact_->start_step(end_of_step());
   predict();
   StepReport report;
   report.balanced = projection.keep_balance(true);
@@ -156,7 +156,7 @@ void TimeStepper::predict() {
   for (std::size_t r = 0; r < scene_.rods.size(); ++r)
     flights_[r].predict(scene_.rods[r], settings_.dt, scene_.damping_per_s, scene_.gravity_m_s2,
                         loaded ? &loads_[r] : nullptr);
-  const double end = start_time_s_ + (steps_ + 1) * settings_.dt;
+  const double end = end_of_step();
   for (const MovingClamp& clamp : scene_.clamps) {
     Rod& rod = scene_.rods[static_cast<std::size_t>(clamp.rod)];
     const Pose pose = clamp.pose(end);

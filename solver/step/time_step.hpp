@@ -65,6 +65,7 @@ class TimeStepper {
   void start_from_last_step();
   void take_back();
   Newton iterate(Projection& projection, int until, StepReport& report);
+  double end_of_step() const { return start_time_s_ + (steps_ + 1) * settings_.dt; }
   bool is_lost() const;  ///< Newton, on its way to the balance
 
   Scene& scene_;

@@ -71,6 +71,27 @@ class Obstacles(Scripts):
         self.plant({}, scene="falling_rods")
         self.assertEqual(self.staged().floor, 0)
 
+    def test_what_moves_is_drawn_where_it_is_at_the_time_and_is_no_floor(self):
+        self.plant({"obstacles[0].half_space.point_m": [[0, -1, 0]] * 3,
+                    "obstacles[0].half_space.normal": [[0, 1, 0]] * 3,
+                    "obstacles[0].half_space.velocity_m_s": [[0, 2, 0]] * 3,
+                    "obstacles[1].half_space.point_m": [[0, -3, 0]] * 3,
+                    "obstacles[1].half_space.normal": [[0, 1, 0]] * 3,
+                    "obstacles[1].half_space.velocity_m_s": [[0, 0, 0]] * 3,
+                    "obstacles[2].ball.centre_m": [[0.3, 1, 0]] * 3, "obstacles[2].ball.radius_m": [0.1] * 3,
+                    "obstacles[2].ball.velocity_m_s": [[0, 0, 5]] * 3})
+        plate, _, ball = (obstacle.at(0.5) for obstacle in self.of(0))
+        np.testing.assert_array_equal(plate.point, (0, 0, 0))
+        np.testing.assert_array_equal((ball.start, ball.end), [(0.3, 1, 2.5)] * 2)
+        stage = self.staged(frames=(0, 3))
+        self.assertEqual((stage.floor, len(stage.slopes), len(stage.solids)), (-3, 1, 1))
+        with SweepFile(self.path) as file:
+            shown = trajectory.of_task(file, 0)
+            text = povray.scene(shown, stage, staging.colours(shown, "rod"), 3)
+        self.assertIn(f"sphere{{<0.3, 1, {5 * shown.time_s[3]:.12g}>,0.1}}", text)
+        pixel = stage.camera.project([(0.3, 1, 5 * time) for time in shown.time_s])[0]
+        self.assertTrue((pixel > 0).all() and (pixel < (240, 180)).all())
+
     def test_what_stands_upright_on_a_wall_stands_on_the_floor(self):
         self.plant({}, along="y", walls=1, rods=1)
         with SweepFile(self.path) as file:

@@ -107,6 +107,20 @@ class Paraview(Scripts):
         on_ball = np.isclose(np.linalg.norm(points - (1, 2, 3), axis=1), 0.25)
         self.assertTrue(on_ball.any() and (~on_ball).any() and np.isclose(points[~on_ball, 1], -1).all())
 
+    def test_obstacles_that_move_are_a_grid_a_frame(self):
+        self.plant()
+        with synthetic.h5py.File(self.path, "r+") as h5:
+            for name, value in {"contact.friction": 0.3, "obstacles[0].ball.centre_m": (1, 2, 3),
+                                "obstacles[0].ball.radius_m": 0.25,
+                                "obstacles[0].ball.velocity_m_s": (0, 10, 0)}.items():
+                h5[f"tasks/parameters/scene.{name}"] = np.array([value] * 3, dtype=float)
+        series, = (grid for grid in self.document().findall("Domain/Grid") if grid.get("Name") == "obstacles")
+        self.assertEqual(len(series.findall("Grid")), 4)
+        for grid in series.findall("Grid"):
+            time = float(grid.find("Time").get("Value"))
+            points = np.array(grid.find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
+            np.testing.assert_allclose(np.linalg.norm(points - (1, 2 + 10 * time, 3), axis=1), 0.25, rtol=1e-6)
+
     def test_mistakes_are_one_line_and_exit_code_2(self):
         self.write(scenes=("helix",), solves=False)
         self.refused("paraview.py", "sweep.h5", words="record.trajectory_every")

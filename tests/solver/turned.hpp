@@ -38,7 +38,7 @@ inline Scene moved(Scene scene, const RigidMotion& to) {
     };
   for (Obstacle& obstacle : scene.obstacles) {
     HalfSpace& floor = std::get<HalfSpace>(obstacle);
-    floor = {to(floor.point_m), to.turn * floor.normal};
+    floor = {to(floor.point_m), to.turn * floor.normal, to.turn * floor.velocity_m_s};
   }
   return scene;
 }

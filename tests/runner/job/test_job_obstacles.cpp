@@ -37,6 +37,15 @@ TEST_CASE("obstacles of every kind stand in the scene, beside its own floor") {
   CHECK(std::get<Capsule>(rod.obstacles[2]).to_m == Vector3(1, 0, 1));
   CHECK(std::get<Capsule>(rod.obstacles[2]).radius_m == 0.1);
 
+  const Scene moving = scene_of(plan_of(job_with(
+      R"([{"half_space": {"velocity_m_s": [0, 1, 0]}},
+          {"ball": {"centre_m": [0, -1, 0], "radius_m": 0.2, "velocity_m_s": [0, 0, -2]}},
+          {"capsule": {"from_m": [0, 0, 1], "to_m": [1, 0, 1], "radius_m": 0.1, "velocity_m_s": [3, 0, 0]}}])")));
+  CHECK(std::get<HalfSpace>(rod.obstacles[0]).velocity_m_s == Vector3(0, 0, 0));
+  CHECK(std::get<HalfSpace>(moving.obstacles[0]).velocity_m_s == Vector3(0, 1, 0));
+  CHECK(std::get<Ball>(moving.obstacles[1]).velocity_m_s == Vector3(0, 0, -2));
+  CHECK(std::get<Capsule>(moving.obstacles[2]).velocity_m_s == Vector3(3, 0, 0));
+
   Json falling = with("/scene/type", "\"falling_rods\"", job_with(R"([{"half_space": {}}])"));
   falling["scene"]["rods"] = 2;
   falling["scene"]["height_m"] = 0.3;

@@ -1,0 +1,141 @@
+// Obstacles that move: what they carry, push, drag and press.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/solver/support.hpp"
+#include "tests/solver/touching.hpp"
+
+namespace rodsweep {
+namespace {
+
+using test::capsule;
+using test::contact_scene;
+using test::Touching;
+
+constexpr double r = 0.05, g = 9.81, dt = 0.005;
+
+Scene lying(const Vector3& velocity, double friction, const Obstacle& on) {
+  Scene scene = contact_scene({capsule({-0.5, r, 0}, {0.5, r, 0}, velocity)}, friction, {0, -g, 0});
+  scene.obstacles = {on};
+  return scene;
+}
+
+/// A plane y = 0 that moves.
+HalfSpace plate(const Vector3& velocity) { return {{0, 0, 0}, {0, 1, 0}, velocity}; }
+
+TEST_CASE("a plate that rises lifts a rod at its velocity") {
+  Touching t(lying({0, 0, 0}, 0.3, plate({0, 0.4, 0})), dt);
+  CHECK(t.run(100) < 1e-4);
+  CHECK(t.scene.rods[0].position[0].y() == Approx(r + 100 * dt * 0.4).epsilon(1e-5));
+  CHECK(t.scene.rods[0].velocity[0].y() == Approx(0.4).epsilon(1e-4));
+}
+
+TEST_CASE("a plate that sinks faster than a rod falls leaves it, and is overtaken") {
+  Touching t(lying({0, 0, 0}, 0.3, plate({0, -1, 0})), dt);
+  t.run(10);
+  CHECK(t.scene.rods[0].velocity[0].y() == Approx(-10 * dt * g).epsilon(1e-9));
+  CHECK(t.run(90) < 1e-4);
+  CHECK(t.scene.rods[0].velocity[0].y() == Approx(-1).epsilon(1e-4));
+}
+
+TEST_CASE("a plate that slides along a rod drags it by friction, at mu g until it goes along") {
+  const double friction = 0.4, speed = 1;
+  Touching t(lying({0, 0, 0}, friction, plate({speed, 0, 0})), dt);
+  t.run(30);
+  CHECK(t.scene.rods[0].velocity[0].x() == Approx(30 * dt * friction * g).epsilon(2e-3));
+  t.run(70);
+  CHECK(t.scene.rods[0].velocity[0].x() == Approx(speed).epsilon(1e-4));
+  Touching smooth(lying({0, 0, 0}, 0, plate({speed, 0, 0})), dt);
+  smooth.run(100);
+  CHECK(std::abs(smooth.scene.rods[0].velocity[0].x()) < 1e-12);
+}
+
+TEST_CASE("a rod on a belt that goes as fast stays on it, one on a belt across it rolls") {
+  Touching along(lying({2, 0, 0}, 0.4, plate({2, 0, 0})), dt);
+  along.run(50);
+  CHECK(along.scene.rods[0].velocity[0].x() == Approx(2).epsilon(1e-9));
+  Touching across(lying({0, 0, 0}, 0.4, plate({0, 0, 0.3})), dt);
+  across.run(100);
+  const Rod& rod = across.scene.rods[0];  // it rolls on the belt: a third of its velocity, the rest is spin
+  CHECK(rod.velocity[0].z() == Approx(0.1).epsilon(0.02));
+  CHECK(rod.angular_velocity[0].x() * r == Approx(-0.2).epsilon(0.02));
+}
+
+TEST_CASE("a ball or bar shot at a rod never passes through it, however fast") {
+  for (const double speed : {1.0, 20.0, 300.0})
+    for (const bool is_ball : {true, false}) {
+      Scene scene = contact_scene({capsule({-0.5, 0, 0}, {0.5, 0, 0}, {0, 0, 0})});
+      const Vector3 velocity(0, speed, 0);
+      if (is_ball)
+        scene.obstacles = {Ball{{0, -0.4, 0}, 0.1, velocity}};
+      else
+        scene.obstacles = {Capsule{{0, -0.4, -1}, {0, -0.4, 1}, 0.1, velocity}};
+      Touching t(std::move(scene), dt);
+      for (int step = 0; step < 100; ++step) {
+        t.step();
+        CHECK(t.scene.rods[0].position[0].y() - (-0.4 + t.scene.time_s * speed) > 0.149);
+      }
+      CHECK(t.scene.rods[0].velocity[0].y() == Approx(speed).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a scene that moves along with its obstacle is the one at rest") {
+  const Vector3 along(0.7, 0, -0.3);
+  Touching still(lying({0.5, -0.2, 0.4}, 0.3, plate({0, 0, 0})), dt);
+  Scene start = lying(Vector3(0.5, -0.2, 0.4) + along, 0.3, plate(along));
+  Touching moving(start, dt);
+  for (int i = 0; i < 60; ++i) {
+    still.step();
+    moving.step();
+    const Vector3 apart = moving.scene.rods[0].position[0] - still.scene.rods[0].position[0];
+    CHECK((apart - moving.scene.time_s * along).norm() < 1e-7);
+  }
+}
+
+/// Force on all segments above or below the middle along y by contacts [N].
+double contact_force(const Scene& scene, double middle, bool above, double step) {
+  double sum = 0;
+  const Rod& rod = scene.rods.front();
+  for (std::size_t s = 0; s < rod.segments.size(); ++s)
+    if ((rod.position[s].y() > middle) == above) sum += rod.contact_impulse[s][1];
+  const double dt_c = constraint_dt(scene, step);
+  return sum / (dt_c * dt_c);
+}
+
+TEST_CASE("a lattice between two plates is squeezed, and the plates press alike") {
+  for (const auto cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet}) {
+    Lattice p;
+    p.cell = cell;
+    p.nodes_x = 2;
+    p.mesh_m = 0.2;
+    p.radius_m = 0.02;
+    p.youngs_modulus_pa = 1e6;
+    p.torsion_modulus_pa = 4e5;
+    p.held = Held::free;
+    p.damping_per_s = 20;
+    p.gravity_m_s2.setZero();
+    p.contact = ContactSettings{};
+    p.obstacles = {HalfSpace{{0, -0.12, 0}, {0, 1, 0}, {0, 0.1, 0}}, HalfSpace{{0, 0.32, 0}, {0, -1, 0}, {0, -0.1, 0}}};
+    const double step = 0.002;
+    Touching t(build_scene(p), step);
+    CHECK(t.run(600) < 1e-4);  // until the plates are 0.2 m apart, the lattice 0.24 m high without them
+    CAPTURE(cell);
+    const double up = contact_force(t.scene, 0.1, false, step), down = contact_force(t.scene, 0.1, true, step);
+    CHECK(up > 1);
+    CHECK(up == Approx(-down).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("obstacles of no finite velocity are refused") {
+  Scene scene = build_scene(test::bending_rod(3));
+  scene.contact = ContactSettings{};
+  const Vector3 none(0, NAN, 0);
+  for (const Obstacle& obstacle : {Obstacle(HalfSpace{{}, {0, 1, 0}, none}), Obstacle(Ball{{}, 1, none}),
+                                   Obstacle(Capsule{{0, 0, 0}, {0, 0, 1}, 1, none})}) {
+    scene.obstacles = {obstacle};
+    CHECK_THROWS_WITH(TimeStepper(scene, {dt, 2, 1e-9}), "an obstacle's velocity is not finite");
+  }
+}
+
+}  // namespace
+}  // namespace rodsweep
