@@ -1,7 +1,8 @@
 // Conjugate gradients on A x = b by PETSc's KSPCG, instrumented: iterations to any tolerance from the residual history.
 //
-// The operator is BlockMatrix::multiply (petsc_operator.hpp); a preconditioner that needs entries gets a copy of
-// the blocks in PETSc's own format. Convergence: the norm of the residual relative to that of b (`reference`), also
+// The operator is BlockMatrix::multiply (petsc_operator.hpp). Preconditioners are PETSc's, which get a copy of the
+// blocks in its own format where they need entries, or ours (block_preconditioner.hpp); where one of ours is not
+// positive definite, no solve is tried. Convergence: the norm of the residual relative to that of b (`reference`), also
 // with a nonzero guess; growth is a failure only past 1e30 times that: a history guess may start far above a
 // late, tiny b. One solver per guess and rod. Needs PETSc initialised (PetscSession). Throws PetscError when a call
 // fails.
@@ -11,15 +12,11 @@
 #include <vector>
 
 #include "solver/linear/block_matrix.hpp"
+#include "solver/linear/block_preconditioner.hpp"
 #include "solver/linear/deflation.hpp"
 #include "solver/linear/solve_outcome.hpp"
 
 namespace rodsweep {
-
-/// none; jacobi: the diagonal; point_block_jacobi: the 6x6 diagonal blocks; icc: incomplete Cholesky without fill,
-/// joints in the rod's order (exact on an unbranched chain); cholesky: complete; lagged_cholesky: the same of an
-/// earlier matrix, that of the last matrix_changed().
-enum class Preconditioner { none, jacobi, point_block_jacobi, icc, cholesky, lagged_cholesky };
 
 /// The norm of r = b - A x that decides convergence: its 2-norm, or (r^T P^-1 r)^1/2 with the preconditioner P.
 enum class Norm { true_residual, natural };
@@ -27,7 +24,8 @@ enum class Norm { true_residual, natural };
 struct CgSettings {
   Preconditioner preconditioner = Preconditioner::jacobi;
   Norm norm = Norm::true_residual;
-  int max_iterations = 0;  ///< 0: ten times the number of unknowns
+  int max_iterations = 0;                 ///< 0: ten times the number of unknowns
+  int fill_levels = default_fill_levels;  ///< of block_icc
 };
 
 /// What a solve starts from.
