@@ -18,8 +18,6 @@
 namespace rodsweep {
 namespace {
 
-bool lags(const TaskSpec& spec) { return spec.solve.preconditioner == Preconditioner::lagged_cholesky; }
-
 /// A condensed system has one norm.
 bool has_other_norm(const TaskSpec& spec) {
   return spec.output.other_norm && spec.solve.preconditioner != Preconditioner::condensed;
@@ -71,7 +69,7 @@ struct MeasuredSolve::RodSolvers {
   }
 
   static CgSettings settings(const TaskSpec& spec, Norm norm) {
-    return {spec.solve.preconditioner, norm, spec.solve.max_iterations};
+    return {spec.solve.preconditioner, norm, spec.solve.max_iterations, spec.solve.fill_levels};
   }
 
   void renew_preconditioners() {
@@ -134,7 +132,8 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
     if (direct_) record_.direct_s[row] = static_cast<float>(median(solvers.direct_s));
   }
   if (outcome == SolveOutcome::converged && !guesses_.empty()) {
-    solvers.renewed = !lags(spec_) || (at.newton == 0 && at.step % spec_.solve.lag_steps == 0);
+    const int kept = spec_.solve.kept_steps();
+    solvers.renewed = kept == 0 || (at.newton == 0 && at.step % kept == 0);
     if (solvers.renewed) solvers.renew_preconditioners();
     outcome = count(system, at, row, solvers);
   }
@@ -218,7 +217,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     if (!spec_.output.solves) continue;
     record_.reason[entry] = static_cast<std::int8_t>(report.outcome);
     record_.start_matvecs[entry] = static_cast<std::int16_t>(start);
-    record_.renewed[entry] = own.proposal.renewed || (lags(spec_) && solvers.renewed) ? 1 : 0;
+    record_.renewed[entry] = own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
     std::copy(solvers.iterations.begin(), solvers.iterations.end(),
               record_.iterations.begin() + static_cast<std::ptrdiff_t>(entry * ladder.size()));
     if (rounding) continue;

@@ -53,16 +53,24 @@ struct SolveSpec {
   Norm norm = Norm::true_residual;
   double tolerance =
       1e-2;  ///< of the timed solves and, in a closed loop, of the solves that advance the rod; relative to ||b||
-  Forcing forcing = Forcing::fixed;         ///< else `tolerance` is that of a step's first solves (forcing_terms.hpp)
-  int max_iterations = 0;                   ///< 0: ten times the number of unknowns
-  int lag_steps = 10;                       ///< lagged_cholesky: time steps from one factorisation to the next
-  int timing_repeats = 1;                   ///< times are medians over so many repeats of guess, solve and direct solve
-  std::filesystem::path model;              ///< end_to_end
-  PbdStiffness stiffness;                   ///< pbd
+  Forcing forcing = Forcing::fixed;       ///< else `tolerance` is that of a step's first solves (forcing_terms.hpp)
+  int max_iterations = 0;                 ///< 0: ten times the number of unknowns
+  int fill_levels = default_fill_levels;  ///< block_icc, condensed
+  int lag_steps = 0;            ///< time steps from one set-up of the preconditioner to the next; 0: see kept_steps()
+  int timing_repeats = 1;       ///< times are medians over so many repeats of guess, solve and direct solve
+  std::filesystem::path model;  ///< end_to_end
+  PbdStiffness stiffness;       ///< pbd
   Reference reference = Reference::direct;  ///< cg
 
   bool is_direct() const {
     return method == Method::direct || (method == Method::cg && reference == Reference::direct);
+  }
+
+  /// For how many time steps a preconditioner is kept; 0: for one system.
+  int kept_steps() const {
+    constexpr int of_lagged_cholesky = 10;
+    if (lag_steps > 0) return lag_steps;
+    return preconditioner == Preconditioner::lagged_cholesky ? of_lagged_cholesky : 0;
   }
 };
 

@@ -102,21 +102,26 @@ KeyTable<SolveSpec> solve_keys() {
                      .from(0, 1)
                      .only({"pbd"}, "moduli of the scene say how stiff a rod is"),
                  bending);
-  table.optional(choice_key("preconditioner",
-                            "preconditioner of cg; condensed: cg on the motions of the segments where rods cross, all "
-                            "others eliminated (nets, lattices)"),
-                 Words<Preconditioner>{{"none", Preconditioner::none},
-                                       {"jacobi", Preconditioner::jacobi},
-                                       {"point_block_jacobi", Preconditioner::point_block_jacobi},
-                                       {"icc", Preconditioner::icc},
-                                       {"cholesky", Preconditioner::cholesky},
-                                       {"lagged_cholesky", Preconditioner::lagged_cholesky},
-                                       {"condensed", Preconditioner::condensed}},
-                 &SolveSpec::preconditioner);
+  table.optional(
+      choice_key("preconditioner",
+                 "preconditioner of cg; of those that factorise, icc keeps no fill, block_icc some levels "
+                 "of it, cholesky all; lagged_cholesky is cholesky kept for some steps; condensed: cg on the "
+                 "motions of the segments where rods cross, all others eliminated, with block_icc"),
+      Words<Preconditioner>{{"none", Preconditioner::none},
+                            {"jacobi", Preconditioner::jacobi},
+                            {"point_block_jacobi", Preconditioner::point_block_jacobi},
+                            {"icc", Preconditioner::icc},
+                            {"block_icc", Preconditioner::block_icc},
+                            {"cholesky", Preconditioner::cholesky},
+                            {"lagged_cholesky", Preconditioner::lagged_cholesky},
+                            {"condensed", Preconditioner::condensed}},
+      &SolveSpec::preconditioner);
+  table.optional(integer_key("fill_levels", "block_icc: levels of fill that it keeps").from(0, 100),
+                 &SolveSpec::fill_levels);
   table.optional(integer_key("lag_steps",
-                             "lagged_cholesky: time steps from one factorisation, of the first Newton iteration's "
-                             "matrix, to the next")
-                     .from(1, 1000000),
+                             "time steps from one set-up of the preconditioner, of the first Newton iteration's "
+                             "matrix, to the next; 0: anew for every system, or 10 with lagged_cholesky")
+                     .from(0, 1000000),
                  &SolveSpec::lag_steps);
   table.optional(choice_key("norm", "residual norm of the stopping test of cg"),
                  Words<Norm>{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}}, &SolveSpec::norm);

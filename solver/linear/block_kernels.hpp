@@ -110,4 +110,31 @@ inline Lane8 solution(const RowFactor& factor, const Block6& s) {
                rows.row[3][lane], rows.row[4][lane], rows.row[5][lane]};
 }
 
+/// target <- from - B^T X over the rows of B and X.
+inline void subtract_product(const Block6& from, const Block6& b, const Block6& x, Block6& target) {
+#pragma GCC unroll 4
+  for (int p = 0; p < slices; ++p) {
+    const RowSlice slice(x, p);
+#pragma GCC unroll 6
+    for (int r = 0; r < 6; ++r) {
+      Lane row = slice_of(from.column[r], p);
+#pragma GCC unroll 6
+      for (int j = 0; j < 6; ++j) row -= reinterpret_cast<const double*>(&b.column[j])[r] * slice.row[j];
+      set_slice(target.column[r], p, row);
+    }
+  }
+}
+
+/// b <- S^-1 b on the rows of b.
+inline void solve_rows(const RowFactor& factor, Block6& b) {
+#pragma GCC unroll 4
+  for (int p = 0; p < slices; ++p) {
+    RowSlice rows(b, p);
+    forward(factor, rows);
+    divide(factor, rows);
+    backward(factor, rows);
+    rows.store(b, p);
+  }
+}
+
 }  // namespace rodsweep

@@ -6,8 +6,7 @@
 namespace rodsweep {
 
 std::unique_ptr<CgSolver> make_cg(const Rod& rod, const LinearSystem& system, const CgSettings& settings) {
-  if (settings.preconditioner == Preconditioner::condensed)
-    return std::make_unique<CondensedCg>(rod, system, settings.max_iterations);
+  if (settings.preconditioner == Preconditioner::condensed) return std::make_unique<CondensedCg>(rod, system, settings);
   return std::make_unique<ConjugateGradient>(system.matrix(), settings);
 }
 

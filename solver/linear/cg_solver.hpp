@@ -9,16 +9,12 @@
 #include <memory>
 #include <vector>
 
+#include "solver/linear/block_preconditioner.hpp"
 #include "solver/linear/deflation.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/linear/solve_outcome.hpp"
 
 namespace rodsweep {
-
-/// none; jacobi: the diagonal; point_block_jacobi: the 6x6 diagonal blocks; icc: incomplete Cholesky without fill,
-/// joints in the rod's order (exact on an unbranched chain); cholesky: complete; lagged_cholesky: the same of an
-/// earlier matrix, that of the last matrix_changed(); condensed: struts exactly, crossings by iteration.
-enum class Preconditioner { none, jacobi, point_block_jacobi, icc, cholesky, lagged_cholesky, condensed };
 
 /// The norm of r = b - A x that decides convergence: its 2-norm, or (r^T P^-1 r)^1/2 with the preconditioner P, which
 /// `condensed` has not.
@@ -27,7 +23,8 @@ enum class Norm { true_residual, natural };
 struct CgSettings {
   Preconditioner preconditioner = Preconditioner::jacobi;
   Norm norm = Norm::true_residual;
-  int max_iterations = 0;  ///< 0: ten times the number of unknowns
+  int max_iterations = 0;                 ///< 0: ten times the number of unknowns
+  int fill_levels = default_fill_levels;  ///< of block_icc and condensed
 };
 
 /// What a solve starts from.

@@ -8,48 +8,22 @@
 #include <stdexcept>
 #include <utility>
 
-#include "solver/linear/block_factor.hpp"
 #include "solver/linear/condensation.hpp"
 #include "solver/linear/petsc_check.hpp"
 #include "solver/linear/petsc_operator.hpp"
 #include "solver/linear/petsc_vector.hpp"
 
 namespace rodsweep {
-namespace {
-
-/// The couplings of a matrix within the nodes of a graph.
-BlockMatrix within_nodes(const StrutGraph& graph, const BlockMatrix& s) {
-  std::vector<std::pair<int, int>> couplings;
-  for (int row = 0; row < s.block_rows(); ++row)
-    for (int k = s.row_begin(row); k < s.row_end(row); ++k)
-      if (graph.node[static_cast<std::size_t>(row)] == graph.node[static_cast<std::size_t>(s.column(k))])
-        couplings.emplace_back(row, s.column(k));
-  return BlockMatrix(s.block_rows(), couplings);
-}
-
-/// Crossings with many links before those with few: nodes are stars, eliminated from their tips to their middles.
-std::vector<int> middles_first(const BlockMatrix& nodes) {
-  std::vector<int> order(static_cast<std::size_t>(nodes.block_rows()));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return nodes.row_end(a) - nodes.row_begin(a) > nodes.row_end(b) - nodes.row_begin(b);
-  });
-  return order;
-}
-
-}  // namespace
 
 struct CondensedCg::Impl {
   const Rod& rod;
   const LinearSystem& system;
   Condensation condensation;
-  BlockMatrix nodes;
-  std::vector<int> source;  ///< of each block of `nodes`: that of S
-  BlockFactor factor;
+  std::unique_ptr<BlockPreconditioner> preconditioner;
   BlockOperator op;
   int max_iterations;
   bool stale = true, positive = true;
-  VectorX scratch, g, d, residual;
+  VectorX g, d, residual;
   Mat product = nullptr;
   KSP ksp = nullptr;
   Vec rhs = nullptr, y = nullptr;
@@ -57,21 +31,18 @@ struct CondensedCg::Impl {
   bool keeps_history = false;
   std::vector<double> history;
 
-  Impl(const Rod& r, const LinearSystem& of, int most)
+  Impl(const Rod& r, const LinearSystem& of, const CgSettings& settings)
       : rod(r),
         system(of),
         condensation(r),
-        nodes(within_nodes(condensation.graph(), condensation.matrix())),
-        factor(nodes, middles_first(nodes)),
+        preconditioner(block_preconditioner(Preconditioner::block_icc, condensation.matrix(), settings.fill_levels)),
         op{condensation.matrix()},
-        max_iterations(most > 0 ? most
-                                : std::min(10 * of.matrix().unknowns(), int{std::numeric_limits<std::int16_t>::max()})),
-        scratch(VectorX::Zero(op.a.unknowns())),
-        g(scratch),
+        max_iterations(settings.max_iterations > 0
+                           ? settings.max_iterations
+                           : std::min(10 * of.matrix().unknowns(), int{std::numeric_limits<std::int16_t>::max()})),
+        g(VectorX::Zero(op.a.unknowns())),
         d(VectorX::Zero(of.matrix().unknowns())),
         residual(d) {
-    for (int row = 0; row < nodes.block_rows(); ++row)
-      for (int k = nodes.row_begin(row); k < nodes.row_end(row); ++k) source.push_back(op.a.find(row, nodes.column(k)));
     if (op.a.block_rows() == 0) return;
     product = create_operator(op);
     rhs = create_vector(op.a.unknowns());
@@ -101,9 +72,7 @@ struct CondensedCg::Impl {
     if (const PetscErrorCode error = PCShellGetContext(pc, &context)) return error;
     Impl& self = *static_cast<Impl*>(context);
     self.norm = self.condensation.residual_norm(vector_data(p));
-    std::copy_n(vector_data(p), self.scratch.size(), self.scratch.data());
-    self.factor.substitute(self.scratch);
-    std::copy_n(self.scratch.data(), self.scratch.size(), vector_data(z));
+    self.preconditioner->apply(vector_data(p), vector_data(z));
     return entries_changed(z);
   }
   static PetscErrorCode test(KSP, PetscInt, PetscReal natural, KSPConvergedReason* reason, void* context) noexcept {
@@ -120,13 +89,12 @@ struct CondensedCg::Impl {
   void refresh() {
     if (!std::exchange(stale, false)) return;
     positive = condensation.assemble(rod, system.linearization(), system.dt());
-    for (std::size_t k = 0; k < source.size(); ++k) nodes.blocks[k] = op.a.blocks[static_cast<std::size_t>(source[k])];
-    positive &= factor.factorise(nodes);
+    positive &= preconditioner->set_up(op.a);
   }
 };
 
-CondensedCg::CondensedCg(const Rod& rod, const LinearSystem& system, int max_iterations)
-    : impl_(std::make_unique<Impl>(rod, system, max_iterations)) {}
+CondensedCg::CondensedCg(const Rod& rod, const LinearSystem& system, const CgSettings& settings)
+    : impl_(std::make_unique<Impl>(rod, system, settings)) {}
 CondensedCg::~CondensedCg() = default;
 
 void CondensedCg::matrix_changed() { impl_->stale = true; }

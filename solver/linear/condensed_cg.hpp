@@ -1,6 +1,5 @@
 // Conjugate gradients on a condensed system (condensation.hpp) by PETSc's KSPCG: struts exactly, crossings by
-// iteration, preconditioned by the exact answer of every node on its own (its crossings and the links between them,
-// a block LDL^T each; Jacobi with blocks as large as nodes).
+// iteration, with an incomplete factor of their matrix (block_icc of block_preconditioner.hpp).
 //
 // It solves A d = r for what multipliers lack, whose residual is r, and stops at the norm of A's residual, so its
 // accuracy is that of ConjugateGradient. The first iteration is the elimination of struts: residuals are known before
@@ -18,7 +17,7 @@ namespace rodsweep {
 class CondensedCg : public CgSolver {
  public:
   /// `rod` and `system` must outlive this.
-  CondensedCg(const Rod& rod, const LinearSystem& system, int max_iterations = 0);
+  CondensedCg(const Rod& rod, const LinearSystem& system, const CgSettings& settings = {});
   ~CondensedCg() override;
 
   void matrix_changed() override;

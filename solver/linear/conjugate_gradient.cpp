@@ -53,16 +53,19 @@ PCType pc_type(Preconditioner p) {
     case Preconditioner::jacobi: return PCJACOBI;
     case Preconditioner::point_block_jacobi: return PCPBJACOBI;
     case Preconditioner::icc: return PCICC;
+    case Preconditioner::block_icc:
     case Preconditioner::cholesky:
-    case Preconditioner::lagged_cholesky: return PCCHOLESKY;
+    case Preconditioner::lagged_cholesky: return PCSHELL;
     case Preconditioner::condensed: break;  // see make_cg()
   }
   return PCNONE;
 }
 
-/// Whether it works on a copy of the upper blocks.
-bool factorises(Preconditioner p) {
-  return p == Preconditioner::icc || p == Preconditioner::cholesky || p == Preconditioner::lagged_cholesky;
+PetscErrorCode apply_own(PC pc, Vec r, Vec z) noexcept {
+  void* context = nullptr;
+  if (const PetscErrorCode error = PCShellGetContext(pc, &context)) return error;
+  static_cast<BlockPreconditioner*>(context)->apply(vector_data(r), vector_data(z));
+  return entries_changed(z);
 }
 
 /// A preconditioner with a projection around it.
@@ -91,8 +94,10 @@ struct ConjugateGradient::Impl {
   BlockOperator op;
   CgSettings settings;
   Mat product = nullptr;
-  Mat entries = nullptr;  ///< copy of the blocks for preconditioners that factorise; else null
+  Mat entries = nullptr;  ///< copy of the blocks for PETSc's preconditioners that need them; else null
   KSP ksp = nullptr;
+  std::unique_ptr<BlockPreconditioner> own;  ///< null: PETSc's
+  bool own_positive = true;                  ///< as it was last set up
   PC plain = nullptr, shell = nullptr;  ///< the preconditioner, and the same with projections, once one was asked for
   Projected projected;
   Vec b = nullptr, x = nullptr, scratch = nullptr;
@@ -110,6 +115,7 @@ struct ConjugateGradient::Impl {
   void copy_entries();
   void refresh();
   void use(Deflation* deflation);
+  CgReport refused(const VectorX& rhs, VectorX& guess, const CgStart& start);
 };
 
 ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : a(matrix), op{matrix}, settings(s) {
@@ -123,7 +129,8 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : 
   scratch = create_vector(n);
 
   if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
-  if (factorises(settings.preconditioner)) create_entries(true);
+  if (settings.preconditioner == Preconditioner::icc) create_entries(true);
+  own = block_preconditioner(settings.preconditioner, a, settings.fill_levels);
 
   petsc_check(KSPCreate(PETSC_COMM_SELF, &ksp), "KSPCreate");
   petsc_check(KSPSetType(ksp, KSPCG), "KSPSetType");
@@ -132,6 +139,10 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : 
   petsc_check(KSPGetPC(ksp, &plain), "KSPGetPC");
   petsc_check(PetscObjectReference(reinterpret_cast<PetscObject>(plain)), "PetscObjectReference");
   petsc_check(PCSetType(plain, pc_type(settings.preconditioner)), "PCSetType");
+  if (own) {
+    petsc_check(PCShellSetContext(plain, own.get()), "PCShellSetContext");
+    petsc_check(PCShellSetApply(plain, apply_own), "PCShellSetApply");
+  }
   petsc_check(KSPSetOperators(ksp, product, entries ? entries : product), "KSPSetOperators");
   petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, settings.max_iterations), "KSPSetTolerances");
   petsc_check(KSPSetConvergenceTest(ksp, test_convergence, &target, nullptr), "KSPSetConvergenceTest");
@@ -173,6 +184,7 @@ void ConjugateGradient::Impl::create_entries(bool symmetric) {
 void ConjugateGradient::Impl::refresh() {
   if (!stale) return;
   stale = false;
+  if (own) own_positive = own->set_up(a);
   if (entries) copy_entries();
   // Tells PETSc that the entries are new; without it the old preconditioner is kept silently.
   Mat changed = entries ? entries : product;
@@ -195,9 +207,21 @@ void ConjugateGradient::Impl::use(Deflation* deflation) {
   projected.deflation = deflation;
 }
 
+/// What is known without a preconditioner: the first residual.
+CgReport ConjugateGradient::Impl::refused(const VectorX& rhs, VectorX& guess, const CgStart& start) {
+  if (!start.nonzero) guess.setZero();
+  copy(guess, x);
+  a.multiply(vector_data(x), vector_data(scratch));
+  const double norm = (rhs - Eigen::Map<const VectorX>(vector_data(scratch), rhs.size())).norm();
+  history.clear();
+  if (!std::isfinite(norm)) return {SolveOutcome::not_a_number, 0, 0};
+  if (!history_buffer.empty()) history.push_back(norm);
+  return {SolveOutcome::indefinite, 0, 0};
+}
+
 void ConjugateGradient::Impl::copy_entries() {
   // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper ones.
-  const bool symmetric = factorises(settings.preconditioner);
+  const bool symmetric = settings.preconditioner == Preconditioner::icc;
   PetscScalar* out = nullptr;
   petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out), "MatSeqBAIJGetArray");
   PetscScalar* at = out;
@@ -225,6 +249,7 @@ CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, const CgStart& s
   s.refresh();
   s.use(deflation);
   s.target = {tolerance, reference};
+  if (!s.own_positive) return s.refused(b, x, start);
   // With its residual known, what is missing from x is solved for, from zero.
   const bool known = start.nonzero && start.residual, nonzero = start.nonzero && !known;
   copy(known ? *start.residual : b, s.b);
@@ -254,6 +279,7 @@ double ConjugateGradient::norm_of(const VectorX& b) {
   Impl& s = *impl_;
   if (s.settings.norm == Norm::true_residual) return b.norm();
   s.refresh();
+  if (!s.own_positive) return std::numeric_limits<double>::quiet_NaN();
   copy(b, s.b);
   PetscScalar square = 0;
   s.use(nullptr);

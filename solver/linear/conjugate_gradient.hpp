@@ -1,7 +1,8 @@
 // Conjugate gradients on A x = b by PETSc's KSPCG, instrumented: iterations to any tolerance from the residual history.
 //
-// The operator is BlockMatrix::multiply (petsc_operator.hpp); a preconditioner that needs entries gets a copy of
-// the blocks in PETSc's own format. Growth of the residual is a failure only past 1e30 times `reference`: a history
+// The operator is BlockMatrix::multiply (petsc_operator.hpp). Preconditioners are PETSc's, which get a copy of the
+// blocks in its own format where they need entries, or ours (block_preconditioner.hpp); where one of ours is not
+// positive definite, no solve is tried. Growth of the residual is a failure only past 1e30 times `reference`: a history
 // guess may start far above a late, tiny b. Products: one for each iteration, one more for the residual of a nonzero
 // guess, if not known. Needs PETSc initialised (PetscSession). Throws PetscError when a call fails.
 #pragma once

@@ -39,4 +39,52 @@ std::vector<int> minimum_degree_order(const BlockMatrix& pattern) {
   return order;
 }
 
+namespace {
+
+/// The part of the pattern that hangs together with `first`, appended to `order`; returns where the last distance of it
+/// begins.
+std::size_t append_part(const BlockMatrix& pattern, int first, std::vector<bool>& seen, std::vector<int>& order) {
+  const auto degree = [&](int row) { return pattern.row_end(row) - pattern.row_begin(row); };
+  std::size_t level = order.size(), next_level = level + 1;
+  order.push_back(first);
+  seen[static_cast<std::size_t>(first)] = true;
+  for (std::size_t at = level; at < order.size(); ++at) {
+    if (at == next_level) {
+      level = at;
+      next_level = order.size();
+    }
+    const auto found = static_cast<std::ptrdiff_t>(order.size());
+    const int row = order[at];
+    for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k) {
+      const int column = pattern.column(k);
+      if (!seen[static_cast<std::size_t>(column)]) order.push_back(column);
+      seen[static_cast<std::size_t>(column)] = true;
+    }
+    std::stable_sort(order.begin() + found, order.end(), [&](int a, int b) { return degree(a) < degree(b); });
+  }
+  return level;
+}
+
+}  // namespace
+
+std::vector<int> breadth_first_order(const BlockMatrix& pattern) {
+  std::vector<bool> seen(static_cast<std::size_t>(pattern.block_rows()), false);
+  std::vector<int> order;
+  for (int row = 0; row < pattern.block_rows(); ++row) {
+    if (seen[static_cast<std::size_t>(row)]) continue;
+    const std::size_t begin = order.size();
+    int first = row;
+    for (int tries = 0; tries < 3; ++tries) {  // from the far end of the last try, where the rim is
+      const std::size_t last = append_part(pattern, first, seen, order);
+      first = *std::min_element(order.begin() + static_cast<std::ptrdiff_t>(last), order.end(), [&](int a, int b) {
+        return pattern.row_end(a) - pattern.row_begin(a) < pattern.row_end(b) - pattern.row_begin(b);
+      });
+      for (std::size_t i = begin; i < order.size(); ++i) seen[static_cast<std::size_t>(order[i])] = false;
+      order.resize(begin);
+    }
+    append_part(pattern, first, seen, order);
+  }
+  return order;
+}
+
 }  // namespace rodsweep

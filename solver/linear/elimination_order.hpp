@@ -18,4 +18,9 @@ bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order);
 /// Block rows of the pattern, to be eliminated from the last to the first.
 std::vector<int> minimum_degree_order(const BlockMatrix& pattern);
 
+/// Block rows by their distance from one at the rim, and of equal distance after the neighbours that were found first
+/// (Cuthill & McKee 1969; the rim as George & Liu 1979 find it). Eliminated from the last to the first it is reverse
+/// Cuthill-McKee: much fill in a complete factor, but an incomplete one (incomplete_factor.hpp) loses little by it.
+std::vector<int> breadth_first_order(const BlockMatrix& pattern);
+
 }  // namespace rodsweep

@@ -11,13 +11,13 @@
 
 namespace rodsweep::test {
 
-inline constexpr Preconditioner preconditioners[] = {Preconditioner::none, Preconditioner::jacobi,
-                                                     Preconditioner::point_block_jacobi, Preconditioner::icc,
-                                                     Preconditioner::cholesky};
+inline constexpr Preconditioner preconditioners[] = {
+    Preconditioner::none, Preconditioner::jacobi,    Preconditioner::point_block_jacobi,
+    Preconditioner::icc,  Preconditioner::block_icc, Preconditioner::cholesky};
 inline constexpr Norm norms[] = {Norm::true_residual, Norm::natural};
 
 inline const char* name(Preconditioner p) {
-  static const char* const names[] = {"none", "jacobi", "point_block_jacobi", "icc", "cholesky"};
+  static const char* const names[] = {"none", "jacobi", "point_block_jacobi", "icc", "block_icc", "cholesky"};
   return names[static_cast<std::size_t>(p)];
 }
 

@@ -175,6 +175,28 @@ TEST_CASE("a condensed system is solved to the job's tolerances, in its one norm
   CHECK(condensed.counted_other_norm.iterations[0] < 0);
 }
 
+TEST_CASE("lag_steps keeps any preconditioner: set up for every system, a step, or some of them") {
+  const auto at = [](int lag_steps) {
+    return evaluated(job_with(R"(["zero"])", R"({"preconditioner": "block_icc", "fill_levels": 0, "lag_steps": )" +
+                                                 std::to_string(lag_steps) + "}"));
+  };
+  const TaskRecord anew = at(0), a_step = at(1), two = at(2);
+  for (std::size_t row = 0; row < anew.newton.size(); ++row) {
+    if (anew.newton[row] < 0) continue;
+    const int first = anew.newton[row] == 0, even = anew.step[row] % 2 == 0;
+    CHECK(anew.renewed[row] == 0);
+    CHECK(a_step.renewed[row] == first);
+    CHECK(two.renewed[row] == (first && even));
+    const auto iterations = [&](const TaskRecord& r) { return r.iterations[row * tolerances + 2]; };
+    CHECK(iterations(anew) <= 1);
+    if (first) CHECK(iterations(a_step) == iterations(anew));
+    if (first && even) CHECK(iterations(two) == iterations(anew));
+  }
+  const auto all = [](const TaskRecord& r) { return r.counted_all.iterations[2]; };
+  CHECK(all(anew) < all(a_step));
+  CHECK(all(a_step) < all(two));
+}
+
 TEST_CASE("a closed loop advances by its own guess's solution, at the job's tolerance") {
   Json job = job_with(R"(["zero"])", R"({"tolerance": 0.5})");
   const TaskRecord paired = evaluated(job);

@@ -34,9 +34,11 @@ TEST_CASE("a value that its key does not take is refused with what is allowed") 
 }
 
 TEST_CASE("a mistyped choice is refused with the nearest one") {
-  CHECK(refusal(with("/solve", R"({"preconditioner": "jacoby"})")) ==
-        "job.json: solve.preconditioner: \"jacoby\" is not allowed; must be one of \"none\", \"jacobi\", "
-        "\"point_block_jacobi\", \"icc\", \"cholesky\", \"lagged_cholesky\", \"condensed\"; did you mean \"jacobi\"?");
+  CHECK(
+      refusal(with("/solve", R"({"preconditioner": "jacoby"})")) ==
+      "job.json: solve.preconditioner: \"jacoby\" is not allowed; must be one of \"none\", \"jacobi\", "
+      "\"point_block_jacobi\", \"icc\", \"block_icc\", \"cholesky\", \"lagged_cholesky\", \"condensed\"; did you mean "
+      "\"jacobi\"?");
   CHECK(refusal(with("/evaluation", "\"pared\"")) ==
         "job.json: evaluation: \"pared\" is not allowed; must be one of \"paired\", \"closed_loop\"; did you mean "
         "\"paired\"?");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/scene/scenes.hpp"
 #include "tests/solver/cg_runs.hpp"
 
 namespace rodsweep {
@@ -42,10 +43,30 @@ TEST_CASE("incomplete and complete Cholesky are exact on a chain: one iteration,
   CHECK(run(c.a(), {Preconditioner::jacobi, Norm::true_residual, 0}, c.b(), 1e-8).report.iterations > 30);
 }
 
-TEST_CASE("complete Cholesky is exact on a net, where incomplete is not") {
-  const Case c(random_rod(net(4, 4), {0}, 3));
-  CHECK(run(c.a(), {Preconditioner::cholesky, Norm::true_residual, 0}, c.b(), 1e-8).report.iterations == 1);
-  CHECK(run(c.a(), {Preconditioner::icc, Norm::true_residual, 0}, c.b(), 1e-8).report.iterations > 1);
+TEST_CASE("complete Cholesky is exact on a net, where incomplete is not, but the closer the more fill it keeps") {
+  Net net;
+  net.rows = net.columns = 6;
+  net.segments = 2;
+  net.radius_m = 0.01;
+  const Case c(build_scene(net).rods.front());
+  const auto iterations = [&](Preconditioner p, int levels) {
+    return run(c.a(), {p, Norm::true_residual, 0, levels}, c.b(), 1e-8).report.iterations;
+  };
+  CHECK(iterations(Preconditioner::cholesky, 0) == 1);
+  CHECK(iterations(Preconditioner::icc, 0) > 1);
+  const int none = iterations(Preconditioner::block_icc, 0), some = iterations(Preconditioner::block_icc, 2);
+  CHECK(none < iterations(Preconditioner::jacobi, 0));
+  CHECK(some < none);
+  CHECK(iterations(Preconditioner::block_icc, 100) <= 4);
+}
+
+TEST_CASE("an incomplete factor in single precision is exact to its precision on chains and trees, at every level") {
+  for (const Case& c : {moving_chain(30), Case(random_rod(tree(2, 4), {0}, 2))})
+    for (const int levels : {0, 3}) {
+      const CgSettings settings{Preconditioner::block_icc, Norm::true_residual, 0, levels};
+      CHECK(run(c.a(), settings, c.b(), 1e-4).report.iterations == 1);
+      CHECK(run(c.a(), settings, c.b(), 1e-10).report.iterations <= 3);
+    }
 }
 
 TEST_CASE("Jacobi preconditioners divide by the diagonal and by its 6x6 blocks") {

@@ -100,5 +100,28 @@ TEST_CASE("an order that fills in gives way to a better one, one that does not i
   CHECK(BlockFactor(chain, bad).fill_in() == 0);
 }
 
+TEST_CASE("breadth first: every row once, neighbours near each other, from an end of what has ends; no fill there") {
+  for (const Edges& edges : {test::chain(9), test::tree(3, 2), test::ring(8), test::net(4, 6)}) {
+    const BlockMatrix pattern = pattern_of(edges, {0});
+    const std::vector<int> order = breadth_first_order(pattern);
+    std::vector<int> sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    for (int row = 0; row < pattern.block_rows(); ++row) REQUIRE(sorted[row] == row);
+    CHECK(breadth_first_order(pattern) == order);
+  }
+  for (const Edges& edges : {test::chain(9), test::tree(3, 2)}) {
+    const BlockMatrix pattern = pattern_of(edges);
+    CHECK_FALSE(fills_in(pattern, breadth_first_order(pattern)));
+  }
+  // A net 3 cells wide and 11 long: neighbours are at most two fronts of it apart.
+  const BlockMatrix pattern = pattern_of(test::net(3, 11));
+  const std::vector<int> order = breadth_first_order(pattern);
+  std::vector<int> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
+  for (int row = 0; row < pattern.block_rows(); ++row)
+    for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k)
+      CHECK(std::abs(place[row] - place[pattern.column(k)]) < pattern.block_rows() / 3);
+}
+
 }  // namespace
 }  // namespace rodsweep
