@@ -217,6 +217,18 @@ class Program(unittest.TestCase):
         for method in ("zero", "previous", "direct"):
             self.assertIn(f"\n  {method}", said)
 
+    def test_without_a_direct_solve_everything_else_is_there(self):
+        path = self.run_job("by_cg", solve={"method": "cg", "reference": "cg", "tolerance": 1e-2})
+        with SweepFile(path) as file:
+            self.assertTrue(np.isnan(file.h5["timing/solves/direct_s"][:]).all())
+            self.assertTrue((file.h5["tasks/cg_ratio"][:, 0] == 1).all())
+        said = self.script("summary.py", path)
+        self.assertIn("CG ratio", said)
+        self.assertIn("guess + CG", said)
+        self.assertNotIn("nan", said)
+        for script in ("spatial.py", "temporal.py", "export.py"):
+            self.script(script, path)
+
     def test_an_export_has_the_sums_of_the_file(self):
         path = self.run_job("paired")
         rows = [line.split(",") for line in self.script("export.py", path, "--columns", "task,iterations_sum").split()]

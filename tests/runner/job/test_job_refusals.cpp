@@ -267,8 +267,8 @@ TEST_CASE("values that do not fit together at a point are refused before anythin
 TEST_CASE("forcing terms are refused where the direct solve advances the rod") {
   const Json job = with("/solve/forcing", "\"eisenstat_walker\"");
   CHECK(refusal(job) ==
-        "job.json: solve.forcing: \"eisenstat_walker\" is not allowed with evaluation \"paired\", in which the direct "
-        "solve advances the rod, whatever the tolerance of cg; must be with \"closed_loop\"");
+        "job.json: solve.forcing: \"eisenstat_walker\" is not allowed with evaluation \"paired\", in which the "
+        "reference advances the rod, whatever the tolerance of cg; must be with \"closed_loop\"");
   CHECK(refusal(with("/solve/forcing", R"({"grid": ["fixed", "eisenstat_walker"]})")) == refusal(job));
   CHECK(refusal(with("/evaluation", "\"closed_loop\"", job)) == "");
   CHECK(refusal(with("/solve/forcing", "\"fixed\"")) == "");
