@@ -120,8 +120,8 @@ struct Net : RodParameters {
 
 /// Straight rods through all nodes of a crystal lattice in a box, the first corner in the origin; the box is raised by
 /// `initial_angle_deg` about z, from x towards y. Where rods cross, the centres of their segments are joined to that of
-/// the first of them, each joint as stiff as `node_stiffness` rods two radii long: kappa G A / 2r against shifting, EI /
-/// 2r against turning, on the mean over the axes. In the cubic lattice it is that about every axis; in the others,
+/// the first of them, each joint as stiff as `node_stiffness` rods two radii long: kappa G A / 2r against shifting, EI
+/// / 2r against turning, on the mean over the axes. In the cubic lattice it is that about every axis; in the others,
 /// where the axis by which two rods differ is none of their frames', it is 0.36 to 1.5 times that (body-centred) or
 /// 0.31 to 1.58 times (octet) about some. Every rod goes half a segment beyond its last nodes, so the material of a
 /// node counts once for every rod through it. One rod of many loops, with more constraints than freedoms: stretch is
