@@ -145,6 +145,34 @@ TEST_CASE("falling rods heap up on the floor") {
   CHECK(top < 0.4);
 }
 
+TEST_CASE("a lattice that falls on its edge comes to lie on the floor, whole") {
+  for (const auto cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet}) {
+    Lattice p;
+    p.cell = cell;
+    p.nodes_x = 2;
+    p.segments = 2;
+    p.radius_m = 0.02;
+    p.youngs_modulus_pa = 2e7;
+    p.torsion_modulus_pa = 8e6;
+    p.held = Held::free;
+    p.initial_angle_deg = 30;
+    p.damping_per_s = 3;
+    p.contact = ContactSettings{};
+    p.obstacles = {HalfSpace{{0, -0.2, 0}, {0, 1, 0}}};
+    test::Touching t(build_scene(p), 0.004);
+    CAPTURE(cell);
+    CHECK(t.run(600) < 1e-3);
+    const Rod& rod = t.scene.rods[0];
+    CHECK(test::kinetic_energy(t.scene) < 1e-4);
+    CHECK(joint_gap(rod) < 0.01);
+    double lowest = 1;
+    for (std::size_t s = 0; s < rod.position.size(); ++s)
+      lowest = std::min(
+          lowest, rod.position[s].y() - rod.segments[s].length_m / 2 * std::abs(director(rod.orientation[s]).y()));
+    CHECK(lowest == Approx(-0.2 + 0.02).margin(1e-4));
+  }
+}
+
 TEST_CASE("a rod fed onto the floor coils there") {
   CoilingRod p;
   p.segments = 30;
