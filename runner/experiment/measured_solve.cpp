@@ -36,22 +36,22 @@ struct MeasuredSolve::RodSolvers {
   bool renewed = false;  ///< the preconditioners are of this system
   VectorX exact, x, residual;
 
-  RodSolvers(const BlockMatrix& a, const TaskSpec& spec, std::size_t guess_count)
-      : tight(a, settings(spec, spec.solve.norm)),
+  RodSolvers(const LinearSystem& system, const TaskSpec& spec, std::size_t guess_count)
+      : tight(system, settings(spec, spec.solve.norm)),
         direct_s(static_cast<std::size_t>(spec.solve.timing_repeats)),
         iterations(tolerance_ladder().size()),
         iterations_other(iterations),
-        exact(VectorX::Zero(a.unknowns())),
+        exact(VectorX::Zero(system.matrix().unknowns())),
         x(exact),
         residual(exact) {
     tight.keep_history(true);
     if (spec.output.other_norm) {
       const Norm other = spec.solve.norm == Norm::natural ? Norm::true_residual : Norm::natural;
-      tight_other.emplace(a, settings(spec, other));
+      tight_other.emplace(system, settings(spec, other));
       tight_other->keep_history(true);
     }
     for (std::size_t g = 0; g < guess_count; ++g)
-      guesses.push_back({ConjugateGradient(a, settings(spec, spec.solve.norm)), exact, {}, direct_s, {}});
+      guesses.push_back({ConjugateGradient(system, settings(spec, spec.solve.norm)), exact, {}, direct_s, {}});
   }
 
   static CgSettings settings(const TaskSpec& spec, Norm norm) {
@@ -96,7 +96,7 @@ MeasuredSolve::~MeasuredSolve() = default;
 
 MeasuredSolve::RodSolvers& MeasuredSolve::solvers_for(const LinearSystem& system, int rod) {
   std::unique_ptr<RodSolvers>& solvers = solvers_[static_cast<std::size_t>(rod)];
-  if (!solvers) solvers = std::make_unique<RodSolvers>(system.matrix(), spec_, guesses_.size());
+  if (!solvers) solvers = std::make_unique<RodSolvers>(system, spec_, guesses_.size());
   return *solvers;
 }
 
@@ -184,7 +184,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     std::copy(solvers.iterations.begin(), solvers.iterations.end(),
               record_.iterations.begin() + static_cast<std::ptrdiff_t>(entry * ladder.size()));
     if (rounding) continue;
-    system.matrix().multiply(solvers.x.data(), solvers.residual.data());
+    system.multiply(solvers.x.data(), solvers.residual.data());
     record_.initial_residual[entry] = solvers.tight.history().front() / solvers.reference;
     record_.final_residual[entry] = (b - solvers.residual).norm() / b.norm();
   }

@@ -1,11 +1,11 @@
 // Conjugate gradients on A x = b by PETSc's KSPCG, instrumented: iterations to any tolerance from the residual history.
 //
-// The operator is BlockMatrix::multiply (petsc_operator.hpp). Preconditioners are PETSc's, which get a copy of the
-// blocks in its own format where they need entries, or ours (block_preconditioner.hpp); where one of ours is not
-// positive definite, no solve is tried. Convergence: the norm of the residual relative to that of b (`reference`), also
-// with a nonzero guess; growth is a failure only past 1e30 times that: a history guess may start far above a
-// late, tiny b. One solver per guess and rod. Needs PETSc initialised (PetscSession). Throws PetscError when a call
-// fails.
+// The operator is BlockMatrix::multiply or that of a system (petsc_operator.hpp). Preconditioners are PETSc's, which
+// get a copy of the blocks in its own format where they need entries, or ours (block_preconditioner.hpp); where one of
+// ours is not positive definite, no solve is tried. Convergence: the norm of the residual relative to that of b
+// (`reference`), also with a nonzero guess; growth is a failure only past 1e30 times that: a history guess may start
+// far above a late, tiny b. One solver per guess and rod. Needs PETSc initialised (PetscSession). Throws PetscError
+// when a call fails.
 #pragma once
 
 #include <memory>
@@ -14,6 +14,7 @@
 #include "solver/linear/block_matrix.hpp"
 #include "solver/linear/block_preconditioner.hpp"
 #include "solver/linear/deflation.hpp"
+#include "solver/linear/linear_system.hpp"
 #include "solver/linear/solve_outcome.hpp"
 
 namespace rodsweep {
@@ -46,6 +47,8 @@ class ConjugateGradient {
  public:
   /// Solves with `a`, whose entries may change (say so with matrix_changed()), and which must outlive this.
   ConjugateGradient(const BlockMatrix& a, const CgSettings& settings);
+  /// With the matrix of a system, and its product.
+  ConjugateGradient(const LinearSystem& system, const CgSettings& settings);
   ~ConjugateGradient();
   ConjugateGradient(ConjugateGradient&&) noexcept;
   ConjugateGradient& operator=(ConjugateGradient&&) noexcept;
