@@ -35,7 +35,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
                                   Proposal& proposal, VectorX& x, std::vector<Lane8>* moves) {
   const BlockMatrix& a = system.matrix();
   if (proposal.nonzero) {
-    a.multiply(x.data(), residual_.data());
+    system.multiply(x.data(), residual_.data());
     residual_ = system.rhs() - residual_;
     ++proposal.products;
   } else {
@@ -60,7 +60,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
   double length = 1, energy = 0;
   const bool best_length = model_->net.settings().best_length || use_.corrections > 1, known = best_length || may_harm;
   if (known) {
-    a.multiply(d_.data(), ad_.data());
+    system.multiply(d_.data(), ad_.data());
     ++proposal.products;
   }
   if (best_length) {
@@ -76,7 +76,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
   const bool moved = length != 0;
   move();
   for (int i = 1; i < use_.corrections && energy > 0 && !small_enough(); ++i) {
-    energy = correct_again(a, energy, length);
+    energy = correct_again(system, energy, length);
     ++proposal.products;
     if (!(energy > 0) || !std::isfinite(length)) break;
     move();
@@ -99,11 +99,11 @@ bool CopingNetCorrection::factors_serve(const SolvePosition& at) const {
 
 /// The next direction of conjugate gradients, d_ = F r - (F r . A d_) / (d_ . A d_) d_, A d_, its energy, and the
 /// length that is best along it.
-double CopingNetCorrection::correct_again(const BlockMatrix& a, double energy, double& length) {
+double CopingNetCorrection::correct_again(const LinearSystem& system, double energy, double& length) {
   previous_.swap(d_);
   factors_->solve(residual_, d_);
   d_ -= d_.dot(ad_) / energy * previous_;
-  a.multiply(d_.data(), ad_.data());
+  system.multiply(d_.data(), ad_.data());
   energy = d_.dot(ad_);
   length = energy > 0 ? d_.dot(residual_) / energy : 0;
   return energy;

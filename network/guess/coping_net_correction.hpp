@@ -48,7 +48,7 @@ class CopingNetCorrection {
            bool with_moves);
   void answer(bool with_moves);
   bool factors_serve(const SolvePosition& at) const;
-  double correct_again(const BlockMatrix& a, double energy, double& length);
+  double correct_again(const LinearSystem& system, double energy, double& length);
   bool write(std::vector<Lane8>& moves) const;
 
   std::shared_ptr<const Model> model_;

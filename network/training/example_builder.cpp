@@ -89,7 +89,7 @@ void add_examples(const CopingNetSettings& settings, const StoredSimulation& sim
     RodExamples& of = rods[static_cast<std::size_t>(stored.at.rod)];
     base->prepare(stored.at);
     base->propose(system, stored.at, of.base);
-    system.matrix().multiply(of.base.data(), of.residual.data());
+    system.multiply(of.base.data(), of.residual.data());
     of.residual = system.rhs() - of.residual;
     if (of.residual.lpNorm<Eigen::Infinity>() > rounding_level)
       out.push_back(example_of(settings, rod, system, stored, simulation.constraint_dt_s, of));

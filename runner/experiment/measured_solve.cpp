@@ -221,7 +221,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     std::copy(solvers.iterations.begin(), solvers.iterations.end(),
               record_.iterations.begin() + static_cast<std::ptrdiff_t>(entry * ladder.size()));
     if (rounding) continue;
-    system.matrix().multiply(solvers.x.data(), solvers.residual.data());
+    system.multiply(solvers.x.data(), solvers.residual.data());
     record_.initial_residual[entry] = solvers.tight->history().front() / solvers.reference;
     record_.final_residual[entry] = (b - solvers.residual).norm() / b.norm();
   }

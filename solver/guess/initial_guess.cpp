@@ -94,7 +94,7 @@ Proposal GuardedGuess::propose(const LinearSystem& system, const SolvePosition& 
   if (inner.residual) {
     residual = *inner.residual;
   } else {
-    system.matrix().multiply(x0.data(), residual.data());
+    system.multiply(x0.data(), residual.data());
     residual = system.rhs() - residual;
   }
   const int products = inner.start_products();

@@ -7,7 +7,7 @@ namespace rodsweep {
 
 std::unique_ptr<CgSolver> make_cg(const Rod& rod, const LinearSystem& system, const CgSettings& settings) {
   if (settings.preconditioner == Preconditioner::condensed) return std::make_unique<CondensedCg>(rod, system, settings);
-  return std::make_unique<ConjugateGradient>(system.matrix(), settings);
+  return std::make_unique<ConjugateGradient>(system, settings);
 }
 
 void iterations_to(const std::vector<double>& history, double reference, const std::vector<double>& tolerances,

@@ -107,7 +107,7 @@ CgReport CondensedCg::solve(const VectorX& b, VectorX& x, const CgStart& start, 
   CgReport report{SolveOutcome::converged, 0, 0};
   const bool known = start.nonzero && start.residual;
   if (start.nonzero && !known) {
-    s.system.matrix().multiply(x.data(), s.residual.data());
+    s.system.multiply(x.data(), s.residual.data());
     s.residual = b - s.residual;
     report.products = 1;
   } else {

@@ -106,7 +106,7 @@ struct ConjugateGradient::Impl {
   std::vector<PetscReal> history_buffer;
   std::vector<double> history;
 
-  Impl(const BlockMatrix& matrix, const CgSettings& s);
+  Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s);
   ~Impl();
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -118,7 +118,8 @@ struct ConjugateGradient::Impl {
   CgReport refused(const VectorX& rhs, VectorX& guess, const CgStart& start);
 };
 
-ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const CgSettings& s) : a(matrix), op{matrix}, settings(s) {
+ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s)
+    : a(matrix), op{matrix, without_blocks}, settings(s) {
   const PetscInt n = a.unknowns();
   if (settings.max_iterations <= 0)
     settings.max_iterations = std::min(10 * n, int{std::numeric_limits<std::int16_t>::max()});
@@ -211,7 +212,7 @@ void ConjugateGradient::Impl::use(Deflation* deflation) {
 CgReport ConjugateGradient::Impl::refused(const VectorX& rhs, VectorX& guess, const CgStart& start) {
   if (!start.nonzero) guess.setZero();
   copy(guess, x);
-  a.multiply(vector_data(x), vector_data(scratch));
+  op.multiply(vector_data(x), vector_data(scratch));
   const double norm = (rhs - Eigen::Map<const VectorX>(vector_data(scratch), rhs.size())).norm();
   history.clear();
   if (!std::isfinite(norm)) return {SolveOutcome::not_a_number, 0, 0};
@@ -236,7 +237,9 @@ void ConjugateGradient::Impl::copy_entries() {
 }
 
 ConjugateGradient::ConjugateGradient(const BlockMatrix& a, const CgSettings& settings)
-    : impl_(std::make_unique<Impl>(a, settings)) {}
+    : impl_(std::make_unique<Impl>(a, nullptr, settings)) {}
+ConjugateGradient::ConjugateGradient(const LinearSystem& system, const CgSettings& settings)
+    : impl_(std::make_unique<Impl>(system.matrix(), system.product(), settings)) {}
 ConjugateGradient::~ConjugateGradient() = default;
 ConjugateGradient::ConjugateGradient(ConjugateGradient&&) noexcept = default;
 ConjugateGradient& ConjugateGradient::operator=(ConjugateGradient&&) noexcept = default;

@@ -1,10 +1,11 @@
 // Conjugate gradients on A x = b by PETSc's KSPCG, instrumented: iterations to any tolerance from the residual history.
 //
-// The operator is BlockMatrix::multiply (petsc_operator.hpp). Preconditioners are PETSc's, which get a copy of the
-// blocks in its own format where they need entries, or ours (block_preconditioner.hpp); where one of ours is not
-// positive definite, no solve is tried. Growth of the residual is a failure only past 1e30 times `reference`: a history
-// guess may start far above a late, tiny b. Products: one for each iteration, one more for the residual of a nonzero
-// guess, if not known. Needs PETSc initialised (PetscSession). Throws PetscError when a call fails.
+// The operator is BlockMatrix::multiply or that of a system (petsc_operator.hpp). Preconditioners are PETSc's, which
+// get a copy of the blocks in its own format where they need entries, or ours (block_preconditioner.hpp); where one of
+// ours is not positive definite, no solve is tried. Growth of the residual is a failure only past 1e30 times
+// `reference`: a history guess may start far above a late, tiny b. Products: one for each iteration, one more for the
+// residual of a nonzero guess, if not known. Needs PETSc initialised (PetscSession). Throws PetscError when a call
+// fails.
 #pragma once
 
 #include <memory>
@@ -19,6 +20,8 @@ class ConjugateGradient : public CgSolver {
  public:
   /// Solves with `a`, whose entries may change (say so with matrix_changed()), and which must outlive this.
   ConjugateGradient(const BlockMatrix& a, const CgSettings& settings);
+  /// With the matrix of a system, and its product.
+  ConjugateGradient(const LinearSystem& system, const CgSettings& settings);
   ~ConjugateGradient() override;
   ConjugateGradient(ConjugateGradient&&) noexcept;
   ConjugateGradient& operator=(ConjugateGradient&&) noexcept;

@@ -33,6 +33,7 @@ LinearSystem::LinearSystem(const Rod& rod)
     side_start_.push_back(static_cast<int>(sides_.size()));
   }
   matrix_ = BlockMatrix(rod.joint_count(), couplings);
+  if (matrix_.block_count() >= ConstraintProduct::least_blocks) product_.emplace(rod);
 
   std::vector<bool> written(matrix_.blocks.size(), false);
   for (const std::vector<Side>& sides : by_segment)
@@ -69,6 +70,7 @@ void LinearSystem::assemble_linearized(const Rod& rod, double dt) {
   dt_ = dt;
   const double inverse_dt2 = 1 / (dt * dt);
   assemble_matrix(rod, inverse_dt2);
+  if (product_) product_->update(rod, linearization_, inverse_dt2);
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const Eigen::Index row = static_cast<Eigen::Index>(6 * k);
     rhs_.segment<6>(row) = -linearization_.constraint.segment<6>(row) -

@@ -14,7 +14,10 @@
 // construction.
 #pragma once
 
+#include <optional>
+
 #include "solver/linear/block_matrix.hpp"
+#include "solver/linear/constraint_product.hpp"
 #include "solver/rod/linearization.hpp"
 #include "solver/rod/momentum_balance.hpp"
 
@@ -37,6 +40,9 @@ class LinearSystem {
   bool keeps_balance() const { return balanced_; }  ///< was assembled with g and K
   const BlockMatrix& matrix() const { return matrix_; }
   const VectorX& rhs() const { return rhs_; }
+  /// y = A x, by the matrix or, where it is faster, without it.
+  void multiply(const double* x, double* y) const { product_ ? product_->multiply(x, y) : matrix_.multiply(x, y); }
+  const ConstraintProduct* product() const { return product_ ? &*product_ : nullptr; }  ///< null: the matrix's serves
   const Linearization& linearization() const { return linearization_; }
   double dt() const { return dt_; }  ///< of the assembly
   /// max |C + alpha~ lambda|, the residual that Newton drives to zero; NaN when any entry is.
@@ -63,6 +69,7 @@ class LinearSystem {
 
   Linearization linearization_;
   BlockMatrix matrix_;
+  std::optional<ConstraintProduct> product_;
   VectorX rhs_;
   std::vector<int> side_start_;  ///< sides of segment i: side_start_[i] .. side_start_[i + 1]; none for static ones
   std::vector<Side> sides_;

@@ -13,7 +13,7 @@ constexpr char class_name[] = "rodsweep_blocks";
 
 PetscErrorCode multiply(Mat m, Vec x, Vec y) noexcept {
   BlockOperator& op = *static_cast<BlockOperator*>(m->data);
-  op.a.multiply(vector_data(x), vector_data(y));
+  op.multiply(vector_data(x), vector_data(y));
   ++op.products;
   return entries_changed(y);
 }

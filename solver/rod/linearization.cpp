@@ -121,6 +121,7 @@ Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.
     shape.arm_a = load(arm_a, lane_width);
     shape.arm_b = load(arm_b, lane_width);
     shapes.push_back(shape);
+    turns.emplace_back();
   }
 }
 
@@ -170,6 +171,7 @@ void linearize(const Rod& rod, Linearization& out) {
     }
     const LaneQuaternion a = load(of_a, lane_width);
     const JointTurn<Lane> turn = joint_turn(a, load(of_b, lane_width), shape.rest);
+    out.turns[first / lane_width] = turn;
     const LaneMatrix half = half_turn(turn);
     const LaneVector gap = stretch(half, a, shape.inverse_length * load(gaps, lane_width), shape);
     const LaneVector bent = bend(turn.d, shape.rest);

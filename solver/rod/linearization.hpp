@@ -34,6 +34,7 @@ struct Linearization {
   std::vector<JointJacobian> joints;     ///< whole registers of them: copies of the last one fill up
   VectorX constraint;                    ///< C, six per joint
   std::vector<JointShape<Lane>> shapes;  ///< of as many joints as a register has lanes
+  std::vector<JointTurn<Lane>> turns;    ///< of the same
 
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };

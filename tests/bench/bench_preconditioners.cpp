@@ -1,6 +1,6 @@
-// What preconditioners of CG cost on cubic lattices, per joint: a product with the matrix, an iteration, a set-up; and
-// a whole solve from zero, set-up included, with its iterations. Google Benchmark times the cases; at the end a table
-// sets their medians beside each other, as measured in this run.
+// What CG costs on cubic lattices, per joint: a product with and without the blocks of the matrix, an iteration with
+// every preconditioner, its set-up; and a whole solve from zero, set-up included, with its iterations. Google Benchmark
+// times the cases; at the end a table sets their medians beside each other, as measured in this run.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -18,7 +18,8 @@ namespace {
 
 using namespace rodsweep;
 
-constexpr int sizes[] = {3, 5, 8};    // nodes along an edge
+constexpr int product_sizes[] = {3, 4, 5, 8, 12, 18};  // nodes along an edge
+constexpr int sizes[] = {3, 5, 8};
 constexpr int most_for_all_fill = 5;  // beyond, a complete factor takes long to plan
 constexpr int iterations = 3;         // few, for preconditioners that are nearly exact
 constexpr double tolerance = 1e-2;
@@ -62,16 +63,29 @@ Case& case_of(int nodes) {
 }
 
 ConjugateGradient cg_of(const Kind& kind, const Case& c, int most) {
-  return {c.system.matrix(), {kind.preconditioner, Norm::true_residual, most, kind.fill_levels}};
+  return {c.system, {kind.preconditioner, Norm::true_residual, most, kind.fill_levels}};
 }
 
-void multiply(benchmark::State& state) {
-  const Case& c = case_of(static_cast<int>(state.range(0)));
+template <class Product>
+void multiply(benchmark::State& state, const Case& c, const Product& product) {
   VectorX y = c.x;
   for (auto _ : state) {
-    c.system.matrix().multiply(c.system.rhs().data(), y.data());
+    product.multiply(c.system.rhs().data(), y.data());
     benchmark::ClobberMemory();
   }
+}
+
+void with_blocks(benchmark::State& state) {
+  const Case& c = case_of(static_cast<int>(state.range(0)));
+  multiply(state, c, c.system.matrix());
+}
+
+void without_blocks(benchmark::State& state) {
+  const Case& c = case_of(static_cast<int>(state.range(0)));
+  const Rod& rod = c.scene.rods.front();
+  ConstraintProduct product(rod);
+  product.update(rod, c.system.linearization(), 1);
+  multiply(state, c, product);
 }
 
 /// With a preconditioner that is made anew, or kept.
@@ -105,18 +119,25 @@ void for_all(const Visit& visit) {
 std::string at(const std::string& name, int nodes) { return name + "/" + std::to_string(nodes); }
 
 void print_summary(const Medians& median) {
-  std::printf("\nPreconditioners on cubic lattices, per joint [ns]; a solve is to %.0e from zero\n", tolerance);
-  std::printf("%-20s %6s %8s %8s %10s %8s %8s %6s\n", "", "nodes", "joints", "product", "iteration", "set-up", "solve",
-              "its");
+  const auto per_joint = [&](const std::string& name, int nodes) {
+    return median(at(name, nodes)) / case_of(nodes).system.matrix().block_rows() * 1e9;
+  };
+  std::printf("\nProducts on cubic lattices, per joint [ns]\n%6s %8s %12s %14s %8s\n", "nodes", "joints", "with blocks",
+              "without blocks", "ratio");
+  for (const int nodes : product_sizes) {
+    const double with = per_joint("with_blocks", nodes), without = per_joint("without_blocks", nodes);
+    std::printf("%4d^3 %8d %12.1f %14.1f %8.2f\n", nodes, case_of(nodes).system.matrix().block_rows(), with, without,
+                without / with);
+  }
+  std::printf("\nPreconditioners, per joint [ns]; a solve is to %.0e from zero\n", tolerance);
+  std::printf("%-20s %6s %10s %8s %8s %6s\n", "", "nodes", "iteration", "set-up", "solve", "its");
   for_all([&](const Kind& kind, int nodes) {
-    Case& c = case_of(nodes);
-    const int joints = c.system.matrix().block_rows();
-    const auto per_joint = [&](const std::string& name) { return median(at(name, nodes)) / joints * 1e9; };
     const std::string name = kind.name;
-    const double kept = per_joint("kept " + name);
-    ConjugateGradient cg = cg_of(kind, c, 0);
-    std::printf("%-20s %4d^3 %8d %8.1f %10.1f %8.1f %8.0f %6d\n", kind.name, nodes, joints, per_joint("multiply"),
-                kept / iterations, per_joint("anew " + name) - kept, per_joint("solve " + name), solve_once(c, cg));
+    const double kept = per_joint("kept " + name, nodes);
+    ConjugateGradient cg = cg_of(kind, case_of(nodes), 0);
+    std::printf("%-20s %4d^3 %10.1f %8.1f %8.0f %6d\n", kind.name, nodes, kept / iterations,
+                per_joint("anew " + name, nodes) - kept, per_joint("solve " + name, nodes),
+                solve_once(case_of(nodes), cg));
   });
 }
 
@@ -124,8 +145,9 @@ void print_summary(const Medians& median) {
 
 int main(int argc, char** argv) {
   const PetscSession petsc;
-  for (const int nodes : sizes)
-    benchmark::RegisterBenchmark("multiply", multiply)->Arg(nodes)->Unit(benchmark::kNanosecond);
+  for (const auto& [name, function] : {std::pair{"with_blocks", with_blocks}, {"without_blocks", without_blocks}})
+    for (const int nodes : product_sizes)
+      benchmark::RegisterBenchmark(name, function)->Arg(nodes)->Unit(benchmark::kNanosecond);
   for_all([](const Kind& kind, int nodes) {
     const std::string name = kind.name;
     const auto add = [&](const std::string& prefix, const auto& function) {

@@ -1,0 +1,52 @@
+// y = A x without A: y = J (M^-1 (J^T x)) + alpha~ x, from the turns of joints and the arms of their segments.
+//
+// A joint's J is known by d, its half turn H, the arms and 1/l (linearization.hpp), some twenty numbers where A has
+// four or five blocks of 36 a row: where those do not stay in the processor's near caches, products wait for memory.
+// Both passes over the joints work on as many at once as a register has lanes; impulses and motions of segments, which
+// several joints share, stand one after the other. Equal to BlockMatrix::multiply() but for rounding. Allocates nothing
+// after construction; a scratch array makes two products at once on one object a race.
+#pragma once
+
+#include <vector>
+
+#include "solver/rod/linearization.hpp"
+
+namespace rodsweep {
+
+class ConstraintProduct {
+ public:
+  /// From so many blocks of A on, a chain of 200 joints or a lattice of 160, A is left alone
+  /// (tests/bench/bench_preconditioners.cpp).
+  static constexpr int least_blocks = 600;
+
+  explicit ConstraintProduct(const Rod& rod);
+
+  /// Of the rod's positions, at which `linearization` was evaluated, and the mobilities that its segments have.
+  void update(const Rod& rod, const Linearization& linearization, double inverse_dt2);
+
+  /// `x` and `y` hold six doubles per joint and don't overlap.
+  void multiply(const double* x, double* y) const;
+
+ private:
+  /// As many joints as a register has lanes.
+  struct Group {
+    JointTurn<Lane> turn;
+    Triple<Lane> arm_a, arm_b;  ///< over l
+    Lane inverse_length;
+
+    JointShape<Lane> shape() const;
+  };
+  struct Ends {
+    int a, b;
+  };
+  void find_impulses(const double* x) const;
+  void find_changes(const double* x, double* y) const;
+
+  std::vector<Group> groups_;
+  std::vector<Ends> ends_;         ///< segments of every joint
+  std::vector<Lane8> mobility_;    ///< M^-1 of every segment, zero where it is static
+  VectorX softness_;               ///< alpha~
+  mutable std::vector<Lane8> at_;  ///< impulses, then motions, of every segment
+};
+
+}  // namespace rodsweep
