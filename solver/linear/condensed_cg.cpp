@@ -56,7 +56,7 @@ struct CondensedCg::Impl {
     petsc_check(PCShellSetContext(pc, this), "PCShellSetContext");
     petsc_check(PCShellSetApply(pc, apply), "PCShellSetApply");
     petsc_check(KSPSetOperators(ksp, product, product), "KSPSetOperators");
-    petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, max_iterations), "KSPSetTolerances");
+    petsc_check(KSPSetTolerances(ksp, 0, 0, PETSC_DEFAULT, max_iterations - 1), "KSPSetTolerances");
     petsc_check(KSPSetConvergenceTest(ksp, test, this, nullptr), "KSPSetConvergenceTest");
   }
   ~Impl() {
@@ -86,10 +86,11 @@ struct CondensedCg::Impl {
     return 0;
   }
 
-  void refresh() {
-    if (!std::exchange(stale, false)) return;
-    positive = condensation.assemble(rod, system.linearization(), system.dt());
-    positive &= preconditioner->set_up(op.a);
+  /// The system as it is, the preconditioner when it is to be made anew. False where either is not positive definite.
+  bool refresh() {
+    const bool condensed = condensation.assemble(rod, system.linearization(), system.dt());
+    if (std::exchange(stale, false)) positive = preconditioner->set_up(op.a);
+    return condensed && positive;
   }
 };
 
@@ -120,8 +121,7 @@ CgReport CondensedCg::solve(const VectorX& b, VectorX& x, const CgStart& start, 
   if (!std::isfinite(first)) return {SolveOutcome::not_a_number, 0, report.products};
   if (first <= s.goal) return report;
 
-  s.refresh();
-  if (!s.positive) return {SolveOutcome::indefinite, 0, report.products};
+  if (!s.refresh()) return {SolveOutcome::indefinite, 0, report.products};
   s.condensation.condense(s.residual, s.g);
   report.iterations = 1;
   if (!s.ksp) {

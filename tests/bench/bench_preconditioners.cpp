@@ -1,5 +1,6 @@
 // What CG costs on cubic lattices, per joint: a product with and without the blocks of the matrix, an iteration with
-// every preconditioner, its set-up; and a whole solve from zero, set-up included, with its iterations. Google Benchmark
+// every preconditioner, its set-up (an iteration of a condensed system counts what every solve of it does first); and a
+// whole solve from zero, set-up included, with its iterations. Google Benchmark
 // times the cases; at the end a table sets their medians beside each other, as measured in this run.
 #include <benchmark/benchmark.h>
 
@@ -8,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/cg_solver.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/linear/petsc_session.hpp"
 #include "solver/scene/scenes.hpp"
@@ -35,6 +36,8 @@ constexpr Kind kinds[] = {{"jacobi", Preconditioner::jacobi, 0},
                           {"block_icc 0", Preconditioner::block_icc, 0},
                           {"block_icc 1", Preconditioner::block_icc, 1},
                           {"block_icc 3", Preconditioner::block_icc, 3},
+                          {"condensed 1", Preconditioner::condensed, 1},
+                          {"condensed 3", Preconditioner::condensed, 3},
                           {"cholesky", Preconditioner::cholesky, 0}};
 
 struct Case {
@@ -62,8 +65,8 @@ Case& case_of(int nodes) {
   return *found;
 }
 
-ConjugateGradient cg_of(const Kind& kind, const Case& c, int most) {
-  return {c.system, {kind.preconditioner, Norm::true_residual, most, kind.fill_levels}};
+std::unique_ptr<CgSolver> cg_of(const Kind& kind, const Case& c, int most) {
+  return make_cg(c.scene.rods.front(), c.system, {kind.preconditioner, Norm::true_residual, most, kind.fill_levels});
 }
 
 template <class Product>
@@ -91,22 +94,22 @@ void without_blocks(benchmark::State& state) {
 /// With a preconditioner that is made anew, or kept.
 void iterate(benchmark::State& state, const Kind& kind, bool anew) {
   Case& c = case_of(static_cast<int>(state.range(0)));
-  ConjugateGradient cg = cg_of(kind, c, iterations);
+  const std::unique_ptr<CgSolver> cg = cg_of(kind, c, iterations);
   for (auto _ : state) {
-    if (anew) cg.matrix_changed();
-    if (cg.solve(c.system.rhs(), c.x, false, 0, 1).iterations != iterations) state.SkipWithError("CG ended early");
+    if (anew) cg->matrix_changed();
+    if (cg->solve(c.system.rhs(), c.x, false, 0, 1).iterations != iterations) state.SkipWithError("CG ended early");
   }
 }
 
-int solve_once(Case& c, ConjugateGradient& cg) {
+int solve_once(Case& c, CgSolver& cg) {
   cg.matrix_changed();
   return cg.solve(c.system.rhs(), c.x, false, tolerance, c.system.rhs().norm()).iterations;
 }
 
 void solve(benchmark::State& state, const Kind& kind) {
   Case& c = case_of(static_cast<int>(state.range(0)));
-  ConjugateGradient cg = cg_of(kind, c, 0);
-  for (auto _ : state) benchmark::DoNotOptimize(solve_once(c, cg));
+  const std::unique_ptr<CgSolver> cg = cg_of(kind, c, 0);
+  for (auto _ : state) benchmark::DoNotOptimize(solve_once(c, *cg));
 }
 
 template <class Visit>
@@ -134,10 +137,10 @@ void print_summary(const Medians& median) {
   for_all([&](const Kind& kind, int nodes) {
     const std::string name = kind.name;
     const double kept = per_joint("kept " + name, nodes);
-    ConjugateGradient cg = cg_of(kind, case_of(nodes), 0);
+    const std::unique_ptr<CgSolver> cg = cg_of(kind, case_of(nodes), 0);
     std::printf("%-20s %4d^3 %10.1f %8.1f %8.0f %6d\n", kind.name, nodes, kept / iterations,
                 per_joint("anew " + name, nodes) - kept, per_joint("solve " + name, nodes),
-                solve_once(case_of(nodes), cg));
+                solve_once(case_of(nodes), *cg));
   });
 }
 
