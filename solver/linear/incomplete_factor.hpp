@@ -3,8 +3,9 @@
 // Elimination couples all later neighbours of a block row; a coupling that A lacks is kept where its level of fill, the
 // least sum of the levels of the two couplings that make it and one, is at most `levels` (Saad 2003, Iterative Methods
 // for Sparse Linear Systems, 10.3.3). At level 0 none is kept; where elimination couples nothing anew, as on chains and
-// trees from their leaves on, P is A at every level. Where joints close loops the order decides: reverse Cuthill-McKee
-// (breadth_first_order() of elimination_order.hpp) leaves a fifth to a half of the iterations of the joints' own order.
+// trees from their leaves on, P is A at every level. Where joints close loops the order decides: in reverse
+// Cuthill-McKee (breadth_first_order() of elimination_order.hpp) a level of fill mostly leaves a quarter to half of the
+// iterations that it leaves in the joints' own order (lattices and nets; on stiff ones it may leave more).
 //
 // P need not be positive definite though A is. Then A's diagonal is raised by a share of itself, the least of 1e-4,
 // 4e-4, 1.6e-3, ... that helps (Manteuffel 1980, Math. Comp. 34); a set-up costs as many attempts, and a stiff system
