@@ -68,6 +68,14 @@ Edges net(int rows, int columns) {
   return out;
 }
 
+Edges random_couplings(int rows, int count, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_int_distribution<int> any(0, rows - 1);
+  Edges couplings;
+  for (int i = 0; i < count; ++i) couplings.emplace_back(any(engine), any(engine));
+  return couplings;
+}
+
 int segments_of(const Edges& edges) {
   int most = 0;
   for (const auto& [a, b] : edges) most = std::max({most, a, b});

@@ -35,6 +35,8 @@ Edges tree(int depth, int branching);  ///< segment 0 the root, children numbere
 Edges ring(int segments);
 Edges net(int rows, int columns);
 int segments_of(const Edges& edges);
+/// So many pairs of rows, any of them repeated or of a row with itself.
+Edges random_couplings(int rows, int count, unsigned seed);
 
 /// Random everything: poses, arms, rest rotations, sizes, compliances, multipliers. Its constraints are far from zero.
 Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsigned seed);

@@ -36,14 +36,6 @@ std::vector<std::set<int>> later_neighbours(const BlockMatrix& pattern, const st
   return later;
 }
 
-Edges random_couplings(int rows, int count, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::uniform_int_distribution<int> any(0, rows - 1);
-  Edges couplings;
-  for (int i = 0; i < count; ++i) couplings.emplace_back(any(engine), any(engine));
-  return couplings;
-}
-
 Lattice cubic(int nodes, int segments) {
   Lattice lattice;
   lattice.nodes_x = nodes;
@@ -56,7 +48,7 @@ BlockMatrix system_of(const SceneSpec& scene) { return LinearSystem(build_scene(
 TEST_CASE("parents and counts of an elimination tree are those of an elimination, whatever the graph and order") {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const int rows = 1 + static_cast<int>(seed);
-    const BlockMatrix pattern = test::random_matrix(random_couplings(rows, 2 * rows, seed), rows, seed);
+    const BlockMatrix pattern = test::random_matrix(test::random_couplings(rows, 2 * rows, seed), rows, seed);
     const EliminationTree tree = elimination_tree(pattern, shuffled(rows, seed + 1));
     const std::vector<std::set<int>> later = later_neighbours(pattern, tree.row);
     REQUIRE(tree.columns() == rows);

@@ -26,14 +26,6 @@ std::vector<int> in_order(int rows) {
   return order;
 }
 
-Edges random_couplings(int rows, int count, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::uniform_int_distribution<int> any(0, rows - 1);
-  Edges couplings;
-  for (int i = 0; i < count; ++i) couplings.emplace_back(any(engine), any(engine));
-  return couplings;
-}
-
 /// All rows from `first` to `last` coupled to each other.
 void couple_all(int first, int last, Edges& couplings) {
   for (int i = first; i < last; ++i)
@@ -52,7 +44,7 @@ double error_of(MultifrontalFactor& factor, const BlockMatrix& a, unsigned seed)
 TEST_CASE("fronts solve as a dense Cholesky does, whatever the graph and order") {
   for (unsigned seed = 0; seed < 30; ++seed) {
     const int rows = 1 + static_cast<int>(seed);
-    const BlockMatrix a = test::random_matrix(random_couplings(rows, 3 * rows / 2, seed), rows, seed);
+    const BlockMatrix a = test::random_matrix(test::random_couplings(rows, 3 * rows / 2, seed), rows, seed);
     for (const std::vector<int>& order : {in_order(rows), minimum_degree_order(a)}) {
       MultifrontalFactor factor = in_fronts(a, order);
       REQUIRE(factor.factorise(a));
@@ -108,7 +100,7 @@ TEST_CASE("systems of lattices and nets are solved to rounding, with the same bi
 }
 
 TEST_CASE("what is not positive definite is refused, wherever its bad pivot is, and forgotten by the next matrix") {
-  const BlockMatrix good = test::random_matrix(random_couplings(24, 60, 1), 24, 1);
+  const BlockMatrix good = test::random_matrix(test::random_couplings(24, 60, 1), 24, 1);
   MultifrontalFactor factor = in_fronts(good, minimum_degree_order(good));
   for (int row = 0; row < good.block_rows(); ++row) {
     BlockMatrix bad = good;
