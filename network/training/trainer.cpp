@@ -118,7 +118,8 @@ std::vector<double> Trainer::losses(const std::vector<Example>& examples,
 double Trainer::evaluate(const std::vector<const Example*>& examples, Workspace& with, bool with_gradient) const {
   const Batch<float> batch = make_batch<float>(examples);
   const bool moves = net_.settings().moves;
-  net_.forward(batch.topology, batch.nodes, batch.edges, with.tape, with.y, moves ? &with.y_nodes : nullptr);
+  net_.forward(batch.topology, batch.nodes, batch.edges, with.tape, with.y, moves ? &with.y_nodes : nullptr,
+               &batch.systems);
   double loss = 0;
   if (settings_.loss == LossKind::mse) {
     loss = mse_loss<float>(with.y, batch.edge_target, edge_entries_, with_gradient ? &with.dy : nullptr);
@@ -132,7 +133,7 @@ double Trainer::evaluate(const std::vector<const Example*>& examples, Workspace&
   }
   if (with_gradient)
     net_.backward(batch.topology, batch.nodes, batch.edges, with.tape, with.dy, moves ? &with.dy_nodes : nullptr,
-                  with.gradient);
+                  with.gradient, &batch.systems);
   return loss;
 }
 

@@ -91,6 +91,12 @@ Key network_key() {
                             {"gated", "linear"})
                      .defaults_to("gated")
                      .only({"sweeps"}),
+                 choice_key("couplings",
+                            "factors: of which couplings of joints they are, those along the tree, or all, as loops of "
+                            "nets and lattices want it",
+                            {"tree", "all"})
+                     .defaults_to("tree")
+                     .only({"factors"}),
                  integer_key("steps", "message_passing: hops over the graph")
                      .from(1, 100)
                      .defaults_to(6)

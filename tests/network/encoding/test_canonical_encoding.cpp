@@ -34,6 +34,12 @@ CopingNetSettings settings_of(Processor processor, Recurrence recurrence = Recur
   return settings;
 }
 
+CopingNetSettings of_all_couplings() {
+  CopingNetSettings settings = settings_of(Processor::factors);
+  settings.couplings = Couplings::all;
+  return settings;
+}
+
 /// What a network with random weights leaves of each system's error, in the energy norm, over the error of zero.
 std::vector<double> left(Scene scene, const CopingNetSettings& settings) {
   CopingNetGuess guess(test::random_model(settings), scene, 0.02, 3);
@@ -52,12 +58,18 @@ std::vector<double> left(Scene scene, const CopingNetSettings& settings) {
 
 TEST_CASE("to a network with canonical frames turned, mirrored and rolled scenes are one") {
   const CopingNetSettings settings = GENERATE(settings_of(Processor::sweeps), settings_of(Processor::factors),
-                                              settings_of(Processor::sweeps, Recurrence::linear));
+                                              of_all_couplings(), settings_of(Processor::sweeps, Recurrence::linear));
   for (const test::TurnedCase& each : test::turned_cases()) {
     if (std::string(each.name) == "ring") continue;  // its residual has neither an axis nor a hand but by rounding
+    const bool lattice = std::string(each.name) == "lattice";
+    if (lattice && !has_all_couplings(settings)) continue;  // whether they answer where loops are cut, rounding decides
     INFO(each.name);
     const std::vector<double> original = left(each.scene, settings);
-    std::vector<Scene> images{test::mirrored(each.scene), rolled(each.scene), rolled(test::mirrored(each.scene))};
+    std::vector<Scene> images{test::mirrored(each.scene)};
+    if (!lattice) {  // rolled, it is another: joints of crossings measure by their frames
+      images.push_back(rolled(each.scene));
+      images.push_back(rolled(test::mirrored(each.scene)));
+    }
     for (const test::RigidMotion& motion : test::motions) images.push_back(moved(each.scene, motion));
     for (const Scene& image : images) {
       const std::vector<double> same = left(image, settings);
