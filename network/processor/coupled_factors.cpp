@@ -95,7 +95,7 @@ CoupledFactors<T>::CoupledFactors(Parameters<T>& parameters, int latent, WeightS
 }
 
 template <class T>
-void CoupledFactors<T>::forward(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& t, Tensor<T>& y) const {
+void CoupledFactors<T>::predict(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& t) const {
   const Eigen::Index n = systems.diagonal.cols(), h = latent_;
   apply<T>(message_, p, systems.coupling, t.before_m, t.m);
   t.x.setZero(own_features + 4 * h, n);
@@ -116,6 +116,11 @@ void CoupledFactors<T>::forward(const Parameters<T>& p, const ScaledSystem<T>& s
   factors_.forward(p, t.g, t.outputs);
   t.factors = t.outputs;
   for (Eigen::Index k = 0; k < n; ++k) square(t.outputs.col(k).data(), t.factors.col(k).data());
+}
+
+template <class T>
+void CoupledFactors<T>::forward(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& t, Tensor<T>& y) const {
+  predict(p, systems, t);
   t.passes.forward(systems, t.factors, systems.residual);
   y = t.passes.y;
 }
@@ -123,9 +128,16 @@ void CoupledFactors<T>::forward(const Parameters<T>& p, const ScaledSystem<T>& s
 template <class T>
 void CoupledFactors<T>::backward(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& t,
                                  const TensorIn<T>& dy, Parameters<T>& gradient) const {
-  const Eigen::Index n = systems.diagonal.cols(), h = latent_;
-  Tensor<T> d_factors, d, d_sums;
+  Tensor<T> d_factors;
   t.passes.backward(systems, t.factors, dy, d_factors);
+  learn(p, systems, t, d_factors, gradient);
+}
+
+template <class T>
+void CoupledFactors<T>::learn(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& t,
+                              const TensorIn<T>& d_factors, Parameters<T>& gradient) const {
+  const Eigen::Index n = systems.diagonal.cols(), h = latent_;
+  Tensor<T> d, d_sums;
   Tensor<T> d_outputs = d_factors;
   for (Eigen::Index k = 0; k < n; ++k)
     square_back(t.outputs.col(k).data(), d_factors.col(k).data(), d_outputs.col(k).data());

@@ -31,6 +31,12 @@ class CoupledFactors {
   CoupledFactors() = default;
   CoupledFactors(Parameters<T>& parameters, int latent, WeightSource& source);
 
+  /// Sets tape.factors [93, places] of the systems' matrices.
+  void predict(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& tape) const;
+  /// Adds to `gradient` from the derivatives by them.
+  void learn(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& tape, const TensorIn<T>& d_factors,
+             Parameters<T>& gradient) const;
+
   /// The answer [6, places] to the systems' residuals.
   void forward(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& tape, Tensor<T>& y) const;
   /// Adds to `gradient`; inputs are data, so nothing flows to the systems.

@@ -21,7 +21,8 @@ Key training() {
                             "that the guess leaves, or what is left of it after a few steps of CG",
                             {"mse", "energy", "in_the_loop"})
                      .defaults_to("energy"),
-                 integer_key("cg_steps", "steps of CG before the error is measured")
+                 integer_key("cg_steps",
+                             "steps of CG before the error is measured; of factors of all couplings, corrections")
                      .from(1, 100)
                      .defaults_to(4)
                      .only({"in_the_loop"}),

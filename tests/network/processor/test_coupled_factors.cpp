@@ -7,6 +7,7 @@
 
 #include "network/encoding/feature_encoder.hpp"
 #include "network/processor/coupled_inference.hpp"
+#include "network/training/correction_loss.hpp"
 #include "network/training/example.hpp"
 #include "solver/scene/scenes.hpp"
 #include "tests/network/gradient_check.hpp"
@@ -172,6 +173,39 @@ TEST_CASE("the gradients of factors of all couplings are those of central differ
   Parameters<double> gradient = net.weights.zeros();
   net.factors.backward(net.weights, a, net.tape, weights, gradient);
   CHECK(gradient_error(net.weights.values(), gradient.values(), loss) < 1e-6);
+}
+
+TEST_CASE("the gradient of what several corrections leave is that of central differences") {
+  System a = some_systems();
+  a.residual = random_matrix(6, static_cast<int>(a.diagonal.cols()), 7);
+  a.base_energy = a.solution_energy = {1e4, 2e4, 3e4};
+  Net<double> net(3);
+  CorrectionLoss<double> loss(3);
+  const auto value = [&] {
+    net.factors.predict(net.weights, a, net.tape);
+    return loss(a, net.tape.factors, nullptr);
+  };
+  Matrix d_factors;
+  net.factors.predict(net.weights, a, net.tape);
+  loss(a, net.tape.factors, &d_factors);
+  Parameters<double> gradient = net.weights.zeros();
+  net.factors.learn(net.weights, a, net.tape, d_factors, gradient);
+  CHECK(gradient_error(net.weights.values(), gradient.values(), value) < 1e-5);
+}
+
+TEST_CASE("enough corrections leave nothing, and of exact factors one") {
+  const ScaledSystem<float> one = system_of(random_rod(chain(4), {0}, 1));
+  System a = side_by_side<double>({&one});
+  const double energy = a.residual.reshaped().dot(dense(a).ldlt().solve(a.residual.reshaped()));
+  a.base_energy = a.solution_energy = {energy};
+  Parameters<double> weights;
+  WeightSource source(3);
+  const CoupledFactors<double> untrained(weights, 4, source);
+  CoupledFactors<double>::Tape tape;
+  untrained.predict(weights, a, tape);
+  CHECK(CorrectionLoss<double>(1)(a, tape.factors, nullptr) > 0.1);
+  CHECK(CorrectionLoss<double>(30)(a, tape.factors, nullptr) < 1e-3);
+  CHECK(CorrectionLoss<double>(1)(a, factors_of(a, incomplete(a)), nullptr) < 1e-3);
 }
 
 TEST_CASE("answers of all couplings are linear in the residual, symmetric and positive definite") {
