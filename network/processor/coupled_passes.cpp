@@ -34,6 +34,14 @@ void descending(const std::vector<SystemPattern::Coupling>& couplings, Eigen::In
   }
 }
 
+/// On how many sides a row has couplings.
+template <class T>
+int sides_of(const ScaledSystem<T>& a, std::size_t begin, std::size_t end) {
+  int sides = 0;
+  for (std::size_t i = begin; i < end; ++i) sides = std::max(sides, a.couplings[i].side + 1);
+  return sides;
+}
+
 /// B_kj of a coupling.
 template <class T>
 Block<T> b(const ScaledSystem<T>& a, const SystemPattern::Coupling& c) {
@@ -64,10 +72,12 @@ void CoupledPasses<T>::forward(const ScaledSystem<T>& a, const TensorIn<T>& fact
   descending(a.couplings, r.cols(), [&](int k, std::size_t begin, std::size_t end) {
     const Column<T> state = column(&h(0, k));
     if (begin == end || !carried<T>(state)) return;
-    const Column<T> w[2] = {transposed_times(t<T>(factors, k, 0), state), transposed_times(t<T>(factors, k, 1), state)};
+    const int sides = sides_of(a, begin, end);
+    Column<T> w[2] = {};
+    for (int side = 0; side < sides; ++side) w[side] = folded_times(t<T>(factors, k, side), state);
     for (std::size_t i = begin; i < end; ++i) {
       const SystemPattern::Coupling& c = a.couplings[i];
-      add<T>(-transposed_times(b(a, c), w[c.side]), &h(0, c.column));
+      add<T>(-folded_times(b(a, c), w[c.side]), &h(0, c.column));
     }
   });
   v.setZero(12, r.cols());
@@ -79,7 +89,7 @@ void CoupledPasses<T>::forward(const ScaledSystem<T>& a, const TensorIn<T>& fact
       if (const Column<T> state = column(&y(0, c.column)); carried<T>(state)) sums[c.side] -= times(b(a, c), state);
     }
     add<T>(times(n<T>(factors, k), column(&h(0, k))), &y(0, k));
-    for (int side = 0; side < 2 && begin != end; ++side) {
+    for (int side = 0; side < sides_of(a, begin, end); ++side) {
       add<T>(sums[side], &v(6 * side, k));
       add<T>(times(t<T>(factors, k, side), sums[side]), &y(0, k));
     }
@@ -97,13 +107,13 @@ void CoupledPasses<T>::backward(const ScaledSystem<T>& a, const TensorIn<T>& fac
     add_derivatives<T>(dk, column(&h(0, k)), &d_factors(0, k));
     if (begin == end) return;
     Column<T> dv[2];
-    for (int side = 0; side < 2; ++side) {
+    for (int side = 0; side < sides_of(a, begin, end); ++side) {
       add_outer<T>(dk, column(&v(6 * side, k)), d_factors, k, side);
-      dv[side] = transposed_times(t<T>(factors, k, side), dk);
+      dv[side] = folded_times(t<T>(factors, k, side), dk);
     }
     for (std::size_t i = begin; i < end; ++i) {
       const SystemPattern::Coupling& c = a.couplings[i];
-      if (carried<T>(column(&y(0, c.column)))) add<T>(-transposed_times(b(a, c), dv[c.side]), &d(0, c.column));
+      if (carried<T>(column(&y(0, c.column)))) add<T>(-folded_times(b(a, c), dv[c.side]), &d(0, c.column));
     }
   });
   ascending(a.couplings, dy.cols(), [&](int k, std::size_t begin, std::size_t end) {
@@ -114,7 +124,7 @@ void CoupledPasses<T>::backward(const ScaledSystem<T>& a, const TensorIn<T>& fac
       const SystemPattern::Coupling& c = a.couplings[i];
       dw[c.side] -= times(b(a, c), column(&dh(0, c.column)));
     }
-    for (int side = 0; side < 2; ++side) {
+    for (int side = 0; side < sides_of(a, begin, end); ++side) {
       add_outer<T>(state, dw[side], d_factors, k, side);
       add<T>(times(t<T>(factors, k, side), dw[side]), &dh(0, k));
     }
