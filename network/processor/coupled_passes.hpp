@@ -10,7 +10,7 @@
 // Block IC(0) of this order is among these. Where joints share a segment all of them are coupled, B_kj = J_k W J_j^T
 // with the segment's inverse mass W, and eliminating another joint of it takes something from W alone: what IC(0) has
 // in the place of B_kj is J_k W' J_j^T, a matrix of k and s times B_kj. Without that, T_ks = N_k = S_k^-1 (D-ILU:
-// Barrett et al. 1994, section 3.4.3), pivots are indefinite wherever four joints meet in a segment.
+// Barrett et al. 1994, section 3.4.3), pivots of lattices are indefinite.
 //
 // Factors are N_k's lower triangle by columns (21 entries), T_k0 and T_k1 by columns (36 each). A state longer than
 // `longest_state` is not carried on, since a product of many T may grow without bound while they are learned.
