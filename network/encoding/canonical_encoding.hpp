@@ -18,6 +18,10 @@ class CanonicalEncoding {
   void encode(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
               Eigen::Ref<Tensor<float>> features);
 
+  /// Finds the frames alone.
+  void find(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual) {
+    frames_.find(pattern, a, residual);
+  }
   const CanonicalFrames& frames() const { return frames_; }
 
   /// d of a network's answer d^ for a place, in the joint's frame, or back, of the system last encoded.

@@ -18,6 +18,10 @@ enum class Recurrence {
   linear  ///< in the state (network/layers/linear_recurrence.hpp): cheaper
 };
 
+/// Which couplings of the matrix factors have: those of the forest of joints (network/processor/factor_sweeps.hpp), or
+/// all (network/processor/coupled_factors.hpp).
+enum class Couplings { tree, all };
+
 /// The guess that the network corrects: none (zero), quadratic extrapolation in time, least squares of the last
 /// `base_size` right-hand sides, or projection onto the last `base_size` solutions.
 enum class BaseGuess { none, extrapolation, regression, pod };
@@ -29,11 +33,17 @@ struct CopingNetSettings {
   int base_size = 10;                         ///< regression, pod
   int latent = 32;                            ///< width of hidden layers and states
   Recurrence recurrence = Recurrence::gated;  ///< sweeps
+  Couplings couplings = Couplings::tree;      ///< factors
   int steps = 6;                              ///< message_passing: hops
   bool globals = false;                       ///< message_passing: with a state of the whole graph
   bool best_length =
       true;            ///< the correction is scaled to what lowers the error most (network/training/energy_loss.hpp)
   bool moves = false;  ///< message_passing: also predicts the segments' moves, for `end_to_end`
 };
+
+/// Whether there are factors of all couplings.
+inline bool has_all_couplings(const CopingNetSettings& settings) {
+  return settings.processor == Processor::factors && settings.couplings == Couplings::all;
+}
 
 }  // namespace rodsweep

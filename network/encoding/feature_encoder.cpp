@@ -54,6 +54,7 @@ void FeatureEncoder::encode(const Rod& rod, const LinearSystem& system, int newt
     system_->encode(system.matrix(), residual, edges, system_unit_);
     return;
   }
+  if (has_all_couplings(settings_)) return canonical_->find(pattern_, system.matrix(), residual);
   if (canonical_) return canonical_->encode(pattern_, system.matrix(), residual, edges);
   graph_->encode(rod, system, newton, dt_c, nodes, by_joint_);
   const Eigen::Index own = by_joint_.rows();

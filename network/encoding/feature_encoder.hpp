@@ -6,6 +6,8 @@
 //                   all normalised; unit: how much each component of x - x_base deviates in the training set
 //   system          features of the scaled system A^ d^ = r^ alone (system_encoding.hpp), which need no normalisation;
 //                   unit: the scale of d^
+//   canonical       the same in canonical frames (canonical_encoding.hpp); for factors of all couplings, which look at
+//                   the matrix themselves, these frames alone and no features
 // Edge features are in the places of the rod's topology.
 #pragma once
 

@@ -1,5 +1,7 @@
 #include "network/encoding/scaled_system.hpp"
 
+#include <algorithm>
+
 namespace rodsweep {
 namespace {
 
@@ -7,6 +9,26 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 template <class T>
 using Block = Eigen::Map<const Eigen::Matrix<T, 6, 6>>;
+
+/// Joints on one segment are coupled all among themselves.
+void put_sides(const std::vector<int>& place, const BlockMatrix& a, SystemPattern& pattern) {
+  std::vector<int> earliest(pattern.joint.size());  // joint with which each place's joint is coupled
+  for (std::size_t i = 0; i < earliest.size(); ++i) {
+    earliest[i] = -1;
+    for (int k = a.row_begin(pattern.joint[i]); k < a.row_end(pattern.joint[i]); ++k)
+      if (const int joint = a.column(k);
+          joint != pattern.joint[i] && (earliest[i] < 0 || place[at(joint)] < place[at(earliest[i])]))
+        earliest[i] = joint;
+  }
+  const auto side = [&](int of, int other) {
+    const int joint = pattern.joint[at(other)];
+    return joint == earliest[at(of)] || a.find(earliest[at(of)], joint) >= 0 ? 0 : 1;
+  };
+  for (SystemPattern::Coupling& c : pattern.couplings) {
+    c.side = side(c.row, c.column);
+    c.column_side = side(c.column, c.row);
+  }
+}
 
 }  // namespace
 
@@ -26,6 +48,7 @@ SystemPattern system_pattern(const JointForest& forest, const BlockMatrix& a) {
       out.couplings.push_back({i, column, k});
     }
   }
+  put_sides(place, a, out);
   return out;
 }
 
@@ -72,9 +95,12 @@ ScaledSystem<T> side_by_side(const std::vector<const ScaledSystem<float>*>& syst
     out.diagonal.middleCols(place, one->diagonal.cols()) = one->diagonal.cast<T>();
     out.residual.middleCols(place, one->diagonal.cols()) = one->residual.cast<T>();
     out.coupling.middleCols(coupling, one->coupling.cols()) = one->coupling.cast<T>();
-    for (const SystemPattern::Coupling& c : one->couplings)
-      out.couplings.push_back(
-          {c.row + static_cast<int>(place), c.column + static_cast<int>(place), c.block + static_cast<int>(coupling)});
+    for (SystemPattern::Coupling c : one->couplings) {
+      c.row += static_cast<int>(place);
+      c.column += static_cast<int>(place);
+      c.block += static_cast<int>(coupling);
+      out.couplings.push_back(c);
+    }
     place += one->diagonal.cols();
     coupling += one->coupling.cols();
     out.first_place.push_back(static_cast<int>(place));

@@ -19,8 +19,10 @@ namespace rodsweep {
 /// Which blocks of a rod's A are where; the same for all systems of the rod.
 struct SystemPattern {
   struct Coupling {
-    int row, column;  ///< places, row > column
-    int block;        ///< in the BlockMatrix
+    int row, column;                ///< places, row > column
+    int block;                      ///< in the BlockMatrix
+    int side = 0, column_side = 0;  ///< by which of the row's two segments, and of the column's: 0: by that which is
+                                    ///< shared with the earliest place, else 1
   };
   std::vector<int> joint;           ///< of each place
   std::vector<int> diagonal;        ///< block of each place

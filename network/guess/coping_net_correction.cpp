@@ -24,10 +24,12 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
   if (settings.processor == Processor::sweeps && !is_of_graphs(settings.encoding) &&
       SweepsInference::supports(settings.latent))
     sweeps_ = std::make_unique<SweepsInference>(model_->net.sweeps(), model_->net.parameters(), rod.joint_count());
-  if (settings.processor == Processor::factors)
+  if (has_all_couplings(settings))
+    coupled_ = std::make_unique<CoupledInference>(model_->net.coupled(), model_->net.parameters(), encoder_.pattern());
+  else if (settings.processor == Processor::factors)
     factors_ = std::make_unique<FactorInference>(model_->net.factors(), model_->net.parameters(),
                                                  encoder_.topology().forest, encoder_.pattern());
-  may_harm_ = encoder_.topology().forest.cut && settings.processor != Processor::message_passing;
+  may_harm_ = encoder_.topology().forest.cut && settings.processor != Processor::message_passing && !coupled_;
   if (may_harm_) base_.resize(a.unknowns());
 }
 
@@ -52,7 +54,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
     return true;
   }
   if (factors_serve(at)) {
-    factors_->solve(residual_, d_);
+    solve_with_factors();
   } else {
     run(rod, system, at, dt_c, x, moves != nullptr);
     proposal.renewed = use_.lag_steps > 0;
@@ -101,7 +103,7 @@ bool CopingNetCorrection::factors_serve(const SolvePosition& at) const {
 /// length that is best along it.
 double CopingNetCorrection::correct_again(const LinearSystem& system, double energy, double& length) {
   previous_.swap(d_);
-  factors_->solve(residual_, d_);
+  solve_with_factors();
   d_ -= d_.dot(ad_) / energy * previous_;
   system.multiply(d_.data(), ad_.data());
   energy = d_.dot(ad_);
@@ -117,10 +119,21 @@ void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, const 
     model_->scales.nodes.apply(nodes_);
     model_->scales.edges.apply(edges_);
   }
-  if (!factors_) return answer(with_moves);
-  factors_->factorise(edges_, encoder_.canonical()->frames(), system.matrix());
+  if (coupled_)
+    coupled_->factorise(encoder_.canonical()->frames(), system.matrix());
+  else if (factors_)
+    factors_->factorise(edges_, encoder_.canonical()->frames(), system.matrix());
+  else
+    return answer(with_moves);
   factorised_at_ = at;
-  factors_->solve(residual_, d_);
+  solve_with_factors();
+}
+
+void CopingNetCorrection::solve_with_factors() {
+  if (coupled_)
+    coupled_->solve(residual_, d_);
+  else
+    factors_->solve(residual_, d_);
 }
 
 /// Sets d_ and, on request, y_nodes_ from the features.

@@ -5,8 +5,8 @@
 //
 // and, where the network predicts them, the segments' moves Delta p in their own frames, in metres and radians.
 //
-// Sweeps and factors know nothing of what lies across the cut of a loop: there x_base stays unless the residual falls
-// as well, in the natural norm sqrt(r^T D^-1 r).
+// Sweeps and factors of a tree know nothing of what lies across the cut of a loop: there x_base stays unless the
+// residual falls as well, in the natural norm sqrt(r^T D^-1 r).
 //
 // Factors (network/processor/factor_sweeps.hpp), once predicted, answer to any residual: `corrections` of them are as
 // many steps of conjugate gradients with the factors as preconditioner, of which this is the first. In the frames of
@@ -17,6 +17,7 @@
 #include <optional>
 #include <vector>
 
+#include "network/processor/coupled_inference.hpp"
 #include "network/processor/factor_inference.hpp"
 #include "network/processor/model.hpp"
 #include "network/processor/sweeps_inference.hpp"
@@ -47,6 +48,7 @@ class CopingNetCorrection {
   void run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, const VectorX& x,
            bool with_moves);
   void answer(bool with_moves);
+  void solve_with_factors();
   bool factors_serve(const SolvePosition& at) const;
   double correct_again(const LinearSystem& system, double energy, double& length);
   bool write(std::vector<Lane8>& moves) const;
@@ -58,6 +60,7 @@ class CopingNetCorrection {
   FeatureEncoder encoder_;
   std::unique_ptr<SweepsInference> sweeps_;
   std::unique_ptr<FactorInference> factors_;
+  std::unique_ptr<CoupledInference> coupled_;  ///< of all couplings
   CopingNet<float>::Tape tape_;
   Tensor<float> nodes_, edges_, y_edges_, y_nodes_;
   VectorX residual_, d_, ad_, previous_, base_;

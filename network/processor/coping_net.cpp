@@ -22,7 +22,10 @@ CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) :
     case Processor::factors:
       if (settings.encoding != Encoding::canonical)
         throw std::invalid_argument("CopingNet: factors need the encoding canonical");
-      factors_ = FactorSweeps<T>(parameters_, settings.latent, source);
+      if (settings.couplings == Couplings::all)
+        coupled_ = CoupledFactors<T>(parameters_, settings.latent, source);
+      else
+        factors_ = FactorSweeps<T>(parameters_, settings.latent, source);
       break;
     case Processor::message_passing:
       typename MessagePassing<T>::Sizes sizes;
@@ -39,11 +42,12 @@ CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) :
 
 template <class T>
 void CopingNet<T>::forward(const Topology& topology, const TensorIn<T>& nodes, const TensorIn<T>& edges, Tape& tape,
-                           Tensor<T>& y_edges, Tensor<T>* y_nodes) const {
+                           Tensor<T>& y_edges, Tensor<T>* y_nodes, const ScaledSystem<T>* systems) const {
   if (settings_.processor == Processor::message_passing) {
     messages_.forward(parameters_, topology.graph, nodes, edges, tape.messages, y_edges, y_nodes);
     return;
   }
+  if (has_all_couplings(settings_)) return coupled_.forward(parameters_, *systems, tape.coupled, y_edges);
   const Eigen::Index of_node = nodes.rows(), of_edge = edges.rows();
   tape.ordered.resize(of_edge + 2 * of_node, edges.cols());
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
@@ -63,11 +67,13 @@ void CopingNet<T>::forward(const Topology& topology, const TensorIn<T>& nodes, c
 
 template <class T>
 void CopingNet<T>::backward(const Topology& topology, const TensorIn<T>& nodes, const TensorIn<T>& edges, Tape& tape,
-                            const TensorIn<T>& dy_edges, const Tensor<T>* dy_nodes, Parameters<T>& gradient) const {
+                            const TensorIn<T>& dy_edges, const Tensor<T>* dy_nodes, Parameters<T>& gradient,
+                            const ScaledSystem<T>* systems) const {
   if (settings_.processor == Processor::message_passing) {
     messages_.backward(parameters_, topology.graph, nodes, edges, tape.messages, dy_edges, dy_nodes, gradient);
     return;
   }
+  if (has_all_couplings(settings_)) return coupled_.backward(parameters_, *systems, tape.coupled, dy_edges, gradient);
   tape.dy_ordered.resize(6, edges.cols());
   for (Eigen::Index i = 0; i < edges.cols(); ++i)
     tape.dy_ordered.col(i) = dy_edges.col(topology.forest.order[static_cast<std::size_t>(i)]);

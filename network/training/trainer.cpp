@@ -30,7 +30,9 @@ Trainer::Trainer(CopingNet<float>& net, const std::vector<Example>& examples, co
       sum_(net.parameters().zeros()) {
   const EnergyLoss<float> energy(settings.loss == LossKind::in_the_loop ? settings.cg_steps : 0,
                                  net.settings().best_length);
-  for (int i = 0; i < threads; ++i) workspaces_.push_back({energy, net.parameters().zeros(), {}, {}, {}, {}, {}, {}});
+  for (int i = 0; i < threads; ++i)
+    workspaces_.push_back(
+        {energy, CorrectionLoss<float>(settings.cg_steps), net.parameters().zeros(), {}, {}, {}, {}, {}, {}, {}});
   if (settings.shards < 1 || settings.batch % settings.shards != 0)
     throw std::invalid_argument("Trainer: a batch of " + std::to_string(settings.batch) + " cannot be divided into " +
                                 std::to_string(settings.shards) + " equal shards");
@@ -117,8 +119,17 @@ std::vector<double> Trainer::losses(const std::vector<Example>& examples,
 /// The sum of losses; adds to the workspace's gradient on request.
 double Trainer::evaluate(const std::vector<const Example*>& examples, Workspace& with, bool with_gradient) const {
   const Batch<float> batch = make_batch<float>(examples);
+  if (settings_.loss == LossKind::in_the_loop && has_all_couplings(net_.settings())) {
+    net_.coupled().predict(net_.parameters(), batch.systems, with.tape.coupled);
+    const double left =
+        with.corrections(batch.systems, with.tape.coupled.factors, with_gradient ? &with.d_factors : nullptr);
+    if (with_gradient)
+      net_.coupled().learn(net_.parameters(), batch.systems, with.tape.coupled, with.d_factors, with.gradient);
+    return left;
+  }
   const bool moves = net_.settings().moves;
-  net_.forward(batch.topology, batch.nodes, batch.edges, with.tape, with.y, moves ? &with.y_nodes : nullptr);
+  net_.forward(batch.topology, batch.nodes, batch.edges, with.tape, with.y, moves ? &with.y_nodes : nullptr,
+               &batch.systems);
   double loss = 0;
   if (settings_.loss == LossKind::mse) {
     loss = mse_loss<float>(with.y, batch.edge_target, edge_entries_, with_gradient ? &with.dy : nullptr);
@@ -132,7 +143,7 @@ double Trainer::evaluate(const std::vector<const Example*>& examples, Workspace&
   }
   if (with_gradient)
     net_.backward(batch.topology, batch.nodes, batch.edges, with.tape, with.dy, moves ? &with.dy_nodes : nullptr,
-                  with.gradient);
+                  with.gradient, &batch.systems);
   return loss;
 }
 

@@ -13,6 +13,7 @@
 
 #include "network/processor/coping_net.hpp"
 #include "network/training/adam.hpp"
+#include "network/training/correction_loss.hpp"
 #include "network/training/energy_loss.hpp"
 #include "network/training/example.hpp"
 
@@ -21,7 +22,7 @@ namespace rodsweep {
 enum class LossKind {
   mse,         ///< mean square of the outputs' errors
   energy,      ///< energy norm of what the guess leaves
-  in_the_loop  ///< the same after `cg_steps` steps of CG
+  in_the_loop  ///< the same after `cg_steps` steps of CG; of factors of all couplings, after so many corrections
 };
 
 struct TrainingSettings {
@@ -74,9 +75,10 @@ class Trainer {
   /// What a thread works with.
   struct Workspace {
     EnergyLoss<float> energy;
+    CorrectionLoss<float> corrections;
     Parameters<float> gradient;
     CopingNet<float>::Tape tape;
-    Tensor<float> y, y_nodes, d, dy, dy_nodes;
+    Tensor<float> y, y_nodes, d, dy, dy_nodes, d_factors;
   };
   double evaluate(const std::vector<const Example*>& examples, Workspace& with, bool with_gradient) const;
   void shuffle(std::int64_t epoch);

@@ -17,6 +17,7 @@ const Words<Encoding> encodings{{"deck", Encoding::deck},
 const Words<Processor> processors{
     {"sweeps", Processor::sweeps}, {"factors", Processor::factors}, {"message_passing", Processor::message_passing}};
 const Words<Recurrence> recurrences{{"gated", Recurrence::gated}, {"linear", Recurrence::linear}};
+const Words<Couplings> all_couplings{{"tree", Couplings::tree}, {"all", Couplings::all}};
 const Words<BaseGuess> bases{{"none", BaseGuess::none},
                              {"extrapolation", BaseGuess::extrapolation},
                              {"regression", BaseGuess::regression},
@@ -75,6 +76,7 @@ CopingNetSettings network_settings(const Json& values) {
   settings.base_size = values["base_size"];
   settings.latent = values["latent"];
   settings.recurrence = value_of(recurrences, values.value("recurrence", "gated"));
+  settings.couplings = value_of(all_couplings, values.value("couplings", "tree"));
   settings.steps = values.value("steps", settings.steps);
   settings.globals = values.value("globals", settings.globals);
   settings.best_length = values["best_length"];
@@ -91,6 +93,7 @@ Json network_json(const CopingNetSettings& settings) {
               {"best_length", settings.best_length}};
   if (settings.processor == Processor::sweeps && settings.recurrence != Recurrence::gated)
     values["recurrence"] = word_of(recurrences, settings.recurrence);  // absent in models from before it
+  if (has_all_couplings(settings)) values["couplings"] = word_of(all_couplings, settings.couplings);  // likewise
   if (settings.processor == Processor::message_passing)
     values.update({{"steps", settings.steps}, {"globals", settings.globals}, {"moves", settings.moves}});
   return values;

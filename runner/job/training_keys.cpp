@@ -21,7 +21,8 @@ Key training() {
                             "that the guess leaves, or what is left of it after a few steps of CG",
                             {"mse", "energy", "in_the_loop"})
                      .defaults_to("energy"),
-                 integer_key("cg_steps", "steps of CG before the error is measured")
+                 integer_key("cg_steps",
+                             "steps of CG before the error is measured; of factors of all couplings, corrections")
                      .from(1, 100)
                      .defaults_to(4)
                      .only({"in_the_loop"}),
@@ -91,6 +92,12 @@ Key network_key() {
                             {"gated", "linear"})
                      .defaults_to("gated")
                      .only({"sweeps"}),
+                 choice_key("couplings",
+                            "factors: of which couplings of joints they are, those along the tree, or all, as loops of "
+                            "nets and lattices want it",
+                            {"tree", "all"})
+                     .defaults_to("tree")
+                     .only({"factors"}),
                  integer_key("steps", "message_passing: hops over the graph")
                      .from(1, 100)
                      .defaults_to(6)

@@ -32,6 +32,10 @@ inline std::vector<CopingNetSettings> kinds_of_networks() {
         settings.latent = 16;
         settings.steps = 2;
         out.push_back(settings);
+        if (processor == Processor::factors) {
+          settings.couplings = Couplings::all;
+          out.push_back(settings);
+        }
         if (processor != Processor::sweeps || base != BaseGuess::none) continue;
         settings.recurrence = Recurrence::linear;
         out.push_back(settings);

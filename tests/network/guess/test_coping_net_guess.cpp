@@ -122,7 +122,7 @@ TEST_CASE("where loops are cut a network proposes what lowers the residual, or n
     const Proposal proposal = guess.propose(system, {}, x0);
     proposed += proposal.nonzero;
     CHECK(x0.allFinite());
-    if (settings.processor == Processor::message_passing) continue;  // which sees loops
+    if (settings.processor == Processor::message_passing || has_all_couplings(settings)) continue;  // which see loops
     system.matrix().multiply(x0.data(), residual.data());
     residual = system.rhs() - residual;
     CHECK(jacobi_norm_squared(system.matrix(), residual) <= jacobi_norm_squared(system.matrix(), system.rhs()));
@@ -233,6 +233,7 @@ TEST_CASE("the joints' order does not matter") {
   const int count = rod.joint_count();
   for (int j = 0; j < count; ++j) other.lambda.segment<6>(6 * (count - 1 - j)) = rod.lambda.segment<6>(6 * j);
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
+    if (has_all_couplings(settings)) continue;  // which of two siblings is eliminated first is theirs to say
     const auto model = test::random_model(settings);
     const auto guess_of = [&](const Rod& one) {
       Scene scene;

@@ -1,0 +1,58 @@
+// Learned factors over all couplings of a matrix (coupled_passes.hpp), of every joint at one go.
+//
+//   m_kj = ramp(U vec(B_kj) + u)                                  a message to the row, and one to the column
+//   e_k = ramp(W [a_k; t_k; sums of messages to k] + b)           by sides of k, from earlier places and from later
+//   ones f_k = ramp(W' [e_k; sums over later places i of e_i] + b'),   by sides of k; g_k of f in the same way (C_k,
+//   T_k0, T_k1) = W* g_k + b*,   N_k = C_k C_k^T
+// a_k are the entries of A's diagonal block less one on its diagonal, t_k those of coupling_features(). All blocks are
+// those of a scaled system in canonical frames (network/encoding/canonical_frames.hpp). N is positive definite, and so
+// is the answer's matrix. At first C = 1 and T = 0, which is Jacobi's answer, but for small random weights.
+#pragma once
+
+#include "network/layers/linear.hpp"
+#include "network/processor/coupled_passes.hpp"
+
+namespace rodsweep {
+
+/// t_k of all places, [6, places]: exp(-height_k / 1, 4, 16, 64), with height_k how many couplings lie one behind the
+/// other from k to a place without later ones; a quarter of how many earlier places k is coupled with, and later ones.
+Tensor<float> coupling_features(const std::vector<SystemPattern::Coupling>& couplings, Eigen::Index places);
+
+template <class T>
+class CoupledFactors {
+ public:
+  static constexpr int triangle = 21, coupling_features = 6, own_features = triangle + coupling_features;
+
+  struct Tape {
+    Tensor<T> before_m, m, x, before_e, e, before_f, f, before_g, g, outputs, factors;
+    CoupledPasses<T> passes;
+  };
+
+  CoupledFactors() = default;
+  CoupledFactors(Parameters<T>& parameters, int latent, WeightSource& source);
+
+  /// Sets tape.factors [93, places] of the systems' matrices.
+  void predict(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& tape) const;
+  /// Adds to `gradient` from the derivatives by them.
+  void learn(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& tape, const TensorIn<T>& d_factors,
+             Parameters<T>& gradient) const;
+
+  /// The answer [6, places] to the systems' residuals.
+  void forward(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& tape, Tensor<T>& y) const;
+  /// Adds to `gradient`; inputs are data, so nothing flows to the systems.
+  void backward(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& tape, const TensorIn<T>& dy,
+                Parameters<T>& gradient) const;
+
+  int latent() const { return latent_; }
+  /// What network/processor/coupled_inference.cpp works with.
+  struct Layers {
+    const Linear<T>&message, &encode, &join, &join_again, &factors;
+  };
+  Layers layers() const { return {message_, encode_, join_, join_again_, factors_}; }
+
+ private:
+  int latent_ = 0;
+  Linear<T> message_, encode_, join_, join_again_, factors_;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,35 @@
+// What several corrections with factors of all couplings leave: conjugate gradients with the factors as preconditioner.
+//
+// With F the matrix of network/processor/coupled_passes.hpp and r_0 = r^, E_0 = (x - x_base)^T A^ (x - x_base),
+//   z_i = F r_i,  p_i = z_i + (r_i.z_i / r_i-1.z_i-1) p_i-1,  a_i = r_i.z_i / p_i.A^ p_i,  r_i+1 = r_i - a_i A^ p_i
+//   E_i+1 = E_i - a_i r_i.z_i,   L = sqrt(E_k / x^T A x)
+// What one correction leaves says little of the next: it can be small where F is no preconditioner at all. E_k is the
+// least over all polynomials in F A^, so that, as in energy_loss.hpp, the gradient is exact with both kinds of
+// coefficients held fixed.
+#pragma once
+
+#include "network/processor/coupled_passes.hpp"
+
+namespace rodsweep {
+
+template <class T>
+class CorrectionLoss {
+ public:
+  explicit CorrectionLoss(int corrections) : steps_(static_cast<std::size_t>(corrections)) {}
+
+  /// The sum of L over the systems for factors [93, places]; sets dL / dfactors if it is given.
+  double operator()(const ScaledSystem<T>& systems, const TensorIn<T>& factors, Tensor<T>* d_factors);
+
+ private:
+  struct Step {
+    CoupledPasses<T> answer;
+    Tensor<T> p, ap;
+    std::vector<T> length, kept;  ///< per system: a_i, and how much of p_i-1 is in p_i
+  };
+  void go_back(const ScaledSystem<T>& systems, const TensorIn<T>& factors, Tensor<T> dx, Tensor<T>& d_factors);
+
+  std::vector<Step> steps_;
+  Tensor<T> r_;
+};
+
+}  // namespace rodsweep
