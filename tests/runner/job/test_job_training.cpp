@@ -146,7 +146,8 @@ TEST_CASE("values that do not go together are refused") {
 TEST_CASE("the settings of every kind of network are the same after a round trip") {
   for (const char* text :
        {"{}", R"({"encoding": "physics", "base": "none", "latent": 8, "best_length": false})",
-        R"({"recurrence": "linear"})", R"({"encoding": "canonical", "processor": "factors", "couplings": "all"})", R"({"processor": "message_passing", "steps": 1, "globals": true})"}) {
+        R"({"recurrence": "linear"})", R"({"encoding": "canonical", "processor": "factors", "couplings": "all"})",
+        R"({"processor": "message_passing", "steps": 1, "globals": true})"}) {
     Json values = job_of(with("/network", text, train_job())).values["network"];
     if (values.value("recurrence", "") == "gated") values.erase("recurrence");  // models of before have no word for it
     const Json written = network_json(network_settings(values));
