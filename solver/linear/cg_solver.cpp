@@ -1,5 +1,8 @@
 #include "solver/linear/cg_solver.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "solver/linear/condensed_cg.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
 
@@ -8,6 +11,11 @@ namespace rodsweep {
 std::unique_ptr<CgSolver> make_cg(const Rod& rod, const LinearSystem& system, const CgSettings& settings) {
   if (settings.preconditioner == Preconditioner::condensed) return std::make_unique<CondensedCg>(rod, system, settings);
   return std::make_unique<ConjugateGradient>(system, settings);
+}
+
+int iteration_limit(const CgSettings& settings, int unknowns) {
+  if (settings.max_iterations > 0) return settings.max_iterations;
+  return std::min(10 * unknowns, int{std::numeric_limits<std::int16_t>::max()});
 }
 
 void iterations_to(const std::vector<double>& history, double reference, const std::vector<double>& tolerances,

@@ -27,6 +27,9 @@ struct CgSettings {
   int fill_levels = default_fill_levels;  ///< of block_icc and condensed
 };
 
+/// Of a system with so many unknowns; iterations are stored in 16 bits.
+int iteration_limit(const CgSettings& settings, int unknowns);
+
 /// What a solve starts from.
 struct CgStart {
   bool nonzero = false;               ///< from x; else from zero

@@ -2,13 +2,12 @@
 
 #include <petscksp.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "solver/linear/condensation.hpp"
+#include "solver/linear/ksp_outcome.hpp"
 #include "solver/linear/petsc_check.hpp"
 #include "solver/linear/petsc_operator.hpp"
 #include "solver/linear/petsc_vector.hpp"
@@ -37,9 +36,7 @@ struct CondensedCg::Impl {
         condensation(r),
         preconditioner(block_preconditioner(Preconditioner::block_icc, condensation.matrix(), settings.fill_levels)),
         op{condensation.matrix()},
-        max_iterations(settings.max_iterations > 0
-                           ? settings.max_iterations
-                           : std::min(10 * of.matrix().unknowns(), int{std::numeric_limits<std::int16_t>::max()})),
+        max_iterations(iteration_limit(settings, of.matrix().unknowns())),
         g(VectorX::Zero(op.a.unknowns())),
         d(VectorX::Zero(of.matrix().unknowns())),
         residual(d) {
@@ -139,12 +136,7 @@ CgReport CondensedCg::solve(const VectorX& b, VectorX& x, const CgStart& start, 
   petsc_check(KSPGetIterationNumber(s.ksp, &iterations), "KSPGetIterationNumber");
   petsc_check(KSPGetConvergedReason(s.ksp, &reason), "KSPGetConvergedReason");
   report.iterations += static_cast<int>(iterations);
-  report.outcome = reason > 0                        ? SolveOutcome::converged
-                   : reason == KSP_DIVERGED_ITS      ? SolveOutcome::iteration_limit
-                   : reason == KSP_DIVERGED_NANORINF ? SolveOutcome::not_a_number
-                   : reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC
-                       ? SolveOutcome::indefinite
-                       : SolveOutcome::diverged;
+  report.outcome = outcome_of(reason);
   return report;
 }
 

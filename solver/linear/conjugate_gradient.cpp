@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "solver/linear/ksp_outcome.hpp"
 #include "solver/linear/petsc_check.hpp"
 #include "solver/linear/petsc_operator.hpp"
 #include "solver/linear/petsc_vector.hpp"
@@ -33,18 +34,6 @@ PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReaso
   else if (norm > divergence_limit * target.reference)
     *reason = KSP_DIVERGED_DTOL;
   return 0;
-}
-
-SolveOutcome outcome_of(KSPConvergedReason reason) {
-  switch (reason) {
-    case KSP_CONVERGED_RTOL: return SolveOutcome::converged;
-    case KSP_DIVERGED_ITS: return SolveOutcome::iteration_limit;
-    case KSP_DIVERGED_NANORINF: return SolveOutcome::not_a_number;
-    case KSP_DIVERGED_INDEFINITE_MAT:
-    case KSP_DIVERGED_INDEFINITE_PC:
-    case KSP_DIVERGED_PC_FAILED: return SolveOutcome::indefinite;
-    default: return reason > 0 ? SolveOutcome::converged : SolveOutcome::diverged;
-  }
 }
 
 PCType pc_type(Preconditioner p) {
@@ -121,8 +110,7 @@ struct ConjugateGradient::Impl {
 ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s)
     : a(matrix), op{matrix, without_blocks}, settings(s) {
   const PetscInt n = a.unknowns();
-  if (settings.max_iterations <= 0)
-    settings.max_iterations = std::min(10 * n, int{std::numeric_limits<std::int16_t>::max()});
+  settings.max_iterations = iteration_limit(settings, n);
 
   product = create_operator(op);
   b = create_vector(n);

@@ -1,0 +1,22 @@
+// What PETSc says of the end of a solve, as the outcome that goes to files. Included by sources only.
+#pragma once
+
+#include <petscksp.h>
+
+#include "solver/linear/solve_outcome.hpp"
+
+namespace rodsweep {
+
+inline SolveOutcome outcome_of(KSPConvergedReason reason) {
+  switch (reason) {
+    case KSP_CONVERGED_RTOL: return SolveOutcome::converged;
+    case KSP_DIVERGED_ITS: return SolveOutcome::iteration_limit;
+    case KSP_DIVERGED_NANORINF: return SolveOutcome::not_a_number;
+    case KSP_DIVERGED_INDEFINITE_MAT:
+    case KSP_DIVERGED_INDEFINITE_PC:
+    case KSP_DIVERGED_PC_FAILED: return SolveOutcome::indefinite;
+    default: return reason > 0 ? SolveOutcome::converged : SolveOutcome::diverged;
+  }
+}
+
+}  // namespace rodsweep
