@@ -79,7 +79,7 @@ studies: build
 # The settings of network/pretrained/rods.h5, changed one at a time: what was chosen on validation, and what each costs.
 variants: build
 	@mkdir -p results; $(call study,rods_data)
-	@analysis/results/variants.py $(BUILD)/rodsweep results
+	@analysis/results/variants.py $(BUILD)/rodsweep results rods
 	@$(call study,rods_front)
 	@analysis/results/draw.sh results variants
 

@@ -116,7 +116,17 @@ class Ratios:
     solves: np.ndarray     # [simulation, guess] first Newton iterations; NaN for `all`, which is not stored per task
 
 
-def cg_ratios(file, sims, newton, counted="iterations", norm=""):
+@dataclass(frozen=True)
+class Sums:
+    """Over a simulation: [simulation, guess, tolerance], and what Ratios has of them."""
+    own: np.ndarray
+    zero: np.ndarray
+    unreached: np.ndarray
+    unreached_zero: np.ndarray
+    solves: np.ndarray
+
+
+def cg_sums(file, sims, newton, counted="iterations", norm=""):
     """Of `matvecs` instead of iterations, or of iterations in the `other_norm`; NaN where the file has none of them."""
     suffix = f"_{norm}" if norm else "" if newton == "first" else "_all"
     shape = (file.task_count, len(file.guesses), len(file.tolerances))
@@ -134,11 +144,16 @@ def cg_ratios(file, sims, newton, counted="iterations", norm=""):
     done = file.results("steps_done", tasks)
     if newton == "first" and done is not None:
         steps[tasks] = done[:, None]
-    own, zero = sims.gather(iterations), sims.gather(iterations, file.zero)
-    solves = sims.gather(steps)
-    ratio = np.divide(own, zero, out=np.full(own.shape, np.nan), where=zero > 0)
+    return Sums(sims.gather(iterations), sims.gather(iterations, file.zero), sims.gather(unreached),
+                sims.gather(unreached, file.zero), sims.gather(steps))
+
+
+def cg_ratios(file, sims, newton, counted="iterations", norm=""):
+    sums = cg_sums(file, sims, newton, counted, norm)
+    own, solves = sums.own, sums.solves
+    ratio = np.divide(own, sums.zero, out=np.full(own.shape, np.nan), where=sums.zero > 0)
     per_solve = np.divide(own, solves[..., None], out=np.full(own.shape, np.nan), where=solves[..., None] > 0)
-    return Ratios(ratio, per_solve, sims.gather(unreached), sims.gather(unreached, file.zero), solves)
+    return Ratios(ratio, per_solve, sums.unreached, sums.unreached_zero, solves)
 
 
 @dataclass(frozen=True)

@@ -199,17 +199,32 @@ def direct_speedups(by_newton, newton, zero):
 
 def direct_times(file, sims):
     """{"assemble_us", "direct_us"}: [simulation, 1], mean time per solve over all Newton iterations."""
-    tasks, paths = sims.tasks(), COLUMNS[:2]
-    sums, solves = np.zeros((2, file.task_count)), np.zeros(file.task_count)
+    mean_us, _ = _direct_means(file, sims.tasks())
+    return {name: mean_us[k][sims.any_task][:, None] for k, name in enumerate(("assemble_us", "direct_us"))}
+
+
+def direct_step_us(file, sims):
+    """[simulation], mean time of a whole step that the direct solve takes; NaN where none was timed."""
+    tasks = sims.tasks()
+    mean_us, solves = _direct_means(file, tasks)
+    step_us = (mean_us.sum(axis=0) * solves + 1e6 * _rest_s(file, tasks)) / np.maximum(file.steps, 1)
+    return step_us[sims.any_task]
+
+
+def _direct_means(file, tasks):
+    """([assembly and direct solve, task] in us, [task] solves)"""
+    sums, kept, solves = np.zeros((2, file.task_count)), np.zeros(file.task_count), np.zeros(file.task_count)
+    paths = COLUMNS[:2]
     if all(file.has(path) for path in paths):
         for owners, starts, rows in file.solve_blocks(tasks, paths):
             both = np.stack([rows[path].astype(float) for path in paths], axis=1)
-            kept = np.isfinite(both).all(axis=1) & ~_interrupted(starts, both, np.ones(both.shape))
+            there = np.isfinite(both).all(axis=1)
+            smooth = there & ~_interrupted(starts, both, np.ones(both.shape))
             for part, values in zip(sums, both.T):
-                np.add.at(part, owners, np.add.reduceat(np.where(kept, values, 0), starts))
-            np.add.at(solves, owners, np.add.reduceat(kept.astype(float), starts))
-    mean_us = np.divide(sums * 1e6, solves, out=np.full(sums.shape, np.nan), where=solves > 0)
-    return {name: mean_us[k][sims.any_task][:, None] for k, name in enumerate(("assemble_us", "direct_us"))}
+                np.add.at(part, owners, np.add.reduceat(np.where(smooth, values, 0), starts))
+            for part, counted in ((kept, smooth), (solves, there)):
+                np.add.at(part, owners, np.add.reduceat(counted.astype(float), starts))
+    return np.divide(sums * 1e6, kept, out=np.full(sums.shape, np.nan), where=kept > 0), solves
 
 
 def interruptions(part, sims):

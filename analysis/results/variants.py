@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Trains what network/pretrained/rods.h5 could have been, to choose by validation alone: `make variants` calls it.
+"""Trains what a network could have been, to choose by validation alone: `make variants` calls it.
 
-    analysis/results/variants.py PROGRAM RESULTS
+    analysis/results/variants.py PROGRAM RESULTS FAMILY
 
-Every variant is jobs/train_rods.json for EPOCHS epochs with one setting changed (of its processor, those that belong to
-it), or all of it from another seed; its job and model are RESULTS/rods_variants/NAME.json and .h5. What is trained is
-left alone, what was stopped goes on.
+A family is a training job and its variants: the job for some epochs with one setting changed (of its processor, those
+that belong to it), or all of it from another seed. Their jobs and models are RESULTS/FAMILY_variants/NAME.json and .h5.
+What is trained is left alone, what was stopped goes on.
 """
 
 import json
@@ -13,10 +13,9 @@ import os
 import subprocess
 import sys
 
-EPOCHS = 15
 SWEEPS = {"processor": "sweeps", "recurrence": "gated"}
 LINEAR = {"processor": "sweeps", "recurrence": "linear"}
-VARIANTS = {
+RODS = {
     "factors_16": {},
     "factors_32": {"latent": 32},
     "factors_64": {"latent": 64},
@@ -33,31 +32,52 @@ VARIANTS = {
     "rods_seed_2": {"seed": 2},
     "rods_seed_3": {"seed": 3},
 }
+LATTICES = {
+    "all_32": {},
+    "all_16": {"latent": 16},
+    "all_64": {"latent": 64},
+    "all_32_none": {"base": "none"},
+    "all_32_pod": {"base": "pod", "base_size": 10},
+    "all_32_rate_4e-3": {"rate": 4e-3},
+    "all_32_rate_16e-3": {"rate": 16e-3},
+    "all_32_two_corrections": {"cg_steps": 2},
+    "all_32_energy": {"loss": "energy"},
+    "tree_32": {"couplings": "tree", "loss": "energy"},
+    "lattices_seed_2": {"seed": 2},
+    "lattices_seed_3": {"seed": 3},
+}
+# Of each family: its variants, the epochs of those that change a setting.
+FAMILIES = {"rods": (RODS, 15), "lattices": (LATTICES, 15)}
+TRAINING_KEYS = ("loss", "rate", "cg_steps")
 
 
-def job_of(name, changes, data):
-    with open(os.path.join(os.path.dirname(__file__), "../../jobs/train_rods.json"), encoding="utf-8") as file:
+def job_of(family, name, changes, epochs):
+    original = f"train_{family}"
+    with open(os.path.join(os.path.dirname(__file__), f"../../jobs/{original}.json"), encoding="utf-8") as file:
         job = json.load(file)
     del job["$schema"]
-    job.update(name=name, description="A variant of train_rods.", data=data)
+    job.update(name=name, description=f"A variant of {original}.", data=f"../{family}_data.h5")
     if "seed" in changes:
         return {**job, **changes}
-    job["training"]["epochs"] = EPOCHS
+    job["training"]["epochs"] = epochs
     for key, value in changes.items():
-        job["training" if key in ("loss", "rate") else "network"][key] = value
+        job["training" if key in TRAINING_KEYS else "network"][key] = value
     if job["network"]["base"] == "none":
-        del job["network"]["base_size"]
+        job["network"].pop("base_size", None)
+    if job["training"]["loss"] != "in_the_loop":
+        job["training"].pop("cg_steps", None)
     return job
 
 
 def main():
-    program, results = sys.argv[1:]
-    folder = os.path.join(results, "rods_variants")
+    program, results, family = sys.argv[1:]
+    variants, epochs = FAMILIES[family]
+    folder = os.path.join(results, f"{family}_variants")
     os.makedirs(folder, exist_ok=True)
-    for name, changes in VARIANTS.items():
+    for name, changes in variants.items():
         path = os.path.join(folder, name)
         with open(path + ".json", "w", encoding="utf-8") as file:
-            json.dump(job_of(name, changes, "../rods_data.h5"), file, indent=2)
+            json.dump(job_of(family, name, changes, epochs), file, indent=2)
         subprocess.run([program, "run", path + ".json", "-o", path + ".h5", "--resume"], check=True)
 
 

@@ -48,7 +48,7 @@ class CgSolver {
  public:
   virtual ~CgSolver() = default;
 
-  /// The preconditioner is rebuilt in the next solve (and its time counted there). Without it the old one is kept.
+  /// The preconditioner is rebuilt in the next solve that iterates (and its time counted there); else the old is kept.
   virtual void matrix_changed() = 0;
 
   /// Until the norm is below tolerance * reference. x receives the solution.

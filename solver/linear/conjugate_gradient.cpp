@@ -90,6 +90,7 @@ struct ConjugateGradient::Impl {
   PC plain = nullptr, shell = nullptr;  ///< the preconditioner, and the same with projections, once one was asked for
   Projected projected;
   Vec b = nullptr, x = nullptr, scratch = nullptr;
+  VectorX residual;
   Target target;
   bool stale = true;  ///< the preconditioner is of older entries
   std::vector<PetscReal> history_buffer;
@@ -104,7 +105,8 @@ struct ConjugateGradient::Impl {
   void copy_entries();
   void refresh();
   void use(Deflation* deflation);
-  CgReport refused(const VectorX& rhs, VectorX& guess, const CgStart& start);
+  const VectorX& first_residual(const VectorX& rhs, const VectorX& guess, const CgStart& start);
+  CgReport without_iterations(SolveOutcome outcome, double norm);
 };
 
 ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s)
@@ -116,6 +118,7 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct
   b = create_vector(n);
   x = create_vector(n);
   scratch = create_vector(n);
+  residual.setZero(n);
 
   if (settings.preconditioner == Preconditioner::point_block_jacobi) create_entries(false);
   if (settings.preconditioner == Preconditioner::icc) create_entries(true);
@@ -196,16 +199,21 @@ void ConjugateGradient::Impl::use(Deflation* deflation) {
   projected.deflation = deflation;
 }
 
-/// What is known without a preconditioner: the first residual.
-CgReport ConjugateGradient::Impl::refused(const VectorX& rhs, VectorX& guess, const CgStart& start) {
-  if (!start.nonzero) guess.setZero();
+/// b - A x, with a product where nobody knows it.
+const VectorX& ConjugateGradient::Impl::first_residual(const VectorX& rhs, const VectorX& guess, const CgStart& start) {
+  if (!start.nonzero) return rhs;
+  if (start.residual) return *start.residual;
   copy(guess, x);
   op.multiply(vector_data(x), vector_data(scratch));
-  const double norm = (rhs - Eigen::Map<const VectorX>(vector_data(scratch), rhs.size())).norm();
+  ++op.products;
+  residual = rhs - Eigen::Map<const VectorX>(vector_data(scratch), rhs.size());
+  return residual;
+}
+
+CgReport ConjugateGradient::Impl::without_iterations(SolveOutcome outcome, double norm) {
   history.clear();
-  if (!std::isfinite(norm)) return {SolveOutcome::not_a_number, 0, 0};
-  if (!history_buffer.empty()) history.push_back(norm);
-  return {SolveOutcome::indefinite, 0, 0};
+  if (!history_buffer.empty() && std::isfinite(norm)) history.push_back(norm);
+  return {outcome, 0, op.products};
 }
 
 void ConjugateGradient::Impl::copy_entries() {
@@ -237,21 +245,21 @@ void ConjugateGradient::matrix_changed() { impl_->stale = true; }
 CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance,
                                   double reference, Deflation* deflation) {
   Impl& s = *impl_;
+  s.op.products = 0;
+  const VectorX& first = s.first_residual(b, x, start);
+  const double norm = first.norm();
+  if (!start.nonzero) x.setZero(b.size());
+  if (!std::isfinite(norm)) return s.without_iterations(SolveOutcome::not_a_number, norm);
+  // Nothing is set up for a guess that is good enough.
+  if (s.settings.norm == Norm::true_residual && norm <= tolerance * reference)
+    return s.without_iterations(SolveOutcome::converged, norm);
   s.refresh();
+  if (!s.own_positive) return s.without_iterations(SolveOutcome::indefinite, norm);
   s.use(deflation);
   s.target = {tolerance, reference};
-  if (!s.own_positive) return s.refused(b, x, start);
-  // With its residual known, what is missing from x is solved for, from zero.
-  const bool known = start.nonzero && start.residual, nonzero = start.nonzero && !known;
-  copy(known ? *start.residual : b, s.b);
-  if (nonzero) copy(x, s.x);
-  s.op.products = 0;
-  petsc_check(KSPSetInitialGuessNonzero(s.ksp, nonzero ? PETSC_TRUE : PETSC_FALSE), "KSPSetInitialGuessNonzero");
+  copy(first, s.b);
   petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
-  if (known)
-    add(s.x, x);
-  else
-    copy(s.x, x);
+  add(s.x, x);
 
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   PetscInt iterations = 0;

@@ -2,10 +2,10 @@
 //
 // The operator is BlockMatrix::multiply or that of a system (petsc_operator.hpp). Preconditioners are PETSc's, which
 // get a copy of the blocks in its own format where they need entries, or ours (block_preconditioner.hpp); where one of
-// ours is not positive definite, no solve is tried. Growth of the residual is a failure only past 1e30 times
-// `reference`: a history guess may start far above a late, tiny b. Products: one for each iteration, one more for the
-// residual of a nonzero guess, if not known. Needs PETSc initialised (PetscSession). Throws PetscError when a call
-// fails.
+// ours is not positive definite, no iteration is tried. None is set up for a guess that is good enough (2-norm). Growth
+// of the residual is a failure only past 1e30 times `reference`: a history guess may start far above a late, tiny b.
+// Products: one for each iteration, one more for the residual of a nonzero guess, if not known. Needs PETSc initialised
+// (PetscSession). Throws PetscError when a call fails.
 #pragma once
 
 #include <memory>

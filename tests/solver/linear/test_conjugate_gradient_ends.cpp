@@ -158,6 +158,25 @@ TEST_CASE("an indefinite matrix is called indefinite, unless the preconditioner 
   }
 }
 
+TEST_CASE("nothing is set up for a guess that is good enough: not even what could not be") {
+  const Case c = moving_chain();
+  BlockMatrix bad = c.a();
+  for (Lane8& column : bad.blocks[bad.diagonal(5)].column) column *= broadcast(-1);
+  const VectorX exact = bad.dense().fullPivLu().solve(c.b());
+  for (const Preconditioner p : {Preconditioner::block_icc, Preconditioner::cholesky}) {
+    INFO(name(p));
+    ConjugateGradient cg(bad, {p, Norm::true_residual, 0});
+    const Run good = run(cg, c.b(), 1e-8, &exact);
+    CHECK(good.report.outcome == SolveOutcome::converged);
+    CHECK(good.report.iterations == 0);
+    CHECK(good.report.products == 1);
+    CHECK(good.history.size() == 1);
+    CHECK(good.x == exact);
+    const VectorX half = 0.5 * exact;
+    CHECK(run(cg, c.b(), 1e-8, &half).report.outcome == SolveOutcome::indefinite);
+  }
+}
+
 TEST_CASE("a solver that failed solves the next system as if new") {
   const Case c = moving_chain();
   for (const Preconditioner p : preconditioners) {

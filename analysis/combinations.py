@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+"""Which preconditioner and guess together solve fastest, how much of it is the guess's, and where a direct solve does.
+
+For every place along x (--x, nodes of a lattice by default) a table of all combinations, and the cheapest of each kind:
+the direct solve, CG from zero, with a classical guess, with a learned one, and with an oracle that costs nothing. In a
+paired sweep the time is that of a solve, guess and set-up of the preconditioner included, assembly left out; in a
+closed loop that of a whole step. The figure has the time of the cheapest of each kind over the number of joints, a
+panel per scene type and value of any other grid. Intervals are 95 % bootstrap intervals over simulations. Needs /solves
+in the file (record.solves "all"). Written as PDF and PNG; the paths are printed.
+"""
+
+import numpy as np
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from drawing import layout, study, style
+from reading import combinations, commandline, groups, intervals, measures, remarks, texts, timings
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
+
+EXAMPLES = """examples:
+  analysis/combinations.py results/lattice_swing.h5
+  analysis/combinations.py results/net_gusts.h5 --x scene.rows --newton all"""
+STYLES = {combinations.DIRECT: style.DIRECT,
+          combinations.ZERO: style.GuessStyle(*style.KINDS["zero"]),
+          combinations.CLASSICAL: style.GuessStyle(*style.KINDS["regression"]),
+          combinations.LEARNED: style.GuessStyle(*style.KINDS["copingnet"]),
+          combinations.ORACLE: style.GuessStyle(*style.KINDS["oracle"])}
+COMPARED = (combinations.CLASSICAL, combinations.ZERO, combinations.DIRECT)
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES, tolerances="1e-2,1e-3")
+    study.add_figure_arguments(made)
+    made.add_argument("--x", metavar="KEY", default="scene.nodes_x",
+                      help="parameter along x (default: scene.nodes_x); the axis says joints")
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        shown = study.of_tasks(file, options)
+        if not timings.timed(file):
+            raise KeyNotFound(f"{file.path} has no times of guesses")
+        if combinations.PRECONDITIONER not in file.parameters or file.zero is None:
+            raise KeyNotFound(f"{file.path} needs a preconditioner and the zero guess to compare with")
+        rows = groups.applicable(file, shown.sims, options.x)
+        panels = combinations.panels(file, shown.sims.subset(rows), options.x)
+        shown.sims = shown.sims.subset(rows)
+        found = [combinations.cells(file, shown.sims, panel, options.x, options.newton) for panel in panels]
+        chosen = commandline.chosen_tolerances(file, options) if options.tolerance else \
+            [file.tolerance_index(t) for t in (1e-2, 1e-3)]
+        print("\n".join(table(shown, panels, found, chosen, options.x)) + "\n")
+        study.save(file, options, {"combinations": figure(shown, panels, found)})
+
+
+def table(shown, panels, found, tolerances, x):
+    file, closed = shown.file, shown.sims.closed_loop
+    unit = "a whole step" if closed else "a solve, guess and set-up included, assembly left out"
+    lines = [f"{file.path}, {shown.census.text()}, revision {remarks.revisions(file)}",
+             f"µs: {unit}, to {shown.solve_tolerance()}, median over simulations [95 % interval]. Iterations per solve "
+             f"and CG ratios: means, {measures.NEWTON[shown.newton]}. * some solves missed the tolerance and count what "
+             "they used"]
+    lines += list(filter(None, [shown.timing_warning()]))
+    for panel, cells in zip(panels, found):
+        for cell in cells:
+            title = f"{panel.title()}, {x} = {cell.x}: {cell.joints:.0f} joints, n = {len(cell.draws)}"
+            lines += ["", title] + texts.aligned(_combinations(file, cell, tolerances))
+            lines += [""] + texts.aligned(_cheapest(cell))
+    return lines
+
+
+def _combinations(file, cell, tolerances):
+    labels = [texts.tolerance_label(file.tolerances[t]) for t in tolerances]
+    rows = [["", "µs", *[f"iterations to {label}" for label in labels], *[f"ratio at {label}" for label in labels],
+             f"products to {labels[0]}"]]
+    zeros = {one.solver: one for one in cell.combinations if one.kind == combinations.ZERO}
+    for one in cell.combinations:
+        if one.kind == combinations.DIRECT:
+            rows.append([f"  {one.text()}", _interval(intervals.median(one.time_us, cell.draws))] +
+                        ["-"] * (2 * len(tolerances) + 1))
+            continue
+        marks = ["*" if one.unreached[t] else "" for t in tolerances]
+        rows.append([f"  {one.text()}", _interval(intervals.median(one.time_us, cell.draws)),
+                     *[_mean(one.iterations[:, t]) + mark for t, mark in zip(tolerances, marks)],
+                     *[_interval(combinations.ratio(one, zeros[one.solver], cell.draws, t)) for t in tolerances],
+                     _mean(one.products[:, tolerances[0]])])
+    return rows
+
+
+def _cheapest(cell):
+    rows = [["  the cheapest", "", "µs", *[f"over {kind}" for kind in COMPARED]]]
+    best = {kind: cell.cheapest(kind) for kind in combinations.KINDS}
+    for kind, one in best.items():
+        if one is None:
+            continue
+        over = [_interval(combinations.speedup(best[other], one, cell.draws)) if best[other] and other != kind else "-"
+                for other in COMPARED]
+        rows.append([f"  {kind}", one.text(), _interval(intervals.median(one.time_us, cell.draws)), *over])
+    return rows
+
+
+def _mean(values):
+    return f"{np.nanmean(values):.1f}" if np.isfinite(values).any() else "-"
+
+
+def _interval(estimate):
+    """Three digits, the interval where there are enough draws for one."""
+    value, low, high = (float(np.squeeze(part)) for part in (estimate.value, estimate.low, estimate.high))
+    if not np.isfinite(value):
+        return "-"
+    text = f"{value:.3g}" if value < 1000 else f"{value:.0f}"
+    return f"{text} [{low:.3g}, {high:.3g}]" if np.isfinite(low) and low < 1000 else text
+
+
+def figure(shown, panels, found):
+    closed = shown.sims.closed_loop
+    there = [kind for kind in combinations.KINDS if any(cell.cheapest(kind) for cells in found for cell in cells)]
+    handles = [STYLES[kind].handle("direct solve" if kind == combinations.DIRECT else f"CG {kind}" if
+                                   kind == combinations.ZERO else f"CG, best {kind}") for kind in there]
+    unit = "A whole step" if closed else "Guess, set-up of the preconditioner and CG, or the direct solve"
+    estimates = [[{kind: intervals.median(cell.cheapest(kind).time_us, cell.draws) for kind in there
+                   if cell.cheapest(kind)} for cell in cells] for cells in found]
+    notes = [f"{unit}, to {shown.solve_tolerance()}: of each kind the fastest combination of preconditioner and guess; "
+             f"median over {study.sample_text([e for row in estimates for one in row for e in one.values()])}. "
+             f"Counted: {measures.NEWTON[shown.newton]}.", shown.about()]
+    titles = groups.short_titles(panels)
+    page = layout.Page(shown.width_mm, [""], len(panels), 3 if shown.wide else 1, 46, handles, notes,
+                       shown.timing_warning(), left_mm=13)
+    bounds = [v for row in estimates for one in row for e in one.values() for v in (e.value, e.low, e.high)
+              if np.isfinite(v)]
+    low, high = 0.8 * min(bounds), 1.25 * max(bounds)
+    for k, (axes, cells, row, title) in enumerate(zip(page.axes[0], found, estimates, titles)):
+        for kind in there:
+            at = [c for c, one in enumerate(row) if kind in one]
+            x = np.array([cells[c].joints for c in at])
+            value, least, most = (np.array([float(getattr(row[c][kind], name)) for c in at])
+                                  for name in ("value", "low", "high"))
+            axes.errorbar(x, value, yerr=style.whiskers(value, least, most), **style.WHISKERS, **STYLES[kind].line())
+        axes.set(xscale="log", yscale="log", ylim=(low, high))
+        joints = [cell.joints for cell in cells]
+        axes.set_xlim(0.7 * min(joints), 1.4 * max(joints))
+        for axis, bound in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, (low, high))):
+            axis.set_major_locator(FixedLocator(layout.log_ticks(*bound)))
+            axis.set_minor_locator(NullLocator())
+            axis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
+        if title:
+            page.title(axes, title)
+        page.label_y(axes, k, "µs per step" if closed else "µs per solve")
+    page.label_x(0, "joints")
+    return page
+
+
+if __name__ == "__main__":
+    commandline.run(main)

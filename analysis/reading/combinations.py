@@ -1,0 +1,158 @@
+"""What solving costs by every preconditioner and guess together, and the cheapest of each kind: for combinations.py.
+
+A combination is what a job tries on the same systems (paired), or on trajectories of their own (closed loop): a
+preconditioner with the settings that the job sweeps, and a guess; or the direct solve. Its time is that of a solve,
+guess and set-up of the preconditioner included, or in a closed loop of a whole step. Kinds of guesses: CG from zero,
+classical ones, learned ones, and oracles, which know the solution: their own time is left out, so that they tell what
+a guess of their error would bring that costs nothing.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reading import groups, intervals, measures, timings
+
+PRECONDITIONER = "solve.preconditioner"
+SETTINGS = {"solve.fill_levels": "levels", "solve.lag_steps": "lag"}
+AXES = (PRECONDITIONER, *SETTINGS)
+DIRECT, ZERO, CLASSICAL, LEARNED, ORACLE = KINDS = ("direct", "from zero", "classical guess", "learned guess",
+                                                    "free oracle")
+
+
+@dataclass(frozen=True)
+class Combination:
+    """Per draw, NaN where a simulation did not end well; iterations and products per solve [draw, tolerance]."""
+    kind: str
+    solver: str
+    guess: str
+    time_us: np.ndarray
+    iterations: np.ndarray
+    products: np.ndarray
+    unreached: np.ndarray   # [tolerance] solves of all draws
+
+    def text(self):
+        return f"{self.solver} from {self.guess}" if self.guess else self.solver
+
+
+@dataclass(frozen=True)
+class Cell:
+    """The combinations of one panel at one place along x, over the same draws."""
+    x: str
+    joints: float
+    draws: np.ndarray
+    combinations: list
+
+    def cheapest(self, kind):
+        """By the median over draws, of those that ended well on all; None where there is none."""
+        there = [one for one in self.combinations if one.kind == kind and np.isfinite(one.time_us).all()]
+        return min(there, key=lambda one: np.median(one.time_us)) if there else None
+
+
+def kind_of(guess):
+    if guess == "zero":
+        return ZERO
+    if "oracle" in guess:
+        return ORACLE
+    return LEARNED if "copingnet" in guess or "knn" in guess else CLASSICAL
+
+
+def panels(file, sims, x):
+    """Panels by scene type and gridded keys other than x and those of the preconditioner, the direct solve in each."""
+    return groups.with_direct(sims, groups.panels(file, sims, (x, *AXES)))
+
+
+def cells(file, sims, panel, x, newton):
+    """[Cell] along x."""
+    measured = _Measured(file, sims, newton)
+    codes = file.parameter(x).codes()[sims.any_task]
+    found = []
+    for code in np.unique(codes[panel.index]):
+        rows = panel.index[codes[panel.index] == code]
+        joints = file.results("joints", sims.any_task[rows])
+        task = sims.any_task[rows[0]]
+        found.append(Cell(file.parameter(x).text(task), float(np.median(joints)), np.unique(sims.sample[rows]),
+                          measured.combinations(rows)))
+    return sorted(found, key=lambda cell: cell.joints)
+
+
+class _Measured:
+    """Everything per simulation and guess, from which cells take their rows."""
+
+    def __init__(self, file, sims, newton):
+        self.file, self.sims = file, sims
+        by_newton = timings.times(file, sims)
+        times, whole = by_newton[newton], by_newton["all"]
+        solves = times.solves
+        if sims.closed_loop:
+            steps = np.maximum(file.steps[sims.any_task], 1)[:, None]
+            self.time_us = 1e6 * (whole.assemble_s + whole.guess_s + whole.cg_s + whole.rest_s) / steps
+        else:
+            own = np.array([kind_of(guess) != ORACLE for guess in file.guesses])
+            self.time_us = 1e6 * (np.where(own, times.guess_s, 0) + times.cg_s) / solves
+        self.direct_us = self._direct_us(times)
+        self.iterations, self.unreached = self._per_solve("iterations", newton, solves)
+        self.products, _ = self._per_solve("matvecs", newton, solves)
+
+    def _per_solve(self, counted, newton, solves):
+        ratios = measures.cg_sums(self.file, self.sims, newton, counted)
+        return ratios.own / solves[..., None], ratios.unreached
+
+    def _direct_us(self, times):
+        """[simulation]"""
+        if not self.sims.closed_loop:
+            zero = self.file.zero or 0
+            return 1e6 * times.direct_s[:, zero] / times.solves[:, zero]
+        return timings.direct_step_us(self.file, self.sims)
+
+    def combinations(self, rows):
+        draws = np.unique(self.sims.sample[rows])
+        guessing = rows[measures.has_guesses(self.file)[self.sims.any_task[rows]]]
+        solvers = {}
+        for row in guessing:
+            solvers.setdefault(solver_text(self.file, self.sims.any_task[row]), []).append(row)
+        found = [self._direct(rows, guessing, draws)]
+        for solver, members in solvers.items():
+            found += [self._of(draws, np.array(members), solver, g) for g in range(len(self.file.guesses))]
+        return [one for one in found if np.isfinite(one.time_us).any()]
+
+    def _direct(self, rows, guessing, draws):
+        """Of the paired simulations of all preconditioners, each of which timed it: their median."""
+        from_rows = guessing if not self.sims.closed_loop else np.setdiff1d(rows, guessing)
+        time_us = np.full(len(draws), np.nan)
+        for k, draw in enumerate(draws):
+            of_draw = self.direct_us[from_rows[self.sims.sample[from_rows] == draw]]
+            if np.isfinite(of_draw).any():
+                time_us[k] = np.nanmedian(of_draw)
+        empty = np.full((len(draws), len(self.file.tolerances)), np.nan)
+        return Combination(DIRECT, "direct", "", time_us, empty, empty, np.zeros(len(self.file.tolerances)))
+
+    def _of(self, draws, rows, solver, g):
+        at = np.searchsorted(draws, self.sims.sample[rows])
+
+        def by_draw(values):
+            spread = np.full((len(draws), *values.shape[1:]), np.nan)
+            spread[at] = values
+            return spread
+
+        guess = self.file.guesses[g]
+        return Combination(kind_of(guess), solver, guess, by_draw(self.time_us[rows, g]),
+                           by_draw(self.iterations[rows, g]), by_draw(self.products[rows, g]),
+                           np.nansum(self.unreached[rows, g], axis=0))
+
+
+def solver_text(file, task):
+    """A preconditioner and those of its settings that the job sweeps."""
+    swept = [f"{name} {file.parameters[key].text(task)}" for key, name in SETTINGS.items()
+             if key in file.parameters and file.parameters[key].swept and file.parameters[key].applies()[task]]
+    return " ".join([file.parameters[PRECONDITIONER].text(task).replace("_", " "), *swept])
+
+
+def speedup(slower, faster, draws):
+    """Estimate of how many times as fast one combination is as another: the median over draws."""
+    return intervals.median(slower.time_us / faster.time_us, draws)
+
+
+def ratio(one, zero, draws, tolerance):
+    """Estimate of the CG ratio of a combination at a tolerance, of sums over all its draws."""
+    return intervals.mean(one.iterations[:, tolerance] / zero.iterations[:, tolerance], draws)

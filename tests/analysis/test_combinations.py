@@ -1,0 +1,84 @@
+"""combinations.py: the cheapest combination of preconditioner and guess of each kind, and what it is faster by."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+import running
+import synthetic
+
+JOINTS = {10: 60, 40: 240}
+
+
+class Combinations(running.Scripts):
+    def write(self, **settings):
+        """icc takes half of Jacobi's time and iterations; a net's joints are six times its segments."""
+        super().write(**{"scenes": ("net",), "samples": 5, "random": {},
+                         "grid": {"scene.segments": list(JOINTS), "solve.preconditioner": ["jacobi", "icc"]},
+                         **settings})
+        with h5py.File(self.path, "a") as h5:
+            segments = h5["tasks/parameters/scene.segments"][:]
+            h5["tasks/joints"] = np.array([JOINTS[n] for n in segments])
+            icc = h5["tasks/parameters/solve.preconditioner"][:] == b"icc"
+            of_row = np.repeat(icc, h5["tasks/solves"][:])
+            for path, rows in (("timing/solves/cg_s", of_row), ("tasks/iterations_sum", icc)):
+                values = h5[path][:]
+                values[rows] = values[rows] / 2
+                h5[path][...] = values
+
+    def blocks(self, *arguments):
+        """{joints: lines with single blanks}"""
+        said = running.run("combinations.py", self.path, "--x", "scene.segments", *arguments, files=True)
+        self.assertEqual(said.stderr, "")
+        found, lines = {}, []
+        for line in said.stdout.splitlines():
+            if " joints, n = 5" in line:
+                lines = found.setdefault(int(line.split(": ")[1].split()[0]), [])
+            lines.append(" ".join(line.split()))
+        return found
+
+    def test_the_cheapest_of_each_kind(self):
+        self.write()
+        found = self.blocks()
+        self.assertEqual(list(found), [60, 240])
+        # at 10 segments: zero 10 us with Jacobi and 5 with icc, quadratic 2.5 / 1.25 and a guess of 1, direct 8
+        lines = {line.split(" [")[0] for line in found[60]}
+        for expected in ("direct direct 8", "from zero icc from zero 5", "classical guess icc from quadratic 2.25",
+                         "free oracle icc from oracle(0.1) 0.5"):
+            self.assertIn(expected, lines)
+        lines = {line.split(" [")[0] for line in found[240]}
+        self.assertIn("classical guess icc from quadratic 9", lines)
+
+    def test_speedups_are_over_the_cheapest_of_the_other_kinds(self):
+        self.write()
+        oracle = next(line for line in self.blocks()[60] if line.startswith("free oracle"))
+        values = [part.split(" ")[-1] for part in oracle.split(" [")[:-1]]
+        self.assertEqual(values, ["0.5", "4.5", "10", "16"])   # over 2.25, 5 and 8 us
+
+    def test_iterations_and_ratios_are_those_of_the_same_preconditioner(self):
+        self.write()
+        lines = self.blocks("--tolerance", "1e-2")[60]
+        row = next(line for line in lines if line.startswith("icc from quadratic"))
+        self.assertIn("] 25.0 0.248 [", row)   # of 202 a quarter, 50, and halves
+
+    def test_closed_loops_have_whole_steps(self):
+        self.write(closed_loop=True, guesses=("zero", "quadratic"))
+        line = next(line for line in self.blocks()[60] if line.startswith("icc from zero"))
+        # three systems a step, 2 us of assembly each, CG of 5 us at first and 2.5 us later, and 3 us for the rest
+        self.assertEqual(line.split()[3], "19")
+
+    def test_a_combination_that_failed_once_is_not_the_cheapest(self):
+        self.write(failed={5: "torn"})   # the first of icc at 10 segments
+        lines = {line.split(" [")[0] for line in self.blocks()[60]}
+        self.assertIn("from zero jacobi from zero 10", lines)
+
+    def test_without_what_it_needs_it_says_so(self):
+        self.write(guesses=("previous", "quadratic"))
+        said = running.run("combinations.py", self.path, "--x", "scene.segments")
+        self.assertEqual(said.code, 2)
+        self.assertIn("zero guess", said.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
