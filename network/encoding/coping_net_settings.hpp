@@ -35,6 +35,7 @@ struct CopingNetSettings {
   Recurrence recurrence = Recurrence::gated;  ///< sweeps
   Couplings couplings = Couplings::tree;      ///< factors
   int steps = 6;                              ///< message_passing: hops
+  int hidden_layers = 1;                      ///< message_passing: of every MLP
   bool globals = false;                       ///< message_passing: with a state of the whole graph
   bool best_length =
       true;            ///< the correction is scaled to what lowers the error most (network/training/energy_loss.hpp)

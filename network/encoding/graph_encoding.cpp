@@ -53,10 +53,11 @@ Eigen::Vector2d moduli_of(const Rod& rod, const Joint& joint) {
 }  // namespace
 
 const GraphEncoding::Groups& GraphEncoding::groups(Encoding encoding) {
+  static const Groups paper{{3, 4, 1, 1, 1, 1, 1, 1, 1}, {3, 1, 1}};
   static const Groups deck{{3, 4, 1, 1, 1, 1, 1, 1, 1}, {3, 1, 1, 3, 3}};
   static const Groups physics{{3, 4, 1, 1, 1, 1, 1, 1, 1, 3, 3}, {3, 1, 1, 3, 3, 3}};
   if (!is_of_graphs(encoding)) throw std::invalid_argument("an encoding of linear systems is not one of graphs");
-  return encoding == Encoding::deck ? deck : physics;
+  return encoding == Encoding::paper ? paper : encoding == Encoding::deck ? deck : physics;
 }
 
 int GraphEncoding::node_features(Encoding encoding) {
@@ -82,7 +83,7 @@ GraphEncoding::GraphEncoding(Encoding encoding, const Rod& rod)
     ++joints_at[static_cast<std::size_t>(joint.b)];
     mean_joint_length_ += joint.length / rod.joint_count();
     const Eigen::Array2d moduli = moduli_of(rod, joint);
-    moduli_.col(k) = (encoding == Encoding::deck ? moduli : moduli.log10()).cast<float>();
+    moduli_.col(k) = (encoding == Encoding::physics ? moduli.log10() : moduli).cast<float>();
   }
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     const Segment& segment = rod.segments[s];
@@ -118,9 +119,10 @@ void GraphEncoding::encode(const Rod& rod, const LinearSystem& system, int newto
     const Joint& joint = rod.joints[k];
     const Vector3 rest = 2 * joint.rest.vec();                                                 // l Omega0
     const Vector3 bend = system.linearization().constraint.segment<3>(6 * column + 3) + rest;  // l Omega
-    const Vector6 residual = system.rhs().segment<6>(6 * column);
     out.segment<3>(0) = (physics ? bend : bend / joint.length).cast<float>();
     out.segment<2>(3) = moduli_.col(column);
+    if (encoding_ == Encoding::paper) continue;
+    const Vector6 residual = system.rhs().segment<6>(6 * column);
     out.segment<6>(5) = (physics || newton > 0 ? residual : Vector6::Zero()).cast<float>();
     if (physics) out.segment<3>(11) = rest.cast<float>();
   }

@@ -1,8 +1,10 @@
-// Rods as features of nodes (segments) and edges (joints), for message passing: the encodings `deck` and `physics`.
+// Rods as features of nodes (segments) and edges (joints), for message passing: those that know where a rod is.
 //
-// At the positions p^j of Newton iteration j. alpha is the distance of a segment's centre from the root along the
-// joints, over the largest; the root is the first static segment, else the first. Y and T are the moduli that the
-// joint's bend-twist compliance (l / EI, l / GJ) stands for. v and w are those of the start of the step.
+// `paper`, `deck` and `physics`. At the positions p^j of Newton iteration j. alpha is the distance of a segment's
+// centre from the root along the joints, over the largest; the root is the first static segment, else the first. Y and
+// T are the moduli that the joint's bend-twist compliance (l / EI, l / GJ) stands for. v and w are those of the start
+// of the step.
+//   paper     node 14 as deck, edge 5: Omega, Y, T
 //   deck      node 14: x [m], q (w, x, y, z; the hemisphere w >= 0), r [m], rho [kg/m^3], segment length [m], alpha,
 //                      and whether fixed, first (a root), last (a tip)
 //             edge 11: Darboux vector Omega [1/m], Y, T [Pa], and from j = 1 on -C - alpha~ lambda (0 at j = 0)
@@ -20,10 +22,12 @@
 namespace rodsweep {
 
 /// `system`: network/encoding/system_encoding.hpp; `canonical`: network/encoding/canonical_encoding.hpp.
-enum class Encoding { deck, physics, system, canonical };
+enum class Encoding { paper, deck, physics, system, canonical };
 
 /// Of segments and joints, not of the linear system.
-constexpr bool is_of_graphs(Encoding encoding) { return encoding == Encoding::deck || encoding == Encoding::physics; }
+constexpr bool is_of_graphs(Encoding encoding) {
+  return encoding == Encoding::paper || encoding == Encoding::deck || encoding == Encoding::physics;
+}
 
 class GraphEncoding {
  public:

@@ -1,7 +1,8 @@
-// Two layers with SiLU between them, y = W2 silu(W1 x + b1) + b2, silu(a) = a / (1 + exp(-a)).
+// Two layers with SiLU between them, y = W2 silu(W1 x + b1) + b2, silu(a) = a / (1 + exp(-a)); with more hidden layers
+// of the same width (hidden_layers.hpp) in the place of the one.
 #pragma once
 
-#include "network/layers/linear.hpp"
+#include "network/layers/hidden_layers.hpp"
 
 namespace rodsweep {
 
@@ -11,11 +12,12 @@ class Mlp {
   /// What backward() needs of forward(); reused from batch to batch.
   struct Tape {
     Tensor<T> before, hidden;  ///< W1 x + b1, and its silu
+    typename HiddenLayers<T>::Tape deeper;
   };
 
   Mlp() = default;
   Mlp(Parameters<T>& parameters, const std::string& name, int in, int hidden, int out, WeightSource& source,
-      double last_gain = 1);
+      double last_gain = 1, int hidden_layers = 1);
 
   int in() const { return first_.in(); }
   int out() const { return second_.out(); }
@@ -28,6 +30,7 @@ class Mlp {
 
  private:
   Linear<T> first_, second_;
+  HiddenLayers<T> deeper_;
 };
 
 }  // namespace rodsweep

@@ -36,6 +36,7 @@ CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) :
       sizes.edge_out = 6;
       sizes.node_out = settings.moves ? 6 : 0;
       sizes.has_globals = settings.globals;
+      sizes.hidden_layers = settings.hidden_layers;
       messages_ = MessagePassing<T>(parameters_, sizes, source);
   }
 }

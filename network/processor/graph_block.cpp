@@ -56,8 +56,8 @@ void divide_by_count(const std::vector<int>& first, Eigen::Ref<Tensor<T>> y) {
 }  // namespace
 
 template <class T>
-GraphBlock<T>::GraphBlock(Parameters<T>& parameters, const std::string& name, int latent, Updates updates,
-                          bool reads_globals, WeightSource& source)
+GraphBlock<T>::GraphBlock(Parameters<T>& parameters, const std::string& name, int latent, int hidden_layers,
+                          Updates updates, bool reads_globals, WeightSource& source)
     : latent_(latent) {
   // The parts of a first layer share its fan-in: three of H, or four.
   const double gain = std::sqrt(reads_globals ? 1 / 4.0 : 1 / 3.0);
@@ -70,12 +70,15 @@ GraphBlock<T>::GraphBlock(Parameters<T>& parameters, const std::string& name, in
     source.fill<T>(parameters[from_globals_], gain);
   }
   from_edges_ = Linear<T>(parameters, name + ".from_edges", latent, latent, source, gain);
+  edge_deeper_ = HiddenLayers<T>(parameters, name + ".edge_hidden", latent, hidden_layers - 1, source);
   edge_out_ = Linear<T>(parameters, name + ".edge_out", latent, latent, source);
   if (!nodes) return;
   from_sums_ = Linear<T>(parameters, name + ".from_sums", 2 * latent, latent, source, std::sqrt(2.0) * gain);
+  node_deeper_ = HiddenLayers<T>(parameters, name + ".node_hidden", latent, hidden_layers - 1, source);
   node_out_ = Linear<T>(parameters, name + ".node_out", latent, latent, source);
   if (updates == Updates::globals)
-    global_ = Mlp<T>(parameters, name + ".global", (reads_globals ? 3 : 2) * latent, latent, latent, source);
+    global_ = Mlp<T>(parameters, name + ".global", (reads_globals ? 3 : 2) * latent, latent, latent, source, 1,
+                     hidden_layers);
 }
 
 template <class T>
@@ -95,7 +98,7 @@ void GraphBlock<T>::forward(const Parameters<T>& p, const RodGraph& graph, const
   if (from_globals_ >= 0) add_per_rod<T>(tape.from_globals.topRows(H), graph.first_edge, tape.edge_before);
   tape.edge_hidden = silu(tape.edge_before.array());
   out.edges.resize(H, graph.edges());
-  edge_out_.forward(p, tape.edge_hidden, out.edges);
+  edge_out_.forward(p, edge_deeper_.forward(p, tape.edge_hidden, tape.edge_deeper), out.edges);
   out.edges += in.edges;
   if (updates == Updates::edges) return;
 
@@ -107,7 +110,7 @@ void GraphBlock<T>::forward(const Parameters<T>& p, const RodGraph& graph, const
   if (from_globals_ >= 0) add_per_rod<T>(tape.from_globals.bottomRows(H), graph.first_node, tape.node_before);
   tape.node_hidden = silu(tape.node_before.array());
   out.nodes.resize(H, graph.nodes);
-  node_out_.forward(p, tape.node_hidden, out.nodes);
+  node_out_.forward(p, node_deeper_.forward(p, tape.node_hidden, tape.node_deeper), out.nodes);
   out.nodes += in.nodes;
   if (updates == Updates::nodes) return;
 
@@ -139,7 +142,8 @@ void GraphBlock<T>::backward(const Parameters<T>& p, const RodGraph& graph, cons
 
   if (updates != Updates::edges) {
     Tensor<T> d_before = Tensor<T>::Zero(H, graph.nodes), d_sums = Tensor<T>::Zero(2 * H, graph.nodes);
-    node_out_.backward(p, tape.node_hidden, d.nodes, gradient, &d_before);
+    node_out_.backward(p, node_deeper_.output(tape.node_hidden, tape.node_deeper), d.nodes, gradient, &d_before);
+    node_deeper_.backward(p, tape.node_hidden, tape.node_deeper, d_before, gradient);
     d_before.array() *= silu_derivative(tape.node_before.array());
     from_sums_.backward(p, tape.sums, d_before, gradient, &d_sums);
     add_from_ends(graph, d_sums, d.edges);
@@ -148,7 +152,8 @@ void GraphBlock<T>::backward(const Parameters<T>& p, const RodGraph& graph, cons
   }
 
   Tensor<T> d_before = Tensor<T>::Zero(H, graph.edges());
-  edge_out_.backward(p, tape.edge_hidden, d.edges, gradient, &d_before);
+  edge_out_.backward(p, edge_deeper_.output(tape.edge_hidden, tape.edge_deeper), d.edges, gradient, &d_before);
+  edge_deeper_.backward(p, tape.edge_hidden, tape.edge_deeper, d_before, gradient);
   d_before.array() *= silu_derivative(tape.edge_before.array());
   from_edges_.backward(p, in.edges, d_before, gradient, &d.edges);
   add_to_ends(graph, d_before, d_from_nodes);

@@ -2,7 +2,7 @@
 //   e'_k = e_k + phi([e_k; v_s; v_r; u])           every edge k from sender s to receiver r
 //   v'_i = v_i + psi([v_i; S_i; R_i; u])           S_i, R_i: sums of e' over the edges that i sends and receives
 //   u'   = u + MLP([mean e'; mean v'; u])          per rod; only with a global state, which is 0 before the first
-// phi and psi are MLPs with one hidden layer, whose first matrix is kept in parts: W [e; v_s; v_r] is
+// phi and psi are MLPs with one hidden layer or more, whose first matrix is kept in parts: W [e; v_s; v_r] is
 // W_e e + (W_s v)_s + (W_r v)_r, so nothing is concatenated and two thirds of the work are done per node. W_s, W_r and
 // the part of psi's that multiplies v are one product.
 #pragma once
@@ -31,14 +31,15 @@ class GraphBlock {
     Tensor<T> edge_before, edge_hidden;  ///< phi's hidden layer, before silu and after
     Tensor<T> sums;                      ///< S and R
     Tensor<T> node_before, node_hidden;  ///< psi's
-    Tensor<T> means;                     ///< mean e', mean v', u
+    typename HiddenLayers<T>::Tape edge_deeper, node_deeper;
+    Tensor<T> means;  ///< mean e', mean v', u
     typename Mlp<T>::Tape global;
   };
 
   GraphBlock() = default;
   /// `updates`: all that the block can change; `reads_globals`: there is a u before it.
-  GraphBlock(Parameters<T>& parameters, const std::string& name, int latent, Updates updates, bool reads_globals,
-             WeightSource& source);
+  GraphBlock(Parameters<T>& parameters, const std::string& name, int latent, int hidden_layers, Updates updates,
+             bool reads_globals, WeightSource& source);
 
   /// Makes `out`; parts that `updates` leaves out are left alone.
   void forward(const Parameters<T>& p, const RodGraph& graph, const GraphState<T>& in, Updates updates, Tape& tape,
@@ -50,6 +51,7 @@ class GraphBlock {
  private:
   int latent_ = 0, from_nodes_ = -1, from_globals_ = -1;
   Linear<T> from_edges_, edge_out_, from_sums_, node_out_;
+  HiddenLayers<T> edge_deeper_, node_deeper_;
   Mlp<T> global_;
 };
 

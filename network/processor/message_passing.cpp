@@ -5,15 +5,19 @@ namespace rodsweep {
 template <class T>
 MessagePassing<T>::MessagePassing(Parameters<T>& parameters, const Sizes& sizes, WeightSource& source)
     : sizes_(sizes),
-      encode_nodes_(parameters, "encode_nodes", sizes.node_in, sizes.latent, sizes.latent, source),
-      encode_edges_(parameters, "encode_edges", sizes.edge_in, sizes.latent, sizes.latent, source) {
+      encode_nodes_(parameters, "encode_nodes", sizes.node_in, sizes.latent, sizes.latent, source, 1,
+                    sizes.hidden_layers),
+      encode_edges_(parameters, "encode_edges", sizes.edge_in, sizes.latent, sizes.latent, source, 1,
+                    sizes.hidden_layers) {
   blocks_.resize(static_cast<std::size_t>(sizes.steps));
   for (std::size_t k = 0; k < blocks_.size(); ++k)
-    blocks_[k] = GraphBlock<T>(parameters, "step_" + std::to_string(k), sizes.latent, updates(k, sizes.node_out > 0),
-                               sizes.has_globals && k > 0, source);
-  decode_edges_ = Mlp<T>(parameters, "decode_edges", sizes.latent, sizes.latent, sizes.edge_out, source, 0.1);
+    blocks_[k] = GraphBlock<T>(parameters, "step_" + std::to_string(k), sizes.latent, sizes.hidden_layers,
+                               updates(k, sizes.node_out > 0), sizes.has_globals && k > 0, source);
+  decode_edges_ =
+      Mlp<T>(parameters, "decode_edges", sizes.latent, sizes.latent, sizes.edge_out, source, 0.1, sizes.hidden_layers);
   if (sizes.node_out > 0)
-    decode_nodes_ = Mlp<T>(parameters, "decode_nodes", sizes.latent, sizes.latent, sizes.node_out, source, 0.1);
+    decode_nodes_ = Mlp<T>(parameters, "decode_nodes", sizes.latent, sizes.latent, sizes.node_out, source, 0.1,
+                           sizes.hidden_layers);
 }
 
 /// The last step's nodes matter only if they are decoded, its globals never.

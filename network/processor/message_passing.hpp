@@ -18,6 +18,7 @@ class MessagePassing {
     int node_in = 0, edge_in = 0, latent = 0, steps = 1;
     int edge_out = 0, node_out = 0;  ///< node_out 0: no node decoder
     bool has_globals = false;
+    int hidden_layers = 1;  ///< of every MLP
   };
   /// What backward() needs of forward(); reused from batch to batch.
   struct Tape {

@@ -1,8 +1,10 @@
 #include "network/training/example_builder.hpp"
 
 #include <memory>
+#include <numeric>
 
 #include "network/guess/base_guess.hpp"
+#include "network/training/turn.hpp"
 #include "solver/linear/rounding_level.hpp"
 
 namespace rodsweep {
@@ -22,6 +24,11 @@ struct RodExamples {
         scale(base),
         moves(rod.segments.size()) {}
 };
+
+double length_of(const Rod& rod) {
+  return std::accumulate(rod.segments.begin(), rod.segments.end(), 0.0,
+                         [](double sum, const Segment& segment) { return sum + segment.length_m; });
+}
 
 /// `values` (six per joint) in the places of the topology.
 Tensor<float> by_place(const Topology& topology, const VectorX& values) {
@@ -57,20 +64,25 @@ void put_system(const CopingNetSettings& settings, const LinearSystem& system, c
   }
 }
 
+/// `seen` is the system's rod as `turn` has it.
 Example example_of(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system,
-                   const StoredSystem& stored, double dt_c, RodExamples& of) {
+                   const StoredSystem& stored, double dt_c, RodExamples& of, const Rod& seen, const Turn& turn) {
   Example out;
   out.topology = of.encoder.shared_topology();
   out.nodes.resize(node_features(settings), rod.segment_count());
   of.edges.resize(edge_features(settings), rod.joint_count());
-  of.encoder.encode(rod, system, stored.at.newton, dt_c, of.base, of.residual, out.nodes, of.edges);
+  of.encoder.encode(seen, system, stored.at.newton, dt_c, of.base, of.residual, out.nodes, of.edges);
   if (is_of_graphs(settings.encoding)) out.edges = of.edges;
   put_system(settings, system, stored, of, out);
   if (settings.moves) {
     out.node_target.resize(6, rod.segment_count());
     system.displacements(rod, stored.solution, of.moves);
-    for (Eigen::Index s = 0; s < out.node_target.cols(); ++s)
-      for (int k = 0; k < 6; ++k) out.node_target(k, s) = static_cast<float>(of.moves[static_cast<std::size_t>(s)][k]);
+    for (Eigen::Index s = 0; s < out.node_target.cols(); ++s) {
+      Vector6 move;
+      for (int k = 0; k < 6; ++k) move[k] = of.moves[static_cast<std::size_t>(s)][k];
+      out.node_target.col(s) << (turn.rotation * move.head<3>()).cast<float>(),
+          (turn.rotation * move.tail<3>()).cast<float>();
+    }
   } else {
     out.node_target.resize(6, 0);
   }
@@ -79,10 +91,12 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Line
 
 }  // namespace
 
-void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out) {
+void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out,
+                  const TurnedCopies& copies) {
   Replay replay(simulation);
   const Scene& scene = replay.scene();
   const std::unique_ptr<InitialGuess> base = base_guess(settings, scene, simulation.newton_iterations);
+  SplitMix random(copies.seed);
   std::vector<RodExamples> rods;
   for (std::size_t r = 0; r < scene.rods.size(); ++r) rods.emplace_back(settings, scene.rods[r], replay.systems()[r]);
   replay.run([&](const StoredSystem& stored, const Rod& rod, const LinearSystem& system) {
@@ -91,8 +105,14 @@ void add_examples(const CopingNetSettings& settings, const StoredSimulation& sim
     base->propose(system, stored.at, of.base);
     system.multiply(of.base.data(), of.residual.data());
     of.residual = system.rhs() - of.residual;
-    if (of.residual.lpNorm<Eigen::Infinity>() > rounding_level)
-      out.push_back(example_of(settings, rod, system, stored, simulation.constraint_dt_s, of));
+    if (of.residual.lpNorm<Eigen::Infinity>() > rounding_level) {
+      out.push_back(example_of(settings, rod, system, stored, simulation.constraint_dt_s, of, rod, {}));
+      for (int copy = 0; copy < copies.count; ++copy) {
+        const Turn turn = random_turn(scene.gravity_m_s2, length_of(rod), random);
+        out.push_back(
+            example_of(settings, rod, system, stored, simulation.constraint_dt_s, of, turned(rod, turn), turn));
+      }
+    }
     base->accept(stored.at, stored.solution);
   });
 }

@@ -1,7 +1,8 @@
 // Recorded simulations as examples to learn from.
 //
 // The base guess runs along, reading the exact history as it does in a paired evaluation. Systems whose residual is at
-// rounding level (the base guess is the solution) teach nothing and are left out.
+// rounding level (the base guess is the solution) teach nothing and are left out. Encodings that say where a rod is may
+// have copies of every example, turned about gravity and shifted at random (turn.hpp): only what is of the world moves.
 #pragma once
 
 #include "network/encoding/feature_encoder.hpp"
@@ -10,8 +11,14 @@
 
 namespace rodsweep {
 
+struct TurnedCopies {
+  int count = 0;           ///< of every example
+  std::uint64_t seed = 0;  ///< of a simulation
+};
+
 /// Adds the examples of one simulation, their features and targets without normalisation.
-void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out);
+void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out,
+                  const TurnedCopies& copies = {});
 
 /// The scales of a training set of such examples.
 FeatureScales feature_scales(const CopingNetSettings& settings, const std::vector<Example>& examples);

@@ -10,7 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const Words<Encoding> encodings{{"deck", Encoding::deck},
+const Words<Encoding> encodings{{"paper", Encoding::paper},
+                                {"deck", Encoding::deck},
                                 {"physics", Encoding::physics},
                                 {"system", Encoding::system},
                                 {"canonical", Encoding::canonical}};
@@ -58,6 +59,12 @@ void check(const TrainingJob& training, const std::filesystem::path& file) {
                     fmt::format("{} is not allowed with network.processor \"factors\"; must be a multiple of 16",
                                 training.network.latent));
   }
+  if (training.turned_copies > 0 && !is_of_graphs(training.network.encoding)) {
+    throw job_error(
+        file, "training.turned_copies",
+        fmt::format("{} is not allowed with network.encoding \"{}\", which no turn changes; remove this key",
+                    training.turned_copies, word_of(encodings, training.network.encoding)));
+  }
   if (training.network.moves && settings.loss != LossKind::mse) {
     throw job_error(file, "network.moves",
                     fmt::format("true is not allowed with training.loss \"{}\", which teaches the network nothing of "
@@ -78,6 +85,7 @@ CopingNetSettings network_settings(const Json& values) {
   settings.recurrence = value_of(recurrences, values.value("recurrence", "gated"));
   settings.couplings = value_of(all_couplings, values.value("couplings", "tree"));
   settings.steps = values.value("steps", settings.steps);
+  settings.hidden_layers = values.value("hidden_layers", settings.hidden_layers);
   settings.globals = values.value("globals", settings.globals);
   settings.best_length = values["best_length"];
   settings.moves = values.value("moves", settings.moves);
@@ -96,6 +104,8 @@ Json network_json(const CopingNetSettings& settings) {
   if (has_all_couplings(settings)) values["couplings"] = word_of(all_couplings, settings.couplings);  // likewise
   if (settings.processor == Processor::message_passing)
     values.update({{"steps", settings.steps}, {"globals", settings.globals}, {"moves", settings.moves}});
+  if (settings.processor == Processor::message_passing && settings.hidden_layers > 1)
+    values["hidden_layers"] = settings.hidden_layers;  // likewise
   return values;
 }
 
@@ -106,8 +116,10 @@ TrainingJob training_job(const Job& job) {
   for (const Json& set : data.is_array() ? data : Json::array({data}))
     out.data.push_back((job.path.parent_path() / set.get<std::string>()).lexically_normal());
   out.validation_simulations = job.values["validation_simulations"];
+  out.training_simulations = job.values["training_simulations"];
   out.network = network_settings(job.values["network"]);
   out.training = training_settings(training, job.seed);
+  out.turned_copies = training["turned_copies"];
   out.patience_epochs = training["patience_epochs"];
   out.ratio_every_epochs = training["ratio_every_epochs"];
   out.ratio_simulations = training["ratio_simulations"];

@@ -13,9 +13,11 @@ namespace rodsweep {
 
 struct TrainingJob {
   std::vector<std::filesystem::path> data;  ///< of the data sets
+  std::int64_t training_simulations = 0;    ///< of each set; 0: all but those for validation
   std::int64_t validation_simulations = 100;
   CopingNetSettings network;
   TrainingSettings training;
+  int turned_copies = 0;        ///< of every example to learn from
   int patience_epochs = 0;      ///< 0: no early end
   int ratio_every_epochs = 10;  ///< 0: at the end only
   std::int64_t ratio_simulations = 50;

@@ -47,6 +47,11 @@ Key training() {
                      .above(0)
                      .at_most(1e9)
                      .defaults_to(1),
+                 integer_key("turned_copies",
+                             "of every example, turned about gravity at random and shifted; for encodings that know "
+                             "where a rod is: paper, deck and physics")
+                     .from(0, 100)
+                     .defaults_to(0),
                  integer_key("patience_epochs", "ends after so many epochs without a better validation loss; 0: never")
                      .from(0, 1000000)
                      .defaults_to(0)
@@ -70,9 +75,11 @@ Key network_key() {
              {
                  choice_key(
                      "encoding",
-                     "what it is given of a linear system: the deck's features of segments and joints, more "
-                     "physical ones, the scaled system itself, or that in frames that no turn, roll or mirror changes",
-                     {"deck", "physics", "system", "canonical"})
+                     "what it is given of a linear system. paper: the features of Shao et al., 14 of a segment and 5 "
+                     "of a joint; deck: the same, and from the second Newton iteration on what constraints lack; "
+                     "physics: more of them, scaled; system: the scaled system itself; canonical: that in frames "
+                     "that no turn, roll or mirror changes",
+                     {"paper", "deck", "physics", "system", "canonical"})
                      .defaults_to("system"),
                  choice_key(
                      "processor",
@@ -102,6 +109,10 @@ Key network_key() {
                      .from(1, 100)
                      .defaults_to(6)
                      .only({"message_passing"}),
+                 integer_key("hidden_layers", "message_passing: of every multilayer perceptron")
+                     .from(1, 10)
+                     .defaults_to(1)
+                     .only({"message_passing"}),
                  boolean_key("globals", "message_passing: with a state of the whole graph")
                      .defaults_to(false)
                      .only({"message_passing"}),
@@ -121,6 +132,10 @@ std::vector<Key> training_keys() {
           .at_most(4000)
           .of_form(Key::Text::line)
           .or_list_of_such(),
+      integer_key("training_simulations",
+                  "learned from: the first so many simulations of every data set; 0: all that are not for validation")
+          .from(0, 1000000)
+          .defaults_to(0),
       integer_key("validation_simulations",
                   "the last so many simulations of every data set, of its last samples, are not learned from")
           .from(1, 1000000)

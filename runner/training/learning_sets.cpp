@@ -23,6 +23,12 @@ DatasetReader opened(const std::filesystem::path& path, const TrainingJob& train
                     fmt::format("{} is not allowed, since {} holds {} simulations and some must be left to learn from",
                                 training.validation_simulations, path.native(), set.size()));
   }
+  if (training.training_simulations > set.size() - training.validation_simulations) {
+    throw job_error(
+        job.path, "training_simulations",
+        fmt::format("{} is not allowed, since {} holds {} simulations, {} of which are for validation",
+                    training.training_simulations, path.native(), set.size(), training.validation_simulations));
+  }
   return set;
 }
 
@@ -34,7 +40,9 @@ LearningSets::LearningSets(const TrainingJob& training, const Job& job) {
   for (const DatasetReader& set : sets_) {
     sum.add(set.hash().data(), set.hash().size());
     if (!set.note().empty()) note_ += (note_.empty() ? "" : "; ") + set.note();
-    for (std::int64_t i = 0; i < set.size() - training.validation_simulations; ++i) training_.push_back({&set, i});
+    const std::int64_t left = set.size() - training.validation_simulations;
+    const std::int64_t used = training.training_simulations > 0 ? training.training_simulations : left;
+    for (std::int64_t i = 0; i < used; ++i) training_.push_back({&set, i});
   }
   hash_ = sets_.size() == 1 ? sets_.front().hash() : fmt::format("{:016x}", sum.value());
   for (std::int64_t i = training.validation_simulations; i > 0; --i)

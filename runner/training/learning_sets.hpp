@@ -1,7 +1,7 @@
 // The data sets of a training: which simulations are learned from and which are judged by.
 //
 // The last `validation_simulations` of every set are for validation, in turns of one of each set, so that the first few
-// have something of all; the others, set by set, are learned from.
+// have something of all; of the others, set by set, all or the first `training_simulations` are learned from.
 #pragma once
 
 #include <string>

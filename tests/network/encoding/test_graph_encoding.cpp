@@ -76,6 +76,17 @@ const double y1 = 5 - 0.5 * std::sin(0.3), z1 = 1 + 0.5 * std::cos(0.3);
 const double y2 = 5 - std::sin(0.3) - std::sin(0.1), z2 = 1 + std::cos(0.3) + std::cos(0.1);
 const double bend0 = 2 * std::sin(0.15), bend1 = 2 * std::sin(-0.1), rest1 = 2 * std::sin(0.05);
 
+TEST_CASE("paper: the nodes of deck, and of its edges what bends and how stiff, at every Newton iteration") {
+  for (const int newton : {0, 1}) {
+    const Encoded paper = encoded(Encoding::paper, bent_rod(), newton),
+                  deck = encoded(Encoding::deck, bent_rod(), newton);
+    CHECK(paper.nodes.rows() == 14);
+    CHECK(paper.edges.rows() == 5);
+    CHECK(paper.nodes == deck.nodes);
+    CHECK(paper.edges == deck.edges.topRows(5));
+  }
+}
+
 TEST_CASE("deck: a bent rod of three segments, by hand") {
   const Encoded e = encoded(Encoding::deck, bent_rod());
   check_column(e.nodes, 0, {0, 5, .5, 1, 0, 0, 0, .05, 1000, 1, 0, 1, 1, 0});

@@ -10,9 +10,12 @@ namespace {
 using namespace test;
 
 TEST_CASE("the gradients of an MLP are those of central differences, for weights and inputs") {
+  const int hidden_layers = GENERATE(1, 2, 3);
+  CAPTURE(hidden_layers);
   Parameters<double> p;
   WeightSource source(1);
-  const Mlp<double> mlp(p, "mlp", 4, 7, 3, source);
+  const Mlp<double> mlp(p, "mlp", 4, 7, 3, source, 1, hidden_layers);
+  REQUIRE(static_cast<int>(p.entries().size()) == 4 + 2 * (hidden_layers - 1));
   for (double& v : p.values()) v += 0.1;  // biases too
   std::vector<double> inputs(4 * 5);
   Eigen::Map<Matrix> x(inputs.data(), 4, 5);

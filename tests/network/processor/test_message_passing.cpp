@@ -31,9 +31,10 @@ struct Case {
   Net::Tape tape;
   Matrix y_edges, y_nodes;
 
-  Case(RodGraph g, int steps, int node_out, bool has_globals, int latent = 5) : graph(std::move(g)) {
+  Case(RodGraph g, int steps, int node_out, bool has_globals, int latent = 5, int hidden_layers = 1)
+      : graph(std::move(g)) {
     WeightSource source(7);
-    net = Net(p, {3, 4, latent, steps, 2, node_out, has_globals}, source);
+    net = Net(p, {3, 4, latent, steps, 2, node_out, has_globals, hidden_layers}, source);
     for (double& v : p.values()) v += 0.05;
     x_nodes = random_matrix(3, graph.nodes, 2);
     x_edges = random_matrix(4, graph.edges(), 3);
@@ -45,8 +46,9 @@ TEST_CASE("the gradients of message passing are those of central differences") {
   for (const bool has_globals : {false, true})
     for (const int node_out : {0, 3})
       for (const int steps : {1, 3}) {
-        CAPTURE(has_globals, node_out, steps);
-        Case c(some_graphs(), steps, node_out, has_globals, 3);
+        const int hidden_layers = steps == 1 ? 3 : 1;
+        CAPTURE(has_globals, node_out, steps, hidden_layers);
+        Case c(some_graphs(), steps, node_out, has_globals, 3, hidden_layers);
         const Matrix d_edges = random_matrix(2, c.graph.edges(), 4),
                      d_nodes = random_matrix(node_out, c.graph.nodes, 5);
         const auto loss = [&] {
@@ -64,7 +66,7 @@ TEST_CASE("every weight is used: none has a gradient of zero") {
   for (const bool has_globals : {false, true})
     for (const int node_out : {0, 3}) {
       CAPTURE(has_globals, node_out);
-      Case c(some_graphs(), 3, node_out, has_globals);
+      Case c(some_graphs(), 3, node_out, has_globals, 5, 2);
       c.run();
       Parameters<double> gradient = c.p.zeros();
       const Matrix d_edges = random_matrix(2, c.graph.edges(), 4), d_nodes = random_matrix(node_out, c.graph.nodes, 5);

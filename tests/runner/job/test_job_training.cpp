@@ -63,13 +63,17 @@ TEST_CASE("every key of a training arrives where it belongs") {
   Json values = train_job();
   values["seed"] = 7;
   values["validation_simulations"] = 3;
+  values["training_simulations"] = 9;
   values["network"] = Json::parse(R"({"encoding": "deck", "processor": "message_passing", "base": "extrapolation",
-      "base_size": 4, "latent": 16, "steps": 2, "globals": true, "best_length": false, "moves": true})");
+      "base_size": 4, "latent": 16, "steps": 2, "hidden_layers": 3, "globals": true, "best_length": false, "moves": true})");
   values["training"] = Json::parse(R"({"loss": "mse", "epochs": 5, "batch": 12, "shards": 3, "rate": 0.01,
       "warm_up": 0.1, "weight_decay": 0.2, "clip": 0.5, "patience_epochs": 4, "ratio_every_epochs": 2,
-      "ratio_simulations": 6})");
+      "ratio_simulations": 6, "turned_copies": 2})");
   const TrainingJob job = training_of(values);
   CHECK(job.validation_simulations == 3);
+  CHECK(job.training_simulations == 9);
+  CHECK(job.turned_copies == 2);
+  CHECK(job.network.hidden_layers == 3);
   CHECK(job.network.encoding == Encoding::deck);
   CHECK(job.network.processor == Processor::message_passing);
   CHECK(job.network.base == BaseGuess::extrapolation);
@@ -120,7 +124,8 @@ TEST_CASE("misspelt and impossible values of a training are refused") {
   CHECK(refused("/network/best_length", "1") ==
         "job.json: network.best_length: 1 is not allowed; must be true or false");
   CHECK(refused("/network/encoding", "\"decks\"") ==
-        "job.json: network.encoding: \"decks\" is not allowed; must be one of \"deck\", \"physics\", \"system\", "
+        "job.json: network.encoding: \"decks\" is not allowed; must be one of \"paper\", \"deck\", \"physics\", "
+        "\"system\", "
         "\"canonical\"; did "
         "you mean \"deck\"?");
 }
@@ -147,9 +152,11 @@ TEST_CASE("the settings of every kind of network are the same after a round trip
   for (const char* text :
        {"{}", R"({"encoding": "physics", "base": "none", "latent": 8, "best_length": false})",
         R"({"recurrence": "linear"})", R"({"encoding": "canonical", "processor": "factors", "couplings": "all"})",
-        R"({"processor": "message_passing", "steps": 1, "globals": true})"}) {
+        R"({"processor": "message_passing", "steps": 1, "globals": true})",
+        R"({"processor": "message_passing", "hidden_layers": 2})"}) {
     Json values = job_of(with("/network", text, train_job())).values["network"];
     if (values.value("recurrence", "") == "gated") values.erase("recurrence");  // models of before have no word for it
+    if (values.value("hidden_layers", 0) == 1) values.erase("hidden_layers");   // nor for this
     const Json written = network_json(network_settings(values));
     CHECK(network_json(network_settings(written)) == written);
     CHECK(written.size() == values.size());
