@@ -29,6 +29,8 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
   solvers work_precision balance balance_scenes tree_wind forest tree_long_term \
   learned_rods learned_rods_length learned_rods_closed learned_rods_preconditioned \
+  lattice_swing lattice_preconditioners lattice_impact lattice_cells lattice_closed lattice_impact_closed \
+  lattice_work_precision net_gusts net_closed \
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
@@ -36,8 +38,8 @@ sources = $$(find solver network runner tests -name '*.[ch]pp')
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
-	@echo 'make studies       run the studies of jobs/, draw analysis/results (an hour; continued if it was stopped)'
-	@echo 'make variants      train what rods.h5 could have been, draw how it was chosen (half an hour; continued likewise)'
+	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
+	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind), draw their films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
@@ -76,10 +78,10 @@ studies: build
 	done
 	@analysis/results/draw.sh results
 
-# The settings of network/pretrained/rods.h5, changed one at a time: what was chosen on validation, and what each costs.
+# The settings of rods.h5 and lattices.h5, changed one at a time: what was chosen on validation, and what each costs.
 variants: build
-	@mkdir -p results; $(call study,rods_data)
-	@analysis/results/variants.py $(BUILD)/rodsweep results rods
+	@mkdir -p results; $(call study,rods_data); $(call study,lattices_data)
+	@for family in rods lattices; do analysis/results/variants.py $(BUILD)/rodsweep results $$family; done
 	@$(call study,rods_front)
 	@analysis/results/draw.sh results variants
 

@@ -76,7 +76,7 @@ def figure(shown, panels, found, tolerances):
                                              label="as fast as the best classical guess")]
     notes = [f"CG ratio: {measures.NEWTON[shown.newton]}; mean over simulations; time: median; "
              f"{study.sample_text([ratio for ratio, _, _ in found])}.", shown.about()]
-    page = layout.Page(shown.width_mm, [panel.title() for panel in panels], len(tolerances),
+    page = layout.Page(shown.width_mm, [panel.caption() for panel in panels], len(tolerances),
                        len(tolerances) if shown.wide else 1, 42, handles, notes, shown.timing_warning(), left_mm=12,
                        gap_mm=9, ticks_mm=5.5)
     for row, (panel, (ratio, guess, zero)) in enumerate(zip(panels, found)):

@@ -114,7 +114,7 @@ def figure(shown, options, planes, guesses, tolerances):
     for k, (axes, plane) in enumerate(zip(page.axes[0], planes)):
         draw(axes, plane, file, measure, norm, colormap,
              measure.of_guess and len(guesses) > 1 and not options.each, cell_mm)
-        title = plane.panel.title()
+        title = plane.panel.caption()
         if options.each:
             title = file.guesses[guesses[k % len(guesses)]] + (f" · {title}" if len(planes) > len(guesses) else "")
         page.title(axes, title, weight="bold")
@@ -169,8 +169,12 @@ def scale(measure, planes):
         if high < 1.02 * low:
             low, high = low / 1.5, high * 1.5
         return (colors.LogNorm if high > 30 * low else colors.Normalize)(low, high), style.SEQUENTIAL
-    reach = max(1.25, float(np.exp(np.abs(np.log(values)).max()))) if len(values) else 1.25
-    return colors.LogNorm(1 / reach, reach), style.DIVERGING if measure.better < 0 else style.DIVERGING.reversed()
+    low, high = (min(values.min(), 0.8), max(values.max(), 1.25)) if len(values) else (0.8, 1.25)
+    reach = np.log(max(high, 1 / low))
+    # As far to either side of 1 as the values go, with the same colour for the same factor up or down.
+    part = np.linspace(*(0.5 + 0.5 * np.log(end) / reach for end in (low, high)), 256)
+    both = style.DIVERGING if measure.better < 0 else style.DIVERGING.reversed()
+    return colors.LogNorm(low, high), colors.ListedColormap(both(part))
 
 
 def draw(axes, plane, file, measure, norm, colormap, with_names, cell_mm):

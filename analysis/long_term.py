@@ -91,6 +91,11 @@ def figure(shown, panels, series, found, options):
              "stretch (energy: of the middle of its range, relative to the first step). Bands: smallest to largest of "
              "all simulations, for length drift of these largest values. Crosses with black edges: simulations that "
              f"failed. Logarithmic axes reach {DECADES} decades below the largest value of what did not fail."]
+    scales = [_scales(found, methods_of, shown) for methods_of in series]
+    envelopes_of = {name: [{method: _envelope(found, name, method, tasks, scale)
+                            for method, (_, tasks, _) in methods_of.items()} for methods_of, scale in zip(series, scales)]
+                    for name in names}
+    notes += filter(None, [_coincident(envelopes_of)])
     titles = groups.short_titles(panels)
     columns = layout.even_columns(len(panels), 4 if shown.wide else 1)
     if max(map(len, titles)) > (shown.width_mm - 13) / columns / 1.2:    # a character has about 1.2 mm
@@ -98,10 +103,10 @@ def figure(shown, panels, series, found, options):
     page = layout.Page(shown.width_mm, [PANELS[name][0] for name in names], len(panels), columns,
                        26, study.handles(series), notes + [shown.about()], left_mm=13,
                        panel_titles_mm=1 + 2.6 * max(title.count("\n") + bool(title) for title in titles))
-    scales = [_scales(found, methods_of, shown) for methods_of in series]
     for name, row in zip(names, page.axes):
-        drawn = [_draw(axes, x, name, methods_of, found, scale, shown.file.ok)
-                 for axes, (x, _), methods_of, scale in zip(row, times, series, scales)]
+        drawn = envelopes_of[name]
+        for axes, (x, _), methods_of, of_panel in zip(row, times, series, drawn):
+            _draw(axes, x, methods_of, found, of_panel, shown.file.ok)
         values = [part for parts in drawn for part in parts.values()]
         well = [part for parts, methods_of in zip(drawn, series) for method, part in parts.items()
                 if shown.file.ok[methods_of[method][1]].any()]
@@ -143,8 +148,27 @@ def _envelope(found, name, method, tasks, scales):
     return np.fmin.reduce(low), np.fmax.reduce(high), measures.median_of_finite(line)
 
 
-def _draw(axes, x, name, methods_of, found, scales, ok):
-    drawn = {method: _envelope(found, name, method, tasks, scales) for method, (_, tasks, _) in methods_of.items()}
+def _coincident(envelopes_of):
+    """A sentence on methods whose lines nobody can tell apart, in all panels of a row; the largest set of each row."""
+    found = {}
+    for name, panels in envelopes_of.items():
+        methods_of = list(dict.fromkeys(method for of_panel in panels for method in of_panel))
+        sets = [[other for other in methods_of
+                 if all(_same(of_panel[method][2], of_panel[other][2]) for of_panel in panels
+                        if method in of_panel and other in of_panel)] for method in methods_of]
+        largest = max(sets, key=len)
+        if len(largest) > 1:
+            found.setdefault(", ".join(largest), []).append(PANELS[name][0].split(" (")[0])
+    return "; ".join(f"On one line: {methods_of} ({', '.join(names)})" for methods_of, names in found.items()) + (
+        "." if found else "")
+
+
+def _same(line, other):
+    both = np.isfinite(line) & np.isfinite(other)
+    return both.any() and np.allclose(line[both], other[both], rtol=0.05, atol=1e-3 * np.abs(line[both]).max())
+
+
+def _draw(axes, x, methods_of, found, drawn, ok):
     every = max(1, len(x) // 7)
     for rank, (method, (low, high, line)) in enumerate(drawn.items()):
         look = methods_of[method][0]
@@ -156,7 +180,6 @@ def _draw(axes, x, name, methods_of, found, scales, ok):
         ends = np.unique(ends[ends >= 0])
         axes.plot(x[ends], high[ends], color=look.colour, linestyle="", marker="X", markersize=6.5,
                   markeredgecolor="black", markeredgewidth=0.6, zorder=4)
-    return drawn
 
 
 def _finite(parts):

@@ -4,8 +4,8 @@
 The first panel has the loss of training (dotted: while the weights changed) and of validation; the dot marks the epoch
 whose weights the model has. A panel per tolerance has the CG ratio: CG iterations from the network's guess over those
 from zero, summed over a validation simulation's first Newton iterations and averaged over simulations; the level line
-is that of the base guess alone, which the network corrects, and a star the model's own. The last panel has the step
-size. Several models are drawn together; losses of different kinds do not compare. Files of trainings that still run
+is that of the base guess alone, which the network corrects, and a star the model's own. The last panel has the
+learning rate. Several models are drawn together; losses of different kinds do not compare. Files of trainings that still run
 are shown as far as they are.
 """
 
@@ -84,7 +84,7 @@ def figure(trainings, width_mm):
         axes.set_title(f"CG ratio at {style.tolerance_text(tolerances[k])}")
     for training, look in zip(trainings, looks):
         rate.plot(training.epochs, training.rate, color=look.colour)
-    rate.set_title("step size")
+    rate.set_title("learning rate")
     rate.yaxis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
     rate.yaxis.set_major_locator(MaxNLocator(3))
     rate.set_ylim(0, 1.08 * max(t.rate.max() for t in trainings))

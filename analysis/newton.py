@@ -101,8 +101,8 @@ def figure(shown, panels, series, medians, found, floor):
     notes = ["Before Newton iteration j, and after the last. Lines: median over simulations of their medians over steps; "
              f"{study.sample_text(shown_counts)}; bands: quartiles over steps; dots: largest of all."]
     if left_early:
-        notes.append("Steps whose residual was below the job's newton_tolerance ended early and are in no later level.")
-    page = layout.Page(shown.width_mm, [panel.title() for panel in panels], len(names) + 1,
+        notes.append("Steps whose residual was below the job's newton_tolerance ended early and stay with their last value.")
+    page = layout.Page(shown.width_mm, [panel.caption() for panel in panels], len(names) + 1,
                        len(names) + 1 if shown.wide else 1, 42, handles, notes + [shown.about()], gap_mm=12,
                        left_mm=12, ticks_mm=8 if not shown.wide else 5.5)
     for row, (ways, e) in enumerate(zip(series, medians)):

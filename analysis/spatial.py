@@ -4,6 +4,7 @@
   cg-ratio   CG iterations relative to the zero guess, a panel per tolerance
   speedup    time of zero-guess CG over the time with a guess: CG only, guess and CG, whole step; direct beside
   time       time per solve split into assembly, guess and CG, per guess, with the direct solve beside
+  four-curves  of learned guesses, as Shao et al. show it: CG ratio, time of the guess over that of its CG, speedups
 
 A row of panels per scene type and per value of any other grid of the job. Figures of times need /solves in the file
 (record.solves "all"). Written as PDF and PNG; the paths are printed.
@@ -50,6 +51,9 @@ def main():
             by_newton = timings.times(file, shown.sims)
             made["speedup"] = figures.speedup_figure(shown, by_newton)
             made["time"] = figures.time_figure(shown, by_newton)
+            four_curves = figures.four_curves_figure(shown, by_newton)
+            if four_curves:
+                made["four-curves"] = four_curves
         else:
             print(f"{file.path} has no times of single solves (record.solves is \"summary\"): CG ratios only",
                   file=sys.stderr)

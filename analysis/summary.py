@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Tables of a sweep: CG ratios with confidence intervals, three speedups, and how the simulations went.
 
-  CG ratio   CG iterations over those from the zero guess, summed over a simulation, mean over simulations
+  CG ratio   CG iterations over those from the zero guess, summed over a simulation, mean over simulations; beside it
+             the same in products with A, a guess's own counted, of all Newton iterations, and both
   speedups   time of zero-guess CG (and of the direct solve) over the time with a guess, at the job's tolerance:
              CG only, guess and CG, whole step; sums over a simulation, median over simulations
   steps      Newton iterations, largest length drift, joint gap, penetration and contact residual, over all steps
@@ -24,6 +25,7 @@ EXAMPLES = """examples:
   analysis/summary.py results/demo.h5 --csv > demo.csv"""
 FAILURES_SHOWN = 5
 TITLE_WIDTH = 24
+BESIDE = {"products": "products", "all": "all j", "all_products": "both"}
 
 
 def arguments():
@@ -98,7 +100,17 @@ def ratio_lines(file, found, guesses, tolerances, newton):
             rows.append(["  zero, iterations/solve"] + [f"{block.zero_iterations[t]:.1f}" for t in tolerances])
         lines += [""] + title + texts.aligned(rows)
         lines += _missed(file, block, guesses, tolerances)
+        lines += texts.aligned(_beside(file, block, guesses, tolerances)) if block.beside else []
     return lines
+
+
+def _beside(file, block, guesses, tolerances):
+    """The means of what stands beside the ratio."""
+    rows = [["  the same, means"] +
+            [f"{texts.tolerance_label(file.tolerances[t])} {BESIDE[name]}" for t in tolerances for name in block.beside]]
+    return rows + [["  " + file.guesses[g]] + [_fixed(block.beside[name].value[g, t], 2)
+                                               for t in tolerances for name in block.beside]
+                   for g in guesses if g != file.zero]
 
 
 def _missed(file, block, guesses, tolerances):

@@ -75,7 +75,7 @@ def figure(shown, panels, found, columns, tolerances, relative):
     if any(windows.unreached[:, columns.index(g)].any() for windows in found for g in lines):
         notes.append("Open markers: some solves of the window missed the tolerance (iteration limit or divergence) and "
                      "count the mean of what such solves used in their simulation.")
-    page = layout.Page(shown.width_mm, [panel.title() for panel in panels], len(tolerances),
+    page = layout.Page(shown.width_mm, [panel.caption() for panel in panels], len(tolerances),
                        layout.even_columns(len(tolerances), 2 if shown.wide else 1), 38 if shown.wide else 32,
                        shown.handles(lines, "zero guess (= 1)" if relative else ""), notes + [shown.about()])
     for row, (panel, windows, e) in enumerate(zip(panels, found, estimates)):

@@ -13,6 +13,8 @@ from drawing.study import sample_text
 from reading import intervals, measures, remarks, timings
 
 TIME_PARTS = ("assembly", "guess", "CG")
+FOUR_CURVES = {"ratio": "CG ratio", "share": "time of the guess ÷ of its CG", "guess_cg": "speedup of guess and CG",
+               "step": "speedup of the whole step"}
 
 
 def ratio_figure(study, tolerances):
@@ -31,7 +33,7 @@ def ratio_figure(study, tolerances):
         notes.append("Open markers: some of these solves missed the tolerance (iteration limit or divergence) and "
                      "count what they used.")
     width = study.width_mm
-    page = layout.Page(width, [p.title() for p in study.panels], len(tolerances), 4 if study.wide else 2,
+    page = layout.Page(width, [p.caption() for p in study.panels], len(tolerances), 4 if study.wide else 2,
                       40 if study.wide else 30, study.handles(lines, "zero guess (= 1)"), notes + [study.about()],
                       ticks_mm=_ticks_mm(study))
     top = 1.06 * max([1.0] + [float(np.nanmax([e.value, e.high])) for e in shown if np.isfinite(e.value)])
@@ -71,7 +73,7 @@ def speedup_figure(study, by_newton):
     if with_direct:
         handles.append(style.DIRECT.handle("direct solve"))
     width = study.width_mm
-    page = layout.Page(width, [p.title() for p in study.panels], 3, 3, 40 if study.wide else 34, handles,
+    page = layout.Page(width, [p.caption() for p in study.panels], 3, 3, 40 if study.wide else 34, handles,
                       notes + [study.about()], study.timing_warning(), ticks_mm=_ticks_mm(study))
     bounds = [v for row in rows for pairs in row.values() for e, d in pairs for part in (*(e[g] for g in lines), d)
               for v in (part.value, part.low, part.high) if np.isfinite(v) and v > 0]
@@ -98,15 +100,62 @@ def speedup_figure(study, by_newton):
     return page
 
 
+def four_curves_figure(study, by_newton):
+    """What the talk of Shao et al. shows of a learned guess, a panel for each: the CG ratio, the time of the guess over
+    that of its CG, and two speedups over CG from zero, of guess and CG and of the whole step. None without one."""
+    learned = [g for g in study.lines() if study.file.guesses[g].startswith("copingnet")]
+    if not learned:
+        return None
+    file, part = study.file, by_newton[study.newton]
+    timed = timings.timed_rung(file)[study.sims.any_task]
+    ratios = measures.cg_ratios(file, study.sims, study.newton).ratio
+    speedups = timings.speedups(by_newton, study.newton)
+    curves = {"ratio": ratios[np.arange(len(timed)), :, timed], "share": part.guess_s / part.cg_s,
+              "guess_cg": speedups["guess_cg"], "step": speedups["step"]}
+    rows = [[{name: (intervals.mean if name == "ratio" else intervals.median)(values[i], study.sims.sample[i])
+              for name, values in curves.items()} for i in points.index] for points in study.points]
+    shown = [e[g] for row in rows for at in row for e in at.values() for g in learned]
+    notes = [f"CG ratio: mean, times: median over {sample_text(shown)}. Time of the guess: base, features, network and "
+             f"products, over that of the CG that starts from it. Counted: {measures.NEWTON[study.newton]}; the whole "
+             f"step has all Newton iterations. Solved to tolerance {study.solve_tolerance()}. "
+             f"{timings.interruptions(part, study.sims)}"]
+    handles = [style.FOUR_CURVES[name].handle(label) for name, label in FOUR_CURVES.items()]
+    page = layout.Page(study.width_mm, [p.caption() for p in study.panels], len(learned),
+                       layout.even_columns(len(learned), 3 if study.wide else 1), 42, handles,
+                       notes + [study.about()], study.timing_warning(), gap_mm=6, ticks_mm=_ticks_mm(study))
+    bounds = [v for e in shown for v in (e.value, e.low, e.high) if np.isfinite(v) and v > 0]
+    low, high = min([0.5] + [0.9 * b for b in bounds]), max([2] + [1.1 * b for b in bounds])
+    low = max(low, 1e-3)
+    for axes_row, points, row in zip(page.axes, study.points, rows):
+        for k, (axes, g) in enumerate(zip(axes_row, learned)):
+            x = layout.XAxis(points)
+            axes.set_yscale("log")
+            axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
+            for rank, name in enumerate(curves):
+                _line(axes, x.dodged(rank, len(curves)), [at[name][g] for at in row], style.FOUR_CURVES[name],
+                      points.categorical)
+            axes.set_ylim(low, high)
+            axes.yaxis.set_major_locator(FixedLocator(layout.log_ticks(low, high)))
+            axes.yaxis.set_minor_locator(NullLocator())
+            axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            page.title(axes, study.file.guesses[g], weight="bold")
+            x.apply(axes)
+            page.label_y(axes, k, "ratio, or times as fast")
+    _x_labels(page, study)
+    return page
+
+
 def time_figure(study, by_newton):
-    """Microseconds per solve, stacked parts: a panel per guess; the direct solve of the same systems beside it."""
+    """Microseconds per segment and solve, stacked parts: a panel per guess; the direct solve of the same systems beside
+    it."""
     part = by_newton[study.newton]
+    segments = study.file.results("segments", study.sims.any_task)[:, None, None]
     values = np.stack([part.assemble_s, part.guess_s, part.cg_s, part.assemble_s + part.direct_s,
-                       part.assemble_s + part.guess_s + part.cg_s], axis=-1) / part.solves[..., None] * 1e6
+                       part.assemble_s + part.guess_s + part.cg_s], axis=-1) / part.solves[..., None] / segments * 1e6
     rows = [[intervals.median(values[i], study.sims.sample[i]) for i in points.index] for points in study.points]
     shown = [e[g, 4] for row in rows for e in row for g in study.guesses]
     with_direct = any(np.isfinite(e.value[g, 3]) for row in rows for e in row for g in study.guesses)
-    notes = [f"Mean time of a solve in a simulation, median over {sample_text(shown, ' of the total')}; parts in their "
+    notes = [f"Mean time of a solve in a simulation, per segment, median over {sample_text(shown, ' of the total')}; parts in their "
              f"median proportions. Counted: {measures.NEWTON[study.newton]}. "
              f"Solved to tolerance {study.solve_tolerance()}. CG includes the preconditioner's set-up. "
              f"{remarks.oracle_note(study.file, study.guesses)}{timings.interruptions(part, study.sims)}"]
@@ -116,7 +165,7 @@ def time_figure(study, by_newton):
         handles.append(style.DIRECT.handle("assembly + direct solve"))
     width, count = study.width_mm, len(study.guesses)
     columns = layout.even_columns(count, 6 if study.wide else 3)
-    page = layout.Page(width, [p.title() for p in study.panels], count, columns,
+    page = layout.Page(width, [p.caption() for p in study.panels], count, columns,
                       34 if study.wide else 22, handles, notes + [study.about()], study.timing_warning(), gap_mm=3,
                       ticks_mm=_ticks_mm(study))
     for axes_row, points, row in zip(page.axes, study.points, rows):
@@ -130,7 +179,7 @@ def time_figure(study, by_newton):
             page.title(axes, study.file.guesses[g], color=study.style(g).colour, weight="bold")
             axes.grid(axis="x", visible=False)
             x.apply(axes)
-            page.label_y(axes, k, "µs per solve")
+            page.label_y(axes, k, "µs per segment and solve")
     _x_labels(page, study)
     return page
 

@@ -7,10 +7,13 @@ import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.colors import LogNorm
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
+from matplotlib.transforms import Bbox
 
 from drawing import style
 from reading import texts
 
+METADATA = {"pdf": {"CreationDate": None, "Producer": None, "Creator": "rodsweep"}, "png": {"Software": "rodsweep"},
+            "svg": {"Date": None, "Creator": "rodsweep"}}
 LOG_SPAN = 20        # positive x whose largest value exceeds the smallest by this factor get a logarithmic axis
 CHARACTER_MM = 1.45  # width of a digit of a tick, about
 
@@ -64,7 +67,7 @@ class Page:
             top -= panels_mm
         for k, note in enumerate(notes):
             self._text(2, notes_mm - 1 - 2.9 * k, note, width_mm, height, size=6, color="#333333")
-        self.columns, self.ticks_mm = columns, ticks_mm
+        self.columns, self.ticks_mm, self.notes_mm = columns, ticks_mm, notes_mm
 
     def _text(self, x, y, text, width, height, **text_style):
         self.figure.text(x / width, y / height, text, va="top", ha="left", **text_style)
@@ -114,16 +117,24 @@ class Page:
         self.figure.text(middle, bottom - (self.ticks_mm - 0.7) / height, text, ha="center", va="top")
 
     def title(self, axes, text, **text_style):
-        """A panel's title, smaller where the panel is narrow."""
+        """A panel's title, smaller where the panel is narrow, and in two lines where it is narrower still."""
         width = axes.get_position().width * self.figure.get_size_inches()[0] / style.MM
-        axes.set_title(text, fontsize=max(5.5, min(7.5, 7.5 * width / (1.55 * len(text)))), **text_style)
+        size = 7.5 * width / (1.55 * len(text))
+        if size < 5.5 and " " in text:
+            text = min((text[:k] + "\n" + text[k + 1:] for k, letter in enumerate(text) if letter == " "),
+                       key=lambda lines: max(map(len, lines.split("\n"))))
+            size = min(5.5, 7.5 * width / (1.55 * max(map(len, text.split("\n")))))
+            text_style = {"linespacing": 0.95, "pad": 1.5, **text_style}
+        axes.set_title(text, fontsize=max(4.5, min(7.5, size)), **text_style)
 
-    def save(self, folder, name):
-        """Writes PDF and PNG; returns their paths. The same figure gives the same bytes."""
+    def save(self, folder, name, formats=("pdf", "png"), caption=True):
+        """Writes a file of each format; returns their paths. The same figure gives the same bytes."""
         os.makedirs(folder, exist_ok=True)
-        paths = [os.path.join(folder, f"{name}.{ending}") for ending in ("pdf", "png")]
-        self.figure.savefig(paths[0], metadata={"CreationDate": None, "Producer": None, "Creator": "rodsweep"})
-        self.figure.savefig(paths[1], metadata={"Software": "rodsweep"})
+        width, height = self.figure.get_size_inches()
+        box = None if caption else Bbox([[0, self.notes_mm * style.MM], [width, height]])
+        paths = [os.path.join(folder, f"{name}.{ending}") for ending in formats]
+        for path, ending in zip(paths, formats):
+            self.figure.savefig(path, metadata=METADATA[ending], bbox_inches=box)
         plt.close(self.figure)
         return paths
 
@@ -146,7 +157,7 @@ class XAxis:
     """Positions along x and their ticks. Bars stand at even distances where the values are too dense for them."""
 
     def __init__(self, points, bars=False):
-        values, self.text = points.position, points.text
+        values, self.text, self.words = points.position, points.text, points.categorical
         self.log = not points.categorical and (values > 0).all() and values.max() > LOG_SPAN * values.min()
         self.even = points.categorical
         scaled = np.log10(values) if self.log else values
@@ -181,12 +192,14 @@ class XAxis:
         axes.set_xlim(*self._unscaled(np.array([self.scaled.min() - self.margin, self.scaled.max() + self.margin])))
         width_mm = axes.get_position().width * axes.figure.get_size_inches()[0] / style.MM
         room = self.gap / (self.span + 2 * self.margin) * width_mm
-        fits = CHARACTER_MM * (0.7 + max(map(len, self.text))) <= room
+        needed = CHARACTER_MM * (0.7 + max(map(len, self.text)))
+        fits = needed <= room
         if self.even or fits:
             axes.xaxis.set_major_locator(FixedLocator(self.position))
             axes.xaxis.set_minor_locator(NullLocator())
-            leaning = {} if fits else {"rotation": 25, "ha": "right", "rotation_mode": "anchor"}
-            axes.set_xticklabels(self.text, **leaning)
+            leaning = {} if fits or not self.words else {"rotation": 25, "ha": "right", "rotation_mode": "anchor"}
+            every = 1 if self.words else -(-needed // room)    # of numbers some stand for all
+            axes.set_xticklabels([text if k % every == 0 else "" for k, text in enumerate(self.text)], **leaning)
         elif self.log:
             axes.xaxis.set_major_locator(LogLocator(numticks=5))
             axes.xaxis.set_minor_formatter(NullFormatter())

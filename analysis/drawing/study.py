@@ -1,12 +1,13 @@
 """What the figure scripts share: the simulations and guesses of a figure, what it must say of itself, and its files."""
 
+import argparse
 import os
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.lines import Line2D
 
-from drawing import style
+from drawing import layout, style
 from reading import commandline, measures, remarks, texts
 from reading.errors import KeyNotFound
 from reading.sweepfile import SweepFile
@@ -120,21 +121,34 @@ def sample_text(estimates, of="", mark="whiskers", point="point"):
     text = f"{counts} {simulations} per {point}"
     if not mark:
         return text
-    return text + (f"; {mark}: 95 % bootstrap intervals{of}" if has_intervals else "; a single draw has no intervals")
+    return text + (f"; {mark}: 95 % bootstrap intervals{of}" if has_intervals else "; too few for intervals")
 
 
 def add_figure_arguments(made):
     made.add_argument("-o", "--output", metavar="DIR", help="folder of the figures (default: figures/ beside the file)")
     made.add_argument("--width", choices=list(style.WIDTHS_MM), default="174",
                       help="width of the figures in mm, a column or a page (default: 174)")
+    made.add_argument("--format", metavar="F,…", type=formats, default=("pdf", "png"),
+                      help="pdf, png and svg, with commas between (default: pdf,png)")
+    made.add_argument("--no-caption", action="store_true",
+                      help="without the notes under the figure, for a paper that says the same in its own words")
+
+
+def formats(text):
+    """The type of --format."""
+    chosen = tuple(text.split(","))
+    unknown = [one for one in chosen if one not in layout.METADATA]
+    if unknown:
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is none of {', '.join(layout.METADATA)}")
+    return chosen
 
 
 def save(file, options, pages, choices=()):
-    """Writes pages {name: Page} of what has a path as FILE[-SCENE]-NAME[-CHOICE…].pdf and .png and prints their paths."""
+    """Writes pages {name: Page} of what has a path as FILE[-SCENE]-NAME[-CHOICE…] and prints their paths."""
     folder = options.output or os.path.join(os.path.dirname(file.path), "figures")
     stem = os.path.splitext(os.path.basename(file.path))[0] + (f"-{options.scene}" if options.scene else "")
     endings = [*choices, "all-newton" if options.newton == "all" else "",
                "" if options.width == "174" else f"{options.width}mm"]
     ending = "".join(f"-{text}" for text in endings if text)
     for name, page in pages.items():
-        print("\n".join(page.save(folder, f"{stem}-{name}{ending}")))
+        print("\n".join(page.save(folder, f"{stem}-{name}{ending}", options.format, not options.no_caption)))

@@ -38,8 +38,8 @@ KINDS = {  # colour, marker, dash
     "copingnet": ("#00805c", "*", (0, (1, 0))),
     "direct": ("#000000", "D", (0, (1, 1))),
     "end": ("#CC3311", "x", (0, (3, 1.2, 1, 1.2))),   # end_to_end
-    "xpbd": ("#0072B2", (6, 1, 0), (0, (5, 1, 2, 1))),
-    "pbd": ("#D55E00", (4, 1, 0), (0, (4, 1, 1, 1, 1, 1, 1, 1))),
+    "xpbd": ("#c2185b", (6, 1, 0), (0, (5, 1, 2, 1))),
+    "pbd": ("#8d6e63", (4, 1, 0), (0, (4, 1, 1, 1, 1, 1, 1, 1))),
 }
 SPARE = [("#882255", "H", (0, (2, 2))), ("#117733", "h", (0, (8, 2))), ("#555555", "p", (0, (3, 3))),
          ("#aa4499", "d", (0, (1, 2)))]
@@ -55,8 +55,6 @@ PARTS = {  # parts of a solve's time: colour, hatch
 DIVERGING = colors.LinearSegmentedColormap.from_list("blue to orange", [
     "#0b4f8a", "#4b93c3", "#a9cfe4", "#f7f7f5", "#f5c79a", "#e08a3c", "#a34a00"])
 SEQUENTIAL = matplotlib.colormaps["cividis_r"]
-NAMES = {"scene.segments": "number of segments N", "time.step_s": "time step (s)",
-         "scene.youngs_modulus_pa": "Young's modulus (Pa)"}
 WARNING_COLOUR = "#b00020"
 
 
@@ -75,6 +73,9 @@ class GuessStyle:
 
 
 DIRECT = GuessStyle(*KINDS["direct"])
+# As the talk has them: black, purple, red, pink.
+FOUR_CURVES = {"ratio": GuessStyle("#000000", "o", (0, (1, 0))), "share": GuessStyle("#7b3fb5", "v", (0, (3, 1))),
+               "guess_cg": GuessStyle("#c62828", "s", (0, (1, 0))), "step": GuessStyle("#e88fb4", "D", (0, (5, 1.5)))}
 ZERO_LINE = {"color": KINDS["zero"][0], "linewidth": 0.9}    # at 1, where guesses are compared with zero
 WHISKERS = {"elinewidth": 0.7, "capsize": 1.1, "capthick": 0.7}
 
@@ -131,16 +132,8 @@ def use():
 
 
 def parameter_label(name, unit):
-    """scene.youngs_modulus_pa, Pa -> "youngs modulus (Pa)"; the number of segments is N."""
-    if name in NAMES:
-        return NAMES[name]
-    words = name.rsplit(".", 1)[-1].split("_")
-    letters = re.sub(r"[^a-z0-9]", "", unit.lower())
-    for k in range(1, len(words)):
-        if letters and "".join(words[k:]) in (letters, "per" + letters.lstrip("1")):
-            words = words[:k]
-            break
-    return " ".join(words) + (f" ({unit})" if unit and unit != "1" else "")
+    """scene.youngs_modulus_pa, Pa -> "Young's modulus (Pa)"; the number of segments is N."""
+    return texts.quantity(name, unit) + (f" ({unit})" if unit and unit != "1" else "")
 
 
 def tolerance_text(value):

@@ -7,6 +7,9 @@ import numpy as np
 from reading import groups, intervals, measures, timings
 
 TIMES = ("assemble_us", "guess_us", "cg_us", "direct_us")
+# What stands beside the CG ratio of first or of all Newton iterations: of which, and what is counted.
+BESIDE = {"first": {"products": ("first", "matvecs"), "all": ("all", "iterations"), "all_products": ("all", "matvecs")},
+          "all": {"products": ("all", "matvecs")}}
 
 
 @dataclass(frozen=True)
@@ -17,6 +20,7 @@ class Block:
     settings: dict
     sims: measures.Simulations
     ratio: intervals.Estimate = None             # [guess, tolerance]
+    beside: dict = None                          # the same in products with A, of all Newton iterations: Estimate
     zero_iterations: np.ndarray = None           # [tolerance] per solve from zero; None for all Newton iterations
     unreached: np.ndarray = None                 # [guess, tolerance] solves
     speedup: dict = None                         # definition: Estimate [guess], over zero-guess CG
@@ -73,7 +77,10 @@ def _ratios(file, sims, newton):
         return {}
     ratios = measures.cg_ratios(file, sims, newton)
     per_solve = intervals.mean(ratios.iterations_per_solve[:, file.zero], sims.sample).value
+    beside = {name: intervals.mean(measures.cg_ratios(file, sims, of, counted).ratio, sims.sample)
+              for name, (of, counted) in BESIDE[newton].items()}
     return {"ratio": intervals.mean(ratios.ratio, sims.sample), "unreached": np.nansum(ratios.unreached, axis=0),
+            "beside": {name: e for name, e in beside.items() if np.isfinite(e.value).any()},
             "zero_iterations": per_solve if newton == "first" else None}
 
 
@@ -110,6 +117,8 @@ def records(file, block, guesses, tolerances, newton):
         found += [record("cg_ratio", block.ratio[g, t], labels[g], float(file.tolerances[t]),
                          int(block.unreached[g, t]))
                   for g in guesses for t in tolerances]
+        found += [record(f"cg_ratio_{name}", estimate[g, t], labels[g], float(file.tolerances[t]))
+                  for name, estimate in block.beside.items() for g in guesses for t in tolerances]
     timed = [("speedup_", block.speedup), ("speedup_over_direct_", block.speedup_over_direct), ("", block.times)]
     found += [record(prefix + name, estimate[g], labels[g]) for prefix, estimates in timed if estimates
               for name, estimate in estimates.items() for g in guesses]

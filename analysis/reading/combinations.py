@@ -16,6 +16,7 @@ from reading import groups, intervals, measures, timings
 PRECONDITIONER = "solve.preconditioner"
 SETTINGS = {"solve.fill_levels": "levels", "solve.lag_steps": "lag"}
 AXES = (PRECONDITIONER, *SETTINGS)
+WITH_LEVELS = ("block_icc", "condensed")
 DIRECT, ZERO, CLASSICAL, LEARNED, ORACLE = KINDS = ("direct", "from zero", "classical guess", "learned guess",
                                                     "free oracle")
 
@@ -59,7 +60,11 @@ def kind_of(guess):
 
 def panels(file, sims, x):
     """Panels by scene type and gridded keys other than x and those of the preconditioner, the direct solve in each."""
-    return groups.with_direct(sims, groups.panels(file, sims, (x, *AXES)))
+    found = groups.with_direct(sims, groups.panels(file, sims, (x, *AXES)))
+    # Of the keys of `solve` that only the direct solve has otherwise there is nothing to say.
+    same = {key for panel in found for key in panel.settings
+            if key.startswith("solve.") and len({other.settings.get(key) for other in found}) == 1}
+    return [panel.without(same) for panel in found]
 
 
 def cells(file, sims, panel, x, newton):
@@ -142,10 +147,12 @@ class _Measured:
 
 
 def solver_text(file, task):
-    """A preconditioner and those of its settings that the job sweeps."""
+    """A preconditioner and those of its settings that the job sweeps and that it has."""
+    name_of = file.parameters[PRECONDITIONER].text(task)
     swept = [f"{name} {file.parameters[key].text(task)}" for key, name in SETTINGS.items()
-             if key in file.parameters and file.parameters[key].swept and file.parameters[key].applies()[task]]
-    return " ".join([file.parameters[PRECONDITIONER].text(task).replace("_", " "), *swept])
+             if key in file.parameters and file.parameters[key].swept and file.parameters[key].applies()[task]
+             and (name_of in WITH_LEVELS if name == "levels" else file.parameters[key].values[task] > 0)]
+    return " ".join([name_of.replace("_", " "), *swept])
 
 
 def speedup(slower, faster, draws):

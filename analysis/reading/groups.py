@@ -5,10 +5,11 @@ the draw is a random one and is averaged over. Simulations that differ in a grid
 panels of their own. (A table over all of a scene type pools the scene's own keys, never those of time or solve.)
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from reading import texts
 from reading.errors import KeyNotFound
 
 MOST_PANELS = 6
@@ -21,10 +22,23 @@ class Panel:
     scene: str
     settings: dict        # gridded keys other than x: text of their value
     index: np.ndarray     # rows of Simulations
+    words: tuple = ()     # the settings as a reader says them
+
+    def without(self, keys):
+        """The same, of some of its settings nothing said."""
+        kept = [(item, word) for item, word in zip(self.settings.items(), self.words) if item[0] not in keys]
+        return replace(self, settings=dict(item for item, _ in kept), words=tuple(word for _, word in kept))
 
     def title(self):
-        name = self.scene.replace("_", " ").capitalize()
-        return ", ".join([name] + [f"{key} = {value}" for key, value in self.settings.items()])
+        """With keys, as --select wants them: for tables."""
+        return ", ".join([self._name()] + [f"{key} = {value}" for key, value in self.settings.items()])
+
+    def caption(self):
+        """In words: for figures."""
+        return ", ".join([self._name(), *self.words])
+
+    def _name(self):
+        return self.scene.replace("_", " ").capitalize()
 
 
 @dataclass(frozen=True)
@@ -75,7 +89,19 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
     if most is not None and len(members) > most:
         raise KeyNotFound(f"{len(members)} panels are too many for a page (at most {most}): the job has a grid "
                           f"over {', '.join(keys) or 'scene.type'} too; choose with --scene TYPE or --select KEY=VALUE")
-    return [Panel(scene, dict(settings), np.array(rows)) for (scene, settings), rows in members.items()]
+    return [Panel(scene, dict(settings), np.array(rows), _words(file, dict(settings), tasks[rows[0]]))
+            for (scene, settings), rows in members.items()]
+
+
+def _words(file, keys, task):
+    """"Young's modulus 1e6 Pa", "preconditioner block icc"."""
+    found = []
+    for key in keys:
+        parameter = file.parameters[key]
+        value = texts.number_text(parameter.values[task]) if parameter.numeric else parameter.text(task).replace("_", " ")
+        unit = f" {parameter.unit}" if parameter.unit not in ("", "1") else ""
+        found.append(f"{texts.quantity(key, parameter.unit)} {value}{unit}")
+    return tuple(found)
 
 
 def with_direct(sims, panels):
@@ -94,17 +120,16 @@ def with_direct(sims, panels):
         beside = [k for k, other in enumerate(panels) if other_settings(other) == other_settings(panel)]
         direct = [panels[k].index[~sims.own[panels[k].index]] for k in beside]
         taken.update(beside)
-        found.append(Panel(panel.scene, panel.settings, np.concatenate([rows, *direct])))
+        found.append(replace(panel, index=np.concatenate([rows, *direct])))
     return found + [panel for k, panel in enumerate(panels) if k not in taken]
 
 
 def short_titles(panels):
-    """Titles that say in few words in what the panels differ; empty for a single one."""
+    """Captions that say only in what the panels differ; empty for a single one."""
     if len(panels) == 1:
         return [""]
     scenes = {panel.scene for panel in panels}
-    return [", ".join(([panel.scene.replace("_", " ")] if len(scenes) > 1 else []) +
-                      [f"{key.rsplit('.', 1)[-1].replace('_', ' ')} {value}" for key, value in panel.settings.items()])
+    return [", ".join(([panel.scene.replace("_", " ")] if len(scenes) > 1 else []) + list(panel.words))
             for panel in panels]
 
 

@@ -5,6 +5,9 @@ import re
 
 import numpy as np
 
+NAMES = {"scene.segments": "number of segments N", "scene.youngs_modulus_pa": "Young's modulus",
+         "time.step_s": "time step"}
+
 
 def number_text(value):
     """Short: 0.005, 20, 1e6, 3.7e-4."""
@@ -12,6 +15,19 @@ def number_text(value):
         return f"{value:.4g}"
     mantissa, exponent = f"{value:.1e}".split("e")
     return f"{float(mantissa):g}e{int(exponent)}"
+
+
+def quantity(name, unit):
+    """What a key measures, its unit left out: scene.torsion_modulus_pa, Pa -> "torsion modulus"."""
+    if name in NAMES:
+        return NAMES[name]
+    words = name.rsplit(".", 1)[-1].split("_")
+    letters = re.sub(r"[^a-z0-9]", "", unit.lower())
+    for k in range(1, len(words)):
+        if letters and "".join(words[k:]) in (letters, "per" + letters.lstrip("1")):
+            words = words[:k]
+            break
+    return " ".join(words)
 
 
 def tolerance_label(value):

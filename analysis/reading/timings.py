@@ -57,7 +57,7 @@ def times(file, sims):
     tasks, guesses, zero = sims.tasks(), len(file.guesses), file.zero
     names = ("solves", "kept", "assemble_s", "guess_s", "cg_s", "direct_s", "direct_kept", "zero_guess_s", "zero_cg_s")
     sums = {which: {name: np.zeros((file.task_count, guesses)) for name in names} for which in ("first", "later")}
-    rung = _timed_rung(file)
+    rung = timed_rung(file)
     optional = (RENEWED,) if file.has(RENEWED) else ()
     for owners, starts, rows in file.solve_blocks(tasks, COLUMNS + ROWS + optional):
         assemble, direct, guess, cg = (rows[path].astype(float) for path in COLUMNS)
@@ -94,7 +94,7 @@ def times(file, sims):
     return {"first": _gathered(sims, zero, first, rest), "all": _gathered(sims, zero, every, rest)}
 
 
-def _timed_rung(file):
+def timed_rung(file):
     """Per task, the tolerance of the ladder that is nearest to that of the timed solves."""
     parameter = file.parameters.get("solve.tolerance")
     if parameter is None:

@@ -11,7 +11,9 @@ table() { script "$@" >"$out/$2.txt"; }
 trap 'sed -i "/\.\(png\|pdf\)\$/d" $out/*.txt; rm -f $out/*.pdf' EXIT  # no paths of figures, no PDFs
 
 if [ "${2:-}" = variants ]; then
-  /usr/bin/python3 analysis/loss.py "$results"/rods_variants/*.h5 -o "$results/rods_variants" >$out/rods_variants.txt
+  for family in rods lattices; do
+    /usr/bin/python3 analysis/loss.py "$results"/${family}_variants/*.h5 -o "$results/${family}_variants" >$out/${family}_variants.txt
+  done
   table summary rods_front
   for scene in bending_rod helix; do  # all in the table, those that a figure can tell apart in it
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 >>$out/rods_front.txt
@@ -70,6 +72,13 @@ figures heatmap stiffness --x scene.youngs_modulus_pa --y scene.segments
 figures heatmap stiffness --x scene.youngs_modulus_pa --y scene.segments --measure speedup-guess-cg
 table summary step_size --by time.step_s
 table summary stiffness --by scene.youngs_modulus_pa
+for study in lattice_swing lattice_preconditioners lattice_impact lattice_closed lattice_impact_closed; do
+  figures combinations $study >"$out/$study.txt"
+done
+figures combinations lattice_cells --x scene.cell >"$out/lattice_cells.txt"
+for study in net_gusts net_closed; do figures combinations $study --x scene.rows >"$out/$study.txt"; done
+rm $out/{lattice_preconditioners,lattice_impact,lattice_cells,lattice_closed,lattice_impact_closed,net_closed}-combinations.png
+figures work_precision lattice_work_precision >"$out/lattice_work_precision.txt"
 figures newton newton >"$out/newton.txt"
 figures solvers solvers >"$out/solvers.txt"
 figures work_precision work_precision >"$out/work_precision.txt"

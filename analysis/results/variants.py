@@ -4,7 +4,7 @@
     analysis/results/variants.py PROGRAM RESULTS FAMILY
 
 A family is a training job and its variants: the job for some epochs with one setting changed (of its processor, those
-that belong to it), or all of it from another seed. Their jobs and models are RESULTS/FAMILY_variants/NAME.json and .h5.
+that belong to it), or from another seed. Their jobs and models are RESULTS/FAMILY_variants/NAME.json and .h5.
 What is trained is left alone, what was stopped goes on.
 """
 
@@ -13,6 +13,7 @@ import os
 import subprocess
 import sys
 
+ITS_OWN = None    # epochs of the training job itself
 SWEEPS = {"processor": "sweeps", "recurrence": "gated"}
 LINEAR = {"processor": "sweeps", "recurrence": "linear"}
 RODS = {
@@ -29,8 +30,8 @@ RODS = {
     "factors_16_in_the_loop": {"loss": "in_the_loop"},
     "factors_16_rate_2e-3": {"rate": 2e-3},
     "factors_16_rate_8e-3": {"rate": 8e-3},
-    "rods_seed_2": {"seed": 2},
-    "rods_seed_3": {"seed": 3},
+    "rods_seed_2": {"seed": 2, "epochs": ITS_OWN},
+    "rods_seed_3": {"seed": 3, "epochs": ITS_OWN},
 }
 LATTICES = {
     "all_32": {},
@@ -43,12 +44,12 @@ LATTICES = {
     "all_32_two_corrections": {"cg_steps": 2},
     "all_32_energy": {"loss": "energy"},
     "tree_32": {"couplings": "tree", "loss": "energy"},
-    "lattices_seed_2": {"seed": 2},
-    "lattices_seed_3": {"seed": 3},
+    "all_32_seed_2": {"seed": 2},
+    "all_32_seed_3": {"seed": 3},
 }
-# Of each family: its variants, the epochs of those that change a setting.
-FAMILIES = {"rods": (RODS, 15), "lattices": (LATTICES, 15)}
-TRAINING_KEYS = ("loss", "rate", "cg_steps")
+# Of each family: its variants, and for how many epochs.
+FAMILIES = {"rods": (RODS, 15), "lattices": (LATTICES, 5)}
+TRAINING_KEYS = ("epochs", "loss", "rate", "cg_steps")
 
 
 def job_of(family, name, changes, epochs):
@@ -57,11 +58,11 @@ def job_of(family, name, changes, epochs):
         job = json.load(file)
     del job["$schema"]
     job.update(name=name, description=f"A variant of {original}.", data=f"../{family}_data.h5")
-    if "seed" in changes:
-        return {**job, **changes}
-    job["training"]["epochs"] = epochs
-    for key, value in changes.items():
-        job["training" if key in TRAINING_KEYS else "network"][key] = value
+    for key, value in {"epochs": epochs, **changes}.items():
+        if key == "seed":
+            job["seed"] = value
+        elif value is not ITS_OWN:
+            job["training" if key in TRAINING_KEYS else "network"][key] = value
     if job["network"]["base"] == "none":
         job["network"].pop("base_size", None)
     if job["training"]["loss"] != "in_the_loop":

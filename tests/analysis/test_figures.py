@@ -4,9 +4,11 @@ import argparse
 import itertools
 import os
 import tempfile
+import types
 import unittest
 
 import synthetic
+import heatmap
 import numpy as np
 import spatial
 from drawing import figures, style
@@ -69,13 +71,13 @@ class Values(Drawn):
             self.assertEqual(axes.get_ylim()[0], 0)
 
     def test_every_figure_says_what_it_is_of(self):
-        study = self.study(failed={0: "diverged"}, pending=(1,), guesses=("zero", "previous"))
+        study = self.study(failed={0: "diverged"}, pending=(1,), guesses=("zero", "previous"), samples=7)
         by_newton = timings.times(study.file, study.sims)
         for page in (figures.ratio_figure(study, [1]), figures.speedup_figure(study, by_newton),
                      figures.time_figure(study, by_newton)):
             said = self.page_texts(page)
-            for words in ("first Newton iteration (j = 0)", "‖b − Ax‖₂", "jacobi", "2–4 simulations per point",
-                          "22 of 24 tasks ok, failed: 1 diverged, 1 pending", "95 %", "Bending rod", "Helix"):
+            for words in ("first Newton iteration (j = 0)", "‖b − Ax‖₂", "jacobi", "5–7 simulations per point",
+                          "40 of 42 tasks ok, failed: 1 diverged, 1 pending", "95 %", "Bending rod", "Helix"):
                 self.assertIn(" ".join(words.split()), " ".join(said.split()))
         for page in (figures.speedup_figure(study, by_newton), figures.time_figure(study, by_newton)):
             self.assertIn("tolerance 1e-2", " ".join(self.page_texts(page).split()))
@@ -110,9 +112,35 @@ class Values(Drawn):
         page = figures.time_figure(study, timings.times(study.file, study.sims))
         bars = [(patch.get_y(), patch.get_height()) for patch in page.axes[0][1].patches]
         tops = sorted(y + height for y, height in bars)[-3:]
-        assembly, guess, cg = 2, 40 * 0.1, 40 * 0.5  # of "previous" at N = 40
+        assembly, guess, cg = 2 / 10, 0.1, 0.5  # of "previous" per segment at N = 10, where assembly weighs most
         self.assertAlmostEqual(max(tops), assembly + guess + cg, places=3)
         self.assertEqual(len(bars), 9)
+
+    def test_the_four_curves_of_a_learned_guess_and_of_no_other(self):
+        plant = synthetic.Plant()
+        plant.quality = {**plant.quality, "copingnet net": 0.2}
+        study = self.study(scenes=("helix",), plant=plant, guesses=("zero", "quadratic", "copingnet net"), newton="first")
+        page = figures.four_curves_figure(study, timings.times(study.file, study.sims))
+        self.assertEqual(np.shape(page.axes), (1, 1))
+        drawn = {name: self.line(page.axes[0][0], look)[0].get_ydata() for name, look in style.FOUR_CURVES.items()}
+        np.testing.assert_allclose(drawn["ratio"], 0.2, atol=0.01)
+        np.testing.assert_allclose(drawn["share"], 0.1 / 0.2, rtol=1e-5)
+        np.testing.assert_allclose(drawn["guess_cg"], 1 / (0.1 + 0.2), rtol=1e-5)
+        self.assertTrue((drawn["step"] < drawn["guess_cg"]).all())
+        self.legible(page)
+        study = self.study(scenes=("helix",), guesses=("zero", "quadratic"))
+        self.assertIsNone(figures.four_curves_figure(study, timings.times(study.file, study.sims)))
+
+    def test_figures_come_in_the_formats_asked_for_with_their_notes_or_without(self):
+        study = self.study(scenes=("helix",), guesses=("zero", "previous"))
+        with tempfile.TemporaryDirectory() as folder:
+            sizes = []
+            for caption in (True, False):
+                path, = figures.ratio_figure(study, [1]).save(folder, f"figure{caption}", ("svg",), caption)
+                with open(path, encoding="utf-8") as file:
+                    head = next(line for line in file if line.startswith("<svg"))
+                sizes.append(float(head.split('height="')[1].split("pt")[0]))
+        self.assertGreater(sizes[0] - sizes[1], 10)
 
 
 class Legibility(Drawn):
@@ -149,7 +177,7 @@ class Legibility(Drawn):
                      figures.time_figure(study, by_newton)):
             self.legible(page)
             said = " ".join(self.page_texts(page).split())
-            self.assertIn("1 simulation per point; a single draw has no intervals", said)
+            self.assertIn("1 simulation per point; too few for intervals", said)
 
 
 def linear_light(colour):
@@ -163,6 +191,20 @@ def seen_by(colour, deficiency):
                 "protanopia": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216],
                                [-0.003882, -0.048116, 1.051998]]}
     return np.clip(np.array(matrices[deficiency]) @ linear_light(colour), 0, 1)
+
+
+class HeatScale(unittest.TestCase):
+    def test_colours_end_where_the_data_do_and_say_the_same_of_the_same_factor(self):
+        def scale(*values):
+            cells = types.SimpleNamespace(value=np.array([values]))
+            return heatmap.scale(types.SimpleNamespace(better=1), [types.SimpleNamespace(cells=cells)])
+
+        norm, colormap = scale(0.5, 20)
+        self.assertEqual((norm.vmin, norm.vmax), (0.5, 20))
+        np.testing.assert_allclose(colormap(norm(1.0))[:3], style.DIVERGING.reversed()(0.5)[:3], atol=0.03)
+        mirrored, other = scale(0.05, 20)
+        for value in (0.5, 2, 20):
+            np.testing.assert_allclose(colormap(norm(value))[:3], other(mirrored(value))[:3], atol=0.03)
 
 
 class Styles(unittest.TestCase):

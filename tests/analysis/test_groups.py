@@ -79,7 +79,7 @@ class Groups(unittest.TestCase):
         for panel in panels:
             self.assertEqual(sorted(direct[panel.index].tolist()), [False, False, True, True])
             self.assertEqual(len(set(file.parameter("time.step_s").values[sims.any_task[panel.index]])), 1)
-        self.assertEqual(groups.short_titles(panels), ["tolerance 0.1, step s 0.01", "tolerance 0.1, step s 0.02"])
+        self.assertEqual(groups.short_titles(panels), ["tolerance 0.1, time step 0.01", "tolerance 0.1, time step 0.02"])
 
     def test_keys_in_step_with_x_make_no_panels(self):
         file, sims = self.open(grid={"scene.segments": [10, 20]}, scenes=("helix",), samples=2)

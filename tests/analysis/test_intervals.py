@@ -31,9 +31,12 @@ class Intervals(unittest.TestCase):
         estimate = intervals.mean(np.full(5, 0.5))
         self.assertEqual((estimate.low, estimate.high), (0.5, 0.5))
 
-    def test_one_draw_has_no_interval(self):
-        self.assertTrue(np.isnan(intervals.mean(np.array([1.0])).low))
-        self.assertTrue(np.isnan(intervals.mean(np.array([1.0, 2, 3]), draws=[7, 7, 7]).low))
+    def test_fewer_than_five_draws_have_no_interval(self):
+        values = np.arange(8.0)
+        for draws in (1, 4):
+            self.assertTrue(np.isnan(intervals.mean(values[:draws]).low))
+            self.assertTrue(np.isnan(intervals.mean(values, draws=np.arange(8) % draws).low))
+        self.assertLess(intervals.mean(values[:5]).low, 2)
 
     def test_simulations_of_one_draw_are_resampled_together(self):
         """Ten copies of each draw say no more than one of each."""

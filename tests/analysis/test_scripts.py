@@ -9,6 +9,7 @@ import unittest
 
 import synthetic
 import front
+import h5py
 import numpy as np
 from running import Scripts
 
@@ -91,16 +92,32 @@ class Summary(Scripts):
     def test_columns_are_aligned(self):
         self.write(scenes=("helix",))
         table = self.run_script("summary.py", "sweep.h5").stdout.split("\n\n")[2].splitlines()
-        self.assertEqual(len({len(line) for line in table}), 1, table)
+        beside = next(k for k, line in enumerate(table) if line.startswith("  the same"))
+        for part in (table[:beside], table[beside:]):
+            self.assertEqual(len({len(line) for line in part}), 1, part)
+
+    def test_beside_the_ratio_stand_products_and_all_newton_iterations(self):
+        self.write(scenes=("helix",))
+        with h5py.File("sweep.h5", "a") as h5:
+            for which in ("", "_all"):
+                spent = h5[f"tasks/iterations_sum{which}"][:]
+                spent[:, 2] += spent[:, 0]      # quadratic's own products are as many as CG from zero takes
+                h5[f"tasks/matvecs_sum{which}"] = spent
+        lines = self.run_script("summary.py", "sweep.h5").stdout.splitlines()
+        begin = next(k for k, line in enumerate(lines) if line.startswith("  the same"))
+        self.assertEqual(lines[begin].split()[3:9], ["1e-1", "products", "1e-1", "all", "j", "1e-1"])
+        quadratic = lines[begin + 2].split()
+        self.assertEqual(quadratic[:2], ["quadratic", "1.25"])
+        self.assertEqual([float(value) for value in quadratic[2:4]], [0.68, 1.68])   # (1 + 2 * .9) / 3 of all, and 1 more
 
     def test_csv_and_json_hold_the_same_numbers(self):
-        self.write(failed={3: "diverged"})
+        self.write(failed={3: "diverged"}, samples=5)
         rows = list(csv.DictReader(io.StringIO(self.run_script("summary.py", "sweep.h5", "--csv").stdout)))
         whole = json.loads(self.run_script("summary.py", "sweep.h5", "--json").stdout)
         counts = {row["quantity"]: float(row["value"]) for row in rows if row["quantity"].startswith("tasks")}
-        self.assertEqual(counts, {"tasks": 24, "tasks_ok": 23, "tasks_pending": 0, "tasks_diverged": 1,
+        self.assertEqual(counts, {"tasks": 30, "tasks_ok": 29, "tasks_pending": 0, "tasks_diverged": 1,
                                   "tasks_timed_oversubscribed": 0})
-        self.assertEqual(whole["tasks"], {"total": 24, "ok": 23, "pending": 0, "failed": {"diverged": 1}})
+        self.assertEqual(whole["tasks"], {"total": 30, "ok": 29, "pending": 0, "failed": {"diverged": 1}})
         numbers = [row for row in rows if not row["quantity"].startswith("tasks")]
         self.assertEqual([row["quantity"] for row in numbers], [n["quantity"] for n in whole["numbers"]])
         for row, number in zip(numbers, whole["numbers"]):
@@ -109,7 +126,7 @@ class Summary(Scripts):
         ratio = found["helix", "cg_ratio", "quadratic", 0.001]
         self.assertAlmostEqual(ratio["value"], 0.25, delta=0.003)
         self.assertLessEqual(ratio["low"], ratio["value"])
-        self.assertEqual(ratio["simulations"], 12)
+        self.assertEqual(ratio["simulations"], 15)
         self.assertAlmostEqual(found["helix", "speedup_over_direct_cg", "oracle(0.1)", None]["value"], 8 / 2, places=4)
         self.assertAlmostEqual(found["helix", "length_drift_largest", None, None]["value"], 1e-3)
 
@@ -122,10 +139,10 @@ class Summary(Scripts):
     def test_unreached_tolerances_are_marked_and_counted(self):
         plant = synthetic.Plant()
         plant.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
-        self.write(scenes=("helix",), plant=plant, steps=2)
+        self.write(scenes=("helix",), plant=plant, steps=2, samples=5)
         said = self.run_script("summary.py", "sweep.h5").stdout
         self.assertIn("0.50]*", said)
-        self.assertIn("at 1e-3: previous 24", said)
+        self.assertIn("at 1e-3: previous 30", said)
         self.assertNotIn("at 1e-2", said)
 
     def test_oversubscribed_times_are_warned_of(self):

@@ -1,6 +1,8 @@
 // What the linear system of nets and lattices costs over their size: its pattern, the plan of its factorisation, its
-// assembly, a product with A, and a direct solve. Google Benchmark times the cases; at the end a table sets them beside
-// the number of joints, and the direct solve beside the product, as ratios of this run.
+// assembly, a product with A, a direct solve, and a learned guess of all couplings (latent 32, not trained, from zero:
+// features, factors, one correction, both products; and with factors of an earlier step). Google Benchmark times the
+// cases; at the end a table sets them beside the number of joints, and the direct solve beside the product, as ratios
+// of this run.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -8,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "network/guess/coping_net_guess.hpp"
 #include "solver/linear/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/scene/scenes.hpp"
@@ -107,9 +110,32 @@ void substitution(benchmark::State& state) {
   }
 }
 
+template <bool lag>
+void learned(benchmark::State& state) {
+  const Assembled a(scene_of(state));
+  CopingNetSettings settings;
+  settings.encoding = Encoding::canonical;
+  settings.processor = Processor::factors;
+  settings.couplings = Couplings::all;
+  settings.base = BaseGuess::none;
+  settings.latent = 32;
+  const auto model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
+  CopingNetGuess guess(model, a.scene, 0.02, 1, {1, lag ? 1000000 : 0, 0});
+  VectorX x = a.b;
+  guess.propose(a.system, {}, x);
+  SolvePosition at;
+  at.step = lag ? 1 : 0;
+  for (auto _ : state) {
+    guess.propose(a.system, at, x);
+    benchmark::ClobberMemory();
+  }
+}
+
 const std::vector<std::pair<const char*, void (*)(benchmark::State&)>> costs{
-    {"pattern", pattern}, {"plan", plan},     {"assembly", assembly},
-    {"product", product}, {"direct", direct}, {"substitution", substitution}};
+    {"pattern", pattern},        {"plan", plan},
+    {"assembly", assembly},      {"product", product},
+    {"direct", direct},          {"substitution", substitution},
+    {"learned", learned<false>}, {"lagging", learned<true>}};
 
 void print_summary(const Medians& median) {
   std::printf("\nPer joint [us]; the direct solve also in products with A, and what L takes\n%-18s %8s", "", "joints");

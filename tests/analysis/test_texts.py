@@ -1,0 +1,68 @@
+"""analysis/results/check.py: numbers in a text against its tables, and those of this repository."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RESULTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "analysis", "results")
+TABLE = """results/x.h5: job x
+
+CG ratio, first Newton iteration
+
+Bending rod, n = 300                 1e-1               1e-2
+  previous              0.25 [0.23, 0.27]  0.46 [0.44, 0.48]
+  pod 10                0.07 [0.06, 0.08]  0.10 [0.09, 0.11]
+
+Helix, of a very long title
+                                     1e-1               1e-2
+  pod 10                0.19 [0.06, 0.08]  0.34 [0.09, 0.11]
+
+Time per solve
+
+Bending rod, n = 300  guess µs  solve µs
+  pod 10                  2.00     1,234
+"""
+
+
+class Texts(unittest.TestCase):
+    def check(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, content in (("x.txt", TABLE), ("README.md", text)):
+                with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                    file.write(content)
+            return self.run_on(os.path.join(folder, "README.md"))
+
+    @staticmethod
+    def run_on(path):
+        return subprocess.run([sys.executable, os.path.join(RESULTS, "check.py"), path], text=True,
+                              capture_output=True, check=False)
+
+    def test_numbers_as_rounded_in_the_text(self):
+        done = self.check("""`pod` leaves .1<!--= x; CG ratio; Bending rod; pod 10; 1e-2 --> and
+**.34**<!--= x; CG ratio; Helix; pod 10; 1e-2 --> [.09<!--= x; *; Helix; pod 10; 1e-2; 2 -->, .11] in
+1234<!--= x; Time per solve; Bending rod; pod 10; solve µs --> µs, 1.2e3<!--= x; Time; Bending; pod 10; solve µs -->""")
+        self.assertEqual((done.returncode, done.stdout), (0, "all numbers are those of their tables\n"))
+
+    def test_what_parts_is_named_with_its_line(self):
+        done = self.check("\n`pod` leaves .11<!--= x; CG ratio; Bending rod; pod 10; 1e-2 -->")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("README.md:2: .11, but 0.10 in x.txt", done.stdout)
+
+    def test_what_no_table_has_is_named(self):
+        for source, words in (("x; CG ratio; Bending rod; pod 9; 1e-2", "a row 'pod 9'"),
+                              ("x; CG ratio; Bending rod; pod 10; 1e-3", "a column '1e-3'"),
+                              ("x; CG ratio; Ring; pod 10; 1e-2", "a block 'Ring'"),
+                              ("x; Steps; Ring; pod 10; 1e-2", "a section 'Steps'")):
+            done = self.check(f"1<!--= {source} -->")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(words, done.stdout)
+
+    def test_the_texts_of_this_repository(self):
+        done = self.run_on(os.path.join(RESULTS, "README.md"))
+        self.assertEqual((done.returncode, done.stdout), (0, "all numbers are those of their tables\n"))
+
+
+if __name__ == "__main__":
+    unittest.main()
