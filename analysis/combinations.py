@@ -141,7 +141,8 @@ def figure(shown, panels, found):
         joints = [cell.joints for cell in cells]
         axes.set_xlim(0.7 * min(joints), 1.4 * max(joints))
         for axis, bound in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, (low, high))):
-            axis.set_major_locator(FixedLocator(layout.log_ticks(*bound)))
+            ticks = layout.log_ticks(*bound)
+            axis.set_major_locator(FixedLocator(ticks[::-(-len(ticks) // 5)]))
             axis.set_minor_locator(NullLocator())
             axis.set_major_formatter(FuncFormatter(lambda value, _: texts.number_text(value)))
         if title:

@@ -1,8 +1,8 @@
-// How good preconditioners are on cubic lattices in motion, and what they cost: IC with levels of fill, and the learned
-// incomplete factors of network/pretrained/lattices.h5 (or of the model named on the command line), which could say
-// what IC(0) says. Spectra of P^-1 A are Ritz values of CG from zero on a random right-hand side (Lanczos; Golub & Van
-// Loan 2013, section 11.3), whose ends have come to rest; iterations are to ||b - A x||_2 = 1e-2 and 1e-4 ||b||_2 on
-// the lattice's own; times are the least of some, per joint.
+// How good preconditioners are on cubic lattices in motion, and what they cost: IC with levels of fill, PETSc's
+// algebraic multigrids, and the learned incomplete factors of network/pretrained/lattices.h5 (or of the model named on
+// the command line), which could say what IC(0) says. Spectra of P^-1 A are Ritz values of CG from zero on a random
+// right-hand side (Lanczos; Golub & Van Loan 2013, section 11.3), whose ends have come to rest; iterations are to ||b -
+// A x||_2 = 1e-2 and 1e-4 ||b||_2 on the lattice's own; times are the least of some, per joint.
 #include <Eigen/Eigenvalues>
 #include <cstdio>
 #include <functional>
@@ -13,10 +13,12 @@
 #include "network/processor/coupled_inference.hpp"
 #include "runner/training/model_file.hpp"
 #include "solver/linear/block_preconditioner.hpp"
+#include "solver/linear/petsc_session.hpp"
 #include "solver/numbers/split_mix.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/stopwatch.hpp"
 #include "solver/step/time_step.hpp"
+#include "tests/bench/multigrid.hpp"
 
 namespace {
 
@@ -169,6 +171,16 @@ class LearnedFactors {
   VectorX zero_;
 };
 
+Way multigrid(const Case& of, bench::Multigrid::Kind kind, const char* name) {
+  const auto grids = std::make_shared<bench::Multigrid>(kind, of.scene.rods.front(), *of.system);
+  return {name,
+          [grids] {
+            grids->set_up();
+            return true;
+          },
+          [grids](const VectorX& r, VectorX& z) { grids->apply(r, z); }};
+}
+
 Way learned(const Case& of, const Model& model) {
   const auto factors = std::make_shared<LearnedFactors>(model, of.scene.rods.front(), *of.system);
   return {"learned",
@@ -182,6 +194,7 @@ Way learned(const Case& of, const Model& model) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const PetscSession petsc;
   const StoredModel stored = read_model(argc > 1 ? argv[1] : RODSWEEP_SOURCE_DIR "/network/pretrained/lattices.h5");
   for (const double youngs_modulus_pa : {3e5, 1e6, 1e7}) {
     const Case of(youngs_modulus_pa);
@@ -191,6 +204,8 @@ int main(int argc, char** argv) {
                 "set-up ns", "apply ns");
     print(of, jacobi(*of.system));
     for (const int levels : {0, 1, 3}) print(of, incomplete(*of.system, levels));
+    print(of, multigrid(of, bench::Multigrid::Kind::gamg, "gamg"));
+    print(of, multigrid(of, bench::Multigrid::Kind::boomer, "boomeramg"));
     print(of, learned(of, *stored.model));
   }
 }

@@ -1,0 +1,33 @@
+// PETSc's algebraic multigrids as preconditioners of A, to be measured beside ours: GAMG (smoothed aggregation) and
+// hypre's BoomerAMG (systems of six unknowns, "unknown" approach).
+//
+// GAMG's near null space is what A hardly resists: the same force or moment everywhere, lambda = (l R^T f, R^T m) with
+// R the frame of a joint, its second segment's, and l its length.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "solver/linear/linear_system.hpp"
+
+namespace rodsweep::bench {
+
+class Multigrid {
+ public:
+  enum class Kind { gamg, boomer };
+
+  Multigrid(Kind kind, const Rod& rod, const LinearSystem& system);
+  ~Multigrid();
+  Multigrid(const Multigrid&) = delete;
+  Multigrid& operator=(const Multigrid&) = delete;
+
+  void set_up();
+  void apply(const VectorX& r, VectorX& z);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rodsweep::bench
