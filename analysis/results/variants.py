@@ -1,85 +1,175 @@
 #!/usr/bin/python3
-"""Trains what a network could have been, to choose by validation alone: `make variants` calls it.
+"""Trains what a network could have been, one setting changed at a time: `make variants` and `make ablation` call it.
 
     analysis/results/variants.py PROGRAM RESULTS FAMILY
 
-A family is a training job and its variants: the job for some epochs with one setting changed (of its processor, those
-that belong to it), or from another seed. Their jobs and models are RESULTS/FAMILY_variants/NAME.json and .h5.
-What is trained is left alone, what was stopped goes on.
+A family is a training job with changes of its own (fewer epochs, for one), and its variants, each with one more. Jobs,
+models and data sets that jobs/ has not are RESULTS/FOLDER/NAME.json and .h5. What is done is left alone, what was
+stopped goes on.
+
+Ablations have the same number of steps of the optimiser in every variant: fewer examples are seen more often.
 """
 
 import json
 import os
 import subprocess
 import sys
+from typing import NamedTuple
 
+JOBS = os.path.join(os.path.dirname(__file__), "../../jobs")
 ITS_OWN = None    # epochs of the training job itself
-SWEEPS = {"processor": "sweeps", "recurrence": "gated"}
-LINEAR = {"processor": "sweeps", "recurrence": "linear"}
+
+SWEEPS = {"network.processor": "sweeps", "network.recurrence": "gated"}
+LINEAR = {"network.processor": "sweeps", "network.recurrence": "linear"}
 RODS = {
     "factors_16": {},
-    "factors_32": {"latent": 32},
-    "factors_64": {"latent": 64},
-    "factors_16_none": {"base": "none"},
-    "factors_16_pod": {"base": "pod", "base_size": 10},
-    "factors_16_as_it_is": {"best_length": False},
+    "factors_32": {"network.latent": 32},
+    "factors_64": {"network.latent": 64},
+    "factors_16_none": {"network.base": "none"},
+    "factors_16_pod": {"network.base": "pod", "network.base_size": 10},
+    "factors_16_as_it_is": {"network.best_length": False},
     "linear_16": LINEAR,
-    "linear_32": {**LINEAR, "latent": 32},
+    "linear_32": {**LINEAR, "network.latent": 32},
     "gated_16": SWEEPS,
-    "gated_32": {**SWEEPS, "latent": 32},
-    "factors_16_in_the_loop": {"loss": "in_the_loop"},
-    "factors_16_rate_2e-3": {"rate": 2e-3},
-    "factors_16_rate_8e-3": {"rate": 8e-3},
-    "rods_seed_2": {"seed": 2, "epochs": ITS_OWN},
-    "rods_seed_3": {"seed": 3, "epochs": ITS_OWN},
+    "gated_32": {**SWEEPS, "network.latent": 32},
+    "factors_16_in_the_loop": {"training.loss": "in_the_loop"},
+    "factors_16_rate_2e-3": {"training.rate": 2e-3},
+    "factors_16_rate_8e-3": {"training.rate": 8e-3},
+    "rods_seed_2": {"seed": 2, "training.epochs": ITS_OWN},
+    "rods_seed_3": {"seed": 3, "training.epochs": ITS_OWN},
 }
 LATTICES = {
     "all_32": {},
-    "all_16": {"latent": 16},
-    "all_64": {"latent": 64},
-    "all_32_none": {"base": "none"},
-    "all_32_pod": {"base": "pod", "base_size": 10},
-    "all_32_rate_4e-3": {"rate": 4e-3},
-    "all_32_rate_16e-3": {"rate": 16e-3},
-    "all_32_two_corrections": {"cg_steps": 2},
-    "all_32_energy": {"loss": "energy"},
-    "tree_32": {"couplings": "tree", "loss": "energy"},
+    "all_16": {"network.latent": 16},
+    "all_64": {"network.latent": 64},
+    "all_32_none": {"network.base": "none"},
+    "all_32_pod": {"network.base": "pod", "network.base_size": 10},
+    "all_32_rate_4e-3": {"training.rate": 4e-3},
+    "all_32_rate_16e-3": {"training.rate": 16e-3},
+    "all_32_two_corrections": {"training.cg_steps": 2},
+    "all_32_energy": {"training.loss": "energy"},
+    "tree_32": {"network.couplings": "tree", "training.loss": "energy"},
     "all_32_seed_2": {"seed": 2},
     "all_32_seed_3": {"seed": 3},
 }
-# Of each family: its variants, and for how many epochs.
-FAMILIES = {"rods": (RODS, 15), "lattices": (LATTICES, 5)}
-TRAINING_KEYS = ("epochs", "loss", "rate", "cg_steps")
+# Of the paper's network: 20 passes over 256 simulations of 50 steps, or as many steps on other data.
+EPOCHS = 20
+PAPER = {
+    "base": {},
+    **{f"size_{n}": {"training_simulations": n, "training.epochs": EPOCHS * 256 // n} for n in (8, 16, 32, 64, 128)},
+    **{f"steps_{n}": {"network.steps": n} for n in (1, 2, 4, 8, 12)},
+    **{f"latent_{n}": {"network.latent": n} for n in (16, 64)},
+    **{f"hidden_layers_{n}": {"network.hidden_layers": n} for n in (2, 3)},
+    "rate_5e-4": {"training.rate": 5e-4},
+    "rate_5e-3": {"training.rate": 5e-3},
+    "turned_1": {"training.turned_copies": 1, "training.epochs": EPOCHS // 2},
+    "turned_3": {"training.turned_copies": 3, "training.epochs": EPOCHS // 4},
+    "loss_multipliers": {"network.moves": False},
+    "loss_energy": {"network.moves": False, "training.loss": "energy"},
+    "loss_in_the_loop": {"network.moves": False, "training.loss": "in_the_loop"},
+    "best_length": {"network.best_length": True},
+    "globals": {"network.globals": True},
+    "sweeps_gated": {**SWEEPS, "network.moves": False},
+    "sweeps_linear": {**LINEAR, "network.moves": False},
+    "base_extrapolation": {"network.base": "extrapolation"},
+    "base_regression": {"network.base": "regression", "network.base_size": 6},
+    "base_pod": {"network.base": "pod", "network.base_size": 10},
+    "encoding_physics": {"network.encoding": "physics"},
+    "encoding_system": {"network.encoding": "system", "network.moves": False},
+    "encoding_canonical": {"network.encoding": "canonical", "network.moves": False},
+    "all_paper": {"data": "all", "training.epochs": EPOCHS // 4},
+    "all_deck": {"data": "all", "training.epochs": EPOCHS // 4, "network.encoding": "deck"},
+    "all_physics": {"data": "all", "training.epochs": EPOCHS // 4, "network.encoding": "physics"},
+    "all_system": {"data": "all", "training.epochs": EPOCHS // 4, "network.encoding": "system",
+                   "network.moves": False},
+    "data_100_steps": {"data": "100_steps", "training.epochs": EPOCHS // 2},
+    "data_0.01_s": {"data": "0.01_s"},
+    "data_0.005_s": {"data": "0.005_s"},
+    "seed_2": {"seed": 2},
+    "seed_3": {"seed": 3},
+}
+# Other data than those of jobs/SCENE_data.json: what is changed there.
+DATA = {
+    "all": {"record.systems": "all"},
+    "100_steps": {"time.steps": 100},
+    "0.01_s": {"time.step_s": 0.01},
+    "0.005_s": {"time.step_s": 0.005},
+}
 
 
-def job_of(family, name, changes, epochs):
-    original = f"train_{family}"
-    with open(os.path.join(os.path.dirname(__file__), f"../../jobs/{original}.json"), encoding="utf-8") as file:
+class Family(NamedTuple):
+    job: str                # of jobs/
+    folder: str             # within the results
+    changes: dict           # of all variants
+    variants: dict
+    data: str = ""          # job of jobs/ whose changes are DATA
+
+
+def ablation(scene):
+    changes = {"network.encoding": "paper", "network.latent": 32, "training.epochs": EPOCHS, "training.rate": 2e-3,
+               "training.ratio_every_epochs": 0}
+    return Family(f"train_{scene}_faithful", f"ablation_{scene}", changes, PAPER, f"{scene}_data")
+
+
+FAMILIES = {
+    "rods": Family("train_rods", "rods_variants", {"training.epochs": 15}, RODS),
+    "lattices": Family("train_lattices", "lattices_variants", {"training.epochs": 5}, LATTICES),
+    "ablation_bending": ablation("bending"),
+    "ablation_helix": ablation("helix"),
+}
+
+
+def changed(original, name, changes):
+    """The job of that name in jobs/ with other values, by path."""
+    with open(os.path.join(JOBS, original + ".json"), encoding="utf-8") as file:
         job = json.load(file)
     del job["$schema"]
-    job.update(name=name, description=f"A variant of {original}.", data=f"../{family}_data.h5")
-    for key, value in {"epochs": epochs, **changes}.items():
-        if key == "seed":
-            job["seed"] = value
-        elif value is not ITS_OWN:
-            job["training" if key in TRAINING_KEYS else "network"][key] = value
-    if job["network"]["base"] == "none":
-        job["network"].pop("base_size", None)
+    job.update(name=name, description=f"A variant of {original}.")
+    for path, value in changes.items():
+        *parts, last = path.split(".")
+        of = job
+        for part in parts:
+            of = of.setdefault(part, {})
+        if value is not ITS_OWN:
+            of[last] = value
+    return job
+
+
+def training(family, name):
+    """The job of a variant, without keys that its other values leave no use for."""
+    changes = {**family.changes, **family.variants[name]}
+    data = changes.pop("data", None)
+    if changes.get("training.epochs", 0) is ITS_OWN:
+        changes.pop("training.epochs")
+    job = changed(family.job, name, changes)
+    job["data"] = f"data_{data}.h5" if data else os.path.join("..", job["data"].removeprefix("../results/"))
+    network = job["network"]
+    if network.get("base") in ("none", "extrapolation"):
+        network.pop("base_size", None)
+    if network["processor"] != "message_passing":
+        for key in ("steps", "moves", "globals", "hidden_layers"):
+            network.pop(key, None)
     if job["training"]["loss"] != "in_the_loop":
         job["training"].pop("cg_steps", None)
     return job
 
 
+def run(program, folder, job):
+    path = os.path.join(folder, job["name"])
+    with open(path + ".json", "w", encoding="utf-8") as file:
+        json.dump(job, file, indent=2)
+    subprocess.run([program, "run", path + ".json", "-o", path + ".h5", "--resume"], check=True)
+
+
 def main():
-    program, results, family = sys.argv[1:]
-    variants, epochs = FAMILIES[family]
-    folder = os.path.join(results, f"{family}_variants")
+    program, results, name = sys.argv[1:]
+    family = FAMILIES[name]
+    folder = os.path.join(results, family.folder)
     os.makedirs(folder, exist_ok=True)
-    for name, changes in variants.items():
-        path = os.path.join(folder, name)
-        with open(path + ".json", "w", encoding="utf-8") as file:
-            json.dump(job_of(family, name, changes, epochs), file, indent=2)
-        subprocess.run([program, "run", path + ".json", "-o", path + ".h5", "--resume"], check=True)
+    for variant, changes in family.variants.items():
+        if "data" in changes:
+            run(program, folder, changed(family.data, "data_" + changes["data"], DATA[changes["data"]]))
+        run(program, folder, training(family, variant))
 
 
 if __name__ == "__main__":
