@@ -76,8 +76,8 @@ def has_guesses(file):
 
 
 def without_guess(file, tasks):
-    """Names of what moves the rods of tasks that have no guess of their own: "direct", "end_to_end" and a model,
-    "xpbd" or "pbd" and how many iterations."""
+    """Names of what moves the rods of tasks that have no guess of their own: "direct", "end_to_end" or
+    "state_network" and a model, "xpbd" or "pbd" and how many iterations."""
     method = file.parameters.get("solve.method")
     if method is None:
         return np.full(len(tasks), "direct")
@@ -85,9 +85,9 @@ def without_guess(file, tasks):
 
 
 def _method_name(file, method, task):
-    if method == "end_to_end":
+    if method in ("end_to_end", "state_network"):
         model = file.parameters["solve.model"].values[task]
-        return f"end_to_end {os.path.splitext(os.path.basename(model))[0]}"
+        return f"{method} {os.path.splitext(os.path.basename(model))[0]}"
     if method in ("xpbd", "pbd"):
         return f"{method} {file.parameters['solve.iterations'].text(task)}"
     return "direct"

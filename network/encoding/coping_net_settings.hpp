@@ -39,8 +39,16 @@ struct CopingNetSettings {
   bool globals = false;                       ///< message_passing: with a state of the whole graph
   bool best_length =
       true;            ///< the correction is scaled to what lowers the error most (network/training/energy_loss.hpp)
-  bool moves = false;  ///< message_passing: also predicts the segments' moves, for `end_to_end`
+  bool moves = false;  ///< message_passing: also predicts the segments' moves, for `end_to_end`; of `state` alone
 };
+
+/// Whether there are corrections of multipliers, and so a guess; a simulator's network answers for segments alone.
+inline bool is_guess(const CopingNetSettings& settings) { return settings.encoding != Encoding::state; }
+
+/// Whether features have means and deviations of a training set.
+inline bool has_scales(const CopingNetSettings& settings) {
+  return is_of_graphs(settings.encoding) || settings.encoding == Encoding::state;
+}
 
 /// Whether there are factors of all couplings.
 inline bool has_all_couplings(const CopingNetSettings& settings) {

@@ -1,6 +1,9 @@
 #include "network/encoding/feature_encoder.hpp"
 
 #include <numeric>
+#include <stdexcept>
+
+#include "network/encoding/state_encoding.hpp"
 
 namespace rodsweep {
 namespace {
@@ -19,10 +22,12 @@ SystemPattern pattern_of(const Topology& topology, const BlockMatrix& a) {
 }  // namespace
 
 std::vector<int> node_groups(const CopingNetSettings& settings) {
+  if (settings.encoding == Encoding::state) return StateEncoding::node_groups();
   return of_graphs(settings) ? GraphEncoding::groups(settings.encoding).nodes : std::vector<int>{};
 }
 
 std::vector<int> edge_groups(const CopingNetSettings& settings) {
+  if (settings.encoding == Encoding::state) return StateEncoding::edge_groups();
   if (!of_graphs(settings)) return {SystemEncoding::size};
   std::vector<int> groups = GraphEncoding::groups(settings.encoding).edges;
   if (settings.base != BaseGuess::none) groups.insert(groups.end(), {3, 3});
@@ -36,6 +41,7 @@ FeatureEncoder::FeatureEncoder(const CopingNetSettings& settings, const Rod& rod
     : settings_(settings),
       topology_(std::make_shared<const Topology>(rodsweep::topology(rod))),
       pattern_(pattern_of(*topology_, a)) {
+  if (!is_guess(settings)) throw std::invalid_argument("FeatureEncoder: states are encoded without a linear system");
   if (of_graphs(settings)) {
     graph_ = std::make_unique<GraphEncoding>(settings.encoding, rod);
     by_joint_.resize(GraphEncoding::edge_features(settings.encoding), rod.joint_count());

@@ -8,6 +8,7 @@
 //                   unit: the scale of d^
 //   canonical       the same in canonical frames (canonical_encoding.hpp); for factors of all couplings, which look at
 //                   the matrix themselves, these frames alone and no features
+// `state`, which looks at no linear system, has an encoder of its own (state_encoding.hpp); only its sizes are here.
 // Edge features are in the places of the rod's topology.
 #pragma once
 
@@ -21,10 +22,10 @@
 
 namespace rodsweep {
 
-/// What `deck` and `physics` take from a training set; empty for `system`.
+/// What encodings of graphs and states take from a training set; empty for others.
 struct FeatureScales {
   Normalisation nodes, edges;
-  Normalisation multipliers;  ///< of x - x_base, six
+  Normalisation multipliers;  ///< of x - x_base, six; of guesses
   Normalisation moves;        ///< of the segments' moves, six; where the network predicts them
 };
 

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "network/encoding/joint_moduli.hpp"
+
 namespace rodsweep {
 namespace {
-
-constexpr double rigid_pa = 1e15;  // stands for the modulus of a joint without compliance
 
 /// Where the segments of a rod lie along it. Every connected piece has a root.
 struct ArcLength {
@@ -40,15 +40,6 @@ struct ArcLength {
     }
   }
 };
-
-/// Young's and torsion modulus [Pa] behind the bend-twist compliance. A wall may have no radius.
-Eigen::Vector2d moduli_of(const Rod& rod, const Joint& joint) {
-  const double r = std::max(rod.segments[static_cast<std::size_t>(joint.a)].radius_m,
-                            rod.segments[static_cast<std::size_t>(joint.b)].radius_m);
-  const double area_moment = pi * r * r * r * r / 4, bend = (joint.compliance[3] + joint.compliance[4]) / 2;
-  return {std::min(joint.length / (bend * area_moment), rigid_pa),
-          std::min(joint.length / (joint.compliance[5] * 2 * area_moment), rigid_pa)};
-}
 
 }  // namespace
 
@@ -82,7 +73,7 @@ GraphEncoding::GraphEncoding(Encoding encoding, const Rod& rod)
     ++joints_at[static_cast<std::size_t>(joint.a)];
     ++joints_at[static_cast<std::size_t>(joint.b)];
     mean_joint_length_ += joint.length / rod.joint_count();
-    const Eigen::Array2d moduli = moduli_of(rod, joint);
+    const Eigen::Array2d moduli = joint_moduli(rod, joint);
     moduli_.col(k) = (encoding == Encoding::physics ? moduli.log10() : moduli).cast<float>();
   }
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {

@@ -21,8 +21,8 @@
 
 namespace rodsweep {
 
-/// `system`: network/encoding/system_encoding.hpp; `canonical`: network/encoding/canonical_encoding.hpp.
-enum class Encoding { paper, deck, physics, system, canonical };
+/// `system`: network/encoding/system_encoding.hpp; `canonical`: canonical_encoding.hpp; `state`: state_encoding.hpp.
+enum class Encoding { paper, deck, physics, system, canonical, state };
 
 /// Of segments and joints, not of the linear system.
 constexpr bool is_of_graphs(Encoding encoding) {

@@ -22,6 +22,7 @@ namespace rodsweep {
 class ChainProfile {
  public:
   static constexpr int state_size = 15, constant_count = 2;
+  static constexpr int shape_size = 6;            ///< of the state, from its first: places and curvature
   static const std::vector<int>& state_groups();  ///< for network/encoding/normalisation.hpp
 
   /// Throws SceneError for a rod that branches, closes a loop, falls into pieces or has nothing free.

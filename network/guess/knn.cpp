@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nanoflann.hpp>
 
 namespace rodsweep {
@@ -57,7 +58,7 @@ struct KnnSet::Iteration {
   }
 };
 
-KnnSet::KnnSet() = default;
+KnnSet::KnnSet(KnnInputs inputs) : inputs_(inputs) {}
 KnnSet::~KnnSet() = default;
 
 void KnnSet::add(const StoredSimulation& simulation) {
@@ -99,6 +100,9 @@ void KnnSet::finish() {
       of->of_state.deviation.segment(first, size) *= std::sqrt(static_cast<float>(size * points));
       first += size;
     }
+    if (inputs_ == KnnInputs::shape)
+      of->of_state.deviation.tail(ChainProfile::state_size - ChainProfile::shape_size) =
+          std::numeric_limits<float>::infinity();  // all else counts nothing
     of->of_constants.deviation /= constant_weight;
     for (Query& query : of->queries) of->normalise(query);
     of->tree = std::make_unique<Iteration::Tree>(query_size, *of, nanoflann::KDTreeSingleIndexAdaptorParams(16));

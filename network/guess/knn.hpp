@@ -4,8 +4,8 @@
 // length, and the rod's constants. Each quantity is shifted and divided by its deviation over the training set; the
 // distance of two queries is the root of the sum, over the quantities, of the mean square difference of their
 // components. The five of the state weigh the same (without velocities, or without the gaps, the neighbours are worse),
-// the constants a tenth: the state shows already what they do. Systems are compared with those of the same Newton
-// iteration only.
+// the constants a tenth: the state shows already what they do. With `shape` alone, places and curvature, neighbours
+// know no more than the paper's network. Systems are compared with those of the same Newton iteration only.
 #pragma once
 
 #include <array>
@@ -18,6 +18,12 @@
 #include "network/guess/chain_profile.hpp"
 
 namespace rodsweep {
+
+/// What neighbours are alike in.
+enum class KnnInputs {
+  all,   ///< of the state
+  shape  ///< the places of the joints and the curvature: no gaps, no velocities
+};
 
 class KnnSet {
  public:
@@ -36,7 +42,7 @@ class KnnSet {
     Eigen::Map<const Tensor<float>> values;
   };
 
-  KnnSet();
+  explicit KnnSet(KnnInputs inputs = KnnInputs::all);
   ~KnnSet();
 
   /// Takes in a simulation, which is not needed afterwards. Throws SceneError where a rod branches.
@@ -54,6 +60,7 @@ class KnnSet {
 
  private:
   struct Iteration;
+  KnnInputs inputs_;
   std::vector<std::unique_ptr<Iteration>> iterations_;  ///< by Newton iteration
   std::vector<std::vector<float>> arcs_;                ///< of every rod taken in
 };

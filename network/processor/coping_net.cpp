@@ -15,6 +15,7 @@ CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) :
   const int nodes = node_features(settings), edges = edge_features(settings);
   if (settings.moves && settings.processor != Processor::message_passing)
     throw std::invalid_argument("CopingNet: sweeps and factors predict no moves of segments");
+  if (!is_guess(settings) && !settings.moves) throw std::invalid_argument("CopingNet: states without moves");
   switch (settings.processor) {
     case Processor::sweeps:
       sweeps_ = Sweeps<T>(parameters_, edges + 2 * nodes, settings.latent, 6, settings.recurrence, source);
@@ -33,7 +34,7 @@ CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) :
       sizes.edge_in = edges;
       sizes.latent = settings.latent;
       sizes.steps = settings.steps;
-      sizes.edge_out = 6;
+      sizes.edge_out = is_guess(settings) ? 6 : 0;
       sizes.node_out = settings.moves ? 6 : 0;
       sizes.has_globals = settings.globals;
       sizes.hidden_layers = settings.hidden_layers;

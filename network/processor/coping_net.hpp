@@ -1,5 +1,6 @@
 // COPINGNet: from the features of segments and joints to corrections of the Lagrange multipliers, and moves of the
-// segments where they are asked for, by one of three processors (network/encoding/coping_net_settings.hpp).
+// segments where they are asked for, or of states to these alone, by one of three processors
+// (network/encoding/coping_net_settings.hpp).
 //
 // `sweeps` and `factors` work on joints: the features of a joint's two segments are appended to its own. Factors of all
 // couplings take blocks from the scaled system itself.
@@ -31,8 +32,9 @@ class CopingNet {
   Parameters<T>& parameters() { return parameters_; }
   const Parameters<T>& parameters() const { return parameters_; }
 
-  /// nodes [node features, segments], edges [edge features, places] -> y_edges [6, places] and, if given, y_nodes
-  /// [6, segments]. Factors of all couplings see `systems` in the places of edges, and are the only ones to.
+  /// nodes [node features, segments], edges [edge features, places] -> y_edges [6, places], of states [0, places],
+  /// and, if given, y_nodes [6, segments]. Factors of all couplings see `systems` in the places of edges, and are the
+  /// only ones to.
   void forward(const Topology& topology, const TensorIn<T>& nodes, const TensorIn<T>& edges, Tape& tape,
                Tensor<T>& y_edges, Tensor<T>* y_nodes, const ScaledSystem<T>* systems = nullptr) const;
   /// Adds to `gradient`.

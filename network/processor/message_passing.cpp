@@ -13,8 +13,9 @@ MessagePassing<T>::MessagePassing(Parameters<T>& parameters, const Sizes& sizes,
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     blocks_[k] = GraphBlock<T>(parameters, "step_" + std::to_string(k), sizes.latent, sizes.hidden_layers,
                                updates(k, sizes.node_out > 0), sizes.has_globals && k > 0, source);
-  decode_edges_ =
-      Mlp<T>(parameters, "decode_edges", sizes.latent, sizes.latent, sizes.edge_out, source, 0.1, sizes.hidden_layers);
+  if (sizes.edge_out > 0)
+    decode_edges_ = Mlp<T>(parameters, "decode_edges", sizes.latent, sizes.latent, sizes.edge_out, source, 0.1,
+                           sizes.hidden_layers);
   if (sizes.node_out > 0)
     decode_nodes_ = Mlp<T>(parameters, "decode_nodes", sizes.latent, sizes.latent, sizes.node_out, source, 0.1,
                            sizes.hidden_layers);
@@ -36,7 +37,10 @@ void MessagePassing<T>::forward(const Parameters<T>& p, const RodGraph& graph, c
   encode_edges_.forward(p, x_edges, tape.encode_edges, tape.states[0].edges);
   for (std::size_t k = 0; k < blocks_.size(); ++k)
     blocks_[k].forward(p, graph, tape.states[k], updates(k, y_nodes), tape.blocks[k], tape.states[k + 1]);
-  decode_edges_.forward(p, tape.states.back().edges, tape.decode_edges, y_edges);
+  if (sizes_.edge_out > 0)
+    decode_edges_.forward(p, tape.states.back().edges, tape.decode_edges, y_edges);
+  else
+    y_edges.resize(0, graph.edges());
   if (y_nodes) decode_nodes_.forward(p, tape.states.back().nodes, tape.decode_nodes, *y_nodes);
 }
 
@@ -49,7 +53,8 @@ void MessagePassing<T>::backward(const Parameters<T>& p, const RodGraph& graph, 
   d.edges.setZero(sizes_.latent, graph.edges());
   if (sizes_.has_globals) d.globals.setZero(sizes_.latent, graph.rods());
   if (dy_nodes) decode_nodes_.backward(p, tape.states.back().nodes, tape.decode_nodes, *dy_nodes, gradient, &d.nodes);
-  decode_edges_.backward(p, tape.states.back().edges, tape.decode_edges, dy_edges, gradient, &d.edges);
+  if (sizes_.edge_out > 0)
+    decode_edges_.backward(p, tape.states.back().edges, tape.decode_edges, dy_edges, gradient, &d.edges);
   for (std::size_t k = blocks_.size(); k-- > 0;)
     blocks_[k].backward(p, graph, tape.states[k], updates(k, dy_nodes), tape.blocks[k], d, gradient);
   encode_edges_.backward(p, x_edges, tape.encode_edges, d.edges, gradient, nullptr);

@@ -16,7 +16,7 @@ class MessagePassing {
  public:
   struct Sizes {
     int node_in = 0, edge_in = 0, latent = 0, steps = 1;
-    int edge_out = 0, node_out = 0;  ///< node_out 0: no node decoder
+    int edge_out = 0, node_out = 0;  ///< 0: no decoder of these
     bool has_globals = false;
     int hidden_layers = 1;  ///< of every MLP
   };

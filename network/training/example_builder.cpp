@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "network/guess/base_guess.hpp"
+#include "network/training/state_examples.hpp"
 #include "network/training/turn.hpp"
 #include "solver/linear/rounding_level.hpp"
 
@@ -92,7 +93,8 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Line
 }  // namespace
 
 void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out,
-                  const TurnedCopies& copies) {
+                  const Copies& copies, bool first_iterations_only) {
+  if (!is_guess(settings)) return add_state_examples(simulation, out, copies);
   Replay replay(simulation);
   const Scene& scene = replay.scene();
   const std::unique_ptr<InitialGuess> base = base_guess(settings, scene, simulation.newton_iterations);
@@ -105,7 +107,8 @@ void add_examples(const CopingNetSettings& settings, const StoredSimulation& sim
     base->propose(system, stored.at, of.base);
     system.multiply(of.base.data(), of.residual.data());
     of.residual = system.rhs() - of.residual;
-    if (of.residual.lpNorm<Eigen::Infinity>() > rounding_level) {
+    const bool wanted = stored.at.newton == 0 || !first_iterations_only;
+    if (wanted && of.residual.lpNorm<Eigen::Infinity>() > rounding_level) {
       out.push_back(example_of(settings, rod, system, stored, simulation.constraint_dt_s, of, rod, {}));
       for (int copy = 0; copy < copies.count; ++copy) {
         const Turn turn = random_turn(scene.gravity_m_s2, length_of(rod), random);
@@ -118,25 +121,28 @@ void add_examples(const CopingNetSettings& settings, const StoredSimulation& sim
 }
 
 FeatureScales feature_scales(const CopingNetSettings& settings, const std::vector<Example>& examples) {
-  if (!is_of_graphs(settings.encoding)) return {};
+  if (!has_scales(settings)) return {};
   FeatureStatistics nodes(node_groups(settings)), edges(edge_groups(settings)), multipliers({3, 3}), moves({3, 3});
   for (const Example& example : examples) {
     nodes.accumulate(example.nodes);
     edges.accumulate(example.edges);
-    multipliers.accumulate(example.edge_target);
+    if (is_guess(settings)) multipliers.accumulate(example.edge_target);
     if (settings.moves) moves.accumulate(example.node_target);
   }
-  return {nodes.normalisation(), edges.normalisation(), multipliers.normalisation(),
+  return {nodes.normalisation(), edges.normalisation(),
+          is_guess(settings) ? multipliers.normalisation() : Normalisation{},
           settings.moves ? moves.normalisation() : Normalisation{}};
 }
 
 void normalise(const CopingNetSettings& settings, const FeatureScales& scales, std::vector<Example>& examples) {
-  if (!is_of_graphs(settings.encoding)) return;
+  if (!has_scales(settings)) return;
   for (Example& example : examples) {
     scales.nodes.apply(example.nodes);
     scales.edges.apply(example.edges);
-    example.unit.array().colwise() *= scales.multipliers.deviation;
-    example.edge_target.array().colwise() /= scales.multipliers.deviation;
+    if (is_guess(settings)) {
+      example.unit.array().colwise() *= scales.multipliers.deviation;
+      example.edge_target.array().colwise() /= scales.multipliers.deviation;
+    }
     if (settings.moves) example.node_target.array().colwise() /= scales.moves.deviation;
   }
 }

@@ -132,7 +132,8 @@ double Trainer::evaluate(const std::vector<const Example*>& examples, Workspace&
                &batch.systems);
   double loss = 0;
   if (settings_.loss == LossKind::mse) {
-    loss = mse_loss<float>(with.y, batch.edge_target, edge_entries_, with_gradient ? &with.dy : nullptr);
+    if (is_guess(net_.settings()))
+      loss = mse_loss<float>(with.y, batch.edge_target, edge_entries_, with_gradient ? &with.dy : nullptr);
     if (moves)
       loss += mse_loss<float>(with.y_nodes, batch.node_target, node_entries_, with_gradient ? &with.dy_nodes : nullptr);
   } else {

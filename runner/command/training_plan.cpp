@@ -42,7 +42,7 @@ Extent extent_of(const TrainingJob& job, const LearningSets& sets) {
   extent.training_simulations = static_cast<std::int64_t>(sets.training().size());
   extent.validation_simulations = static_cast<std::int64_t>(sets.validation().size());
   for (const LearningSets::Simulation& simulation : sets.training())
-    extent.training_examples += (1 + job.turned_copies) * systems_of(simulation);
+    extent.training_examples += (1 + job.copies().count) * systems_of(simulation);
   for (const LearningSets::Simulation& simulation : sets.validation())
     extent.validation_examples += systems_of(simulation);
   extent.steps_per_epoch = extent.training_examples / job.training.batch;
@@ -62,6 +62,7 @@ double bytes_of(const Example& example) {
 
 double seconds_of_ratio(const TrainingJob& job, const Model& model, StoredSimulation simulation,
                         std::int64_t simulations) {
+  if (!is_guess(job.network)) return 0;
   const ValidationRatio ratio({std::move(simulation)});
   const auto shared = std::make_shared<const Model>(model);
   const Stopwatch watch;
@@ -102,8 +103,8 @@ Probe probe(const TrainingJob& job, const LearningSets& sets, const Extent& exte
   const Stopwatch reading;
   for (std::int64_t i = 0; i < tried; ++i) {
     const LearningSets::Simulation& simulation = sets.training()[static_cast<std::size_t>(i * all / tried)];
-    add_examples(job.network, read(simulation), examples, {job.turned_copies, 0});
-    systems += (1 + job.turned_copies) * systems_of(simulation);
+    add_examples(job.network, read(simulation), examples, job.copies(), job.first_iterations_only);
+    systems += (1 + job.copies().count) * systems_of(simulation);
   }
   const double share = static_cast<double>(all + extent.validation_simulations) / static_cast<double>(tried);
   probe.reading_s = share * reading.seconds();

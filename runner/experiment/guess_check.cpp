@@ -26,7 +26,24 @@ void refuse(const Plan& plan, const Task& task, const std::string& path, const s
       fmt::format("{}; the joints of the {} segments of task {} {}", what, task.segments, task.index, joints));
 }
 
+/// A model says what it is for.
+void check_model(const Plan& plan, const std::string& key, const std::filesystem::path& model, bool of_states) {
+  if (is_guess(shared_model(model)->net.settings()) != of_states) return;
+  const std::string name = model.filename().string();
+  throw job_error(
+      plan.job().path, key,
+      of_states
+          ? fmt::format("{} is not allowed: it corrects linear systems; must be a model of the encoding \"state\", "
+                        "or solve.method \"end_to_end\"",
+                        name)
+          : fmt::format("{} is not allowed: it is of the encoding \"state\" and knows no linear systems; must be "
+                        "another model, or solve.method \"state_network\"",
+                        name));
+}
+
 void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
+  if (is_network(spec.solve.method))
+    check_model(plan, "solve.model", spec.solve.model, spec.solve.method == Method::state_network);
   const bool may_loop = task.joints > task.segments - rod_count(spec.scene);
   for (std::size_t i = 0; i < spec.guesses.size(); ++i)
     for (const GuessSpec* guess = &spec.guesses[i]; guess;
@@ -37,6 +54,7 @@ void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
       if (knn && branches(spec.scene))
         refuse(plan, task, element("guesses", i), "\"knn\" is not allowed on rods that branch; must be another guess",
                "form a tree");
+      if (guess->kind == GuessSpec::Kind::copingnet) check_model(plan, element("guesses", i), guess->model, false);
       const char* for_factors = guess->corrections > 1        ? "corrections above 1"
                                 : guess->factor_lag_steps > 0 ? "lag_steps"
                                 : guess->stop_at > 0          ? "stop_at"

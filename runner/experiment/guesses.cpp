@@ -40,7 +40,7 @@ std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task,
                                               task.time.newton_iterations,
                                               FactorUse{guess.corrections, guess.factor_lag_steps, guess.stop_at});
     case Kind::knn:
-      return std::make_unique<KnnGuess>(shared_knn_set(guess.data, guess.simulations), scene,
+      return std::make_unique<KnnGuess>(shared_knn_set(guess.data, guess.simulations, guess.knn_inputs), scene,
                                         constraint_dt(scene, task.time.step_s), guess.neighbours);
     case Kind::oracle: return std::make_unique<OracleGuess>(scene, guess.error, guess.error_kind, task.seed);
     case Kind::guarded:

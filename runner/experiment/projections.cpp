@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "network/guess/end_to_end.hpp"
+#include "network/guess/state_network.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/experiment/solve_rows.hpp"
 #include "solver/step/xpbd_projection.hpp"
@@ -66,6 +67,8 @@ std::unique_ptr<Projection> make_projection(const Scene& scene, const TaskSpec& 
     case Method::cg: break;
     case Method::end_to_end:
       return std::make_unique<EndToEndProjection>(scene, std::make_unique<LoggedIncrements>(scene, spec, record));
+    case Method::state_network:
+      return std::make_unique<StateNetworkProjection>(scene, shared_model(spec.solve.model), spec.time.step_s);
     case Method::pbd:
       return std::make_unique<LoggedIterations>(scene, spec, record,
                                                 std::make_unique<PbdProjection>(scene, spec.solve.stiffness));
@@ -79,7 +82,7 @@ std::unique_ptr<Projection> make_projection(const Scene& scene, const TaskSpec& 
 
 const char* projection_failed(Method method) {
   if (is_gauss_seidel(method)) return "Gauss-Seidel ended as ";
-  return method == Method::end_to_end ? "the network's answer is " : "the linear solve ended as ";
+  return is_network(method) ? "the network's answer is " : "the linear solve ended as ";
 }
 
 }  // namespace rodsweep

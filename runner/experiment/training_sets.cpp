@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "runner/dataset/dataset_reader.hpp"
 
 namespace rodsweep {
 
-std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations) {
-  static std::map<std::pair<std::filesystem::path, int>, std::shared_ptr<const KnnSet>> sets;
-  std::shared_ptr<const KnnSet>& shared = sets[{data, simulations}];
+std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations, KnnInputs inputs) {
+  static std::map<std::tuple<std::filesystem::path, int, KnnInputs>, std::shared_ptr<const KnnSet>> sets;
+  std::shared_ptr<const KnnSet>& shared = sets[{data, simulations, inputs}];
   if (shared) return shared;
   const DatasetReader reader(data);
   const std::int64_t count = simulations > 0 ? std::min<std::int64_t>(simulations, reader.size()) : reader.size();
-  const auto set = std::make_shared<KnnSet>();
+  const auto set = std::make_shared<KnnSet>(inputs);
   for (std::int64_t i = 0; i < count; ++i) set->add(reader.read(i));
   set->finish();
   shared = set;

@@ -10,6 +10,7 @@ namespace rodsweep {
 
 /// Of the first so many simulations of a data set, or as many as it has; 0: all. One simulation is in memory at a time.
 /// Throws FileError for what is not a data set, SceneError for rods that are no chains.
-std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations);
+std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations,
+                                             KnnInputs inputs = KnnInputs::all);
 
 }  // namespace rodsweep

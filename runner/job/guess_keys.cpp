@@ -59,6 +59,11 @@ KeyTable<Guess> knn_keys() {
                      .from(0, 1000000)
                      .unlabelled(),
                  &Guess::simulations);
+  table.optional(choice_key("inputs",
+                            "what neighbours are alike in. all: shape, gaps of the joints and velocities; shape: what "
+                            "the paper's network knows")
+                     .labelled_if_changed(""),
+                 Words<KnnInputs>{{"all", KnnInputs::all}, {"shape", KnnInputs::shape}}, &Guess::knn_inputs);
   return table;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "network/guess/knn.hpp"
 #include "runner/job/rows.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
@@ -23,11 +24,14 @@ enum class Evaluation {
 enum class Method {
   direct,
   cg,
-  end_to_end,  ///< a network's increments, applied without a solve
-  pbd,         ///< \ Gauss-Seidel, without a linear system
-  xpbd         ///< /
+  end_to_end,     ///< a network's increments, applied without a solve
+  state_network,  ///< a network's accelerations, without any constraint
+  pbd,            ///< \ Gauss-Seidel, without a linear system
+  xpbd            ///< /
 };
 
+/// Applies what a network says, and nobody checks it.
+inline bool is_network(Method method) { return method == Method::end_to_end || method == Method::state_network; }
 inline bool is_gauss_seidel(Method method) { return method == Method::pbd || method == Method::xpbd; }
 
 struct TimeSpec {
@@ -58,7 +62,7 @@ struct SolveSpec {
   int fill_levels = default_fill_levels;  ///< block_icc, condensed
   int lag_steps = 0;            ///< time steps from one set-up of the preconditioner to the next; 0: see kept_steps()
   int timing_repeats = 1;       ///< times are medians over so many repeats of guess, solve and direct solve
-  std::filesystem::path model;  ///< end_to_end
+  std::filesystem::path model;  ///< end_to_end, state_network
   PbdStiffness stiffness;       ///< pbd
   Reference reference = Reference::direct;  ///< cg
 
@@ -102,7 +106,8 @@ struct GuessSpec {
   std::filesystem::path data;   ///< knn: the data set
   int simulations = 0;          ///< knn: of the data set, from the first; 0: all
   int neighbours = 3;           ///< knn
-  double error = 0.1;           ///< oracle: relative A-norm of the error added to the exact solution
+  KnnInputs knn_inputs = KnnInputs::all;
+  double error = 0.1;  ///< oracle: relative A-norm of the error added to the exact solution
   OracleGuess::Error error_kind = OracleGuess::Error::white;  ///< oracle
   double threshold =
       1;  ///< guarded: use `inner` only where the natural norm of b - A x0 is below threshold times that of b

@@ -17,6 +17,7 @@ constexpr int gauss_seidel_iterations = 20;
 const Words<Method> methods{{"cg", Method::cg},
                             {"direct", Method::direct},
                             {"end_to_end", Method::end_to_end},
+                            {"state_network", Method::state_network},
                             {"xpbd", Method::xpbd},
                             {"pbd", Method::pbd}};
 
@@ -84,11 +85,12 @@ KeyTable<SolveSpec> solve_keys() {
   table.optional(
       choice_key("method",
                  "conjugate gradients with counted iterations, the direct solve alone, or in a closed loop what does "
-                 "without linear systems: a network's answers, or Gauss-Seidel over the joints, with compliances "
-                 "(xpbd) or without (pbd)"),
+                 "without linear systems: a network's increments (end_to_end) or, without any constraint, its "
+                 "accelerations (state_network), or Gauss-Seidel over the joints, with compliances (xpbd) or without "
+                 "(pbd)"),
       methods, &SolveSpec::method);
   table.required(file_key("model", "model file of a train job")
-                     .only({"end_to_end"}, "a model that starts cg is a guess, \"copingnet\""),
+                     .only({"end_to_end", "state_network"}, "a model that starts cg is a guess, \"copingnet\""),
                  &SolveSpec::model);
   table.unbound(integer_key("iterations", "most Gauss-Seidel iterations in a step")
                     .from(1, 10000)
@@ -177,8 +179,9 @@ SolveSpec solve_spec(const Point& point, const Job& job) {
   SolveSpec solve;
   solve.method = Method::direct;
   keys.fill(solve, {point, job, "solve"});
-  if (solve.method == Method::end_to_end && solve.model.empty())
-    throw job_error(job.path, "solve.model", "missing: \"end_to_end\" needs the model file of a train job");
+  if (is_network(solve.method) && solve.model.empty())
+    throw job_error(job.path, "solve.model",
+                    fmt::format("missing: \"{}\" needs the model file of a train job", point.text("solve.method")));
   return solve;
 }
 

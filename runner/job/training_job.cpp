@@ -10,11 +10,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const Words<Encoding> encodings{{"paper", Encoding::paper},
-                                {"deck", Encoding::deck},
-                                {"physics", Encoding::physics},
-                                {"system", Encoding::system},
-                                {"canonical", Encoding::canonical}};
+const Words<Encoding> encodings{{"paper", Encoding::paper},         {"deck", Encoding::deck},
+                                {"physics", Encoding::physics},     {"system", Encoding::system},
+                                {"canonical", Encoding::canonical}, {"state", Encoding::state}};
 const Words<Processor> processors{
     {"sweeps", Processor::sweeps}, {"factors", Processor::factors}, {"message_passing", Processor::message_passing}};
 const Words<Recurrence> recurrences{{"gated", Recurrence::gated}, {"linear", Recurrence::linear}};
@@ -41,6 +39,26 @@ TrainingSettings training_settings(const Json& values, std::uint64_t seed) {
   return settings;
 }
 
+/// A simulator's network is one of message passing, which learns accelerations from a mean squared error.
+void check_state(const TrainingJob& training, const std::filesystem::path& file) {
+  const auto want = [&](bool holds, const char* key, const std::string& value, const char* must) {
+    if (!holds)
+      throw job_error(
+          file, key,
+          fmt::format("{} is not allowed with network.encoding \"state\", a simulator's; must be {}", value, must));
+  };
+  const auto quoted = [](const std::string& word) { return '"' + word + '"'; };
+  const CopingNetSettings& network = training.network;
+  want(network.processor == Processor::message_passing, "network.processor",
+       quoted(word_of(processors, network.processor)), "\"message_passing\"");
+  want(network.base == BaseGuess::none, "network.base", quoted(word_of(bases, network.base)), "\"none\"");
+  want(network.moves, "network.moves", "false", "true: it predicts nothing else");
+  want(training.training.loss == LossKind::mse, "training.loss", quoted(word_of(losses, training.training.loss)),
+       "\"mse\"");
+  want(training.turned_copies == 0, "training.turned_copies", std::to_string(training.turned_copies),
+       "0: no turn changes it");
+}
+
 void check(const TrainingJob& training, const std::filesystem::path& file) {
   const TrainingSettings& settings = training.training;
   if (settings.batch % settings.shards != 0) {
@@ -58,6 +76,12 @@ void check(const TrainingJob& training, const std::filesystem::path& file) {
     throw job_error(file, "network.latent",
                     fmt::format("{} is not allowed with network.processor \"factors\"; must be a multiple of 16",
                                 training.network.latent));
+  }
+  if (!is_guess(training.network)) return check_state(training, file);
+  if (training.noisy_copies > 0) {
+    throw job_error(file, "training.noisy_copies",
+                    fmt::format("{} is not allowed with network.encoding \"{}\"; must be with \"state\"",
+                                training.noisy_copies, word_of(encodings, training.network.encoding)));
   }
   if (training.turned_copies > 0 && !is_of_graphs(training.network.encoding)) {
     throw job_error(
@@ -119,7 +143,10 @@ TrainingJob training_job(const Job& job) {
   out.training_simulations = job.values["training_simulations"];
   out.network = network_settings(job.values["network"]);
   out.training = training_settings(training, job.seed);
+  out.first_iterations_only = training["systems"] == "first";
   out.turned_copies = training["turned_copies"];
+  out.noisy_copies = training["noisy_copies"];
+  out.noise = training["noise"];
   out.patience_epochs = training["patience_epochs"];
   out.ratio_every_epochs = training["ratio_every_epochs"];
   out.ratio_simulations = training["ratio_simulations"];

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "network/encoding/coping_net_settings.hpp"
+#include "network/training/example_builder.hpp"
 #include "network/training/trainer.hpp"
 #include "runner/job/job.hpp"
 
@@ -17,10 +18,15 @@ struct TrainingJob {
   std::int64_t validation_simulations = 100;
   CopingNetSettings network;
   TrainingSettings training;
+  bool first_iterations_only = false;
   int turned_copies = 0;        ///< of every example to learn from
+  int noisy_copies = 0;         ///< state: likewise
+  double noise = 0.1;           ///< of theirs
   int patience_epochs = 0;      ///< 0: no early end
   int ratio_every_epochs = 10;  ///< 0: at the end only
   std::int64_t ratio_simulations = 50;
+
+  Copies copies() const { return {turned_copies + noisy_copies, noise, training.seed}; }
 };
 
 /// Throws JobError for values that do not go together.

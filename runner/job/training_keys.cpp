@@ -47,11 +47,25 @@ Key training() {
                      .above(0)
                      .at_most(1e9)
                      .defaults_to(1),
+                 choice_key("systems",
+                            "learned from, of those that the data sets hold: all, or those of first Newton iterations",
+                            {"first", "all"})
+                     .defaults_to("all"),
                  integer_key("turned_copies",
                              "of every example, turned about gravity at random and shifted; for encodings that know "
                              "where a rod is: paper, deck and physics")
                      .from(0, 100)
                      .defaults_to(0),
+                 integer_key("noisy_copies",
+                             "of every example, with noise in their histories and rolled at random; for the encoding "
+                             "state")
+                     .from(0, 100)
+                     .defaults_to(0),
+                 number_key("noise",
+                            "of noisy copies: standard deviation of a history's last velocities, relative to what a "
+                            "step adds to velocities")
+                     .from(0, 10)
+                     .defaults_to(0.1),
                  integer_key("patience_epochs", "ends after so many epochs without a better validation loss; 0: never")
                      .from(0, 1000000)
                      .defaults_to(0)
@@ -78,8 +92,10 @@ Key network_key() {
                      "what it is given of a linear system. paper: the features of Shao et al., 14 of a segment and 5 "
                      "of a joint; deck: the same, and from the second Newton iteration on what constraints lack; "
                      "physics: more of them, scaled; system: the scaled system itself; canonical: that in frames "
-                     "that no turn, roll or mirror changes",
-                     {"paper", "deck", "physics", "system", "canonical"})
+                     "that no turn, roll or mirror changes; state: of no system but the last velocities, for "
+                     "solve.method "
+                     "state_network",
+                     {"paper", "deck", "physics", "system", "canonical", "state"})
                      .defaults_to("system"),
                  choice_key(
                      "processor",

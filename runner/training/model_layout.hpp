@@ -92,11 +92,12 @@ struct ScalePlace {
 inline constexpr std::array<ScalePlace, 4> scale_places{{
     {"/model/scales/nodes/", &FeatureScales::nodes, [](const CopingNetSettings& s) { return node_features(s); }},
     {"/model/scales/edges/", &FeatureScales::edges, [](const CopingNetSettings& s) { return edge_features(s); }},
-    {"/model/scales/multipliers/", &FeatureScales::multipliers, [](const CopingNetSettings&) { return 6; }},
+    {"/model/scales/multipliers/", &FeatureScales::multipliers,
+     [](const CopingNetSettings& s) { return is_guess(s) ? 6 : 0; }},
     {"/model/scales/moves/", &FeatureScales::moves, [](const CopingNetSettings& s) { return s.moves ? 6 : 0; }},
 }};
 inline int scale_size(const ScalePlace& place, const CopingNetSettings& settings) {
-  return !is_of_graphs(settings.encoding) ? 0 : place.size(settings);
+  return !has_scales(settings) ? 0 : place.size(settings);
 }
 
 }  // namespace rodsweep

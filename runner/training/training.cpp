@@ -86,7 +86,7 @@ void Training::end_epoch() {
     return;
   }
   const auto number = static_cast<std::int64_t>(card_.epochs.size()) + 1;
-  if (settings_.ratio_every_epochs > 0 && number % settings_.ratio_every_epochs == 0)
+  if (is_guess(settings_.network) && settings_.ratio_every_epochs > 0 && number % settings_.ratio_every_epochs == 0)
     epoch.cg_ratio = mean(ratios(model_));
   if (card_.best_epoch == 0 || epoch.validation_loss < best_epoch(card_).validation_loss) {
     card_.best_epoch = number;
@@ -152,6 +152,7 @@ ValidationRatio::Ratios Training::mean(const SimulationRatios& ratios, const std
 }
 
 void Training::end() {
+  if (!is_guess(settings_.network)) return;
   const SimulationRatios of_model = ratios(kept_);
   const SimulationRatios of_base = ratios([&](const Scene& scene, const StoredSimulation& simulation) {
     return base_guess(settings_.network, scene, simulation.newton_iterations);

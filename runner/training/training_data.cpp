@@ -13,9 +13,8 @@ namespace rodsweep {
 namespace {
 
 /// The examples of simulations in their order, made by threads, a few simulations at a time.
-std::vector<Example> examples_of(const CopingNetSettings& network,
-                                 const std::vector<LearningSets::Simulation>& simulations, int threads,
-                                 const TurnedCopies& copies = {}) {
+std::vector<Example> examples_of(const TrainingJob& training, const std::vector<LearningSets::Simulation>& simulations,
+                                 int threads, const Copies& copies = {}) {
   std::vector<Example> out;
   for (std::size_t begin = 0; begin < simulations.size(); begin += static_cast<std::size_t>(threads)) {
     std::vector<StoredSimulation> read_now;  // by one thread: HDF5 is for one at a time
@@ -23,8 +22,9 @@ std::vector<Example> examples_of(const CopingNetSettings& network,
       read_now.push_back(read(simulations[i]));
     std::vector<std::vector<Example>> examples(read_now.size());
     in_parallel(static_cast<int>(read_now.size()), threads, [&](int i, int) {
-      add_examples(network, read_now[static_cast<std::size_t>(i)], examples[static_cast<std::size_t>(i)],
-                   {copies.count, split_mix(copies.seed + begin + static_cast<std::size_t>(i))});
+      add_examples(training.network, read_now[static_cast<std::size_t>(i)], examples[static_cast<std::size_t>(i)],
+                   {copies.count, copies.noise, split_mix(copies.seed + begin + static_cast<std::size_t>(i))},
+                   training.first_iterations_only);
     });
     for (std::vector<Example>& of : examples) std::move(of.begin(), of.end(), std::back_inserter(out));
   }
@@ -41,9 +41,8 @@ TrainingData training_data(const TrainingJob& training, const LearningSets& sets
   data.training_simulations = static_cast<std::int64_t>(sets.training().size());
   for (const LearningSets::Simulation& simulation : sets.validation())
     data.validation_scenes.push_back(scene_of(simulation));
-  data.training =
-      examples_of(training.network, sets.training(), threads, {training.turned_copies, training.training.seed});
-  data.validation = examples_of(training.network, sets.validation(), threads);
+  data.training = examples_of(training, sets.training(), threads, training.copies());
+  data.validation = examples_of(training, sets.validation(), threads);
   if (data.training.size() < static_cast<std::size_t>(training.training.batch) || data.validation.empty()) {
     throw FileError(fmt::format("{} gives {} examples for training and {} for validation: too few for batches of {}",
                                 paths_of(training.data), data.training.size(), data.validation.size(),

@@ -1,7 +1,10 @@
 // SplitMix64 (Steele, Lea, Flood 2014): well-mixed bits of a counter, the same on every machine.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+
+#include "solver/numbers/types.hpp"
 
 namespace rodsweep {
 
@@ -25,6 +28,11 @@ class SplitMix {
     const std::uint64_t bits = split_mix(state_);
     state_ += split_mix_increment;
     return static_cast<double>(bits >> 11) * 0x1p-53;
+  }
+
+  double normal() {  ///< of mean 0 and deviation 1 (Box and Muller 1958)
+    const double size = std::sqrt(-2 * std::log(1 - uniform()));
+    return size * std::cos(2 * pi * uniform());
   }
 
  private:

@@ -17,12 +17,6 @@ void require(bool holds, const char* quantity, double value, const char* bound) 
   throw SceneError(text.str());
 }
 
-/// Of mean 0 and deviation 1 (Box and Muller 1958).
-double normal(SplitMix& random) {
-  const double size = std::sqrt(-2 * std::log(1 - random.uniform()));
-  return size * std::cos(2 * pi * random.uniform());
-}
-
 }  // namespace
 
 Wind::Wind(const WindParameters& parameters) : p_(parameters) {
@@ -39,7 +33,7 @@ Wind::Wind(const WindParameters& parameters) : p_(parameters) {
   modes_.assign(static_cast<std::size_t>((p_.turbulence_modes + lane_width - 1) / lane_width), Modes{});
   for (int m = 0; m < p_.turbulence_modes; ++m) {
     Vector3 wave;
-    for (int i = 0; i < 3; ++i) wave[i] = normal(random) / p_.turbulence_length_m;
+    for (int i = 0; i < 3; ++i) wave[i] = random.normal() / p_.turbulence_length_m;
     const double around = 2 * pi * random.uniform();
     const Vector3 across = wave.unitOrthogonal();
     const Vector3 amplitude = size * (std::cos(around) * across + std::sin(around) * wave.cross(across) / wave.norm());
@@ -49,7 +43,7 @@ Wind::Wind(const WindParameters& parameters) : p_(parameters) {
       modes.amplitude[i][lane] = amplitude[i];
       modes.wave[i][lane] = wave[i] / (2 * pi);
     }
-    modes.rate[lane] = (p_.turbulence_m_s * wave.norm() * normal(random) - wave.dot(p_.mean_m_s)) / (2 * pi);
+    modes.rate[lane] = (p_.turbulence_m_s * wave.norm() * random.normal() - wave.dot(p_.mean_m_s)) / (2 * pi);
     modes.phase[lane] = random.uniform();
   }
 }

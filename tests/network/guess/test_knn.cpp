@@ -119,6 +119,26 @@ TEST_CASE("the tree finds what a look at every system finds") {
   }
 }
 
+TEST_CASE("neighbours of shape alone see no velocities") {
+  const Scene scene = build_scene(test::bending_rod(5));
+  test::Random random(1);
+  const VectorX slow = random.entries(24), fast = random.entries(24);
+  const Vector3 u(0.1, 0.2, -0.3);
+  StoredSimulation simulation{scene, 0.02, 0.02, 1, {}};
+  simulation.systems = {planted(scene.rods[0], Vector3::Zero(), slow), planted(scene.rods[0], 3 * u, fast)};
+  const auto shapes = std::make_shared<KnnSet>(KnnInputs::shape);
+  shapes->add(simulation);
+  shapes->finish();
+  const VectorX x0 = guess_at(shapes, scene, planted(scene.rods[0], 3 * u, fast), 2);
+  CHECK((x0 - (slow + fast) / 2).norm() < 1e-5 * x0.norm());
+  StoredSimulation bent = simulation;
+  for (std::size_t s = 1; s < 5; ++s) bent.systems[1].position[s] += Vector3(0, 0.1 * static_cast<double>(s), 0);
+  const auto of_both = std::make_shared<KnnSet>(KnnInputs::shape);
+  of_both->add(bent);
+  of_both->finish();
+  CHECK((guess_at(of_both, scene, bent.systems[1], 1) - fast).norm() < 1e-5 * fast.norm());
+}
+
 TEST_CASE("a Newton iteration without training data is answered with zero") {
   const StoredSimulation simulation = test::stored_simulation(build_scene(test::bending_rod(6)), 3, 1);
   StoredSystem later = simulation.systems.back();

@@ -4,6 +4,7 @@
 #include "network/guess/coping_net_guess.hpp"
 #include "network/guess/end_to_end.hpp"
 #include "network/guess/knn_guess.hpp"
+#include "network/guess/state_network.hpp"
 #include "tests/network/models.hpp"
 #include "tests/network/stored.hpp"
 #include "tests/solver/allocations.hpp"
@@ -52,6 +53,24 @@ TEST_CASE("a network instead of the solve allocates nothing on a rod seen before
     if (step == 5) before = test::allocations();
     rod = scene.rods.front();
     for (Vector3& x : rod.position) x += Vector3(0, 0.01 * x.x() * x.x(), 0);
+    projection.project(rod, {step, 0, 0}, 0.02, 0);
+  }
+  CHECK(test::allocations() == before);
+}
+
+TEST_CASE("a simulator of states allocates nothing after a rod's first step") {
+  CopingNetSettings settings;
+  settings.encoding = Encoding::state;
+  settings.processor = Processor::message_passing;
+  settings.latent = 16;
+  settings.steps = 2;
+  settings.moves = true;
+  const Scene scene = build_scene(test::bending_rod(20));
+  Rod rod = scene.rods.front();
+  StateNetworkProjection projection(scene, test::random_model(settings), 0.02);
+  long before = 0;
+  for (int step = 0; step < 4; ++step) {
+    if (step == 2) before = test::allocations();
     projection.project(rod, {step, 0, 0}, 0.02, 0);
   }
   CHECK(test::allocations() == before);

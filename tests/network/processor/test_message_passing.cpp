@@ -31,10 +31,10 @@ struct Case {
   Net::Tape tape;
   Matrix y_edges, y_nodes;
 
-  Case(RodGraph g, int steps, int node_out, bool has_globals, int latent = 5, int hidden_layers = 1)
+  Case(RodGraph g, int steps, int node_out, bool has_globals, int latent = 5, int hidden_layers = 1, int edge_out = 2)
       : graph(std::move(g)) {
     WeightSource source(7);
-    net = Net(p, {3, 4, latent, steps, 2, node_out, has_globals, hidden_layers}, source);
+    net = Net(p, {3, 4, latent, steps, edge_out, node_out, has_globals, hidden_layers}, source);
     for (double& v : p.values()) v += 0.05;
     x_nodes = random_matrix(3, graph.nodes, 2);
     x_edges = random_matrix(4, graph.edges(), 3);
@@ -46,10 +46,10 @@ TEST_CASE("the gradients of message passing are those of central differences") {
   for (const bool has_globals : {false, true})
     for (const int node_out : {0, 3})
       for (const int steps : {1, 3}) {
-        const int hidden_layers = steps == 1 ? 3 : 1;
-        CAPTURE(has_globals, node_out, steps, hidden_layers);
-        Case c(some_graphs(), steps, node_out, has_globals, 3, hidden_layers);
-        const Matrix d_edges = random_matrix(2, c.graph.edges(), 4),
+        const int hidden_layers = steps == 1 ? 3 : 1, edge_out = node_out > 0 && steps > 1 ? 0 : 2;
+        CAPTURE(has_globals, node_out, steps, hidden_layers, edge_out);
+        Case c(some_graphs(), steps, node_out, has_globals, 3, hidden_layers, edge_out);
+        const Matrix d_edges = random_matrix(edge_out, c.graph.edges(), 4),
                      d_nodes = random_matrix(node_out, c.graph.nodes, 5);
         const auto loss = [&] {
           c.run();
@@ -64,12 +64,14 @@ TEST_CASE("the gradients of message passing are those of central differences") {
 
 TEST_CASE("every weight is used: none has a gradient of zero") {
   for (const bool has_globals : {false, true})
-    for (const int node_out : {0, 3}) {
-      CAPTURE(has_globals, node_out);
-      Case c(some_graphs(), 3, node_out, has_globals, 5, 2);
+    for (const int node_out : {0, 3, 4}) {
+      const int edge_out = node_out == 4 ? 0 : 2;
+      CAPTURE(has_globals, node_out, edge_out);
+      Case c(some_graphs(), 3, node_out, has_globals, 5, 2, edge_out);
       c.run();
       Parameters<double> gradient = c.p.zeros();
-      const Matrix d_edges = random_matrix(2, c.graph.edges(), 4), d_nodes = random_matrix(node_out, c.graph.nodes, 5);
+      const Matrix d_edges = random_matrix(edge_out, c.graph.edges(), 4),
+                   d_nodes = random_matrix(node_out, c.graph.nodes, 5);
       c.net.backward(c.p, c.graph, c.x_nodes, c.x_edges, c.tape, d_edges, node_out ? &d_nodes : nullptr, gradient);
       for (std::size_t i = 0; i < c.p.entries().size(); ++i) {
         CAPTURE(c.p.entries()[i].name);

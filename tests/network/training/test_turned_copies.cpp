@@ -60,5 +60,18 @@ TEST_CASE("copies have features and moves of the turned rod, and the same edges,
   }
 }
 
+TEST_CASE("examples may be those of first Newton iterations alone") {
+  CopingNetSettings settings;
+  settings.base = BaseGuess::pod;
+  const StoredSimulation simulation = stored_simulation(sample_scene(1), 4, 3);
+  std::vector<Example> all, first;
+  add_examples(settings, simulation, all);
+  add_examples(settings, simulation, first, {}, true);
+  CHECK(all.size() == 12);
+  REQUIRE(first.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i)  // whose base guess has seen the others all the same
+    CHECK(first[i].edge_target == all[3 * i].edge_target);
+}
+
 }  // namespace
 }  // namespace rodsweep

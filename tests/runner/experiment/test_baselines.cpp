@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "runner/experiment/evaluation.hpp"
+#include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/training_sets.hpp"
 #include "runner/training/model_file.hpp"
 #include "tests/runner/file_examples.hpp"
@@ -25,13 +26,20 @@ void write_data(const fs::path& path, const Json& job) {
   file.close();
 }
 
-/// A network of random weights times `factor`.
-void write_model(const fs::path& path, float factor) {
+/// A network of random weights times `factor`; of a simulator, with units of one.
+void write_model(const fs::path& path, float factor, bool of_states = false) {
   CopingNetSettings settings;
   settings.base = BaseGuess::none;
   settings.latent = 16;
   settings.best_length = false;
+  if (of_states) {
+    settings.encoding = Encoding::state;
+    settings.processor = Processor::message_passing;
+    settings.moves = true;
+  }
   Model model{CopingNet<float>(settings, 1), {}};
+  const auto ones = [](int size) { return Normalisation{Eigen::ArrayXf::Zero(size), Eigen::ArrayXf::Ones(size)}; };
+  if (of_states) model.scales = {ones(node_features(settings)), ones(edge_features(settings)), {}, ones(6)};
   for (float& weight : model.net.parameters().values()) weight *= factor;
   ModelCard card;
   card.name = "planted";
@@ -106,6 +114,46 @@ TEST_CASE("a network that says nothing lets the rod fall apart, which is data: r
   const TaskRecord torn = evaluated(folder, job).front();
   CHECK(torn.outcome == TaskOutcome::torn);
   CHECK(torn.joint_gap[static_cast<std::size_t>(torn.steps_done[0] - 1)] > 1);
+}
+
+TEST_CASE("a simulator of states moves rods without any solve; its steps are data, its rows of solves empty") {
+  const TemporaryFolder folder;
+  write_model(folder / "still.h5", 0, true);
+  Json job = instead_of_the_solve("still.h5");
+  job["solve"]["method"] = "state_network";
+  job["time"]["steps"] = 5;
+  const TaskRecord record = evaluated(folder, job).front();
+  CHECK(record.outcome == TaskOutcome::ok);
+  CHECK(record.kinetic_energy_j.back() < 1e-20);  // it has not learned of gravity
+  CHECK(record.joint_gap.back() < 1e-12);
+  CHECK(std::isnan(record.newton_residual.front()));
+  CHECK(record.rest_s.front() > 0);
+  job["scene"] = forest_scene();
+  CHECK(evaluated(folder, job).front().outcome == TaskOutcome::ok);
+}
+
+TEST_CASE("models are refused where they are for something else") {
+  const TemporaryFolder folder;
+  write_model(folder / "states.h5", 1, true);
+  write_model(folder / "systems.h5", 1);
+  const auto refusal_of = [&](const Json& job) {
+    const Plan plan(parse_job(job.dump(), folder / "job.json"));
+    try {
+      check_guesses(plan);
+    } catch (const JobError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(refusal_of(instead_of_the_solve("states.h5")),
+             Catch::Contains("solve.model: states.h5 is not allowed: it is of the encoding \"state\""));
+  CHECK(refusal_of(instead_of_the_solve("systems.h5")).empty());
+  Json simulator = instead_of_the_solve("systems.h5");
+  simulator["solve"]["method"] = "state_network";
+  CHECK_THAT(refusal_of(simulator),
+             Catch::Contains("solve.model: systems.h5 is not allowed: it corrects linear systems"));
+  CHECK_THAT(refusal_of(with("/guesses", R"(["zero", {"copingnet": {"model": "states.h5"}}])")),
+             Catch::Contains("guesses[1]: states.h5 is not allowed"));
 }
 
 TEST_CASE("a network moves every tree of a forest instead of the solve") {

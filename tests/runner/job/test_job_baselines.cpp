@@ -86,10 +86,13 @@ TEST_CASE("a network instead of the solve is refused without a model, among gues
   const std::string named = R"({"method": "end_to_end", "model": "net.h5"})";
   CHECK_THAT(folder.refusal(end_to_end(R"({"method": "end_to_end"})")),
              Catch::Contains("solve.model: missing: model file of a train job"));
+  CHECK_THAT(folder.refusal(end_to_end(R"({"method": "state_network"})")),
+             Catch::Contains("solve.model: missing: model file of a train job"));
   CHECK_THAT(folder.refusal(end_to_end(R"({"method": {"grid": ["direct", "end_to_end"]}})")),
              Catch::Contains("solve.model: missing"));
   CHECK_THAT(folder.refusal(with("/solve", R"({"model": "net.h5"})")),
-             Catch::Contains("solve.model: this key belongs to solve.method \"end_to_end\", not to \"cg\""));
+             Catch::Contains(
+                 "solve.model: this key belongs to solve.method \"end_to_end\" or \"state_network\", not to \"cg\""));
   CHECK_THAT(folder.refusal(with("/evaluation", "\"closed_loop\"", with("/solve", named))),
              Catch::Contains("only solve.method \"cg\" uses initial guesses"));
   CHECK_THAT(folder.refusal(with("/evaluation", "\"paired\"", end_to_end(named))),

@@ -68,11 +68,12 @@ TEST_CASE("every key of a training arrives where it belongs") {
       "base_size": 4, "latent": 16, "steps": 2, "hidden_layers": 3, "globals": true, "best_length": false, "moves": true})");
   values["training"] = Json::parse(R"({"loss": "mse", "epochs": 5, "batch": 12, "shards": 3, "rate": 0.01,
       "warm_up": 0.1, "weight_decay": 0.2, "clip": 0.5, "patience_epochs": 4, "ratio_every_epochs": 2,
-      "ratio_simulations": 6, "turned_copies": 2})");
+      "ratio_simulations": 6, "turned_copies": 2, "systems": "first"})");
   const TrainingJob job = training_of(values);
   CHECK(job.validation_simulations == 3);
   CHECK(job.training_simulations == 9);
   CHECK(job.turned_copies == 2);
+  CHECK(job.first_iterations_only);
   CHECK(job.network.hidden_layers == 3);
   CHECK(job.network.encoding == Encoding::deck);
   CHECK(job.network.processor == Processor::message_passing);
@@ -125,9 +126,7 @@ TEST_CASE("misspelt and impossible values of a training are refused") {
         "job.json: network.best_length: 1 is not allowed; must be true or false");
   CHECK(refused("/network/encoding", "\"decks\"") ==
         "job.json: network.encoding: \"decks\" is not allowed; must be one of \"paper\", \"deck\", \"physics\", "
-        "\"system\", "
-        "\"canonical\"; did "
-        "you mean \"deck\"?");
+        "\"system\", \"canonical\", \"state\"; did you mean \"deck\"?");
 }
 
 TEST_CASE("keys that the network or the loss has no use for are refused, also where its kind is the default") {
@@ -148,13 +147,37 @@ TEST_CASE("values that do not go together are refused") {
         "of moves; use \"mse\" or remove this key");
 }
 
+TEST_CASE("a simulator of states is a network of message passing that learns moves from squares, with noise") {
+  Json values = train_job();
+  values["network"] =
+      Json::parse(R"({"encoding": "state", "processor": "message_passing", "base": "none", "moves": true})");
+  values["training"] = Json::parse(R"({"loss": "mse", "noisy_copies": 3, "noise": 0.2})");
+  const TrainingJob job = training_of(values);
+  CHECK(job.network.encoding == Encoding::state);
+  CHECK(job.copies().count == 3);
+  CHECK(job.copies().noise == 0.2);
+  const auto refused_with = [&](const char* path, const char* value) { return refusal(with(path, value, values)); };
+  CHECK(refused_with("/network/base", "\"pod\"") ==
+        "job.json: network.base: \"pod\" is not allowed with network.encoding \"state\", a simulator's; must be "
+        "\"none\"");
+  CHECK_THAT(refused_with("/network/moves", "false"), Catch::StartsWith("job.json: network.moves: false"));
+  CHECK_THAT(refused_with("/training/loss", "\"energy\""), Catch::StartsWith("job.json: training.loss: \"energy\""));
+  CHECK_THAT(refused_with("/training/turned_copies", "1"), Catch::StartsWith("job.json: training.turned_copies: 1"));
+  CHECK_THAT(refused_with("/network", R"({"encoding": "state", "base": "none"})"),
+             Catch::StartsWith("job.json: network.processor: \"sweeps\""));
+  CHECK(refused("/training/noisy_copies", "2") ==
+        "job.json: training.noisy_copies: 2 is not allowed with network.encoding \"system\"; must be with \"state\"");
+}
+
 TEST_CASE("the settings of every kind of network are the same after a round trip") {
   for (const char* text :
        {"{}", R"({"encoding": "physics", "base": "none", "latent": 8, "best_length": false})",
         R"({"recurrence": "linear"})", R"({"encoding": "canonical", "processor": "factors", "couplings": "all"})",
         R"({"processor": "message_passing", "steps": 1, "globals": true})",
-        R"({"processor": "message_passing", "hidden_layers": 2})"}) {
-    Json values = job_of(with("/network", text, train_job())).values["network"];
+        R"({"processor": "message_passing", "hidden_layers": 2})",
+        R"({"encoding": "state", "processor": "message_passing", "base": "none", "moves": true})"}) {
+    Json values =
+        job_of(with("/training", R"({"loss": "mse"})", with("/network", text, train_job()))).values["network"];
     if (values.value("recurrence", "") == "gated") values.erase("recurrence");  // models of before have no word for it
     if (values.value("hidden_layers", 0) == 1) values.erase("hidden_layers");   // nor for this
     const Json written = network_json(network_settings(values));

@@ -1,0 +1,52 @@
+// `state`: rods as a simulator sees them that updates their state without any constraints (Sanchez-Gonzalez et al.
+// 2020, Learning to simulate complex physics with graph networks): from the last five velocities to accelerations.
+//
+//   node 37: the last five velocities [m/s] and angular velocities [rad/s], the last first, v then w of each; gravity;
+//            radius [m], density [kg/m^3], length [m], and whether fixed
+//   edge 15: what the joint lacks, (x_a + R_a arm_a - x_b - R_b arm_b) / l; (x_b - x_a) / l; l (Omega - Omega0);
+//            l Omega0; log10 of Young's and torsion modulus; l [m]
+//   answer:  v_{n+1} - v_n [m/s] and w_{n+1} - w_n [rad/s], a step's accelerations times dt
+// All vectors are in the segment's own frame, of an edge in that of its segment a, so that a turn of the whole scene
+// changes nothing; theirs were in the world's. What a joint lacks and the strain are ours: small differences of large
+// numbers that a network is slow to find. Roll of all frames together about the segments' own axes, which physics
+// knows nothing of either, changes them (rolled); copies to learn from have any.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "network/encoding/state_history.hpp"
+#include "network/graph/topology.hpp"
+#include "network/layers/tensor.hpp"
+
+namespace rodsweep {
+
+class StateEncoding {
+ public:
+  static const std::vector<int>& node_groups();
+  static const std::vector<int>& edge_groups();
+
+  StateEncoding(const Rod& rod, const Vector3& gravity_m_s2);
+
+  const Topology& topology() const { return *topology_; }
+  const std::shared_ptr<const Topology>& shared_topology() const { return topology_; }
+
+  /// Sets [37, segments] and [15, places of the topology]. Allocates nothing.
+  void encode(const Rod& rod, const StateHistory& history, Eigen::Ref<Tensor<float>> nodes,
+              Eigen::Ref<Tensor<float>> edges) const;
+
+  /// The answer [6, segments] that is exact, where the next velocities are these; 0 for fixed segments.
+  static void answer(const Rod& rod, const StateHistory& history, const std::vector<Vector3>& velocity,
+                     const std::vector<Vector3>& spin, Eigen::Ref<Tensor<float>> out);
+
+ private:
+  Vector3 gravity_;
+  std::shared_ptr<const Topology> topology_;
+  Tensor<float> constants_;  ///< [4, segments]
+  Tensor<float> moduli_;     ///< [2, joints]
+};
+
+/// Columns whose groups of three are vectors, as frames see them that are rolled by an angle about their z.
+void roll(const std::vector<int>& groups, double angle, Eigen::Ref<Tensor<float>> columns);
+
+}  // namespace rodsweep

@@ -1,0 +1,39 @@
+// A simulator that updates the state of rods directly, without constraints (Sanchez-Gonzalez et al. 2020):
+//
+//   v_{n+1} = v_n + dt a,   w likewise,   x_{n+1} = x_n + dt v_{n+1},   q_{n+1} = rotated(q_n, dt w_{n+1})
+// a graph network's accelerations from the last five velocities (network/encoding/state_encoding.hpp), semi-implicit,
+// once a step; static segments stay where they are held. Contacts, if the scene has any, act after it. Nothing checks
+// the joints.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "network/encoding/state_encoding.hpp"
+#include "network/processor/model.hpp"
+#include "solver/step/projection.hpp"
+
+namespace rodsweep {
+
+class StateNetworkProjection : public Projection {
+ public:
+  /// Of a scene before its first step of dt. Throws std::invalid_argument for a model that is not of `state`.
+  StateNetworkProjection(const Scene& scene, std::shared_ptr<const Model> model, double dt);
+
+  /// In the first iteration of a step; not_run in others. `converged` stands for "applied"; `not_a_number`, and the rod
+  /// as it was, where the answer is not finite. Allocates nothing after a rod's first step.
+  ProjectionReport project(Rod& rod, const SolvePosition& at, double dt_c, double newton_tolerance) override;
+
+ private:
+  struct OfRod {
+    StateEncoding encoding;
+    StateHistory history;
+    Tensor<float> nodes, edges, y_edges, y_nodes;
+    CopingNet<float>::Tape tape;
+  };
+  std::shared_ptr<const Model> model_;
+  double dt_;
+  std::vector<OfRod> rods_;
+};
+
+}  // namespace rodsweep
