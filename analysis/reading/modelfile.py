@@ -1,5 +1,6 @@
 """The one reader of a model file (HDF5, schema version 1; layout in runner/training/model_file.hpp)."""
 
+import json
 import os
 from dataclasses import dataclass
 
@@ -28,6 +29,10 @@ class Training:
     simulations: int            # that ratios are means over
     seconds: float
     scenes: dict                # {type of scene: (kept_ratio, base_ratio)}, where there are several
+    job: dict                   # as it was written
+    network: dict               # with all that its job left to defaults
+    learned_from: int           # simulations
+    parameters: int
 
     @property
     def epochs(self):
@@ -57,7 +62,9 @@ def read(path):
                              training["rate"][:], training["cg_ratio"][:], int(training.attrs["best_epoch"]),
                              h5["validation/cg_ratio"][:], h5["validation/base_cg_ratio"][:],
                              int(h5["validation"].attrs["simulations"]), float(h5["timing/epoch_s"][:].sum()),
-                             _scenes(h5["validation"]))
+                             _scenes(h5["validation"]), json.loads(as_text(h5["job/text"][0])),
+                             json.loads(as_text(h5["model/settings"][0])), int(h5["data"].attrs["training_simulations"]),
+                             sum(weights.size for weights in h5["model/weights"].values()))
         except UNREADABLE as error:
             raise SweepFileError(f"{path} is damaged: {error}") from error
     if not len(found.training_loss):

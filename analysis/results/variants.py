@@ -54,6 +54,7 @@ LATTICES = {
 }
 # Of the paper's network: 20 passes over 256 simulations of 50 steps, or as many steps on other data.
 EPOCHS = 20
+ALL = {"training.systems": "all", "training.epochs": EPOCHS // 4}
 PAPER = {
     "base": {},
     **{f"size_{n}": {"training_simulations": n, "training.epochs": EPOCHS * 256 // n} for n in (8, 16, 32, 64, 128)},
@@ -69,6 +70,8 @@ PAPER = {
     "loss_in_the_loop": {"network.moves": False, "training.loss": "in_the_loop"},
     "best_length": {"network.best_length": True},
     "globals": {"network.globals": True},
+    "globals_energy": {"network.globals": True, "network.moves": False, "training.loss": "energy"},
+    "globals_in_the_loop": {"network.globals": True, "network.moves": False, "training.loss": "in_the_loop"},
     "sweeps_gated": {**SWEEPS, "network.moves": False},
     "sweeps_linear": {**LINEAR, "network.moves": False},
     "base_extrapolation": {"network.base": "extrapolation"},
@@ -77,21 +80,19 @@ PAPER = {
     "encoding_physics": {"network.encoding": "physics"},
     "encoding_system": {"network.encoding": "system", "network.moves": False},
     "encoding_canonical": {"network.encoding": "canonical", "network.moves": False},
-    "all_paper": {"data": "all", "training.epochs": EPOCHS // 4},
-    "all_deck": {"data": "all", "training.epochs": EPOCHS // 4, "network.encoding": "deck"},
-    "all_physics": {"data": "all", "training.epochs": EPOCHS // 4, "network.encoding": "physics"},
-    "all_system": {"data": "all", "training.epochs": EPOCHS // 4, "network.encoding": "system",
-                   "network.moves": False},
-    "data_100_steps": {"data": "100_steps", "training.epochs": EPOCHS // 2},
+    "all_paper": ALL,
+    "all_deck": {**ALL, "network.encoding": "deck"},
+    "all_physics": {**ALL, "network.encoding": "physics"},
+    "all_system": {**ALL, "network.encoding": "system", "network.moves": False},
+    "data_100_steps": {"data": "100", "training.epochs": EPOCHS // 2},
     "data_0.01_s": {"data": "0.01_s"},
     "data_0.005_s": {"data": "0.005_s"},
     "seed_2": {"seed": 2},
     "seed_3": {"seed": 3},
 }
-# Other data than those of jobs/SCENE_data.json: what is changed there.
+# Other data than those of jobs/SCENE_data.json: what is changed there; None: a job of jobs/.
 DATA = {
-    "all": {"record.systems": "all"},
-    "100_steps": {"time.steps": 100},
+    "100": None,
     "0.01_s": {"time.step_s": 0.01},
     "0.005_s": {"time.step_s": 0.005},
 }
@@ -106,9 +107,8 @@ class Family(NamedTuple):
 
 
 def ablation(scene):
-    changes = {"network.encoding": "paper", "network.latent": 32, "training.epochs": EPOCHS, "training.rate": 2e-3,
-               "training.ratio_every_epochs": 0}
-    return Family(f"train_{scene}_faithful", f"ablation_{scene}", changes, PAPER, f"{scene}_data")
+    changes = {"network.latent": 32, "training.epochs": EPOCHS}
+    return Family(f"train_{scene}_paper", f"ablation_{scene}", changes, PAPER, f"{scene}_data")
 
 
 FAMILIES = {
@@ -142,7 +142,10 @@ def training(family, name):
     if changes.get("training.epochs", 0) is ITS_OWN:
         changes.pop("training.epochs")
     job = changed(family.job, name, changes)
-    job["data"] = f"data_{data}.h5" if data else os.path.join("..", job["data"].removeprefix("../results/"))
+    if data and DATA[data]:
+        job["data"] = f"set_{data}.h5"
+    else:
+        job["data"] = os.path.join("..", f"{family.data}_{data}.h5" if data else job["data"].removeprefix("../results/"))
     network = job["network"]
     if network.get("base") in ("none", "extrapolation"):
         network.pop("base_size", None)
@@ -167,8 +170,8 @@ def main():
     folder = os.path.join(results, family.folder)
     os.makedirs(folder, exist_ok=True)
     for variant, changes in family.variants.items():
-        if "data" in changes:
-            run(program, folder, changed(family.data, "data_" + changes["data"], DATA[changes["data"]]))
+        if DATA.get(changes.get("data")):
+            run(program, folder, changed(family.data, "set_" + changes["data"], DATA[changes["data"]]))
         run(program, folder, training(family, variant))
 
 

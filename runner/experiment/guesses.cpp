@@ -47,6 +47,7 @@ std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task,
       return std::make_unique<GuardedGuess>(scene, make(guess.inner.front(), task, scene, noise), guess.threshold);
     case Kind::totals:
       return std::make_unique<TotalsGuess>(scene, make(guess.inner.front(), task, scene, 0));  // Newton corrects them
+    case Kind::first: return std::make_unique<FirstGuess>(make(guess.inner.front(), task, scene, noise));
   }
   throw std::logic_error("make_guess: unknown kind of guess \"" + guess.label + "\"");
 }

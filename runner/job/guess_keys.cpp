@@ -92,6 +92,12 @@ KeyTable<Guess> totals_keys() {
   return table;
 }
 
+KeyTable<Guess> first_keys() {
+  KeyTable<Guess> table;
+  table.unbound(guess_key("guess", "the guess for first Newton iterations"));
+  return table;
+}
+
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> kinds{
       {Guess::Kind::zero, "zero", "no guess: the denominator of every ratio", {}},
@@ -117,6 +123,10 @@ const std::vector<Kind>& kinds() {
       {Guess::Kind::totals, "totals",
        "another guess, that hears what a step's increments add up to in place of the first one: for closed loops",
        totals_keys()},
+      {Guess::Kind::first, "first",
+       "another guess at the first Newton iteration of a step, none at the others: for networks that learned of those "
+       "alone",
+       first_keys()},
   };
   return kinds;
 }
@@ -129,8 +139,8 @@ Guess guess_spec(const Place& at) {
     guess.kind = kind.kind;
     kind.parameters.fill(guess, at.of(name));
   }
-  if (guess.kind == Guess::Kind::guarded || guess.kind == Guess::Kind::totals) {
-    const Place within = at.of(name).of("guess");
+  const Place within = at.of(name).of("guess");
+  if (at.point.has(within.path)) {
     guess.inner.push_back(guess_spec(within));
     guess.inner.back().label = within.point.text(within.path);
   }

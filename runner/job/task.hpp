@@ -93,7 +93,8 @@ struct GuessSpec {
     knn,
     oracle,
     guarded,
-    totals
+    totals,
+    first
   };
   Kind kind = Kind::zero;
   std::string label;
@@ -111,7 +112,7 @@ struct GuessSpec {
   OracleGuess::Error error_kind = OracleGuess::Error::white;  ///< oracle
   double threshold =
       1;  ///< guarded: use `inner` only where the natural norm of b - A x0 is below threshold times that of b
-  std::vector<GuessSpec> inner;  ///< guarded, totals: exactly one
+  std::vector<GuessSpec> inner;  ///< guarded, totals, first: exactly one
 };
 
 /// Of which linear systems a data set holds what they were assembled from, and the solution.

@@ -104,4 +104,10 @@ Proposal GuardedGuess::propose(const LinearSystem& system, const SolvePosition& 
   return {false, products, nullptr, inner.renewed};
 }
 
+Proposal FirstGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
+  if (at.newton == 0) return inner_->propose(system, at, x0);
+  x0.setZero();
+  return {};
+}
+
 }  // namespace rodsweep

@@ -108,4 +108,20 @@ class GuardedGuess : public InitialGuess {
   std::vector<VectorX> scratch_;  ///< per rod
 };
 
+/// Another guess at the first Newton iteration of a step, zero at the others: for what was learned of those alone.
+class FirstGuess : public InitialGuess {
+ public:
+  explicit FirstGuess(std::unique_ptr<InitialGuess> inner) : inner_(std::move(inner)) {}
+  void prepare(const SolvePosition& at) override {
+    if (at.newton == 0) inner_->prepare(at);
+  }
+  Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
+  void accept(const SolvePosition& at, const VectorX& solution) override {
+    if (at.newton == 0) inner_->accept(at, solution);
+  }
+
+ private:
+  std::unique_ptr<InitialGuess> inner_;
+};
+
 }  // namespace rodsweep

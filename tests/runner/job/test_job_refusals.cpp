@@ -233,7 +233,8 @@ TEST_CASE("guesses that make no guess axis are refused") {
   const std::string names =
       " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"pod\", "
       "\"deflation\", "
-      "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", or an object such as {\"oracle\": "
+      "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", \"first\", or an object such as "
+      "{\"oracle\": "
       "{\"error\": "
       "0.1}}";
   CHECK(refusal(with("/guesses", R"(["zero", "orcale"])")) ==

@@ -256,6 +256,22 @@ TEST_CASE("guarded rejects a guess that is not a number and passes a zero one on
   CHECK_FALSE(propose(of_zero, rods, {0, 0, 0}).nonzero);
 }
 
+TEST_CASE("first asks and tells another guess at first Newton iterations alone") {
+  TwoRods rods;
+  VectorX told;
+  FirstGuess guess(std::make_unique<Fixed>(rods.exact(0), &told));
+  const Proposed proposed = propose(guess, rods, {3, 0, 0});
+  CHECK(proposed.nonzero);
+  CHECK(proposed.x0 == rods.exact(0));
+  const Proposed later = propose(guess, rods, {3, 1, 0});
+  CHECK_FALSE(later.nonzero);
+  CHECK(later.x0.isZero(0));
+  guess.accept({3, 1, 0}, rods.exact(0));
+  CHECK(told.size() == 0);
+  guess.accept({4, 0, 0}, rods.exact(0));
+  CHECK(told == rods.exact(0));
+}
+
 TEST_CASE("guarded tells its inner guess the solution, whether or not it was used") {
   TwoRods rods;
   VectorX told;

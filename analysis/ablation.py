@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""What makes a network a good guess: the CG ratio of one network after another, each trained with one setting changed.
+
+The file is of a sweep whose learned guesses are those networks, as `make ablation` trains them; MODELS is the folder of
+their model files, named like the guesses, and --base the one that the others are changed from. What is changed is read
+from the models' own jobs. A panel per setting; in every one the base stands beside its variants, and a level line
+carries its ratios on. Networks with several changes are in a panel of their own. Printed before the paths of the
+figure: the same with the number of weights, time per segment and solve, and the ratio over all Newton iterations.
+"""
+
+import os
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, NullLocator
+
+from drawing import layout, study, style
+from reading import commandline, intervals, measures, modelfile, texts, timings
+from reading.errors import KeyNotFound
+from reading.sweepfile import SweepFile
+
+EXAMPLES = """examples:
+  analysis/ablation.py results/ablation_bending.h5 results/ablation_bending
+  analysis/ablation.py results/ablation_helix.h5 results/ablation_helix --tolerance 1e-1,1e-2 --base base"""
+MOST = 1.4    # ratio on an axis
+TOLERANCE_COLOURS = ["#0072B2", "#D55E00", "#00805c", "#7b3fb5"]
+
+
+def _key(*path, default):
+    """A reader of a value of a training job."""
+    def read(model):
+        of = model.job
+        for part in path[:-1]:
+            of = of.get(part, {})
+        return of.get(path[-1], default)
+    return read
+
+
+def _loss(model):
+    loss = model.job["training"].get("loss", "energy")
+    return ("mse of both" if model.network.get("moves") else "mse of Δλ") if loss == "mse" else loss.replace("_", " ")
+
+
+def _processor(model):
+    processor = model.network["processor"].replace("_", " ")
+    if processor != "sweeps":
+        return processor
+    return "gated sweeps" if model.network.get("recurrence", "gated") == "gated" else "linear sweeps"
+
+
+def _base(model):
+    base = model.network["base"]
+    return base + (f" {model.network['base_size']}" if base in ("pod", "regression") else "")
+
+
+def _data(model):
+    return os.path.splitext(os.path.basename(model.job["data"]))[0].removeprefix("set_").removesuffix("_data").replace("_", " ")
+
+
+SETTINGS = {    # what a panel is about, and how a model's value of it is read; None where its job says nothing of it
+    "training simulations": lambda model: model.learned_from,
+    "message-passing steps": lambda model: model.network.get("steps"),
+    "latent size": lambda model: model.network["latent"],
+    "hidden layers": lambda model: model.network.get("hidden_layers", 1),
+    "largest learning rate": _key("training", "rate", default=2e-3),
+    "turned copies": _key("training", "turned_copies", default=0),
+    "loss": _loss,
+    "best length": lambda model: "on" if model.network["best_length"] else "off",
+    "global state": lambda model: "on" if model.network.get("globals") else "off",
+    "processor": _processor,
+    "guess beneath": _base,
+    "encoding": lambda model: model.network["encoding"],
+    "Newton iterations learned": _key("training", "systems", default=None),
+    "data": _data,
+    "seed": _key("seed", default=0),
+}
+# Values that come with another's change: sweeps have no steps, nor moves; a loss without moves cannot teach them.
+FOLLOWS = {"processor": ("message-passing steps", "global state", "hidden layers", "loss"), "encoding": ("loss",)}
+SEVERAL = "several at once"
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES)
+    made.add_argument("models", metavar="MODELS", help="folder of the model files")
+    made.add_argument("--base", default="base", help="the model that the others are changed from (default: base)")
+    study.add_figure_arguments(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    with SweepFile(options.file) as file:
+        shown = study.of_guesses(file, options)
+        models = {g: modelfile.read(os.path.join(options.models, name + ".h5"))
+                  for g, name in ((g, name_of(file.guesses[g])) for g in shown.lines()) if name}
+        base = next((g for g in models if name_of(file.guesses[g]) == options.base), None)
+        if base is None:
+            raise KeyNotFound(f"{file.path} has no guess \"copingnet {options.base}\": --base names the model that the "
+                              "others are changed from")
+        panels = panels_of(models, base)
+        tolerances = commandline.chosen_tolerances(file, options)
+        first, every = (intervals.mean(measures.cg_ratios(file, shown.sims, newton).ratio, shown.sims.sample)
+                        for newton in ("first", "all"))
+        print("\n".join(table(shown, models, base, panels, first, every, tolerances)) + "\n")
+        ratio = first if shown.newton == "first" else every
+        study.save(file, options, {"ablation": figure(shown, models, base, panels, ratio, tolerances)})
+
+
+def name_of(label):
+    """Of the model of a learned guess, "" for other guesses."""
+    kind, _, name = label.partition(" ")
+    return name if kind == "copingnet" else ""
+
+
+def differences(model, base):
+    """{setting: value} of what is not the base's, but for what only comes with another change."""
+    found = {what: value for what, read in SETTINGS.items() if (value := read(model)) not in (None, read(base))}
+    for what, others in FOLLOWS.items():
+        for other in others if what in found else ():
+            found.pop(other, None)
+    return found
+
+
+def panels_of(models, base):
+    """{setting: [(text of the value, guess)]}, the base among them, in the order of the values."""
+    panels = {}
+    for g, model in models.items():
+        if g == base:
+            continue
+        changed = differences(model, models[base])
+        what = next(iter(changed)) if len(changed) == 1 else SEVERAL
+        value = changed[what] if len(changed) == 1 else ", ".join(map(text_of, changed.values()))
+        panels.setdefault(what, []).append((value, g))
+    ordered = {}
+    for what in [*SETTINGS, SEVERAL]:
+        if what not in panels:
+            continue
+        values = panels[what] + ([] if what == SEVERAL else [(SETTINGS[what](models[base]), base)])
+        numbers = all(isinstance(value, (int, float)) for value, _ in values)
+        values = sorted(values, key=lambda v: v[0]) if numbers else values[-1:] + values[:-1] if what != SEVERAL else values
+        ordered[what] = [(text_of(value), g) for value, g in values]
+    return ordered
+
+
+def text_of(value):
+    return value if isinstance(value, str) else texts.number_text(value)
+
+
+def table(shown, models, base, panels, first, every, tolerances):
+    file = shown.file
+    labels = [texts.tolerance_label(file.tolerances[t]) for t in tolerances]
+    spent = timings.times(file, shown.sims)["first"] if timings.timed(file) else None
+    segments = file.results("segments", shown.sims.any_task)[:, None]
+    cost = intervals.median(spent.guess_s / spent.solves / segments * 1e6, shown.sims.sample).value if spent else None
+    rows = [["", "", "weights"] + (["us per segment"] if spent else []) + [f"{label}, j = 0" for label in labels] +
+            [f"{label}, all j" for label in labels]]
+
+    def row(setting, value, g):
+        weights = str(models[g].parameters) if g in models else ""
+        return [setting, value, weights] + ([f"{cost[g]:.3f}"] if spent else []) + [
+            f"{e[g, t].value:.3f} [{e[g, t].low:.3f}, {e[g, t].high:.3f}]" for e in (first, every) for t in tolerances]
+
+    rows.append(row("base", "", base))
+    for what, values in panels.items():
+        rows += [row(what, value, g) for value, g in values if g != base]
+    rows += [row("other guesses", file.guesses[g], g) for g in shown.lines() if g not in models]
+    return ["CG ratio, one setting changed at a time", ""] + texts.aligned(rows)
+
+
+def figure(shown, models, base, panels, ratio, tolerances):
+    file = shown.file
+    handles = [Line2D([], [], color=colour, marker="o", label=f"to {texts.tolerance_label(file.tolerances[t])}")
+               for colour, t in zip(TOLERANCE_COLOURS, tolerances)]
+    handles.append(Line2D([], [], color="#777777", linewidth=0.8, linestyle=(0, (4, 2)), label="the base"))
+    notes = [f"CG ratio: {measures.NEWTON[shown.newton]}; mean over simulations, {study.sample_text([ratio])}. Open "
+             f"markers: the base, {described(models[base])}. Every network was trained for as many steps of the "
+             "optimiser.", shown.about()]
+    columns = 5 if shown.wide else 2
+    page = layout.Page(shown.width_mm, [""], len(panels), columns, 30, handles, notes, gap_mm=3, ticks_mm=11)
+    for k, (axes, (what, values)) in enumerate(zip(page.axes[0], panels.items())):
+        at = np.arange(len(values), dtype=float)
+        guesses = [g for _, g in values]
+        for colour, t in zip(TOLERANCE_COLOURS, tolerances):
+            e = ratio[guesses, t]
+            axes.axhline(ratio[base, t].value, color=colour, linewidth=0.6, linestyle=(0, (4, 2)), alpha=0.7)
+            joined = {} if what in ORDERED else {"linestyle": ""}
+            axes.errorbar(at, e.value, yerr=style.whiskers(e.value, e.low, e.high), color=colour, marker="o", markersize=3,
+                          zorder=2, **style.WHISKERS, **joined)
+            if base in guesses:
+                own = guesses.index(base)
+                axes.plot(at[own], e.value[own], marker="o", markersize=3.6, color=colour, markerfacecolor="white", zorder=3)
+        axes.axhline(1, zorder=1.5, **style.ZERO_LINE)
+        axes.set(xlim=(-0.6, len(values) - 0.4), ylim=(0, min(MOST, 1.05 * max(1, np.nanmax(ratio.high[[*models]][:, tolerances])))))
+        axes.xaxis.set_major_locator(FixedLocator(at))
+        axes.xaxis.set_minor_locator(NullLocator())
+        long = max(len(text) for text, _ in values) > 4
+        axes.set_xticklabels([text for text, _ in values], fontsize=5.5,
+                             **({"rotation": 35, "ha": "right", "rotation_mode": "anchor"} if long else {}))
+        page.title(axes, what)
+        page.label_y(axes, k, "CG ratio")
+    return page
+
+
+# Settings whose values are joined by a line: more of the same.
+ORDERED = ("training simulations", "message-passing steps", "latent size", "hidden layers", "largest learning rate",
+           "turned copies")
+
+
+def described(model):
+    network = model.network
+    return (f"encoding {network['encoding']}, {_processor(model)} of {network.get('steps', '?')} steps, latent size "
+            f"{network['latent']}, {_loss(model)}, {model.learned_from} simulations")
+
+
+if __name__ == "__main__":
+    commandline.run(main)
