@@ -143,7 +143,7 @@ def panels_of(models, base):
 
 
 def text_of(value):
-    return value if isinstance(value, str) else texts.number_text(value)
+    return "-" if value is None else value if isinstance(value, str) else texts.number_text(value)
 
 
 def table(shown, models, base, panels, first, every, tolerances):

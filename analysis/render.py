@@ -23,13 +23,18 @@ EXAMPLES = """examples:
   analysis/render.py results/net.h5
   analysis/render.py results/net.h5 --task 3 --frame 0 10 -1 --view 30,20 --size 1600x1200 -o pictures
   analysis/render.py results/helix.h5 --select scene.segments=50 --movie mp4 --every 2 -o helix.mp4
-  analysis/render.py results/ring.h5 --movie gif --size 400x300 --colour along"""
+  analysis/render.py results/ring.h5 --movie gif --size 400x300 --colour along
+  analysis/render.py results/side_by_side.h5 --task 0 --beside 1 2 3 --movie mp4"""
 SAMPLES = 4   # small pictures from which a GIF takes its colours
 
 
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     trajectory.add_task_argument(made)
+    made.add_argument("--beside", metavar="N", type=int, nargs="+", default=[],
+                      help="tasks that are drawn beside it, each in a colour: methods on the same scene, say")
+    made.add_argument("--apart", metavar="X,Y,Z", type=vector, default=np.array([0, 0, 1.0]),
+                      help="from each of them to the next in m (default: 0,0,1)")
     made.add_argument("-o", "--output", metavar="PATH", help="file of one still or of a film, folder of several stills "
                                                              "(default: in figures/ beside the file)")
     which = made.add_mutually_exclusive_group()
@@ -65,6 +70,8 @@ def main():
         tools.needed("ffmpeg", "which --movie mp4 needs (gif does not)")
     with SweepFile(options.file) as file:
         shown = trajectory.chosen(file, options)
+        if options.beside:
+            shown = trajectory.Beside([shown, *(trajectory.of_task(file, task) for task in options.beside)], options.apart)
         frames = chosen_frames(shown, options)
         paths = names(options, shown.task, frames)
         for path in paths:
@@ -151,6 +158,13 @@ def view(text):
     if not abs(elevation) < 90:
         raise ValueError
     return azimuth, elevation
+
+
+def vector(text):
+    values = [float(part) for part in text.split(",")]
+    if len(values) != 3:
+        raise ValueError
+    return np.array(values)
 
 
 def height(text):

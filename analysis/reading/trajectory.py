@@ -49,6 +49,36 @@ class Trajectory:
         return self.h5[f"/trajectories/{name}"][row:row + len(self.length)]
 
 
+class Beside:
+    """Several trajectories as one, every one `apart` [3] from that before it; each is a rod of its own. One that ended
+    early stays as it was."""
+
+    def __init__(self, parts, apart):
+        self.parts, self.shift = parts, [k * np.asarray(apart) for k in range(len(parts))]
+        self.task = parts[0].task
+        self.time_s = max((part.time_s for part in parts), key=len)
+        self.length, self.radius, self.static = (np.concatenate([getattr(part, name) for part in parts])
+                                                 for name in ("length", "radius", "static"))
+        self.rod = np.repeat(np.arange(len(parts)), [len(part.length) for part in parts])
+
+    def frames(self):
+        return len(self.time_s)
+
+    def _joined(self, of, frame):
+        return np.concatenate([of(part, min(frame, part.frames() - 1)) for part in self.parts])
+
+    def centres(self, frame):
+        shift = np.concatenate([np.broadcast_to(by, (len(part.length), 3)) for part, by in zip(self.parts, self.shift)])
+        return self._joined(Trajectory.centres, frame) + shift
+
+    def axes(self, frame):
+        return self._joined(Trajectory.axes, frame)
+
+    def ends(self, frame):
+        centre, half = self.centres(frame), 0.5 * self.length[:, None] * self.axes(frame)
+        return centre - half, centre + half
+
+
 def axis(orientation):
     """Third column of the rotation matrices of unit quaternions (w, x, y, z)."""
     w, x, y, z = np.moveaxis(orientation, -1, 0)

@@ -1,5 +1,6 @@
 """loss.py: planted losses and CG ratios are drawn and printed, models are told apart, and what is no model is refused."""
 
+import json
 import os
 import tempfile
 import types
@@ -15,9 +16,11 @@ from running import Scripts
 from test_figures import Drawn
 
 EPOCHS = 12
+NETWORK = {"encoding": "paper", "processor": "message_passing", "base": "none", "base_size": 10, "latent": 32,
+           "best_length": False, "steps": 6, "globals": False, "moves": True}
 
 
-def plant(path, name="net", ending="complete", epochs=EPOCHS, factor=1.0):
+def plant(path, name="net", ending="complete", epochs=EPOCHS, factor=1.0, job=None, network=None, simulations=256):
     """A model file with what loss.py reads: losses fall but for the last epoch, ratios are measured in every third."""
     number = np.arange(1, epochs + 1)
     ratio = np.full((epochs, 4), np.nan)
@@ -38,6 +41,10 @@ def plant(path, name="net", ending="complete", epochs=EPOCHS, factor=1.0):
         h5["validation/base_cg_ratio"] = [0.3, 0.4, 0.6, 0.9] if known else np.full(4, np.nan)
         h5["validation"].attrs["simulations"] = np.int32(50)
         h5["timing/epoch_s"] = np.full(epochs, 2.5)
+        h5["job/text"] = np.array([json.dumps({"data": "data.h5", "network": {}, "training": {}, **(job or {})})], dtype="S")
+        h5["model/settings"] = np.array([json.dumps(network or NETWORK)], dtype="S")
+        h5["model/weights/a"], h5["model/weights/b"] = np.zeros((3, 4)), np.zeros((3, 1))
+        h5.create_group("data").attrs["training_simulations"] = np.int64(simulations)
     return path
 
 
