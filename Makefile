@@ -34,12 +34,13 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo studies variants pictures test test-long test-arm bench sanitize schema format format-check tidy install clean
+.PHONY: help configure build demo studies variants ablation pictures test test-long test-arm bench sanitize schema format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
+	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (three hours; likewise)'
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind), draw their films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
@@ -84,6 +85,13 @@ variants: build
 	@for family in rods lattices; do analysis/results/variants.py $(BUILD)/rodsweep results $$family; done
 	@$(call study,rods_front)
 	@analysis/results/draw.sh results variants
+
+# What the network of the paper owes to each of its settings.
+ablation: build
+	@mkdir -p results; for data in bending_data bending_data_100 helix_data helix_data_100; do $(call study,$$data); done
+	@for scene in bending helix; do analysis/results/variants.py $(BUILD)/rodsweep results ablation_$$scene; \
+	  for study in ablation_$$scene ablation_$${scene}_step; do $(call study,$$study); done; done
+	@analysis/results/draw.sh results ablation
 
 # By job and task; a film of the forest would take as long as all of these. What exists is not drawn again.
 picture_jobs = pictures lattice_sag lattice_dropped lattice_pressed net_wind

@@ -2,7 +2,7 @@
 # Draws the figures and tables of this folder from the files of the studies in RESULTS: `make studies` calls it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-results=${1:?usage: analysis/results/draw.sh RESULTS [variants]}
+results=${1:?usage: analysis/results/draw.sh RESULTS [variants|ablation]}
 out=analysis/results
 
 script() { /usr/bin/python3 "analysis/$1.py" "$results/$2.h5" "${@:3}"; }
@@ -19,6 +19,13 @@ if [ "${2:-}" = variants ]; then
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 >>$out/rods_front.txt
     figures front rods_front --scene $scene --tolerance 1e-2,1e-3 --guess "zero,pod 10,regression 6,copingnet factors_16,\
 copingnet factors_64,copingnet gated_32,copingnet rods 3 to 0.01" >/dev/null
+  done
+  exit
+fi
+if [ "${2:-}" = ablation ]; then
+  for scene in bending helix; do
+    figures ablation ablation_$scene "$results/ablation_$scene" --tolerance 1e-1,1e-2,1e-3 >$out/ablation_$scene.txt
+    table summary ablation_${scene}_step --by time.step_s
   done
   exit
 fi
