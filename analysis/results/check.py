@@ -2,6 +2,7 @@
 """Are the numbers of a text still those of its tables?
 
     analysis/results/check.py README.md
+    analysis/results/check.py --update README.md
 
 Behind a number a comment may say where it is from, which no reader sees:
 
@@ -9,7 +10,9 @@ Behind a number a comment may say where it is from, which no reader sees:
 
 the table (a .txt beside the text), how its section begins, how its block begins, the row, and the column, or `2` for the
 second number of a cell such as "0.10 [0.09, 0.11]" after a last semicolon. A section of `*` is any. The number has to be
-the cell's, rounded as the text has it. Those that part are printed, and the exit code is 1.
+the cell's, rounded as the text has it. Those that part are printed, and the exit code is 1; --update puts the tables'
+numbers in their place, as many digits as before, for somebody to read the sentences around them again: what is bold, and
+what is said to be less, no script knows.
 """
 
 import os
@@ -72,11 +75,24 @@ def half_unit(text):
     return 0.5 * 10.0 ** (int(exponent.replace("−", "-") or 0) - digits)
 
 
-def check(path):
-    """One line for every number that is not its table's."""
+def as_said(number, said):
+    """A table's number with the digits and in the style of another."""
+    mantissa, exponent, _ = said.lower().partition("e")
+    digits, value = len(mantissa.partition(".")[2]), number_of(number)
+    if exponent:
+        text = re.sub(r"e([+-])0*(\d)", lambda e: "e" + e.group(1).replace("+", "") + e.group(2), f"{value:.{digits}e}")
+    else:
+        text = f"{value:,.{digits}f}" if "," in said else f"{value:.{digits}f}"
+    if mantissa.lstrip("-−").startswith("."):
+        text = re.sub(r"^(-?)0\.", r"\1.", text)
+    return text.replace("-", "−") if "−" in said else text
+
+
+def check(path, update=False):
+    """One line for every number that is not its table's, and that number put in its place on request."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
-    tables, wrong = {}, []
+    tables, wrong, mended, done = {}, [], [], 0
     for marker in SOURCE.finditer(text):
         place = f"{path}:{text.count(chr(10), 0, marker.start()) + 1}"
         name, section, block, row, column, *rest = [part.strip() for part in marker.group(1).split(";")]
@@ -96,10 +112,16 @@ def check(path):
         said = before.group(1)
         if abs(number_of(said) - number_of(found)) > 1.001 * half_unit(said) + 1e-12:
             wrong.append(f"{place}: {said}, but {found} in {name}.txt: {marker.group(1)}")
+            mended += [text[done:before.start(1)], as_said(found, said)]
+            done = before.end(1)
+    if update and mended:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("".join([*mended, text[done:]]))
     return wrong
 
 
 if __name__ == "__main__":
-    parted = [line for path in sys.argv[1:] for line in check(path)]
+    wants_update = "--update" in sys.argv[1:]
+    parted = [line for path in sys.argv[1:] if path != "--update" for line in check(path, wants_update)]
     print("\n".join(parted) or "all numbers are those of their tables")
     sys.exit(1 if parted else 0)

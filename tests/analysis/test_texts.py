@@ -35,8 +35,8 @@ class Texts(unittest.TestCase):
             return self.run_on(os.path.join(folder, "README.md"))
 
     @staticmethod
-    def run_on(path):
-        return subprocess.run([sys.executable, os.path.join(RESULTS, "check.py"), path], text=True,
+    def run_on(*arguments):
+        return subprocess.run([sys.executable, os.path.join(RESULTS, "check.py"), *arguments], text=True,
                               capture_output=True, check=False)
 
     def test_numbers_as_rounded_in_the_text(self):
@@ -49,6 +49,22 @@ class Texts(unittest.TestCase):
         done = self.check("\n`pod` leaves .11<!--= x; CG ratio; Bending rod; pod 10; 1e-2 -->")
         self.assertEqual(done.returncode, 1)
         self.assertIn("README.md:2: .11, but 0.10 in x.txt", done.stdout)
+
+    def test_update_puts_the_tables_numbers_in_with_as_many_digits_and_leaves_the_rest(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "README.md")
+            with open(os.path.join(folder, "x.txt"), "w", encoding="utf-8") as file:
+                file.write(TABLE)
+            marks = [f"<!--= x; {where} -->" for where in (
+                "CG ratio; Bending rod; pod 10; 1e-2", "CG ratio; Helix; pod 10; 1e-2",
+                "Time; Bending; pod 10; solve µs", "Time; Bending; pod 10; solve µs", "Time; Bending; pod 10; guess µs")]
+            text = "**.33**{} one .34{}, 1,111{} µs or 7e2{}; −.5{} and 12 alone"
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text.format(*marks))
+            self.assertEqual(self.run_on("--update", path).returncode, 1)
+            with open(path, encoding="utf-8") as file:
+                self.assertEqual(file.read(), "**.10**{} one .34{}, 1,234{} µs or 1e3{}; 2.0{} and 12 alone".format(*marks))
+            self.assertEqual(self.run_on(path).returncode, 0)
 
     def test_what_no_table_has_is_named(self):
         for source, words in (("x; CG ratio; Bending rod; pod 9; 1e-2", "a row 'pod 9'"),
