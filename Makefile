@@ -25,7 +25,7 @@ configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G N
 study = [ -e results/$(1).h5 ] && resume=--resume || resume=; \
   cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$(1).json -o results/$(1).h5 $$resume </dev/null || [ $$? = 3 ]
 studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
-  temporal_bending temporal_helix learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
+  temporal_bending temporal_helix side_by_side learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
   solvers work_precision balance balance_scenes tree_wind forest tree_long_term \
   learned_rods learned_rods_length learned_rods_closed learned_rods_preconditioned \

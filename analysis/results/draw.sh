@@ -34,7 +34,7 @@ for study in spatial_bending spatial_helix learned_bending learned_helix; do
   table summary $study
 done
 pretrained=network/pretrained
-/usr/bin/python3 analysis/loss.py $pretrained/{rods,rods-large,bending-faithful,helix-faithful}.h5 -o $out >$out/pretrained.txt
+/usr/bin/python3 analysis/loss.py $pretrained/{rods,rods-large,bending-paper,bending-paper-best,helix-paper,helix-paper-best}.h5 -o $out >$out/pretrained.txt
 figures spatial tree_wind --x scene.depth
 table summary tree_wind --by scene.depth
 table summary forest
@@ -92,4 +92,5 @@ figures work_precision work_precision >"$out/work_precision.txt"
 figures balance balance >"$out/balance.txt"
 script balance balance_scenes >"$out/balance_scenes.txt"
 figures long_term long_term >"$out/long_term.txt"
+figures side_by_side side_by_side --log-time >"$out/side_by_side.txt"
 figures long_term long_term_learned --log-time >"$out/long_term_learned.txt"

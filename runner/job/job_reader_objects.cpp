@@ -196,8 +196,10 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
     refuse(keys, given, member(path, name));
     return value;
   }
+  const std::size_t before = mistakes_.size();
   Json parameters = read_object(keys, given, member(path, name));
-  if (labelled && !given.contains("label")) parameters["label"] = default_label(name, parameters);
+  const bool sound = mistakes_.size() == before;  // else parameters may be anything
+  if (labelled && sound && !given.contains("label")) parameters["label"] = default_label(name, parameters);
   return Json{{name, std::move(parameters)}};
 }
 

@@ -5,6 +5,18 @@
 using namespace rodsweep;
 using Catch::Matchers::StartsWith;
 
+TEST_CASE("values of guesses that are of another kind are refused, whatever stands in them") {
+  for (const char* guess : {R"({"pod": {"size": {"gird": [5, 10]}}})", R"({"oracle": {"error": {"gird": [5, 10]}}})",
+                            R"({"copingnet": {"model": 5}})", R"({"copingnet": {"model": {"a": {}}}})",
+                            R"({"knn": {"data": "x.h5", "inputs": {"b": [1]}}})",
+                            R"({"guarded": {"guess": {"pod": {"size": {"gird": [5]}}}, "threshold": 1}})",
+                            R"({"first": {"guess": {"oracle": {"error": [1]}}}})"}) {
+    CAPTURE(guess);
+    CHECK_THAT(refusal(with("/guesses", std::string(R"(["zero", )") + guess + "]")),
+               Catch::StartsWith("job.json: guesses[1].") && Catch::Contains("is not allowed"));
+  }
+}
+
 TEST_CASE("a value that its key does not take is refused with what is allowed") {
   CHECK(refusal(small_job()) == "");
   CHECK(refusal(with("/scene/segments", "0")) ==

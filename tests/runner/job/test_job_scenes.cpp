@@ -42,7 +42,7 @@ std::string refusal_of_loops(const Json& job) {
 }
 
 Json guess_of_model(Json job) {
-  job["guesses"].push_back({{"copingnet", {{"model", RODSWEEP_JOBS "/../network/pretrained/bending-faithful.h5"}}}});
+  job["guesses"].push_back({{"copingnet", {{"model", RODSWEEP_JOBS "/../network/pretrained/bending-paper.h5"}}}});
   return job;
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("guesses that need rods without loops are refused before anything runs
   Json several = guess_of_model(small_job());
   several["guesses"].back()["copingnet"]["corrections"] = 2;
   CHECK(refusal_of_loops(several) ==
-        "job.json: guesses[2]: corrections above 1 is not allowed with bending-faithful.h5, a network without factors");
+        "job.json: guesses[2]: corrections above 1 is not allowed with bending-paper.h5, a network without factors");
 }
 
 TEST_CASE("contact is a key of every scene, and none where it is not asked for") {
