@@ -2,7 +2,8 @@
 """What makes a network a good guess: the CG ratio of one network after another, each trained with one setting changed.
 
 The file is of a sweep whose learned guesses are those networks, as `make ablation` trains them; MODELS is the folder of
-their model files, named like the guesses, and --base the one that the others are changed from. What is changed is read
+their model files, named like the guesses (others, without one there, stand at the end of the table), and --base the one
+that the others are changed from. What is changed is read
 from the models' own jobs. A panel per setting; in every one the base stands beside its variants, and a level line
 carries its ratios on. Networks with several changes are in a panel of their own. Printed before the paths of the
 figure: the same with the number of weights, time per segment and solve, and the ratio over all Newton iterations.
@@ -54,7 +55,9 @@ def _base(model):
 
 
 def _data(model):
-    return os.path.splitext(os.path.basename(model.job["data"]))[0].removeprefix("set_").removesuffix("_data").replace("_", " ")
+    """What is behind SCENE_data in the name of the data set."""
+    other = os.path.splitext(os.path.basename(model.job["data"]))[0].partition("_data")[2].strip("_")
+    return f"{other} steps" if other.isdigit() else other or "the talk's"
 
 
 SETTINGS = {    # what a panel is about, and how a model's value of it is read; None where its job says nothing of it
@@ -91,12 +94,12 @@ def main():
     options = arguments()
     with SweepFile(options.file) as file:
         shown = study.of_guesses(file, options)
-        models = {g: modelfile.read(os.path.join(options.models, name + ".h5"))
-                  for g, name in ((g, name_of(file.guesses[g])) for g in shown.lines()) if name}
+        paths = {g: os.path.join(options.models, name_of(file.guesses[g]) + ".h5") for g in shown.lines()}
+        models = {g: modelfile.read(path) for g, path in paths.items() if os.path.exists(path)}
         base = next((g for g in models if name_of(file.guesses[g]) == options.base), None)
         if base is None:
-            raise KeyNotFound(f"{file.path} has no guess \"copingnet {options.base}\": --base names the model that the "
-                              "others are changed from")
+            raise KeyNotFound(f"{file.path} has no guess \"copingnet {options.base}\" with a model in {options.models}: --base "
+                              "names the model that the others are changed from")
         panels = panels_of(models, base)
         tolerances = commandline.chosen_tolerances(file, options)
         first, every = (intervals.mean(measures.cg_ratios(file, shown.sims, newton).ratio, shown.sims.sample)
@@ -129,7 +132,7 @@ def panels_of(models, base):
             continue
         changed = differences(model, models[base])
         what = next(iter(changed)) if len(changed) == 1 else SEVERAL
-        value = changed[what] if len(changed) == 1 else ", ".join(map(text_of, changed.values()))
+        value = changed[what] if len(changed) == 1 else ", ".join(text_of(v, alone=False) for v in changed.items())
         panels.setdefault(what, []).append((value, g))
     ordered = {}
     for what in [*SETTINGS, SEVERAL]:
@@ -142,7 +145,11 @@ def panels_of(models, base):
     return ordered
 
 
-def text_of(value):
+def text_of(value, alone=True):
+    """Of a value, or not `alone` of a setting and its value, in few words."""
+    if not alone:
+        what, value = value
+        return {"on": what.removesuffix(" state"), "all": "all j"}.get(value, text_of(value))
     return "-" if value is None else value if isinstance(value, str) else texts.number_text(value)
 
 
@@ -176,7 +183,7 @@ def figure(shown, models, base, panels, ratio, tolerances):
              f"markers: the base, {described(models[base])}. Every network was trained for as many steps of the "
              "optimiser.", shown.about()]
     columns = 5 if shown.wide else 2
-    page = layout.Page(shown.width_mm, [""], len(panels), columns, 30, handles, notes, gap_mm=3, ticks_mm=11)
+    page = layout.Page(shown.width_mm, [""], len(panels), columns, 30, handles, notes, gap_mm=3, ticks_mm=12)
     for k, (axes, (what, values)) in enumerate(zip(page.axes[0], panels.items())):
         at = np.arange(len(values), dtype=float)
         guesses = [g for _, g in values]

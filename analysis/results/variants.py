@@ -17,7 +17,7 @@ import sys
 from typing import NamedTuple
 
 JOBS = os.path.join(os.path.dirname(__file__), "../../jobs")
-ITS_OWN = None    # epochs of the training job itself
+ITS_OWN = None    # the value of the training job itself
 
 SWEEPS = {"network.processor": "sweeps", "network.recurrence": "gated"}
 LINEAR = {"network.processor": "sweeps", "network.recurrence": "linear"}
@@ -111,11 +111,18 @@ def ablation(scene):
     return Family(f"train_{scene}_paper", f"ablation_{scene}", changes, PAPER, f"{scene}_data")
 
 
+def seeds(job, model):
+    """The same from other seeds, trained in full: what the shipped model owes to chance."""
+    return Family(job, "paper", {}, {f"{model}-seed-{seed}": {"seed": seed} for seed in (2, 3)})
+
+
 FAMILIES = {
     "rods": Family("train_rods", "rods_variants", {"training.epochs": 15}, RODS),
     "lattices": Family("train_lattices", "lattices_variants", {"training.epochs": 5}, LATTICES),
     "ablation_bending": ablation("bending"),
     "ablation_helix": ablation("helix"),
+    **{f"{scene}-paper{best}": seeds(f"train_{scene}_paper{best.replace('-', '_')}", f"{scene}-paper{best}")
+       for scene in ("bending", "helix") for best in ("", "-best")},
 }
 
 
@@ -130,8 +137,7 @@ def changed(original, name, changes):
         of = job
         for part in parts:
             of = of.setdefault(part, {})
-        if value is not ITS_OWN:
-            of[last] = value
+        of[last] = value
     return job
 
 
@@ -139,9 +145,7 @@ def training(family, name):
     """The job of a variant, without keys that its other values leave no use for."""
     changes = {**family.changes, **family.variants[name]}
     data = changes.pop("data", None)
-    if changes.get("training.epochs", 0) is ITS_OWN:
-        changes.pop("training.epochs")
-    job = changed(family.job, name, changes)
+    job = changed(family.job, name, {key: value for key, value in changes.items() if value is not ITS_OWN})
     if data and DATA[data]:
         job["data"] = f"set_{data}.h5"
     else:

@@ -58,7 +58,7 @@ class Ablation(Scripts):
         self.assertEqual(panels["training simulations"], [("8", number("few")), ("64", number("more")), ("256", 0)])
         self.assertEqual(panels["message-passing steps"], [("6", 0), ("12", number("deep"))])
         self.assertEqual(panels["loss"], [("mse of both", 0), ("energy", number("energy"))])
-        self.assertEqual(panels[ablation.SEVERAL], [("energy, on", number("both"))])
+        self.assertEqual(panels[ablation.SEVERAL], [("energy, global", number("both"))])
 
     def test_the_table_has_every_model_and_the_other_guesses_and_the_figure_is_written(self):
         self.write(scenes=("helix",), grid={"scene.segments": [20]}, samples=5, guesses=GUESSES, plant=Planted())
@@ -72,9 +72,9 @@ class Ablation(Scripts):
 
     def test_mistakes_are_named(self):
         self.write(scenes=("helix",), guesses=("zero", "previous"), solves=False)
-        self.refused("ablation.py", "sweep.h5", "models", words='no guess "copingnet base"')
+        self.refused("ablation.py", "sweep.h5", "models", words='no guess "copingnet base" with a model in models')
         self.write(scenes=("helix",), guesses=("zero", "copingnet none"), plant=Planted(), solves=False)
-        self.refused("ablation.py", "sweep.h5", "models", words="none.h5")
+        self.refused("ablation.py", "sweep.h5", "models", "--base", "none", words='no guess "copingnet none" with a model')
 
 
 if __name__ == "__main__":
