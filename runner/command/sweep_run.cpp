@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <utility>
 
 #include "runner/command/next_line.hpp"
@@ -73,22 +74,25 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
 }
 
 /// Master and worker take turns in one process.
-Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal,
-                        BatchBody body) {
+Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, BatchBody body,
+                        const std::function<void()>& now_and_then) {
   const auto received = [&] { return signal.received(); };
   MemoryNetwork network(2);
   Master master(network[0], std::move(pending), progress, received);
-  Worker worker(network[1], std::move(body), received, [&] { master.step(); });
+  Worker worker(network[1], std::move(body), received, [&] {
+    master.step();
+    now_and_then();
+  });
   while (master.step() != Master::Step::finished) worker.step();
   return master.dispatch();
 }
 
 Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pending, Progress& progress,
-                             const StopSignal& signal, BatchBody body) {
+                             const StopSignal& signal, BatchBody body, const std::function<void()>& now_and_then) {
   const auto received = [&] { return signal.received(); };
   MpiChannel channel(mpi.world());
   if (mpi.rank() > 0) {
-    Worker(channel, std::move(body), received).run();
+    Worker(channel, std::move(body), received, now_and_then).run();
     return {};
   }
   Master master(channel, std::move(pending), progress, received);
@@ -138,9 +142,11 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   };
   const auto warn = [](const std::string& text) { Console(true).warn(text); };  // whichever rank finds the damage
   BatchBody body = extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write);
-  const Dispatch dispatch = mpi.size() == 1
-                                ? dispatch_alone(std::move(pending), progress, signal, std::move(body))
-                                : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body));
+  const auto commit = [&file] { file.commit_if_due(); };
+  const Dispatch dispatch =
+      mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), commit)
+                      : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), commit);
+  file.commit();
 
   const SweepSummary summary{total, before.done_by_outcome, dispatch, where.workers, path};
   const auto code = static_cast<ExitCode>(broadcast(static_cast<int>(exit_code(summary)), mpi.world()));

@@ -55,6 +55,7 @@ Worker::Step Worker::step() {
     run(tasks);
     return Step::worked;
   }
+  if (while_running_) while_running_();
   if (dismissed_) return Step::finished;
   return traffic ? Step::worked : Step::waited;
 }

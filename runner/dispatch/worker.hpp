@@ -34,7 +34,7 @@ BatchBody one_by_one(TaskBody body);
 class Worker {
  public:
   /// `signal` tells the signal that this rank received, 0 for none. `while_running` is called now and then between two
-  /// time steps (a lone rank keeps its master alive there).
+  /// time steps, and while there is nothing to do (a lone rank keeps its master alive there).
   Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running = {});
   Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running = {});
 

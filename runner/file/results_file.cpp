@@ -10,10 +10,12 @@
 #include <utility>
 
 #include "runner/file/columns.hpp"
+#include "runner/file/durable.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/task_checksum.hpp"
+#include "runner/file/task_reader.hpp"
 #include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
@@ -72,16 +74,59 @@ std::string host_names(MPI_Comm comm) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
+/// Of the tasks that are said to be complete those that are not as they were written, found by all ranks together.
+/// Collective.
+std::vector<std::uint8_t> damaged_tasks(const fs::path& path, const Plan& plan, const std::vector<std::uint8_t>& done,
+                                        MPI_Comm comm) {
+  int rank = 0, size = 1;
+  check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
+  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+  std::vector<std::uint8_t> damaged(done.size(), 0);
+  collectively(comm, [&] {
+    const TaskReader reader(path, TaskReader::Times::left_out);
+    TaskRecord record;
+    for (auto i = static_cast<std::size_t>(rank); i < done.size(); i += static_cast<std::size_t>(size))
+      if (done[i]) damaged[i] = !reader.read_intact(plan.task(static_cast<std::int64_t>(i)).index, record);
+  });
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, damaged.data(), static_cast<int>(damaged.size()), MPI_UINT8_T, MPI_MAX, comm),
+            "MPI_Allreduce");
+  return damaged;
+}
+
+constexpr double shortest_pause_s = 0.05, busy_share = 0.02;  // of the time that syncs may take
+
 }  // namespace
 
 /// Handles of the file. They die in reverse order: datasets before their file.
 struct ResultsFile::Open {
   ~Open() {
+    try {
+      commit();
+    } catch (const std::exception&) {  // close() would have said so; these tasks are run again
+    }
     if (std::uncaught_exceptions() > 0) file.release();
+  }
+
+  void commit() {
+    if (written.empty()) return;
+    const auto begin = Clock::now();
+    synced.sync();
+    for (const std::int64_t task : written) set_state(task, 1);
+    written.clear();
+    const std::chrono::duration<double> took = Clock::now() - begin;
+    const double pause = std::max(shortest_pause_s, took.count() / busy_share);
+    next_commit = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause));
+  }
+
+  void set_state(std::int64_t task, std::uint8_t value) {
+    state.write(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task), 1, &value);
   }
 
   hdf5::File file;
   fs::path path;
+  SyncedFile synced;
+  std::vector<std::int64_t> written;  ///< tasks whose data are, and whose state is to follow
+  Clock::time_point next_commit = Clock::now();
   int own_rank = 0;
   AxisSizes sizes;
   RunRow run;                             // this start's
@@ -117,7 +162,12 @@ ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Pr
   point.done.resize(static_cast<std::size_t>(plan.size()));
   check_mpi(MPI_Bcast(point.done.data(), static_cast<int>(point.done.size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
   point.runs = broadcast(point.runs, comm);
-  return ResultsFile(path, plan, std::move(point.done), point.runs, provenance, comm);
+  const std::vector<std::uint8_t> damaged = damaged_tasks(path, plan, point.done, comm);
+  for (std::size_t i = 0; i < damaged.size(); ++i)
+    if (damaged[i]) point.done[i] = 0;
+  ResultsFile file(path, plan, std::move(point.done), point.runs, provenance, comm);
+  file.take_back(damaged, comm);
+  return file;
 }
 
 ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
@@ -133,6 +183,7 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     hdf5::check(H5Pset_fapl_mpio(access.id(), comm, MPI_INFO_NULL), "H5Pset_fapl_mpio", path.native());
     open_->file = hdf5::open_file(path, H5F_ACC_RDWR, access.id());
     open_->path = path;
+    open_->synced = SyncedFile(path);
     open_->sizes = axis_sizes(plan);
     check_mpi(MPI_Comm_rank(comm, &open_->own_rank), "MPI_Comm_rank");
     const auto open_rows = [&](const char* dataset) { return hdf5::RowDataset(open_->file.id(), dataset); };
@@ -149,6 +200,28 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
   open_->run.provenance = provenance;
   open_->run.provenance.host = host_names(comm);
   on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(attempt_), open_->run); });
+}
+
+/// Damaged tasks are pending, in the file too, before anything is written over them.
+void ResultsFile::take_back(const std::vector<std::uint8_t>& damaged, MPI_Comm comm) {
+  const auto count = std::count(damaged.begin(), damaged.end(), 1);
+  if (count == 0) return;
+  on_first_rank(comm, [&] {
+    for (std::size_t i = 0; i < damaged.size(); ++i)
+      if (damaged[i]) open_->set_state(static_cast<std::int64_t>(i), 0);
+    open_->synced.sync();
+  });
+  const auto first = std::find(damaged.begin(), damaged.end(), 1) - damaged.begin();
+  note_ += fmt::format(
+      "{}{} of {}: the data of {} are not what was written (checksum), and {} again", note_.empty() ? "" : "\n",
+      count == 1 ? fmt::format("task {}", first) : fmt::format("{} tasks, the first being {}", count, first),
+      open_->path.native(), count == 1 ? "this task" : "these tasks", count == 1 ? "it is run" : "they are run");
+}
+
+void ResultsFile::commit() { open_->commit(); }
+
+void ResultsFile::commit_if_due() {
+  if (!open_->written.empty() && Clock::now() >= open_->next_commit) open_->commit();
 }
 
 void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
@@ -185,7 +258,8 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
   write_text(open.host, open.host_type, by.host);
   write_one(open.attempt, by.attempt);
   write_one(open.write_s, by.write_s);
-  write_one(open.state, std::uint8_t{1});
+  open.written.push_back(task.index);
+  commit_if_due();
 }
 
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
@@ -196,10 +270,13 @@ void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
 
 void ResultsFile::close() {
   if (!open_) return;
+  open_->commit();
   hdf5::File file = std::move(open_->file);
   const std::string path = open_->path.native();
+  const SyncedFile synced = std::move(open_->synced);
   open_.reset();
   hdf5::close(file, "H5Fclose", path);
+  synced.sync();
 }
 
 }  // namespace rodsweep

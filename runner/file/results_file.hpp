@@ -2,10 +2,11 @@
 //
 // Created whole before the sweep, by rank 0 (runner/file/file_creation.hpp): every dataset is contiguous with early
 // allocation, so that no rank creates an object at run time; unwritten bytes are zero and `/tasks/state` is zero,
-// "pending". A worker writes all rows of a task, sentinels included, and the state byte last: a task whose state is 1
-// is complete, whatever happened to any process since. Metadata never change while the sweep runs, so a killed sweep
-// leaves a sound file. The layout is that of columns() (runner/file/columns.hpp) plus /job, /runs, /axes and the plan's
-// columns in /tasks: see runner/file/layout.hpp.
+// "pending". A worker writes all rows of a task, sentinels included, brings them to disk, and writes the state byte
+// after that: a task whose state is 1 is complete, whatever happened to any process, or to the machine's power, since.
+// Several tasks share a sync, which takes no more than a fiftieth of the time. Metadata never change while the
+// sweep runs, so a killed sweep leaves a sound file. The layout is that of columns() (runner/file/columns.hpp) plus
+// /job, /runs, /axes and the plan's columns in /tasks: see runner/file/layout.hpp.
 //
 // Errors: FileError (the user's: exists already, not ours, another job, no space), Hdf5Error (a failing call, with its
 // name).
@@ -34,14 +35,15 @@ class ResultsFile {
   static ResultsFile create(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
                             MPI_Comm comm, const FreeSpace& free_space = free_bytes,
                             const std::filesystem::path& earlier = {});
-  /// Collective. Refuses a file of another program, schema version, plan or job text. Appends a row to /runs.
+  /// Collective. Refuses a file of another program, schema version, plan or job text. Tasks whose data are not what was
+  /// written (checksums; the ranks share the work) count as pending again. Appends a row to /runs.
   static ResultsFile resume(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
                             MPI_Comm comm);
 
   ResultsFile(ResultsFile&&) noexcept;
   ResultsFile& operator=(ResultsFile&&) noexcept;
-  /// Closes, which is collective, unless an exception unwinds this rank: the others need not be on their way here, and
-  /// nothing is lost, since writes are not buffered.
+  /// Commits, and closes, which is collective, unless an exception unwinds this rank: the others need not be on their
+  /// way here, and nothing is lost, since writes are not buffered.
   ~ResultsFile();
 
   /// Which tasks are complete, by task index (from the state bytes as they were when the file was opened).
@@ -50,20 +52,26 @@ class ResultsFile {
   /// What the user should hear about this file though it is no error; empty: nothing.
   const std::string& note() const { return note_; }
 
-  /// Independent: any rank, any task that is not done() yet, once. The state byte goes last. `origin`: who ran it,
-  /// where that was not this start of this sweep.
+  /// Independent: any rank, any task that is not done() yet, once. It is complete with the next commit(), which this is
+  /// too where one is due. `origin`: who ran it, where that was not this start of this sweep.
   void write(const Task& task, const TaskRecord& record, const TaskOrigin* origin = nullptr);
+
+  /// Independent: brings this rank's tasks to disk, then says that they are complete.
+  void commit();
+  void commit_if_due();
 
   /// Independent, one rank: how this start ended (row of /runs).
   void end_run(const std::string& end_utc, int exit_code);
 
-  /// Collective: closes the file and reports failure, which the destructor cannot.
+  /// Collective: commits, closes the file, brings it to disk and reports failure, which the destructor cannot.
   void close();
 
  private:
   struct Open;
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
               const Provenance& provenance, MPI_Comm comm);
+
+  void take_back(const std::vector<std::uint8_t>& damaged, MPI_Comm comm);
 
   std::unique_ptr<Open> open_;
   std::vector<std::uint8_t> done_;

@@ -10,6 +10,7 @@
 #include <random>
 #include <system_error>
 
+#include "runner/file/durable.hpp"
 #include "runner/file/provenance.hpp"
 
 namespace rodsweep {
@@ -69,19 +70,24 @@ void UnfinishedFile::check_creatable() const {
 }
 
 void UnfinishedFile::publish() const {
-  if (link(temporary_.c_str(), path_.c_str()) == 0) return;
-  if (errno == EEXIST) throw exists_error(path_);
-  // A file system without hard links.
-  if (renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) == 0) return;
-  if (errno == EEXIST) throw exists_error(path_);
-  throw creation_error(path_, std::system_category().message(errno));
+  SyncedFile(temporary_).sync();
+  const bool linked = link(temporary_.c_str(), path_.c_str()) == 0;
+  // Renamed on a file system without hard links.
+  if (!linked &&
+      (errno == EEXIST || renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) != 0)) {
+    if (errno == EEXIST) throw exists_error(path_);
+    throw creation_error(path_, std::system_category().message(errno));
+  }
+  sync_folder_of(path_);
 }
 
 void UnfinishedFile::replace(const FileIdentity& earlier) const {
   if (!(identity_of(path_) == earlier))
     throw FileError(fmt::format("{} was replaced by another program meanwhile, and is left as it is", path_.native()));
+  SyncedFile(temporary_).sync();
   if (rename(temporary_.c_str(), path_.c_str()) != 0)
     throw creation_error(path_, std::system_category().message(errno));
+  sync_folder_of(path_);
 }
 
 }  // namespace rodsweep

@@ -1,6 +1,7 @@
 // A file in the making: it has a temporary name beside its own, and gets its own name when it is whole, in one step
-// that never replaces another file. Whatever bears the temporary name when this dies is removed: two programs cannot
-// make the same file, and one that is killed meanwhile leaves its name free. Throws FileError.
+// that never replaces another file and that a power cut either undoes or leaves whole. Whatever bears the temporary
+// name when this dies is removed: two programs cannot make the same file, and one that is killed meanwhile leaves its
+// name free. Throws FileError.
 #pragma once
 
 #include <cstdint>

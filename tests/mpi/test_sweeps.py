@@ -194,7 +194,7 @@ class Interrupted(SweepCase):
 
     def test_a_data_set_after_all_ranks_are_killed(self):
         # Newton iterations that only take time: the file stays small.
-        self.sweep(data_job("long_data", samples=60, segments=(20,), record={"solves": "summary"},
+        self.sweep(data_job("long_data", samples=160, segments=(20,), record={"solves": "summary"},
                             time={"step_s": 0.02, "steps": 60, "newton_iterations": 60, "newton_tolerance": 0}))
 
         self.interrupt("killed_data.h5", 3, kill_all)

@@ -1,0 +1,30 @@
+// Getting what was written onto the disk, in order: what outlives a power cut is what was synced before it.
+//
+// The kernel writes pages back when and in which order it likes. Where one part of a file says that another is there
+// (a state byte, a name in a folder), the other has to be synced first. Throws FileError where the disk says no.
+#pragma once
+
+#include <filesystem>
+
+namespace rodsweep {
+
+/// A file's data and length, whoever on this host wrote them.
+class SyncedFile {
+ public:
+  SyncedFile() = default;
+  explicit SyncedFile(const std::filesystem::path& path);
+  SyncedFile(SyncedFile&& other) noexcept;
+  SyncedFile& operator=(SyncedFile&& other) noexcept;
+  ~SyncedFile();
+
+  void sync() const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+};
+
+/// The names in the folder that a file is in.
+void sync_folder_of(const std::filesystem::path& path);
+
+}  // namespace rodsweep

@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""A power cut in the middle of a sweep: the file system under the results is shut down as if the machine had died.
+
+An ext4 on a loop device, cut off without its journal's last words (EXT4_IOC_SHUTDOWN): what was not synced is lost, in
+whatever order the kernel was writing back. Then it is mounted again and the sweep goes on. Needs root and a loop
+device; without, it is skipped and says so.
+"""
+
+import fcntl
+import os
+import random
+import struct
+import subprocess
+import threading
+import time
+import unittest
+
+from test_sweeps import ALL_DONE, h5py, job, kill_all, rodsweep, start, wait_for_tasks
+
+EXT4_IOC_SHUTDOWN, NO_LOG_FLUSH = 0x8004587D, 2
+
+
+class Disk:
+    """A file system of its own in `folder`."""
+
+    def __init__(self, folder, megabytes=96):
+        self.image, self.folder = os.path.abspath(folder + ".img"), os.path.abspath(folder)
+        os.makedirs(self.folder, exist_ok=True)
+        with open(self.image, "wb") as image:
+            image.truncate(megabytes << 20)
+        run("mkfs.ext4", "-q", "-F", self.image)
+        self.mount()
+
+    def mount(self):
+        run("mount", "-o", "loop", self.image, self.folder)
+
+    def unmount(self):
+        for _ in range(50):
+            if subprocess.run(["umount", self.folder], capture_output=True, check=False).returncode == 0:
+                return
+            time.sleep(0.1)
+        run("umount", "-l", self.folder)
+
+    def cut(self):
+        folder = os.open(self.folder, os.O_RDONLY)
+        try:
+            fcntl.ioctl(folder, EXT4_IOC_SHUTDOWN, struct.pack("I", NO_LOG_FLUSH))
+        finally:
+            os.close(folder)
+
+    def remove(self):
+        self.unmount()
+        os.remove(self.image)
+
+
+def run(*command):
+    subprocess.run(command, check=True, capture_output=True)
+
+
+def datasets(path):
+    """{path: bytes} of all that two runs of a job must have in common."""
+    found = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, item: found.update({name: item[()].tobytes()})
+                        if isinstance(item, h5py.Dataset) and not name.startswith(("timing", "runs")) else None)
+    return found
+
+
+class PowerCut(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        try:
+            cls.disk = Disk("disk")
+        except (subprocess.CalledProcessError, OSError) as error:
+            raise unittest.SkipTest(f"no file system of its own to cut off: {error}") from error
+        cls.addClassCleanup(cls.disk.remove)
+        cls.job = job("cut", samples=60, segments=(10, 20, 30), steps=40)
+        assert rodsweep(3, "run", cls.job, "-o", "whole.h5").returncode == ALL_DONE
+        cls.whole = datasets("whole.h5")
+
+    def cut_and_go_on(self, seed, tasks):
+        path = os.path.join(self.disk.folder, f"cut-{seed}.h5")
+        sweep = start(3, "run", self.job, "-o", path)
+        wait_for_tasks(sweep, path, tasks)
+        # Some pages on their way, in no order: as when a machine dies while it writes back.
+        writing_back = threading.Thread(target=subprocess.run, args=(["sync", "-f", self.disk.folder],),
+                                        kwargs={"capture_output": True, "check": False})
+        writing_back.start()
+        time.sleep(random.Random(seed).uniform(0, 0.01))
+        self.disk.cut()
+        kill_all(sweep)
+        sweep.communicate()
+        writing_back.join()
+        self.disk.unmount()
+        self.disk.mount()
+        with h5py.File(path) as file:
+            kept = int((file["tasks/state"][:] != 0).sum())
+        self.assertGreaterEqual(kept, 1)
+        resumed = rodsweep(3, "run", self.job, "-o", path, "--resume")
+        self.assertEqual(resumed.returncode, ALL_DONE, resumed.stderr)
+        self.assertNotIn("checksum", resumed.stderr)   # what was said to be done was done
+        self.assertEqual(datasets(path), self.whole)
+        os.remove(path)
+
+    def test_what_is_done_survives_and_the_rest_is_run_again(self):
+        for seed in range(3):
+            with self.subTest(seed=seed):
+                self.cut_and_go_on(seed, tasks=10 + 20 * seed)
+
+    def test_a_sweep_that_has_just_ended_is_there_after_a_cut(self):
+        path = os.path.join(self.disk.folder, "ended.h5")
+        self.assertEqual(rodsweep(3, "run", self.job, "-o", path).returncode, ALL_DONE)
+        self.disk.cut()
+        self.disk.unmount()
+        self.disk.mount()
+        self.assertEqual(datasets(path), self.whole)
+
+
+if __name__ == "__main__":
+    unittest.main()
