@@ -67,7 +67,11 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
   command->add_option("JOB", run.job, "Job file (JSON)")->required();
   command->add_option("-o,--output", run.output, "Results file; never overwritten [results/NAME.h5]")
       ->type_name("FILE");
-  command->add_flag("--resume", run.resume, "Continue the results file if it exists");
+  CLI::Option* resume = command->add_flag("--resume", run.resume, "Continue the results file if it exists");
+  command
+      ->add_flag("--retry-failed", run.retry_failed,
+                 "With --resume: run tasks again that ended in an error or timed out")
+      ->needs(resume);
   command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
   return command;
 }

@@ -35,6 +35,7 @@ std::string run_line(const RunOptions& options, int ranks) {
   if (options.output) line += " -o " + shell_quoted(options.output->native());
   if (options.extend) line += " --extend " + shell_quoted(options.extend->native());
   if (options.resume) line += " --resume";
+  if (options.retry_failed) line += " --retry-failed";
   return line;
 }
 

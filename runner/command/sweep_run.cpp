@@ -41,13 +41,11 @@ std::string extension_text(const Extension& extension, std::int64_t total) {
                      extension.count(Use::run));
 }
 
-/// What earlier starts did in the file that is to be continued; none: it is to be created.
-std::optional<FileSummary> earlier_starts(const RunOptions& options, const fs::path& path,
-                                          const std::optional<Extension>& extension) {
-  if (!options.resume || !fs::exists(path)) return std::nullopt;
-  FileSummary before = inspect(path);
+/// Is there a file to be continued? Else it is to be created.
+bool has_begun(const RunOptions& options, const fs::path& path, const std::optional<Extension>& extension) {
+  if (!options.resume || !fs::exists(path)) return false;
   if (extension) extension->check_started(path);
-  return before;
+  return true;
 }
 
 std::vector<PendingTask> pending_tasks(const Plan& plan, const std::vector<std::uint8_t>& done,
@@ -113,17 +111,19 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const fs::path path = output_of(options, job.name);
   const Placement where = placement(mpi.world());
   const auto extension = collectively(mpi.world(), [&] { return open_extension(options, path, plan); });
-  const auto earlier = collectively(
-      mpi.world(), [&] { return mpi.rank() == 0 ? earlier_starts(options, path, extension) : std::nullopt; });
-  const FileSummary before = earlier.value_or(FileSummary());
-  const bool continues = broadcast(earlier ? 1 : 0, mpi.world()) != 0;
+  const int begun =
+      collectively(mpi.world(), [&] { return mpi.rank() == 0 && has_begun(options, path, extension) ? 1 : 0; });
+  const bool continues = broadcast(begun, mpi.world()) != 0;
   const Provenance provenance = provenance_of(options, mpi, where);
   ResultsFile file = collectively(mpi.world(), [&] {
-    return continues ? ResultsFile::resume(path, plan, provenance, mpi.world())
+    return continues ? ResultsFile::resume(path, plan, provenance, mpi.world(),
+                                           options.retry_failed ? Retry::failed : Retry::none)
                      : ResultsFile::create(path, plan, provenance, mpi.world(), free_bytes,
                                            options.extend.value_or(fs::path()));
   });
   if (!file.note().empty()) console.warn(file.note());
+  const FileSummary before =
+      collectively(mpi.world(), [&] { return continues && mpi.rank() == 0 ? inspect(path) : FileSummary(); });
 
   std::vector<PendingTask> pending = pending_tasks(plan, file.done(), extension);
   advise(console, options, where, pending.size());

@@ -41,11 +41,6 @@ void copy_guess(const Column& column, const Task& task, const TaskRecord& source
   }
 }
 
-/// Tasks that another attempt might not end like this.
-bool is_final(TaskOutcome outcome) {
-  return outcome != TaskOutcome::pending && outcome != TaskOutcome::timed_out && outcome != TaskOutcome::error;
-}
-
 }  // namespace
 
 Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan_(&plan) {
@@ -68,7 +63,7 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
   std::unordered_map<std::size_t, std::vector<std::int64_t>> by_trajectory;
   const std::hash<std::string> hash;
   for (const Task& task : before_->tasks())
-    if (is_final(reader_->outcome(task.index)))
+    if (!may_change(reader_->outcome(task.index)))
       by_trajectory[hash(before_->identity(task.index).trajectory)].push_back(task.index);
   for (const Task& task : plan.tasks()) {
     const TaskIdentity wanted = plan.identity(task.index);

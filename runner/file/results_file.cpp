@@ -16,6 +16,7 @@
 #include "runner/file/runs.hpp"
 #include "runner/file/task_checksum.hpp"
 #include "runner/file/task_reader.hpp"
+#include "runner/job/task_outcome.hpp"
 #include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
@@ -74,23 +75,39 @@ std::string host_names(MPI_Comm comm) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-/// Of the tasks that are said to be complete those that are not as they were written, found by all ranks together.
-/// Collective.
-std::vector<std::uint8_t> damaged_tasks(const fs::path& path, const Plan& plan, const std::vector<std::uint8_t>& done,
-                                        MPI_Comm comm) {
+/// Why a task that is said to be complete is run again.
+enum Again : std::uint8_t { not_again, failed, damaged };
+
+/// Of every task, found by all ranks together. Collective.
+std::vector<std::uint8_t> to_run_again(const fs::path& path, const std::vector<std::uint8_t>& done, Retry retry,
+                                       MPI_Comm comm) {
   int rank = 0, size = 1;
   check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
   check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
-  std::vector<std::uint8_t> damaged(done.size(), 0);
+  std::vector<std::uint8_t> again(done.size(), not_again);
   collectively(comm, [&] {
     const TaskReader reader(path, TaskReader::Times::left_out);
     TaskRecord record;
-    for (auto i = static_cast<std::size_t>(rank); i < done.size(); i += static_cast<std::size_t>(size))
-      if (done[i]) damaged[i] = !reader.read_intact(plan.task(static_cast<std::int64_t>(i)).index, record);
+    for (auto i = static_cast<std::size_t>(rank); i < done.size(); i += static_cast<std::size_t>(size)) {
+      if (!done[i]) continue;
+      const auto task = static_cast<std::int64_t>(i);
+      if (!reader.read_intact(task, record))
+        again[i] = damaged;
+      else if (retry == Retry::failed && may_change(record.outcome))
+        again[i] = failed;
+    }
   });
-  check_mpi(MPI_Allreduce(MPI_IN_PLACE, damaged.data(), static_cast<int>(damaged.size()), MPI_UINT8_T, MPI_MAX, comm),
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, again.data(), static_cast<int>(again.size()), MPI_UINT8_T, MPI_MAX, comm),
             "MPI_Allreduce");
-  return damaged;
+  return again;
+}
+
+/// "task 3 is" or "4 tasks, the first being 3, are"; empty where there are none.
+std::string these_tasks(const std::vector<std::uint8_t>& again, Again why) {
+  const auto count = std::count(again.begin(), again.end(), why);
+  if (count == 0) return "";
+  const auto first = std::find(again.begin(), again.end(), why) - again.begin();
+  return count == 1 ? fmt::format("task {} is", first) : fmt::format("{} tasks, the first being {}, are", count, first);
 }
 
 constexpr double shortest_pause_s = 0.05, busy_share = 0.02;  // of the time that syncs may take
@@ -153,7 +170,8 @@ ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Pr
                      comm);
 }
 
-ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm) {
+ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
+                                Retry retry) {
   ResumePoint point;
   on_first_rank(comm, [&] {
     check_path(path);
@@ -162,11 +180,11 @@ ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Pr
   point.done.resize(static_cast<std::size_t>(plan.size()));
   check_mpi(MPI_Bcast(point.done.data(), static_cast<int>(point.done.size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
   point.runs = broadcast(point.runs, comm);
-  const std::vector<std::uint8_t> damaged = damaged_tasks(path, plan, point.done, comm);
-  for (std::size_t i = 0; i < damaged.size(); ++i)
-    if (damaged[i]) point.done[i] = 0;
+  const std::vector<std::uint8_t> again = to_run_again(path, point.done, retry, comm);
+  for (std::size_t i = 0; i < again.size(); ++i)
+    if (again[i]) point.done[i] = 0;
   ResultsFile file(path, plan, std::move(point.done), point.runs, provenance, comm);
-  file.take_back(damaged, comm);
+  file.take_back(again, comm);
   return file;
 }
 
@@ -202,20 +220,21 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
   on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(attempt_), open_->run); });
 }
 
-/// Damaged tasks are pending, in the file too, before anything is written over them.
-void ResultsFile::take_back(const std::vector<std::uint8_t>& damaged, MPI_Comm comm) {
-  const auto count = std::count(damaged.begin(), damaged.end(), 1);
-  if (count == 0) return;
+/// What is run again is pending, in the file too, before anything is written over it.
+void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm) {
+  if (std::count(again.begin(), again.end(), not_again) == static_cast<std::ptrdiff_t>(again.size())) return;
   on_first_rank(comm, [&] {
-    for (std::size_t i = 0; i < damaged.size(); ++i)
-      if (damaged[i]) open_->set_state(static_cast<std::int64_t>(i), 0);
+    for (std::size_t i = 0; i < again.size(); ++i)
+      if (again[i]) open_->set_state(static_cast<std::int64_t>(i), 0);
     open_->synced.sync();
   });
-  const auto first = std::find(damaged.begin(), damaged.end(), 1) - damaged.begin();
-  note_ += fmt::format(
-      "{}{} of {}: the data of {} are not what was written (checksum), and {} again", note_.empty() ? "" : "\n",
-      count == 1 ? fmt::format("task {}", first) : fmt::format("{} tasks, the first being {}", count, first),
-      open_->path.native(), count == 1 ? "this task" : "these tasks", count == 1 ? "it is run" : "they are run");
+  const auto note = [&](Again why, const char* text) {
+    const std::string tasks = these_tasks(again, why);
+    if (!tasks.empty())
+      note_ += fmt::format("{}{}: {} run again, {}", note_.empty() ? "" : "; ", open_->path.native(), tasks, text);
+  };
+  note(damaged, "since the data there are not what was written (checksum)");
+  note(failed, "after an error or for want of time");
 }
 
 void ResultsFile::commit() { open_->commit(); }

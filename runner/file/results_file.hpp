@@ -28,6 +28,9 @@
 
 namespace rodsweep {
 
+/// Of a sweep that goes on: which tasks that ended are run again.
+enum class Retry { none, failed };
+
 class ResultsFile {
  public:
   /// Collective over `comm`. Refuses a path that exists and a disk that is too full (before creating anything). All
@@ -36,9 +39,10 @@ class ResultsFile {
                             MPI_Comm comm, const FreeSpace& free_space = free_bytes,
                             const std::filesystem::path& earlier = {});
   /// Collective. Refuses a file of another program, schema version, plan or job text. Tasks whose data are not what was
-  /// written (checksums; the ranks share the work) count as pending again. Appends a row to /runs.
+  /// written (checksums; the ranks share the work) count as pending again, and on request those that failed and may end
+  /// otherwise (may_change()). Appends a row to /runs.
   static ResultsFile resume(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
-                            MPI_Comm comm);
+                            MPI_Comm comm, Retry retry = Retry::none);
 
   ResultsFile(ResultsFile&&) noexcept;
   ResultsFile& operator=(ResultsFile&&) noexcept;
@@ -71,7 +75,7 @@ class ResultsFile {
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
               const Provenance& provenance, MPI_Comm comm);
 
-  void take_back(const std::vector<std::uint8_t>& damaged, MPI_Comm comm);
+  void take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm);
 
   std::unique_ptr<Open> open_;
   std::vector<std::uint8_t> done_;

@@ -17,4 +17,8 @@ const char* to_string(TaskOutcome outcome) {
   return "unknown";
 }
 
+bool may_change(TaskOutcome outcome) {
+  return outcome == TaskOutcome::pending || outcome == TaskOutcome::timed_out || outcome == TaskOutcome::error;
+}
+
 }  // namespace rodsweep

@@ -21,4 +21,7 @@ inline constexpr int task_outcomes = 9;
 
 const char* to_string(TaskOutcome outcome);
 
+/// Whether another attempt, elsewhere or with more time or memory, may end otherwise.
+bool may_change(TaskOutcome outcome);
+
 }  // namespace rodsweep

@@ -25,6 +25,8 @@ TEST_CASE("run takes a job, a file and --resume, and remembers the line for the 
   CHECK(run.job == "my job.json");
   CHECK(run.output.value() == "out.h5");
   CHECK(run.resume);
+  CHECK_FALSE(run.retry_failed);
+  CHECK(std::get<RunOptions>(parse({"run", "j.json", "--resume", "--retry-failed"})).retry_failed);
   CHECK(run.program == "build/rodsweep");
   CHECK(run.command == "build/rodsweep run 'my job.json' -o out.h5 --resume");
 }
@@ -102,6 +104,7 @@ TEST_CASE("mistakes on the command line are answered with exit code 2 and what i
   CHECK(answer({"run", "a.json", "--resumee"}).code == ExitCode::user_error);
   CHECK_THAT(answer({"run", "a.json", "--resumee"}).text, Contains("--resumee"));
   CHECK(answer({"walk", "a.json"}).code == ExitCode::user_error);
+  CHECK_THAT(answer({"run", "a.json", "--retry-failed"}).text, Contains("--retry-failed requires --resume"));
   CHECK(answer({"info", "a.h5", "--job", "--json"}).code == ExitCode::user_error);
 }
 

@@ -91,13 +91,36 @@ TEST_CASE("a task whose data are not what was written is pending again when a sw
   {
     ResultsFile file = resume(folder / "a.h5", plan);
     CHECK(file.done() == std::vector<std::uint8_t>{0, 1, 1, 1, 0, 0});
-    CHECK(file.note() == "task 0 of " + (folder / "a.h5").native() +
-                             ": the data of this task are not what was written (checksum), and it is run again");
+    CHECK(file.note() == (folder / "a.h5").native() +
+                             ": task 0 is run again, since the data there are not what was written (checksum)");
     CHECK(inspect(folder / "a.h5").done == 3);
     for (const std::int64_t i : {0, 4, 5}) file.write(plan.task(i), synthetic_record(plan, i));
   }
   const bool same = reproducible_bytes(folder / "a.h5", plan) == reproducible_bytes(folder / "whole.h5", plan);
   CHECK(same);
+}
+
+TEST_CASE("failed tasks are run again on request, if they may end otherwise") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  {
+    ResultsFile file = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
+    const auto write = [&](std::int64_t task, TaskOutcome outcome) {
+      TaskRecord record = synthetic_record(plan, task);
+      record.outcome = outcome;
+      file.write(plan.task(task), record);
+    };
+    write(0, TaskOutcome::ok);
+    write(1, TaskOutcome::error);
+    write(2, TaskOutcome::torn);
+    write(3, TaskOutcome::timed_out);
+  }
+  CHECK(resume(folder / "a.h5", plan).done() == std::vector<std::uint8_t>{1, 1, 1, 1, 0, 0});
+  const ResultsFile file = ResultsFile::resume(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF, Retry::failed);
+  CHECK(file.done() == std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0});
+  CHECK(file.note() ==
+        (folder / "a.h5").native() + ": 2 tasks, the first being 1, are run again, after an error or for want of time");
+  CHECK(inspect(folder / "a.h5").done == 2);
 }
 
 TEST_CASE("status can be read while the sweep writes") {
