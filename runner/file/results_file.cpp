@@ -141,6 +141,7 @@ struct ResultsFile::Open {
 
   hdf5::File file;
   fs::path path;
+  FileLock lock;  // of the first rank
   SyncedFile synced;
   std::vector<std::int64_t> written;  ///< tasks whose data are, and whose state is to follow
   Clock::time_point next_commit = Clock::now();
@@ -161,20 +162,24 @@ ResultsFile::~ResultsFile() = default;
 ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
                                 const FreeSpace& free_space, const fs::path& earlier) {
   int runs = 0;
+  FileLock lock;
   on_first_rank(comm, [&] {
     check_path(path);
     runs = create_results_file(path, plan, free_space, earlier);
+    lock = FileLock(path);
   });
   runs = broadcast(runs, comm);
   return ResultsFile(path, plan, std::vector<std::uint8_t>(static_cast<std::size_t>(plan.size()), 0), runs, provenance,
-                     comm);
+                     comm, std::move(lock));
 }
 
 ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
                                 Retry retry) {
   ResumePoint point;
+  FileLock lock;
   on_first_rank(comm, [&] {
     check_path(path);
+    lock = FileLock(path);
     point = check_resumable(path, plan);
   });
   point.done.resize(static_cast<std::size_t>(plan.size()));
@@ -183,13 +188,13 @@ ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Pr
   const std::vector<std::uint8_t> again = to_run_again(path, point.done, retry, comm);
   for (std::size_t i = 0; i < again.size(); ++i)
     if (again[i]) point.done[i] = 0;
-  ResultsFile file(path, plan, std::move(point.done), point.runs, provenance, comm);
+  ResultsFile file(path, plan, std::move(point.done), point.runs, provenance, comm, std::move(lock));
   file.take_back(again, comm);
   return file;
 }
 
 ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
-                         const Provenance& provenance, MPI_Comm comm)
+                         const Provenance& provenance, MPI_Comm comm, FileLock lock)
     : open_(std::make_unique<Open>()), done_(std::move(done)), attempt_(std::min(runs, run_rows - 1)) {
   if (runs >= run_rows) {
     note_ = fmt::format(
@@ -201,6 +206,7 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     hdf5::check(H5Pset_fapl_mpio(access.id(), comm, MPI_INFO_NULL), "H5Pset_fapl_mpio", path.native());
     open_->file = hdf5::open_file(path, H5F_ACC_RDWR, access.id());
     open_->path = path;
+    open_->lock = std::move(lock);
     open_->synced = SyncedFile(path);
     open_->sizes = axis_sizes(plan);
     check_mpi(MPI_Comm_rank(comm, &open_->own_rank), "MPI_Comm_rank");
@@ -293,6 +299,7 @@ void ResultsFile::close() {
   hdf5::File file = std::move(open_->file);
   const std::string path = open_->path.native();
   const SyncedFile synced = std::move(open_->synced);
+  const FileLock lock = std::move(open_->lock);
   open_.reset();
   hdf5::close(file, "H5Fclose", path);
   synced.sync();

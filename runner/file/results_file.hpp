@@ -22,6 +22,7 @@
 
 #include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
+#include "runner/file/file_lock.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
 #include "runner/job/plan.hpp"
@@ -38,7 +39,8 @@ class ResultsFile {
   static ResultsFile create(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
                             MPI_Comm comm, const FreeSpace& free_space = free_bytes,
                             const std::filesystem::path& earlier = {});
-  /// Collective. Refuses a file of another program, schema version, plan or job text. Tasks whose data are not what was
+  /// Collective. Refuses a file of another program, schema version, plan or job text, and one that another
+  /// run is writing. Tasks whose data are not what was
   /// written (checksums; the ranks share the work) count as pending again, and on request those that failed and may end
   /// otherwise (may_change()). Appends a row to /runs.
   static ResultsFile resume(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
@@ -73,7 +75,7 @@ class ResultsFile {
  private:
   struct Open;
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
-              const Provenance& provenance, MPI_Comm comm);
+              const Provenance& provenance, MPI_Comm comm, FileLock lock);
 
   void take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm);
 

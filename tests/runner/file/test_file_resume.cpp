@@ -56,6 +56,21 @@ TEST_CASE("a resumed file knows what is done and is the same in the end as one w
   CHECK(summary.runs[2].tasks == 3);
 }
 
+TEST_CASE("a file that a run writes is refused to another, until that ends") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  {
+    const ResultsFile first = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
+    CHECK_THAT(message_of<FileError>([&] { resume(folder / "a.h5", plan); }),
+               Contains("a.h5 is being written by another run"));
+    CHECK(inspect(folder / "a.h5").runs.size() == 1);
+  }
+  ResultsFile second = resume(folder / "a.h5", plan);
+  CHECK_THROWS_AS(resume(folder / "a.h5", plan), FileError);
+  second.close();
+  CHECK(resume(folder / "a.h5", plan).attempt() == 2);
+}
+
 TEST_CASE("a complete task is never written again") {
   const TemporaryFolder folder;
   const Plan plan = plan_of(full_job());

@@ -1,0 +1,24 @@
+// Keeps a second run away from a results file: a lock that the kernel takes back when its owner dies, however it dies.
+//
+// An open-file-description lock (fcntl) on a byte far behind the end of the file, where no data and nobody else's locks
+// are; NFS from version 4 on knows them too. File systems without locks are left alone.
+#pragma once
+
+#include <filesystem>
+
+namespace rodsweep {
+
+class FileLock {
+ public:
+  FileLock() = default;
+  /// Throws FileError where another run has it.
+  explicit FileLock(const std::filesystem::path& path);
+  FileLock(FileLock&& other) noexcept;
+  FileLock& operator=(FileLock&& other) noexcept;
+  ~FileLock();
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace rodsweep
