@@ -9,7 +9,16 @@ Behind a number a comment may say where it is from, which no reader sees:
     pod leaves .10<!--= spatial_bending; CG ratio; Bending rod; pod 10; 1e-2 -->
 
 the table (a .txt beside the text), how its section begins, how its block begins, the row, and the column, or `2` for the
-second number of a cell such as "0.10 [0.09, 0.11]" after a last semicolon. A section of `*` is any. The number has to be
+second number of a cell such as "0.10 [0.09, 0.11]" after a last semicolon. A section of `*` is any. Of a whole table the
+comment stands in the line before, with what differs in braces, and rows and columns may say what they are called there:
+
+    <!--== learned_rods; CG ratio, first; {row}; {column} -->
+    | 1e-2, 1e-3 | pod 10<!--@ pod 10; 1e-2, 1e-3 --> | large, 1e-2<!--@ copingnet rods-large; 1e-2 --> |
+    |---|---|---|
+    | bending rods<!--@ Bending rod --> | .07 **.19** | .02 |
+
+A cell has as many numbers as columns are named last, any of them with its interval behind it, [0.09, 0.11], or none; what is
+in `backticks` is no number. A column that is called `-` is not looked at. The number has to be
 the cell's, rounded as the text has it. Those that part are printed, and the exit code is 1; --update puts the tables'
 numbers in their place, as many digits as before, for somebody to read the sentences around them again: what is bold, and
 what is said to be less, no script knows.
@@ -20,8 +29,11 @@ import re
 import sys
 from dataclasses import dataclass
 
-SOURCE = re.compile(r"<!--= (.*?) -->", re.S)
 NUMBER = re.compile(r"[−-]?(?:\d[\d,]*\.?\d*|\.\d+)(?:e[+−-]?\d+)?")
+SOURCE = re.compile(r"<!--= (.*?) -->", re.S)
+TABLE = re.compile(r"^<!--== (.*?) -->\n((?:\|.*\n)+)", re.M)
+NAMED = re.compile(r"<!--@ (.*?) -->")
+WITH_INTERVAL = re.compile(rf"({NUMBER.pattern})[*_]*(?:\s*\[({NUMBER.pattern}), ({NUMBER.pattern})\])?")
 
 
 class NotFound(Exception):
@@ -88,18 +100,70 @@ def as_said(number, said):
     return text.replace("-", "−") if "−" in said else text
 
 
+@dataclass(frozen=True)
+class Said:
+    """A number of the text and where it is from; without a number, what is wrong."""
+    begin: int
+    end: int
+    source: str
+
+
+def said_alone(text):
+    """Numbers with a comment behind them."""
+    for marker in SOURCE.finditer(text):
+        before = re.search(rf"({NUMBER.pattern})[*_]*$", text[:marker.start()])
+        if before:
+            yield Said(*before.span(1), marker.group(1))
+        else:
+            yield Said(marker.start(), marker.start(), f"no number before {marker.group()}")
+
+
+def said_in_tables(text):
+    """Numbers of tables with a comment before them."""
+    for table in TABLE.finditer(text):
+        template, begin, names = table.group(1), table.start(2), None
+        for number, line in enumerate(table.group(2).splitlines()):
+            cells, at = [], begin + 1
+            for cell in line[1:].rstrip().removesuffix("|").split("|"):
+                cells.append((cell, at))
+                at += len(cell) + 1
+            begin += len(line) + 1
+            if number == 0:
+                names = [called(cell) for cell, _ in cells]
+            if number < 2:
+                continue
+            row = called(cells[0][0])
+            for column, (cell, at) in zip(names[1:], cells[1:]):
+                if column == "-":
+                    continue
+                *where, columns = template.replace("{column}", column).replace("{row}", row).split(";")
+                words = re.sub(r"`[^`]*`", lambda quoted: " " * len(quoted.group()), cell)
+                numbers, parts = list(WITH_INTERVAL.finditer(words)), columns.split(",")
+                if numbers and len(numbers) != len(parts):
+                    yield Said(at, at, f"{len(numbers)} numbers for {len(parts)} columns in {cell.strip()!r}")
+                    continue
+                for found, part in zip(numbers, parts):
+                    for which, end in (group for group in ((1, ""), (2, "; 2"), (3, "; 3")) if found.group(group[0])):
+                        yield Said(at + found.start(which), at + found.end(which), ";".join([*where, part]) + end)
+
+
+def called(cell):
+    """What a row or column is called in its table."""
+    named = NAMED.search(cell)
+    return named.group(1) if named else re.sub(r"[*`_]", "", cell).strip()
+
+
 def check(path, update=False):
     """One line for every number that is not its table's, and that number put in its place on request."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
     tables, wrong, mended, done = {}, [], [], 0
-    for marker in SOURCE.finditer(text):
-        place = f"{path}:{text.count(chr(10), 0, marker.start()) + 1}"
-        name, section, block, row, column, *rest = [part.strip() for part in marker.group(1).split(";")]
-        before = re.search(rf"({NUMBER.pattern})[*_]*$", text[:marker.start()])
-        if not before:
-            wrong.append(f"{place}: no number before {marker.group()}")
+    for one in sorted([*said_alone(text), *said_in_tables(text)], key=lambda one: one.begin):
+        place = f"{path}:{text.count(chr(10), 0, one.begin) + 1}"
+        if one.begin == one.end:
+            wrong.append(f"{place}: {one.source}")
             continue
+        name, section, block, row, column, *rest = [part.strip() for part in one.source.split(";")]
         if name not in tables:
             with open(os.path.join(os.path.dirname(path), f"{name}.txt"), encoding="utf-8") as file:
                 tables[name] = file.read().splitlines()
@@ -107,13 +171,13 @@ def check(path, update=False):
             cell = find_cell(tables[name], section, block, row, column)
             found = NUMBER.findall(cell)[int(rest[0]) - 1 if rest else 0]
         except NotFound as missing:
-            wrong.append(f"{place}: {name}.txt has not {missing} of {marker.group(1)!r}")
+            wrong.append(f"{place}: {name}.txt has not {missing} of {one.source!r}")
             continue
-        said = before.group(1)
+        said = text[one.begin:one.end]
         if abs(number_of(said) - number_of(found)) > 1.001 * half_unit(said) + 1e-12:
-            wrong.append(f"{place}: {said}, but {found} in {name}.txt: {marker.group(1)}")
-            mended += [text[done:before.start(1)], as_said(found, said)]
-            done = before.end(1)
+            wrong.append(f"{place}: {said}, but {found} in {name}.txt: {one.source}")
+            mended += [text[done:one.begin], as_said(found, said)]
+            done = one.end
     if update and mended:
         with open(path, "w", encoding="utf-8") as file:
             file.write("".join([*mended, text[done:]]))

@@ -66,6 +66,20 @@ class Texts(unittest.TestCase):
                 self.assertEqual(file.read(), "**.10**{} one .34{}, 1,234{} µs or 1e3{}; 2.0{} and 12 alone".format(*marks))
             self.assertEqual(self.run_on(path).returncode, 0)
 
+    def test_whole_tables_by_their_rows_and_columns(self):
+        text = """<!--== x; CG ratio; {row}; {column}; 1e-1, 1e-2 -->
+| 1e-1, 1e-2 | pod 10 | last<!--@ previous --> |
+|---|---|---|
+| rods<!--@ Bending rod --> | .07 **.10** [.09, .11] | .25 .46, `not 3` |
+| Helix | .19 .34 | - |
+"""
+        done = self.check(text)
+        self.assertEqual((done.returncode, done.stdout), (0, "all numbers are those of their tables\n"))
+        done = self.check(text.replace("**.10**", "**.11**"))
+        self.assertIn("README.md:4: .11, but 0.10 in x.txt: x; CG ratio; Bending rod; pod 10; 1e-2", done.stdout)
+        done = self.check(text.replace(".19 .34", ".19"))
+        self.assertIn("README.md:5: 1 numbers for 2 columns in '.19'", done.stdout)
+
     def test_what_no_table_has_is_named(self):
         for source, words in (("x; CG ratio; Bending rod; pod 9; 1e-2", "a row 'pod 9'"),
                               ("x; CG ratio; Bending rod; pod 10; 1e-3", "a column '1e-3'"),
