@@ -95,9 +95,9 @@ ablation: build
 	@analysis/results/draw.sh results ablation
 
 # By job and task; a film of the forest would take as long as all of these. What exists is not drawn again.
-picture_jobs = pictures lattice_sag lattice_dropped lattice_pressed net_wind
+picture_jobs = pictures side_by_side lattice_sag lattice_dropped lattice_pressed net_wind
 pictures = pictures:0:helix:along pictures:1:net:rod pictures:2:ring:along pictures:3:tree:radius \
-  pictures:4:falling:rod pictures:5:knot:along pictures:6:drape:rod \
+  pictures:4:falling:rod pictures:5:knot:along pictures:6:drape:rod side_by_side:0:side_by_side:rod \
   lattice_sag:0:lattice:along lattice_dropped:0:dropped:along lattice_pressed:0:pressed:along net_wind:0:wind:along
 pictures: build
 	@$(call packages,pictures)
@@ -107,7 +107,8 @@ pictures: build
 	@for picture in $(pictures); do IFS=: read job task name colour <<<$$picture; \
 	  for film in mp4 'gif --every 2 --rate 12'; do path=results/figures/$$name.$${film%% *}; \
 	    [ -e $$path ] || $(PYTHON) analysis/render.py results/$$job.h5 --task $$task --movie $$film --size 480x360 \
-	      --colour $$colour $$([ $$name != tree ] || echo --fine) -o $$path; \
+	      --colour $$colour $$([ $$name != tree ] || echo --fine) \
+	      $$([ $$name != side_by_side ] || echo --beside 2 3 4 --apart 0,0,0.7) -o $$path; \
 	  done; \
 	done
 
