@@ -159,19 +159,21 @@ def table(shown, models, base, panels, first, every, tolerances):
     spent = timings.times(file, shown.sims)["first"] if timings.timed(file) else None
     segments = file.results("segments", shown.sims.any_task)[:, None]
     cost = intervals.median(spent.guess_s / spent.solves / segments * 1e6, shown.sims.sample).value if spent else None
-    rows = [["", "", "weights"] + (["us per segment"] if spent else []) + [f"{label}, j = 0" for label in labels] +
-            [f"{label}, all j" for label in labels]]
 
-    def row(setting, value, g):
+    def row(name, g, ratio):
         weights = str(models[g].parameters) if g in models else ""
-        return [setting, value, weights] + ([f"{cost[g]:.3f}"] if spent else []) + [
-            f"{e[g, t].value:.3f} [{e[g, t].low:.3f}, {e[g, t].high:.3f}]" for e in (first, every) for t in tolerances]
+        return [f"  {name}", weights] + ([f"{cost[g]:.3f}"] if spent else []) + [
+            f"{ratio[g, t].value:.3f} [{ratio[g, t].low:.3f}, {ratio[g, t].high:.3f}]" for t in tolerances]
 
-    rows.append(row("base", "", base))
-    for what, values in panels.items():
-        rows += [row(what, value, g) for value, g in values if g != base]
-    rows += [row("other guesses", file.guesses[g], g) for g in shown.lines() if g not in models]
-    return ["CG ratio, one setting changed at a time", ""] + texts.aligned(rows)
+    lines = []
+    for newton, ratio in (("first", first), ("all", every)):
+        rows = [["Guesses", "weights"] + (["us per segment"] if spent else []) + labels, row("base", base, ratio)]
+        for what, values in panels.items():
+            rows += [row(f"{what}: {value}", g, ratio) for value, g in values if g != base]
+        rows += [row(file.guesses[g], g, ratio) for g in shown.lines() if g not in models]
+        lines += [f"CG ratio, {measures.NEWTON[newton]}: mean over simulations [95 % interval]", "",
+                  *texts.aligned(rows), ""]
+    return lines[:-1]
 
 
 def figure(shown, models, base, panels, ratio, tolerances):

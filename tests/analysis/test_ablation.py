@@ -63,11 +63,11 @@ class Ablation(Scripts):
     def test_the_table_has_every_model_and_the_other_guesses_and_the_figure_is_written(self):
         self.write(scenes=("helix",), grid={"scene.segments": [20]}, samples=5, guesses=GUESSES, plant=Planted())
         printed = self.run_script("ablation.py", "sweep.h5", "models", "--tolerance", "1e-2", files=True).stdout
-        rows = {line.split("  ")[0]: line for line in printed.splitlines() if "[" in line}
+        rows = {line.split("  ")[1]: line for line in reversed(printed.splitlines()) if line.startswith("  ")}
         self.assertIn("  0.099 [", rows["base"])
-        self.assertIn("  0.250 [", next(row for row in rows.values() if row.startswith("message-passing steps")))
-        self.assertIn("other guesses", rows)
-        self.assertRegex(printed, r"message-passing steps +12 +15 +")   # weights
+        self.assertIn("  0.250 [", rows["message-passing steps: 12"])
+        self.assertIn("  0.800 [", rows["previous"])
+        self.assertRegex(printed, r"message-passing steps: 12 +15 +")   # weights
         self.assertEqual(printed.split()[-2:], ["figures/sweep-ablation.pdf", "figures/sweep-ablation.png"])
 
     def test_mistakes_are_named(self):
