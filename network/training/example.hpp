@@ -16,10 +16,10 @@ struct Example {
   std::shared_ptr<const Topology> topology;
   Tensor<float> nodes, edges;  ///< features [node features, segments], [edge features, places]; of joints none where
                                ///< they are those of `system` (system_features)
-  ScaledSystem<float> system;
-  Tensor<float> unit;         ///< [6, places]; empty: ones
-  Tensor<float> edge_target;  ///< [6, places]: the y that is exact
-  Tensor<float> node_target;  ///< [6, segments]: the moves Delta p in the network's units; or empty
+  ScaledSystem<float> system;  ///< without places: of `state`
+  Tensor<float> unit;          ///< [6, places]; empty: ones
+  Tensor<float> edge_target;   ///< [6, places]: the y that is exact
+  Tensor<float> node_target;   ///< [6, segments]: the moves Delta p in the network's units; or empty
 };
 
 template <class T>
