@@ -91,7 +91,7 @@ ablation: build
 	@mkdir -p results; for data in bending_data bending_data_100 helix_data helix_data_100; do $(call study,$$data); done
 	@for scene in bending helix; do for family in ablation_$$scene $$scene-paper $$scene-paper-best; do \
 	    analysis/results/variants.py $(BUILD)/rodsweep results $$family; done; \
-	  for study in ablation_$$scene ablation_$${scene}_step; do $(call study,$$study); done; done
+	  for study in ablation_$$scene ablation_$${scene}_step; do $(call study,$$study); done; done; $(call study,ablation_long_term)
 	@analysis/results/draw.sh results ablation
 
 # By job and task; a film of the forest would take as long as all of these. What exists is not drawn again.

@@ -74,9 +74,7 @@ class Beside:
     def axes(self, frame):
         return self._joined(Trajectory.axes, frame)
 
-    def ends(self, frame):
-        centre, half = self.centres(frame), 0.5 * self.length[:, None] * self.axes(frame)
-        return centre - half, centre + half
+    ends = Trajectory.ends
 
 
 def axis(orientation):

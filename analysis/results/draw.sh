@@ -27,6 +27,7 @@ if [ "${2:-}" = ablation ]; then
     figures ablation ablation_$scene "$results/ablation_$scene" --tolerance 1e-1,1e-2,1e-3 >$out/ablation_$scene.txt
     table summary ablation_${scene}_step --by time.step_s
   done
+  figures long_term ablation_long_term --log-time >$out/ablation_long_term.txt
   exit
 fi
 for study in spatial_bending spatial_helix learned_bending learned_helix; do

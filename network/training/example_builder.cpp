@@ -94,7 +94,7 @@ Example example_of(const CopingNetSettings& settings, const Rod& rod, const Line
 
 void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out,
                   const Copies& copies, bool first_iterations_only) {
-  if (!is_guess(settings)) return add_state_examples(simulation, out, copies);
+  if (!is_guess(settings)) return add_state_examples(settings, simulation, out, copies);
   Replay replay(simulation);
   const Scene& scene = replay.scene();
   const std::unique_ptr<InitialGuess> base = base_guess(settings, scene, simulation.newton_iterations);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "network/encoding/state_encoding.hpp"
 
@@ -38,14 +37,12 @@ Sizes usual_change(const std::vector<Steps>& rods) {
   return {std::sqrt(squares.velocity / entries), std::sqrt(squares.spin / entries)};
 }
 
-int sum(const std::vector<int>& groups) { return std::accumulate(groups.begin(), groups.end(), 0); }
-
-Example example_of(const StateEncoding& encoding, const Rod& rod, const StateHistory& history,
-                   const StoredSystem& next) {
+Example example_of(const CopingNetSettings& settings, const StateEncoding& encoding, const Rod& rod,
+                   const StateHistory& history, const StoredSystem& next) {
   Example out;
   out.topology = encoding.shared_topology();
-  out.nodes.resize(sum(StateEncoding::node_groups()), rod.segment_count());
-  out.edges.resize(sum(StateEncoding::edge_groups()), rod.joint_count());
+  out.nodes.resize(node_features(settings), rod.segment_count());
+  out.edges.resize(edge_features(settings), rod.joint_count());
   encoding.encode(rod, history, out.nodes, out.edges);
   out.edge_target.resize(0, rod.joint_count());
   out.node_target.resize(6, rod.segment_count());
@@ -61,7 +58,8 @@ void roll_all(double angle, Example& example) {
 
 }  // namespace
 
-void add_state_examples(const StoredSimulation& simulation, std::vector<Example>& out, const Copies& copies) {
+void add_state_examples(const CopingNetSettings& settings, const StoredSimulation& simulation,
+                        std::vector<Example>& out, const Copies& copies) {
   const std::vector<Steps> rods = steps_of(simulation);
   const Sizes change = usual_change(rods);
   SplitMix random(copies.seed);
@@ -72,11 +70,11 @@ void add_state_examples(const StoredSimulation& simulation, std::vector<Example>
     for (std::size_t n = 0; n + 1 < rods[r].size(); ++n) {
       history.start_step(rods[r][n]->velocity, rods[r][n]->angular_velocity);
       const StoredSystem& next = *rods[r][n + 1];
-      out.push_back(example_of(encoding, rod, history, next));
+      out.push_back(example_of(settings, encoding, rod, history, next));
       for (int copy = 0; copy < copies.count; ++copy) {
         const StateHistory disturbed =
             history.disturbed(rod, copies.noise * change.velocity, copies.noise * change.spin, random);
-        out.push_back(example_of(encoding, rod, disturbed, next));
+        out.push_back(example_of(settings, encoding, rod, disturbed, next));
         roll_all(2 * pi * random.uniform(), out.back());
       }
     }

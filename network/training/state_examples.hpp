@@ -11,6 +11,7 @@
 namespace rodsweep {
 
 /// Adds those of one simulation, without normalisation; of every rod up to its first step without a linear system.
-void add_state_examples(const StoredSimulation& simulation, std::vector<Example>& out, const Copies& copies);
+void add_state_examples(const CopingNetSettings& settings, const StoredSimulation& simulation,
+                        std::vector<Example>& out, const Copies& copies);
 
 }  // namespace rodsweep

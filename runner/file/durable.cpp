@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <system_error>
-#include <utility>
 
 #include "runner/file/file_error.hpp"
 
@@ -27,33 +26,18 @@ bool cannot(int code) { return code == EINVAL || code == ENOTSUP || code == EROF
 
 SyncedFile::SyncedFile(const std::filesystem::path& path)
     : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (descriptor_ < 0) throw sync_error(path, errno);
-}
-
-SyncedFile::SyncedFile(SyncedFile&& other) noexcept
-    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-SyncedFile& SyncedFile::operator=(SyncedFile&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
-}
-
-SyncedFile::~SyncedFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!descriptor_) throw sync_error(path, errno);
 }
 
 void SyncedFile::sync() const {
-  if (fdatasync(descriptor_) != 0 && !cannot(errno)) throw sync_error(path_, errno);
+  if (fdatasync(descriptor_.number()) != 0 && !cannot(errno)) throw sync_error(path_, errno);
 }
 
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // a folder that may be written, but not read
-  const int code = fsync(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  if (code != 0 && !cannot(code)) throw sync_error(folder, code);
+  const Descriptor descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!descriptor) return;  // a folder that may be written, but not read
+  if (fsync(descriptor.number()) != 0 && !cannot(errno)) throw sync_error(folder, errno);
 }
 
 }  // namespace rodsweep

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 
+#include "runner/file/descriptor.hpp"
+
 namespace rodsweep {
 
 /// A file's data and length, whoever on this host wrote them.
@@ -13,15 +15,12 @@ class SyncedFile {
  public:
   SyncedFile() = default;
   explicit SyncedFile(const std::filesystem::path& path);
-  SyncedFile(SyncedFile&& other) noexcept;
-  SyncedFile& operator=(SyncedFile&& other) noexcept;
-  ~SyncedFile();
 
   void sync() const;
 
  private:
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 /// The names in the folder that a file is in.

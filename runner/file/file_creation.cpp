@@ -2,11 +2,11 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
 
+#include "runner/file/descriptor.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"
@@ -108,10 +108,9 @@ int copy_runs(const hdf5::File& file, const fs::path& earlier) {
 /// there.
 void reserve_blocks(const fs::path& file, const fs::path& path) {
   const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
-  const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor < 0) throw creation_error(path, system_text(errno));
-  const int error = fallocate(descriptor, 0, 0, bytes) == 0 ? 0 : errno;
-  ::close(descriptor);
+  const Descriptor descriptor(open(file.c_str(), O_RDWR | O_CLOEXEC));
+  if (!descriptor) throw creation_error(path, system_text(errno));
+  const int error = fallocate(descriptor.number(), 0, 0, bytes) == 0 ? 0 : errno;
   if (error == ENOSPC || error == EDQUOT) throw space_error(path, bytes, "the disk says: " + system_text(error));
   if (error == EFBIG) throw space_error(path, bytes, "a file cannot be that large there");
 }

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 
+#include "runner/file/descriptor.hpp"
+
 namespace rodsweep {
 
 class FileLock {
@@ -13,12 +15,9 @@ class FileLock {
   FileLock() = default;
   /// Throws FileError where another run has it.
   explicit FileLock(const std::filesystem::path& path);
-  FileLock(FileLock&& other) noexcept;
-  FileLock& operator=(FileLock&& other) noexcept;
-  ~FileLock();
 
  private:
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 }  // namespace rodsweep

@@ -228,7 +228,7 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
 
 /// What is run again is pending, in the file too, before anything is written over it.
 void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm) {
-  if (std::count(again.begin(), again.end(), not_again) == static_cast<std::ptrdiff_t>(again.size())) return;
+  if (std::all_of(again.begin(), again.end(), [](std::uint8_t why) { return why == not_again; })) return;
   on_first_rank(comm, [&] {
     for (std::size_t i = 0; i < again.size(); ++i)
       if (again[i]) open_->set_state(static_cast<std::int64_t>(i), 0);

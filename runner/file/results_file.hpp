@@ -4,9 +4,9 @@
 // allocation, so that no rank creates an object at run time; unwritten bytes are zero and `/tasks/state` is zero,
 // "pending". A worker writes all rows of a task, sentinels included, brings them to disk, and writes the state byte
 // after that: a task whose state is 1 is complete, whatever happened to any process, or to the machine's power, since.
-// Several tasks share a sync, which takes no more than a fiftieth of the time. Metadata never change while the
-// sweep runs, so a killed sweep leaves a sound file. The layout is that of columns() (runner/file/columns.hpp) plus
-// /job, /runs, /axes and the plan's columns in /tasks: see runner/file/layout.hpp.
+// Several tasks share a sync, which takes no more than a fiftieth of the time. Metadata never change while the sweep
+// runs, so a killed sweep leaves a sound file. The layout is that of columns() (runner/file/columns.hpp) plus /job,
+// /runs, /axes and the plan's columns in /tasks: see runner/file/layout.hpp.
 //
 // Errors: FileError (the user's: exists already, not ours, another job, no space), Hdf5Error (a failing call, with its
 // name).
@@ -39,10 +39,9 @@ class ResultsFile {
   static ResultsFile create(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
                             MPI_Comm comm, const FreeSpace& free_space = free_bytes,
                             const std::filesystem::path& earlier = {});
-  /// Collective. Refuses a file of another program, schema version, plan or job text, and one that another
-  /// run is writing. Tasks whose data are not what was
-  /// written (checksums; the ranks share the work) count as pending again, and on request those that failed and may end
-  /// otherwise (may_change()). Appends a row to /runs.
+  /// Collective. Refuses a file of another program, schema version, plan or job text, and one that another run is
+  /// writing. Tasks whose data are not what was written (checksums; the ranks share the work) count as pending again,
+  /// and on request those that failed and may end otherwise (may_change()). Appends a row to /runs.
   static ResultsFile resume(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
                             MPI_Comm comm, Retry retry = Retry::none);
 

@@ -63,9 +63,8 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void UnfinishedFile::check_creatable() const {
-  const int descriptor = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
-  if (descriptor < 0) throw creation_error(path_, std::system_category().message(errno));
-  ::close(descriptor);
+  if (!Descriptor(open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600)))
+    throw creation_error(path_, std::system_category().message(errno));
   unlink(temporary_.c_str());
 }
 

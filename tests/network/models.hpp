@@ -17,6 +17,19 @@ inline std::shared_ptr<Model> random_model(const CopingNetSettings& settings, st
             {no_change(node_features(settings)), no_change(edge_features(settings)), no_change(6), no_change(6)}});
 }
 
+/// A small one of message passing, on nothing.
+inline CopingNetSettings message_passing(Encoding encoding, bool moves) {
+  CopingNetSettings settings;
+  settings.encoding = encoding;
+  settings.processor = Processor::message_passing;
+  settings.base = BaseGuess::none;
+  settings.latent = 16;
+  settings.steps = 2;
+  settings.best_length = false;
+  settings.moves = moves;
+  return settings;
+}
+
 /// A small one of every kind.
 inline std::vector<CopingNetSettings> kinds_of_networks() {
   std::vector<CopingNetSettings> out;

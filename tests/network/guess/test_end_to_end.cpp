@@ -31,18 +31,6 @@ std::unique_ptr<IncrementSource> of_network(const std::shared_ptr<const Model>& 
   return std::make_unique<CopingNetIncrements>(model, scene, 2);
 }
 
-CopingNetSettings message_passing(bool moves) {
-  CopingNetSettings settings;
-  settings.encoding = Encoding::physics;
-  settings.processor = Processor::message_passing;
-  settings.base = BaseGuess::none;
-  settings.latent = 16;
-  settings.steps = 2;
-  settings.best_length = false;
-  settings.moves = moves;
-  return settings;
-}
-
 void fill(Model& model, float value) {
   std::fill(model.net.parameters().values().begin(), model.net.parameters().values().end(), value);
 }
@@ -67,7 +55,7 @@ TEST_CASE("exact increments give the trajectory of the direct solve") {
 TEST_CASE("a network that says nothing lets all but the held segment fall") {
   Scene scene = build_scene(test::bending_rod(5));
   const Scene start = scene;
-  const auto model = test::random_model(message_passing(false));
+  const auto model = test::random_model(test::message_passing(Encoding::physics, false));
   fill(*model, 0);
   EndToEndProjection projection(scene, of_network(model, scene));
   TimeStepper stepper(scene, {0.02, 2, 1e-9});
@@ -105,7 +93,7 @@ TEST_CASE("without moves of its own a network moves the segments as its multipli
 TEST_CASE("predicted moves are in the units of the training set and leave static segments where they are") {
   Scene scene = test::moving_scene(6);
   const Rod before = scene.rods[0];
-  const auto model = test::random_model(message_passing(true));
+  const auto model = test::random_model(test::message_passing(Encoding::physics, true));
   model->scales.moves.deviation << 0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F;
   model->scales.multipliers.deviation << 1, 2, 3, 4, 5, 6;
 
@@ -144,7 +132,7 @@ TEST_CASE("predicted moves are in the units of the training set and leave static
 TEST_CASE("an answer, or a rod, that is not a number is an outcome and moves nothing") {
   const bool moves = GENERATE(false, true);
   Scene scene = test::moving_scene(5);
-  const auto model = test::random_model(message_passing(moves));
+  const auto model = test::random_model(test::message_passing(Encoding::physics, moves));
   const Rod before = scene.rods[0];
   SECTION("weights") { fill(*model, std::numeric_limits<float>::quiet_NaN()); }
   SECTION("the unit of the moves") {
@@ -160,7 +148,8 @@ TEST_CASE("an answer, or a rod, that is not a number is an outcome and moves not
 TEST_CASE("a rod whose residual is below the tolerance is left alone") {
   Scene scene = test::moving_scene(5);
   const Rod before = scene.rods[0];
-  EndToEndProjection projection(scene, of_network(test::random_model(message_passing(true)), scene));
+  EndToEndProjection projection(scene,
+                                of_network(test::random_model(test::message_passing(Encoding::physics, true)), scene));
   CHECK(projection.project(scene.rods[0], {}, 0.02, 1).outcome == SolveOutcome::not_run);
   for (std::size_t s = 0; s < 5; ++s) CHECK(scene.rods[0].position[s] == before.position[s]);
 }

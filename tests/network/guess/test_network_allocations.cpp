@@ -59,12 +59,7 @@ TEST_CASE("a network instead of the solve allocates nothing on a rod seen before
 }
 
 TEST_CASE("a simulator of states allocates nothing after a rod's first step") {
-  CopingNetSettings settings;
-  settings.encoding = Encoding::state;
-  settings.processor = Processor::message_passing;
-  settings.latent = 16;
-  settings.steps = 2;
-  settings.moves = true;
+  const CopingNetSettings settings = test::message_passing(Encoding::state, true);
   const Scene scene = build_scene(test::bending_rod(20));
   Rod rod = scene.rods.front();
   StateNetworkProjection projection(scene, test::random_model(settings), 0.02);

@@ -13,17 +13,7 @@ namespace {
 
 using namespace test;
 
-CopingNetSettings of_states() {
-  CopingNetSettings settings;
-  settings.encoding = Encoding::state;
-  settings.processor = Processor::message_passing;
-  settings.base = BaseGuess::none;
-  settings.latent = 16;
-  settings.steps = 2;
-  settings.best_length = false;
-  settings.moves = true;
-  return settings;
-}
+CopingNetSettings of_states() { return message_passing(Encoding::state, true); }
 
 /// As random weights say it, but of a size that leaves rods in one piece.
 std::shared_ptr<Model> small_answers() {
@@ -203,9 +193,8 @@ TEST_CASE("a simulator's answer that is no number leaves the rod as it was; othe
   Rod rod = scene.rods.front();
   CHECK(projection.project(rod, {0, 0, 0}, 0.02, 0).outcome == SolveOutcome::not_a_number);
   CHECK(rod.position[1] == scene.rods[0].position[1]);
-  CopingNetSettings other = of_states();
-  other.encoding = Encoding::physics;
-  CHECK_THROWS_AS(StateNetworkProjection(scene, random_model(other), 0.02), std::invalid_argument);
+  CHECK_THROWS_AS(StateNetworkProjection(scene, random_model(message_passing(Encoding::physics, true)), 0.02),
+                  std::invalid_argument);
 }
 
 TEST_CASE("training makes a simulator that errs less than one that says nothing") {
