@@ -89,8 +89,7 @@ variants: build
 # What the network of the paper owes to each of its settings.
 ablation: build
 	@mkdir -p results; for data in bending_data bending_data_100 helix_data helix_data_100; do $(call study,$$data); done
-	@for scene in bending helix; do for family in ablation_$$scene $$scene-paper $$scene-paper-best; do \
-	    analysis/results/variants.py $(BUILD)/rodsweep results $$family; done; \
+	@for scene in bending helix; do analysis/results/variants.py $(BUILD)/rodsweep results ablation_$$scene; \
 	  for study in ablation_$$scene ablation_$${scene}_step; do $(call study,$$study); done; done; $(call study,ablation_long_term)
 	@analysis/results/draw.sh results ablation
 

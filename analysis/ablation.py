@@ -149,6 +149,8 @@ def text_of(value, alone=True):
     """Of a value, or not `alone` of a setting and its value, in few words."""
     if not alone:
         what, value = value
+        if what == "seed":
+            return f"seed {value}"
         return {"on": what.removesuffix(" state"), "all": "all j"}.get(value, text_of(value))
     return "-" if value is None else value if isinstance(value, str) else texts.number_text(value)
 

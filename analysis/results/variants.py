@@ -4,8 +4,9 @@
     analysis/results/variants.py PROGRAM RESULTS FAMILY
 
 A family is a training job with changes of its own (fewer epochs, for one), and its variants, each with one more. Jobs,
-models and data sets that jobs/ has not are RESULTS/FOLDER/NAME.json and .h5. What is done is left alone, what was
-stopped goes on.
+models and data sets that jobs/ has not are RESULTS/FOLDER/NAME.json and .h5, what the program says of each NAME.log.
+What is done is left alone, what was stopped goes on. A core trains one of them at a time: they are many, and two threads
+of one training wait for each other.
 
 Ablations have the same number of steps of the optimiser in every variant: fewer examples are seen more often.
 """
@@ -14,6 +15,8 @@ import json
 import os
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 JOBS = os.path.join(os.path.dirname(__file__), "../../jobs")
@@ -89,6 +92,9 @@ PAPER = {
     "data_0.005_s": {"data": "0.005_s"},
     "seed_2": {"seed": 2},
     "seed_3": {"seed": 3},
+    **{name: {"network.globals": True, "network.moves": False, "training.loss": "energy", "data": "100",
+              "training.epochs": EPOCHS // 2, "seed": seed}
+       for seed, name in ((1, "best"), (2, "best_seed_2"), (3, "best_seed_3"))},
 }
 # Other data than those of jobs/SCENE_data.json: what is changed there; None: a job of jobs/.
 DATA = {
@@ -111,18 +117,11 @@ def ablation(scene):
     return Family(f"train_{scene}_paper", f"ablation_{scene}", changes, PAPER, f"{scene}_data")
 
 
-def seeds(job, model):
-    """The same from other seeds, trained in full: what the shipped model owes to chance."""
-    return Family(job, "paper", {}, {f"{model}-seed-{seed}": {"seed": seed} for seed in (2, 3)})
-
-
 FAMILIES = {
     "rods": Family("train_rods", "rods_variants", {"training.epochs": 15}, RODS),
     "lattices": Family("train_lattices", "lattices_variants", {"training.epochs": 5}, LATTICES),
     "ablation_bending": ablation("bending"),
     "ablation_helix": ablation("helix"),
-    **{f"{scene}-paper{best}": seeds(f"train_{scene}_paper{best.replace('-', '_')}", f"{scene}-paper{best}")
-       for scene in ("bending", "helix") for best in ("", "-best")},
 }
 
 
@@ -162,10 +161,17 @@ def training(family, name):
 
 
 def run(program, folder, job):
+    """True if it is done now."""
     path = os.path.join(folder, job["name"])
     with open(path + ".json", "w", encoding="utf-8") as file:
         json.dump(job, file, indent=2)
-    subprocess.run([program, "run", path + ".json", "-o", path + ".h5", "--resume"], check=True)
+    began = time.monotonic()
+    with open(path + ".log", "a", encoding="utf-8") as log:
+        code = subprocess.run([program, "run", path + ".json", "-o", path + ".h5", "--resume"], check=False, stdout=log,
+                              stderr=log, stdin=subprocess.DEVNULL, env={**os.environ, "OMP_NUM_THREADS": "1"}).returncode
+    print(f"  {job['name']}: " + (f"{time.monotonic() - began:.0f} s" if code == 0 else f"exit code {code}, see {path}.log"),
+          flush=True)
+    return code == 0
 
 
 def main():
@@ -173,10 +179,14 @@ def main():
     family = FAMILIES[name]
     folder = os.path.join(results, family.folder)
     os.makedirs(folder, exist_ok=True)
-    for variant, changes in family.variants.items():
-        if DATA.get(changes.get("data")):
-            run(program, folder, changed(family.data, "set_" + changes["data"], DATA[changes["data"]]))
-        run(program, folder, training(family, variant))
+    data = dict.fromkeys(changes["data"] for changes in family.variants.values() if DATA.get(changes.get("data")))
+    sets = [changed(family.data, "set_" + which, DATA[which]) for which in data]
+    trainings = [training(family, variant) for variant in family.variants]
+    print(f"{name}: {len(trainings)} trainings", flush=True)
+    for jobs in (sets, trainings):
+        with ThreadPoolExecutor(os.cpu_count()) as cores:
+            if not all(list(cores.map(lambda job: run(program, folder, job), jobs))):
+                sys.exit(1)
 
 
 if __name__ == "__main__":
