@@ -55,47 +55,51 @@ LATTICES = {
     "all_32_seed_2": {"seed": 2},
     "all_32_seed_3": {"seed": 3},
 }
-# Of the paper's network: 20 passes over 256 simulations of 50 steps, or as many steps on other data.
-EPOCHS = 20
-ALL = {"training.systems": "all", "training.epochs": EPOCHS // 4}
-PAPER = {
-    "base": {},
-    **{f"size_{n}": {"training_simulations": n, "training.epochs": EPOCHS * 256 // n} for n in (8, 16, 32, 64, 128)},
-    **{f"steps_{n}": {"network.steps": n} for n in (1, 2, 4, 8, 12)},
-    **{f"latent_{n}": {"network.latent": n} for n in (16, 64)},
-    **{f"hidden_layers_{n}": {"network.hidden_layers": n} for n in (2, 3)},
-    "rate_5e-4": {"training.rate": 5e-4},
-    "rate_5e-3": {"training.rate": 5e-3},
-    "turned_1": {"training.turned_copies": 1, "training.epochs": EPOCHS // 2},
-    "turned_3": {"training.turned_copies": 3, "training.epochs": EPOCHS // 4},
-    "loss_multipliers": {"network.moves": False},
-    "loss_energy": {"network.moves": False, "training.loss": "energy"},
-    "loss_in_the_loop": {"network.moves": False, "training.loss": "in_the_loop"},
-    "best_length": {"network.best_length": True},
-    "globals": {"network.globals": True},
-    "globals_energy": {"network.globals": True, "network.moves": False, "training.loss": "energy"},
-    "globals_in_the_loop": {"network.globals": True, "network.moves": False, "training.loss": "in_the_loop"},
-    "sweeps_gated": {**SWEEPS, "network.moves": False},
-    "sweeps_linear": {**LINEAR, "network.moves": False},
-    "base_extrapolation": {"network.base": "extrapolation"},
-    "base_regression": {"network.base": "regression", "network.base_size": 6},
-    "base_pod": {"network.base": "pod", "network.base_size": 10},
-    "encoding_physics": {"network.encoding": "physics"},
-    "encoding_system": {"network.encoding": "system", "network.moves": False},
-    "encoding_canonical": {"network.encoding": "canonical", "network.moves": False},
-    "all_paper": ALL,
-    "all_deck": {**ALL, "network.encoding": "deck"},
-    "all_physics": {**ALL, "network.encoding": "physics"},
-    "all_system": {**ALL, "network.encoding": "system", "network.moves": False},
-    "data_100_steps": {"data": "100", "training.epochs": EPOCHS // 2},
-    "data_0.01_s": {"data": "0.01_s"},
-    "data_0.005_s": {"data": "0.005_s"},
-    "seed_2": {"seed": 2},
-    "seed_3": {"seed": 3},
-    **{name: {"network.globals": True, "network.moves": False, "training.loss": "energy", "data": "100",
-              "training.epochs": EPOCHS // 2, "seed": seed}
-       for seed, name in ((1, "best"), (2, "best_seed_2"), (3, "best_seed_3"))},
-}
+
+
+def of_the_paper(epochs):
+    """Variants of its network: so many passes over 256 simulations of 50 steps, or as many steps on other data."""
+    every = {"training.systems": "all", "training.epochs": epochs // 4}
+    return {
+        "base": {},
+        **{f"size_{n}": {"training_simulations": n, "training.epochs": epochs * 256 // n} for n in (8, 16, 32, 64, 128)},
+        **{f"steps_{n}": {"network.steps": n} for n in (1, 2, 4, 8, 12)},
+        **{f"latent_{n}": {"network.latent": n} for n in (16, 64)},
+        **{f"hidden_layers_{n}": {"network.hidden_layers": n} for n in (2, 3)},
+        "rate_5e-4": {"training.rate": 5e-4},
+        "rate_5e-3": {"training.rate": 5e-3},
+        "turned_1": {"training.turned_copies": 1, "training.epochs": epochs // 2},
+        "turned_3": {"training.turned_copies": 3, "training.epochs": epochs // 4},
+        "loss_multipliers": {"network.moves": False},
+        "loss_energy": {"network.moves": False, "training.loss": "energy"},
+        "loss_in_the_loop": {"network.moves": False, "training.loss": "in_the_loop"},
+        "best_length": {"network.best_length": True},
+        "globals": {"network.globals": True},
+        "globals_energy": {"network.globals": True, "network.moves": False, "training.loss": "energy"},
+        "globals_in_the_loop": {"network.globals": True, "network.moves": False, "training.loss": "in_the_loop"},
+        "sweeps_gated": {**SWEEPS, "network.moves": False},
+        "sweeps_linear": {**LINEAR, "network.moves": False},
+        "base_extrapolation": {"network.base": "extrapolation"},
+        "base_regression": {"network.base": "regression", "network.base_size": 6},
+        "base_pod": {"network.base": "pod", "network.base_size": 10},
+        "encoding_physics": {"network.encoding": "physics"},
+        "encoding_system": {"network.encoding": "system", "network.moves": False},
+        "encoding_canonical": {"network.encoding": "canonical", "network.moves": False},
+        "all_paper": every,
+        "all_deck": {**every, "network.encoding": "deck"},
+        "all_physics": {**every, "network.encoding": "physics"},
+        "all_system": {**every, "network.encoding": "system", "network.moves": False},
+        "data_100_steps": {"data": "100", "training.epochs": epochs // 2},
+        "data_0.01_s": {"data": "0.01_s"},
+        "data_0.005_s": {"data": "0.005_s"},
+        "seed_2": {"seed": 2},
+        "seed_3": {"seed": 3},
+        **{name: {"network.globals": True, "network.moves": False, "training.loss": "energy", "data": "100",
+                  "training.epochs": epochs // 2, "seed": seed}
+           for seed, name in ((1, "best"), (2, "best_seed_2"), (3, "best_seed_3"))},
+    }
+
+
 # Other data than those of jobs/SCENE_data.json: what is changed there; None: a job of jobs/.
 DATA = {
     "100": None,
@@ -112,16 +116,16 @@ class Family(NamedTuple):
     data: str = ""          # job of jobs/ whose changes are DATA
 
 
-def ablation(scene):
-    changes = {"network.latent": 32, "training.epochs": EPOCHS}
-    return Family(f"train_{scene}_paper", f"ablation_{scene}", changes, PAPER, f"{scene}_data")
+def ablation(scene, epochs):
+    changes = {"network.latent": 32, "training.epochs": epochs}
+    return Family(f"train_{scene}_paper", f"ablation_{scene}", changes, of_the_paper(epochs), f"{scene}_data")
 
 
 FAMILIES = {
     "rods": Family("train_rods", "rods_variants", {"training.epochs": 15}, RODS),
     "lattices": Family("train_lattices", "lattices_variants", {"training.epochs": 5}, LATTICES),
-    "ablation_bending": ablation("bending"),
-    "ablation_helix": ablation("helix"),
+    "ablation_bending": ablation("bending", 20),
+    "ablation_helix": ablation("helix", 12),     # they have twice as many segments
 }
 
 
