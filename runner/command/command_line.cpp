@@ -70,7 +70,7 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
   CLI::Option* resume = command->add_flag("--resume", run.resume, "Continue the results file if it exists");
   command
       ->add_flag("--retry-failed", run.retry_failed,
-                 "With --resume: run tasks again that ended in an error or timed out")
+                 "With --resume: run tasks again that ended in an error, timed out or crashed")
       ->needs(resume);
   command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
   return command;

@@ -17,7 +17,7 @@ struct RunOptions {
   std::filesystem::path job;
   std::optional<std::filesystem::path> output;  ///< default: results/NAME.h5 in the current folder
   bool resume = false;                          ///< continue the output if it exists
-  bool retry_failed = false;                    ///< and run its tasks again that ended in an error or timed out
+  bool retry_failed = false;  ///< and run its tasks again that ended in an error, timed out or crashed
   std::optional<std::filesystem::path> extend;  ///< results of a smaller job, which need not be computed again
   std::string program = "rodsweep";             ///< as the user typed it
   std::string command;                          ///< the whole line, for /runs
@@ -39,7 +39,8 @@ inline constexpr const char* run_help =
     "  mpirun -n 5 rodsweep run job.json -o out.h5 --resume\n"
     "                                                      continues out.h5, or starts it: for batch scripts\n"
     "  rodsweep run job.json -o out.h5 --resume --retry-failed\n"
-    "                                                      and tasks again that ended in an error or timed out\n"
+    "                                                      and tasks again that ended in an error, timed out or "
+    "crashed\n"
     "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more values in a\n"
     "                                                      grid, or more guesses. Copies what out.h5 holds, tries\n"
     "                                                      new guesses alone on its trajectories, runs the rest.\n"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 
@@ -48,15 +49,43 @@ bool has_begun(const RunOptions& options, const fs::path& path, const std::optio
   return true;
 }
 
-std::vector<PendingTask> pending_tasks(const Plan& plan, const std::vector<std::uint8_t>& done,
+/// A task that was begun so often, and of whose workers none said what came of it, is tried no more. The first time it
+/// may have run beside the one that is to blame; the last time it was alone (Master).
+constexpr int most_starts = 3;
+
+bool is_given_up(const ResultsFile& file, std::int64_t task) {
+  const auto i = static_cast<std::size_t>(task);
+  return file.done()[i] == 0 && file.starts()[i] >= most_starts;
+}
+
+/// Writes down what is known of tasks that are tried no more, so that they have an outcome. One rank.
+void give_up(const Plan& plan, ResultsFile& file) {
+  const AxisSizes sizes = axis_sizes(plan);
+  TaskRecord record;
+  for (const Task& task : plan.tasks()) {
+    if (!is_given_up(file, task.index)) continue;
+    record.prepare(task, sizes);
+    record.outcome = TaskOutcome::crashed;
+    record.message = fmt::format(
+        "its worker ended without a word each of the {} times that it was begun, last with nothing beside it",
+        file.starts()[static_cast<std::size_t>(task.index)]);
+    file.write(task, record);
+  }
+  file.commit();
+}
+
+std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
                                        const std::optional<Extension>& extension) {
   // Tasks of an earlier file are looked at one by one.
   const std::vector<std::int64_t> batch =
       extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
   std::vector<PendingTask> pending;
   for (const Task& task : plan.tasks())
-    if (const auto i = static_cast<std::size_t>(task.index); !done[i])
-      pending.push_back({task.index, task.cost * (extension ? extension->cost(task.index) : 1), batch[i]});
+    if (const auto i = static_cast<std::size_t>(task.index); !file.done()[i] && !is_given_up(file, task.index)) {
+      const int lost = file.starts()[i];
+      pending.push_back(
+          {task.index, task.cost * (extension ? extension->cost(task.index) : 1), lost > 0 ? -1 : batch[i], lost});
+    }
   return pending;
 }
 
@@ -69,6 +98,23 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
   else if (where.workers < where.cores && static_cast<std::size_t>(where.workers) < pending)
     console.note(fmt::format("{} of {} cores will work; for all of them: {}", where.workers, where.cores,
                              run_line(options, ranks_for(where.cores))));
+}
+
+/// Keeps account of starts in the file: a task whose count stands though it is not complete had its worker end.
+BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
+  return [body = std::move(body), &plan, &file](const std::vector<std::int64_t>& tasks, const StopRequested& stop) {
+    for (const std::int64_t task : tasks) file.begin(plan.task(task));
+    const auto take_back = [&](std::int64_t task) { file.abandon(plan.task(task)); };
+    try {
+      std::vector<TaskResult> results = body(tasks, stop);
+      for (std::size_t i = 0; i < tasks.size(); ++i)
+        if (results[i].outcome == TaskOutcome::pending) take_back(tasks[i]);
+      return results;
+    } catch (...) {  // a rank that can say so did not lose its life to the task
+      std::for_each(tasks.begin(), tasks.end(), take_back);
+      throw;
+    }
+  };
 }
 
 /// Master and worker take turns in one process.
@@ -122,10 +168,13 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
                                            options.extend.value_or(fs::path()));
   });
   if (!file.note().empty()) console.warn(file.note());
+  collectively(mpi.world(), [&] {
+    if (mpi.rank() == 0) give_up(plan, file);
+  });
   const FileSummary before =
       collectively(mpi.world(), [&] { return continues && mpi.rank() == 0 ? inspect(path) : FileSummary(); });
 
-  std::vector<PendingTask> pending = pending_tasks(plan, file.done(), extension);
+  std::vector<PendingTask> pending = pending_tasks(plan, file, extension);
   advise(console, options, where, pending.size());
   const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
   console.note(to_do == total
@@ -141,7 +190,8 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     file.write(task, record, origin);
   };
   const auto warn = [](const std::string& text) { Console(true).warn(text); };  // whichever rank finds the damage
-  BatchBody body = extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write);
+  BatchBody body =
+      counting_starts(extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write), plan, file);
   const auto commit = [&file] { file.commit_if_due(); };
   const Dispatch dispatch =
       mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), commit)

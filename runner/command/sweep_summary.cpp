@@ -59,9 +59,11 @@ std::string summary_text(const SweepSummary& summary) {
         fmt::format("{} for {} tasks, {:.3g} tasks/s, {} worker{} busy {:.0f} % of the time\n",
                     duration_text(dispatch.wall_s), now, static_cast<double>(now) / dispatch.wall_s, summary.workers,
                     summary.workers == 1 ? "" : "s", 100 * dispatch.busy_s / (summary.workers * dispatch.wall_s));
-  const std::int64_t again = counts[to_string(TaskOutcome::error)] + counts[to_string(TaskOutcome::timed_out)];
+  std::int64_t again = 0;
+  for (const TaskOutcome outcome : {TaskOutcome::error, TaskOutcome::timed_out, TaskOutcome::crashed})
+    again += counts[to_string(outcome)];
   if (again > 0 && dispatch.left == 0)
-    text += fmt::format("--resume --retry-failed runs the {} again that ended in an error or timed out\n",
+    text += fmt::format("--resume --retry-failed runs the {} again that ended in an error, timed out or crashed\n",
                         again == 1 ? "task" : fmt::format("{} tasks", again));
   text += "results: " + summary.path.native();
   if (dispatch.left == 0) text += "\nnext: " + script_line("summary.py", summary.path);

@@ -12,6 +12,7 @@ namespace rodsweep {
 namespace {
 
 constexpr std::size_t failures_kept = 5;
+constexpr int lost_before_alone = 2;
 
 }  // namespace
 
@@ -23,7 +24,7 @@ Master::Master(Channel& channel, std::vector<PendingTask> tasks, Progress& progr
       workers_(static_cast<std::size_t>(channel.size())),
       begin_(Progress::Clock::now()) {
   std::sort(pool_.begin(), pool_.end(), [](const PendingTask& a, const PendingTask& b) {
-    return std::tuple(-a.cost, a.batch, a.index) < std::tuple(-b.cost, b.batch, b.index);
+    return std::tuple(a.lost, -a.cost, a.batch, a.index) < std::tuple(b.lost, -b.cost, b.batch, b.index);
   });
   for (const PendingTask& task : pool_) pool_cost_ += task.cost;
   dispatch_.left = static_cast<std::int64_t>(pool_.size());
@@ -95,14 +96,17 @@ void Master::stop(int signal) {
 
 void Master::hand_out() {
   for (int rank = 1; rank < channel_->size() && next_ < pool_.size(); ++rank)
-    if (workers_[static_cast<std::size_t>(rank)].tasks.empty()) assign(rank);
+    if (workers_[static_cast<std::size_t>(rank)].tasks.empty() && !next_goes_alone()) assign(rank);
   for (int rank = 1; rank < channel_->size() && next_ < pool_.size(); ++rank)
     if (may_hold_another(workers_[static_cast<std::size_t>(rank)])) assign(rank);
+  if (next_goes_alone() && in_flight_ == 0) assign(1);
 }
+
+bool Master::next_goes_alone() const { return next_ < pool_.size() && pool_[next_].lost >= lost_before_alone; }
 
 bool Master::may_hold_another(const Worker& worker) const {
   constexpr double margin = 2;  // costs are estimates
-  if (worker.tasks.size() != 1 || pool_[next_].batch >= 0) return false;
+  if (worker.tasks.size() != 1 || pool_[next_].batch >= 0 || pool_[next_].lost > 0) return false;
   const double second = pool_[next_].cost;
   const auto workers = static_cast<double>(channel_->size() - 1);
   return margin * workers * (worker.tasks.front().cost + second) <= pool_cost_ - second;

@@ -6,6 +6,9 @@
 // before it starts the second one, and at the end of a sweep no task waits in a busy worker's hand while another worker
 // idles.
 //
+// Tasks whose workers ended while they ran, and could not say why, come after all others; where that has happened
+// twice, one at a time, with nothing beside it: should a task be what ends workers, it has only itself to take along.
+//
 // On a signal, here or on a worker, nothing more is handed out and running tasks are abandoned between two time steps.
 // Every Assign is answered by one Report; the workers are dismissed (Finish) when the last one is in.
 #pragma once
@@ -25,6 +28,7 @@ struct PendingTask {
   std::int64_t index = 0;
   double cost = 0;
   std::int64_t batch = -1;  ///< tasks of equal cost and number here may be evaluated together; -1: this one alone
+  int lost = 0;             ///< workers that ended while they ran it
 };
 
 /// What came of the tasks that were to do.
@@ -68,6 +72,7 @@ class Master {
   void hand_out();
   void assign(int rank);
   bool may_hold_another(const Worker& worker) const;
+  bool next_goes_alone() const;
 
   Channel* channel_;
   Progress* progress_;

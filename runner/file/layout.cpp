@@ -88,6 +88,8 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(text_field("/timing/tasks/host", host_bytes, {plan.size()}, "host of that rank"));
   fields.push_back(
       number_field<std::int32_t>("/timing/tasks/attempt", {plan.size()}, "1", "row of /runs in which it ran"));
+  fields.push_back(number_field<std::uint8_t>("/timing/tasks/starts", {plan.size()}, "1",
+                                              "workers that began it and ended without saying what came of it"));
   check_sizes(fields, plan);
   fields.erase(std::remove_if(fields.begin(), fields.end(), [](const Field& field) { return data_bytes(field) == 0; }),
                fields.end());

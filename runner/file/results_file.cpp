@@ -135,8 +135,16 @@ struct ResultsFile::Open {
     next_commit = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause));
   }
 
-  void set_state(std::int64_t task, std::uint8_t value) {
-    state.write(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task), 1, &value);
+  void set_state(std::int64_t task, std::uint8_t value) { set_byte(state, task, value); }
+  void set_starts(std::int64_t task, std::uint8_t value) { set_byte(starts, task, value); }
+  static void set_byte(const hdf5::RowDataset& rows, std::int64_t task, std::uint8_t value) {
+    rows.write(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task), 1, &value);
+  }
+
+  void say_who(std::int64_t task, const TaskOrigin& by) {
+    rank.write(hdf5::type_of<std::int32_t>(), static_cast<hsize_t>(task), 1, &by.rank);
+    host.write(host_type.id(), static_cast<hsize_t>(task), 1, hdf5::fixed_text(by.host, host_bytes).data());
+    attempt.write(hdf5::type_of<std::int32_t>(), static_cast<hsize_t>(task), 1, &by.attempt);
   }
 
   hdf5::File file;
@@ -149,7 +157,7 @@ struct ResultsFile::Open {
   AxisSizes sizes;
   RunRow run;                             // this start's
   std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: the file leaves it out
-  hdf5::RowDataset state, outcome, message, checksum, rank, host, attempt, write_s;
+  hdf5::RowDataset state, outcome, message, checksum, starts, rank, host, attempt, write_s;
   hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
   hdf5::Datatype host_type = hdf5::text_type(host_bytes);
   std::string own_host = host_name();
@@ -169,8 +177,8 @@ ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Pr
     lock = FileLock(path);
   });
   runs = broadcast(runs, comm);
-  return ResultsFile(path, plan, std::vector<std::uint8_t>(static_cast<std::size_t>(plan.size()), 0), runs, provenance,
-                     comm, std::move(lock));
+  const std::vector<std::uint8_t> none(static_cast<std::size_t>(plan.size()), 0);
+  return ResultsFile(path, plan, none, runs, none, provenance, comm, std::move(lock));
 }
 
 ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
@@ -182,20 +190,26 @@ ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Pr
     lock = FileLock(path);
     point = check_resumable(path, plan);
   });
-  point.done.resize(static_cast<std::size_t>(plan.size()));
-  check_mpi(MPI_Bcast(point.done.data(), static_cast<int>(point.done.size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
+  for (std::vector<std::uint8_t>* bytes : {&point.done, &point.starts}) {
+    bytes->resize(static_cast<std::size_t>(plan.size()));
+    check_mpi(MPI_Bcast(bytes->data(), static_cast<int>(bytes->size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
+  }
   point.runs = broadcast(point.runs, comm);
   const std::vector<std::uint8_t> again = to_run_again(path, point.done, retry, comm);
   for (std::size_t i = 0; i < again.size(); ++i)
-    if (again[i]) point.done[i] = 0;
-  ResultsFile file(path, plan, std::move(point.done), point.runs, provenance, comm, std::move(lock));
+    if (again[i]) point.done[i] = point.starts[i] = 0;
+  ResultsFile file(path, plan, std::move(point.done), point.runs, std::move(point.starts), provenance, comm,
+                   std::move(lock));
   file.take_back(again, comm);
   return file;
 }
 
 ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
-                         const Provenance& provenance, MPI_Comm comm, FileLock lock)
-    : open_(std::make_unique<Open>()), done_(std::move(done)), attempt_(std::min(runs, run_rows - 1)) {
+                         std::vector<std::uint8_t> starts, const Provenance& provenance, MPI_Comm comm, FileLock lock)
+    : open_(std::make_unique<Open>()),
+      done_(std::move(done)),
+      starts_(std::move(starts)),
+      attempt_(std::min(runs, run_rows - 1)) {
   if (runs >= run_rows) {
     note_ = fmt::format(
         "{} was started {} times before and remembers no more: this start takes the place of the last one in /runs",
@@ -215,6 +229,7 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->outcome = open_rows("/tasks/outcome");
     open_->message = open_rows("/tasks/message");
     open_->checksum = open_rows("/tasks/checksum");
+    open_->starts = open_rows("/timing/tasks/starts");
     open_->rank = open_rows("/timing/tasks/rank");
     open_->host = open_rows("/timing/tasks/host");
     open_->attempt = open_rows("/timing/tasks/attempt");
@@ -231,7 +246,10 @@ void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm com
   if (std::all_of(again.begin(), again.end(), [](std::uint8_t why) { return why == not_again; })) return;
   on_first_rank(comm, [&] {
     for (std::size_t i = 0; i < again.size(); ++i)
-      if (again[i]) open_->set_state(static_cast<std::int64_t>(i), 0);
+      if (again[i]) {
+        open_->set_state(static_cast<std::int64_t>(i), 0);
+        open_->set_starts(static_cast<std::int64_t>(i), 0);
+      }
     open_->synced.sync();
   });
   const auto note = [&](Again why, const char* text) {
@@ -247,6 +265,16 @@ void ResultsFile::commit() { open_->commit(); }
 
 void ResultsFile::commit_if_due() {
   if (!open_->written.empty() && Clock::now() >= open_->next_commit) open_->commit();
+}
+
+void ResultsFile::begin(const Task& task) {
+  const std::uint8_t before = starts_.at(static_cast<std::size_t>(task.index));
+  open_->say_who(task.index, {open_->own_rank, attempt_, open_->own_host, 0});
+  open_->set_starts(task.index, before < UINT8_MAX ? before + 1 : before);
+}
+
+void ResultsFile::abandon(const Task& task) {
+  open_->set_starts(task.index, starts_.at(static_cast<std::size_t>(task.index)));
 }
 
 void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
@@ -276,12 +304,11 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
   write_text(open.outcome, open.outcome_type, to_string(record.outcome));
   write_text(open.message, open.message_type, record.message);
   write_one(open.checksum, task_checksum(task.index, record));
+  open.set_starts(task.index, 0);
   const TaskOrigin here{open.own_rank, attempt_, open.own_host,
                         std::chrono::duration<double>(Clock::now() - begin).count()};
   const TaskOrigin& by = origin != nullptr ? *origin : here;
-  write_one(open.rank, by.rank);
-  write_text(open.host, open.host_type, by.host);
-  write_one(open.attempt, by.attempt);
+  open.say_who(task.index, by);
   write_one(open.write_s, by.write_s);
   open.written.push_back(task.index);
   commit_if_due();

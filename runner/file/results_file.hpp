@@ -53,9 +53,16 @@ class ResultsFile {
 
   /// Which tasks are complete, by task index (from the state bytes as they were when the file was opened).
   const std::vector<std::uint8_t>& done() const { return done_; }
+  /// Of every task, how many workers began it before this start and ended without saying what came of it.
+  const std::vector<std::uint8_t>& starts() const { return starts_; }
   int attempt() const { return attempt_; }  ///< this start's row of /runs
   /// What the user should hear about this file though it is no error; empty: nothing.
   const std::string& note() const { return note_; }
+
+  /// Independent, before a rank runs a task: counts the start, and says who runs it.
+  void begin(const Task& task);
+  /// Independent: takes a start back that this rank was told to give up.
+  void abandon(const Task& task);
 
   /// Independent: any rank, any task that is not done() yet, once. It is complete with the next commit(), which this is
   /// too where one is due. `origin`: who ran it, where that was not this start of this sweep.
@@ -74,12 +81,12 @@ class ResultsFile {
  private:
   struct Open;
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
-              const Provenance& provenance, MPI_Comm comm, FileLock lock);
+              std::vector<std::uint8_t> starts, const Provenance& provenance, MPI_Comm comm, FileLock lock);
 
   void take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm);
 
   std::unique_ptr<Open> open_;
-  std::vector<std::uint8_t> done_;
+  std::vector<std::uint8_t> done_, starts_;
   int attempt_ = 0;
   std::string note_;
 };

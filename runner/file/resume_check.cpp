@@ -145,7 +145,8 @@ ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
     check_job(file, path, plan);
     check_frame(file, path, other_revision);
     check_plan(file, path, plan, other_revision);
-    return ResumePoint{read_states(file, path), static_cast<int>(read_runs(file).size())};
+    return ResumePoint{read_states(file, path), hdf5::read_all<std::uint8_t>(file.id(), "/timing/tasks/starts"),
+                       static_cast<int>(read_runs(file).size())};
   });
 }
 

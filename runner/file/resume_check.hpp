@@ -11,8 +11,9 @@
 namespace rodsweep {
 
 struct ResumePoint {
-  std::vector<std::uint8_t> done;  ///< state bytes, by task index
-  int runs = 0;                    ///< rows of /runs in use
+  std::vector<std::uint8_t> done;    ///< state bytes, by task index
+  std::vector<std::uint8_t> starts;  ///< /timing/tasks/starts, likewise
+  int runs = 0;                      ///< rows of /runs in use
 };
 
 /// Does the job expand to the tasks that the file has?

@@ -13,12 +13,19 @@ const char* to_string(TaskOutcome outcome) {
     case TaskOutcome::timed_out: return "timed_out";
     case TaskOutcome::error: return "error";
     case TaskOutcome::torn: return "torn";
+    case TaskOutcome::crashed: return "crashed";
   }
   return "unknown";
 }
 
 bool may_change(TaskOutcome outcome) {
-  return outcome == TaskOutcome::pending || outcome == TaskOutcome::timed_out || outcome == TaskOutcome::error;
+  switch (outcome) {
+    case TaskOutcome::pending:
+    case TaskOutcome::timed_out:
+    case TaskOutcome::error:
+    case TaskOutcome::crashed: return true;
+    default: return false;
+  }
 }
 
 }  // namespace rodsweep

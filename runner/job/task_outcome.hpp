@@ -16,8 +16,9 @@ enum class TaskOutcome : std::int8_t {
   timed_out = 6,        ///< the task's time limit passed
   error = 7,            ///< an exception; its text is the task's message
   torn = 8,             ///< a joint opened by more than its length: no rod any more
+  crashed = 9,          ///< its worker ended while it ran, three times, and could not say why
 };
-inline constexpr int task_outcomes = 9;
+inline constexpr int task_outcomes = 10;
 
 const char* to_string(TaskOutcome outcome);
 

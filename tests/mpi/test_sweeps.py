@@ -13,6 +13,7 @@ import time
 import unittest
 
 import h5py
+import numpy as np
 
 RODSWEEP = os.environ["RODSWEEP"]
 MPIRUN = os.environ.get("MPIRUN", "mpirun")
@@ -242,6 +243,62 @@ class Interrupted(SweepCase):
 
         result = self.interrupt("alone.h5", 0, twice)
         self.assert_stopped(*result, "alone.h5")
+
+
+class Killers(SweepCase):
+    """A task that ends its worker whenever it runs, as one that takes all memory does."""
+
+    def test_a_killer_is_tried_last_then_alone_and_then_named(self):
+        # Many short tasks, and one that is longer and comes first.
+        killer = 100
+        path = job("killer", samples=1, segments=[20 + n // 50 for n in range(killer)] + [200], steps=40,
+                   record={"solves": "summary", "norms": "one"})
+        self.assert_exit(rodsweep(3, "run", path, "-o", "undisturbed.h5"), ALL_DONE)
+
+        done, accused = [], []
+        for attempt in range(3):
+            process = start(3, "run", path, "-o", "killer.h5", "--resume")
+            self.kill_who_runs(process, "killer.h5", killer)
+            process.communicate(timeout=30)
+            with h5py.File("killer.h5") as file:
+                starts = file["/timing/tasks/starts"][:]
+                self.assertEqual(starts[killer], attempt + 1)
+                accused.append(np.flatnonzero(starts))
+                done.append(int(file["/tasks/state"][:].sum()))
+        self.assertLess(done[0], killer // 2)     # tried first when nothing was known of it,
+        self.assertGreater(done[1], killer // 2)  # then last, perhaps beside the last of the others,
+        self.assertEqual(list(accused[2]), [killer])  # then alone: no other task has lost a worker and is not done
+
+        last = rodsweep(3, "run", path, "-o", "killer.h5", "--resume")
+        self.assert_exit(last, TASKS_FAILED)
+        after = status("killer.h5")
+        self.assertEqual(after["outcomes"], {"ok": killer, "crashed": 1})
+        self.assertEqual([(f["task"], f["outcome"]) for f in after["failures"]], [(killer, "crashed")])
+        self.assertIn("each of the 3 times", after["failures"][0]["message"])
+        self.assertIn("--retry-failed", last.stdout)
+        self.assert_whole("killer.h5")
+
+        # Left alone it is a task like any other.
+        self.assert_exit(rodsweep(3, "run", path, "-o", "killer.h5", "--resume", "--retry-failed"), ALL_DONE)
+        self.assert_same_results("undisturbed.h5", "killer.h5")
+
+    def kill_who_runs(self, process, path, task):
+        """Waits until a worker has begun the task, once more than before, and kills it."""
+        deadline = time.monotonic() + 30
+        before = None
+        while time.monotonic() < deadline and process.poll() is None:
+            try:
+                with h5py.File(path, "r", locking=False) as file:
+                    starts, rank = int(file["/timing/tasks/starts"][task]), int(file["/timing/tasks/rank"][task])
+            except OSError:
+                starts, rank = 0, 0
+            if before is None:
+                before = starts
+            elif starts > before:
+                os.kill(ranks_of(process)[rank], signal.SIGKILL)
+                return
+            time.sleep(0.01)
+        self.fail(f"task {task} was not begun")
 
 
 class Refusals(SweepCase):

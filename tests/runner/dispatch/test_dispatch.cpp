@@ -46,6 +46,33 @@ TEST_CASE("tasks are handed out longest first, ties by number") {
   CHECK(order == std::vector<std::int64_t>{1, 3, 2, 4, 0});
 }
 
+TEST_CASE("tasks that lost their workers come last, and again lost ones with nothing beside them") {
+  std::vector<PendingTask> tasks = tasks_of_cost({9, 1, 8, 1, 1, 7});
+  tasks[0].lost = 2;
+  tasks[2].lost = 1;
+  tasks[5].lost = 3;
+  Sweep sweep(2, tasks);
+  std::vector<Inbox> inboxes{Inbox(sweep.network[1]), Inbox(sweep.network[2])};
+  std::vector<std::int64_t> order;
+  std::map<std::int64_t, Inbox*> running;
+  while (sweep.master.step() != Master::Step::finished) {
+    for (Inbox& inbox : inboxes)
+      for (const std::int64_t task : inbox.assigned()) {
+        if (task == 0 || task == 5) CHECK(running.empty());
+        CHECK((running.count(0) == 0 && running.count(5) == 0));
+        order.push_back(task);
+        running[task] = &inbox;
+      }
+    if (!running.empty()) {  // one report at a time, so that workers are out of step
+      const auto last = std::prev(running.end());
+      last->second->report(last->first);
+      running.erase(last);
+    }
+  }
+  REQUIRE(order.size() == 6);
+  CHECK(std::vector<std::int64_t>(order.begin() + 3, order.end()) == std::vector<std::int64_t>{2, 0, 5});
+}
+
 TEST_CASE("every task is run exactly once, whatever the order in which ranks get their turns") {
   const unsigned seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   std::mt19937 random(seed);

@@ -84,6 +84,6 @@ TEST_CASE("a failing write is no outcome of the task") {
 
 TEST_CASE("outcomes of tasks keep the numbers and names that files hold") {
   const char* const names[task_outcomes] = {"pending",         "ok",        "diverged", "not_a_number", "indefinite",
-                                            "iteration_limit", "timed_out", "error",    "torn"};
+                                            "iteration_limit", "timed_out", "error",    "torn",         "crashed"};
   for (int i = 0; i < task_outcomes; ++i) CHECK(to_string(static_cast<TaskOutcome>(i)) == std::string(names[i]));
 }

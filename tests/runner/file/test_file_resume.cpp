@@ -56,6 +56,21 @@ TEST_CASE("a resumed file knows what is done and is the same in the end as one w
   CHECK(summary.runs[2].tasks == 3);
 }
 
+TEST_CASE("a file counts the workers that began a task and said nothing of it since") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  make_file(folder / "file.h5", plan, 1);
+  for (int start = 0; start < 2; ++start) {
+    ResultsFile file = resume(folder / "file.h5", plan);
+    CHECK(file.starts()[3] == start);
+    for (const std::int64_t i : {2, 3, 4, 5}) file.begin(plan.task(i));
+    file.abandon(plan.task(2));
+    if (start == 0) continue;
+    file.write(plan.task(4), synthetic_record(plan, 4));
+  }
+  CHECK(resume(folder / "file.h5", plan).starts() == std::vector<std::uint8_t>{0, 0, 0, 2, 0, 2});
+}
+
 TEST_CASE("a file that a run writes is refused to another, until that ends") {
   const TemporaryFolder folder;
   const Plan plan = plan_of(full_job());
