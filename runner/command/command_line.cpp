@@ -72,6 +72,11 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->add_flag("--retry-failed", run.retry_failed,
                  "With --resume: run tasks again that ended in an error, timed out or crashed")
       ->needs(resume);
+  command
+      ->add_option("--task-time-limit", run.task_time_limit_s,
+                   "Give up tasks that take longer, whatever the job says; 0: no limit")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("SECONDS");
   command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
   return command;
 }

@@ -19,6 +19,7 @@ struct RunOptions {
   bool resume = false;                          ///< continue the output if it exists
   bool retry_failed = false;  ///< and run its tasks again that ended in an error, timed out or crashed
   std::optional<std::filesystem::path> extend;  ///< results of a smaller job, which need not be computed again
+  std::optional<double> task_time_limit_s;      ///< in place of the job's
   std::string program = "rodsweep";             ///< as the user typed it
   std::string command;                          ///< the whole line, for /runs
 };
@@ -29,8 +30,9 @@ inline constexpr const char* run_help =
     "wants --allow-run-as-root.\n"
     "A training (kind \"train\") has no master: one rank works on all its cores, at most training.shards of them,\n"
     "or on as many as OMP_NUM_THREADS says; ranks are for several hosts, one on each.\n\n"
-    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop the sweep between two time steps: running tasks are abandoned,\n"
-    "finished ones are in the file. mpirun hands SIGUSR1 on to all ranks and then exits 4 as well. On SIGTERM and\n"
+    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop the sweep, within seconds: running tasks are abandoned, in the\n"
+    "middle of a solve too, finished ones are in the file. mpirun hands SIGUSR1 on to all ranks and then exits 4 as "
+    "well. On SIGTERM and\n"
     "SIGINT it kills what still runs a second later, and itself exits 1. However a sweep ended, it can be resumed.\n"
     "A training stops between two steps and goes on from there, to the same bits.\n\n"
     "Examples:\n"
@@ -41,6 +43,8 @@ inline constexpr const char* run_help =
     "  rodsweep run job.json -o out.h5 --resume --retry-failed\n"
     "                                                      and tasks again that ended in an error, timed out or "
     "crashed\n"
+    "  rodsweep run job.json -o out.h5 --resume --retry-failed --task-time-limit 3600\n"
+    "                                                      and give each an hour, whatever the job says\n"
     "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more values in a\n"
     "                                                      grid, or more guesses. Copies what out.h5 holds, tries\n"
     "                                                      new guesses alone on its trajectories, runs the rest.\n"

@@ -151,6 +151,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     Plan made(job);
     check_guesses(made);
     check_factors(made);
+    if (options.task_time_limit_s) made.set_task_time_limit(*options.task_time_limit_s);
     return made;
   });
   const StopSignal signal;  // from here on a signal is a request, until the file is closed

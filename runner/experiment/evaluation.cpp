@@ -9,6 +9,7 @@
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/experiment/projections.hpp"
 #include "runner/experiment/simulation_log.hpp"
+#include "solver/interruption.hpp"
 #include "solver/step/stopwatch.hpp"
 #include "solver/step/time_step.hpp"
 
@@ -18,6 +19,8 @@ namespace {
 /// Runs the steps; sets outcome and message. Returns false when abandoned.
 bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop,
               const Stopwatch& watch) {
+  const auto is_late = [&] { return spec.time_limit_s > 0 && watch.seconds() > spec.time_limit_s; };
+  const Interruptible interruptible([&] { return (stop && stop()) || is_late(); });
   Scene scene = build_scene(spec.scene);
   MeasuredSolve solve(scene, spec, record);
   std::optional<StoringSolve> storing;
@@ -33,7 +36,14 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
     if (simulation.out_of_time(step, watch.seconds())) break;
     solve.take_elapsed_s();
     const Stopwatch step_watch;
-    const StepReport report = stepper.step(*projection);
+    StepReport report;
+    try {
+      report = stepper.step(*projection);
+    } catch (const InterruptedComputation&) {
+      if (stop && stop()) return false;
+      simulation.out_of_time(step, watch.seconds());
+      break;
+    }
     record.rest_s[static_cast<std::size_t>(step)] = static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
     if (!simulation.finish_step(step, scene, report, stepper.constraint_dt())) break;
   }

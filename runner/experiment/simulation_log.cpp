@@ -1,5 +1,7 @@
 #include "runner/experiment/simulation_log.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -98,7 +100,7 @@ void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepRep
 bool SimulationLog::out_of_time(int step, double elapsed_s) {
   if (spec_.time_limit_s <= 0 || elapsed_s <= spec_.time_limit_s) return false;
   fail(TaskOutcome::timed_out, step,
-       "the limit task_time_limit_s of " + std::to_string(spec_.time_limit_s) + " s has passed");
+       fmt::format("the time limit of {:g} s has passed (task_time_limit_s or --task-time-limit)", spec_.time_limit_s));
   return true;
 }
 

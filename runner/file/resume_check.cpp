@@ -48,7 +48,7 @@ void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
   throw FileError(
       fmt::format("{} holds the results of another job than {}; they differ first in line {}:\n  {}: {}\n  {}: {}\n"
                   "Resume with the job that the file was made from (it is in /job/text), or run this one into "
-                  "another file with -o FILE",
+                  "another file with -o FILE; a time limit alone can be changed with --task-time-limit",
                   path.native(), plan.job().path.native(), line.number, plan.job().path.native(), line.here,
                   path.native(), line.in_file));
 }

@@ -77,10 +77,12 @@ std::string written(const Json& value) {
 void check_extends(const Job& job, const Job& before) {
   const std::string file = before.path.native();
   const auto refuse = [&](const std::string& path, const std::string& what) {
-    throw job_error(job.path, path,
-                    fmt::format("{}. --extend takes the job of {} (rodsweep info {} --job) with more samples, more "
-                                "values in a grid or more guesses, and no other change; run this job without --extend",
-                                what, file, file));
+    throw job_error(
+        job.path, path,
+        fmt::format(
+            "{}. --extend takes the job of {} (rodsweep info {} --job) with more samples, more "
+            "values in a grid, more guesses or another time limit, and no other change; run this job without --extend",
+            what, file, file));
   };
   if (job.samples < before.samples) {
     refuse("samples", fmt::format("{} here are fewer than the {} in {}", job.samples, before.samples, file));
@@ -90,7 +92,8 @@ void check_extends(const Job& job, const Job& before) {
     refuse("guesses", fmt::format("\"{}\" of {} is not among them", guess_label(guess), file));
   }
   Json now = job.values, then = before.values;
-  for (const char* free : {"$schema", "name", "description", "samples", "guesses"}) now.erase(free), then.erase(free);
+  for (const char* free : {"$schema", "name", "description", "samples", "guesses", "task_time_limit_s"})
+    now.erase(free), then.erase(free);
   if (const auto found = difference(now, then, "")) {
     refuse(found->path, fmt::format("{} here, {} in {}", written(found->now), written(found->before), file));
   }

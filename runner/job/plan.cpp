@@ -65,7 +65,10 @@ void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const O
 }
 
 Plan::Plan(Job job)
-    : job_(std::move(job)), space_(job_.values, job_.path), guess_labels_(rodsweep::guess_labels(job_)) {
+    : job_(std::move(job)),
+      space_(job_.values, job_.path),
+      guess_labels_(rodsweep::guess_labels(job_)),
+      task_time_limit_s_(job_.values["task_time_limit_s"]) {
   expand();
   place_rows();
 }
@@ -150,7 +153,7 @@ TaskSpec Plan::spec(std::int64_t index) const {
   spec.own_guess = task.own_guess;
   spec.output = output_spec(job_);
   spec.seed = random_bits(job_.seed, static_cast<std::uint64_t>(task.sample), random_stream("guesses"));
-  spec.time_limit_s = job_.values["task_time_limit_s"];
+  spec.time_limit_s = task_time_limit_s_;
   return spec;
 }
 

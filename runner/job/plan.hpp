@@ -50,6 +50,9 @@ class Plan {
   const std::vector<Task>& tasks() const { return tasks_; }
   TaskSpec spec(std::int64_t index) const;  ///< built on demand: a plan of 100,000 tasks stays small
 
+  /// Of this start, in place of the job's; 0: none. What tasks that meet it result in does not depend on it.
+  void set_task_time_limit(double seconds) { task_time_limit_s_ = seconds; }
+
   TaskIdentity identity(std::int64_t index) const;  ///< built on demand
 
   const std::vector<std::string>& guess_labels() const { return guess_labels_; }  ///< /axes/guess; empty without cg
@@ -77,6 +80,7 @@ class Plan {
   std::vector<std::string> kept_;  ///< of a task alone: parameters that the whole plan has columns of
   PerRows<std::int64_t> rows_{};
   std::int64_t max_frames_ = 0;
+  double task_time_limit_s_;
 };
 
 /// Sets how many segments, joints, steps, frames and rows of every kind a task has.

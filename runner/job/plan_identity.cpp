@@ -49,9 +49,9 @@ TaskIdentity Plan::identity(std::int64_t index) const {
     }
   }
   const auto own = static_cast<std::size_t>(task.own_guess);
-  identity.trajectory += fmt::format(
-      "seed {} sample {} limit {} record {}\n{}", job_.seed, task.sample, job_.values["task_time_limit_s"].dump(),
-      nlohmann::json(job_.values["record"]).dump(), task.own_guess < 0 ? "" : identity.guesses[own]);
+  identity.trajectory +=
+      fmt::format("seed {} sample {} record {}\n{}", job_.seed, task.sample,
+                  nlohmann::json(job_.values["record"]).dump(), task.own_guess < 0 ? "" : identity.guesses[own]);
   return identity;
 }
 

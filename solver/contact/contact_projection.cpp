@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "solver/interruption.hpp"
 #include "solver/numbers/rotation.hpp"
 
 namespace rodsweep {
@@ -61,6 +62,7 @@ bool ContactProjection::project(double constraint_dt) {
   restart(HUGE_VAL);
   for (int i = 0; i < settings_.sweeps; ++i) {
     const double moved = sweep();
+    check_interrupted(static_cast<std::int64_t>(contacts_.size()) * 100);
     if (i == 0) swept_ = before_;
     const bool converged = moved < settings_.tolerance;
     if (converged && i == 0 && !pressed) {

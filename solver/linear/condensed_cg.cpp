@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "solver/interruption.hpp"
 #include "solver/linear/condensation.hpp"
 #include "solver/linear/ksp_outcome.hpp"
 #include "solver/linear/petsc_check.hpp"
@@ -80,6 +81,8 @@ struct CondensedCg::Impl {
       *reason = KSP_DIVERGED_NANORINF;
     else if (self.norm <= self.goal)
       *reason = KSP_CONVERGED_RTOL;
+    else if (is_interrupted(work_of_iteration(self.op.a)))
+      *reason = KSP_DIVERGED_BREAKDOWN;
     return 0;
   }
 
@@ -129,6 +132,7 @@ CgReport CondensedCg::solve(const VectorX& b, VectorX& x, const CgStart& start, 
   }
   copy(s.g, s.rhs);
   petsc_check(KSPSolve(s.ksp, s.rhs, s.y), "KSPSolve");
+  check_interrupted(0);
   s.condensation.expand(s.residual, vector_data(s.y), s.d);
   x += s.d;
   PetscInt iterations = 0;

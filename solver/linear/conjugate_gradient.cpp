@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "solver/interruption.hpp"
 #include "solver/linear/ksp_outcome.hpp"
 #include "solver/linear/petsc_check.hpp"
 #include "solver/linear/petsc_operator.hpp"
@@ -22,6 +23,7 @@ constexpr double divergence_limit = 1e30;
 struct Target {
   double tolerance = 0;
   double reference = 0;
+  std::int64_t work = 0;  ///< of an iteration, for is_interrupted()
 };
 
 PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReason* reason, void* context) noexcept {
@@ -33,6 +35,8 @@ PetscErrorCode test_convergence(KSP, PetscInt, PetscReal norm, KSPConvergedReaso
     *reason = KSP_CONVERGED_RTOL;
   else if (norm > divergence_limit * target.reference)
     *reason = KSP_DIVERGED_DTOL;
+  else if (is_interrupted(target.work))
+    *reason = KSP_DIVERGED_BREAKDOWN;
   return 0;
 }
 
@@ -256,9 +260,10 @@ CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, const CgStart& s
   s.refresh();
   if (!s.own_positive) return s.without_iterations(SolveOutcome::indefinite, norm);
   s.use(deflation);
-  s.target = {tolerance, reference};
+  s.target = {tolerance, reference, work_of_iteration(s.a)};
   copy(first, s.b);
   petsc_check(KSPSolve(s.ksp, s.b, s.x), "KSPSolve");
+  check_interrupted(0);
   add(s.x, x);
 
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "solver/interruption.hpp"
 #include "solver/linear/front_kernels.hpp"
 
 namespace rodsweep {
@@ -89,6 +90,8 @@ bool MultifrontalFactor::factorise(const BlockMatrix& a) {
     const Panel panel(node, first);
     if (!panel.factorise(inverse_pivot_.data() + 6 * node.first)) return false;
     panel.subtract_square(update_of(node));
+    const std::int64_t rows = node.columns + node.row_count;
+    check_interrupted(20 * node.columns * rows * rows);
   }
   return true;
 }

@@ -6,6 +6,8 @@
 
 #include <petscmat.h>
 
+#include <cstdint>
+
 #include "solver/linear/block_matrix.hpp"
 #include "solver/linear/constraint_product.hpp"
 
@@ -19,6 +21,9 @@ struct BlockOperator {
 
   void multiply(const double* x, double* y) const { product ? product->multiply(x, y) : a.multiply(x, y); }
 };
+
+/// Nanoseconds that an iteration of CG takes, roughly, for is_interrupted().
+inline std::int64_t work_of_iteration(const BlockMatrix& a) { return 10 * static_cast<std::int64_t>(a.blocks.size()); }
 
 /// A matrix whose product is that of `op`. Changed entries are told by MatAssemblyBegin() and MatAssemblyEnd().
 Mat create_operator(BlockOperator& op);

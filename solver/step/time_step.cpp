@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "solver/interruption.hpp"
 #include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/rotation.hpp"
 
@@ -102,6 +103,7 @@ TimeStepper::Newton TimeStepper::iterate(Projection& projection, int until, Step
     newton_residual_ = momentum_residual_ = 0;
     for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
       const SolvePosition at{steps_, newton, static_cast<int>(r)};
+      check_interrupted(static_cast<std::int64_t>(scene_.rods[r].joints.size()) * 500);
       const ProjectionReport done = projection.project(scene_.rods[r], at, dt_c, settings_.newton_tolerance);
       newton_residual_ = larger_or_nan(newton_residual_, done.newton_residual);
       momentum_residual_ = larger_or_nan(momentum_residual_, done.momentum_residual);

@@ -196,8 +196,8 @@ class Refusing(ExtendCase):
 
     def test_jobs_that_differ_otherwise_and_wrong_files(self):
         old = self.old()
-        advice = "--extend takes the job of old.h5 (rodsweep info old.h5 --job) with more samples, more values in a grid " \
-                 "or more guesses, and no other change; run this job without --extend"
+        advice = "--extend takes the job of old.h5 (rodsweep info old.h5 --job) with more samples, more values in a grid, " \
+                 "more guesses or another time limit, and no other change; run this job without --extend"
         for changes, *texts in (  # the words of single refusals: tests/runner/test_extension.cpp
                 ({"seed": 6}, "seed: 6 here, 5 in old.h5", advice),
                 ({"segments": (6, 7)}, 'scene.segments: {"grid":[6,7]} here, 9 in old.h5', advice)):

@@ -356,6 +356,17 @@ class Outcomes(SweepCase):
         self.assertEqual((now["failed"], now["pending"]), (24, 0))
         self.assertEqual([s["exit_code"] for s in now["starts"]], [TASKS_FAILED, TASKS_FAILED])
 
+    def test_a_limit_belongs_to_a_start_and_not_to_the_results(self):
+        path = job("limited", samples=1, segments=[6, 3000], solve={"reference": "cg"}, guesses=["zero"],
+                   time={"step_s": 0.02, "steps": 1, "newton_iterations": 1})
+        short = rodsweep(2, "run", path, "--task-time-limit", "0.1")
+        self.assert_exit(short, TASKS_FAILED)
+        self.assertIn("time limit of 0.1 s has passed", short.stdout)
+        self.assertEqual(status("results/limited.h5")["outcomes"], {"ok": 1, "timed_out": 1})
+        self.assert_exit(rodsweep(2, "run", path, "--resume", "--retry-failed"), ALL_DONE)
+        self.assert_exit(rodsweep(2, "run", path, "-o", "unlimited.h5"), ALL_DONE)
+        self.assert_same_results("unlimited.h5", "results/limited.h5")
+
     def test_resume_starts_a_sweep_that_has_no_file_and_does_nothing_to_a_finished_one(self):
         path = job("fresh")
         self.assert_exit(rodsweep(2, "run", path, "--resume"), ALL_DONE)

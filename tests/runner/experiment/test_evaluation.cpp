@@ -50,6 +50,22 @@ TEST_CASE("an exact guess takes no iteration, one product with the matrix for ea
   }
 }
 
+TEST_CASE("a time limit and a stop are met in the middle of a solve") {
+  Json job = with("/scene/segments", "20000", job_with(R"(["zero"])", R"({"reference": "cg"})"));
+  job["task_time_limit_s"] = 0.05;
+  const TaskRecord late = evaluated(job, TaskOutcome::timed_out);
+  CHECK(late.steps_done[0] == 0);
+  CHECK(late.message.find("step 0: the time limit of 0.05 s has passed") == 0);
+
+  job["task_time_limit_s"] = 0;
+  const Plan plan = plan_of(job);
+  TaskRecord record;
+  record.prepare(plan.task(0), axis_sizes(plan));
+  int asked = 0;
+  CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, [&] { return ++asked > 2; }));
+  CHECK(record.steps_done[0] == 0);
+}
+
 TEST_CASE("with CG as the reference the counts are those beside the direct solve, which is not run") {
   for (const char* guesses : {R"(["zero", "previous", "quadratic"])", R"(["previous", "zero"])"}) {
     const TaskRecord direct = evaluated(job_with(guesses));
