@@ -77,6 +77,11 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
                    "Give up tasks that take longer, whatever the job says; 0: no limit")
       ->check(CLI::NonNegativeNumber)
       ->type_name("SECONDS");
+  command
+      ->add_option("--memory-limit-gb", run.memory_limit_gb,
+                   "Memory of a rank; a task that wants more is an error [an equal share of nine tenths of the host's]")
+      ->check(CLI::PositiveNumber)
+      ->type_name("GB");
   command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
   return command;
 }

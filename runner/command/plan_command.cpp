@@ -13,6 +13,7 @@
 #include "runner/experiment/batched_evaluation.hpp"
 #include "runner/experiment/factor_check.hpp"
 #include "runner/experiment/guess_check.hpp"
+#include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/inputs.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/terminal/text.hpp"
@@ -67,6 +68,7 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
                               {"steps_run", p.steps},
                               {"steps", p.of_steps},
                               {"task_seconds", p.seconds},
+                              {"memory_bytes", p.memory_bytes},
                               {"outcome", to_string(p.outcome)},
                               {"message", p.message}});
   return json;
@@ -100,6 +102,10 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
         seconds / 3600, duration_text(std::max(longest->seconds, seconds / cores)), cores, cores == 1 ? "" : "s",
         probes.size(), probes.size() == 1 ? "" : "s", duration_text(shortest->seconds),
         duration_text(longest->seconds));
+    const auto most = std::max_element(probes.begin(), probes.end(), [](const Probe& a, const Probe& b) {
+                        return a.memory_bytes < b.memory_bytes;
+                      })->memory_bytes;
+    if (most > 0) text += fmt::format("memory   {} at most of the tasks tried, a process each\n", bytes_text(most));
     for (const Probe& p : probes)
       if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
         text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);
@@ -117,6 +123,7 @@ ExitCode execute(const PlanOptions& options, Console& console) {
   const Plan plan(job);
   check_guesses(plan);
   check_factors(plan);
+  limit_memory((1 - memory_reserve) * host_memory());
   const std::vector<Probe> probes = options.probe ? probe(plan, evaluate_among_equals) : std::vector<Probe>();
   console.result(options.json ? to_json(plan, probes).dump(2) : to_text(plan, probes, options));
   return ExitCode::ok;

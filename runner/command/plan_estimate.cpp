@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "runner/experiment/host_memory.hpp"
+
 namespace rodsweep {
 
 namespace {
@@ -35,6 +37,7 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
             done,
             whole.steps,
             seconds / static_cast<double>(done) * static_cast<double>(whole.steps),
+            static_cast<std::int64_t>(peak_memory()),
             record.outcome,
             record.message};
   }

@@ -20,6 +20,7 @@ struct RunOptions {
   bool retry_failed = false;  ///< and run its tasks again that ended in an error, timed out or crashed
   std::optional<std::filesystem::path> extend;  ///< results of a smaller job, which need not be computed again
   std::optional<double> task_time_limit_s;      ///< in place of the job's
+  std::optional<double> memory_limit_gb;        ///< of every rank; default: its share of the host's memory
   std::string program = "rodsweep";             ///< as the user typed it
   std::string command;                          ///< the whole line, for /runs
 };

@@ -13,6 +13,7 @@
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/experiment/factor_check.hpp"
 #include "runner/experiment/guess_check.hpp"
+#include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
@@ -157,6 +158,8 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const StopSignal signal;  // from here on a signal is a request, until the file is closed
   const fs::path path = output_of(options, job.name);
   const Placement where = placement(mpi.world());
+  limit_memory(options.memory_limit_gb ? 1e9 * *options.memory_limit_gb
+                                       : (1 - memory_reserve) * host_memory() / where.host_workers);
   const auto extension = collectively(mpi.world(), [&] { return open_extension(options, path, plan); });
   const int begun =
       collectively(mpi.world(), [&] { return mpi.rank() == 0 && has_begun(options, path, extension) ? 1 : 0; });

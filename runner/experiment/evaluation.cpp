@@ -2,10 +2,12 @@
 
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 
 #include "runner/dataset/stored_systems.hpp"
 #include "runner/experiment/batched_evaluation.hpp"
+#include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/experiment/projections.hpp"
 #include "runner/experiment/simulation_log.hpp"
@@ -59,6 +61,9 @@ bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   bool finished = true;
   try {
     finished = simulate(task, spec, record, stop, watch);
+  } catch (const std::bad_alloc&) {
+    record.outcome = TaskOutcome::error;
+    record.message = out_of_memory_text();
   } catch (const std::exception& error) {
     record.outcome = TaskOutcome::error;
     record.message = error.what();

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <exception>
 #include <map>
+#include <new>
 #include <utility>
 
 #include "runner/experiment/batched_evaluation.hpp"
+#include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/file/extension.hpp"
 
@@ -18,12 +20,16 @@ namespace {
 bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& evaluate, const StopRequested& stop) {
   try {
     return evaluate(*run.task, run.spec, *run.record, stop);
+  } catch (const std::bad_alloc&) {
+    run.record->message = out_of_memory_text();
   } catch (const std::exception& error) {
-    run.record->prepare(*run.task, sizes);
-    run.record->outcome = TaskOutcome::error;
     run.record->message = error.what();
-    return true;
   }
+  const std::string message = std::move(run.record->message);
+  run.record->prepare(*run.task, sizes);
+  run.record->outcome = TaskOutcome::error;
+  run.record->message = message;
+  return true;
 }
 
 /// The guesses that the earlier file lacks, on the task's trajectory, put beside those that it has. False: abandoned.

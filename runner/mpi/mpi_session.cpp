@@ -90,7 +90,7 @@ Placement placement(MPI_Comm comm, Share share) {
   std::array<int, 3> part{works, host_rank == 0 ? host_cores : 0, host_workers > host_cores}, sum{};
   check_mpi(MPI_Allreduce(part.data(), sum.data(), 3, MPI_INT, MPI_SUM, comm), "MPI_Allreduce");
   const int threads = std::min(CPU_COUNT(&mine), host_cores / std::max(host_workers, 1));
-  return {sum[0], sum[1], std::max(threads, 1), sum[2] > 0};
+  return {sum[0], sum[1], std::max(threads, 1), std::max(host_workers, 1), sum[2] > 0};
 }
 
 }  // namespace rodsweep

@@ -65,6 +65,7 @@ struct Placement {
   int workers = 1;              ///< ranks that compute: all, or in a sweep all but the master, or the one rank
   int cores = 1;                ///< of all hosts
   int threads = 1;              ///< this rank's share of its host's cores, at least one
+  int host_workers = 1;         ///< of this rank's host
   bool oversubscribed = false;  ///< on some host more workers than cores; the master sleeps and is not counted
 };
 enum class Share { all_work, one_is_master };

@@ -367,6 +367,14 @@ class Outcomes(SweepCase):
         self.assert_exit(rodsweep(2, "run", path, "-o", "unlimited.h5"), ALL_DONE)
         self.assert_same_results("unlimited.h5", "results/limited.h5")
 
+    def test_a_task_beyond_its_share_of_memory_is_an_error_and_no_death(self):
+        path = job("large", samples=1, segments=[6, 300000], guesses=["zero"], record={"solves": "summary"},
+                   time={"step_s": 0.02, "steps": 1, "newton_iterations": 1})
+        bounded = rodsweep(2, "run", path, "--memory-limit-gb", "0.4")
+        self.assert_exit(bounded, TASKS_FAILED)
+        self.assertEqual(status("results/large.h5")["outcomes"], {"ok": 1, "error": 1})
+        self.assertIn("more than the 400 MB that this process may have", bounded.stdout)
+
     def test_resume_starts_a_sweep_that_has_no_file_and_does_nothing_to_a_finished_one(self):
         path = job("fresh")
         self.assert_exit(rodsweep(2, "run", path, "--resume"), ALL_DONE)

@@ -1,0 +1,80 @@
+#include "runner/experiment/host_memory.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// A file with one number in it; "max", which cgroups write for none, is none.
+double number_in(const fs::path& path) {
+  std::ifstream file(path);
+  double value = 0;
+  return file >> value ? value : unlimited;
+}
+
+/// The least limit of a control group and those above it.
+double limit_of(const fs::path& mount, std::string group, const char* name) {
+  double least = unlimited;
+  for (;;) {
+    least = std::min(least, number_in(mount / fs::path(group).relative_path() / name));
+    if (group.empty() || group == "/") return least;
+    group = fs::path(group).parent_path().native();
+  }
+}
+
+}  // namespace
+
+double host_memory(const fs::path& root, const fs::path& proc) {
+  double least = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  std::ifstream groups(proc / "self/cgroup");
+  const fs::path mount = root / "sys/fs/cgroup";
+  for (std::string line; std::getline(groups, line);) {  // NUMBER:CONTROLLERS:GROUP; version 2 has no controllers
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1), group = line.substr(second + 1);
+    if (controllers.empty()) least = std::min(least, limit_of(mount, group, "memory.max"));
+    if (controllers == "memory") least = std::min(least, limit_of(mount / "memory", group, "memory.limit_in_bytes"));
+  }
+  return least;
+}
+
+void limit_memory(double bytes) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  limit.rlim_cur = static_cast<rlim_t>(std::min(bytes, static_cast<double>(limit.rlim_max)));
+  setrlimit(RLIMIT_DATA, &limit);
+}
+
+std::string out_of_memory_text() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "out of memory";
+  return fmt::format(
+      "out of memory: it wants more than the {} that this process may have; fewer ranks on a host leave "
+      "each more, --memory-limit-gb sets it",
+      bytes_text(static_cast<std::int64_t>(limit.rlim_cur)));
+}
+
+double peak_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmHWM:", 0) == 0) {
+      double kibibytes = 0;
+      std::istringstream(line.substr(6)) >> kibibytes;
+      return 1024 * kibibytes;
+    }
+  return 0;
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,52 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "runner/experiment/host_memory.hpp"
+#include "tests/runner/file_examples.hpp"
+
+using namespace rodsweep;
+namespace fs = std::filesystem;
+
+namespace {
+
+void write(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path) << text;
+}
+
+}  // namespace
+
+TEST_CASE("a host's memory is the machine's or the least that a control group allows") {
+  const TemporaryFolder folder;
+  const auto found = [&] { return host_memory(folder.path(), folder / "proc"); };
+  const double machine = found();
+  CHECK(machine > 1e8);
+
+  const fs::path groups = folder / "sys/fs/cgroup";
+  SECTION("version 2") {
+    write(folder / "proc/self/cgroup", "0::/job_7/step_0\n");
+    write(groups / "job_7/step_0/memory.max", "max\n");
+    CHECK(found() == machine);
+    write(groups / "job_7/memory.max", "50000000\n");
+    CHECK(found() == 50000000);
+    write(groups / "job_7/step_0/memory.max", "20000000\n");
+    CHECK(found() == 20000000);
+  }
+  SECTION("version 1") {
+    write(folder / "proc/self/cgroup", "9:name=systemd:/\n4:memory:/job_7\n0::/\n");
+    CHECK(found() == machine);
+    write(groups / "memory/job_7/memory.limit_in_bytes", "9223372036854771712\n");
+    CHECK(found() == machine);
+    write(groups / "memory/memory.limit_in_bytes", "30000000\n");
+    CHECK(found() == 30000000);
+  }
+}
+
+TEST_CASE("the peak of memory stays when it is given back") {
+  const double before = peak_memory();
+  REQUIRE(before > 0);
+  { const std::vector<char> held(100'000'000, 1); }
+  CHECK(peak_memory() > before + 9e7);
+}
