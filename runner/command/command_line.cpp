@@ -1,5 +1,7 @@
 #include "runner/command/command_line.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <sstream>
@@ -59,6 +61,19 @@ std::string version_text() {
   return text.insert(text.find('\n'), " (revision " + source_revision() + ")");
 }
 
+// CLI11's own name the largest double.
+CLI::Validator number_check(bool zero, const char* bound) {
+  return CLI::Validator(
+      [zero, bound](std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && (value > 0 || (zero && value == 0));
+        return good ? std::string() : fmt::format("{} is not a number {}", text, bound);
+      },
+      "");
+}
+CLI::Validator above_zero() { return number_check(false, "above 0"); }
+CLI::Validator not_negative() { return number_check(true, "from 0 on"); }
+
 // Each adds a command, whose arguments fill the options given.
 
 CLI::App* add(CLI::App& app, RunOptions& run) {
@@ -75,12 +90,12 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
   command
       ->add_option("--task-time-limit", run.task_time_limit_s,
                    "Give up tasks that take longer, whatever the job says; 0: no limit")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->type_name("SECONDS");
   command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
                    "Memory of a rank; a task that wants more is an error [an equal share of nine tenths of the host's]")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("GB");
   command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
   return command;
@@ -108,6 +123,11 @@ CLI::App* add(CLI::App& app, StatusOptions& status) {
   command->footer(with_exit_codes(status_help));
   command->add_option("FILE", status.file, "Results file (HDF5)")->required();
   command->add_flag("--json", status.json, "For programs");
+  command->add_option("--watch", status.watch_s, "Say it again every so many seconds, until the sweep ends")
+      ->expected(0, 1)
+      ->default_str("5")
+      ->check(above_zero())
+      ->type_name("[SECONDS]");
   return command;
 }
 
@@ -156,7 +176,7 @@ CLI::App* add(CLI::App& app, RerunOptions& rerun) {
   command->add_option("-o,--output", rerun.output, "Results file; never overwritten [FILE-task-TASK.h5]")
       ->type_name("FILE");
   command->add_option("--trajectory-every", rerun.trajectory_every, "A frame every K steps [1]")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("K");
   return command;
 }

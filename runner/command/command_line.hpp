@@ -5,12 +5,13 @@
 #include <variant>
 
 #include "runner/command/exit_codes.hpp"
+#include "runner/command/info_command.hpp"
 #include "runner/command/pack_command.hpp"
 #include "runner/command/plan_command.hpp"
 #include "runner/command/query_command.hpp"
 #include "runner/command/rerun_command.hpp"
 #include "runner/command/run_command.hpp"
-#include "runner/command/status_info_command.hpp"
+#include "runner/command/status_command.hpp"
 #include "runner/command/validate_command.hpp"
 
 namespace rodsweep {

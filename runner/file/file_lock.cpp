@@ -9,13 +9,29 @@
 
 namespace rodsweep {
 
-FileLock::FileLock(const std::filesystem::path& path) : descriptor_(open(path.c_str(), O_RDWR | O_CLOEXEC)) {
-  if (!descriptor_) return;  // whoever opens it next says why
+namespace {
+
+struct flock far_byte() {
   struct flock byte {};
   byte.l_type = F_WRLCK;
   byte.l_whence = SEEK_SET;
   byte.l_start = off_t{1} << 62;
   byte.l_len = 1;
+  return byte;
+}
+
+}  // namespace
+
+std::optional<bool> FileLock::is_held(const std::filesystem::path& path) {
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct flock byte = far_byte();
+  if (!file || fcntl(file.number(), F_OFD_GETLK, &byte) != 0) return std::nullopt;
+  return byte.l_type != F_UNLCK;
+}
+
+FileLock::FileLock(const std::filesystem::path& path) : descriptor_(open(path.c_str(), O_RDWR | O_CLOEXEC)) {
+  if (!descriptor_) return;  // whoever opens it next says why
+  struct flock byte = far_byte();
   if (fcntl(descriptor_.number(), F_OFD_SETLK, &byte) == 0 || (errno != EAGAIN && errno != EACCES)) return;
   throw FileError(fmt::format(
       "{} is being written by another run: wait until it ends, or stop it (`rodsweep info {}` says where it "

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "runner/file/descriptor.hpp"
 
@@ -15,6 +16,9 @@ class FileLock {
   FileLock() = default;
   /// Throws FileError where another run has it.
   explicit FileLock(const std::filesystem::path& path);
+
+  /// Whether a run on this or another host has it; nothing where that cannot be known.
+  static std::optional<bool> is_held(const std::filesystem::path& path);
 
  private:
   Descriptor descriptor_;

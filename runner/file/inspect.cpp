@@ -1,5 +1,6 @@
 #include "runner/file/inspect.hpp"
 
+#include "runner/file/file_lock.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/runs.hpp"
@@ -29,6 +30,22 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
     summary.failures.push_back({static_cast<std::int64_t>(task), outcomes[task], hdf5::read_text_row(messages, task)});
   }
   summary.pending = summary.tasks - summary.done;
+}
+
+void find_begun(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
+  const char* path = "/timing/tasks/starts";
+  if (!hdf5::exists(file.id(), path)) return;  // of a program that did not count them
+  const auto starts = hdf5::read_all<std::uint8_t>(file.id(), path);
+  std::vector<std::size_t> begun;
+  for (std::size_t task = 0; task < states.size(); ++task)
+    if (states[task] == 0 && starts.at(task) > 0) begun.push_back(task);
+  if (begun.empty()) return;
+  const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/attempt");
+  const auto ranks = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/rank");
+  const hdf5::RowDataset hosts(file.id(), "/timing/tasks/host");
+  for (const std::size_t task : begun)
+    summary.begun.push_back(
+        {static_cast<std::int64_t>(task), attempts.at(task), ranks.at(task), hdf5::read_text_row(hosts, task)});
 }
 
 void find_momentum_residual(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
@@ -61,6 +78,8 @@ FileSummary inspect(const fs::path& path) {
     const std::vector<std::uint8_t> states = read_states(file, path);
     summary.runs = read_runs(file);
     count_tasks(file, states, summary);
+    find_begun(file, states, summary);
+    summary.being_written = FileLock::is_held(path);
     find_momentum_residual(file, states, summary);
     return summary;
   });

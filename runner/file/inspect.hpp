@@ -21,6 +21,14 @@ struct FailedTask {
   std::string message;
 };
 
+/// A task that a worker began and did not finish: it runs, or its worker ended while it ran.
+struct BegunTask {
+  std::int64_t index = 0;
+  int start = 0;  ///< row of /runs
+  int rank = 0;
+  std::string host;
+};
+
 struct FileSummary {
   std::filesystem::path path;
   std::uintmax_t bytes = 0;
@@ -36,6 +44,8 @@ struct FileSummary {
   std::int64_t pending = 0;  ///< tasks - done
   std::map<std::string, std::int64_t> done_by_outcome;
   std::vector<FailedTask> failures;         ///< in order of their index
+  std::vector<BegunTask> begun;             ///< likewise
+  std::optional<bool> being_written;        ///< by a run that lives; empty: the file system does not tell
   std::optional<double> momentum_residual;  ///< the largest of finished tasks that measured it
   std::vector<RunRow> runs;
 };

@@ -53,6 +53,11 @@ std::string host_name() {
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
+std::int64_t seconds_of_utc(const std::string& text) {
+  std::tm time{};
+  return strptime(text.c_str(), "%Y-%m-%dT%H:%M:%SZ", &time) != nullptr ? timegm(&time) : 0;
+}
+
 Provenance provenance_of_this_process(std::string user_command) {
   Provenance provenance;
   provenance.begin_utc = utc_now();

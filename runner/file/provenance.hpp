@@ -46,4 +46,7 @@ std::string host_name();
 /// Now, as 2025-11-21T16:05:09Z.
 std::string utc_now();
 
+/// Seconds since 1970 of such a text; 0 of another.
+std::int64_t seconds_of_utc(const std::string& text);
+
 }  // namespace rodsweep

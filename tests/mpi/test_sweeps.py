@@ -301,6 +301,28 @@ class Killers(SweepCase):
         self.fail(f"task {task} was not begun")
 
 
+class Watching(SweepCase):
+    def test_status_tells_a_running_sweep_from_a_dead_one_and_what_runs_where(self):
+        path = job("watched", samples=200, segments=(40,), steps=200, record={"solves": "summary"})
+        process = start(3, "run", path, "-o", "watched.h5")
+        wait_for_tasks(process, "watched.h5", 2)
+        now = status("watched.h5")
+        self.assertIs(now["being_written"], True)
+        self.assertIn(len(now["running"]), (1, 2))
+        self.assertEqual({r["host"] for r in now["running"]}, {os.uname().nodename})
+        self.assertLessEqual({r["rank"] for r in now["running"]}, {1, 2})
+        self.assertRegex(rodsweep(0, "status", "watched.h5").stdout, r"tasks/s, .* left\n  task \d+ runs on .*, rank [12]\n")
+
+        watch = start(0, "status", "watched.h5", "--watch", "0.2")
+        self.assertIn("left", watch.stdout.readline())
+        kill_all(process)
+        process.communicate(timeout=30)
+        rest, _ = watch.communicate(timeout=30)  # ends by itself
+        self.assertIn("was killed", rest)
+        dead = status("watched.h5")
+        self.assertEqual((dead["being_written"], dead["running"]), (False, []))
+
+
 class Refusals(SweepCase):
     def assert_refused_once(self, process, text):
         self.assert_exit(process, USER_ERROR)

@@ -1,0 +1,81 @@
+#include "runner/command/file_report.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "runner/command/exit_codes.hpp"
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+
+std::string outcomes_text(const FileSummary& file) {
+  std::string text;
+  for (const auto& [outcome, count] : file.done_by_outcome)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, outcome);
+  return text.empty() ? "none yet" : text;
+}
+
+namespace {
+
+std::string ending(const RunRow& run, bool is_last, std::optional<bool> being_written) {
+  if (run.end_utc.empty() && is_last && !being_written) return "runs still, or was killed";
+  if (run.end_utc.empty()) return is_last && *being_written ? "runs still" : "was killed";
+  switch (static_cast<ExitCode>(run.exit_code)) {
+    case ExitCode::ok: return "all done";
+    case ExitCode::tasks_failed: return "complete, some tasks failed";
+    case ExitCode::stopped: return "stopped early";
+    default: return fmt::format("exit code {}", run.exit_code);
+  }
+}
+
+}  // namespace
+
+std::string start_text(const FileSummary& file, std::size_t index) {
+  const RunRow& run = file.runs.at(index);
+  const Provenance& p = run.provenance;
+  return fmt::format("start {}{}: {} to {} on {}, {} rank{}{}: {} tasks in {} of work; {}\n", index,
+                     run.source.empty() ? "" : fmt::format(" (of {}, extended here)", run.source), p.begin_utc,
+                     run.end_utc.empty() ? "?" : run.end_utc, p.host, p.ranks, p.ranks == 1 ? "" : "s",
+                     p.oversubscribed ? " (more than cores: times are worthless)" : "", run.tasks,
+                     duration_text(run.task_seconds), ending(run, index + 1 == file.runs.size(), file.being_written));
+}
+
+nlohmann::ordered_json to_json(const FileSummary& file) {
+  using Json = nlohmann::ordered_json;
+  Json json{{"file", file.path.native()},
+            {"job", file.job_name},
+            {"tasks", file.tasks},
+            {"done", file.done},
+            {"failed", file.failed},
+            {"pending", file.pending},
+            {"outcomes", file.done_by_outcome},
+            {"being_written", file.being_written ? Json(*file.being_written) : Json()}};
+  json["failures"] = Json::array();
+  for (const FailedTask& task : file.failures)
+    json["failures"].push_back({{"task", task.index}, {"outcome", task.outcome}, {"message", task.message}});
+  json["running"] = Json::array();
+  for (const BegunTask& task : file.begun)
+    if (file.being_written.value_or(false) && task.start + 1 == static_cast<int>(file.runs.size()))
+      json["running"].push_back({{"task", task.index}, {"host", task.host}, {"rank", task.rank}});
+  json["starts"] = Json::array();
+  for (const RunRow& run : file.runs) {
+    const Provenance& p = run.provenance;
+    json["starts"].push_back({{"begin", p.begin_utc},
+                              {"end", run.end_utc.empty() ? Json() : Json(run.end_utc)},
+                              {"exit_code", run.end_utc.empty() ? Json() : Json(run.exit_code)},
+                              {"tasks", run.tasks},
+                              {"task_seconds", run.task_seconds},
+                              {"host", p.host},
+                              {"ranks", p.ranks},
+                              {"oversubscribed", p.oversubscribed},
+                              {"command", p.user_command},
+                              {"source", run.source},
+                              {"revision", p.revision},
+                              {"versions", p.versions},
+                              {"petsc_options", p.petsc_options}});
+  }
+  return json;
+}
+
+}  // namespace rodsweep

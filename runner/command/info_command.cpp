@@ -1,0 +1,86 @@
+#include "runner/command/info_command.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runner/command/file_report.hpp"
+#include "runner/command/training_summary.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/terminal/text.hpp"
+#include "runner/training/model_file.hpp"
+
+namespace rodsweep {
+
+namespace {
+
+std::string provenance_text(const FileSummary& file) {
+  std::string text = fmt::format("file     {}, {}, schema {}\njob      {} ({})\nplan     {} tasks, hash {}\n",
+                                 file.path.native(), bytes_text(static_cast<std::int64_t>(file.bytes)),
+                                 file.schema_version, file.job_name, file.job_kind, file.tasks, file.plan_hash);
+  if (file.rerun_of_task) text += fmt::format("holds    task {} of the job alone, run again\n", *file.rerun_of_task);
+  if (!file.guesses.empty()) text += fmt::format("guesses  {}\n", fmt::join(file.guesses, ", "));
+  text += fmt::format("done     {} of {} tasks: {}\n", file.done, file.tasks, outcomes_text(file));
+  if (file.momentum_residual)
+    text += fmt::format("momentum in a step, forces on a segment lack at most {:.2g} of the greatest of a joint\n",
+                        *file.momentum_residual);
+  for (std::size_t i = 0; i < file.runs.size(); ++i) {
+    const Provenance& p = file.runs[i].provenance;
+    text += start_text(file, i);
+    text += fmt::format("  command   {}\n  revision  {}\n  versions  {}\n", p.user_command, p.revision, p.versions);
+    if (!p.petsc_options.empty()) text += fmt::format("  PETSC_OPTIONS  {}\n", p.petsc_options);
+  }
+  text.pop_back();
+  return text;
+}
+
+ExitCode show_model(const InfoOptions& options, Console& console) {
+  const StoredModel stored = read_training(options.file);
+  if (options.job) {
+    console.raw_result(stored.card.job_text);
+  } else if (options.json) {
+    console.result(to_json(stored, options.file).dump(2));
+  } else {
+    console.result(training_summary(stored.card, options.file) + '\n' + provenance_text(stored));
+    if (options.verify) console.result("verified: the model is as it was written");  // else it could not be read
+  }
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+ExitCode execute(const InfoOptions& options, Console& console) {
+  if (is_model_file(options.file)) return show_model(options, console);
+  const FileSummary file = inspect(options.file);
+  if (options.job) {
+    console.raw_result(file.job_text);
+    return ExitCode::ok;
+  }
+  const Verification verified = options.verify ? verify(options.file) : Verification{};
+  if (options.json) {
+    using Json = nlohmann::ordered_json;
+    Json json = to_json(file);
+    json["bytes"] = file.bytes;
+    json["kind"] = file.job_kind;
+    json["schema_version"] = file.schema_version;
+    json["plan_hash"] = file.plan_hash;
+    if (file.rerun_of_task) json["rerun_of_task"] = *file.rerun_of_task;
+    json["guesses"] = file.guesses;
+    json["momentum_residual"] = file.momentum_residual ? Json(*file.momentum_residual) : Json();
+    json["tolerances"] = file.tolerances;
+    if (options.verify) json["verified"] = {{"checked", verified.checked}, {"damaged", verified.damaged}};
+    console.result(json.dump(2));
+  } else {
+    console.result(provenance_text(file));
+    if (options.verify)
+      console.result(fmt::format(
+          "verified {} finished tasks: {}", verified.checked,
+          verified.damaged.empty() ? "all as they were written" : fmt::format("{} differ", verified.damaged.size())));
+  }
+  if (verified.damaged.empty()) return ExitCode::ok;
+  console.error(fmt::format("{} is damaged: the data of task{} {} are not what was written", options.file.native(),
+                            verified.damaged.size() == 1 ? "" : "s", fmt::join(verified.damaged, ", ")));
+  return ExitCode::user_error;
+}
+
+}  // namespace rodsweep

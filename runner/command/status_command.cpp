@@ -1,0 +1,90 @@
+#include "runner/command/status_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <optional>
+#include <thread>
+
+#include "runner/command/file_report.hpp"
+#include "runner/command/training_summary.hpp"
+#include "runner/terminal/text.hpp"
+#include "runner/training/model_file.hpp"
+
+namespace rodsweep {
+namespace {
+
+constexpr std::size_t failures_shown = 10, running_shown = 10;
+
+/// Tasks a second of the start that runs; none before its first.
+std::optional<double> rate_of(const FileSummary& file) {
+  const RunRow& run = file.runs.back();
+  const double since = std::difftime(std::time(nullptr), seconds_of_utc(run.provenance.begin_utc));
+  if (run.tasks == 0 || !(since > 0)) return std::nullopt;
+  return static_cast<double>(run.tasks) / since;
+}
+
+bool runs(const FileSummary& file) { return file.being_written.value_or(false) && !file.runs.empty(); }
+
+std::string progress_text(const FileSummary& file) {
+  std::string text = fmt::format("{}: {} of {} tasks done ({} %): {}", file.job_name, file.done, file.tasks,
+                                 file.tasks > 0 ? 100 * file.done / file.tasks : 100, outcomes_text(file));
+  if (const auto rate = runs(file) ? rate_of(file) : std::nullopt)
+    text += fmt::format("; {:.3g} tasks/s, {} left", *rate, duration_text(static_cast<double>(file.pending) / *rate));
+  return text;
+}
+
+/// The tasks that workers have in hand.
+std::string running_text(const FileSummary& file) {
+  const int last = static_cast<int>(file.runs.size()) - 1;
+  std::string text;
+  std::size_t shown = 0, more = 0;
+  for (const BegunTask& task : file.begun) {
+    if (task.start != last) continue;
+    if (shown == running_shown) {
+      ++more;
+      continue;
+    }
+    ++shown;
+    text += fmt::format("  task {} runs on {}, rank {}\n", task.index, task.host, task.rank);
+  }
+  if (more > 0) text += fmt::format("  and {} more: --json lists them all\n", more);
+  return text;
+}
+
+std::string status_text(const FileSummary& file) {
+  std::string text = progress_text(file) + '\n';
+  for (std::size_t i = 0; i < file.failures.size() && i < failures_shown; ++i)
+    text +=
+        fmt::format("  task {} {}: {}\n", file.failures[i].index, file.failures[i].outcome, file.failures[i].message);
+  if (file.failures.size() > failures_shown)
+    text += fmt::format("  and {} more: --json lists them all\n", file.failures.size() - failures_shown);
+  if (runs(file)) text += running_text(file);
+  if (!file.runs.empty()) text += start_text(file, file.runs.size() - 1);
+  text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+ExitCode execute(const StatusOptions& options, Console& console) {
+  if (is_model_file(options.file)) {
+    const StoredModel stored = read_training(options.file);
+    console.result(options.json ? to_json(stored, options.file).dump(2) : training_summary(stored.card, options.file));
+    return ExitCode::ok;
+  }
+  for (;;) {
+    const FileSummary file = inspect(options.file);
+    const bool last = options.watch_s == 0 || !runs(file);
+    if (options.json)
+      console.result(to_json(file).dump(options.watch_s == 0 ? 2 : -1));  // watched: an object a line
+    else
+      console.result(last ? status_text(file) : progress_text(file));
+    if (last) return ExitCode::ok;
+    std::this_thread::sleep_for(std::chrono::duration<double>(options.watch_s));
+  }
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,28 @@
+// The command `status`: how far a sweep or a training is, and, of a sweep that is being run, what runs where. No MPI.
+// Throws FileError and Hdf5Error.
+#pragma once
+
+#include <filesystem>
+
+#include "runner/command/exit_codes.hpp"
+#include "runner/terminal/console.hpp"
+
+namespace rodsweep {
+
+struct StatusOptions {
+  std::filesystem::path file;
+  bool json = false;
+  double watch_s = 0;  ///< say it again so often until nobody writes the file; 0: once
+};
+
+inline constexpr const char* status_help =
+    "Reads only, also while the sweep writes. The exit code is 0 whatever the state: scripts read --json.\n"
+    "Whether a sweep runs is known by its lock on the file, which dies with it. The time left is for tasks as\n"
+    "long as those so far: long ones come first.\n\n"
+    "Examples:\n"
+    "  rodsweep status results/demo.h5 --json | jq .pending\n"
+    "  rodsweep status results/demo.h5 --watch           a line every 5 seconds until it ends";
+
+ExitCode execute(const StatusOptions& options, Console& console);
+
+}  // namespace rodsweep
