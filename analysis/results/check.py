@@ -54,11 +54,16 @@ def find_cell(lines, section, block, row, column):
     """The text of a cell. Columns are to the right: that of a header's cell ends where the row's does."""
     start = _first(lines, 0, section, f"a section {section!r}") if section != "*" else 0
     start = _first(lines, start, block, f"a block {block!r}")
-    header = start if any(cell.text == column for cell in cells_of(lines[start])) else start + 1
-    ends = [cell.end for cell in cells_of(lines[header]) if cell.text == column]
-    if not ends:
+    above = start  # blocks may share a header above them
+    while above > 0 and lines[above - 1].strip():
+        above -= 1
+    for header in (start, *range(start + 1, min(start + 2, len(lines))), *range(above, start)):
+        ends = [cell.end for cell in cells_of(lines[header]) if cell.text == column]
+        if ends:
+            break
+    else:
         raise NotFound(f"a column {column!r}")
-    for line in lines[header + 1:]:
+    for line in lines[max(start, header) + 1:]:
         if not line.strip():
             break
         cells = cells_of(line)

@@ -23,6 +23,12 @@ Time per solve
 
 Bending rod, n = 300  guess µs  solve µs
   pod 10                  2.00     1,234
+
+                        n  failed
+Bending rod, one a step
+  pod 10               10       2
+Bending rod, six a step
+  pod 10               10       3
 """
 
 
@@ -41,7 +47,7 @@ class Texts(unittest.TestCase):
 
     def test_numbers_as_rounded_in_the_text(self):
         done = self.check("""`pod` leaves .1<!--= x; CG ratio; Bending rod; pod 10; 1e-2 --> and
-**.34**<!--= x; CG ratio; Helix; pod 10; 1e-2 --> [.09<!--= x; *; Helix; pod 10; 1e-2; 2 -->, .11] in
+**.34**<!--= x; CG ratio; Helix; pod 10; 1e-2 --> [.09<!--= x; *; Helix; pod 10; 1e-2; 2 -->, .11], 3<!--= x; *; Bending rod, six; pod 10; failed --> fail in
 1234<!--= x; Time per solve; Bending rod; pod 10; solve µs --> µs, 1.2e3<!--= x; Time; Bending; pod 10; solve µs -->""")
         self.assertEqual((done.returncode, done.stdout), (0, "all numbers are those of their tables\n"))
 
