@@ -66,13 +66,15 @@ CLI::Validator number_check(bool zero, const char* bound) {
   return CLI::Validator(
       [zero, bound](std::string& text) {
         double value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && (value > 0 || (zero && value == 0));
+        constexpr double most = 1e9;  // also of what is no number
+        const bool good =
+            CLI::detail::lexical_cast(text, value) && value <= most && (value > 0 || (zero && value == 0));
         return good ? std::string() : fmt::format("{} is not a number {}", text, bound);
       },
       "");
 }
-CLI::Validator above_zero() { return number_check(false, "above 0"); }
-CLI::Validator not_negative() { return number_check(true, "from 0 on"); }
+CLI::Validator above_zero() { return number_check(false, "above 0 and up to 1e9"); }
+CLI::Validator not_negative() { return number_check(true, "from 0 to 1e9"); }
 
 // Each adds a command, whose arguments fill the options given.
 

@@ -36,6 +36,8 @@ std::string run_line(const RunOptions& options, int ranks) {
   if (options.extend) line += " --extend " + shell_quoted(options.extend->native());
   if (options.resume) line += " --resume";
   if (options.retry_failed) line += " --retry-failed";
+  if (options.task_time_limit_s) line += fmt::format(" --task-time-limit {:g}", *options.task_time_limit_s);
+  if (options.memory_limit_gb) line += fmt::format(" --memory-limit-gb {:g}", *options.memory_limit_gb);
   return line;
 }
 

@@ -107,7 +107,10 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
                       })->memory_bytes;
     if (most > 0) text += fmt::format("memory   {} at most of the tasks tried, a process each\n", bytes_text(most));
     for (const Probe& p : probes)
-      if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
+      if (p.outcome == TaskOutcome::timed_out && p.steps == 0)
+        text += fmt::format("warning  task {}: not one step in {}; the time above is a lower bound\n", p.task,
+                            duration_text(p.seconds / static_cast<double>(p.of_steps)));
+      else if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
         text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);
   }
   text += "next     " + run_line(run, ranks_for(cores));

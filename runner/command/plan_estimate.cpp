@@ -31,12 +31,15 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
     const double seconds = record.elapsed_s.front();
     if (seconds < enough_s && steps < whole.steps && record.outcome == TaskOutcome::ok) continue;
 
-    const auto done = std::max<std::int64_t>(record.steps_done.front(), 1);
+    const auto done = static_cast<std::int64_t>(record.steps_done.front());
+    // Where the time was over within a step, half of that step, unless it was the first.
+    const double cut = record.outcome == TaskOutcome::timed_out ? 0.5 : 0;
+    const double step_s = seconds / std::max(1.0, static_cast<double>(done) + cut);
     return {index,
             whole.cost,
             done,
             whole.steps,
-            seconds / static_cast<double>(done) * static_cast<double>(whole.steps),
+            step_s * static_cast<double>(whole.steps),
             static_cast<std::int64_t>(peak_memory()),
             record.outcome,
             record.message};

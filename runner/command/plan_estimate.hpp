@@ -17,7 +17,7 @@ struct Probe {
   std::int64_t task = 0;
   double cost = 0;
   std::int64_t steps = 0, of_steps = 0;  ///< run, and in the whole task
-  double seconds = 0;                    ///< of the whole task, extrapolated from the steps run
+  double seconds = 0;                    ///< of the whole task, extrapolated from the steps run; without any, at least
   std::int64_t memory_bytes = 0;  ///< the most that the process had so far, cheaper probes included; 0: not known
   TaskOutcome outcome{};
   std::string message;

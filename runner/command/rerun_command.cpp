@@ -73,9 +73,11 @@ ExitCode execute(const RerunOptions& options, Console& console) {
   console.result(fmt::format("task {}: {}{}\nresults: {}", options.task, to_string(result.outcome),
                              result.message.empty() ? "" : ": " + result.message, output.native()));
   const hdf5::File file = open_results(options.file);
-  if (read_states(file, options.file).at(static_cast<std::size_t>(options.task)) == 1)
-    return compare(options, output, whole, console);
-  console.result(fmt::format("task {} is pending in {}: there is nothing to compare it with", options.task,
+  const auto index = static_cast<std::size_t>(options.task);
+  std::string outcome = to_string(TaskOutcome::pending);
+  if (read_states(file, options.file).at(index) == 1) outcome = hdf5::read_texts(file.id(), "/tasks/outcome").at(index);
+  if (!may_change(outcome_called(outcome).value_or(TaskOutcome::ok))) return compare(options, output, whole, console);
+  console.result(fmt::format("task {} is {} in {}: there is nothing to compare it with", options.task, outcome,
                              options.file.native()));
   return result.outcome == TaskOutcome::ok ? ExitCode::ok : ExitCode::tasks_failed;
 }

@@ -26,7 +26,7 @@ inline constexpr const char* rerun_help =
     "file\n"
     "holds one task and is read like any other. Everything that the task wrote outside /timing is compared, bit for "
     "bit.\n"
-    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 end it between two time steps; then nothing is written.\n\n"
+    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 end it, within seconds; then nothing is written.\n\n"
     "Examples:\n"
     "  rodsweep rerun results/demo.h5 12                               every step into results/demo-task-12.h5\n"
     "  rodsweep rerun results/long.h5 3 --trajectory-every 100 -o three.h5\n\n"

@@ -46,6 +46,8 @@ inline constexpr const char* run_help =
     "crashed\n"
     "  rodsweep run job.json -o out.h5 --resume --retry-failed --task-time-limit 3600\n"
     "                                                      and give each an hour, whatever the job says\n"
+    "  mpirun -n 3 rodsweep run job.json --memory-limit-gb 20\n"
+    "                                                      in place of an equal share for each worker\n"
     "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more values in a\n"
     "                                                      grid, or more guesses. Copies what out.h5 holds, tries\n"
     "                                                      new guesses alone on its trajectories, runs the rest.\n"

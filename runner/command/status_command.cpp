@@ -26,7 +26,9 @@ std::optional<double> rate_of(const FileSummary& file) {
   return static_cast<double>(run.tasks) / since;
 }
 
-bool runs(const FileSummary& file) { return file.being_written.value_or(false) && !file.runs.empty(); }
+bool runs(const FileSummary& file) {
+  return file.being_written.value_or(false) && !file.runs.empty() && file.runs.back().end_utc.empty();
+}
 
 std::string progress_text(const FileSummary& file) {
   std::string text = fmt::format("{}: {} of {} tasks done ({} %): {}", file.job_name, file.done, file.tasks,

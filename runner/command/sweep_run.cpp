@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <functional>
 #include <utility>
 
@@ -68,7 +69,8 @@ void give_up(const Plan& plan, ResultsFile& file) {
     record.prepare(task, sizes);
     record.outcome = TaskOutcome::crashed;
     record.message = fmt::format(
-        "its worker ended without a word each of the {} times that it was begun, last with nothing beside it",
+        "its worker, or the whole sweep, ended without a word each of the {} times that it was begun, last with "
+        "nothing beside it",
         file.starts()[static_cast<std::size_t>(task.index)]);
     file.write(task, record);
   }
@@ -106,8 +108,19 @@ BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
   return [body = std::move(body), &plan, &file](const std::vector<std::int64_t>& tasks, const StopRequested& stop) {
     for (const std::int64_t task : tasks) file.begin(plan.task(task));
     const auto take_back = [&](std::int64_t task) { file.abandon(plan.task(task)); };
+    // What fails while a task looks up (a sync, a message) is not that task's outcome.
+    std::exception_ptr failure;
+    const StopRequested look_up = [&] {
+      try {
+        return stop();
+      } catch (...) {
+        failure = std::current_exception();
+        return true;
+      }
+    };
     try {
-      std::vector<TaskResult> results = body(tasks, stop);
+      std::vector<TaskResult> results = body(tasks, look_up);
+      if (failure) std::rethrow_exception(failure);
       for (std::size_t i = 0; i < tasks.size(); ++i)
         if (results[i].outcome == TaskOutcome::pending) take_back(tasks[i]);
       return results;

@@ -9,7 +9,7 @@
 // Tasks whose workers ended while they ran, and could not say why, come after all others; where that has happened
 // twice, one at a time, with nothing beside it: should a task be what ends workers, it has only itself to take along.
 //
-// On a signal, here or on a worker, nothing more is handed out and running tasks are abandoned between two time steps.
+// On a signal, here or on a worker, nothing more is handed out and running tasks are abandoned.
 // Every Assign is answered by one Report; the workers are dismissed (Finish) when the last one is in.
 #pragma once
 
@@ -77,7 +77,7 @@ class Master {
   Channel* channel_;
   Progress* progress_;
   std::function<int()> signal_;
-  std::vector<PendingTask> pool_;  ///< by descending cost; [next_, end) is still to hand out
+  std::vector<PendingTask> pool_;  ///< by lost workers, then descending cost; [next_, end) is still to hand out
   std::size_t next_ = 0;
   double pool_cost_ = 0;
   std::vector<Worker> workers_;  ///< by rank; that of the master stays empty

@@ -1,4 +1,4 @@
-// The question that a running task asks between its time steps.
+// The question that a running task asks between its time steps, and now and then within them.
 #pragma once
 
 #include <functional>

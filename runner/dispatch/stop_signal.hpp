@@ -1,5 +1,6 @@
-// SIGTERM, SIGINT and SIGUSR1 as a request to stop between two time steps. Installed for the life of the object, then
-// the old handlers return. The handler only notes the number, so a second signal during the stop changes nothing.
+// SIGTERM, SIGINT and SIGUSR1 as a request to stop, as soon as a task may be abandoned. Installed for the life of the
+// object, then the old handlers return. The handler only notes the number, so a second signal during the stop changes
+// nothing.
 #pragma once
 
 #include <array>

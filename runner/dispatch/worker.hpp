@@ -1,8 +1,8 @@
 // Runs the tasks that the master assigns, one assignment after the other, and reports each task.
 //
-// While they run it asks between time steps whether to stop; every few milliseconds that question also looks at the
-// messages. An exception from the task's body is the end of this rank (say, a results file that cannot be written):
-// what is wrong with a task is an outcome, and the body's affair (runner/experiment/task_body.hpp).
+// While they run it asks, between time steps and within them, whether to stop; every few milliseconds that question
+// also looks at the messages. An exception from the task's body is the end of this rank (say, a results file that
+// cannot be written): what is wrong with a task is an outcome, and the body's affair (runner/experiment/task_body.hpp).
 #pragma once
 
 #include <chrono>

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <deque>
 #include <exception>
+#include <new>
 #include <numeric>
 #include <utility>
 
 #include "runner/dataset/stored_systems.hpp"
+#include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/simulation_log.hpp"
 #include "runner/experiment/solve_rows.hpp"
 #include "solver/batch/batched_step.hpp"
@@ -68,7 +70,7 @@ const std::vector<StepReport>& step(BatchedStepper& stepper, std::deque<Member>&
 
 void fail(TaskRecord& record, const std::exception& error) {
   record.outcome = TaskOutcome::error;
-  record.message = error.what();
+  record.message = dynamic_cast<const std::bad_alloc*>(&error) ? out_of_memory_text() : error.what();
 }
 
 /// Members whose scenes can be built; of the others the record says why not.

@@ -6,6 +6,7 @@
 #include <exception>
 #include <map>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "runner/experiment/batched_evaluation.hpp"
@@ -75,7 +76,12 @@ BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
     std::vector<TaskRun> runs;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       const Task& task = plan.task(tasks[i]);
-      records[i].prepare(task, sizes);
+      try {
+        records[i].prepare(task, sizes);
+      } catch (const std::bad_alloc&) {
+        throw std::runtime_error(fmt::format("the results of task {} alone do not fit: {}", task.index,
+                                             out_of_memory_text() + "; \"record\" of the job says what is kept"));
+      }
       runs.push_back({&task, plan.spec(tasks[i]), &records[i]});
     }
     std::vector<TaskResult> results(tasks.size());

@@ -74,12 +74,12 @@ FileSummary inspect(const fs::path& path) {
     summary.job_text = hdf5::read_texts(file.id(), "/job/text").at(0);
     if (hdf5::exists(file.id(), "/axes/guess")) summary.guesses = hdf5::read_texts(file.id(), "/axes/guess");
     summary.tolerances = hdf5::read_all<double>(file.id(), "/axes/tolerance");
-    // The states first: of a task that is complete now, everything else is there to be read.
+    summary.being_written = FileLock::is_held(path);  // first: who ends while this reads has said so in /runs by then
+    // The states next: of a task that is complete now, everything else is there to be read.
     const std::vector<std::uint8_t> states = read_states(file, path);
     summary.runs = read_runs(file);
     count_tasks(file, states, summary);
     find_begun(file, states, summary);
-    summary.being_written = FileLock::is_held(path);
     find_momentum_residual(file, states, summary);
     return summary;
   });

@@ -127,7 +127,10 @@ struct ResultsFile::Open {
   void commit() {
     if (written.empty()) return;
     const auto begin = Clock::now();
+    // The kernel tells a failed write once, and a second sync would find nothing amiss.
+    if (std::exchange(sync_failed, true)) throw FileError(fmt::format("{} could not be synced before", path.native()));
     synced.sync();
+    sync_failed = false;
     for (const std::int64_t task : written) set_state(task, 1);
     written.clear();
     const std::chrono::duration<double> took = Clock::now() - begin;
@@ -149,6 +152,7 @@ struct ResultsFile::Open {
 
   hdf5::File file;
   fs::path path;
+  bool sync_failed = false;
   FileLock lock;  // of the first rank
   SyncedFile synced;
   std::vector<std::int64_t> written;  ///< tasks whose data are, and whose state is to follow
@@ -196,8 +200,10 @@ ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Pr
   }
   point.runs = broadcast(point.runs, comm);
   const std::vector<std::uint8_t> again = to_run_again(path, point.done, retry, comm);
-  for (std::size_t i = 0; i < again.size(); ++i)
-    if (again[i]) point.done[i] = point.starts[i] = 0;
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    if (again[i]) point.done[i] = 0;
+    if (again[i] || retry == Retry::failed) point.starts[i] = 0;
+  }
   ResultsFile file(path, plan, std::move(point.done), point.runs, std::move(point.starts), provenance, comm,
                    std::move(lock));
   file.take_back(again, comm);
@@ -258,7 +264,7 @@ void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm com
       note_ += fmt::format("{}{}: {} run again, {}", note_.empty() ? "" : "; ", open_->path.native(), tasks, text);
   };
   note(damaged, "since the data there are not what was written (checksum)");
-  note(failed, "after an error or for want of time");
+  note(failed, "after an error, for want of time or after a crash");
 }
 
 void ResultsFile::commit() { open_->commit(); }

@@ -1,6 +1,5 @@
 #include "runner/file/task_reader.hpp"
 
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -14,12 +13,6 @@ namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<TaskOutcome> outcome_of(const std::string& text) {
-  for (int i = 0; i < task_outcomes; ++i)
-    if (text == to_string(static_cast<TaskOutcome>(i))) return static_cast<TaskOutcome>(i);
-  return std::nullopt;
-}
 
 std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
   std::vector<Task> tasks(count);
@@ -95,7 +88,7 @@ TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(o
 TaskOutcome TaskReader::outcome(std::int64_t task) const {
   if (!done(task)) return TaskOutcome::pending;
   const std::string& text = outcomes_[static_cast<std::size_t>(task)];
-  if (const auto outcome = outcome_of(text)) return *outcome;
+  if (const auto outcome = outcome_called(text)) return *outcome;
   throw damaged_error(path_, "\"" + text + "\" is no outcome of a task");
 }
 
@@ -116,7 +109,7 @@ bool TaskReader::read(std::int64_t index, TaskRecord& record) const {
                          data_of(column, record));
     }
     record.message = hdf5::read_text_row(message_, static_cast<hsize_t>(index));
-    const auto outcome = outcome_of(outcomes_[static_cast<std::size_t>(index)]);
+    const auto outcome = outcome_called(outcomes_[static_cast<std::size_t>(index)]);
     record.outcome = outcome.value_or(TaskOutcome::error);
     return outcome && task_checksum(index, record) == value_of<std::uint64_t>(checksum_, index);
   });

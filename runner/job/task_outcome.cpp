@@ -18,6 +18,12 @@ const char* to_string(TaskOutcome outcome) {
   return "unknown";
 }
 
+std::optional<TaskOutcome> outcome_called(const std::string& name) {
+  for (int i = 0; i < task_outcomes; ++i)
+    if (name == to_string(static_cast<TaskOutcome>(i))) return static_cast<TaskOutcome>(i);
+  return std::nullopt;
+}
+
 bool may_change(TaskOutcome outcome) {
   switch (outcome) {
     case TaskOutcome::pending:

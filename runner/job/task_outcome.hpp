@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 namespace rodsweep {
 
@@ -21,6 +23,9 @@ enum class TaskOutcome : std::int8_t {
 inline constexpr int task_outcomes = 10;
 
 const char* to_string(TaskOutcome outcome);
+
+/// The outcome of that name; nothing of another.
+std::optional<TaskOutcome> outcome_called(const std::string& name);
 
 /// Whether another attempt, elsewhere or with more time or memory, may end otherwise.
 bool may_change(TaskOutcome outcome);

@@ -101,10 +101,12 @@ struct ConjugateGradient::Impl {
   std::vector<double> history;
 
   Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s);
-  ~Impl();
+  ~Impl() { destroy(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
+  void create();
+  void destroy();
   void create_entries(bool symmetric);
   void copy_entries();
   void refresh();
@@ -115,9 +117,17 @@ struct ConjugateGradient::Impl {
 
 ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct* without_blocks, const CgSettings& s)
     : a(matrix), op{matrix, without_blocks}, settings(s) {
-  const PetscInt n = a.unknowns();
-  settings.max_iterations = iteration_limit(settings, n);
+  settings.max_iterations = iteration_limit(settings, a.unknowns());
+  try {
+    create();
+  } catch (...) {  // out of memory: this task's, not the next one's
+    destroy();
+    throw;
+  }
+}
 
+void ConjugateGradient::Impl::create() {
+  const PetscInt n = a.unknowns();
   product = create_operator(op);
   b = create_vector(n);
   x = create_vector(n);
@@ -144,7 +154,7 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct
   petsc_check(KSPSetConvergenceTest(ksp, test_convergence, &target, nullptr), "KSPSetConvergenceTest");
 }
 
-ConjugateGradient::Impl::~Impl() {
+void ConjugateGradient::Impl::destroy() {
   // A destructor cannot report; PETSc prints what it has to say.
   KSPDestroy(&ksp);
   PCDestroy(&shell);

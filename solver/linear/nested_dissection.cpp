@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <mutex>
+#include <new>
 
 namespace rodsweep {
 namespace {
@@ -50,8 +51,9 @@ std::vector<int> nested_dissection_order(const BlockMatrix& pattern) {
   options[METIS_OPTION_SEED] = 1;
   std::vector<idx_t> order(static_cast<std::size_t>(n)), place(order);  // in the order of elimination, and its inverse
   const MetisCall call;
-  if (METIS_NodeND(&n, start.data(), neighbours.data(), nullptr, options, order.data(), place.data()) != METIS_OK)
-    return {};
+  const int done = METIS_NodeND(&n, start.data(), neighbours.data(), nullptr, options, order.data(), place.data());
+  if (done == METIS_ERROR_MEMORY) throw std::bad_alloc();  // another order would give other bits
+  if (done != METIS_OK) return {};
   std::reverse(order.begin(), order.end());
   return order;
 }

@@ -4,6 +4,7 @@
 
 #include <petscsys.h>
 
+#include <new>
 #include <string>
 
 #include "solver/linear/petsc_error.hpp"
@@ -12,6 +13,7 @@ namespace rodsweep {
 
 inline void petsc_check(PetscErrorCode code, const char* call) {
   if (code == 0) return;
+  if (code == PETSC_ERR_MEM) throw std::bad_alloc();
   const char* text = nullptr;
   PetscErrorMessage(code, &text, nullptr);
   throw PetscError(std::string(call) + " failed with PETSc error " + std::to_string(code) +

@@ -8,9 +8,9 @@
 //   pair, its moves     at j = 0 the network's multipliers and moves instead of a solve, CG from zero after that
 //   pair, M^-1 J^T      the same, with the moves that belong to its multipliers
 //   free flight         at j = 0 nothing, which costs a Newton iteration: what a pair must beat
-// A table of means over those of 20 rods that lasted 100 steps: Newton iterations to 1e-6 and CG iterations of a step, the distance from the
-// trajectory of direct solves at the end in rod lengths, and how far momentum is out of balance, |M (x - x*) - J^T
-// lambda| over |M (x - x*)|, which no later iteration of the paper's step looks at.
+// A table of means over those of 20 rods that lasted 100 steps: Newton iterations to 1e-6 and CG iterations of a step,
+// the distance from the trajectory of direct solves at the end in rod lengths, and how far momentum is out of balance,
+// |M (x - x*) - J^T lambda| over |M (x - x*)|, which no later iteration of the paper's step looks at.
 #include <cstdio>
 #include <memory>
 #include <string>
