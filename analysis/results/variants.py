@@ -131,8 +131,8 @@ NOT_ON_HELICES = {"size_16", "size_64", "steps_2", "steps_8", "hidden_layers_3",
 FAMILIES = {
     "rods": Family("train_rods", "rods_variants", {"training.epochs": 15}, RODS),
     "lattices": Family("train_lattices", "lattices_variants", {"training.epochs": 5}, LATTICES),
-    "ablation_bending": ablation("bending", 20),
-    "ablation_helix": ablation("helix", 8, NOT_ON_HELICES),
+    "ablation_bending": ablation("bending", 10),
+    "ablation_helix": ablation("helix", 5, NOT_ON_HELICES),
 }
 
 
