@@ -64,7 +64,7 @@ table summary learned_rods_length --by scene.segments
 figures spatial learned_rods_length && rm $out/learned_rods_length-{speedup,time}.png
 table summary learned_rods_closed --by scene.segments --newton all
 table summary learned_rods_preconditioned --by scene.segments --newton all
-for study in deck_bending deck_helix learned_closed_loop learned_rods; do
+for study in learned_closed_loop learned_rods; do
   echo >>"$out/$study.txt"
   script summary "$study" --newton all >>"$out/$study.txt"
 done
