@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <optional>
 #include <sstream>
 
@@ -30,6 +31,8 @@ constexpr const char* main_help =
     "  rodsweep validate jobs/*.json            are these jobs sound?\n"
     "  rodsweep plan jobs/demo.json             how many tasks, bytes, core-hours?\n"
     "  mpirun -n 9 rodsweep run jobs/demo.json  8 workers and a master, which sleeps\n"
+    "  rodsweep keep -- mpirun -n 9 rodsweep run jobs/demo.json\n"
+    "                                           again and again until it is done, whatever dies\n"
     "  rodsweep status results/demo.h5          how far is it? (also while it runs)\n"
     "  rodsweep query results/demo.h5           its tasks as a table, CSV or JSON\n"
     "'rodsweep COMMAND --help' tells more.";
@@ -76,6 +79,16 @@ CLI::Validator number_check(bool zero, const char* bound) {
 CLI::Validator above_zero() { return number_check(false, "above 0 and up to 1e9"); }
 CLI::Validator not_negative() { return number_check(true, "from 0 to 1e9"); }
 
+/// "3/16", from 1.
+std::optional<Shard> shard_of(const std::string& text) {
+  Shard shard;
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%d/%d%n", &shard.number, &shard.of, &end) != 2 ||
+      static_cast<std::size_t>(end) != text.size() || shard.number < 1 || shard.number > shard.of)
+    return std::nullopt;
+  return shard;
+}
+
 // Each adds a command, whose arguments fill the options given.
 
 CLI::App* add(CLI::App& app, RunOptions& run) {
@@ -99,6 +112,18 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
                    "Memory of a rank; a task that wants more is an error [an equal share of nine tenths of the host's]")
       ->check(above_zero())
       ->type_name("GB");
+  command
+      ->add_option("--worker-timeout", run.worker_timeout_s,
+                   "Go on without a worker that was silent for so long; 0: wait for ever [120]")
+      ->check(not_negative())
+      ->type_name("SECONDS");
+  command
+      ->add_option_function<std::string>(
+          "--shard", [&run](const std::string& text) { run.shard = shard_of(text); },
+          "Run the I-th of N parts of the tasks, into a file of its own, for `merge`")
+      ->check(CLI::Validator(
+          [](std::string& text) { return shard_of(text) ? "" : text + " is no I/N with 1 <= I <= N"; }, ""))
+      ->type_name("I/N");
   command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
   return command;
 }
@@ -191,6 +216,51 @@ CLI::App* add(CLI::App& app, PackOptions& pack) {
   return command;
 }
 
+CLI::App* add(CLI::App& app, MergeOptions& merge) {
+  CLI::App* command = app.add_subcommand("merge", "Makes one results file of several of the same job");
+  command->footer(with_exit_codes(merge_help));
+  command->add_option("FILE", merge.files, "Results files (HDF5)")->required();
+  command->add_option("-o,--output", merge.output, "The file of all; never overwritten")->type_name("FILE")->required();
+  return command;
+}
+
+CLI::App* add(CLI::App& app, KeepOptions& keep) {
+  CLI::App* command = app.add_subcommand("keep", "Starts a run again, whatever ends it, until it is done");
+  command->footer(with_exit_codes(keep_help));
+  command->add_option("COMMAND", keep.command, "After --: the run, as it would be typed, with mpirun")->required();
+  command->add_option("--hosts", keep.hosts, "Start on the hosts of this file that answer: {hosts} in COMMAND")
+      ->type_name("FILE");
+  command
+      ->add_option("--silence", keep.silence_s,
+                   "End a sweep's start that shows no sign of life for so long; 0: never [300]")
+      ->check(not_negative())
+      ->type_name("SECONDS");
+  command->add_option("--pause", keep.pause_s, "Before the next start; doubles while nothing gets done [1]")
+      ->check(above_zero())
+      ->type_name("SECONDS");
+  command->add_option("--vain-starts", keep.vain_starts, "Give up after so many in a row that get nothing done [6]")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  return command;
+}
+
+/// The run that is kept, understood like one that is typed. Not one: an Answer that says why.
+Command with_its_run(KeepOptions keep) {
+  const std::vector<std::string> words = run_words(keep.command);
+  std::vector<const char*> pointers;
+  for (const std::string& word : words) pointers.push_back(word.c_str());
+  Command inner = words.empty() ? Command(Answer{"there is no 'rodsweep run JOB' in it\n", ExitCode::user_error})
+                                : parse_command_line(static_cast<int>(pointers.size()), pointers.data());
+  if (auto* run = std::get_if<RunOptions>(&inner)) {
+    keep.run = std::move(*run);
+    return keep;
+  }
+  const auto* answer = std::get_if<Answer>(&inner);
+  return Answer{fmt::format("rodsweep keep: the command behind -- is not a run to keep: {}",
+                            answer != nullptr ? answer->text : "\n"),
+                ExitCode::user_error};
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -211,11 +281,14 @@ Command parse_command_line(int argc, const char* const* argv) {
   InfoOptions info;
   QueryOptions query;
   PackOptions pack;
+  KeepOptions keep;
+  MergeOptions merge;
+  merge.command = run.command;
   std::optional<Command> chosen;
   const auto offer = [&](auto&... options) {
     (add(app, options)->callback([&chosen, &options] { chosen = options; }), ...);
   };
-  offer(run, plan, validate, status, info, query, rerun, pack);
+  offer(run, keep, plan, validate, status, info, query, rerun, pack, merge);
 
   CLI::App* schema = app.add_subcommand("schema", "Prints the JSON Schema of jobs, for editors");
   schema->footer(schema_help);
@@ -233,6 +306,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     return Answer{mistake ? complaint.str() : help.str(), mistake ? ExitCode::user_error : ExitCode::ok};
   }
   if (version) return Answer{version_text()};
+  if (chosen && std::holds_alternative<KeepOptions>(*chosen)) return with_its_run(std::get<KeepOptions>(*chosen));
   return chosen.value_or(Answer{app.help(), ExitCode::user_error});
 }
 

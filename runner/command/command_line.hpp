@@ -6,6 +6,8 @@
 
 #include "runner/command/exit_codes.hpp"
 #include "runner/command/info_command.hpp"
+#include "runner/command/keep_command.hpp"
+#include "runner/command/merge_command.hpp"
 #include "runner/command/pack_command.hpp"
 #include "runner/command/plan_command.hpp"
 #include "runner/command/query_command.hpp"
@@ -23,7 +25,7 @@ struct Answer {
 };
 
 using Command = std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, QueryOptions,
-                             RerunOptions, PackOptions, Answer>;
+                             RerunOptions, PackOptions, KeepOptions, MergeOptions, Answer>;
 
 Command parse_command_line(int argc, const char* const* argv);
 

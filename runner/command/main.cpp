@@ -56,6 +56,8 @@ ExitCode start(const Options& options, Console& console) {
 
 ExitCode start(const RerunOptions& options, Console& console) { return execute_with_petsc(options, console); }
 
+ExitCode start(const MergeOptions& options, Console& console) { return execute_with_petsc(options, console); }
+
 ExitCode start(const PlanOptions& options, Console& console) {
   return options.probe ? execute_with_petsc(options, console) : start<PlanOptions>(options, console);
 }

@@ -34,10 +34,13 @@ std::string run_line(const RunOptions& options, int ranks) {
   line += fmt::format("{} run {}", shell_quoted(options.program), shell_quoted(options.job.native()));
   if (options.output) line += " -o " + shell_quoted(options.output->native());
   if (options.extend) line += " --extend " + shell_quoted(options.extend->native());
+  if (options.shard) line += fmt::format(" --shard {}/{}", options.shard->number, options.shard->of);
   if (options.resume) line += " --resume";
   if (options.retry_failed) line += " --retry-failed";
   if (options.task_time_limit_s) line += fmt::format(" --task-time-limit {:g}", *options.task_time_limit_s);
   if (options.memory_limit_gb) line += fmt::format(" --memory-limit-gb {:g}", *options.memory_limit_gb);
+  if (options.worker_timeout_s != RunOptions().worker_timeout_s)
+    line += fmt::format(" --worker-timeout {:g}", options.worker_timeout_s);
   return line;
 }
 

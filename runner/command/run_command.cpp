@@ -1,5 +1,7 @@
 #include "runner/command/run_command.hpp"
 
+#include <fmt/format.h>
+
 #include "runner/command/sweep_run.hpp"
 #include "runner/command/training_run.hpp"
 #include "runner/experiment/inputs.hpp"
@@ -32,7 +34,8 @@ ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& cons
 }
 
 fs::path output_of(const RunOptions& options, const std::string& job_name) {
-  return options.output.value_or(fs::path("results") / (job_name + ".h5"));
+  const std::string part = options.shard ? fmt::format("-{}of{}", options.shard->number, options.shard->of) : "";
+  return options.output.value_or(fs::path("results") / (job_name + part + ".h5"));
 }
 
 Provenance provenance_of(const RunOptions& options, const MpiSession& mpi, const Placement& where) {

@@ -13,14 +13,22 @@
 
 namespace rodsweep {
 
+/// One of the parts that a sweep's tasks are dealt out to.
+struct Shard {
+  int number = 1;  ///< from 1
+  int of = 1;
+};
+
 struct RunOptions {
   std::filesystem::path job;
   std::optional<std::filesystem::path> output;  ///< default: results/NAME.h5 in the current folder
   bool resume = false;                          ///< continue the output if it exists
   bool retry_failed = false;  ///< and run its tasks again that ended in an error, timed out or crashed
   std::optional<std::filesystem::path> extend;  ///< results of a smaller job, which need not be computed again
+  std::optional<Shard> shard;                   ///< runs its tasks alone
   std::optional<double> task_time_limit_s;      ///< in place of the job's
   std::optional<double> memory_limit_gb;        ///< of every rank; default: its share of the host's memory
+  double worker_timeout_s = 120;                ///< a worker that is silent for so long is lost; 0: none ever is
   std::string program = "rodsweep";             ///< as the user typed it
   std::string command;                          ///< the whole line, for /runs
 };
@@ -58,7 +66,7 @@ inline constexpr const char* run_help =
 /// the caller must abort.
 ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console);
 
-/// Where the results of a job go: results/NAME.h5 unless the user names another file.
+/// Where the results of a job go: results/NAME.h5, of a shard results/NAME-IofN.h5, unless the user names another file.
 std::filesystem::path output_of(const RunOptions& options, const std::string& job_name);
 
 /// Of a start on these ranks: a row of /runs.

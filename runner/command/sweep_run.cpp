@@ -3,8 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <functional>
+#include <numeric>
+#include <string_view>
+#include <thread>
 #include <utility>
 
 #include "runner/command/next_line.hpp"
@@ -51,40 +56,53 @@ bool has_begun(const RunOptions& options, const fs::path& path, const std::optio
   return true;
 }
 
-/// A task that was begun so often, and of whose workers none said what came of it, is tried no more. The first time it
-/// may have run beside the one that is to blame; the last time it was alone (Master).
-constexpr int most_starts = 3;
-
+/// A task that was begun often enough, and of whose workers none said what came of it, is tried no more.
 bool is_given_up(const ResultsFile& file, std::int64_t task) {
   const auto i = static_cast<std::size_t>(task);
-  return file.done()[i] == 0 && file.starts()[i] >= most_starts;
+  return file.done()[i] == 0 && file.starts()[i] >= PendingTask::most_starts;
 }
 
-/// Writes down what is known of tasks that are tried no more, so that they have an outcome. One rank.
-void give_up(const Plan& plan, ResultsFile& file) {
-  const AxisSizes sizes = axis_sizes(plan);
+/// Writes down what is known of a task that is tried no more, so that it has an outcome; returns the same. One rank.
+std::string give_up(const Task& task, int lost, const Plan& plan, ResultsFile& file) {
   TaskRecord record;
-  for (const Task& task : plan.tasks()) {
-    if (!is_given_up(file, task.index)) continue;
-    record.prepare(task, sizes);
-    record.outcome = TaskOutcome::crashed;
-    record.message = fmt::format(
-        "its worker, or the whole sweep, ended without a word each of the {} times that it was begun, last with "
-        "nothing beside it",
-        file.starts()[static_cast<std::size_t>(task.index)]);
-    file.write(task, record);
-  }
+  record.prepare(task, axis_sizes(plan));
+  record.outcome = TaskOutcome::crashed;
+  record.message = fmt::format(
+      "its worker, or the whole sweep, ended or fell silent without a word each of the {} times that it was begun, "
+      "last with nothing beside it",
+      lost);
+  file.write(task, record);
+  return record.message;
+}
+
+void give_up_what_was_begun_too_often(const Plan& plan, ResultsFile& file) {
+  for (const Task& task : plan.tasks())
+    if (is_given_up(file, task.index)) give_up(task, file.starts()[static_cast<std::size_t>(task.index)], plan, file);
   file.commit();
 }
 
+/// Which tasks are a shard's: dealt out in the order of their costs, so that shards take about as long.
+std::vector<bool> in_shard(const Plan& plan, const std::optional<Shard>& shard) {
+  if (!shard) return std::vector<bool>(static_cast<std::size_t>(plan.size()), true);
+  std::vector<std::int64_t> order(static_cast<std::size_t>(plan.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int64_t a, std::int64_t b) { return plan.task(a).cost > plan.task(b).cost; });
+  std::vector<bool> mine(order.size(), false);
+  for (auto i = static_cast<std::size_t>(shard->number) - 1; i < order.size(); i += static_cast<std::size_t>(shard->of))
+    mine[static_cast<std::size_t>(order[i])] = true;
+  return mine;
+}
+
 std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
-                                       const std::optional<Extension>& extension) {
+                                       const std::optional<Extension>& extension, const std::vector<bool>& mine) {
   // Tasks of an earlier file are looked at one by one.
   const std::vector<std::int64_t> batch =
       extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
   std::vector<PendingTask> pending;
   for (const Task& task : plan.tasks())
-    if (const auto i = static_cast<std::size_t>(task.index); !file.done()[i] && !is_given_up(file, task.index)) {
+    if (const auto i = static_cast<std::size_t>(task.index);
+        mine[i] && !file.done()[i] && !is_given_up(file, task.index)) {
       const int lost = file.starts()[i];
       pending.push_back(
           {task.index, task.cost * (extension ? extension->cost(task.index) : 1), lost > 0 ? -1 : batch[i], lost});
@@ -145,17 +163,59 @@ Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, co
   return master.dispatch();
 }
 
+/// Does Open MPI let ranks leave one by one? Then it is no use asking it to end the others.
+bool ranks_leave_alone() {
+  const char* told = std::getenv("OMPI_MCA_orte_enable_recovery");
+  return told != nullptr && std::string_view(told) != "0";
+}
+
+/// Ranks are lost, and Open MPI cannot finish without them: a worker's way out.
+[[noreturn]] void leave_master() {
+  if (!ranks_leave_alone()) std::this_thread::sleep_for(std::chrono::minutes(1));  // unless that ends all before
+  std::_Exit(static_cast<int>(ExitCode::ok));
+}
+
+/// The master's.
+[[noreturn]] void leave_lost_ranks(const MpiSession& mpi, ExitCode code) {
+  if (!ranks_leave_alone()) MPI_Abort(mpi.world(), static_cast<int>(code));
+  std::_Exit(static_cast<int>(code));
+}
+
 Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pending, Progress& progress,
-                             const StopSignal& signal, BatchBody body, const std::function<void()>& now_and_then) {
+                             const StopSignal& signal, BatchBody body, const std::function<void()>& now_and_then,
+                             ResultsFile& file, const Patience& patience, const Notices& notices) {
   const auto received = [&] { return signal.received(); };
   MpiChannel channel(mpi.world());
   if (mpi.rank() > 0) {
-    Worker(channel, std::move(body), received, now_and_then).run();
-    return {};
+    Worker worker(channel, std::move(body), received, now_and_then);
+    worker.set_beat(std::min(std::chrono::duration<double>(1), patience.silence / 5), [&] { return file.committed(); });
+    if (!worker.run()) return {};
+    file.commit();
+    channel.send(0, Gone{});
+    leave_master();
   }
-  Master master(channel, std::move(pending), progress, received);
-  master.run();
+  Master master(channel, std::move(pending), progress, received, patience, notices);
+  master.run(now_and_then);
+  if (master.dispatch().apart) {
+    master.wait_until_gone();
+    channel.abandon();
+  }
   return master.dispatch();
+}
+
+Patience patience_of(const RunOptions& options) {
+  constexpr std::chrono::minutes drain{1};
+  Patience patience;
+  patience.drain = drain;
+  if (options.worker_timeout_s > 0) patience.silence = std::chrono::duration<double>(options.worker_timeout_s);
+  return patience;
+}
+
+std::string ended_text(const Dispatch& dispatch, const RunOptions& options, int ranks) {
+  if (dispatch.signal != 0) return stopped_text(dispatch.signal, options, ranks);
+  RunOptions again = options;
+  again.resume = true;
+  return fmt::format("no worker is left; nothing is lost that was finished. To continue: {}", run_line(again, ranks));
 }
 
 }  // namespace
@@ -182,21 +242,25 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     return continues ? ResultsFile::resume(path, plan, provenance, mpi.world(),
                                            options.retry_failed ? Retry::failed : Retry::none)
                      : ResultsFile::create(path, plan, provenance, mpi.world(), free_bytes,
-                                           options.extend.value_or(fs::path()));
+                                           options.extend ? std::vector{*options.extend} : std::vector<fs::path>());
   });
   if (!file.note().empty()) console.warn(file.note());
   collectively(mpi.world(), [&] {
-    if (mpi.rank() == 0) give_up(plan, file);
+    if (mpi.rank() == 0) give_up_what_was_begun_too_often(plan, file);
   });
   const FileSummary before =
       collectively(mpi.world(), [&] { return continues && mpi.rank() == 0 ? inspect(path) : FileSummary(); });
 
-  std::vector<PendingTask> pending = pending_tasks(plan, file, extension);
+  const std::vector<bool> mine = in_shard(plan, options.shard);
+  std::vector<PendingTask> pending = pending_tasks(plan, file, extension, mine);
   advise(console, options, where, pending.size());
   const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
   console.note(to_do == total
                    ? fmt::format("{} tasks for {}, results in {}", total, job.name, path.native())
                    : fmt::format("{} of {} tasks of {} are left to do in {}", to_do, total, job.name, path.native()));
+  if (options.shard)
+    console.note(fmt::format("shard {} of {}: {} of these tasks; `rodsweep merge` puts the shards together",
+                             options.shard->number, options.shard->of, std::count(mine.begin(), mine.end(), true)));
   if (extension) console.note(extension_text(*extension, total));
   if (extension && !extension->note().empty()) console.warn(extension->note());
 
@@ -207,22 +271,43 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     file.write(task, record, origin);
   };
   const auto warn = [](const std::string& text) { Console(true).warn(text); };  // whichever rank finds the damage
+  const auto hosts = everywhere(host_name(), mpi.world());
+  Notices notices;
+  notices.lost = [&](int rank) {
+    console.warn(fmt::format("rank {} on {} was not heard for too long: others get what it had in hand", rank,
+                             hosts[static_cast<std::size_t>(rank)]));
+  };
+  notices.found_again = [&](int rank) {
+    console.note(fmt::format("rank {} on {} is back", rank, hosts[static_cast<std::size_t>(rank)]));
+  };
+  notices.give_up = [&](std::int64_t task, int lost) { return give_up(plan.task(task), lost, plan, file); };
   BatchBody body =
       counting_starts(extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write), plan, file);
-  const auto commit = [&file] { file.commit_if_due(); };
-  const Dispatch dispatch =
-      mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), commit)
-                      : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), commit);
+  const auto now_and_then = [&] {
+    file.commit_if_due();
+    if (mpi.rank() == 0) file.beat();
+  };
+  const Dispatch dispatch = mpi.size() == 1
+                                ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then)
+                                : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body),
+                                                      now_and_then, file, patience_of(options), notices);
   file.commit();
 
   const SweepSummary summary{total, before.done_by_outcome, dispatch, where.workers, path};
-  const auto code = static_cast<ExitCode>(broadcast(static_cast<int>(exit_code(summary)), mpi.world()));
-  if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
-  file.close();
-
-  console.result(summary_text(summary));
-  if (code == ExitCode::stopped) console.note(stopped_text(dispatch.signal, options, mpi.size()));
-  return code;
+  const auto end = [&](ExitCode code) {
+    if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
+    dispatch.apart ? file.leave() : file.close();
+    console.result(summary_text(summary));
+    if (code == ExitCode::stopped) console.note(ended_text(dispatch, options, mpi.size()));
+    return code;
+  };
+  if (dispatch.apart) {
+    const ExitCode code = end(exit_code(summary));
+    console.note("ranks are lost, and Open MPI has to end them");
+    console.close();
+    leave_lost_ranks(mpi, code);
+  }
+  return end(static_cast<ExitCode>(broadcast(static_cast<int>(exit_code(summary)), mpi.world())));
 }
 
 }  // namespace rodsweep

@@ -19,7 +19,7 @@
 
 namespace rodsweep {
 
-enum class Tag : int { assign = 1, stop, finish, report, interrupted };
+enum class Tag : int { assign = 1, drop, stop, finish, report, dropped, interrupted, alive, gone };
 
 /// Master to worker: run these tasks, at once where they can be, after what you have in hand.
 struct Assign {
@@ -32,6 +32,12 @@ struct Assign {
   std::vector<std::int64_t> tasks() const { return {task.begin(), task.begin() + count}; }
 };
 
+/// Master to worker: you were not heard for too long, and others have your tasks. Abandon what runs and what is in
+/// hand, report each, answer Dropped, and wait for more.
+struct Drop {
+  static constexpr Tag tag = Tag::drop;
+};
+
 /// Master to worker: abandon what runs and what is in hand, report each, wait for Finish.
 struct Stop {
   static constexpr Tag tag = Tag::stop;
@@ -40,6 +46,7 @@ struct Stop {
 /// Master to worker: nothing more will come; leave.
 struct Finish {
   static constexpr Tag tag = Tag::finish;
+  bool apart = false;  ///< some ranks are lost: do nothing that takes all, answer Gone when you are done
 };
 
 /// Worker to master: one for every task of every Assign.
@@ -53,6 +60,22 @@ struct Report {
   Report() = default;
   Report(std::int64_t task, TaskOutcome outcome, double busy_s, std::string_view message);
   std::string_view message() const { return text.data(); }
+};
+
+/// Worker to master: all that a Drop took away is reported; I am at hand again.
+struct Dropped {
+  static constexpr Tag tag = Tag::dropped;
+};
+
+/// Worker to master, about every second: I can still look up.
+struct Alive {
+  static constexpr Tag tag = Tag::alive;
+  std::int64_t kept = 0;  ///< so many of the tasks that I finished, from the first on, outlive me
+};
+
+/// Worker to master: what I wrote is on disk; I may be ended.
+struct Gone {
+  static constexpr Tag tag = Tag::gone;
 };
 
 /// Worker to master: this rank was signalled, please stop the sweep.

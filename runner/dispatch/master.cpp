@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "runner/dispatch/backoff.hpp"
 
@@ -12,27 +13,35 @@ namespace rodsweep {
 namespace {
 
 constexpr std::size_t failures_kept = 5;
-constexpr int lost_before_alone = 2;
+constexpr int lost_before_alone = PendingTask::most_starts - 1;
+
+auto order(const PendingTask& task) { return std::tuple(task.lost, -task.cost, task.batch, task.index); }
+bool comes_first(const PendingTask& a, const PendingTask& b) { return order(a) < order(b); }
 
 }  // namespace
 
-Master::Master(Channel& channel, std::vector<PendingTask> tasks, Progress& progress, std::function<int()> signal)
+Master::Master(Channel& channel, std::vector<PendingTask> tasks, Progress& progress, std::function<int()> signal,
+               const Patience& patience, Notices notices)
     : channel_(&channel),
       progress_(&progress),
       signal_(std::move(signal)),
+      patience_(patience),
+      notices_(std::move(notices)),
       pool_(std::move(tasks)),
       workers_(static_cast<std::size_t>(channel.size())),
-      begin_(Progress::Clock::now()) {
-  std::sort(pool_.begin(), pool_.end(), [](const PendingTask& a, const PendingTask& b) {
-    return std::tuple(a.lost, -a.cost, a.batch, a.index) < std::tuple(b.lost, -b.cost, b.batch, b.index);
-  });
+      begin_(Clock::now()),
+      stepped_(begin_),
+      last_heard_(begin_) {
+  for (Worker& worker : workers_) worker.heard = begin_;
+  std::sort(pool_.begin(), pool_.end(), comes_first);
   for (const PendingTask& task : pool_) pool_cost_ += task.cost;
   dispatch_.left = static_cast<std::int64_t>(pool_.size());
 }
 
-void Master::run() {
+void Master::run(const std::function<void()>& now_and_then) {
   Backoff backoff;
   for (;;) {
+    if (now_and_then) now_and_then();
     switch (step()) {
       case Step::worked: backoff.reset(); break;
       case Step::waited: backoff.wait(); break;
@@ -44,24 +53,52 @@ void Master::run() {
 Master::Step Master::step() {
   const bool traffic = receive();
   if (const int signal = signal_(); signal != 0) stop(signal);
+  look_for_lost();
   if (dispatch_.signal == 0) hand_out();
 
-  const auto now = Progress::Clock::now();
+  const auto now = Clock::now();
   progress_->show(now);
-  if (in_flight_ > 0) return traffic ? Step::worked : Step::waited;
+  const bool waits =
+      next_ < pool_.size() && dispatch_.signal == 0 && (any_left() || now - last_heard_ < patience_.silence);
+  if (in_flight_ > 0 || waits) return traffic ? Step::worked : Step::waited;
 
   progress_->clear();
   dispatch_.wall_s = std::chrono::duration<double>(now - begin_).count();
-  for (int rank = 1; rank < channel_->size(); ++rank) channel_->send(rank, Finish{});
+  dispatch_.apart = std::any_of(workers_.begin() + 1, workers_.end(), [](const Worker& worker) { return worker.lost; });
+  for (int rank = 1; rank < channel_->size(); ++rank) channel_->send(rank, Finish{dispatch_.apart});
   return Step::finished;
+}
+
+void Master::wait_until_gone() {
+  const auto begin = Clock::now();
+  const auto here = [](const Worker& worker) { return !worker.lost && !worker.gone; };
+  Backoff backoff;
+  while (std::any_of(workers_.begin() + 1, workers_.end(), here) && Clock::now() - begin < patience_.drain) {
+    if (receive()) backoff.reset();
+    backoff.wait();
+  }
+  for (int rank = 1; rank < channel_->size(); ++rank)
+    if (here(workers_[static_cast<std::size_t>(rank)])) lose(rank);
 }
 
 bool Master::receive() {
   bool any = false;
   while (const auto envelope = channel_->probe()) {
     any = true;
+    Worker& worker = workers_[static_cast<std::size_t>(envelope->source)];
+    worker.heard = last_heard_ = Clock::now();
     switch (envelope->tag) {
       case Tag::report: report(envelope->source, channel_->receive<Report>(*envelope)); break;
+      case Tag::alive:
+        worker.kept = channel_->receive<Alive>(*envelope).kept;
+        forget_kept(worker);
+        break;
+      case Tag::dropped:
+        channel_->receive<Dropped>(*envelope);
+        worker.lost = false;
+        if (notices_.found_again) notices_.found_again(envelope->source);
+        break;
+      case Tag::gone: channel_->receive<Gone>(*envelope), worker.gone = true; break;
       case Tag::interrupted: stop(channel_->receive<Interrupted>(*envelope).signal); break;
       default: channel_->unexpected(*envelope);
     }
@@ -70,36 +107,119 @@ bool Master::receive() {
 }
 
 void Master::report(int rank, const Report& report) {
-  auto& tasks = workers_[static_cast<std::size_t>(rank)].tasks;
-  const auto task =
-      std::find_if(tasks.begin(), tasks.end(), [&](const PendingTask& t) { return t.index == report.task; });
-  if (task == tasks.end())
+  Worker& worker = workers_[static_cast<std::size_t>(rank)];
+  const bool finished = report.outcome != TaskOutcome::pending;
+  const auto is_it = [&](const PendingTask& task) { return task.index == report.task; };
+  const auto had = std::find_if(worker.tasks.begin(), worker.tasks.end(), is_it);
+  const auto waits = std::find_if(pool_.begin() + static_cast<std::ptrdiff_t>(next_), pool_.end(), is_it);
+  PendingTask task;
+  bool counted = finished;
+  if (had != worker.tasks.end()) {
+    task = *had;
+    worker.tasks.erase(had);
+    --in_flight_;
+  } else if (!worker.lost) {
     throw ProtocolError(fmt::format("rank {} reports task {}, which it does not have", rank, report.task));
-  const double cost = task->cost;
-  tasks.erase(task);
-  --in_flight_;
-  dispatch_.busy_s += report.busy_s;
-  if (report.outcome == TaskOutcome::pending) return;
+  } else if (finished && waits != pool_.end()) {  // after all: nobody else needs to
+    task = *waits;
+    pool_.erase(waits);
+    pool_cost_ -= task.cost;
+  } else {  // somebody else has it
+    counted = false;
+  }
+  if (!finished) {
+    dispatch_.busy_s += report.busy_s;
+    return;
+  }
+  if (counted) count(task, report);
+  worker.unkept.push_back({task, report, counted});
+  forget_kept(worker);
+}
 
+void Master::forget_kept(Worker& worker) {
+  for (; worker.forgotten < worker.kept && !worker.unkept.empty(); ++worker.forgotten) worker.unkept.pop_front();
+}
+
+void Master::count(const PendingTask& task, const Report& report) {
+  dispatch_.busy_s += report.busy_s;
   --dispatch_.left;
   ++dispatch_.finished.at(static_cast<std::size_t>(report.outcome));
   if (report.outcome != TaskOutcome::ok && dispatch_.failures.size() < failures_kept)
-    dispatch_.failures.push_back({report.task, report.outcome, std::string(report.message())});
-  progress_->finished(report.outcome, cost, report.busy_s);
+    dispatch_.failures.push_back({task.index, report.outcome, std::string(report.message())});
+  progress_->finished(report.outcome, task.cost, report.busy_s);
+}
+
+void Master::take_back(const PendingTask& task, const Report& report) {
+  ++dispatch_.left;
+  --dispatch_.finished.at(static_cast<std::size_t>(report.outcome));
+  auto& failures = dispatch_.failures;
+  failures.erase(std::remove_if(failures.begin(), failures.end(),
+                                [&](const Dispatch::Failure& failure) { return failure.task == task.index; }),
+                 failures.end());
+  progress_->taken_back(report.outcome, task.cost, report.busy_s);
+}
+
+void Master::look_for_lost() {
+  const auto now = Clock::now();
+  if (now - std::exchange(stepped_, now) > patience_.silence / 2)  // the master was away itself
+    for (Worker& worker : workers_) worker.heard = now;
+  const bool drained = dispatch_.signal != 0 && now - stopped_ > patience_.drain;
+  for (int rank = 1; rank < channel_->size(); ++rank) {
+    const Worker& worker = workers_[static_cast<std::size_t>(rank)];
+    if (!worker.lost && (now - worker.heard > patience_.silence || (drained && !worker.tasks.empty()))) lose(rank);
+  }
+}
+
+void Master::lose(int rank) {
+  Worker& worker = workers_[static_cast<std::size_t>(rank)];
+  worker.lost = true;
+  if (notices_.lost) notices_.lost(rank);
+  if (dispatch_.signal == 0) channel_->send(rank, Drop{});
+  const std::vector<PendingTask> tasks = std::exchange(worker.tasks, {});
+  in_flight_ -= static_cast<std::int64_t>(tasks.size());
+  for (const PendingTask& task : tasks) put_back(task, task.batch >= 0 || &task == &tasks.front());
+  worker.forgotten += static_cast<std::int64_t>(worker.unkept.size());
+  for (const Finished& one : std::exchange(worker.unkept, {})) {
+    if (!one.counted) continue;
+    take_back(one.task, one.report);
+    put_back(one.task, false);
+  }
+}
+
+void Master::put_back(PendingTask task, bool begun) {
+  if (begun) ++task.lost, task.batch = -1;
+  if (task.lost >= PendingTask::most_starts && dispatch_.signal == 0 && notices_.give_up) {
+    count(task, Report(task.index, TaskOutcome::crashed, 0, notices_.give_up(task.index, task.lost)));
+    return;
+  }
+  const auto begin = pool_.begin() + static_cast<std::ptrdiff_t>(next_);
+  pool_.insert(std::upper_bound(begin, pool_.end(), task, comes_first), task);
+  pool_cost_ += task.cost;
 }
 
 void Master::stop(int signal) {
   if (dispatch_.signal != 0) return;
   dispatch_.signal = signal;
+  stopped_ = Clock::now();
   for (int rank = 1; rank < channel_->size(); ++rank) channel_->send(rank, Stop{});
 }
 
 void Master::hand_out() {
   for (int rank = 1; rank < channel_->size() && next_ < pool_.size(); ++rank)
-    if (workers_[static_cast<std::size_t>(rank)].tasks.empty() && !next_goes_alone()) assign(rank);
+    if (is_idle(rank) && !next_goes_alone()) assign(rank);
   for (int rank = 1; rank < channel_->size() && next_ < pool_.size(); ++rank)
     if (may_hold_another(workers_[static_cast<std::size_t>(rank)])) assign(rank);
-  if (next_goes_alone() && in_flight_ == 0) assign(1);
+  for (int rank = 1; rank < channel_->size() && in_flight_ == 0 && next_goes_alone(); ++rank)
+    if (is_idle(rank)) assign(rank);
+}
+
+bool Master::is_idle(int rank) const {
+  const Worker& worker = workers_[static_cast<std::size_t>(rank)];
+  return !worker.lost && worker.tasks.empty();
+}
+
+bool Master::any_left() const {
+  return std::any_of(workers_.begin() + 1, workers_.end(), [](const Worker& worker) { return !worker.lost; });
 }
 
 bool Master::next_goes_alone() const { return next_ < pool_.size() && pool_[next_].lost >= lost_before_alone; }

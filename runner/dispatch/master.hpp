@@ -9,13 +9,23 @@
 // Tasks whose workers ended while they ran, and could not say why, come after all others; where that has happened
 // twice, one at a time, with nothing beside it: should a task be what ends workers, it has only itself to take along.
 //
-// On a signal, here or on a worker, nothing more is handed out and running tasks are abandoned.
-// Every Assign is answered by one Report; the workers are dismissed (Finish) when the last one is in.
+// A worker that was not heard for too long (it hangs, died, or its host is cut off) is lost: its tasks go back to the
+// others, as tasks that lost their workers, and so does what it finished and had not brought to disk. Should it come
+// back, it gives up what it had and is welcome again. What it finished meanwhile has the same bits, whoever writes them
+// last. Is nobody left for as long again, the sweep ends.
+//
+// On a signal, here or on a worker, nothing more is handed out and running tasks are abandoned; workers that have not
+// given theirs up in good time are lost.
+// Every Assign is answered by one Report for each of its tasks; the workers are dismissed (Finish) when the last one is
+// in. Are some lost by then, the others part without doing anything that would take all.
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -29,6 +39,23 @@ struct PendingTask {
   double cost = 0;
   std::int64_t batch = -1;  ///< tasks of equal cost and number here may be evaluated together; -1: this one alone
   int lost = 0;             ///< workers that ended while they ran it
+
+  /// So often a task is begun. The first time it may have run beside the one that is to blame; the last time it is
+  /// alone.
+  static constexpr int most_starts = 3;
+};
+
+/// How long the master waits for workers; by default for ever.
+struct Patience {
+  std::chrono::duration<double> silence{std::numeric_limits<double>::infinity()};  ///< of any worker
+  std::chrono::duration<double> drain{std::numeric_limits<double>::infinity()};    ///< after a request to stop
+};
+
+/// What the master tells its owner. Empty functions are not called.
+struct Notices {
+  std::function<void(int rank)> lost, found_again;
+  /// It was begun most_starts times: to be written down. Returns what is said of it.
+  std::function<std::string(std::int64_t task, int lost)> give_up;
 };
 
 /// What came of the tasks that were to do.
@@ -43,6 +70,7 @@ struct Dispatch {
   std::vector<Failure> failures;                       ///< the first few
   std::int64_t left = 0;                               ///< not run, or abandoned: 0 unless stopped early
   int signal = 0;                                      ///< the signal that stopped it
+  bool apart = false;                                  ///< workers are lost: nothing may be done that takes all ranks
   double busy_s = 0;                                   ///< of all workers
   double wall_s = 0;
 };
@@ -50,39 +78,65 @@ struct Dispatch {
 class Master {
  public:
   /// `signal` tells the signal that this rank received, 0 for none. References must outlive the object.
-  Master(Channel& channel, std::vector<PendingTask> tasks, Progress& progress, std::function<int()> signal);
+  Master(Channel& channel, std::vector<PendingTask> tasks, Progress& progress, std::function<int()> signal,
+         const Patience& patience = {}, Notices notices = {});
 
   /// Deals with all messages that have arrived and hands out what it can.
   enum class Step { worked, waited, finished };
   Step step();
 
   /// Steps until all is finished, asleep between messages.
-  void run();
+  void run(const std::function<void()>& now_and_then = {});
+
+  /// Of workers that part: until they have written all, or for as long as a stop may take. Those that do not say so
+  /// are lost too.
+  void wait_until_gone();
 
   const Dispatch& dispatch() const { return dispatch_; }
 
  private:
+  using Clock = Progress::Clock;
+  struct Finished {
+    PendingTask task;
+    Report report;
+    bool counted;  ///< not where somebody else has it
+  };
+
   struct Worker {
     std::vector<PendingTask> tasks;  ///< the running one, then the one in hand
+    Clock::time_point heard;
+    bool lost = false, gone = false;
+    std::deque<Finished> unkept;           ///< what it finished and would take along
+    std::int64_t kept = 0, forgotten = 0;  ///< of all that it finished: on disk, as it says; no more in `unkept`
   };
 
   bool receive();
+  void look_for_lost();
+  void lose(int rank);
+  void put_back(PendingTask task, bool begun);
   void report(int rank, const Report& report);
+  void count(const PendingTask& task, const Report& report);
+  void take_back(const PendingTask& task, const Report& report);
+  static void forget_kept(Worker& worker);
   void stop(int signal);
   void hand_out();
   void assign(int rank);
+  bool is_idle(int rank) const;
+  bool any_left() const;
   bool may_hold_another(const Worker& worker) const;
   bool next_goes_alone() const;
 
   Channel* channel_;
   Progress* progress_;
   std::function<int()> signal_;
+  Patience patience_;
+  Notices notices_;
   std::vector<PendingTask> pool_;  ///< by lost workers, then descending cost; [next_, end) is still to hand out
   std::size_t next_ = 0;
   double pool_cost_ = 0;
   std::vector<Worker> workers_;  ///< by rank; that of the master stays empty
   std::int64_t in_flight_ = 0;
-  Progress::Clock::time_point begin_;
+  Clock::time_point begin_, stepped_, stopped_, last_heard_;
   Dispatch dispatch_;
 };
 

@@ -11,7 +11,7 @@ MpiChannel::MpiChannel(MPI_Comm comm) {
 }
 
 MpiChannel::~MpiChannel() {
-  if (std::uncaught_exceptions() == exceptions_) MPI_Comm_free(&comm_);
+  if (comm_ != MPI_COMM_NULL && std::uncaught_exceptions() == exceptions_) MPI_Comm_free(&comm_);
 }
 
 std::optional<Envelope> MpiChannel::probe() {

@@ -15,6 +15,8 @@ class MpiChannel : public Channel {
   /// Collective too, unless an exception unwinds this rank: the others need not be on their way here, and it must not
   /// wait for them before it can say what happened.
   ~MpiChannel() override;
+  /// Leaves the communicator to the end of the process: a rank is lost that would have to free it too.
+  void abandon() { comm_ = MPI_COMM_NULL; }
   MpiChannel(const MpiChannel&) = delete;
   MpiChannel& operator=(const MpiChannel&) = delete;
 

@@ -31,13 +31,13 @@ Worker::Worker(Channel& channel, BatchBody body, std::function<int()> signal, st
 Worker::Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running)
     : Worker(channel, one_by_one(std::move(body)), std::move(signal), std::move(while_running)) {}
 
-void Worker::run() {
+bool Worker::run() {
   Backoff backoff;
   for (;;) {
     switch (step()) {
       case Step::worked: backoff.reset(); break;
       case Step::waited: backoff.wait(); break;
-      case Step::finished: return;
+      case Step::finished: return apart_;
     }
   }
 }
@@ -45,10 +45,8 @@ void Worker::run() {
 Worker::Step Worker::step() {
   const bool traffic = receive();
   heed_signal();
-  if (stopping_) {
-    for (const std::vector<std::int64_t>& tasks : std::exchange(hand_, {}))
-      for (const std::int64_t task : tasks) channel_->send(master, Report(task, TaskOutcome::pending, 0, ""));
-  }
+  beat();
+  if (stopping_ || dropping_) give_back();
   if (!hand_.empty()) {
     const std::vector<std::int64_t> tasks = std::move(hand_.front());
     hand_.pop_front();
@@ -60,14 +58,21 @@ Worker::Step Worker::step() {
   return traffic ? Step::worked : Step::waited;
 }
 
+void Worker::give_back() {
+  for (const std::vector<std::int64_t>& tasks : std::exchange(hand_, {}))
+    for (const std::int64_t task : tasks) channel_->send(master, Report(task, TaskOutcome::pending, 0, ""));
+  if (std::exchange(dropping_, false)) channel_->send(master, Dropped{});
+}
+
 bool Worker::receive() {
   bool any = false;
   while (const auto envelope = channel_->probe()) {
     any = true;
     switch (envelope->tag) {
       case Tag::assign: hand_.push_back(channel_->receive<Assign>(*envelope).tasks()); break;
+      case Tag::drop: channel_->receive<Drop>(*envelope), dropping_ = true; break;
       case Tag::stop: channel_->receive<Stop>(*envelope), stopping_ = true; break;
-      case Tag::finish: channel_->receive<Finish>(*envelope), dismissed_ = true; break;
+      case Tag::finish: apart_ = channel_->receive<Finish>(*envelope).apart, dismissed_ = true; break;
       default: channel_->unexpected(*envelope);
     }
   }
@@ -81,6 +86,13 @@ void Worker::heed_signal() {
   told_ = stopping_ = true;
 }
 
+void Worker::beat() {
+  const auto now = Clock::now();
+  if (dismissed_ || now - beat_ < beat_pause_) return;
+  beat_ = now;
+  channel_->send(master, Alive{kept_ ? kept_() : 0});
+}
+
 void Worker::run(const std::vector<std::int64_t>& tasks) {
   const auto begin = Clock::now();
   looked_ = begin;
@@ -92,14 +104,15 @@ void Worker::run(const std::vector<std::int64_t>& tasks) {
 }
 
 bool Worker::stop_requested() {
-  if (stopping_) return true;
+  if (stopping_ || dropping_) return true;
   heed_signal();
   if (const auto now = Clock::now(); now - looked_ >= look_pause) {
     looked_ = now;
     if (while_running_) while_running_();
     receive();
+    beat();
   }
-  return stopping_;
+  return stopping_ || dropping_;
 }
 
 }  // namespace rodsweep

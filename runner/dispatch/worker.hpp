@@ -1,8 +1,9 @@
 // Runs the tasks that the master assigns, one assignment after the other, and reports each task.
 //
 // While they run it asks, between time steps and within them, whether to stop; every few milliseconds that question
-// also looks at the messages. An exception from the task's body is the end of this rank (say, a results file that
-// cannot be written): what is wrong with a task is an outcome, and the body's affair (runner/experiment/task_body.hpp).
+// also looks at the messages, and every second or so it tells the master that this rank can still look up. An exception
+// from the task's body is the end of this rank (say, a results file that cannot be written): what is wrong with a task
+// is an outcome, and the body's affair (runner/experiment/task_body.hpp).
 #pragma once
 
 #include <chrono>
@@ -10,6 +11,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runner/dispatch/channel.hpp"
@@ -38,16 +40,26 @@ class Worker {
   Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running = {});
   Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running = {});
 
+  /// Tells the master so often that this rank looks up, and of how many of its tasks the results are on disk: by
+  /// default every second, and nothing of the latter.
+  void set_beat(std::chrono::duration<double> pause, std::function<std::int64_t()> kept) {
+    beat_pause_ = pause;
+    kept_ = std::move(kept);
+  }
+
   /// Deals with all messages that have arrived, then runs at most one assignment.
   enum class Step { worked, waited, finished };
   Step step();
 
-  /// Steps until dismissed, asleep while there is nothing to do.
-  void run();
+  /// Steps until dismissed, asleep while there is nothing to do. True: ranks are lost, and what takes all of them must
+  /// not be tried.
+  bool run();
 
  private:
   bool receive();
   void heed_signal();
+  void beat();
+  void give_back();
   void run(const std::vector<std::int64_t>& tasks);
   bool stop_requested();
 
@@ -57,8 +69,10 @@ class Worker {
   std::function<void()> while_running_;
   std::deque<std::vector<std::int64_t>> hand_;  ///< assignments
 
-  bool stopping_ = false, dismissed_ = false, told_ = false;
-  std::chrono::steady_clock::time_point looked_{};
+  bool dropping_ = false, stopping_ = false, dismissed_ = false, apart_ = false, told_ = false;
+  std::chrono::steady_clock::time_point looked_{}, beat_{};
+  std::chrono::duration<double> beat_pause_{1};
+  std::function<std::int64_t()> kept_;
 };
 
 }  // namespace rodsweep

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -32,6 +33,8 @@ SyncedFile::SyncedFile(const std::filesystem::path& path)
 void SyncedFile::sync() const {
   if (fdatasync(descriptor_.number()) != 0 && !cannot(errno)) throw sync_error(path_, errno);
 }
+
+void SyncedFile::touch() const { futimens(descriptor_.number(), nullptr); }
 
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");

@@ -94,14 +94,16 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
 }
 
-/// The starts of an earlier file, marked with its name unless they were copied there already.
-int copy_runs(const hdf5::File& file, const fs::path& earlier) {
-  std::vector<RunRow> runs = read_runs(open_results(earlier));
-  for (std::size_t row = 0; row < runs.size(); ++row) {
-    if (runs[row].source.empty()) runs[row].source = earlier.native();
-    write_run(file, row, runs[row]);
-  }
-  return static_cast<int>(runs.size());
+/// The starts of earlier files, marked with their names unless they were copied there already.
+int copy_runs(const hdf5::File& file, const std::vector<fs::path>& earlier) {
+  int row = 0;
+  for (const fs::path& path : earlier)
+    for (RunRow& run : read_runs(open_results(path))) {
+      if (row == run_rows - 1) return row;
+      if (run.source.empty()) run.source = path.native();
+      write_run(file, static_cast<std::size_t>(row++), run);
+    }
+  return row;
 }
 
 /// Takes real blocks for the sparse file. File systems that cannot are left alone; the free-space check has to do
@@ -121,7 +123,8 @@ std::uintmax_t free_bytes(const fs::path& folder) { return fs::space(folder).ava
 
 std::int64_t file_bytes(const Plan& plan) { return file_bytes(layout(plan, plan.parameters())); }
 
-int create_results_file(const fs::path& path, const Plan& plan, const FreeSpace& free_space, const fs::path& earlier) {
+int create_results_file(const fs::path& path, const Plan& plan, const FreeSpace& free_space,
+                        const std::vector<fs::path>& earlier) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -141,7 +144,7 @@ int create_results_file(const fs::path& path, const Plan& plan, const FreeSpace&
   hdf5::File file = hdf5::create_file(unfinished.path());
   create_datasets(file.id(), fields);
   write_constants(file.id(), plan, parameters);
-  const int runs = earlier.empty() ? 0 : copy_runs(file, earlier);
+  const int runs = copy_runs(file, earlier);
   hdf5::close(file, "H5Fclose", unfinished.path().native());
   reserve_blocks(unfinished.path(), path);
   unfinished.publish();

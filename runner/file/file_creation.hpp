@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 #include "runner/file/file_error.hpp"
 #include "runner/job/plan.hpp"
@@ -17,10 +18,10 @@ namespace rodsweep {
 using FreeSpace = std::function<std::uintmax_t(const std::filesystem::path& folder)>;
 std::uintmax_t free_bytes(const std::filesystem::path& folder);
 
-/// `earlier`: a file that this one extends, whose /runs come first here; empty: none. Returns how many rows of /runs
-/// are in use.
+/// `earlier`: files that this one takes tasks from, whose /runs come first here, as many as there is room for beside
+/// one more. Returns how many rows of /runs are in use.
 int create_results_file(const std::filesystem::path& path, const Plan& plan, const FreeSpace& free_space,
-                        const std::filesystem::path& earlier = {});
+                        const std::vector<std::filesystem::path>& earlier = {});
 
 /// Bytes that the file of this plan takes.
 std::int64_t file_bytes(const Plan& plan);

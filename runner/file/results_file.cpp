@@ -59,19 +59,11 @@ void check_path(const fs::path& path) {
                     path.native(), path.native().size(), most));
 }
 
-/// The hosts of all ranks, each named once, in the order of their ranks. Collective.
+/// Each host of the ranks once, in the order of their ranks. Collective.
 std::string host_names(MPI_Comm comm) {
-  constexpr int bytes = 256;
-  int size = 1;
-  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
-  const std::string mine = hdf5::fixed_text(host_name(), bytes);
-  std::string all(static_cast<std::size_t>(size) * bytes, '\0');
-  check_mpi(MPI_Allgather(mine.data(), bytes, MPI_CHAR, all.data(), bytes, MPI_CHAR, comm), "MPI_Allgather");
   std::vector<std::string> names;
-  for (int rank = 0; rank < size; ++rank) {
-    std::string name = all.c_str() + static_cast<std::size_t>(rank) * bytes;
+  for (std::string& name : everywhere(host_name(), comm))
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
-  }
   return fmt::format("{}", fmt::join(names, " "));
 }
 
@@ -132,6 +124,7 @@ struct ResultsFile::Open {
     synced.sync();
     sync_failed = false;
     for (const std::int64_t task : written) set_state(task, 1);
+    committed += static_cast<std::int64_t>(written.size());
     written.clear();
     const std::chrono::duration<double> took = Clock::now() - begin;
     const double pause = std::max(shortest_pause_s, took.count() / busy_share);
@@ -156,7 +149,8 @@ struct ResultsFile::Open {
   FileLock lock;  // of the first rank
   SyncedFile synced;
   std::vector<std::int64_t> written;  ///< tasks whose data are, and whose state is to follow
-  Clock::time_point next_commit = Clock::now();
+  std::int64_t committed = 0;
+  Clock::time_point next_commit = Clock::now(), next_beat = next_commit;
   int own_rank = 0;
   AxisSizes sizes;
   RunRow run;                             // this start's
@@ -172,7 +166,7 @@ ResultsFile& ResultsFile::operator=(ResultsFile&&) noexcept = default;
 ResultsFile::~ResultsFile() = default;
 
 ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
-                                const FreeSpace& free_space, const fs::path& earlier) {
+                                const FreeSpace& free_space, const std::vector<fs::path>& earlier) {
   int runs = 0;
   FileLock lock;
   on_first_rank(comm, [&] {
@@ -269,18 +263,24 @@ void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm com
 
 void ResultsFile::commit() { open_->commit(); }
 
+std::int64_t ResultsFile::committed() const { return open_->committed; }
+
 void ResultsFile::commit_if_due() {
   if (!open_->written.empty() && Clock::now() >= open_->next_commit) open_->commit();
 }
 
 void ResultsFile::begin(const Task& task) {
-  const std::uint8_t before = starts_.at(static_cast<std::size_t>(task.index));
+  std::uint8_t before = 0;  // more than when the file was opened, if another rank was lost with the task meanwhile
+  open_->starts.read(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task.index), 1, &before);
+  before = std::max(before, starts_.at(static_cast<std::size_t>(task.index)));
+  begun_[task.index] = before;
   open_->say_who(task.index, {open_->own_rank, attempt_, open_->own_host, 0});
   open_->set_starts(task.index, before < UINT8_MAX ? before + 1 : before);
 }
 
 void ResultsFile::abandon(const Task& task) {
-  open_->set_starts(task.index, starts_.at(static_cast<std::size_t>(task.index)));
+  open_->set_starts(task.index, begun_.at(task.index));
+  begun_.erase(task.index);
 }
 
 void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
@@ -311,6 +311,7 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
   write_text(open.message, open.message_type, record.message);
   write_one(open.checksum, task_checksum(task.index, record));
   open.set_starts(task.index, 0);
+  begun_.erase(task.index);
   const TaskOrigin here{open.own_rank, attempt_, open.own_host,
                         std::chrono::duration<double>(Clock::now() - begin).count()};
   const TaskOrigin& by = origin != nullptr ? *origin : here;
@@ -318,6 +319,13 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
   write_one(open.write_s, by.write_s);
   open.written.push_back(task.index);
   commit_if_due();
+}
+
+void ResultsFile::beat() {
+  constexpr std::chrono::seconds pause{5};
+  if (Clock::now() < open_->next_beat) return;
+  open_->next_beat = Clock::now() + pause;
+  open_->synced.touch();
 }
 
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
@@ -336,6 +344,12 @@ void ResultsFile::close() {
   open_.reset();
   hdf5::close(file, "H5Fclose", path);
   synced.sync();
+}
+
+void ResultsFile::leave() {
+  open_->commit();
+  open_->synced.sync();
+  open_->file.release();
 }
 
 }  // namespace rodsweep

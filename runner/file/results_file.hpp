@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,10 +36,10 @@ enum class Retry { none, failed };
 class ResultsFile {
  public:
   /// Collective over `comm`. Refuses a path that exists and a disk that is too full (before creating anything). All
-  /// ranks throw the same error. `earlier`: a file that this one extends; its rows of /runs come first here.
+  /// ranks throw the same error. `earlier`: files that this one takes tasks from; their rows of /runs come first here.
   static ResultsFile create(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
                             MPI_Comm comm, const FreeSpace& free_space = free_bytes,
-                            const std::filesystem::path& earlier = {});
+                            const std::vector<std::filesystem::path>& earlier = {});
   /// Collective. Refuses a file of another program, schema version, plan or job text, and one that another run is
   /// writing. Tasks whose data are not what was written (checksums; the ranks share the work) count as pending again,
   /// and on request those that failed and may end otherwise (may_change()). Appends a row to /runs.
@@ -71,12 +72,19 @@ class ResultsFile {
   /// Independent: brings this rank's tasks to disk, then says that they are complete.
   void commit();
   void commit_if_due();
+  std::int64_t committed() const;  ///< tasks of this rank in this start
+
+  /// Independent, one rank: shows in the file's modification time, every few seconds, that this start lives.
+  void beat();
 
   /// Independent, one rank: how this start ended (row of /runs).
   void end_run(const std::string& end_utc, int exit_code);
 
   /// Collective: commits, closes the file, brings it to disk and reports failure, which the destructor cannot.
   void close();
+
+  /// Independent, in its place where ranks are lost: commits, brings all to disk, and closes nothing.
+  void leave();
 
  private:
   struct Open;
@@ -87,6 +95,7 @@ class ResultsFile {
 
   std::unique_ptr<Open> open_;
   std::vector<std::uint8_t> done_, starts_;
+  std::map<std::int64_t, std::uint8_t> begun_;  ///< by this rank: how often the task was begun before
   int attempt_ = 0;
   std::string note_;
 };

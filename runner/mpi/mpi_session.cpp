@@ -48,6 +48,18 @@ int broadcast(int value, MPI_Comm comm) {
   return value;
 }
 
+std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm) {
+  constexpr std::size_t bytes = 256;
+  int size = 1;
+  check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
+  std::string mine = text.substr(0, bytes - 1), all(static_cast<std::size_t>(size) * bytes, '\0');
+  mine.resize(bytes);
+  check_mpi(MPI_Allgather(mine.data(), bytes, MPI_CHAR, all.data(), bytes, MPI_CHAR, comm), "MPI_Allgather");
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < all.size(); at += bytes) texts.emplace_back(all.c_str() + at);
+  return texts;
+}
+
 void collectively(MPI_Comm comm, const std::function<void()>& part) {
   int rank = 0, size = 1;
   check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");

@@ -48,6 +48,9 @@ class MpiSession {
 std::string broadcast(std::string text, MPI_Comm comm);
 int broadcast(int value, MPI_Comm comm);
 
+/// The short text of every rank, by rank, on every rank; cut after 255 bytes.
+std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm);
+
 /// Does `part` on every rank. If it throws anywhere, every rank throws a CollectiveError with the message of the lowest
 /// rank at fault (and that rank's number, if it is not 0), so that an error is reported once and nobody waits for it.
 void collectively(MPI_Comm comm, const std::function<void()>& part);

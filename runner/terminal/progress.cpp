@@ -24,6 +24,13 @@ void Progress::finished(TaskOutcome outcome, double cost, double busy_s) {
   busy_s_ += busy_s;
 }
 
+void Progress::taken_back(TaskOutcome outcome, double cost, double busy_s) {
+  --done_;
+  if (outcome != TaskOutcome::ok) --failed_;
+  done_cost_ -= cost;
+  busy_s_ -= busy_s;
+}
+
 std::optional<double> Progress::seconds_left(Clock::time_point now) const {
   if (done_ == 0 || done_cost_ <= 0) return std::nullopt;
   const double whole = busy_s_ / done_cost_ * work_.cost / work_.workers;

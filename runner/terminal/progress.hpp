@@ -29,8 +29,9 @@ class Progress {
   Progress(Console& console, const Work& work, Clock::time_point now);
 
   void finished(TaskOutcome outcome, double cost, double busy_s);
-  void show(Clock::time_point now);  ///< speaks if it is time to; cheap
-  void clear() { line_.clear(); }    ///< takes the bar away
+  void taken_back(TaskOutcome outcome, double cost, double busy_s);  ///< it was lost after all
+  void show(Clock::time_point now);                                  ///< speaks if it is time to; cheap
+  void clear() { line_.clear(); }                                    ///< takes the bar away
 
   /// "120 of 400 tasks (30 %), 2 failed, 31.0/s, 1 min 20 s left"
   std::string text(Clock::time_point now) const;

@@ -10,11 +10,12 @@ namespace rodsweep::examples {
 
 /// Master over `workers` workers (ranks 1 ...), silent.
 struct Sweep {
-  Sweep(int workers, std::vector<PendingTask> tasks)
+  Sweep(int workers, std::vector<PendingTask> tasks, const Patience& patience = {}, Notices notices = {})
       : network(workers + 1),
         console(false),
         progress(console, {static_cast<std::int64_t>(tasks.size()), 0, 0, 1, workers}, Progress::Clock::now()),
-        master(network[0], std::move(tasks), progress, [this] { return signal; }) {}
+        master(
+            network[0], std::move(tasks), progress, [this] { return signal; }, patience, std::move(notices)) {}
 
   MemoryNetwork network;
   Console console;
@@ -38,8 +39,9 @@ struct Inbox {
     while (const auto envelope = channel->probe()) {
       if (envelope->tag == Tag::assign)
         for (const std::int64_t task : channel->receive<Assign>(*envelope).tasks()) tasks.push_back(task);
+      if (envelope->tag == Tag::drop) channel->receive<Drop>(*envelope), ++drops;
       if (envelope->tag == Tag::stop) channel->receive<Stop>(*envelope), ++stops;
-      if (envelope->tag == Tag::finish) channel->receive<Finish>(*envelope), ++finishes;
+      if (envelope->tag == Tag::finish) apart = channel->receive<Finish>(*envelope).apart, ++finishes;
     }
     return tasks;
   }
@@ -49,7 +51,8 @@ struct Inbox {
   }
 
   Channel* channel;
-  int stops = 0, finishes = 0;
+  int drops = 0, stops = 0, finishes = 0;
+  bool apart = false;
 };
 
 }  // namespace rodsweep::examples

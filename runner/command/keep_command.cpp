@@ -1,0 +1,205 @@
+#include "runner/command/keep_command.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+#include <utility>
+
+#include "runner/command/kept_hosts.hpp"
+#include "runner/dispatch/stop_signal.hpp"
+#include "runner/file/file_reading.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/runs.hpp"
+#include "runner/job/job.hpp"
+#include "runner/terminal/child_process.hpp"
+#include "runner/terminal/text.hpp"
+#include "runner/training/model_file.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+constexpr Seconds look_pause{0.1}, longest_pause{300}, time_to_end{15}, time_to_leave{5};
+constexpr Seconds time_to_stop{100};  // a sweep gives its workers a minute, batch systems often two
+
+/// What the results say of the starts so far.
+struct Story {
+  std::size_t starts = 0;
+  std::string begun;              ///< when the last of them began
+  std::optional<ExitCode> ended;  ///< how the last one ended, if by itself
+  std::int64_t done = 0;          ///< tasks, or steps of a training
+
+  bool goes_on_from(const Story& before) const { return starts > before.starts || begun != before.begun; }
+};
+
+template <class Starts>
+Story story_of(const Starts& starts, std::int64_t done) {
+  if (starts.empty()) return {0, "", std::nullopt, done};
+  const auto& last = starts.back();
+  Story story{starts.size(), last.provenance.begin_utc, std::nullopt, done};
+  if (!last.end_utc.empty()) story.ended = static_cast<ExitCode>(last.exit_code);
+  return story;
+}
+
+Story read_story(const fs::path& file, bool training) {
+  if (!fs::exists(file)) return {};
+  if (!training) {
+    const FileSummary sweep = inspect(file);
+    return story_of(sweep.runs, sweep.done);
+  }
+  const StoredModel stored = read_training(file);
+  return story_of(stored.card.starts, stored.checkpoint ? stored.checkpoint->optimiser.step : 0);
+}
+
+/// Since when a file shows no sign of life, judged by this host's clock alone: when its time was last seen to change.
+class SignsOfLife {
+ public:
+  explicit SignsOfLife(fs::path file) : file_(std::move(file)) {}
+
+  Seconds silence() {
+    struct stat now {};
+    const bool there = ::stat(file_.c_str(), &now) == 0;
+    const auto time = std::pair(now.st_mtim.tv_sec, now.st_mtim.tv_nsec);
+    if (there && time != time_) time_ = time, seen_ = Clock::now();
+    return Clock::now() - seen_;
+  }
+
+ private:
+  fs::path file_;
+  std::pair<time_t, long> time_{};
+  Clock::time_point seen_ = Clock::now();
+};
+
+void end(ChildProcess& start) {
+  start.signal(SIGTERM);  // mpirun ends all its ranks, also those that are stopped or on other hosts
+  const auto begin = Clock::now();
+  while (start.runs() && Clock::now() - begin < time_to_end) std::this_thread::sleep_for(look_pause);
+  if (start.runs()) start.kill_group();
+}
+
+/// Sees one start to its end.
+class Keeper {
+ public:
+  Keeper(const KeepOptions& options, fs::path file, bool training, Console& console)
+      : options_(&options), file_(std::move(file)), training_(training), console_(&console) {}
+
+  ExitCode run() {
+    Seconds pause{options_->pause_s};
+    int vain = 0;
+    bool any_begun = false;
+    for (;;) {
+      const Story before = read_story(file_, training_);
+      const int status = start(before);
+      const Story after = read_story(file_, training_);
+      const bool begun = after.goes_on_from(before);
+      any_begun = any_begun || begun;
+      const bool stopped_here = hung_ && after.ended == ExitCode::stopped;
+      if (begun && after.ended && !stopped_here) return *after.ended;
+      // A start that never began may be refused for good, or find the one before still dying.
+      if (!any_begun && exit_code_of(status) == static_cast<int>(ExitCode::user_error)) return ExitCode::user_error;
+      if (stop_.received() != 0) return ExitCode::stopped;
+
+      if (after.done > before.done) vain = 0, pause = Seconds(options_->pause_s);
+      if (++vain >= options_->vain_starts) {
+        console_->error(
+            fmt::format("{} starts in a row got nothing done, the last one ended with {}; see what they said, "
+                        "and type the same again to go on",
+                        vain, status_text(status)));
+        return ExitCode::user_error;
+      }
+      console_->warn(fmt::format("the start ended with {}, {} done; the next one comes in {}", status_text(status),
+                                 training_ ? fmt::format("{} steps", after.done) : fmt::format("{} tasks", after.done),
+                                 duration_text(pause.count())));
+      if (!wait(pause)) return ExitCode::stopped;
+      pause = std::min(2 * pause, longest_pause);
+    }
+  }
+
+ private:
+  /// The exit status of one start, as wait() gives it.
+  int start(const Story& before) {
+    const auto has_ended = [&] {
+      if (training_ || !fs::exists(file_)) return false;
+      const Story now = story_of(read_runs(open_results(file_)), 0);
+      return now.goes_on_from(before) && now.ended.has_value();
+    };
+    ChildProcess child(words());
+    SignsOfLife signs(file_);
+    std::optional<Clock::time_point> told, ended;
+    auto looked = Clock::now();
+    hung_ = false;
+    while (child.runs()) {
+      std::this_thread::sleep_for(look_pause);
+      if (stop_.received() != 0 && !told) {
+        child.signal(SIGUSR1);
+        told = Clock::now();
+      }
+      if (told && Clock::now() - *told > time_to_stop) end(child);
+      if (Clock::now() - looked > time_to_leave / 5) {  // a lost rank may keep mpirun from leaving
+        looked = Clock::now();
+        if (!ended && has_ended()) ended = looked;
+        if (ended && looked - *ended > time_to_leave) end(child);
+      }
+      if (!training_ && options_->silence_s > 0 && signs.silence() > Seconds(options_->silence_s)) {
+        console_->warn(fmt::format("{} shows no sign of life since {}: this start is ended", file_.native(),
+                                   duration_text(options_->silence_s)));
+        hung_ = true;
+        end(child);
+      }
+    }
+    return child.status();
+  }
+
+  std::vector<std::string> words() const {
+    std::vector<std::string> words = options_->command;
+    if (!options_->run.resume) words.emplace_back("--resume");
+    if (options_->hosts) {
+      const fs::path answering = answering_hosts(*options_->hosts, file_, *console_);
+      for (std::string& word : words)
+        if (word == "{hosts}") word = answering.native();
+    }
+    return words;
+  }
+
+  bool wait(Seconds pause) const {
+    for (const auto begin = Clock::now(); Clock::now() - begin < pause;) {
+      if (stop_.received() != 0) return false;
+      std::this_thread::sleep_for(look_pause);
+    }
+    return true;
+  }
+
+  const KeepOptions* options_;
+  fs::path file_;
+  bool training_;
+  Console* console_;
+  StopSignal stop_;
+  bool hung_ = false;  ///< the last start, which was ended for it
+};
+
+}  // namespace
+
+std::vector<std::string> run_words(const std::vector<std::string>& command) {
+  for (std::size_t i = 1; i < command.size(); ++i)
+    if (command[i] == "run" && fs::path(command[i - 1]).filename() == "rodsweep")
+      return {command.begin() + static_cast<std::ptrdiff_t>(i) - 1, command.end()};
+  return {};
+}
+
+ExitCode execute(const KeepOptions& options, Console& console) {
+  const Job job = read_job(options.run.job);
+  const bool training = is_training(job);
+  if (!training) setenv("OMPI_MCA_orte_enable_recovery", "1", 0);
+  for (const auto& [name, value] : {std::pair("time", "20"), {"intvl", "5"}, {"probes", "4"}})
+    setenv(fmt::format("OMPI_MCA_oob_tcp_keepalive_{}", name).c_str(), value, 0);
+  return Keeper(options, output_of(options.run, job.name), training, console).run();
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,109 @@
+#include "runner/command/merge_command.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runner/file/file_reading.hpp"
+#include "runner/file/inspect.hpp"
+#include "runner/file/results_file.hpp"
+#include "runner/file/resume_check.hpp"
+#include "runner/file/runs.hpp"
+#include "runner/file/stored_plan.hpp"
+#include "runner/file/task_checksum.hpp"
+#include "runner/file/task_reader.hpp"
+#include "runner/terminal/text.hpp"
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file to take tasks from, and where its starts are among those of the new one.
+struct Part {
+  fs::path path;
+  TaskReader reader;
+  int first_run;
+
+  TaskOrigin origin(std::int64_t task) const {
+    TaskOrigin origin = reader.origin(task);
+    origin.attempt = std::min(origin.attempt + first_run, run_rows - 1);
+    return origin;
+  }
+};
+
+std::string these(const std::vector<std::int64_t>& tasks) {
+  return tasks.size() == 1 ? fmt::format("task {}", tasks.front())
+                           : fmt::format("{} tasks, the first being {},", tasks.size(), tasks.front());
+}
+
+std::vector<Part> open_parts(const std::vector<fs::path>& files, const FileSummary& first, const Plan& plan) {
+  std::vector<Part> parts;
+  int runs = 0;
+  for (const fs::path& path : files) {
+    const FileSummary file = inspect(path);
+    if (file.job_text != first.job_text || file.rerun_of_task != first.rerun_of_task)
+      throw FileError(fmt::format("{} is of another job than {}: only files of the very same job can be merged",
+                                  path.native(), first.path.native()));
+    check_same_plan(path, plan, "Merge with that revision");
+    parts.push_back({path, TaskReader(path), runs});
+    runs += static_cast<int>(file.runs.size());
+  }
+  return parts;
+}
+
+}  // namespace
+
+ExitCode execute(const MergeOptions& options, Console& console) {
+  const FileSummary first = inspect(options.files.front());
+  const Plan plan = stored_plan(first);
+  const std::vector<Part> parts = open_parts(options.files, first, plan);
+  ResultsFile merged = ResultsFile::create(options.output, plan, provenance_of_this_process(options.command),
+                                           MPI_COMM_SELF, free_bytes, options.files);
+
+  std::int64_t done = 0, failed = 0;
+  std::vector<std::int64_t> damaged, different;
+  TaskRecord record, other;
+  for (const Task& task : plan.tasks()) {
+    bool taken = false, lost = false;
+    for (const Part& part : parts) {
+      if (!part.reader.done(task.index)) continue;
+      TaskRecord& read = taken ? other : record;
+      if (!part.reader.read_intact(task.index, read)) {
+        lost = true;
+        continue;
+      }
+      if (taken) {
+        if (task_checksum(task.index, other) != task_checksum(task.index, record)) different.push_back(task.index);
+        continue;
+      }
+      const TaskOrigin origin = part.origin(task.index);
+      merged.write(task, record, &origin);
+      taken = true;
+      failed += record.outcome == TaskOutcome::ok ? 0 : 1;
+    }
+    done += taken ? 1 : 0;
+    if (lost && !taken) damaged.push_back(task.index);
+  }
+  merged.commit();
+  const ExitCode code = done < plan.size() ? ExitCode::stopped : (failed > 0 ? ExitCode::tasks_failed : ExitCode::ok);
+  merged.end_run(utc_now(), static_cast<int>(code));
+  merged.close();
+
+  if (!damaged.empty())
+    console.warn(fmt::format("{} not what was written (checksum), and left to do: {}",
+                             damaged.size() == 1 ? "one task is" : "some tasks are", these(damaged)));
+  if (!different.empty())
+    console.warn(fmt::format("{} differ between files (other machines round differently); the first file's are taken",
+                             these(different)));
+  console.result(fmt::format("{}: {} of {} tasks of {} from {} files{}", options.output.native(), done, plan.size(),
+                             first.job_name, parts.size(),
+                             done == plan.size() ? "" : "; run the job with this output and --resume for the rest"));
+  return code;
+}
+
+}  // namespace rodsweep
