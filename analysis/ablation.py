@@ -24,6 +24,7 @@ EXAMPLES = """examples:
   analysis/ablation.py results/ablation_bending.h5 results/ablation_bending
   analysis/ablation.py results/ablation_helix.h5 results/ablation_helix --tolerance 1e-1,1e-2 --base base"""
 MOST = 1.4    # ratio on an axis
+LABEL_MM = 0.62    # that a character of a turned label takes downwards
 TOLERANCE_COLOURS = ["#0072B2", "#D55E00", "#00805c", "#7b3fb5"]
 
 
@@ -187,7 +188,9 @@ def figure(shown, models, base, panels, ratio, tolerances):
              f"markers: the base, {described(models[base])}. Every network was trained for as many steps of the "
              "optimiser.", shown.about()]
     columns = 5 if shown.wide else 2
-    page = layout.Page(shown.width_mm, [""], len(panels), columns, 30, handles, notes, gap_mm=3, ticks_mm=12)
+    longest = max(len(text) for values in panels.values() for text, _ in values)
+    page = layout.Page(shown.width_mm, [""], len(panels), columns, 30, handles, notes, gap_mm=3,
+                       ticks_mm=max(12, LABEL_MM * longest))
     for k, (axes, (what, values)) in enumerate(zip(page.axes[0], panels.items())):
         at = np.arange(len(values), dtype=float)
         guesses = [g for _, g in values]

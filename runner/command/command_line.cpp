@@ -108,6 +108,11 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->check(not_negative())
       ->type_name("SECONDS");
   command
+      ->add_option("--time-limit", run.time_limit_s,
+                   "Be done by then: begin no task that would take longer, abandon what runs")
+      ->check(above_zero())
+      ->type_name("SECONDS");
+  command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
                    "Memory of a rank; a task that wants more is an error [an equal share of nine tenths of the host's]")
       ->check(above_zero())

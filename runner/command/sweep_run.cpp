@@ -151,10 +151,12 @@ BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
 
 /// Master and worker take turns in one process.
 Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, BatchBody body,
-                        const std::function<void()>& now_and_then) {
+                        const std::function<void()>& now_and_then, const Patience& patience) {
   const auto received = [&] { return signal.received(); };
   MemoryNetwork network(2);
-  Master master(network[0], std::move(pending), progress, received);
+  Patience alone;  // of itself
+  alone.limit = patience.limit;
+  Master master(network[0], std::move(pending), progress, received, alone);
   Worker worker(network[1], std::move(body), received, [&] {
     master.step();
     now_and_then();
@@ -207,6 +209,7 @@ Patience patience_of(const RunOptions& options) {
   constexpr std::chrono::minutes drain{1};
   Patience patience;
   patience.drain = drain;
+  if (options.time_limit_s) patience.limit = std::chrono::duration<double>(*options.time_limit_s);
   if (options.worker_timeout_s > 0) patience.silence = std::chrono::duration<double>(options.worker_timeout_s);
   return patience;
 }
@@ -215,7 +218,8 @@ std::string ended_text(const Dispatch& dispatch, const RunOptions& options, int 
   if (dispatch.signal != 0) return stopped_text(dispatch.signal, options, ranks);
   RunOptions again = options;
   again.resume = true;
-  return fmt::format("no worker is left; nothing is lost that was finished. To continue: {}", run_line(again, ranks));
+  return fmt::format("{}; nothing is lost that was finished. To continue: {}",
+                     dispatch.late ? "there is no time left for the rest" : "no worker is left", run_line(again, ranks));
 }
 
 }  // namespace
@@ -287,10 +291,12 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     file.commit_if_due();
     if (mpi.rank() == 0) file.beat();
   };
-  const Dispatch dispatch = mpi.size() == 1
-                                ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then)
-                                : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body),
-                                                      now_and_then, file, patience_of(options), notices);
+  const Patience patience = patience_of(options);
+  const Dispatch dispatch =
+      mpi.size() == 1
+          ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then, patience)
+          : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), now_and_then, file, patience,
+                                notices);
   file.commit();
 
   const SweepSummary summary{total, before.done_by_outcome, dispatch, where.workers, path};

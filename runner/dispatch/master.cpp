@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -54,15 +55,17 @@ Master::Step Master::step() {
   const bool traffic = receive();
   if (const int signal = signal_(); signal != 0) stop(signal);
   look_for_lost();
-  if (dispatch_.signal == 0) hand_out();
+  if (Clock::now() - begin_ > patience_.limit) stop(0);
+  if (!stopping_) hand_out();
 
   const auto now = Clock::now();
   progress_->show(now);
   const bool waits =
-      next_ < pool_.size() && dispatch_.signal == 0 && (any_left() || now - last_heard_ < patience_.silence);
+      next_ < pool_.size() && !stopping_ && !nothing_fits_ && (any_left() || now - last_heard_ < patience_.silence);
   if (in_flight_ > 0 || waits) return traffic ? Step::worked : Step::waited;
 
   progress_->clear();
+  dispatch_.late = dispatch_.left > 0 && (nothing_fits_ || (stopping_ && dispatch_.signal == 0));
   dispatch_.wall_s = std::chrono::duration<double>(now - begin_).count();
   dispatch_.apart = std::any_of(workers_.begin() + 1, workers_.end(), [](const Worker& worker) { return worker.lost; });
   for (int rank = 1; rank < channel_->size(); ++rank) channel_->send(rank, Finish{dispatch_.apart});
@@ -142,6 +145,9 @@ void Master::forget_kept(Worker& worker) {
 
 void Master::count(const PendingTask& task, const Report& report) {
   dispatch_.busy_s += report.busy_s;
+  known_s_ += report.busy_s;
+  known_cost_ += task.cost;
+  nothing_fits_ = false;
   --dispatch_.left;
   ++dispatch_.finished.at(static_cast<std::size_t>(report.outcome));
   if (report.outcome != TaskOutcome::ok && dispatch_.failures.size() < failures_kept)
@@ -163,7 +169,7 @@ void Master::look_for_lost() {
   const auto now = Clock::now();
   if (now - std::exchange(stepped_, now) > patience_.silence / 2)  // the master was away itself
     for (Worker& worker : workers_) worker.heard = now;
-  const bool drained = dispatch_.signal != 0 && now - stopped_ > patience_.drain;
+  const bool drained = stopping_ && now - stopped_ > patience_.drain;
   for (int rank = 1; rank < channel_->size(); ++rank) {
     const Worker& worker = workers_[static_cast<std::size_t>(rank)];
     if (!worker.lost && (now - worker.heard > patience_.silence || (drained && !worker.tasks.empty()))) lose(rank);
@@ -174,7 +180,7 @@ void Master::lose(int rank) {
   Worker& worker = workers_[static_cast<std::size_t>(rank)];
   worker.lost = true;
   if (notices_.lost) notices_.lost(rank);
-  if (dispatch_.signal == 0) channel_->send(rank, Drop{});
+  if (!stopping_) channel_->send(rank, Drop{});
   const std::vector<PendingTask> tasks = std::exchange(worker.tasks, {});
   in_flight_ -= static_cast<std::int64_t>(tasks.size());
   for (const PendingTask& task : tasks) put_back(task, task.batch >= 0 || &task == &tasks.front());
@@ -188,7 +194,7 @@ void Master::lose(int rank) {
 
 void Master::put_back(PendingTask task, bool begun) {
   if (begun) ++task.lost, task.batch = -1;
-  if (task.lost >= PendingTask::most_starts && dispatch_.signal == 0 && notices_.give_up) {
+  if (task.lost >= PendingTask::most_starts && !stopping_ && notices_.give_up) {
     count(task, Report(task.index, TaskOutcome::crashed, 0, notices_.give_up(task.index, task.lost)));
     return;
   }
@@ -198,19 +204,33 @@ void Master::put_back(PendingTask task, bool begun) {
 }
 
 void Master::stop(int signal) {
-  if (dispatch_.signal != 0) return;
+  if (std::exchange(stopping_, true)) return;
   dispatch_.signal = signal;
   stopped_ = Clock::now();
   for (int rank = 1; rank < channel_->size(); ++rank) channel_->send(rank, Stop{});
 }
 
 void Master::hand_out() {
-  for (int rank = 1; rank < channel_->size() && next_ < pool_.size(); ++rank)
+  for (int rank = 1; rank < channel_->size() && next_fits(); ++rank)
     if (is_idle(rank) && !next_goes_alone()) assign(rank);
-  for (int rank = 1; rank < channel_->size() && next_ < pool_.size(); ++rank)
+  for (int rank = 1; rank < channel_->size() && next_fits(); ++rank)
     if (may_hold_another(workers_[static_cast<std::size_t>(rank)])) assign(rank);
-  for (int rank = 1; rank < channel_->size() && in_flight_ == 0 && next_goes_alone(); ++rank)
+  for (int rank = 1; rank < channel_->size() && in_flight_ == 0 && next_fits() && next_goes_alone(); ++rank)
     if (is_idle(rank)) assign(rank);
+}
+
+bool Master::next_fits() {
+  if (next_ >= pool_.size() || nothing_fits_) return false;
+  if (!std::isfinite(patience_.limit.count()) || known_cost_ <= 0) return true;
+  constexpr double margin = 1.5;  // costs are estimates
+  const std::chrono::duration<double> left = patience_.limit - (Clock::now() - begin_);
+  const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(next_);
+  const auto fits = std::find_if(first, pool_.end(), [&](const PendingTask& task) {
+    return margin * task.cost * known_s_ / known_cost_ < left.count();
+  });
+  nothing_fits_ = fits == pool_.end();
+  if (!nothing_fits_) std::rotate(first, fits, fits + 1);
+  return !nothing_fits_;
 }
 
 bool Master::is_idle(int rank) const {

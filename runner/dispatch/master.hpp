@@ -16,6 +16,8 @@
 //
 // On a signal, here or on a worker, nothing more is handed out and running tasks are abandoned; workers that have not
 // given theirs up in good time are lost.
+// With a limit, no task is begun that would probably not end before it, by its cost and what the tasks so far took; what
+// runs then is abandoned.
 // Every Assign is answered by one Report for each of its tasks; the workers are dismissed (Finish) when the last one is
 // in. Are some lost by then, the others part without doing anything that would take all.
 #pragma once
@@ -49,6 +51,7 @@ struct PendingTask {
 struct Patience {
   std::chrono::duration<double> silence{std::numeric_limits<double>::infinity()};  ///< of any worker
   std::chrono::duration<double> drain{std::numeric_limits<double>::infinity()};    ///< after a request to stop
+  std::chrono::duration<double> limit{std::numeric_limits<double>::infinity()};    ///< of the whole sweep
 };
 
 /// What the master tells its owner. Empty functions are not called.
@@ -70,6 +73,7 @@ struct Dispatch {
   std::vector<Failure> failures;                       ///< the first few
   std::int64_t left = 0;                               ///< not run, or abandoned: 0 unless stopped early
   int signal = 0;                                      ///< the signal that stopped it
+  bool late = false;                                   ///< there was no time for what is left
   bool apart = false;                                  ///< workers are lost: nothing may be done that takes all ranks
   double busy_s = 0;                                   ///< of all workers
   double wall_s = 0;
@@ -124,6 +128,7 @@ class Master {
   bool is_idle(int rank) const;
   bool any_left() const;
   bool may_hold_another(const Worker& worker) const;
+  bool next_fits();
   bool next_goes_alone() const;
 
   Channel* channel_;
@@ -136,6 +141,8 @@ class Master {
   double pool_cost_ = 0;
   std::vector<Worker> workers_;  ///< by rank; that of the master stays empty
   std::int64_t in_flight_ = 0;
+  bool stopping_ = false, nothing_fits_ = false;
+  double known_s_ = 0, known_cost_ = 0;  ///< of the tasks that ended
   Clock::time_point begin_, stepped_, stopped_, last_heard_;
   Dispatch dispatch_;
 };

@@ -208,3 +208,51 @@ TEST_CASE("a master that was away itself loses nobody") {
   CHECK(sweep.master.step() == Master::Step::finished);
   CHECK_FALSE(sweep.master.dispatch().apart);
 }
+
+TEST_CASE("with a time limit no task is begun that would not end before it, and what runs then is abandoned") {
+  Patience limited;
+  limited.limit = Seconds(0.3);
+  // A unit of cost turns out to take a second: the long tasks cannot be done, the short ones can.
+  Sweep sweep(1, {{0, 0.02}, {1, 50}, {2, 0.001}, {3, 40}, {4, 0.001}}, limited);
+  std::vector<std::int64_t> begun;
+  Worker worker(
+      sweep.network[1],
+      [&](std::int64_t task, const StopRequested& stop) -> TaskResult {
+        begun.push_back(task);
+        if (task == 1) return {TaskOutcome::error, "at once"};  // nothing is known of costs before
+        std::this_thread::sleep_for(Seconds(0.02));
+        return stop() ? TaskResult{} : TaskResult{TaskOutcome::ok, ""};
+      },
+      [] { return 0; });
+  while (sweep.master.step() != Master::Step::finished) worker.step();
+  CHECK(sweep.master.dispatch().left == 0);  // the first task told that costs mean nothing
+  CHECK(begun == std::vector<std::int64_t>{1, 3, 0, 2, 4});
+
+  Sweep slow(1, {{0, 0.02}, {1, 50}, {2, 0.001}, {3, 40}, {4, 0.001}}, limited);
+  Inbox inbox(slow.network[1]);
+  slow.master.step();
+  REQUIRE(inbox.assigned() == std::vector<std::int64_t>{1});
+  slow.network[1].send(0, Report(1, TaskOutcome::ok, 50, ""));  // a second for each unit of cost
+  std::vector<std::int64_t> order;
+  while (slow.master.step() != Master::Step::finished)
+    for (const std::int64_t task : inbox.assigned())
+      order.push_back(task), slow.network[1].send(0, Report(task, TaskOutcome::ok, 0.001, ""));
+  CHECK(order == std::vector<std::int64_t>{0, 2, 4});
+  CHECK(slow.master.dispatch().left == 1);
+  CHECK(slow.master.dispatch().late);
+  CHECK_FALSE(slow.master.dispatch().apart);
+
+  Sweep endless(1, {{0, 1}}, limited);
+  Inbox runs(endless.network[1]);
+  endless.master.step();
+  REQUIRE(runs.assigned().size() == 1);
+  std::this_thread::sleep_for(1.2 * limited.limit);
+  endless.master.step();
+  CHECK(runs.assigned().empty());
+  CHECK(runs.stops == 1);
+  runs.report(0, TaskOutcome::pending);
+  while (endless.master.step() != Master::Step::finished) {
+  }
+  CHECK(endless.master.dispatch().late);
+  CHECK(endless.master.dispatch().left == 1);
+}
