@@ -47,7 +47,8 @@ def main():
     options = arguments()
     with SweepFile(options.file) as file:
         shown = make_study(file, options)
-        panels = groups.with_direct(shown.sims, groups.panels(file, shown.sims, ("solve.method",), most=None))
+        panels = groups.panels(file, shown.sims, ("solve.method", "solve.model"), most=None)
+        panels = groups.with_direct(shown.sims, panels)
         if len(panels) > groups.MOST_PANELS:
             raise KeyNotFound(f"{len(panels)} groups of simulations are too many for a page (at most "
                               f"{groups.MOST_PANELS}): choose with --scene TYPE or --select KEY=VALUE")

@@ -219,7 +219,8 @@ std::string ended_text(const Dispatch& dispatch, const RunOptions& options, int 
   RunOptions again = options;
   again.resume = true;
   return fmt::format("{}; nothing is lost that was finished. To continue: {}",
-                     dispatch.late ? "there is no time left for the rest" : "no worker is left", run_line(again, ranks));
+                     dispatch.late ? "there is no time left for the rest" : "no worker is left",
+                     run_line(again, ranks));
 }
 
 }  // namespace
@@ -293,10 +294,9 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   };
   const Patience patience = patience_of(options);
   const Dispatch dispatch =
-      mpi.size() == 1
-          ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then, patience)
-          : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), now_and_then, file, patience,
-                                notices);
+      mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then, patience)
+                      : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), now_and_then,
+                                            file, patience, notices);
   file.commit();
 
   const SweepSummary summary{total, before.done_by_outcome, dispatch, where.workers, path};

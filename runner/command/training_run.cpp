@@ -190,7 +190,8 @@ ExitCode run_training(const RunOptions& options, const Job& job, const MpiSessio
   const auto earlier = collectively(mpi.world(), [&] {
     if (options.extend) throw job_error(job.path, "kind", "a training extends nothing: remove --extend");
     if (options.task_time_limit_s || options.time_limit_s || options.memory_limit_gb || options.shard)
-      throw job_error(job.path, "kind", "a training has no tasks: remove --shard, --time-limit, --task-time-limit and --memory-limit-gb");
+      throw job_error(job.path, "kind",
+                      "a training has no tasks: remove --shard, --time-limit, --task-time-limit and --memory-limit-gb");
     return earlier_training(options, job, path);
   });
   if (earlier && earlier->card.ending != Ending::none) {

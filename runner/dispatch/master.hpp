@@ -16,10 +16,9 @@
 //
 // On a signal, here or on a worker, nothing more is handed out and running tasks are abandoned; workers that have not
 // given theirs up in good time are lost.
-// With a limit, no task is begun that would probably not end before it, by its cost and what the tasks so far took; what
-// runs then is abandoned.
-// Every Assign is answered by one Report for each of its tasks; the workers are dismissed (Finish) when the last one is
-// in. Are some lost by then, the others part without doing anything that would take all.
+// With a limit, no task is begun that would probably not end before it, by its cost and what the tasks so far took;
+// what runs then is abandoned. Every Assign is answered by one Report for each of its tasks; the workers are dismissed
+// (Finish) when the last one is in. Are some lost by then, the others part without doing anything that would take all.
 #pragma once
 
 #include <array>
