@@ -27,6 +27,7 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds look_pause{0.1}, longest_pause{300}, time_to_end{15}, time_to_leave{5};
+constexpr double slow_begin = 10;     // a start may verify a large file, or wait for hosts, before it shows any sign
 constexpr Seconds time_to_stop{100};  // a sweep gives its workers a minute, batch systems often two
 
 /// What the results say of the starts so far.
@@ -125,15 +126,16 @@ class Keeper {
  private:
   /// The exit status of one start, as wait() gives it.
   int start(const Story& before) {
-    const auto has_ended = [&] {
+    const auto has_begun = [&](Story& now) {
       if (training_ || !fs::exists(file_)) return false;
-      const Story now = story_of(read_runs(open_results(file_)), 0);
-      return now.goes_on_from(before) && now.ended.has_value();
+      now = story_of(read_runs(open_results(file_)), 0);
+      return now.goes_on_from(before);
     };
     ChildProcess child(words());
     SignsOfLife signs(file_);
     std::optional<Clock::time_point> told, ended;
     auto looked = Clock::now();
+    bool begun = false;
     hung_ = false;
     while (child.runs()) {
       std::this_thread::sleep_for(look_pause);
@@ -144,12 +146,15 @@ class Keeper {
       if (told && Clock::now() - *told > time_to_stop) end(child);
       if (Clock::now() - looked > time_to_leave / 5) {  // a lost rank may keep mpirun from leaving
         looked = Clock::now();
-        if (!ended && has_ended()) ended = looked;
+        Story now;
+        begun = has_begun(now);
+        if (!ended && begun && now.ended) ended = looked;
         if (ended && looked - *ended > time_to_leave) end(child);
       }
-      if (!training_ && options_->silence_s > 0 && signs.silence() > Seconds(options_->silence_s)) {
+      const Seconds patience(begun ? options_->silence_s : slow_begin * options_->silence_s);
+      if (!training_ && patience.count() > 0 && signs.silence() > patience) {
         console_->warn(fmt::format("{} shows no sign of life since {}: this start is ended", file_.native(),
-                                   duration_text(options_->silence_s)));
+                                   duration_text(patience.count())));
         hung_ = true;
         end(child);
       }
