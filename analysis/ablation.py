@@ -3,10 +3,11 @@
 
 The file is of a sweep whose learned guesses are those networks, as `make ablation` trains them; MODELS is the folder of
 their model files, named like the guesses (others, without one there, stand at the end of the table), and --base the one
-that the others are changed from. What is changed is read
-from the models' own jobs. A panel per setting; in every one the base stands beside its variants, and a level line
-carries its ratios on. Networks with several changes are in a panel of their own. Printed before the paths of the
-figure: the same with the number of weights, time per segment and solve, and the ratio over all Newton iterations.
+that the others are changed from. What is changed is read from the models' own jobs. A panel per setting; in every one the
+base stands beside its variants, and a level line carries its ratios on. Networks with several changes are in a panel of
+their own. Printed before the paths of the figure: the same with the number of weights, time per segment and solve, the
+ratio over all Newton iterations, and the means of networks that differ in their seed alone, with what training left to
+chance in their intervals.
 """
 
 import os
@@ -103,9 +104,9 @@ def main():
                               "names the model that the others are changed from")
         panels = panels_of(models, base)
         tolerances = commandline.chosen_tolerances(file, options)
-        first, every = (intervals.mean(measures.cg_ratios(file, shown.sims, newton).ratio, shown.sims.sample)
-                        for newton in ("first", "all"))
-        print("\n".join(table(shown, models, base, panels, first, every, tolerances)) + "\n")
+        ratios = [measures.cg_ratios(file, shown.sims, newton).ratio for newton in ("first", "all")]
+        first, every = (intervals.mean(ratio, shown.sims.sample) for ratio in ratios)
+        print("\n".join(table(shown, models, base, panels, ratios, (first, every), tolerances)) + "\n")
         ratio = first if shown.newton == "first" else every
         study.save(file, options, {"ablation": figure(shown, models, base, panels, ratio, tolerances)})
 
@@ -156,7 +157,16 @@ def text_of(value, alone=True):
     return "-" if value is None else value if isinstance(value, str) else texts.number_text(value)
 
 
-def table(shown, models, base, panels, first, every, tolerances):
+def trained_again(models):
+    """[guesses]: of networks that differ in nothing but their seed, where there are several."""
+    groups = {}
+    for g, model in models.items():
+        of = tuple((what, read(model)) for what, read in SETTINGS.items() if what != "seed")
+        groups.setdefault(of, []).append(g)
+    return [guesses for guesses in groups.values() if len(guesses) > 1]
+
+
+def table(shown, models, base, panels, ratios, means, tolerances):
     file = shown.file
     labels = [texts.tolerance_label(file.tolerances[t]) for t in tolerances]
     spent = timings.times(file, shown.sims)["first"] if timings.timed(file) else None
@@ -166,15 +176,20 @@ def table(shown, models, base, panels, first, every, tolerances):
     def row(name, g, ratio):
         weights = str(models[g].parameters) if g in models else ""
         return [f"  {name}", weights] + ([f"{cost[g]:.3f}"] if spent else []) + [
-            f"{ratio[g, t].value:.3f} [{ratio[g, t].low:.3f}, {ratio[g, t].high:.3f}]" for t in tolerances]
+            f"{ratio[t].value:.3f} [{ratio[t].low:.3f}, {ratio[t].high:.3f}]" for t in tolerances]
+
+    names = {g: f"{what}: {value}" for what, values in panels.items() for value, g in values} | {base: "base"}
 
     lines = []
-    for newton, ratio in (("first", first), ("all", every)):
-        rows = [["Guesses", "weights"] + (["us per segment"] if spent else []) + labels, row("base", base, ratio)]
-        for what, values in panels.items():
-            rows += [row(f"{what}: {value}", g, ratio) for value, g in values if g != base]
-        rows += [row(file.guesses[g], g, ratio) for g in shown.lines() if g not in models]
-        lines += [f"CG ratio, {measures.NEWTON[newton]}: mean over simulations [95 % interval]", "",
+    for newton, values, ratio in zip(("first", "all"), ratios, means):
+        rows = [["Guesses", "weights"] + (["us per segment"] if spent else []) + labels, row("base", base, ratio[base])]
+        for what in panels:
+            rows += [row(names[g], g, ratio[g]) for _, g in panels[what] if g != base]
+        for same in trained_again(models):
+            rows.append(row(f"{names[same[0]]}, {len(same)} trainings", same[0],
+                            intervals.mean_over_trainings(values[:, same], shown.sims.sample)))
+        rows += [row(file.guesses[g], g, ratio[g]) for g in shown.lines() if g not in models]
+        lines += [f"CG ratio, {measures.NEWTON[newton]}: mean over simulations [95 % interval; of several trainings with their randomness]", "",
                   *texts.aligned(rows), ""]
     return lines[:-1]
 

@@ -50,6 +50,19 @@ def ratio_of_sums(numerator, denominator, draws=None, level=LEVEL, resamples=RES
     return _estimate(parts, draws, level, resamples, _weighted_ratios, parts=2)
 
 
+def mean_over_trainings(values, draws=None, level=LEVEL):
+    """Mean over simulations (first axis) and trainings that differ in their seed alone (second axis, at least two). Its
+    interval has the randomness of both: the bootstrap's over simulations of the trainings' mean, and Student's over the
+    means of the trainings, which are too few to be resampled, added in quadrature."""
+    values = np.asarray(values, dtype=float)
+    trainings = values.shape[1]
+    found = mean(values.mean(axis=1), draws, level)
+    of_trainings = np.nanmean(values, axis=0)
+    half = special.stdtrit(trainings - 1, (1 + level) / 2) * of_trainings.std(axis=0, ddof=1) / np.sqrt(trainings)
+    return Estimate(found.value, found.value - np.hypot(found.value - found.low, half),
+                    found.value + np.hypot(found.high - found.value, half), found.count)
+
+
 def _estimate(values, draws, level, resamples, statistic, parts=1):
     """`parts` numbers of the last axis make one value of the statistic. Columns and resamples come in blocks."""
     values = np.asarray(values, dtype=float)

@@ -1,6 +1,7 @@
 """ablation.py: which setting a model changes, panels in the order of values, planted ratios in the table and the figure."""
 
 import os
+from dataclasses import replace
 
 import synthetic
 import ablation
@@ -50,6 +51,12 @@ class Ablation(Scripts):
         self.assertEqual(changed["both"], {"loss": "energy", "global state": "on"})
         # The base's job says nothing of the iterations that it learned from.
         self.assertEqual(changed["all"], {"Newton iterations learned": "all"})
+
+    def test_networks_that_differ_in_their_seed_alone_are_trainings_of_one(self):
+        base = self.read("base")
+        other_seed = replace(base, job={**base.job, "seed": 2})
+        models = {3: base, 4: self.read("deep"), 6: other_seed}
+        self.assertEqual(ablation.trained_again(models), [[3, 6]])
 
     def test_panels_have_the_base_among_its_variants_by_value(self):
         models = {k: self.read(name) for k, name in enumerate(MODELS)}

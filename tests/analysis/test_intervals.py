@@ -74,5 +74,26 @@ class Intervals(unittest.TestCase):
         self.assertAlmostEqual(widths[0] / widths[1], 2, delta=0.3)
 
 
+class Trainings(unittest.TestCase):
+    def test_where_all_trainings_agree_the_interval_is_that_of_simulations(self):
+        values = np.random.default_rng(3).normal(1, 0.2, (20, 1)).repeat(3, axis=1)
+        alone, together = intervals.mean(values[:, 0]), intervals.mean_over_trainings(values)
+        np.testing.assert_allclose([together.value, together.low, together.high], [alone.value, alone.low, alone.high], rtol=1e-12)
+
+    def test_where_all_simulations_agree_it_is_students_over_the_trainings(self):
+        values = np.tile([0.9, 1.0, 1.2], (20, 1))
+        found = intervals.mean_over_trainings(values)
+        half = 4.302652729911275 * np.std([0.9, 1.0, 1.2], ddof=1) / np.sqrt(3)   # t of two degrees of freedom
+        np.testing.assert_allclose([found.value, found.low, found.high], [31 / 30, 31 / 30 - half, 31 / 30 + half], rtol=1e-9)
+
+    def test_it_covers_what_both_kinds_of_chance_leave_of_the_mean(self):
+        generator, hits = np.random.default_rng(7), 0
+        for _ in range(200):
+            values = generator.normal(0, 0.3, (12, 1)) + generator.normal(0, 0.2, (1, 3))
+            found = intervals.mean_over_trainings(values)
+            hits += bool(found.low <= 0 <= found.high)
+        self.assertGreater(hits, 180)
+
+
 if __name__ == "__main__":
     unittest.main()
