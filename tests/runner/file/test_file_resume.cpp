@@ -149,7 +149,8 @@ TEST_CASE("failed tasks are run again on request, if they may end otherwise") {
   const ResultsFile file = ResultsFile::resume(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF, Retry::failed);
   CHECK(file.done() == std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0});
   CHECK(file.note() ==
-        (folder / "a.h5").native() + ": 2 tasks, the first being 1, are run again, after an error or for want of time");
+        (folder / "a.h5").native() +
+            ": 2 tasks, the first being 1, are run again, after an error, for want of time or after a crash");
   CHECK(inspect(folder / "a.h5").done == 2);
 }
 

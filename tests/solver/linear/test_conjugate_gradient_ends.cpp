@@ -44,7 +44,8 @@ TEST_CASE("a guess whose residual is known saves the product, and is solved from
       VectorX x = guess;
       const CgReport known = cg.solve(c.b(), x, {true, &residual}, 1e-8, cg.norm_of(c.b()));
       CHECK(known.outcome == SolveOutcome::converged);
-      CHECK(std::abs(known.iterations - computed.report.iterations) <= 1);  // plain CG's fiftieth feels rounding
+      // The fiftieth iteration feels rounding, by more or less on each processor.
+      CHECK(std::abs(known.iterations - computed.report.iterations) <= 1 + computed.report.iterations / 25);
       CHECK(known.products == known.iterations);
       CHECK(computed.report.products == computed.report.iterations + 1);
       CHECK((x - computed.x).norm() < 1e-6 * c.exact.norm());
