@@ -11,7 +11,7 @@
 #include "runner/experiment/measured_solve.hpp"
 #include "runner/experiment/projections.hpp"
 #include "runner/experiment/simulation_log.hpp"
-#include "solver/interruption.hpp"
+#include "solver/linear/interruption.hpp"
 #include "solver/step/stopwatch.hpp"
 #include "solver/step/time_step.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "solver/interruption.hpp"
+#include "solver/linear/interruption.hpp"
 #include "solver/numbers/rotation.hpp"
 
 namespace rodsweep {

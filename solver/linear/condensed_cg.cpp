@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "solver/interruption.hpp"
 #include "solver/linear/condensation.hpp"
+#include "solver/linear/interruption.hpp"
 #include "solver/linear/ksp_outcome.hpp"
 #include "solver/linear/petsc_check.hpp"
 #include "solver/linear/petsc_operator.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "solver/interruption.hpp"
+#include "solver/linear/interruption.hpp"
 #include "solver/linear/ksp_outcome.hpp"
 #include "solver/linear/petsc_check.hpp"
 #include "solver/linear/petsc_operator.hpp"

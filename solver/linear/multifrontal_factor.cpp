@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "solver/interruption.hpp"
 #include "solver/linear/front_kernels.hpp"
+#include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "solver/interruption.hpp"
+#include "solver/linear/interruption.hpp"
 #include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/rotation.hpp"
 

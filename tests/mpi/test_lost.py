@@ -35,7 +35,7 @@ def start_of(keeper, but=None):
 
 class LostCase(SweepCase):
     def setUp(self):
-        self.job = long_job("long", 40)
+        self.job = long_job("long", 20)
         if not os.path.exists("whole.h5"):
             self.assert_exit(rodsweep(3, "run", self.job, "-o", "whole.h5"), ALL_DONE)
 
@@ -65,7 +65,7 @@ class Silent(LostCase):
         stdout, stderr = self.end(process, ALL_DONE)
         self.assertEqual(stderr.count("was not heard for too long"), 1, stderr)
         self.assertIn("rank 2 on " + os.uname().nodename, stderr)
-        self.assertIn("80 ok", stdout)
+        self.assertIn("40 ok", stdout)
         self.wait_for_end(ranks[2])
         self.assert_as_undisturbed("hung.h5", [ALL_DONE])
 

@@ -1,4 +1,4 @@
-#include "solver/interruption.hpp"
+#include "solver/linear/interruption.hpp"
 
 #include <catch2/catch.hpp>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "solver/interruption.hpp"
+#include "solver/linear/interruption.hpp"
 
 #include <utility>
 
