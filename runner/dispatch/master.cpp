@@ -114,25 +114,28 @@ void Master::report(int rank, const Report& report) {
   const bool finished = report.outcome != TaskOutcome::pending;
   const auto is_it = [&](const PendingTask& task) { return task.index == report.task; };
   const auto had = std::find_if(worker.tasks.begin(), worker.tasks.end(), is_it);
-  const auto waits = std::find_if(pool_.begin() + static_cast<std::ptrdiff_t>(next_), pool_.end(), is_it);
+  const bool has_it = had != worker.tasks.end();
+  if (!has_it && !worker.lost)
+    throw ProtocolError(fmt::format("rank {} reports task {}, which it does not have", rank, report.task));
   PendingTask task;
-  bool counted = finished;
-  if (had != worker.tasks.end()) {
+  if (has_it) {
     task = *had;
     worker.tasks.erase(had);
     --in_flight_;
-  } else if (!worker.lost) {
-    throw ProtocolError(fmt::format("rank {} reports task {}, which it does not have", rank, report.task));
-  } else if (finished && waits != pool_.end()) {  // after all: nobody else needs to
-    task = *waits;
-    pool_.erase(waits);
-    pool_cost_ -= task.cost;
-  } else {  // somebody else has it
-    counted = false;
   }
   if (!finished) {
     dispatch_.busy_s += report.busy_s;
     return;
+  }
+  bool counted = has_it;
+  if (!has_it) {  // finished after all: unless somebody has it by now, nobody else needs to
+    const auto waits = std::find_if(pool_.begin() + static_cast<std::ptrdiff_t>(next_), pool_.end(), is_it);
+    counted = waits != pool_.end();
+    if (counted) {
+      task = *waits;
+      pool_.erase(waits);
+      pool_cost_ -= task.cost;
+    }
   }
   if (counted) count(task, report);
   worker.unkept.push_back({task, report, counted});
