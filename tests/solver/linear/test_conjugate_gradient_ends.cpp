@@ -35,7 +35,10 @@ TEST_CASE("products with the matrix are counted: one for each iteration, one for
 
 TEST_CASE("a guess whose residual is known saves the product, and is solved from in as many iterations") {
   const Case c = moving_chain();
-  const VectorX guess = 0.9 * c.exact, residual = c.b() - c.a().dense() * guess;
+  const VectorX guess = 0.9 * c.exact;
+  VectorX residual(guess.size());  // by the product that CG takes: the fiftieth iteration of plain CG feels rounding
+  c.a().multiply(guess.data(), residual.data());
+  residual = c.b() - residual;
   for (const Preconditioner p : preconditioners)
     for (const Norm norm : norms) {
       INFO(name(p));
@@ -44,8 +47,7 @@ TEST_CASE("a guess whose residual is known saves the product, and is solved from
       VectorX x = guess;
       const CgReport known = cg.solve(c.b(), x, {true, &residual}, 1e-8, cg.norm_of(c.b()));
       CHECK(known.outcome == SolveOutcome::converged);
-      // The fiftieth iteration feels rounding, by more or less on each processor.
-      CHECK(std::abs(known.iterations - computed.report.iterations) <= 1 + computed.report.iterations / 25);
+      CHECK(std::abs(known.iterations - computed.report.iterations) <= 1);
       CHECK(known.products == known.iterations);
       CHECK(computed.report.products == computed.report.iterations + 1);
       CHECK((x - computed.x).norm() < 1e-6 * c.exact.norm());
