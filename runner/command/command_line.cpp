@@ -80,12 +80,12 @@ CLI::Validator above_zero() { return number_check(false, "above 0 and up to 1e9"
 CLI::Validator not_negative() { return number_check(true, "from 0 to 1e9"); }
 
 /// "3/16", from 1.
-std::optional<Shard> shard_of(const std::string& text) {
+Shard shard_of(const std::string& text) {
   Shard shard;
   int end = 0;
   if (std::sscanf(text.c_str(), "%d/%d%n", &shard.number, &shard.of, &end) != 2 ||
       static_cast<std::size_t>(end) != text.size() || shard.number < 1 || shard.number > shard.of)
-    return std::nullopt;
+    throw CLI::ValidationError("--shard", text + " is no I/N with 1 <= I <= N");
   return shard;
 }
 
@@ -126,8 +126,6 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->add_option_function<std::string>(
           "--shard", [&run](const std::string& text) { run.shard = shard_of(text); },
           "Run the I-th of N parts of the tasks, into a file of its own, for `merge`")
-      ->check(CLI::Validator(
-          [](std::string& text) { return shard_of(text) ? "" : text + " is no I/N with 1 <= I <= N"; }, ""))
       ->type_name("I/N");
   command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
   return command;
@@ -280,15 +278,14 @@ Command parse_command_line(int argc, const char* const* argv) {
   PlanOptions plan;
   RerunOptions rerun;
   run.program = plan.program = argv[0];
-  run.command = rerun.command = typed(argc, argv);
+  MergeOptions merge;
+  run.command = rerun.command = merge.command = typed(argc, argv);
   ValidateOptions validate;
   StatusOptions status;
   InfoOptions info;
   QueryOptions query;
   PackOptions pack;
   KeepOptions keep;
-  MergeOptions merge;
-  merge.command = run.command;
   std::optional<Command> chosen;
   const auto offer = [&](auto&... options) {
     (add(app, options)->callback([&chosen, &options] { chosen = options; }), ...);

@@ -95,8 +95,7 @@ class Keeper {
     Seconds pause{options_->pause_s};
     int vain = 0;
     bool any_begun = false;
-    for (;;) {
-      const Story before = read_story(file_, training_);
+    for (Story before = read_story(file_, training_);;) {
       const int status = start(before);
       const Story after = read_story(file_, training_);
       const bool begun = after.goes_on_from(before);
@@ -119,6 +118,7 @@ class Keeper {
                                  training_ ? fmt::format("{} steps", after.done) : fmt::format("{} tasks", after.done),
                                  duration_text(pause.count())));
       if (!wait(pause)) return ExitCode::stopped;
+      before = after;
       pause = std::min(2 * pause, longest_pause);
     }
   }

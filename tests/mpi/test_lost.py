@@ -93,15 +93,17 @@ class Silent(LostCase):
         self.assert_as_undisturbed("stopped.h5", [STOPPED, ALL_DONE])
 
 
-class Kept(LostCase):
-    """What keep does of itself. The fault hits in the middle."""
-
+class KeptCase(LostCase):
     def kept(self, path, hit, code=ALL_DONE, ranks=3, words=(), options=("--pause", "0.1")):
         process = keep(*command(ranks, "run", self.job, "-o", path, *words), options=options)
         mpirun = start_of(process)
         wait_for_tasks(mpirun, path, 4)
         hit(mpirun)
         return self.end(process, code)
+
+
+class KeptWorkers(KeptCase):
+    """A kept sweep goes on within its start."""
 
     def test_a_worker_is_killed_and_the_others_go_on(self):
         _, stderr = self.kept("worker.h5", lambda p: os.kill(ranks_of(p)[2], signal.SIGKILL), ranks=4,
@@ -119,6 +121,39 @@ class Kept(LostCase):
         self.kept("hangs.h5", hang, words=("--worker-timeout", "1"))
         self.wait_for_end(ranks[1])
         self.assert_as_undisturbed("hangs.h5", [ALL_DONE])
+
+    def test_a_task_that_ends_workers_is_named_in_one_start(self):
+        killer = 40
+        path = job("killer", samples=1, segments=[20 + n % 7 for n in range(killer)] + [400], steps=40,
+                   record={"solves": "summary", "norms": "one"})
+        self.assert_exit(rodsweep(3, "run", path, "-o", "undisturbed.h5"), ALL_DONE)
+        process = keep(*command(5, "run", path, "-o", "killer.h5", "--worker-timeout", "1"))
+        mpirun = start_of(process)
+        self.kill_whoever_runs("killer.h5", killer, mpirun, 3)
+        stdout, _ = self.end(process, TASKS_FAILED)
+        after = status("killer.h5")
+        self.assertEqual(after["outcomes"], {"ok": killer, "crashed": 1})
+        self.assertEqual([s["exit_code"] for s in after["starts"]], [TASKS_FAILED])
+        self.assertIn("each of the 3 times", stdout)
+        self.assert_exit(rodsweep(3, "run", path, "-o", "killer.h5", "--resume", "--retry-failed"), ALL_DONE)
+        self.assert_same_results("undisturbed.h5", "killer.h5")
+
+    def kill_whoever_runs(self, path, task, mpirun, times):
+        killed = []
+        deadline = time.monotonic() + 40
+        while len(killed) < times and time.monotonic() < deadline:
+            time.sleep(0.002)
+            if not os.path.exists(path):
+                continue
+            for running in status(path)["running"]:
+                if running["task"] == task and running["rank"] not in killed:
+                    os.kill(ranks_of(mpirun)[running["rank"]], signal.SIGKILL)
+                    killed.append(running["rank"])
+        self.assertEqual(len(killed), times)
+
+
+class Kept(KeptCase):
+    """What keep does of itself. The fault hits in the middle."""
 
     def test_all_is_killed(self):
         _, stderr = self.kept("all.h5", kill_all)
@@ -154,35 +189,6 @@ class Kept(LostCase):
         self.wait_for_end(mpirun.pid)
         self.assertEqual(status("keeper.h5")["starts"][0]["exit_code"], STOPPED)
         process.communicate()
-
-    def test_a_task_that_ends_workers_is_named_in_one_start(self):
-        killer = 40
-        path = job("killer", samples=1, segments=[20 + n % 7 for n in range(killer)] + [400], steps=40,
-                   record={"solves": "summary", "norms": "one"})
-        self.assert_exit(rodsweep(3, "run", path, "-o", "undisturbed.h5"), ALL_DONE)
-        process = keep(*command(5, "run", path, "-o", "killer.h5", "--worker-timeout", "1"))
-        mpirun = start_of(process)
-        self.kill_whoever_runs("killer.h5", killer, mpirun, 3)
-        stdout, _ = self.end(process, TASKS_FAILED)
-        after = status("killer.h5")
-        self.assertEqual(after["outcomes"], {"ok": killer, "crashed": 1})
-        self.assertEqual([s["exit_code"] for s in after["starts"]], [TASKS_FAILED])
-        self.assertIn("each of the 3 times", stdout)
-        self.assert_exit(rodsweep(3, "run", path, "-o", "killer.h5", "--resume", "--retry-failed"), ALL_DONE)
-        self.assert_same_results("undisturbed.h5", "killer.h5")
-
-    def kill_whoever_runs(self, path, task, mpirun, times):
-        killed = []
-        deadline = time.monotonic() + 40
-        while len(killed) < times and time.monotonic() < deadline:
-            time.sleep(0.002)
-            if not os.path.exists(path):
-                continue
-            for running in status(path)["running"]:
-                if running["task"] == task and running["rank"] not in killed:
-                    os.kill(ranks_of(mpirun)[running["rank"]], signal.SIGKILL)
-                    killed.append(running["rank"])
-        self.assertEqual(len(killed), times)
 
 
 class KeptTraining(TrainingCase):
