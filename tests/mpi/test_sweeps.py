@@ -153,7 +153,7 @@ class RankCounts(SweepCase):
             self.assert_same_results("data1.h5", f"data{ranks}.h5")
 
 
-class Interrupted(SweepCase):
+class InterruptedCase(SweepCase):
     def setUp(self):
         self.sweep(long_job())
 
@@ -184,6 +184,8 @@ class Interrupted(SweepCase):
         self.assertEqual([s["tasks"] for s in starts], [before["done"], before["pending"]])
         return starts
 
+
+class Interrupted(InterruptedCase):
     def test_after_a_worker_is_killed(self):
         code, _, _ = self.interrupt("worker.h5", 3, lambda p: os.kill(ranks_of(p)[2], signal.SIGKILL))
         self.assertNotEqual(code, 0)
@@ -201,6 +203,21 @@ class Interrupted(SweepCase):
         self.interrupt("killed_data.h5", 3, kill_all)
         self.resume("killed_data.h5", 2)
 
+    def test_after_a_worker_finds_the_disk_full(self):
+        preload = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_RANK": "2", "FAIL_FILE": os.path.abspath("full")}
+        os.environ.update(preload)
+        try:
+            code, _, stderr = self.interrupt("full.h5", 3, lambda p: open("full", "w").close())
+        finally:
+            for name in preload:
+                del os.environ[name]
+        self.assertEqual(code, USER_ERROR, stderr)
+        self.assertEqual(stderr.count("cannot go on: H5Dwrite failed"), 1, stderr)
+        self.assertIn("error: rank 2 on", stderr)
+        self.resume("full.h5", 3)
+
+
+class Signalled(InterruptedCase):
     def assert_stopped(self, code, stdout, stderr, path):
         self.assertEqual(code, STOPPED, stderr)
         self.assertIn("left to do", stdout)
@@ -222,19 +239,6 @@ class Interrupted(SweepCase):
         self.sweep(long_job("longer", 100))  # mpirun takes a second to pass it on
         self.interrupt("term.h5", 3, lambda p: p.send_signal(signal.SIGTERM))
         self.assertEqual(self.resume("term.h5", 3)[0]["exit_code"], STOPPED)
-
-    def test_after_a_worker_finds_the_disk_full(self):
-        preload = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_RANK": "2", "FAIL_FILE": os.path.abspath("full")}
-        os.environ.update(preload)
-        try:
-            code, _, stderr = self.interrupt("full.h5", 3, lambda p: open("full", "w").close())
-        finally:
-            for name in preload:
-                del os.environ[name]
-        self.assertEqual(code, USER_ERROR, stderr)
-        self.assertEqual(stderr.count("cannot go on: H5Dwrite failed"), 1, stderr)
-        self.assertIn("error: rank 2 on", stderr)
-        self.resume("full.h5", 3)
 
     def test_without_mpirun_and_with_a_second_signal_during_the_stop(self):
         def twice(process):
