@@ -16,10 +16,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, NullLocator
 
-from drawing import layout, study, style
-from reading import commandline, intervals, measures, modelfile, texts, timings
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import commandline, intervals, measures, modelfile, texts, timings
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/ablation.py results/ablation_bending.h5 results/ablation_bending

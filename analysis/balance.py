@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from drawing import layout, study, style
-from reading import accuracy, commandline, intervals, texts
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import accuracy, commandline, intervals, texts
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/balance.py results/balance.h5

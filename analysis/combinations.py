@@ -12,10 +12,10 @@ in the file (record.solves "all"). Written as PDF and PNG; the paths are printed
 import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from drawing import layout, study, style
-from reading import combinations, commandline, groups, intervals, measures, remarks, texts, timings
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import combinations, commandline, groups, intervals, measures, remarks, texts, timings
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/combinations.py results/lattice_swing.h5

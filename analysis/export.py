@@ -18,10 +18,10 @@ import sys
 
 import numpy as np
 
-from drawing import outputs
-from reading import commandline, tidy
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import outputs
+from rodsweep.reading import commandline, tidy
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/export.py results/demo.h5 -o demo.csv

@@ -12,10 +12,10 @@ paths are printed after the table.
 import numpy as np
 from matplotlib.lines import Line2D
 
-from drawing import layout, study, style
-from reading import commandline, groups, intervals, measures, remarks, texts, timings
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import commandline, groups, intervals, measures, remarks, texts, timings
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/front.py results/learned_rods.h5 --tolerance 1e-2,1e-3

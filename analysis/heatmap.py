@@ -21,10 +21,10 @@ from matplotlib import colors
 from matplotlib.cm import ScalarMappable
 from matplotlib.patches import Rectangle
 
-from drawing import layout, study, style
-from reading import commandline, groups, heat, measures, texts
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import commandline, groups, heat, measures, texts
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/heatmap.py results/step_size.h5 --x time.step_s --y tolerance

@@ -14,10 +14,10 @@ import sys
 
 import numpy as np
 
-from drawing import layout, study
-from reading import commandline, envelopes, groups, history_table, measures, texts
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study
+from rodsweep.reading import commandline, envelopes, groups, history_table, measures, texts
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/long_term.py results/long_term.h5

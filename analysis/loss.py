@@ -16,8 +16,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
 
-from drawing import layout, study, style
-from reading import commandline, modelfile, texts
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import commandline, modelfile, texts
 
 EXAMPLES = """examples:
   analysis/loss.py results/train_rods.h5

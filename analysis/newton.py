@@ -13,10 +13,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from drawing import layout, study, style
-from reading import commandline, groups, intervals, newton_levels, texts
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import commandline, groups, intervals, newton_levels, texts
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/newton.py results/newton.h5

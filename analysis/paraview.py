@@ -13,9 +13,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from drawing import outputs, staging, surfaces
-from reading import commandline, joints, obstacles, trajectory
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import outputs, staging, surfaces
+from rodsweep.reading import commandline, joints, obstacles, trajectory
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/paraview.py results/net.h5

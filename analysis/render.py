@@ -13,11 +13,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from drawing import movie, outputs, povray, staging, tools
-from reading import commandline, obstacles, trajectory
-from reading.commandline import whole_number
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import movie, outputs, povray, staging, tools
+from rodsweep.reading import commandline, obstacles, trajectory
+from rodsweep.reading.commandline import whole_number
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/render.py results/net.h5

@@ -12,10 +12,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from drawing import layout, staging, study, style
-from reading import commandline, measures, texts, trajectory
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, staging, study, style
+from rodsweep.reading import commandline, measures, texts, trajectory
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/side_by_side.py results/side_by_side.h5

@@ -11,10 +11,10 @@ trajectories in the file (record.trajectory_every) and /solves (record.solves "a
 
 import numpy as np
 
-from drawing import layout, study, style
-from reading import accuracy, commandline, texts
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import accuracy, commandline, texts
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/solvers.py results/solvers.h5

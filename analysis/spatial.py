@@ -13,9 +13,9 @@ A row of panels per scene type and per value of any other grid of the job. Figur
 import sys
 from dataclasses import dataclass
 
-from drawing import figures, study, style
-from reading import commandline, groups, timings
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import figures, study, style
+from rodsweep.reading import commandline, groups, timings
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/spatial.py results/demo.h5

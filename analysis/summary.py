@@ -16,8 +16,8 @@ import math
 import os
 import sys
 
-from reading import blocks, commandline, groups, measures, remarks, texts, timings
-from reading.sweepfile import SweepFile
+from rodsweep.reading import blocks, commandline, groups, measures, remarks, texts, timings
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/summary.py results/demo.h5

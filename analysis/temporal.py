@@ -14,10 +14,10 @@ printed.
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from drawing import layout, study, style
-from reading import along_time, commandline, groups, intervals, measures
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import along_time, commandline, groups, intervals, measures
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/temporal.py results/temporal_bending.h5

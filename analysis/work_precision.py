@@ -13,9 +13,9 @@ all and of CG, and how many times the time of the cheapest direct solve CG takes
 import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from drawing import layout, study, style
-from reading import accuracy, commandline, texts
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, study, style
+from rodsweep.reading import accuracy, commandline, texts
+from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/work_precision.py results/work_precision.h5

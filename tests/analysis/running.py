@@ -11,7 +11,7 @@ import unittest
 import unittest.mock
 
 import synthetic
-from reading import commandline
+from rodsweep.reading import commandline
 
 HEADS = {".pdf": b"%PDF", ".png": b"\x89PNG"}
 
@@ -19,7 +19,7 @@ HEADS = {".pdf": b"%PDF", ".png": b"\x89PNG"}
 def laid_out(page, folder, name, *_):
     """In the place of Page.save(): draws without pixels and files, in a fifth of the time."""
     page.figure.draw_without_rendering()
-    sys.modules["drawing.layout"].plt.close(page.figure)
+    sys.modules["rodsweep.drawing.layout"].plt.close(page.figure)
     return [os.path.join(folder, name + ending) for ending in HEADS]
 
 
@@ -32,8 +32,8 @@ def run(name, *arguments, files=False):
         around.enter_context(contextlib.redirect_stdout(out))
         around.enter_context(contextlib.redirect_stderr(error))
         around.enter_context(unittest.mock.patch.object(sys, "argv", [name, *arguments]))
-        if not files and "drawing.layout" in sys.modules:    # not every script draws
-            around.enter_context(unittest.mock.patch("drawing.layout.Page.save", laid_out))
+        if not files and "rodsweep.drawing.layout" in sys.modules:    # not every script draws
+            around.enter_context(unittest.mock.patch("rodsweep.drawing.layout.Page.save", laid_out))
         try:
             commandline.run(script.main)
         except SystemExit as left:

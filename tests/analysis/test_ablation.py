@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import synthetic
 import ablation
-from reading import modelfile
+from rodsweep.reading import modelfile
 from running import Scripts
 from test_loss import NETWORK, plant
 

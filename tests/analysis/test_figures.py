@@ -11,10 +11,10 @@ import synthetic
 import heatmap
 import numpy as np
 import spatial
-from drawing import figures, style
+from rodsweep.drawing import figures, style
 from matplotlib import colors, pyplot
-from reading import timings
-from reading.sweepfile import SweepFile
+from rodsweep.reading import timings
+from rodsweep.reading.sweepfile import SweepFile
 
 
 class Drawn(unittest.TestCase):

@@ -6,9 +6,9 @@ import unittest
 
 import synthetic
 import numpy as np
-from reading import groups, measures
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.reading import groups, measures
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 
 class Groups(unittest.TestCase):

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import synthetic
 
-ROOMS = ("reading", "drawing", "")    # each may use those before it; the scripts are on top
+ROOMS = ("rodsweep.reading", "rodsweep.drawing", "")    # each may use those before it; the scripts are on top
 DRAW = {"matplotlib", "PIL"}          # what reading does without
 
 
 def imports(root):
-    """(file, line, importing module, imported one) of all of them below root; modules by name in full: reading.measures."""
+    """(file, line, importing module, imported one) of all of them below root; by name in full: rodsweep.reading.measures."""
     files = {".".join(path.relative_to(root).with_suffix("").parts): path for path in sorted(root.rglob("*.py"))}
     for module, path in files.items():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -47,13 +47,13 @@ def violations(root):
     for file, line, module, name in found:
         here, own = room(module), Path(root, *name.split(".")).with_suffix(".py").exists()
         if own and ROOMS.index(room(name)) > ROOMS.index(here):
-            yield f"{file}:{line}: {here}/ must not use {name}"
+            yield f"{file}:{line}: {here} must not use {name}"
         elif own and here == room(name) == "":
             yield f"{file}:{line}: a script must not use another, {name}"
         elif own and module in reachable(name):
             yield f"{file}:{line}: closes a circle with {name}"
-        elif here == "reading" and name.partition(".")[0] in DRAW:
-            yield f"{file}:{line}: reading/ draws nothing, {name}"
+        elif here == "rodsweep.reading" and name.partition(".")[0] in DRAW:
+            yield f"{file}:{line}: {here} draws nothing, {name}"
 
 
 class Imports(unittest.TestCase):
@@ -63,25 +63,27 @@ class Imports(unittest.TestCase):
         self.assertEqual(list(violations(root)), [])
 
     def test_violations_are_named_with_file_and_line(self):
-        planted = {"reading/a.py": "import numpy\nfrom reading import b, c\n", "reading/b.py": "from reading.c import x\n",
+        planted = {"reading/a.py": "import numpy\nfrom rodsweep.reading import b, c\n",
+                   "reading/b.py": "from rodsweep.reading.c import x\n",
                    "reading/c.py": "import os\n\ndef f():\n    from . import a\n",
-                   "reading/d.py": "from drawing import page\n", "reading/e.py": "import matplotlib.pyplot as plt\n",
-                   "drawing/page.py": "from reading import e\nimport figure\n", "figure.py": "from reading.a import y\n",
-                   "table.py": "import figure\n"}
+                   "reading/d.py": "from rodsweep.drawing import page\n", "reading/e.py": "import matplotlib.pyplot as plt\n",
+                   "drawing/page.py": "from rodsweep.reading import e\nimport figure\n",
+                   "../figure.py": "from rodsweep.reading.a import y\n", "../table.py": "import figure\n"}
         with tempfile.TemporaryDirectory() as folder:
             for name, text in planted.items():
-                path = Path(folder, name)
-                path.parent.mkdir(exist_ok=True)
+                path = Path(folder, "rodsweep", name)
+                path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(text, encoding="utf-8")
             found = [line.split(": ")[0] for line in violations(Path(folder))]
-        self.assertEqual(found, ["drawing/page.py:2", "reading/a.py:2", "reading/a.py:2", "reading/b.py:1",
-                                 "reading/c.py:4", "reading/d.py:1", "reading/e.py:1", "table.py:1"])
+        within = [line.removeprefix("rodsweep/") for line in found]
+        self.assertEqual(within, ["drawing/page.py:2", "reading/a.py:2", "reading/a.py:2", "reading/b.py:1",
+                                  "reading/c.py:4", "reading/d.py:1", "reading/e.py:1", "table.py:1"])
 
     def test_a_script_without_figures_loads_no_program_to_draw(self):
         code = f"import sys; sys.path.insert(0, {synthetic.ANALYSIS!r}); import summary, export; print(*sys.modules)"
         loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
         self.assertEqual(DRAW & set(loaded), set())
-        self.assertIn("reading.sweepfile", loaded)
+        self.assertIn("rodsweep.reading.sweepfile", loaded)
 
 
 if __name__ == "__main__":

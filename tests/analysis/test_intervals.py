@@ -4,7 +4,7 @@ import unittest
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
 import numpy as np
-from reading import intervals
+from rodsweep.reading import intervals
 
 
 class Centres(unittest.TestCase):

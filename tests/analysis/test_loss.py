@@ -11,7 +11,7 @@ import h5py
 import loss
 import numpy as np
 from matplotlib import pyplot
-from reading import modelfile
+from rodsweep.reading import modelfile
 from running import Scripts
 from test_figures import Drawn
 

@@ -7,8 +7,8 @@ import unittest
 import synthetic
 import h5py
 import numpy as np
-from reading import measures, timings
-from reading.sweepfile import SweepFile
+from rodsweep.reading import measures, timings
+from rodsweep.reading.sweepfile import SweepFile
 
 
 class Tables(unittest.TestCase):

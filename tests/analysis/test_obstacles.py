@@ -9,9 +9,9 @@ import synthetic
 import numpy as np
 
 import trajectories
-from drawing import povray, staging, surfaces
-from reading import obstacles, trajectory
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import povray, staging, surfaces
+from rodsweep.reading import obstacles, trajectory
+from rodsweep.reading.sweepfile import SweepFile
 from running import Scripts
 from test_pictures import drawn
 

@@ -9,8 +9,8 @@ import synthetic
 import numpy as np
 
 import trajectories
-from reading import joints, trajectory
-from reading.sweepfile import SweepFile
+from rodsweep.reading import joints, trajectory
+from rodsweep.reading.sweepfile import SweepFile
 from running import Scripts
 
 

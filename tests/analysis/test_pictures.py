@@ -17,9 +17,9 @@ import numpy as np
 from PIL import Image
 
 import trajectories
-from drawing import camera, movie, povray, staging
-from reading import trajectory
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import camera, movie, povray, staging
+from rodsweep.reading import trajectory
+from rodsweep.reading.sweepfile import SweepFile
 from running import Scripts
 
 NUMBER = r"-?[\d.]+(?:e[-+]?\d+)?"

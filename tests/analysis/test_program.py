@@ -11,8 +11,8 @@ import synthetic  # noqa: F401  (makes analysis/ importable)
 import h5py
 import numpy as np
 import temporal
-from reading import along_time, joints, measures, newton_levels, timings, trajectory
-from reading.sweepfile import SweepFile
+from rodsweep.reading import along_time, joints, measures, newton_levels, timings, trajectory
+from rodsweep.reading.sweepfile import SweepFile
 from running import run
 
 ROD = {"type": "bending_rod", "segments": {"grid": [6, 9]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,

@@ -7,8 +7,8 @@ import h5py
 import numpy as np
 import side_by_side
 import trajectories
-from reading import trajectory
-from reading.sweepfile import SweepFile
+from rodsweep.reading import trajectory
+from rodsweep.reading.sweepfile import SweepFile
 from running import Scripts
 
 

@@ -5,8 +5,8 @@ import unittest
 import ways
 import h5py
 import numpy as np
-from reading import accuracy, intervals
-from reading.sweepfile import SweepFile
+from rodsweep.reading import accuracy, intervals
+from rodsweep.reading.sweepfile import SweepFile
 from ways import OFF, SAMPLES, STEP_S, WAYS
 
 

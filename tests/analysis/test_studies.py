@@ -10,8 +10,8 @@ import heatmap
 import long_term
 import numpy as np
 import temporal
-from reading import along_time, envelopes, groups, heat, intervals, measures, newton_levels
-from reading.sweepfile import SweepFile
+from rodsweep.reading import along_time, envelopes, groups, heat, intervals, measures, newton_levels
+from rodsweep.reading.sweepfile import SweepFile
 from running import Scripts
 
 EVERYTHING = {"select": [], "scene": None, "guess": None, "tolerance": None, "newton": "first", "width": "174"}

@@ -7,8 +7,8 @@ import unittest
 import synthetic
 import h5py
 import numpy as np
-from reading.errors import KeyNotFound, SweepFileError
-from reading.sweepfile import SweepFile
+from rodsweep.reading.errors import KeyNotFound, SweepFileError
+from rodsweep.reading.sweepfile import SweepFile
 
 
 class Folder(unittest.TestCase):

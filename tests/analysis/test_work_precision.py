@@ -5,9 +5,9 @@ import unittest
 
 import ways
 import work_precision
-from drawing import study
-from reading import accuracy
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import study
+from rodsweep.reading import accuracy
+from rodsweep.reading.sweepfile import SweepFile
 from ways import SAMPLES, WAYS
 
 ICC = ("CG icc from previous to 1e-1, Newton 1", "CG icc from previous to 1e-2, Newton 2",

@@ -5,7 +5,7 @@ import h5py
 import numpy as np
 
 import running
-from reading.accuracy import Way
+from rodsweep.reading.accuracy import Way
 
 GUESSES = ("zero", "previous")
 PLANTED = {   # way: distance from the reference in rod lengths, time of a step; the first is the reference

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 import program
 from program import ALL_DONE, DATA, JOB, STOPPED, TASKS_FAILED, USER_ERROR, rodsweep, sweep
-from reading.sweepfile import SweepFile
+from rodsweep.reading.sweepfile import SweepFile
 
 
 class Case(unittest.TestCase):

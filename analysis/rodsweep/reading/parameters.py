@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reading.errors import KeyNotFound
+from rodsweep.reading.errors import KeyNotFound
 
 
 @dataclass(frozen=True)

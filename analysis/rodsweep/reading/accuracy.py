@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reading import intervals, measures, texts
-from reading.errors import KeyNotFound
+from rodsweep.reading import intervals, measures, texts
+from rodsweep.reading.errors import KeyNotFound
 
 REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
                                                                ("assemble", "direct", "guess", "cg")))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reading import groups, intervals, measures, timings
+from rodsweep.reading import groups, intervals, measures, timings
 
 PRECONDITIONER = "solve.preconditioner"
 SETTINGS = {"solve.fill_levels": "levels", "solve.lag_steps": "lag"}

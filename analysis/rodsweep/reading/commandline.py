@@ -6,8 +6,8 @@ import sys
 
 import numpy as np
 
-from reading import measures, texts
-from reading.errors import KeyNotFound, UserError, not_found
+from rodsweep.reading import measures, texts
+from rodsweep.reading.errors import KeyNotFound, UserError, not_found
 
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reading.errors import SweepFileError
-from reading.hdf5 import PROGRAM, UNREADABLE, as_text, opened
+from rodsweep.reading.errors import SweepFileError
+from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, opened
 
 SCHEMA_VERSION = 1
 

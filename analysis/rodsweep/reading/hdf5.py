@@ -5,7 +5,7 @@ import os
 import h5py
 import numpy as np
 
-from reading.errors import SweepFileError
+from rodsweep.reading.errors import SweepFileError
 
 PROGRAM = "rodsweep"
 UNREADABLE = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError)  # what bad bytes raise

@@ -3,7 +3,7 @@
 import contextlib
 import os
 
-from reading.errors import SweepFileError
+from rodsweep.reading.errors import SweepFileError
 
 
 def add_force(made):

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from reading import texts
-from reading.errors import KeyNotFound
+from rodsweep.reading import texts
+from rodsweep.reading.errors import KeyNotFound
 
 MOST_PANELS = 6
 MOST_POINTS = 14   # more distinct values of x than this are binned

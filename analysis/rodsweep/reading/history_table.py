@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from reading import intervals, texts
-from reading.texts import number_text
+from rodsweep.reading import intervals, texts
+from rodsweep.reading.texts import number_text
 
 COLUMNS = ("scene", "settings", "method", "simulations", "failed", "failed_after_steps", "length_drift_largest",
            "length_drift_final", "drift_per_1000_steps", "drift_per_1000_steps_low", "drift_per_1000_steps_high",

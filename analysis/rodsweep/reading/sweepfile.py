@@ -13,9 +13,9 @@ import os
 import h5py
 import numpy as np
 
-from reading.errors import KeyNotFound, SweepFileError, not_found
-from reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, opened
-from reading.parameters import Parameter
+from rodsweep.reading.errors import KeyNotFound, SweepFileError, not_found
+from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, opened
+from rodsweep.reading.parameters import Parameter
 
 SCHEMA_VERSION = 1
 BLOCK_ROWS = 1 << 17

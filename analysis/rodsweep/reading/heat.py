@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reading import groups, intervals, measures, texts, timings
-from reading.errors import KeyNotFound
+from rodsweep.reading import groups, intervals, measures, texts, timings
+from rodsweep.reading.errors import KeyNotFound
 
 LADDER = "tolerance"
 

@@ -9,8 +9,8 @@ from matplotlib.colors import LogNorm
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from matplotlib.transforms import Bbox
 
-from drawing import style
-from reading import texts
+from rodsweep.drawing import style
+from rodsweep.reading import texts
 
 METADATA = {"pdf": {"CreationDate": None, "Producer": None, "Creator": "rodsweep"}, "png": {"Software": "rodsweep"},
             "svg": {"Date": None, "Creator": "rodsweep"}}

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reading import groups, intervals, measures, timings
+from rodsweep.reading import groups, intervals, measures, timings
 
 TIMES = ("assemble_us", "guess_us", "cg_us", "direct_us")
 # What stands beside the CG ratio of first or of all Newton iterations: of which, and what is counted.

@@ -9,9 +9,9 @@ empty fields. Blocks have at most BLOCK_ROWS rows of the file, whatever its size
 import h5py
 import numpy as np
 
-from reading import measures, texts
-from reading.errors import KeyNotFound, not_found
-from reading.hdf5 import decoded
+from rodsweep.reading import measures, texts
+from rodsweep.reading.errors import KeyNotFound, not_found
+from rodsweep.reading.hdf5 import decoded
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from reading import obstacles
+from rodsweep.reading import obstacles
 
 AROUND = 32     # corners of a circle
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.lines import Line2D
 
-from drawing import layout, style
-from reading import commandline, measures, remarks, texts
-from reading.errors import KeyNotFound
-from reading.sweepfile import SweepFile
+from rodsweep.drawing import layout, style
+from rodsweep.reading import commandline, measures, remarks, texts
+from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.sweepfile import SweepFile
 
 
 @dataclass

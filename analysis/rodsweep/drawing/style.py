@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib import colors
 from matplotlib.lines import Line2D
 
-from reading import texts
+from rodsweep.reading import texts
 
 MM = 1 / 25.4
 WIDTHS_MM = {"84": 84, "174": 174}

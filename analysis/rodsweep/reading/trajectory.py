@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import h5py
 import numpy as np
 
-from reading import commandline
-from reading.errors import KeyNotFound
+from rodsweep.reading import commandline
+from rodsweep.reading.errors import KeyNotFound
 
 SEGMENTS = "/trajectories/segments"
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib import colormaps, colors
 
-from drawing import camera
-from reading import obstacles
-from reading.errors import KeyNotFound
+from rodsweep.drawing import camera
+from rodsweep.reading import obstacles
+from rodsweep.reading.errors import KeyNotFound
 
 VIEWS = {"front": (0, 4), "side": (90, 4), "top": (0, 89.9)}   # azimuth and elevation in degrees
 TURN_DEG = 28           # of a chosen view, away from looking at the broad side

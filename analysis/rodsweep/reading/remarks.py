@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from reading import measures, texts
+from rodsweep.reading import measures, texts
 
 NORMS = {"true_residual": "‖b − Ax‖₂ relative to ‖b‖₂", "natural": "natural norm of b − Ax relative to that of b"}
 

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import GifImagePlugin, Image
 from scipy.spatial import cKDTree
 
-from drawing.tools import ToolError
+from rodsweep.drawing.tools import ToolError
 
 COLOURS = 255      # of a GIF, in one palette for all frames, so that what stands still does not flicker
 

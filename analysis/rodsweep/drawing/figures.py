@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from drawing import layout, style
-from drawing.study import sample_text
-from reading import intervals, measures, remarks, timings
+from rodsweep.drawing import layout, style
+from rodsweep.drawing.study import sample_text
+from rodsweep.reading import intervals, measures, remarks, timings
 
 TIME_PARTS = ("assembly", "guess", "CG")
 FOUR_CURVES = {"ratio": "CG ratio", "share": "time of the guess ÷ of its CG", "guess_cg": "speedup of guess and CG",

@@ -2,7 +2,7 @@
 
 import shutil
 
-from reading.errors import UserError
+from rodsweep.reading.errors import UserError
 
 
 class ToolError(UserError):
