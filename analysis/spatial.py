@@ -5,6 +5,7 @@
   speedup    time of zero-guess CG over the time with a guess: CG only, guess and CG, whole step; direct beside
   time       time per solve split into assembly, guess and CG, per guess, with the direct solve beside
   four-curves  of learned guesses, as Shao et al. show it: CG ratio, time of the guess over that of its CG, speedups
+  overview   with --overview, alone: CG ratio and time of guess and CG side by side, for a few guesses at a glance
 
 A row of panels per scene type and per value of any other grid of the job. Figures of times need /solves in the file
 (record.solves "all"). Written as PDF and PNG; the paths are printed.
@@ -20,6 +21,7 @@ from rodsweep.reading.sweepfile import SweepFile
 EXAMPLES = """examples:
   analysis/spatial.py results/demo.h5
   analysis/spatial.py results/demo.h5 --scene helix --tolerance 1e-2,1e-4 --newton all
+  analysis/spatial.py results/demo.h5 --overview --guess "zero,quadratic,pod 10"
   analysis/spatial.py results/stiffness.h5 --x scene.youngs_modulus_pa --select scene.segments=20:40 --width 84"""
 
 
@@ -39,6 +41,7 @@ def arguments():
     study.add_figure_arguments(made)
     made.add_argument("--x", metavar="KEY", default="scene.segments",
                       help="parameter along x (default: scene.segments)")
+    made.add_argument("--overview", action="store_true", help="one figure: CG ratio beside the time of a solve")
     return made.parse_args()
 
 
@@ -46,19 +49,26 @@ def main():
     options = arguments()
     with SweepFile(options.file) as file:
         shown = make_study(file, options)
-        made = {"cg-ratio": figures.ratio_figure(shown, commandline.chosen_tolerances(file, options))}
-        if timings.timed(file):
-            by_newton = timings.times(file, shown.sims)
-            made["speedup"] = figures.speedup_figure(shown, by_newton)
-            made["time"] = figures.time_figure(shown, by_newton)
-            four_curves = figures.four_curves_figure(shown, by_newton)
-            if four_curves:
-                made["four-curves"] = four_curves
+        by_newton = timings.times(file, shown.sims) if timings.timed(file) else None
+        if by_newton and options.overview:
+            made = {"overview": figures.overview_figure(shown, by_newton)}
         else:
-            print(f"{file.path} has no times of single solves (record.solves is \"summary\"): CG ratios only",
-                  file=sys.stderr)
+            made = all_figures(file, options, shown, by_newton)
         by_x = "" if options.x == "scene.segments" else f"by-{options.x.rsplit('.', 1)[-1]}"
         study.save(file, options, made, [by_x])
+
+
+def all_figures(file, options, shown, by_newton):
+    made = {"cg-ratio": figures.ratio_figure(shown, commandline.chosen_tolerances(file, options))}
+    if by_newton is None:
+        print(f"{file.path} has no times of single solves (record.solves is \"summary\"): CG ratios only", file=sys.stderr)
+        return made
+    made["speedup"] = figures.speedup_figure(shown, by_newton)
+    made["time"] = figures.time_figure(shown, by_newton)
+    four_curves = figures.four_curves_figure(shown, by_newton)
+    if four_curves:
+        made["four-curves"] = four_curves
+    return made
 
 
 def make_study(file, options):

@@ -70,11 +70,23 @@ class Values(Drawn):
             self.assertTrue(any(np.allclose(other.get_ydata(), 1) for other in axes.lines))
             self.assertEqual(axes.get_ylim()[0], 0)
 
+    def test_an_overview_has_ratios_beside_times_of_guess_and_cg_per_segment(self):
+        study = self.study()
+        page = figures.overview_figure(study, timings.times(study.file, study.sims))
+        for ratio, time in page.axes:
+            drawn, = self.line(ratio, study.styles["previous"])
+            np.testing.assert_allclose(drawn.get_ydata(), 0.5, atol=0.01)
+            drawn, = self.line(time, study.styles["previous"])
+            np.testing.assert_allclose(drawn.get_ydata(), 0.1 + 0.5, rtol=1e-3)    # µs per segment
+            drawn, = self.line(time, style.DIRECT)
+            np.testing.assert_allclose(drawn.get_ydata(), 8 / np.array([10, 20, 40]), rtol=1e-3)
+            self.assertTrue(any(np.allclose(other.get_ydata(), 1) for other in time.lines))
+
     def test_every_figure_says_what_it_is_of(self):
         study = self.study(failed={0: "diverged"}, pending=(1,), guesses=("zero", "previous"), samples=7)
         by_newton = timings.times(study.file, study.sims)
         for page in (figures.ratio_figure(study, [1]), figures.speedup_figure(study, by_newton),
-                     figures.time_figure(study, by_newton)):
+                     figures.time_figure(study, by_newton), figures.overview_figure(study, by_newton)):
             said = self.page_texts(page)
             for words in ("first Newton iteration (j = 0)", "‖b − Ax‖₂", "jacobi", "5–7 simulations per point",
                           "40 of 42 tasks ok, failed: 1 diverged, 1 pending", "95 %", "Bending rod", "Helix"):
@@ -164,6 +176,7 @@ class Legibility(Drawn):
             study = self.study(x=x, **{"samples": 2, "scenes": scenes, **settings})
             self.legible(figures.ratio_figure(study, range(4)))
             self.legible(figures.time_figure(study, timings.times(study.file, study.sims)))
+            self.legible(figures.overview_figure(study, timings.times(study.file, study.sims)))
 
     def test_a_grid_over_decades_has_a_logarithmic_axis_and_others_a_linear_one(self):
         for segments, scale in (([10, 55], "linear"), ([10, 100, 500], "log")):
