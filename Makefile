@@ -34,7 +34,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo studies variants ablation pictures test test-long test-arm bench sanitize schema format format-check tidy install clean
+.PHONY: help configure build demo studies variants ablation pictures test test-long test-arm bench sanitize schema docs format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
@@ -49,7 +49,8 @@ help:
 	@echo 'make install       PREFIX=$(PREFIX): program, jobs and analysis scripts'
 	@echo 'make build         build only, into $(BUILD)/'
 	@echo 'make sanitize      unit tests under the address and undefined-behaviour sanitizers, in $(BUILD)-sanitize/'
-	@echo 'make schema        refresh jobs/schema.json after a change of the keys of jobs'
+	@echo 'make schema        refresh jobs/schema.json and docs/keys.md after a change of the keys of jobs'
+	@echo 'make docs          the pages as a site, $(BUILD)/site/index.html'
 	@echo 'make format        clang-format the tree; make format-check only looks'
 	@echo 'make tidy          clang-tidy'
 	@echo 'make clean         remove $(BUILD)/, $(BUILD)-sanitize/, -tidy/ and -arm/; results stay'
@@ -143,6 +144,11 @@ sanitize:
 
 schema: build
 	@$(BUILD)/rodsweep schema >$(BUILD)/schema.json && mv $(BUILD)/schema.json jobs/schema.json
+	@docs/tools/keys.py --update
+
+docs:
+	@$(call packages,docs)
+	@docs/tools/site.py $(BUILD)/site
 
 format:
 	@$(call packages,develop)

@@ -17,11 +17,11 @@ comment stands in the line before, with what differs in braces, and rows and col
     |---|---|---|
     | bending rods<!--@ Bending rod --> | .07 **.19** | .02 |
 
-A cell has as many numbers as columns are named last, any of them with its interval behind it, [0.09, 0.11], or none; what is
-in `backticks` is no number. A column that is called `-` is not looked at. The number has to be
-the cell's, rounded as the text has it. Those that part are printed, and the exit code is 1; --update puts the tables'
-numbers in their place, as many digits as before, for somebody to read the sentences around them again: what is bold, and
-what is said to be less, no script knows.
+A | in a comment within a table is \\|, since a cell ends at any other. A cell has as many numbers as columns are named
+last, any of them with its interval behind it, [0.09, 0.11], or none; what is in `backticks` is no number. A column that
+is called `-` is not looked at. The number has to be the cell's, rounded as the text has it. Those that part are printed,
+and the exit code is 1; --update puts the tables' numbers in their place, as many digits as before, for somebody to read
+the sentences around them again: what is bold, and what is said to be less, no script knows.
 """
 
 import os
@@ -33,6 +33,7 @@ NUMBER = re.compile(r"[−-]?(?:\d[\d,]*\.?\d*|\.\d+)(?:e[+−-]?\d+)?")
 SOURCE = re.compile(r"<!--= (.*?) -->", re.S)
 TABLE = re.compile(r"^<!--== (.*?) -->\n((?:\|.*\n)+)", re.M)
 NAMED = re.compile(r"<!--@ (.*?) -->")
+BAR = re.compile(r"(?<!\\)\|")
 WITH_INTERVAL = re.compile(rf"({NUMBER.pattern})[*_]*(?:\s*\[({NUMBER.pattern}), ({NUMBER.pattern})\])?")
 
 
@@ -118,7 +119,7 @@ def said_alone(text):
     for marker in SOURCE.finditer(text):
         before = re.search(rf"({NUMBER.pattern})[*_]*$", text[:marker.start()])
         if before:
-            yield Said(*before.span(1), marker.group(1))
+            yield Said(*before.span(1), marker.group(1).replace("\\|", "|"))
         else:
             yield Said(marker.start(), marker.start(), f"no number before {marker.group()}")
 
@@ -129,7 +130,7 @@ def said_in_tables(text):
         template, begin, names = table.group(1), table.start(2), None
         for number, line in enumerate(table.group(2).splitlines()):
             cells, at = [], begin + 1
-            for cell in line[1:].rstrip().removesuffix("|").split("|"):
+            for cell in BAR.split(line[1:].rstrip().removesuffix("|")):
                 cells.append((cell, at))
                 at += len(cell) + 1
             begin += len(line) + 1
@@ -155,7 +156,7 @@ def said_in_tables(text):
 def called(cell):
     """What a row or column is called in its table."""
     named = NAMED.search(cell)
-    return named.group(1) if named else re.sub(r"[*`_]", "", cell).strip()
+    return named.group(1).replace("\\|", "|") if named else re.sub(r"[*`_]", "", cell).strip()
 
 
 def check(path, update=False):

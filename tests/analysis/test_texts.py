@@ -86,6 +86,13 @@ class Texts(unittest.TestCase):
         done = self.check(text.replace(".19 .34", ".19"))
         self.assertIn("README.md:5: 1 numbers for 2 columns in '.19'", done.stdout)
 
+    def test_a_bar_in_a_comment_of_a_table_is_escaped_as_github_wants_it(self):
+        text = """| a | b |
+|---|---|
+| .10<!--= x; Steps \\|C\\|; Ring; pod 10; 1e-2 --> | |
+"""
+        self.assertIn("a section 'Steps |C|'", self.check(text).stdout)
+
     def test_what_no_table_has_is_named(self):
         for source, words in (("x; CG ratio; Bending rod; pod 9; 1e-2", "a row 'pod 9'"),
                               ("x; CG ratio; Bending rod; pod 10; 1e-3", "a column '1e-3'"),
@@ -96,7 +103,7 @@ class Texts(unittest.TestCase):
             self.assertIn(words, done.stdout)
 
     def test_the_texts_of_this_repository(self):
-        for text in ("README.md", "../../docs/claims.md"):
+        for text in ("README.md", "../../README.md", "../../docs/claims.md"):
             done = self.run_on(os.path.join(RESULTS, text))
             self.assertEqual((done.returncode, done.stdout), (0, "all numbers are those of their tables\n"))
 

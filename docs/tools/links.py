@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""Do the pages of this repository hold together, on GitHub as in the site?
+
+    docs/tools/links.py [ROOT]
+
+Every relative link leads to a file that is there, and to a heading of it; every page is in the navigation
+(mkdocs.yml) and every entry of that is a page; rows of tables have as many cells as their head, as GitHub counts them,
+where a | within code or a comment ends a cell too; lists have an empty line before them, which the site's Markdown
+wants. What is wrong is printed with its line, and the exit code is 1.
+"""
+
+import os
+import re
+import sys
+
+TOP = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "analysis/results/README.md")
+LINK = re.compile(r"(?<!\\)\[(?:[^][]|\[[^][]*\])*\]\(([^)\s]+)(?:\s+\"[^\"]*\")?\)"
+                  r"|<(?:a|img)\s[^>]*?(?:href|src)=\"([^\"]+)\"")
+FENCE = re.compile(r"^(```|~~~)")
+ITEM = re.compile(r"^(?:[-*] |\d+\. )")
+HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*#*$")
+BAR = re.compile(r"(?<!\\)\|")
+
+
+def pages(root):
+    """Paths of all pages below `root`."""
+    found = [path for path in TOP if os.path.exists(os.path.join(root, path))]
+    return found + sorted(f"docs/{name}" for name in os.listdir(os.path.join(root, "docs")) if name.endswith(".md"))
+
+
+def lines_of(root, page):
+    """(number, line) of a page outside of fenced code."""
+    with open(os.path.join(root, page), encoding="utf-8") as file:
+        fenced = False
+        for number, line in enumerate(file.read().splitlines(), 1):
+            if FENCE.match(line):
+                fenced = not fenced
+            elif not fenced:
+                yield number, line
+
+
+def anchor(heading):
+    """As GitHub makes it of a heading's text."""
+    text = re.sub(r"!?\[([^]]*)\]\([^)]*\)", r"\1", heading)
+    text = re.sub(r"[^\w\- ]", "", re.sub(r"<!--.*?-->|<[^>]+>", "", text).lower())
+    return text.strip().replace(" ", "-")
+
+
+def anchors(root, page):
+    found = {}
+    for _, line in lines_of(root, page):
+        heading = HEADING.match(line)
+        if heading:
+            name = anchor(heading.group(1))
+            found[name] = found.get(name, -1) + 1
+        for named in re.findall(r"<a (?:id|name)=\"([^\"]+)\"", line):
+            found[named] = 0
+    return {name if k == 0 else f"{name}-{k}" for name, last in found.items() for k in range(last + 1)}
+
+
+def targets(root, page):
+    """(number of the line, target) of every relative link."""
+    for number, line in lines_of(root, page):
+        shown = re.sub(r"<!--.*?-->", "", re.sub(r"(?<!`)(`+)(?!`).*?(?<!`)\1(?!`)", "", line))
+        for found in LINK.finditer(shown):
+            target = found.group(1) or found.group(2)
+            if not re.match(r"[a-z]+:|//", target):
+                yield number, target
+
+
+def files_of(root, page):
+    """Paths below `root` of what a page links and shows."""
+    for _, target in targets(root, page):
+        path = target.partition("#")[0]
+        if path:
+            yield os.path.normpath(os.path.join(os.path.dirname(page), path))
+
+
+def wrong_links(root, page, known):
+    for number, target in targets(root, page):
+        path, _, name = target.partition("#")
+        file = os.path.normpath(os.path.join(os.path.dirname(page), path)) if path else page
+        if not os.path.exists(os.path.join(root, file)):
+            yield f"{page}:{number}: {target}: there is no {file}"
+        elif name and file.endswith(".md"):
+            if file not in known:
+                known[file] = anchors(root, file)
+            if name not in known[file]:
+                yield f"{page}:{number}: {target}: {file} has no heading #{name}"
+
+
+def wrong_tables(root, page):
+    cells = before = 0
+    for number, line in lines_of(root, page):
+        if not line.startswith("|"):
+            cells = 0
+            continue
+        count = len(BAR.findall(line))
+        if cells == 0 or number != before + 1:
+            cells = count
+        elif count != cells:
+            yield f"{page}:{number}: {count - 1} cells, but the table's head has {cells - 1} (a | within a cell is \\|)"
+        before = number
+
+
+def wrong_lists(root, page):
+    before = words = False    # of the paragraph so far: an item, anything
+    for number, line in lines_of(root, page):
+        if not line.strip() or line.startswith("#"):
+            before = words = False
+        elif ITEM.match(line):
+            if words and not before:
+                yield f"{page}:{number}: a list begins without an empty line before it"
+            before = True
+        elif not line.startswith(" "):
+            words = True
+
+
+def navigation(root):
+    with open(os.path.join(root, "mkdocs.yml"), encoding="utf-8") as file:
+        nav = file.read().partition("\nnav:\n")[2]
+    return re.findall(r"^ +- .*?([\w./-]+\.md)$", re.split(r"^\S", nav, 1, re.M)[0], re.M)
+
+
+def wrong_navigation(root):
+    listed, there = navigation(root), pages(root)
+    for page in there:
+        if listed.count(page) != 1:
+            yield f"mkdocs.yml: {page} is in the navigation {listed.count(page)} times"
+    for page in listed:
+        if not os.path.exists(os.path.join(root, page)):
+            yield f"mkdocs.yml: there is no {page}"
+
+
+def check(root):
+    known, wrong = {}, []
+    for page in pages(root):
+        wrong += [*wrong_links(root, page, known), *wrong_tables(root, page), *wrong_lists(root, page)]
+    return wrong + list(wrong_navigation(root))
+
+
+if __name__ == "__main__":
+    here = os.path.dirname(os.path.abspath(__file__))
+    parted = check(sys.argv[1] if len(sys.argv) > 1 else os.path.join(here, "..", ".."))
+    print("\n".join(parted) or "all links lead somewhere")
+    sys.exit(1 if parted else 0)

@@ -1,0 +1,45 @@
+#!/usr/bin/python3
+"""The pages as a static site, by MkDocs (packages mkdocs, mkdocs-material). `make docs` calls it.
+
+    docs/tools/site.py OUTPUT
+
+A folder beside OUTPUT, OUTPUT-pages, gets links to all pages and to what they show and link, each where it lies in the
+repository, so that their own links go on leading there. Whatever MkDocs warns of is an error.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import links
+
+STYLE = "docs/tools/site.css"
+ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+
+
+def lay_out(root, folder):
+    """Links below `folder` to all pages and what they need."""
+    shutil.rmtree(folder, ignore_errors=True)
+    pages = links.pages(root)
+    for path in {STYLE, *pages, *(path for page in pages for path in links.files_of(root, page))}:
+        place = os.path.join(folder, path)
+        if os.path.isfile(os.path.join(root, path)):
+            os.makedirs(os.path.dirname(place), exist_ok=True)
+            os.symlink(os.path.join(root, path), place)
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit("usage: docs/tools/site.py OUTPUT")
+    output = os.path.abspath(sys.argv[1])
+    lay_out(ROOT, f"{output}-pages")
+    command = ["/usr/bin/mkdocs", "build", "--strict", "--quiet", "-f", os.path.join(ROOT, "mkdocs.yml"), "-d", output]
+    done = subprocess.run(command, env={**os.environ, "RODSWEEP_SITE_PAGES": f"{output}-pages"}, check=False)
+    if done.returncode == 0:
+        print(f"{os.path.relpath(output)}/index.html")
+    return done.returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,108 @@
+#!/usr/bin/python3
+"""The pages of the repository: links, tables and lists hold, all are in the navigation, docs/keys.md has every key."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+TOOLS = os.path.join(ROOT, "docs", "tools")
+sys.path.insert(0, TOOLS)
+import keys  # noqa: E402
+import links  # noqa: E402
+
+NAV = "site_name: x\nnav:\n  - Start: README.md\n  - More:\n      - A page: docs/page.md\nextra: {}\n"
+PAGE = """# A page of `two_words`, once … more
+See [up](../README.md#what-it-is), [here](#a-page-of-two_words-once--more), ![a picture](a.png), [far](https://x.org/no).
+
+- `[not](a link)`
+
+```
+[nor](this.md)
+```
+"""
+
+
+class Links(unittest.TestCase):
+    def check(self, page=PAGE, readme="# x\n## What it is\n[page](docs/page.md)\n", nav=NAV):
+        with tempfile.TemporaryDirectory() as root:
+            os.mkdir(os.path.join(root, "docs"))
+            for path, text in (("docs/page.md", page), ("README.md", readme), ("mkdocs.yml", nav), ("docs/a.png", "")):
+                with open(os.path.join(root, path), "w", encoding="utf-8") as file:
+                    file.write(text)
+            return links.check(root)
+
+    def test_what_leads_somewhere_is_passed(self):
+        self.assertEqual(self.check(), [])
+
+    def test_what_leads_nowhere_is_named_with_its_line(self):
+        for change, words in ((("a.png", "b.png"), "docs/page.md:2: b.png: there is no docs/b.png"),
+                              (("#what-it-is", "#what-it-was"), "README.md has no heading #what-it-was"),
+                              (("#a-page", "#page"), "docs/page.md has no heading #page-of-two_words-once--more"),
+                              (("../README", "README"), "there is no docs/README.md")):
+            wrong = self.check(PAGE.replace(*change))
+            self.assertEqual(len(wrong), 1, wrong)
+            self.assertIn(words, wrong[0])
+
+    def test_pages_and_navigation_agree(self):
+        wrong = self.check(nav=NAV.replace("page.md", "p.md"))
+        self.assertEqual(wrong, ["mkdocs.yml: docs/page.md is in the navigation 0 times",
+                                 "mkdocs.yml: there is no docs/p.md"])
+
+    def test_rows_have_the_cells_of_their_head_also_where_a_comment_has_a_bar(self):
+        table = "\n| a | b |\n|---|---|\n| 1<!--= x; |y| --> | 2 |\n"
+        self.assertIn("docs/page.md:12: 4 cells, but the table's head has 2", self.check(PAGE + table)[0])
+        self.assertEqual(self.check(PAGE + table.replace("|y|", "\\|y\\|")), [])
+
+    def test_a_list_right_behind_a_paragraph_is_no_list_everywhere(self):
+        self.assertIn("docs/page.md:10: a list begins", self.check(PAGE + "Words:\n- one\n- two\n")[0])
+        self.assertEqual(self.check(PAGE + "Words:\n\n- one\n  more\n- two\n"), [])
+
+    def test_this_repository(self):
+        self.assertEqual(links.check(ROOT), [])
+
+
+class Keys(unittest.TestCase):
+    def test_the_page_is_current(self):
+        command = [sys.executable, os.path.join(TOOLS, "keys.py")]
+        said = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual((said.returncode, said.stdout), (0, "docs/keys.md is current\n"))
+
+    def test_every_key_of_the_schema_has_a_row(self):
+        text = keys.read(keys.SCHEMA)
+        page, found = keys.page(text), set()
+
+        def walk(node):
+            if isinstance(node, dict):
+                found.update(node.get("properties", {}) if "additionalProperties" in node else ())
+                for child in node.values():
+                    walk(child)
+            elif isinstance(node, list):
+                for child in node:
+                    walk(child)
+
+        walk(json.loads(text))
+        self.assertGreater(len(found), 140)
+        for name in found - keys.SWEEPS - {"label"}:
+            self.assertTrue(f"| `{name}` |" in page or f"{{\"{name}\": {{...}}}}" in page, name)
+
+    def test_a_row_has_type_bounds_unit_default_meaning_and_place(self):
+        schema = {"definitions": {}, "properties": {}, "allOf": [
+            {"if": {"properties": {"type": {"const": word}}}, "then": then} for word, then in (
+                ("rod", {"required": ["n"], "properties": {"soft": {"default": False}}}),
+                ("net", {"properties": {"n": False}}), ("ring", {"required": ["n"]}))]}
+        node = {**schema, "properties": {
+            "n": {"type": "integer", "minimum": 1, "maximum": 1000000, "description": "how many"},
+            "wide_m": {"type": "number", "exclusiveMinimum": 0, "default": 0.5, "description": "width [m]"},
+            "soft": {"type": "boolean", "default": True, "description": "gives way"}}}
+        self.assertEqual(keys.table(keys.Schema(schema), node)[1], [
+            ["`n`", "whole number, ≥ 1, ≤ 1e6", "", "*required*", "how many", "not `net`"],
+            ["`wide_m`", "number, > 0", "m", "`0.5`", "width", ""],
+            ["`soft`", "`true`, `false`", "", "`true`, `false` of `rod`", "gives way", ""]])
+
+
+if __name__ == "__main__":
+    unittest.main()
