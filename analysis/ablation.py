@@ -59,7 +59,7 @@ def _base(model):
 def _data(model):
     """What is behind SCENE_data in the name of the data set."""
     other = os.path.splitext(os.path.basename(model.job["data"]))[0].partition("_data")[2].strip("_")
-    return f"{other} steps" if other.isdigit() else other or "the talk's"
+    return f"{other} steps" if other.isdigit() else other or "as in Shao et al."
 
 
 SETTINGS = {    # what a panel is about, and how a model's value of it is read; None where its job says nothing of it

@@ -4,7 +4,7 @@
   cg-ratio-in-time    CG iterations relative to the zero guess, a panel per tolerance
   iterations-in-time  CG iterations of a solve, zero guess included
 
-Made for simulations that share their fixed parameters (the deck's temporal study: one scene, many samples). Iterations
+Made for simulations that share their fixed parameters (the temporal study of Shao et al. 2021: one scene, many samples). Iterations
 are summed over a window of steps around each point (--window, by default a twentieth of the run) and over simulations;
 the ratio is that of the sums. Bands are 95 % bootstrap intervals over simulations. A row of panels per scene type and
 per value of any grid of the job. Needs /solves in the file (record.solves "all"). Written as PDF and PNG; the paths are

@@ -101,7 +101,7 @@ def speedup_figure(study, by_newton):
 
 
 def four_curves_figure(study, by_newton):
-    """What the talk of Shao et al. shows of a learned guess, a panel for each: the CG ratio, the time of the guess over
+    """What Shao et al. 2021 show of a learned guess, a panel for each: the CG ratio, the time of the guess over
     that of its CG, and two speedups over CG from zero, of guess and CG and of the whole step. None without one."""
     learned = [g for g in study.lines() if study.file.guesses[g].removeprefix("first ").startswith("copingnet")]
     if not learned:

@@ -74,7 +74,7 @@ class GuessStyle:
 
 
 DIRECT = GuessStyle(*KINDS["direct"])
-# As the talk has them: black, purple, red, pink.
+# As Shao et al. 2021 have them: black, purple, red, pink.
 FOUR_CURVES = {"ratio": GuessStyle("#000000", "o", (0, (1, 0))), "share": GuessStyle("#7b3fb5", "v", (0, (3, 1))),
                "guess_cg": GuessStyle("#c62828", "s", (0, (1, 0))), "step": GuessStyle("#e88fb4", "D", (0, (5, 1.5)))}
 ZERO_LINE = {"color": KINDS["zero"][0], "linewidth": 0.9}    # at 1, where guesses are compared with zero
