@@ -3,10 +3,13 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
+
+import jsonschema
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 TOOLS = os.path.join(ROOT, "docs", "tools")
@@ -102,6 +105,19 @@ class Keys(unittest.TestCase):
             ["`n`", "whole number, ≥ 1, ≤ 1e6", "", "*required*", "how many", "not `net`"],
             ["`wide_m`", "number, > 0", "m", "`0.5`", "width", ""],
             ["`soft`", "`true`, `false`", "", "`true`, `false` of `rod`", "gives way", ""]])
+
+
+class Jobs(unittest.TestCase):
+    def test_jobs_in_the_pages_are_sound(self):
+        validator, found = jsonschema.Draft7Validator(json.loads(keys.read(keys.SCHEMA))), 0
+        for page in links.pages(ROOT):
+            if page == "docs/extending.md":    # of a guess and a scene that are not there
+                continue
+            for block in re.findall(r"```json\n(\{.*?)```", keys.read(os.path.join(ROOT, page)), re.S):
+                with self.subTest(page=page, job=block[:60]):
+                    self.assertEqual([error.message for error in validator.iter_errors(json.loads(block))], [])
+                    found += 1
+        self.assertGreaterEqual(found, 4)
 
 
 if __name__ == "__main__":
