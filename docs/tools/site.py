@@ -37,7 +37,8 @@ def main():
     command = ["/usr/bin/mkdocs", "build", "--strict", "--quiet", "-f", os.path.join(ROOT, "mkdocs.yml"), "-d", output]
     done = subprocess.run(command, env={**os.environ, "RODSWEEP_SITE_PAGES": f"{output}-pages"}, check=False)
     if done.returncode == 0:
-        print(f"{os.path.relpath(output)}/index.html")
+        shown = os.path.relpath(output)
+        print(f"{shown}/index.html; with its search: python3 -m http.server -d {shown}, then http://localhost:8000")
     return done.returncode
 
 
