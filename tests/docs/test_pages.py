@@ -92,6 +92,25 @@ class Keys(unittest.TestCase):
         for name in found - keys.SWEEPS - {"label"}:
             self.assertTrue(f"| `{name}` |" in page or f"{{\"{name}\": {{...}}}}" in page, name)
 
+    def test_what_the_page_says_may_be_swept_may_and_nothing_else(self):
+        schema = keys.Schema(json.loads(keys.read(keys.SCHEMA)))
+
+        def is_swept(node):
+            while "$ref" in node or "allOf" in node:
+                node = schema.definitions[node["$ref"].rpartition("/")[2]] if "$ref" in node else node["allOf"][0]
+            return any(keys.is_sweep(way) for way in node.get("anyOf", ()))
+
+        def fixed(node):
+            return {name for name, child in node["properties"].items() if not is_swept(child)}
+
+        self.assertEqual(fixed(schema.named("scene")), {"type"})
+        for name in ("time", "solve", *(f"scene.obstacles.item.{kind}" for kind in ("half_space", "ball", "capsule"))):
+            self.assertEqual(fixed(schema.named(name)), set(), name)
+        top = schema.all["properties"]
+        self.assertEqual(set(top) - fixed({"properties": top}), {"evaluation", "scene", "time", "solve"})
+        for name in ("record", "network", "training"):
+            self.assertEqual(fixed(top[name]), set(top[name]["properties"]), name)
+
     def test_a_row_has_type_bounds_unit_default_meaning_and_place(self):
         schema = {"definitions": {}, "properties": {}, "allOf": [
             {"if": {"properties": {"type": {"const": word}}}, "then": then} for word, then in (
