@@ -21,7 +21,7 @@ from matplotlib import colors
 from matplotlib.cm import ScalarMappable
 from matplotlib.patches import Rectangle
 
-from rodsweep.drawing import layout, study, style
+from rodsweep.drawing import layout, looks, study, style
 from rodsweep.reading import commandline, groups, heat, measures, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
@@ -141,7 +141,7 @@ def heading(measure, options, file, tolerances):
 def axis_label(file, key, points):
     if key == heat.LADDER:
         return "tolerance"
-    return style.parameter_label(key, file.parameter(key).unit) + (" (bin medians)" if points.binned else "")
+    return texts.parameter_label(key, file.parameter(key).unit) + (" (bin medians)" if points.binned else "")
 
 
 def notes(shown, options, planes, guesses):
@@ -189,7 +189,7 @@ def draw(axes, plane, file, measure, norm, colormap, with_names, cell_mm):
                                  hatch=None if known else "////"))
         if not known:
             continue
-        ink = "white" if style.luminance(face) < 0.2 else "black"
+        ink = "white" if looks.luminance(face) < 0.2 else "black"
         sure = bool(measure.better) and np.isfinite(low) and (low > 1 or high < 1)
         name = file.guesses[plane.guess[y, x]] if with_names else ""
         size = min(7, 7 * cell_mm / 8)

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from rodsweep.drawing import movie, outputs, povray, staging, tools
+from rodsweep.drawing import movie, outputs, povray, staging, tints, tools
 from rodsweep.reading import commandline, obstacles, trajectory
 from rodsweep.reading.commandline import whole_number
 from rodsweep.reading.errors import KeyNotFound
@@ -78,7 +78,7 @@ def main():
             outputs.check(path, options)
         stage = staging.staged(shown, frames, staging.upwards(file, shown.task), options.view, options.size,
                                options.floor, obstacles.of_task(file, shown.task))
-        draw = Drawing(shown, stage, staging.colours(shown, options.colour), options)
+        draw = Drawing(shown, stage, tints.colours(shown, options.colour), options)
         for path in paths:
             os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
         if options.movie:

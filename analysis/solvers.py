@@ -38,7 +38,7 @@ def main():
         found = accuracy.accuracy(file, shown.sims.tasks())
         row, column = (values(file, key, found) for key in (options.rows, options.columns))
         cells = [[lines(found, file, (row == r) & (column == c)) for c in np.unique(column)] for r in np.unique(row)]
-        names = [[f"{style.parameter_label(key, file.parameter(key).unit)} {texts.number_text(value)}"
+        names = [[f"{texts.parameter_label(key, file.parameter(key).unit)} {texts.number_text(value)}"
                   for value in np.unique(of)] for key, of in ((options.rows, row), (options.columns, column))]
         print("\n".join(table(cells, names)) + "\n")
         study.save(file, options, {"solvers": figure(shown, found, cells, names)})

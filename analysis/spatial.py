@@ -14,8 +14,8 @@ A row of panels per scene type and per value of any other grid of the job. Figur
 import sys
 from dataclasses import dataclass
 
-from rodsweep.drawing import figures, study, style
-from rodsweep.reading import commandline, groups, timings
+from rodsweep.drawing import figures, study
+from rodsweep.reading import commandline, groups, texts, timings
 from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
@@ -33,7 +33,7 @@ class Study(study.Study):
     points: list
 
     def x_label(self):
-        return style.parameter_label(self.x, self.file.parameter(self.x).unit)
+        return texts.parameter_label(self.x, self.file.parameter(self.x).unit)
 
 
 def arguments():

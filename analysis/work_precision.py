@@ -48,7 +48,7 @@ def by_panel(file, found, parameter):
     """{title: points}, numbers in their order, words in that of the job."""
     codes = parameter.codes()[found.tasks]
     ordered = np.unique(codes) if parameter.numeric else dict.fromkeys(codes.tolist())
-    label = style.parameter_label(parameter.name, parameter.unit)
+    label = texts.parameter_label(parameter.name, parameter.unit)
     panels = {}
     for code in ordered:
         task = found.tasks[np.argmax(codes == code)]

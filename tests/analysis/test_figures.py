@@ -13,7 +13,7 @@ import numpy as np
 import spatial
 from rodsweep.drawing import figures, style
 from matplotlib import colors, pyplot
-from rodsweep.reading import timings
+from rodsweep.reading import texts, timings
 from rodsweep.reading.sweepfile import SweepFile
 
 
@@ -252,7 +252,7 @@ class Styles(unittest.TestCase):
                                   ("scene.density_kg_m3", "kg/m^3", "density (kg/m^3)"),
                                   ("scene.damping_per_s", "1/s", "damping (1/s)"), ("scene.windings", "", "windings"),
                                   ("scene.segments", "", "number of segments N")):
-            self.assertEqual(style.parameter_label(name, unit), label)
+            self.assertEqual(texts.parameter_label(name, unit), label)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import synthetic
 import numpy as np
 
 import trajectories
-from rodsweep.drawing import povray, staging, surfaces
+from rodsweep.drawing import povray, staging, surfaces, tints
 from rodsweep.reading import obstacles, trajectory
 from rodsweep.reading.sweepfile import SweepFile
 from running import Scripts
@@ -87,7 +87,7 @@ class Obstacles(Scripts):
         self.assertEqual((stage.floor, len(stage.slopes), len(stage.solids)), (-3, 1, 1))
         with SweepFile(self.path) as file:
             shown = trajectory.of_task(file, 0)
-            text = povray.scene(shown, stage, staging.colours(shown, "rod"), 3)
+            text = povray.scene(shown, stage, tints.colours(shown, "rod"), 3)
         self.assertIn(f"sphere{{<0.3, 1, {5 * shown.time_s[3]:.12g}>,0.1}}", text)
         pixel = stage.camera.project([(0.3, 1, 5 * time) for time in shown.time_s])[0]
         self.assertTrue((pixel > 0).all() and (pixel < (240, 180)).all())

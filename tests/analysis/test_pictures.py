@@ -17,7 +17,7 @@ import numpy as np
 from PIL import Image
 
 import trajectories
-from rodsweep.drawing import camera, movie, povray, staging
+from rodsweep.drawing import camera, movie, povray, staging, tints
 from rodsweep.reading import trajectory
 from rodsweep.reading.sweepfile import SweepFile
 from running import Scripts
@@ -31,7 +31,7 @@ def opened_picture(picture):
 
 def drawn(shown, *stages, frames=(0,)):
     """Pictures of all stages and frames, together: POV-Ray sleeps most of the 0.7 s that it takes."""
-    colours = staging.colours(shown, "rod")
+    colours = tints.colours(shown, "rod")
     scenes = [(povray.scene(shown, stage, colours, frame), stage.camera.size) for stage in stages for frame in frames]
     with ThreadPoolExecutor(len(scenes)) as pool:
         return [opened_picture(picture) for picture in pool.map(povray.picture, *zip(*scenes))]
@@ -77,7 +77,7 @@ class Geometry(Planted):
 
     def test_tubes_are_the_capsules_of_a_known_pose(self):
         with self.shown() as shown:
-            text = povray.tubes(shown, *staging.colours(shown, "rod"), frame=2)
+            text = povray.tubes(shown, *tints.colours(shown, "rod"), frame=2)
             found = np.array([[float(v) for v in re.findall(NUMBER, line)] for line in text.splitlines()
                               if line.startswith("cylinder")])
             found = found[np.lexsort((found[:, 0], found[:, 2]))]
@@ -91,7 +91,7 @@ class Geometry(Planted):
 
     def test_a_wall_is_a_plate_behind_the_rod(self):
         with self.shown(walls=1, rods=1) as shown:
-            text = povray.tubes(shown, *staging.colours(shown, "rod"), frame=0)
+            text = povray.tubes(shown, *tints.colours(shown, "rod"), frame=0)
             cylinders = [[float(v) for v in re.findall(NUMBER, line)] for line in text.splitlines()
                          if line.startswith("cylinder")]
             plate = [c for c in cylinders if c[6] > 0.06]
@@ -103,7 +103,7 @@ class Geometry(Planted):
     def test_colours_tell_rods_places_and_radii_and_held_segments_are_grey(self):
         with self.shown() as shown:
             for by, different in (("rod", 2), ("along", 2), ("radius", 1)):
-                palette, number = staging.colours(shown, by)
+                palette, number = tints.colours(shown, by)
                 self.assertTrue((number[[0, 3]] == len(palette) - 1).all())
                 self.assertEqual(len(set(number[[1, 2, 4, 5]])), different, by)
 
@@ -183,7 +183,7 @@ class Pictures(Planted):
     def test_fine_pictures_have_the_rods_that_are_thinner_than_a_pixel(self):
         with self.shown(rods=1, radius=0.001) as shown:
             stage = self.stage(shown, view=(20, 10), floor="none")
-            text = povray.scene(shown, stage, staging.colours(shown, "rod"), 0)
+            text = povray.scene(shown, stage, tints.colours(shown, "rod"), 0)
             ends = stage.camera.project(np.concatenate(shown.ends(0)))[0][:, 0]
             columns = slice(int(ends.min()) + 2, int(ends.max()) - 2)
             with ThreadPoolExecutor(2) as pool:

@@ -25,7 +25,7 @@ SLAB = 0.02   # thickness of a slope's disc, of its radius
 
 
 def scene(trajectory, stage, colouring, frame):
-    """The text of one frame. colouring: palette and numbers of staging.colours()."""
+    """The text of one frame. colouring: palette and numbers of tints.colours()."""
     return (surroundings(stage) + obstacles(stage, trajectory.time_s[frame]) +
             tubes(trajectory, *colouring, frame))
 

@@ -1,4 +1,4 @@
-"""How a trajectory is shown: which way is up, where the floor and the eye are, and in what colours.
+"""How a trajectory is shown: which way is up, and where the floor and the eye are.
 
 Only sums and extremes over the frames are kept, so any number of them takes the same memory.
 """
@@ -6,7 +6,6 @@ Only sums and extremes over the frames are kept, so any number of them takes the
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib import colormaps, colors
 
 from rodsweep.drawing import camera
 from rodsweep.reading import obstacles
@@ -18,10 +17,6 @@ GAP = 0.015             # between the lowest point and the floor, of the scene's
 WALL_RADII = 2.2        # radius of the plate that stands for a wall (a held segment without length), in rod radii
 HAIR = 1e-4             # by which a floor covers the plates of walls that stand on it, of the scene's extent
 GROUND_DEG = 10         # from the vertical: a wall that holds a rod this upright stands on the floor
-RODS = ("#2f6f9f", "#c8553d", "#4f8a5b", "#d9a03f", "#7a5c99", "#5aa5b5", "#a8475c", "#8a8f3c")
-HELD = "#4a4e54"
-WOOD = colors.LinearSegmentedColormap.from_list("wood", ["#8fb648", "#6f8a3c", "#7a5d3b", "#5d4230"])   # thin to thick
-SHADES = 64             # colours of a continuous scale
 
 
 @dataclass(frozen=True)
@@ -133,26 +128,3 @@ def chosen_view(spread, low, high, up):
     box = high - low
     wide, tall = np.linalg.norm(plane @ box), abs(up @ box)
     return azimuth, 12 + 20 * max(0.0, 1 - tall / wide)
-
-
-def colours(trajectory, by):
-    """A palette [colour, rgb] (sRGB) and every segment's number in it. by: "rod", "along" its rod, or "radius"."""
-    if by == "rod":
-        palette = [colors.to_rgb(c) for c in RODS]
-        number = trajectory.rod % len(palette)
-    else:
-        values = np.log(drawn_radius(trajectory)) if by == "radius" else along(trajectory.rod)
-        low, high = values.min(), values.max()
-        scale = colormaps["viridis"] if by == "along" else WOOD
-        palette = [scale(shade)[:3] for shade in np.linspace(0.1, 0.95, SHADES)]
-        number = np.rint((SHADES - 1) * (values - low) / (high - low or 1)).astype(int)
-    return np.array([*palette, colors.to_rgb(HELD)]), np.where(trajectory.static, len(palette), number)
-
-
-def along(rod):
-    """Every segment's place within its rod, from 0 to 1."""
-    place = np.zeros(len(rod))
-    for number in np.unique(rod):
-        mine = rod == number
-        place[mine] = np.linspace(0, 1, mine.sum())
-    return place

@@ -30,6 +30,11 @@ def quantity(name, unit):
     return " ".join(words)
 
 
+def parameter_label(name, unit):
+    """scene.youngs_modulus_pa, Pa -> "Young's modulus (Pa)"; the number of segments is N."""
+    return quantity(name, unit) + (f" ({unit})" if unit and unit != "1" else "")
+
+
 def tolerance_label(value):
     """1e-2, 3e-3."""
     mantissa, exponent = f"{value:.2e}".split("e")
