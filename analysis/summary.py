@@ -95,7 +95,7 @@ def ratio_lines(file, found, guesses, tolerances, newton):
         for g in [g for g in guesses if g != file.zero]:
             marks = ["*" if block.unreached[g, t] or block.unreached[file.zero, t] else "" for t in tolerances]
             rows.append(["  " + file.guesses[g]] +
-                        [_interval(block.ratio[g, t]) + mark for t, mark in zip(tolerances, marks)])
+                        [texts.interval_text(block.ratio[g, t]) + mark for t, mark in zip(tolerances, marks)])
         if block.zero_iterations is not None:
             rows.append(["  zero, iterations/solve"] + [f"{block.zero_iterations[t]:.1f}" for t in tolerances])
         lines += [""] + title + texts.aligned(rows)
@@ -108,7 +108,7 @@ def _beside(file, block, guesses, tolerances):
     """The means of what stands beside the ratio."""
     rows = [["  the same, means"] +
             [f"{texts.tolerance_label(file.tolerances[t])} {BESIDE[name]}" for t in tolerances for name in block.beside]]
-    return rows + [["  " + file.guesses[g]] + [_fixed(block.beside[name].value[g, t], 2)
+    return rows + [["  " + file.guesses[g]] + [texts.fixed_text(block.beside[name].value[g, t], 2)
                                                for t in tolerances for name in block.beside]
                    for g in guesses if g != file.zero]
 
@@ -137,13 +137,13 @@ def speedup_lines(file, sims, found, guesses, newton):
         title, first = _titled(block, block.times["cg_us"].count[guesses])
         rows = [[first, "guess µs", "solve µs"] + [timings.SPEEDUPS[name] for name in names]]
         for g in guesses:
-            over_zero = ["1" if g == file.zero else _interval(block.speedup[name][g]) if block.speedup else "-"
-                         for name in names]
-            rows.append(["  " + file.guesses[g], _fixed(block.times["guess_us"].value[g], 2),
-                         _fixed(block.times["cg_us"].value[g], 1)] + over_zero)
+            over_zero = ["1" if g == file.zero else
+                         texts.interval_text(block.speedup[name][g]) if block.speedup else "-" for name in names]
+            rows.append(["  " + file.guesses[g], texts.fixed_text(block.times["guess_us"].value[g], 2),
+                         texts.fixed_text(block.times["cg_us"].value[g], 1)] + over_zero)
         if block.direct_speedup and math.isfinite(block.times["direct_us"].value[file.zero]):
-            rows.append(["  direct", "-", _fixed(block.times["direct_us"].value[file.zero], 1)] +
-                        [_interval(block.direct_speedup[name]) for name in names])
+            rows.append(["  direct", "-", texts.fixed_text(block.times["direct_us"].value[file.zero], 1)] +
+                        [texts.interval_text(block.direct_speedup[name]) for name in names])
         lines += [""] + title + texts.aligned(rows)
         lines += [f"  {block.interruptions}"] if block.interruptions else []
     return lines
@@ -157,7 +157,7 @@ def direct_lines(file, sims, found):
     rows = [["Direct solve: median over simulations [95 % interval]", "assembly µs", "solve µs"]]
     for block in shown:
         rows.append([f"  {block.title}, n = {texts.range_text(block.direct_times['direct_us'].count)}"] +
-                    [_interval(block.direct_times[name]) for name in ("assemble_us", "direct_us")])
+                    [texts.interval_text(block.direct_times[name]) for name in ("assemble_us", "direct_us")])
     return ["", *_warning(file, sims), *texts.aligned(rows)]
 
 
@@ -183,25 +183,10 @@ def step_lines(file, found, guesses):
             cells = []
             for name in names:
                 estimate, largest = block.steps.get(name, (None, None))
-                cells.append("-" if estimate is None else f"{_number(estimate.value[g], 2)} ({_number(largest[g], 2)})")
+                cells.append("-" if estimate is None else
+                             f"{texts.short_text(estimate.value[g], 2)} ({texts.short_text(largest[g], 2)})")
             rows.append([f"  {title}"] + cells)
     return [""] + texts.aligned(rows)
-
-
-def _interval(estimate):
-    if not math.isfinite(estimate.value):
-        return "-"
-    if not math.isfinite(estimate.low):
-        return f"{estimate.value:.2f}"
-    return f"{estimate.value:.2f} [{estimate.low:.2f}, {estimate.high:.2f}]"
-
-
-def _number(value, digits):
-    return f"{value:.{digits}g}" if math.isfinite(value) else "-"
-
-
-def _fixed(value, digits):
-    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
 
 
 def _titled(block, counts):

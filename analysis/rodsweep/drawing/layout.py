@@ -14,7 +14,6 @@ from rodsweep.reading import texts
 
 METADATA = {"pdf": {"CreationDate": None, "Producer": None, "Creator": "rodsweep"}, "png": {"Software": "rodsweep"},
             "svg": {"Date": None, "Creator": "rodsweep"}}
-LOG_SPAN = 20        # positive x whose largest value exceeds the smallest by this factor get a logarithmic axis
 CHARACTER_MM = 1.45  # width of a digit of a tick, about
 
 
@@ -158,7 +157,7 @@ class XAxis:
 
     def __init__(self, points, bars=False):
         values, self.text, self.words = points.position, points.text, points.categorical
-        self.log = not points.categorical and (values > 0).all() and values.max() > LOG_SPAN * values.min()
+        self.log = points.log
         self.even = points.categorical
         scaled = np.log10(values) if self.log else values
         span = float(np.ptp(scaled)) or 1.0

@@ -11,10 +11,11 @@ def add_force(made):
 
 
 def check(path, options):
-    """Refuses to replace a file, without options.force; the results file never."""
+    """Refuses to replace a file, without options.force; a results file (options.file or files) never."""
     if not os.path.exists(path):
         return
-    source = os.path.samefile(path, options.file)
+    sources = options.files if "files" in options else [options.file]
+    source = any(os.path.exists(name) and os.path.samefile(path, name) for name in sources)
     if source or not options.force:
         raise SweepFileError(f"{path} is there already; give another name with -o" +
                              ("" if source else ", or --force to replace it"))

@@ -91,13 +91,17 @@ def _times(file, sims, newton):
     def medians(values):
         return {name: intervals.median(v, sims.sample) for name, v in values.items()}
 
-    microseconds = {name: getattr(part, name.replace("_us", "_s")) / part.solves * 1e6 for name in TIMES}
-    found = {"times": medians(microseconds), "interruptions": timings.interruptions(by_newton["all"], sims),
+    found = {"times": medians(per_solve_us(part)), "interruptions": timings.interruptions(by_newton["all"], sims),
              "speedup_over_direct": medians(timings.speedups(by_newton, newton, "direct"))}
     if file.zero is not None:
         found["speedup"] = medians(timings.speedups(by_newton, newton))
         found["direct_speedup"] = medians(timings.direct_speedups(by_newton, newton, file.zero))
     return found
+
+
+def per_solve_us(part):
+    """{name of TIMES: [simulation, guess]}, mean time of a solve in a simulation, of a timings.Times."""
+    return {name: getattr(part, name.replace("_us", "_s")) / part.solves * 1e6 for name in TIMES}
 
 
 def records(file, block, guesses, tolerances, newton):

@@ -12,11 +12,13 @@ from rodsweep.reading.errors import KeyNotFound, UserError, not_found
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
 
-def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True):
-    """`tolerances`: what is shown by default, None for a script without that choice; newton: is there a choice?"""
+def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True, files=False):
+    """`tolerances`: what is shown by default, None for a script without that choice; newton: is there a choice? files:
+    several instead of one."""
     made = argparse.ArgumentParser(description=description, epilog=epilog,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
-    made.add_argument("file", help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
+    of_files = {"dest": "files", "nargs": "+", "metavar": "FILE"} if files else {"dest": "file"}
+    made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
     made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
     made.add_argument("--select", metavar="KEY=VALUE", action="append", default=[],
                       help="only tasks with these values of a parameter: KEY=VALUE, KEY=A,B or KEY=LOW:HIGH; "

@@ -15,6 +15,7 @@ from rodsweep.reading.errors import KeyNotFound
 MOST_PANELS = 6
 MOST_POINTS = 14   # more distinct values of x than this are binned
 BINS = 8
+LOG_SPAN = 20      # positive x whose largest value exceeds the smallest by this factor get a logarithmic axis
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,11 @@ class Points:
     index: list
     categorical: bool
     binned: bool
+
+    @property
+    def log(self):
+        low, high = self.position.min(), self.position.max()
+        return bool(not self.categorical and low > 0 and high > LOG_SPAN * low)
 
 
 def gridded_keys(file, tasks, x, pooled=""):

@@ -1,6 +1,7 @@
 """Numbers, labels and tables as text."""
 
 import csv
+import math
 import re
 
 import numpy as np
@@ -39,6 +40,23 @@ def tolerance_label(value):
     """1e-2, 3e-3."""
     mantissa, exponent = f"{value:.2e}".split("e")
     return f"{float(mantissa):g}e{int(exponent)}"
+
+
+def interval_text(estimate):
+    """0.25 [0.21, 0.30] of an Estimate of one number; "-" where there is none."""
+    if not math.isfinite(estimate.value):
+        return "-"
+    if not math.isfinite(estimate.low):
+        return f"{estimate.value:.2f}"
+    return f"{estimate.value:.2f} [{estimate.low:.2f}, {estimate.high:.2f}]"
+
+
+def short_text(value, digits):
+    return f"{value:.{digits}g}" if math.isfinite(value) else "-"
+
+
+def fixed_text(value, digits):
+    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
 
 
 def range_text(counts):

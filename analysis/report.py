@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""A report of one or several sweeps: one page of HTML that opens in any browser, without network.
+
+First what a sweep found, in sentences and a table: which guess saves how many iterations, what that is worth on the
+clock, where the direct solve stands, what failed. Then charts to explore: any measure over any parameter that the job
+sweeps, with 95 % bootstrap intervals over simulations; recorded trajectories as animations; how it was run. The numbers
+are those of summary.py and spatial.py. A sweep may still be running.
+"""
+
+import os
+
+from rodsweep.drawing import outputs
+from rodsweep.reading import commandline
+from rodsweep.reading.errors import KeyNotFound, SweepFileError, not_found
+from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.report import axes, page, sweep
+
+EXAMPLES = """examples:
+  analysis/report.py results/demo.h5
+  analysis/report.py results/*.h5 --skip -o all.html
+  analysis/report.py results/demo.h5 --scene helix --x scene.torsion_modulus_pa --tolerance all -o helix.html --force"""
+ESTIMATES = 120_000         # in a page, 3 to 20 bytes each
+ANIMATIONS = 2_000_000      # bytes in a page
+
+
+def arguments():
+    made = commandline.parser(__doc__, EXAMPLES, newton=False, files=True)
+    made.add_argument("-o", "--output", metavar="FILE", help="page to write (default: FILE.html beside the only file, "
+                                                             "report.html beside the first of several)")
+    made.add_argument("--x", metavar="KEY", action="append", default=[],
+                      help="this parameter along x, and no others; may be repeated (default: all that the job sweeps, "
+                           "as far as the page stays small)")
+    made.add_argument("--title", metavar="TEXT", help="title of the page")
+    made.add_argument("--skip", action="store_true", help="leave out files that are no sweeps, such as models, and those "
+                                                          "that nothing is chosen of")
+    outputs.add_force(made)
+    return made.parse_args()
+
+
+def main():
+    options = arguments()
+    path = options.output or default_output(options.files)
+    outputs.check(path, options)
+    sweeps, known = [], {}
+    for k, name in enumerate(options.files):
+        try:
+            with SweepFile(name) as file:
+                known.update(dict.fromkeys(file.parameters))
+                sweeps.append(sweep.made(file, options, axes.Budget(ESTIMATES / len(options.files)),
+                                         ANIMATIONS // len(options.files)))
+        except (SweepFileError, KeyNotFound):
+            if not options.skip:
+                raise
+    if not sweeps:
+        raise KeyNotFound("nothing to report: none of the files is a sweep of which something is chosen")
+    for key in options.x:
+        if key not in known:
+            raise not_found("parameter", key, known)
+    text = page.html(sweeps, options.title or ", ".join(one.name for one in sweeps[:3]) +
+                     (f" and {len(sweeps) - 3} more" if len(sweeps) > 3 else ""))
+    with outputs.whole(path) as part, open(part, "w", encoding="utf-8") as out:
+        out.write(text)
+    print(path)
+
+
+def default_output(files):
+    if len(files) == 1:
+        return os.path.splitext(files[0])[0] + ".html"
+    return os.path.join(os.path.dirname(files[0]), "report.html")
+
+
+if __name__ == "__main__":
+    commandline.run(main)

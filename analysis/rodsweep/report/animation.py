@@ -1,0 +1,137 @@
+"""Recorded trajectories, small enough for a page: fewer frames, and points in whole numbers.
+
+A rod's segments meet at joints, so both ends there become one point (their mean, as in the length drift). Points are
+those of the first frame that are nearer than MEETING of a segment to each other on the same rod. Coordinates are 16-bit
+steps through the box around all frames, about 1e-5 of the scene, little endian in base64. Frames are left out evenly
+until an animation fits into its share of the page.
+"""
+
+import base64
+import math
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from rodsweep.drawing import staging
+from rodsweep.drawing.looks import HELD, RODS
+from rodsweep.reading import groups, obstacles, texts, trajectory
+from rodsweep.reading.errors import KeyNotFound
+
+MEETING = 1e-2
+MOST_TASKS = 8
+MOST_FRAMES = 90
+FEWEST_FRAMES = 8
+STEPS = 65535
+
+
+def animations(file, chosen, room):
+    """Of tasks as different as there are, in at most `room` bytes of the page; [] where nothing was recorded."""
+    tasks = _different(file, chosen)
+    found = []
+    for k, task in enumerate(tasks):
+        made = _animation(file, task, room // (len(tasks) - k))
+        if made:
+            found.append(made)
+            room -= made.pop("bytes")
+    return found
+
+
+def _different(file, chosen):
+    """The first task of every scene, gridded setting and guess, by what the job varies; of few, all."""
+    try:
+        trajectory.recorded(file)
+    except KeyNotFound:
+        return []
+    recorded = file.h5["/trajectories/first_row"]
+    tasks = [task for task in np.flatnonzero(chosen & file.ok) if (recorded[task] >= 0).sum() > 1]
+    if not tasks:
+        return []
+    tasks = np.array(tasks)
+    keys = ["scene.type", *groups.gridded_keys(file, tasks, None), "guess"]
+    codes = [file.parameters[key].codes()[tasks] for key in keys if key in file.parameters]
+    kinds = np.stack([np.zeros(len(tasks), dtype=int), *codes], axis=1)
+    first = np.sort(np.unique(kinds, axis=0, return_index=True)[1])
+    if len(first) > MOST_TASKS:     # of many kinds those of every scene, and as many as fit
+        scenes = np.sort(np.unique(file.scene_types()[tasks[first]], return_index=True)[1])
+        rest = np.setdiff1d(np.arange(len(first)), scenes)
+        first = first[np.sort(np.concatenate([scenes, rest])[:MOST_TASKS])]
+    return tasks[first].tolist()
+
+
+def _animation(file, task, room):
+    shown = trajectory.of_task(file, task)
+    joined, points = _points(shown)
+    if points > STEPS:
+        return None
+    per_frame = 8 * points     # 3 numbers of 2 bytes, 4 letters for 3 bytes
+    frames = _frames(shown.frames(), min(MOST_FRAMES, (room - 12 * len(shown.length)) // per_frame))
+    if frames is None:
+        return None
+    try:
+        low, high, spread = staging.bounds(shown, frames)
+    except KeyNotFound:     # positions that are no numbers
+        return None
+    up = staging.upwards(file, task)
+    touched = obstacles.of_task(file, task)
+    extent = float(np.linalg.norm(high - low))
+    azimuth, elevation = staging.chosen_view(spread, low, high, up)
+    radius = staging.drawn_radius(shown)
+    step = float(max(high - low)) / STEPS or 1.0
+    place = np.empty((len(frames), points, 3), dtype="<u2")
+    share = np.bincount(joined, minlength=points)[:, None]
+    for k, frame in enumerate(frames):
+        sums = np.zeros((points, 3))
+        np.add.at(sums, joined, np.concatenate(shown.ends(frame)))
+        place[k] = np.rint((sums / share - low) / step).clip(0, STEPS)
+    segments = np.stack([joined[:len(shown.length)], joined[len(shown.length):]], axis=1).astype("<u2")
+    rods = shown.rod % len(RODS)
+    colour = np.where(shown.static, len(RODS), rods).astype(np.uint8)
+    sizes, size = np.unique(radius.astype(np.float32), return_inverse=True)
+    return {"task": task, "title": _title(file, task), "up": up.tolist(), "low": _plain(low), "step": step,
+            "centre": _plain((low + high) / 2), "extent": extent, "azimuth": float(azimuth), "elevation": float(elevation),
+            "floor": staging.floor_level(shown, frames, up, "auto", extent, touched),
+            "time_s": _plain(shown.time_s[frames]), "every": frames[1] - frames[0], "recorded": shown.frames(),
+            "palette": [*RODS, HELD], "sizes": _plain(sizes), "points": points, "segments": _text(segments),
+            "colour": _text(colour), "size": _text(size.astype("<u2")), "place": _text(place),
+            "capsules": [{"start": _plain(one.start), "end": _plain(one.end), "radius": one.radius,
+                          "velocity": _plain(one.velocity)} for one in touched if isinstance(one, obstacles.Capsule)],
+            "bytes": per_frame * len(frames)}
+
+
+def _points(shown):
+    """The number of every end's point, first ends before second ones, and how many points there are."""
+    ends = np.concatenate(shown.ends(0))
+    rod = np.concatenate([shown.rod, shown.rod])
+    reach = MEETING * np.median(shown.length[shown.length > 0]) if (shown.length > 0).any() else 1.0
+    pairs = cKDTree(ends).query_pairs(reach, output_type="ndarray")
+    pairs = pairs[rod[pairs[:, 0]] == rod[pairs[:, 1]]] if len(pairs) else np.empty((0, 2), dtype=int)
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(ends), len(ends)))
+    points, joined = connected_components(graph, directed=False)
+    return joined, points
+
+
+def _frames(recorded, most):
+    """Evenly chosen frames, the first among them; None where too few would be left."""
+    if most < min(recorded, FEWEST_FRAMES):
+        return None
+    return list(range(0, recorded, math.ceil(recorded / most)))
+
+
+def _title(file, task):
+    """What sets the task apart: its scene, and what the job varies."""
+    words = [file.scene_types()[task].replace("_", " ").capitalize()]
+    for parameter in file.parameters.values():
+        if parameter.swept and parameter.name != "scene.type" and parameter.applies()[task]:
+            value = texts.number_text(parameter.values[task]) if parameter.numeric else parameter.text(task)
+            words.append(f"{texts.parameter_label(parameter.name, parameter.unit)} {value}")
+    return ", ".join(words[:4]) + f" (task {task})"
+
+
+def _plain(numbers):
+    return [float(f"{number:.6g}") for number in np.ravel(numbers)]
+
+
+def _text(array):
+    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")

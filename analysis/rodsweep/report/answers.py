@@ -1,0 +1,161 @@
+"""What a sweep answers, for the page's first lines: the numbers of summary.py's tables, and what they say in words.
+
+An Answer is of one block (a scene type and gridded settings). A guess that solves the system itself, the oracle, is in
+the table and wins nothing. Texts of numbers are those of the table.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rodsweep.reading import blocks, remarks, texts, timings
+
+FAILURES_SHOWN = 12
+DOT_WIDTH, BAR_WIDTH = 96, 120    # of the drawings in the table, in pixels
+
+
+@dataclass(frozen=True)
+class Row:
+    """A guess or the direct solve. Names: ratio and all (of iterations), guess_us and cg_us, the SPEEDUPS over CG from
+    zero and over_direct_ with them."""
+    label: str
+    wins: bool         # may it be called the best?
+    texts: dict        # as summary.py writes them
+    sort: dict         # the numbers of the texts, NaN where there is none
+    estimates: dict    # of those that have an interval
+    parts: dict        # what the time of a solve is made of, in us
+
+
+@dataclass(frozen=True)
+class Answer:
+    block: blocks.Block
+    title: str
+    simulations: str
+    missed: bool             # did any solve of it miss the tolerance?
+    rows: list
+    fewest: Row = None       # of iterations
+    fastest: Row = None      # guess and CG
+    whole: Row = None        # the whole step
+    direct: Row = None
+
+    @property
+    def rivals(self):
+        return sum(row.wins for row in self.rows)
+
+    def sorted(self):
+        """By iterations; the direct solve, which has none, behind."""
+        return sorted(self.rows, key=lambda row: row.sort.get("ratio", math.inf))
+
+    def at(self, ratio):
+        """Where a CG ratio is in its drawing, in pixels."""
+        highest = max([1.1] + [1.02 * row.sort["ratio"] for row in self.rows if "ratio" in row.sort])
+        return round(5 + (DOT_WIDTH - 10) * min(ratio / highest, 1), 1)
+
+    def bars(self, row):
+        """(name, left edge, width) of the parts of a solve's time, in pixels; all guesses of an answer share a scale."""
+        longest = max((sum(other.parts.values()) for other in self.rows if math.isfinite(sum(other.parts.values()))),
+                      default=math.nan)
+        found, left = [], 0.0
+        for name, us in row.parts.items():
+            width = BAR_WIDTH * us / longest
+            if math.isfinite(width):
+                found.append((name, round(left, 1), round(max(width, 0.4), 1)))
+                left += width
+        return found
+
+
+def answers(file, found, guesses, tolerance):
+    """One per Block of `found` that has CG ratios, at a tolerance (an index)."""
+    return [_answer(file, block, guesses, tolerance) for block in found if block.ratio is not None]
+
+
+def headline_tolerance(file, sims, tolerances):
+    """That of the timed solves where it is shown, else 1e-2, else the first."""
+    timed = timings.timed_rung(file)[sims.tasks()]
+    wanted = [int(np.bincount(timed).argmax())] + [k for k in tolerances if abs(math.log10(file.tolerances[k]) + 2) < 1e-6]
+    return next((k for k in wanted if k in tolerances), tolerances[0])
+
+
+def _answer(file, block, guesses, t):
+    rows = [_row(file, block, g, t) for g in guesses]
+    direct = _direct(file, block)
+    missed = any(block.unreached[g, t] for g in {*guesses, file.zero})
+    return Answer(block, block.title, texts.range_text(block.ratio.count[guesses]), missed,
+                  rows + ([direct] if direct else []), _best(rows, "ratio", min), _best(rows, "guess_cg", max),
+                  _best(rows, "step", max), direct)
+
+
+def _best(rows, name, better):
+    there = [row for row in rows if row.wins and math.isfinite(row.sort.get(name, math.nan))]
+    return better(there, key=lambda row: row.sort[name]) if there else None
+
+
+def _row(file, block, g, t):
+    label, zero = file.guesses[g], g == file.zero
+    estimates = {"ratio": block.ratio[g, t]}
+    if "all" in (block.beside or {}):
+        estimates["all"] = block.beside["all"][g, t]
+    if block.speedup:
+        estimates.update({name: block.speedup[name][g] for name in timings.SPEEDUPS})
+        estimates.update({f"over_direct_{name}": block.speedup_over_direct[name][g] for name in timings.SPEEDUPS})
+    shown = {name: texts.interval_text(estimate) for name, estimate in estimates.items()}
+    sort = {name: float(estimate.value) for name, estimate in estimates.items()}
+    if "all" in shown:
+        shown["all"] = texts.fixed_text(sort["all"], 2)
+    if zero:    # what all others are measured against
+        shown.update({name: "1" for name in ("ratio", "all", *timings.SPEEDUPS) if name in shown})
+    elif block.unreached[g, t] or block.unreached[file.zero, t]:
+        shown["ratio"] += "*"
+    parts = {}
+    if block.times is not None:
+        us = {name: float(block.times[name].value[g]) for name in blocks.TIMES}
+        sort.update({"guess_us": us["guess_us"], "cg_us": us["cg_us"]})
+        shown.update({"guess_us": texts.fixed_text(us["guess_us"], 2), "cg_us": texts.fixed_text(us["cg_us"], 1)})
+        parts = {"assemble": us["assemble_us"], "guess": us["guess_us"], "cg": us["cg_us"]}
+    return Row(label, not zero and "oracle" not in label, shown, sort, estimates, parts)
+
+
+def _direct(file, block):
+    if not block.direct_speedup or not math.isfinite(block.times["direct_us"].value[file.zero]):
+        return None
+    us = {name: float(block.times[name].value[file.zero]) for name in blocks.TIMES}
+    shown = {name: texts.interval_text(estimate) for name, estimate in block.direct_speedup.items()}
+    sort = {name: float(estimate.value) for name, estimate in block.direct_speedup.items()}
+    return Row("direct", False, {**shown, "cg_us": texts.fixed_text(us["direct_us"], 1)},
+               {**sort, "cg_us": us["direct_us"]}, dict(block.direct_speedup),
+               {"assemble": us["assemble_us"], "direct": us["direct_us"]})
+
+
+def failures(file, chosen):
+    """(lines of [task, outcome, message], how many more there are)."""
+    failed = np.flatnonzero(chosen & file.complete & ~file.ok)
+    shown = failed[:FAILURES_SHOWN]
+    messages = file.results("message", shown) if len(shown) else None
+    return [(int(task), str(file.outcome[task]), "" if messages is None else str(messages[k]))
+            for k, task in enumerate(shown)], max(0, len(failed) - FAILURES_SHOWN)
+
+
+def runs(file):
+    """One dictionary per start: when, where, by which revision."""
+    return [{"begin": run.get("begin", ""), "end": run.get("end", ""), "host": run.get("host", ""),
+             "ranks": int(run.get("ranks", 0)), "revision": run.get("revision", ""), "versions": run.get("versions", ""),
+             "command": run.get("command", ""), "oversubscribed": bool(run.get("oversubscribed", 0))}
+            for run in file.runs()]
+
+
+def steps(found, guesses, labels):
+    """Rows of how the steps went: (title, {name: (median, largest)} as texts) of Blocks."""
+    rows = []
+    for block in found:
+        for g in guesses if block.sims.closed_loop and guesses else [0]:
+            title = f"{block.title}, {labels[g]}" if block.sims.closed_loop else block.title
+            rows.append((title, {name: (texts.short_text(float(estimate.value[g]), 2), texts.short_text(float(largest[g]), 2))
+                                 for name, (estimate, largest) in block.steps.items()}))
+    return rows
+
+
+def notes(file, sims, guesses):
+    """What to know before one believes the times; remarks of `reading`."""
+    tasks = sims.tasks()
+    return [note for note in (remarks.timing_note(file, tasks), remarks.oracle_note(file, guesses).strip()) if note]

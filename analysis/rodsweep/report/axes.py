@@ -1,0 +1,113 @@
+"""Estimates of a family's measures at the points along every axis, panel by panel, packed for the page.
+
+Axes are the parameters that the job sweeps: those of a grid first, then those that are drawn at random, in bins, as long
+as the estimates fit into a budget; which of them did not is said. Estimates are flat arrays in the order Newton
+iterations, points, lines, tolerances, rounded to what a reader can see; None stands for what is not known.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rodsweep.reading import groups, texts
+
+SCENE = "scene.type"
+PREFERRED = "scene.segments"
+MOST_PANELS = 60
+POOLED = {"guesses": "", "methods": "solve."}   # keys that make lines, not panels, of a family
+
+
+@dataclass
+class Budget:
+    """Of estimates that a page still takes."""
+    left: float
+
+    def takes(self, count):
+        if count > self.left:
+            return False
+        self.left -= count
+        return True
+
+
+def packed(file, family, budget, wanted=()):
+    """The family as the page reads it. `wanted`: the keys of its axes that the user asked for, whatever they need."""
+    keys = [key for key in wanted if key in candidates(file, family.sims)]
+    if keys:
+        budget = Budget(math.inf)
+    axes, left_out = [], []
+    for key in keys or candidates(file, family.sims):
+        axis = _axis(file, family, key, budget)
+        if axis is None:
+            left_out.append(key)
+        else:
+            axes.append(axis)
+    return {"name": family.name,
+            "reference": list(family.lines).index(family.reference) if family.reference else None,
+            "measures": [{"name": m.name, "title": m.title, "unit": m.unit, "log": m.log, "newton": list(m.values),
+                          "tolerances": m.tolerances, "note": m.note} for m in family.measures],
+            "axes": axes, "left_out": left_out}
+
+
+def candidates(file, sims):
+    """Keys that can be an axis, the most telling first; the scene where nothing varies."""
+    tasks = sims.any_task
+    gridded, distinct = groups.gridded_keys(file, tasks, None), {}
+    for parameter in file.parameters.values():
+        applies = parameter.applies()[tasks]
+        if (parameter.swept or parameter.name == SCENE) and parameter.name != "guess" and applies.any():
+            distinct[parameter.name] = len(np.unique(parameter.codes()[tasks][applies]))
+
+    def rank(key):
+        return (key != PREFERRED, key not in gridded, not file.parameters[key].numeric, -distinct[key])
+
+    found = sorted((key for key, count in distinct.items() if count > 1), key=rank)
+    return found or [key for key in (SCENE,) if key in distinct]
+
+
+def _axis(file, family, key, budget):
+    """None where it has too many panels or does not fit into the budget."""
+    parameter = file.parameter(key)
+    rows = groups.applicable(file, family.sims, key)
+    sims = family.sims.subset(rows)
+    panels = groups.panels(file, sims, key, POOLED[family.name], most=None)
+    points = [groups.points(file, sims, panel, key) for panel in panels]
+    count = sum(len(of_panel.index) for of_panel in points) * sum(map(_estimates, family.measures))
+    if len(panels) > MOST_PANELS or not budget.takes(count):
+        return None
+    keys = {name: None for panel in panels for name in panel.settings}
+    return {"key": key, "label": texts.parameter_label(key, parameter.unit),
+            "categorical": any(of_panel.categorical for of_panel in points),
+            "binned": any(of_panel.binned for of_panel in points),
+            "log": any(of_panel.log for of_panel in points),
+            "settings": [{"key": name, "label": texts.parameter_label(name, file.parameter(name).unit)} for name in keys],
+            "panels": [_panel(family, rows, *one) for one in zip(panels, points)]}
+
+
+def _panel(family, rows, panel, points):
+    index = [rows[some] for some in points.index]
+    return {"scene": panel.scene, "caption": panel.caption(), "settings": panel.settings,
+            "x": _rounded(points.position), "text": points.text, "simulations": [len(some) for some in index],
+            "values": {measure.name: _values(measure, family.sims, index) for measure in family.measures}}
+
+
+def _estimates(measure):
+    some = next(iter(measure.values.values()))
+    return len(measure.values) * some[:1].size
+
+
+def _values(measure, sims, index):
+    """[value, low, high, count], flat."""
+    found = [measure.estimate(values[some], sims.sample[some]) for values in measure.values.values() for some in index]
+    numbers = [np.concatenate([getattr(estimate, name).ravel() for estimate in found])
+               for name in ("value", "low", "high", "count")]
+    return [_rounded(part, digits) for part, digits in zip(numbers, (4, 3, 3, 9))]
+
+
+def _rounded(numbers, digits=6):
+    """Plain numbers of so many digits; None where there is none."""
+    return [_short(float(f"{number:.{digits}g}")) if math.isfinite(number) else None for number in np.ravel(numbers)]
+
+
+def _short(number):
+    return int(number) if number == int(number) else number

@@ -1,0 +1,143 @@
+"""What the charts of a report show of a file: its families of simulations, the lines of each and their measures.
+
+A family is what can share a chart: the simulations that try guesses, a line per guess and one for the direct solve of
+the same systems; and those that try none, a line per method. Every value is one that spatial.py or summary.py would
+show; a measure says by which of their functions it becomes an estimate.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rodsweep.drawing import looks
+from rodsweep.reading import blocks, intervals, measures, timings
+
+DIRECT = "direct"
+SPEEDUPS = {"guess_cg": "speedup of guess and CG", "cg": "speedup of CG alone", "step": "speedup of the whole step"}
+TIMES = {"guess_us": "time of the guess", "cg_us": "time of CG, or of the direct solve"}
+STEPS = {"length_drift": "largest length drift of a simulation", "joint_gap": "largest joint gap, over the length",
+         "newton_residual": "largest Newton residual at the end of a step",
+         "penetration": "deepest penetration, over the radius",
+         "newton_iterations": "Newton iterations of a step"}
+
+
+@dataclass(frozen=True)
+class Measure:
+    name: str
+    title: str
+    unit: str            # how a value is written: ratio, times, us, count or part
+    log: bool            # is its axis logarithmic?
+    values: dict         # {"first": …, "all": …}, or {"": …} of either: [simulation, line] or [simulation, line, tolerance]
+    estimate: Callable   # intervals.mean or intervals.median
+    note: str = ""
+
+    @property
+    def tolerances(self):
+        """Of how many tolerances, 1 where it does not depend on them."""
+        some = next(iter(self.values.values()))
+        return some.shape[2] if some.ndim == 3 else 1
+
+
+@dataclass(frozen=True)
+class Family:
+    name: str            # "guesses" or "methods"
+    sims: measures.Simulations
+    lines: dict          # {label: looks.Look}
+    reference: str       # the line that others are compared with: "zero", or empty
+    measures: list
+    parts: dict = field(default_factory=dict)   # {"first": timings.Times, "all": …} where the file has times
+
+
+def families(file, sims, guesses, tolerances):
+    """Those that have a simulation; guesses and tolerances are indices."""
+    guessing = measures.has_guesses(file)[sims.any_task]
+    found = [of_guesses(file, sims.subset(np.flatnonzero(guessing)), guesses, tolerances) if guessing.any() else None,
+             of_methods(file, sims.subset(np.flatnonzero(~guessing))) if not guessing.all() else None]
+    return [family for family in found if family is not None and family.measures]
+
+
+def of_guesses(file, sims, guesses, tolerances):
+    parts = timings.times(file, sims) if timings.timed(file) else {}
+    found = [*_ratios(file, sims, guesses, tolerances), *_times(file, parts, guesses)]
+    if sims.closed_loop:
+        found += _steps(file, sims, guesses)
+    with_direct = any(measure.values and _width(measure) > len(guesses) for measure in found)
+    labels = [file.guesses[g] for g in guesses]
+    lines = looks.guess_looks(file.guesses)
+    lines = {label: lines[label] for label in labels}
+    if with_direct:
+        lines[DIRECT] = looks.Look(*looks.KINDS[DIRECT])
+    return Family("guesses", sims, lines, "zero" if file.zero in guesses else "", found, parts)
+
+
+def _width(measure):
+    return next(iter(measure.values.values())).shape[1]
+
+
+def _ratios(file, sims, guesses, tolerances):
+    if file.zero is None:
+        return []
+    ratios = {newton: measures.cg_ratios(file, sims, newton) for newton in measures.NEWTON}
+    chosen = np.ix_(range(len(sims)), guesses, tolerances)
+    return [Measure("ratio", "CG ratio", "ratio", False, {newton: found.ratio[chosen] for newton, found in ratios.items()},
+                    intervals.mean, "CG iterations with a guess over those from zero, summed over a simulation; mean over "
+                    "simulations. Below 1 the guess saves iterations."),
+            Measure("iterations", "CG iterations of a solve", "count", False,
+                    {"": ratios["first"].iterations_per_solve[chosen]}, intervals.mean,
+                    "Of first Newton iterations; mean over a simulation, mean over simulations.")]
+
+
+def _times(file, parts, guesses):
+    if not parts:
+        return []
+    found = []
+
+    def beside(of_guesses, direct):
+        """Columns of the guesses, and one of the direct solve."""
+        return np.column_stack([of_guesses[:, guesses], direct])
+
+    if file.zero is not None:
+        over_zero = {newton: timings.speedups(parts, newton) for newton in measures.NEWTON}
+        direct = {newton: timings.direct_speedups(parts, newton, file.zero) for newton in measures.NEWTON}
+        for name, title in SPEEDUPS.items():
+            of = {newton: beside(over_zero[newton][name], direct[newton][name]) for newton in measures.NEWTON}
+            found.append(Measure(f"speedup_{name}", title, "times", True, {"": of["all"]} if name == "step" else of,
+                                 intervals.median, "Time of CG from zero over the time with the guess, sums over a "
+                                 "simulation; median over simulations." +
+                                 (" All Newton iterations." if name == "step" else "")))
+    us = {newton: blocks.per_solve_us(parts[newton]) for newton in measures.NEWTON}
+    stand_in = 0 if file.zero is None else file.zero
+    for name, title in TIMES.items():
+        none = np.full(len(us["all"][name]), np.nan)
+        of = {newton: beside(us[newton][name], us[newton]["direct_us"][:, stand_in] if name == "cg_us" else none)
+              for newton in measures.NEWTON}
+        found.append(Measure(name, title, "us", True, of, intervals.median, "Mean time of a solve in a simulation; median "
+                             "over simulations."))
+    return found
+
+
+def _steps(file, sims, columns):
+    figures = measures.step_figures(file, sims)
+    found = []
+    for name, title in STEPS.items():
+        values = getattr(figures, name)[:, columns]
+        if np.isfinite(values).any():
+            found.append(Measure(name, title, "count" if name == "newton_iterations" else "part",
+                                 bool(name != "newton_iterations" and np.nanmin(values) > 0), {"": values},
+                                 intervals.median, "Median over simulations."))
+    return found
+
+
+def of_methods(file, sims):
+    names = measures.without_guess(file, sims.any_task)
+    labels = sorted(set(names.tolist()))
+    mine = np.where(names[:, None] == np.array(labels), 1.0, np.nan)     # [simulation, line]
+    found = []
+    us = timings.direct_times(file, sims)["direct_us"]
+    if np.isfinite(us).any():
+        found.append(Measure("direct_us", "time of a direct solve", "us", True, {"": us * mine}, intervals.median,
+                             "Mean over a simulation, all Newton iterations; median over simulations."))
+    spread = [Measure(m.name, m.title, m.unit, m.log, {"": m.values[""] * mine}, m.estimate, m.note)
+              for m in _steps(file, sims, [0])]
+    return Family("methods", sims, looks.guess_looks(labels), "", found + spread)

@@ -1,0 +1,93 @@
+// How numbers are written, and how the flat arrays of estimates are read. All scripts of the page share one scope.
+
+let printing = false; // everything is shown, in light colours
+
+const data = JSON.parse(document.getElementById("data").textContent);
+
+const units = {
+  ratio: (value) => value.toFixed(2),
+  times: (value) => `${significant(value, 3)}×`,
+  us: (value) => `${significant(value, 3)} µs`,
+  count: (value) => significant(value, 3),
+  part: (value) => significant(value, 2),
+};
+
+function significant(value, digits) {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size < 1e-3 || size >= 1e5) return value.toExponential(digits - 1).replace("e+", "e");
+  return value.toFixed(Math.max(0, digits - 1 - Math.floor(Math.log10(size))));
+}
+
+function valueText(estimate, unit) {
+  return estimate === null || estimate.value === null ? "–" : units[unit](estimate.value);
+}
+
+function intervalText(estimate, unit) {
+  return estimate === null || estimate.low === null ? "" : `[${units[unit](estimate.low)}, ${units[unit](estimate.high)}]`;
+}
+
+/** The estimate of a measure in a panel; newton: "first" or "all", where the measure has a choice. */
+function estimateAt(family, measure, panel, point, line, tolerance, newton) {
+  const width = linesOf(measure, panel);
+  if (line >= width) return null;
+  const n = Math.max(0, measure.newton.indexOf(newton));
+  const t = measure.tolerances > 1 ? tolerance : 0;
+  const at = ((n * panel.x.length + point) * width + line) * measure.tolerances + t;
+  const [value, low, high, count] = panel.values[measure.name];
+  return value[at] !== null ? { value: value[at], low: low[at], high: high[at], count: count[at] } : null;
+}
+
+/** How many lines a measure has: the direct solve, the last of them, has no iterations. */
+function linesOf(measure, panel) {
+  return panel.values[measure.name][0].length / (measure.newton.length * panel.x.length * measure.tolerances);
+}
+
+/** An element with attributes, properties that begin with "on", and children. */
+function element(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (value === true) made.setAttribute(name, "");
+    else if (value !== false && value !== null && value !== undefined) made.setAttribute(name, value);
+  }
+  made.append(...children.filter((child) => child !== null && child !== undefined));
+  return made;
+}
+
+function svgElement(tag, attributes = {}) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
+
+const colourOf = (line) => `light-dark(${line.light}, ${line.dark})`;
+
+/** Draws a line as it is in the charts into an svg of 30 x 12 pixels: colour, dash and marker. */
+function drawSwatch(svg, line, isReference = false) {
+  svg.replaceChildren(svgElement("line", {
+    x1: 0, x2: 30, y1: 6, y2: 6, "stroke-width": 2, "stroke-dasharray": line.dash, style: `stroke: ${colourOf(line)}`,
+  }));
+  if (isReference) return;
+  const symbol = symbols[line.symbol];
+  svg.append(svgElement("path", {
+    d: d3.symbol(symbol, 36)(), transform: "translate(15,6)",
+    style: strokedSymbols.has(line.symbol)
+      ? `fill: none; stroke: ${colourOf(line)}; stroke-width: 1.6` : `fill: ${colourOf(line)}`,
+  }));
+}
+
+const symbols = {
+  asterisk: d3.symbolAsterisk, circle: d3.symbolCircle, cross: d3.symbolCross, diamond: d3.symbolDiamond,
+  diamond2: d3.symbolDiamond2, square: d3.symbolSquare, square2: d3.symbolSquare2, star: d3.symbolStar,
+  times: d3.symbolTimes, triangle: d3.symbolTriangle, triangle2: d3.symbolTriangle2, wye: d3.symbolWye,
+  hexagon: { draw(context, size) {
+    const radius = Math.sqrt((2 * size) / (3 * Math.sqrt(3)));
+    for (let k = 0; k < 6; ++k) {
+      const angle = (k * Math.PI) / 3;
+      context[k ? "lineTo" : "moveTo"](radius * Math.cos(angle), radius * Math.sin(angle));
+    }
+    context.closePath();
+  } },
+};
+const strokedSymbols = new Set(["asterisk", "times"]);
