@@ -58,7 +58,8 @@ class Points:
 
 
 def gridded_keys(file, tasks, x, pooled=""):
-    """Keys that vary within (scene type, x, draw) over these tasks; those that begin with `pooled` are left out.
+    """Keys that vary within (scene type, x, draw) over these tasks; those that begin with `pooled`, one text or a tuple
+    of them, are left out.
 
     x is one key, several in a tuple, or None.
     """
@@ -104,7 +105,8 @@ def _words(file, keys, task):
     found = []
     for key in keys:
         parameter = file.parameters[key]
-        value = texts.number_text(parameter.values[task]) if parameter.numeric else parameter.text(task).replace("_", " ")
+        known = parameter.numeric and parameter.applies()[task]
+        value = texts.number_text(parameter.values[task]) if known else parameter.text(task).replace("_", " ")
         unit = f" {parameter.unit}" if parameter.unit not in ("", "1") else ""
         found.append(f"{texts.quantity(key, parameter.unit)} {value}{unit}")
     return tuple(found)

@@ -24,6 +24,7 @@ MOST_TASKS = 8
 MOST_FRAMES = 90
 FEWEST_FRAMES = 8
 STEPS = 65535
+WORDS = 4            # of a title, besides the scene
 
 
 def animations(file, chosen, room):
@@ -31,7 +32,7 @@ def animations(file, chosen, room):
     tasks = _different(file, chosen)
     found = []
     for k, task in enumerate(tasks):
-        made = _animation(file, task, room // (len(tasks) - k))
+        made = _animation(file, task, tasks, room // (len(tasks) - k))
         if made:
             found.append(made)
             room -= made.pop("bytes")
@@ -60,7 +61,7 @@ def _different(file, chosen):
     return tasks[first].tolist()
 
 
-def _animation(file, task, room):
+def _animation(file, task, tasks, room):
     shown = trajectory.of_task(file, task)
     joined, points = _points(shown)
     if points > STEPS:
@@ -89,7 +90,7 @@ def _animation(file, task, room):
     rods = shown.rod % len(RODS)
     colour = np.where(shown.static, len(RODS), rods).astype(np.uint8)
     sizes, size = np.unique(radius.astype(np.float32), return_inverse=True)
-    return {"task": task, "title": _title(file, task), "up": up.tolist(), "low": _plain(low), "step": step,
+    return {"task": task, "title": _title(file, task, tasks), "up": up.tolist(), "low": _plain(low), "step": step,
             "centre": _plain((low + high) / 2), "extent": extent, "azimuth": float(azimuth), "elevation": float(elevation),
             "floor": staging.floor_level(shown, frames, up, "auto", extent, touched),
             "time_s": _plain(shown.time_s[frames]), "every": frames[1] - frames[0], "recorded": shown.frames(),
@@ -119,14 +120,15 @@ def _frames(recorded, most):
     return list(range(0, recorded, math.ceil(recorded / most)))
 
 
-def _title(file, task):
-    """What sets the task apart: its scene, and what the job varies."""
-    words = [file.scene_types()[task].replace("_", " ").capitalize()]
+def _title(file, task, tasks):
+    """What sets a task apart: its scene, and what the others of that scene have not."""
+    scenes = file.scene_types()
+    words, alike = [scenes[task].replace("_", " ").capitalize()], [one for one in tasks if scenes[one] == scenes[task]]
     for parameter in file.parameters.values():
-        if parameter.swept and parameter.name != "scene.type" and parameter.applies()[task]:
+        if parameter.applies()[task] and len(np.unique(parameter.codes()[alike])) > 1:
             value = texts.number_text(parameter.values[task]) if parameter.numeric else parameter.text(task)
-            words.append(f"{texts.parameter_label(parameter.name, parameter.unit)} {value}")
-    return ", ".join(words[:4]) + f" (task {task})"
+            words.append(f"{texts.parameter_label(parameter.name, parameter.unit)} {value.replace('_', ' ')}")
+    return ", ".join(words[:WORDS + 1]) + f" (task {task})"
 
 
 def _plain(numbers):

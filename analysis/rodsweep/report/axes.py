@@ -15,7 +15,7 @@ from rodsweep.reading import groups, texts
 SCENE = "scene.type"
 PREFERRED = "scene.segments"
 MOST_PANELS = 60
-POOLED = {"guesses": "", "methods": "solve."}   # keys that make lines, not panels, of a family
+POOLED = {"guesses": (), "methods": ("solve.",)}   # keys that make lines, not panels, of a family
 
 
 @dataclass
@@ -31,7 +31,8 @@ class Budget:
 
 
 def packed(file, family, budget, wanted=()):
-    """The family as the page reads it. `wanted`: the keys of its axes that the user asked for, whatever they need."""
+    """The family as the page reads it. `wanted`: the keys of its axes that the user asked for, whatever they need. An
+    axis along which most panels have a single point is none."""
     keys = [key for key in wanted if key in candidates(file, family.sims)]
     if keys:
         budget = Budget(math.inf)
@@ -40,7 +41,7 @@ def packed(file, family, budget, wanted=()):
         axis = _axis(file, family, key, budget)
         if axis is None:
             left_out.append(key)
-        else:
+        elif sum(len(panel["x"]) > 1 for panel in axis["panels"]) > len(axis["panels"]) / 2:
             axes.append(axis)
     return {"name": family.name,
             "reference": list(family.lines).index(family.reference) if family.reference else None,
@@ -70,7 +71,8 @@ def _axis(file, family, key, budget):
     parameter = file.parameter(key)
     rows = groups.applicable(file, family.sims, key)
     sims = family.sims.subset(rows)
-    panels = groups.panels(file, sims, key, POOLED[family.name], most=None)
+    pooled = POOLED[family.name] + (("scene.",) if key == SCENE else ())     # as the tables pool over a scene
+    panels = groups.panels(file, sims, key, pooled, most=None)
     points = [groups.points(file, sims, panel, key) for panel in panels]
     count = sum(len(of_panel.index) for of_panel in points) * sum(map(_estimates, family.measures))
     if len(panels) > MOST_PANELS or not budget.takes(count):

@@ -66,8 +66,9 @@ def made(file, options, budget, room):
             headline = answers.headline_tolerance(file, sims, tolerances)
         measured = blocks.blocks(file, sims, None, "first")
         found = answers.answers(file, measured, guesses, headline)
-        shown = [{**axes.packed(file, family, budget, options.x), "lines": lines(family.lines)}
-                 for family in families.families(file, sims, guesses, tolerances)]
+        charts = [{**axes.packed(file, family, budget, options.x), "lines": lines(family.lines)}
+                  for family in families.families(file, sims, guesses, tolerances)]
+        shown = [family for family in charts if family["axes"]]
     timed = any(answer.block.times is not None for answer in found)
     columns = {name: title for name, title in STEP_TITLES.items() if any(name in block.steps for block in measured)}
     data = {"families": shown,

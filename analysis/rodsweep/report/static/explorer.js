@@ -80,7 +80,7 @@ function startExplorer(root, sweep, family, number) {
   const details = element("details", { class: "numbers" }, element("summary", {}, "The same as a table"), tables);
 
   root.replaceChildren(
-    element("div", { class: "controls" }, measureChoice, axisChoice, sweep.tolerances.length ? toleranceChoice : null,
+    element("div", { class: "controls" }, measureChoice, axisChoice, family.measures.some((one) => one.tolerances > 1) ? toleranceChoice : null,
       family.measures.some((one) => one.newton.length > 1) ? newtonChoice : null),
     filters, legend, note, charts, more, details, status);
 

@@ -65,19 +65,21 @@ function startFilm(figure, film) {
   function fitted() {
     const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
     const reach = Math.max(...film.sizes);
+    const include = (point, radius) => {
+      const [x, y, , scale] = projected(film, view, ...point);
+      low[0] = Math.min(low[0], x - radius * scale), low[1] = Math.min(low[1], y - radius * scale);
+      high[0] = Math.max(high[0], x + radius * scale), high[1] = Math.max(high[1], y + radius * scale);
+    };
     for (let frame = 0; frame < frames; frame += Math.max(1, Math.floor(frames / 12))) {
       for (let k = 0; k < film.points; ++k) {
-        const [x, y, , scale] = projected(film, view, ...pointAt(k, frame, frame, 0));
-        low[0] = Math.min(low[0], x - reach * scale), low[1] = Math.min(low[1], y - reach * scale);
-        high[0] = Math.max(high[0], x + reach * scale), high[1] = Math.max(high[1], y + reach * scale);
+        const point = pointAt(k, frame, frame, 0);
+        include(point, reach);
+        if (film.floor !== null) include(along(point, film.up, film.floor - dot(point, film.up)), reach);
       }
     }
     for (const { start, end: last, radius } of film.capsules.filter((one) => one.radius < film.extent)) {
-      for (const point of [start, last]) {
-        const [x, y, , scale] = projected(film, view, ...point);
-        low[0] = Math.min(low[0], x - radius * scale), low[1] = Math.min(low[1], y - radius * scale);
-        high[0] = Math.max(high[0], x + radius * scale), high[1] = Math.max(high[1], y + radius * scale);
-      }
+      include(start, radius);
+      include(last, radius);
     }
     return { middle: [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2], span: [high[0] - low[0], high[1] - low[1]] };
   }
@@ -104,12 +106,7 @@ function startFilm(figure, film) {
     if (film.floor !== null && view.forward[0] * film.up[0] + view.forward[1] * film.up[1] + view.forward[2] * film.up[2] < 0) {
       const onFloor = (point) => along(point, film.up, film.floor - dot(point, film.up));
       ground(onFloor(film.centre), onto, colours);
-      context.strokeStyle = colours.shadow;
-      const shadows = points.map((point) => onto(projected(film, view, ...onFloor(point))));
-      for (let k = 0; k < count; ++k) {
-        const a = shadows[segments[2 * k]], b = shadows[segments[2 * k + 1]];
-        line(a, b, Math.max(1, 2 * film.sizes[size[k]] * a[3]));
-      }
+      shadows(points.map((point) => onto(projected(film, view, ...onFloor(point)))), colours.shadow);
     }
     const tubes = [];
     const seen = points.map((point) => onto(projected(film, view, ...point)));
@@ -125,8 +122,14 @@ function startFilm(figure, film) {
     for (const { a, b, away, radius, colour: own } of tubes) {
       const wide = Math.max(1.5, radius * (a[3] + b[3]));
       const depth = 1 - 0.22 * Math.max(-1, Math.min(1, (2 * away) / film.extent));
+      if (Math.hypot(b[0] - a[0], b[1] - a[1]) < 0.05 * wide) {
+        ball(a, wide / 2, own, depth);
+        continue;
+      }
+      context.lineCap = "butt";    // a dark end would show on the next segment
       context.strokeStyle = shaded(own, 0.62 * depth);
       line(a, b, wide);
+      context.lineCap = "round";
       context.strokeStyle = shaded(own, depth);
       line(shifted(a, -0.1 * wide), shifted(b, -0.1 * wide), 0.72 * wide);
       if (wide > 4) {
@@ -138,6 +141,33 @@ function startFilm(figure, film) {
     const said = `${(film.time_s[0] + time).toFixed(2)} s`;
     clock.textContent = said;
     scrub.setAttribute("aria-valuetext", said);
+  }
+
+  /** One path for all of a size, since shadows on shadows are no darker. */
+  function shadows(points, colour) {
+    const paths = film.sizes.map(() => new Path2D());
+    for (let k = 0; k < count; ++k) {
+      const a = points[segments[2 * k]], b = points[segments[2 * k + 1]];
+      paths[size[k]].moveTo(a[0], a[1]);
+      paths[size[k]].lineTo(b[0], b[1]);
+    }
+    const middle = d3.mean(points, (point) => point[3]);
+    context.strokeStyle = colour;
+    paths.forEach((path, k) => {
+      context.lineWidth = Math.max(1, 2 * film.sizes[k] * middle);
+      context.stroke(path);
+    });
+  }
+
+  function ball([x, y], radius, colour, depth) {
+    const light = context.createRadialGradient(x - 0.35 * radius, y - 0.45 * radius, 0.1 * radius, x, y, radius);
+    light.addColorStop(0, shaded(colour, 1.25 * depth));
+    light.addColorStop(0.6, shaded(colour, depth));
+    light.addColorStop(1, shaded(colour, 0.6 * depth));
+    context.fillStyle = light;
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.fill();
   }
 
   function ground(middle, onto, colours) {
@@ -160,7 +190,7 @@ function startFilm(figure, film) {
     context.lineWidth = wide;
     context.beginPath();
     context.moveTo(a[0], a[1]);
-    context.lineTo(b[0] + (a[0] === b[0] && a[1] === b[1] ? 0.01 : 0), b[1]);
+    context.lineTo(b[0], b[1]);
     context.stroke();
   }
 
