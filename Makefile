@@ -34,10 +34,11 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo studies variants ablation pictures test test-long test-arm bench sanitize schema docs format format-check tidy install clean
+.PHONY: help configure build demo report studies variants ablation pictures test test-packages test-long test-arm bench sanitize schema docs format format-check tidy install clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
+	@echo 'make report        results/report.html: what the demo found, and the studies that were run, as a page to read'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
 	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (three hours; likewise)'
@@ -72,6 +73,15 @@ demo: build
 	$(PYTHON) analysis/spatial.py results/demo.h5; \
 	$(PYTHON) analysis/summary.py results/demo.h5; \
 	exit $$code
+
+# Of the demo, which is run if it wasn't, and of those studies that are there; data sets have nothing to compare.
+report:
+	@[ -e results/demo.h5 ] || $(MAKE) demo || [ -e results/demo.h5 ]
+	@$(call packages,build)
+	@files=; for study in demo $(filter-out %_data,$(studies)) pictures; do \
+	  [ ! -e results/$$study.h5 ] || files+=" results/$$study.h5"; \
+	done; \
+	$(PYTHON) analysis/report.py $$files --skip --title 'What the sweeps found' -o results/report.html --force
 
 # Everything under analysis/results but its README.
 studies: build
@@ -114,9 +124,13 @@ pictures: build
 
 # Two tests a core, since those under mpirun mostly wait. SANITIZE=1: the unit tests are those of `make sanitize` and no
 # others, so that they are built once, as in .ci/run.
-test: configure $(if $(call yes,$(SANITIZE)),sanitize)
+test: configure test-packages $(if $(call yes,$(SANITIZE)),sanitize)
 	@cmake --build $(BUILD) -j $(CORES) $(if $(call yes,$(SANITIZE)),--target program_tests)
 	@ctest --test-dir $(BUILD) -j $$((2 * $(CORES))) -LE '$(if $(call yes,$(SANITIZE)),unit|)long' --output-on-failure --no-tests=error
+
+# Beside those of the build, so that nobody needs a browser to see the demo.
+test-packages:
+	@$(call packages,test)
 
 test-long: configure
 	@cmake --build $(BUILD) -j $(CORES)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import synthetic
 
-ROOMS = ("rodsweep.reading", "rodsweep.drawing", "")    # each may use those before it; the scripts are on top
+ROOMS = ("rodsweep.reading", "rodsweep.drawing", "rodsweep.report", "")    # each may use those before it; the scripts are on top
 DRAW = {"matplotlib", "PIL"}          # what reading does without
 
 
@@ -80,7 +80,7 @@ class Imports(unittest.TestCase):
                                   "reading/c.py:4", "reading/d.py:1", "reading/e.py:1", "table.py:1"])
 
     def test_a_script_without_figures_loads_no_program_to_draw(self):
-        code = f"import sys; sys.path.insert(0, {synthetic.ANALYSIS!r}); import summary, export; print(*sys.modules)"
+        code = f"import sys; sys.path.insert(0, {synthetic.ANALYSIS!r}); import summary, export, report; print(*sys.modules)"
         loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
         self.assertEqual(DRAW & set(loaded), set())
         self.assertIn("rodsweep.reading.sweepfile", loaded)

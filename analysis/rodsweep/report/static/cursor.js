@@ -1,7 +1,7 @@
 // The cursor of a chart: the pointer or the arrow keys choose a point, and a box lists what all lines are there. What
 // the keys choose is also said to screen readers.
 
-function addCursor(frame, plot, { family, measure, axis, panel, series, say }) {
+function addCursor(frame, plot, { measure, axis, panel, series, say }) {
   const box = element("div", { class: "readout", "aria-hidden": "true", hidden: true });
   const xScale = plot.scale("x"), yScale = plot.scale("y");
   const places = panel.x.map((x, k) => xScale.apply(axis.categorical ? panel.text[k] : x));

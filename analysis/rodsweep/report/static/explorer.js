@@ -1,6 +1,7 @@
 // Controls, charts and tables of a family: what is chosen is one object, and everything is drawn from it.
 
 const mostCharts = 6;
+const onPaper = ["ratio", "speedup_guess_cg", "speedup_step"]; // besides what is chosen
 
 function startExplorer(root, sweep, family, number) {
   const first = family.measures[0];
@@ -90,28 +91,31 @@ function startExplorer(root, sweep, family, number) {
     say(`${title()}, ${panels.length} chart${panels.length === 1 ? "" : "s"}, ${state.on.size} lines`);
   }
 
-  function title() {
-    const shown = measure();
+  function title(shown = measure()) {
     return shown.title + (shown.tolerances > 1 ? ` at ${sweep.tolerances[state.tolerance]}` : "") +
       (shown.newton.length > 1 ? `, ${state.newton === "all" ? "all Newton iterations" : "first Newton iteration"}` : "") +
       ` over ${axis().label}`;
   }
 
   function draw() {
-    const shown = measure();
-    toleranceChoice.querySelector("select").disabled = shown.tolerances === 1;
-    for (const input of newtonChoice.querySelectorAll("input")) input.disabled = shown.newton.length === 1;
+    const chosen = measure();
+    toleranceChoice.querySelector("select").disabled = chosen.tolerances === 1;
+    for (const input of newtonChoice.querySelectorAll("input")) input.disabled = chosen.newton.length === 1;
     chips.forEach((chip, index) => chip.setAttribute("aria-pressed", String(state.on.has(index))));
-    const timed = shown.unit === "us" || shown.unit === "times";
-    note.replaceChildren(shown.note, ...(timed && sweep.warning ? [" ", element("strong", { class: "warned" }, sweep.warning)] : []));
+    const timed = chosen.unit === "us" || chosen.unit === "times";
+    note.replaceChildren(chosen.note, ...(timed && sweep.warning ? [" ", element("strong", { class: "warned" }, sweep.warning)] : []));
     const panels = shownPanels();
     const few = state.all || printing ? panels : panels.slice(0, mostCharts);
-    const series = few.map((panel) => seriesOf(family, shown, axis(), panel, state));
-    const range = commonRange(shown, series.flat(), shown.unit === "ratio" || shown.unit === "times");
     charts.classList.toggle("single", few.length === 1);
     const width = chartWidth(few.length);
-    charts.replaceChildren(...few.map((panel, k) => chart(panel, series[k], range, width)));
-    tables.replaceChildren(...few.map((panel, k) => table(panel, series[k])));
+    charts.replaceChildren();
+    tables.replaceChildren();
+    for (const shown of printing ? family.measures.filter((one) => one === chosen || onPaper.includes(one.name)) : [chosen]) {
+      const series = few.map((panel) => seriesOf(family, shown, axis(), panel, state));
+      const range = commonRange(shown, series.flat(), shown.unit === "ratio" || shown.unit === "times");
+      charts.append(...few.map((panel, k) => chart(shown, panel, series[k], range, width)));
+      tables.append(...few.map((panel, k) => table(shown, panel, series[k])));
+    }
     more.hidden = few.length === panels.length;
     more.textContent = `Show all ${panels.length} charts`;
   }
@@ -122,28 +126,32 @@ function startExplorer(root, sweep, family, number) {
     return Math.max(280, Math.floor((room - 24 * (columns - 1)) / columns) - 26);
   }
 
-  function chart(panel, series, range, width) {
-    const caption = element("figcaption", {}, element("b", {}, panel.caption), ` ${measure().title}`);
-    if (!series.length) return element("figure", { class: "chart" }, caption, element("p", { class: "empty" }, "Nothing to show: choose a guess above."));
+  function chart(shown, panel, series, range, width) {
+    const caption = element("figcaption", {}, element("b", {}, panel.caption), ` ${shown.title}`);
+    if (!series.length) {
+      return element("figure", { class: "chart" }, caption,
+        element("p", { class: "empty" }, state.on.size ? "Not measured." : "Nothing to show: choose a guess above."));
+    }
     const frame = element("div", { class: "frame", tabindex: "0", role: "application", "aria-roledescription": "chart",
-      "aria-label": `${title()}, ${panel.caption}. Left and right go along the axis, up and down from line to line; the same is in a table below.` });
-    const plot = drawChart(family, measure(), axis(), panel, series, range, width);
+      "aria-label": `${title(shown)}, ${panel.caption}. Left and right go along the axis, up and down from line to line; ` +
+        "the same is in a table below." });
+    const plot = drawChart(family, shown, axis(), panel, series, range, width);
     plot.setAttribute("aria-hidden", "true");
     frame.append(plot);
-    addCursor(frame, plot, { family, measure: measure(), axis: axis(), panel, series, say });
+    addCursor(frame, plot, { measure: shown, axis: axis(), panel, series, say });
     return element("figure", { class: "chart" }, caption, frame);
   }
 
-  function table(panel, series) {
-    const unit = measure().unit;
-    const made = element("table", { class: "sortable" }, element("caption", {}, `${panel.caption}: ${title()}`),
+  function table(shown, panel, series) {
+    const made = element("table", { class: "sortable" }, element("caption", {}, `${panel.caption}: ${title(shown)}`),
       element("thead", {}, element("tr", {}, heading(family.name === "guesses" ? "Guess" : "Method", ""),
         ...panel.text.map((text, k) => heading(k ? text : `${axis().label} ${text}`, "number")))),
       element("tbody", {}, ...series.map(({ line, points }) => element("tr", {}, element("th", { scope: "row" }, line.label),
         ...panel.x.map((_, k) => {
           const estimate = points.find((point) => point.k === k) ?? null;
-          return element("td", { class: "number", "data-value": estimate ? estimate.value : "" }, valueText(estimate, unit), " ",
-            element("span", { class: "interval" }, intervalText(estimate, unit)));
+          return element("td", { class: "number", "data-value": estimate ? estimate.value : "" },
+            valueText(estimate, shown.unit), " ",
+            element("span", { class: "interval" }, intervalText(estimate, shown.unit)));
         })))));
     makeSortable(made);
     return element("div", { class: "wide", tabindex: "0", role: "region", "aria-label": panel.caption }, made);

@@ -46,7 +46,7 @@ function startFilm(figure, film) {
   const colour = decoded(film.colour, Uint8Array), size = decoded(film.size, Uint16Array);
   const frames = film.time_s.length, count = segments.length / 2, end = film.time_s[frames - 1] - film.time_s[0];
   let view = viewFrom(film, film.azimuth, film.elevation), turned = [film.azimuth, film.elevation];
-  let time = 0, playing = false, before = null, visible = false, width = 0, height = 0;
+  let time = lessMotion.matches ? end / 2 : 0, playing = false, before = null, visible = false, width = 0, height = 0;
   const fit = fitted();
 
   const play = element("button", { type: "button", class: "play", onclick: () => (playing ? pause() : start()) });

@@ -1,0 +1,258 @@
+"""The report: its sentences and tables are summary.py's numbers, its charts the planted ones, and it says what is wrong."""
+
+import base64
+import html.parser
+import json
+import os
+import re
+import unittest
+import unittest.mock
+
+import synthetic
+import numpy as np
+
+import trajectories
+from running import Scripts
+from rodsweep.report import page
+
+GUESSES = ("zero", "previous", "quadratic", "oracle(0.1)")
+
+
+class Tables(html.parser.HTMLParser):
+    """The rows of all tables of a page as lists of texts, and all text outside scripts and styles."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tables, self.words, self.cell, self.silent = [], [], None, False
+        self.feed(text)
+
+    def handle_starttag(self, tag, _):
+        self.silent = tag in ("script", "style") or self.silent and tag not in ("script", "style")
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.cell = []
+
+    def handle_endtag(self, tag):
+        if tag in ("script", "style"):
+            self.silent = False
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append(" ".join("".join(self.cell).split()))
+            self.cell = None
+
+    def handle_data(self, data):
+        if self.cell is not None:
+            self.cell.append(data)
+        if not self.silent:
+            self.words.append(data)
+
+    def text(self):
+        return " ".join(" ".join(self.words).split())
+
+
+class Report(Scripts):
+    def report(self, *arguments, **settings):
+        """The page of a planted file: its text and its data."""
+        self.write(**settings)
+        return self.made(*arguments)
+
+    def made(self, *arguments):
+        self.run_script("report.py", self.path, "-o", "page.html", "--force", *arguments)
+        with open("page.html", encoding="utf-8") as file:
+            text = file.read()
+        data = re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S).group(1)
+        return text, json.loads(data)
+
+
+class Numbers(Report):
+    def test_sentences_and_table_are_the_numbers_of_the_summary(self):
+        text, _ = self.report(samples=7, scenes=("helix",))
+        numbers = json.loads(self.run_script("summary.py", self.path, "--json").stdout)["numbers"]
+
+        def written(quantity, guess, tolerance=None):
+            one = next(n for n in numbers if (n["quantity"], n["guess"], n["tolerance"]) == (quantity, guess, tolerance))
+            return f"{one['value']:.2f} [{one['low']:.2f}, {one['high']:.2f}]"
+
+        parsed = Tables(text)
+        rows = {row[0]: row for row in parsed.tables[0][1:]}
+        self.assertEqual(list(rows), ["oracle(0.1)", "quadratic", "previous", "zero", "direct"])    # by iterations
+        for guess in ("previous", "quadratic", "oracle(0.1)"):
+            self.assertEqual(rows[guess][1], written("cg_ratio", guess, 0.01))
+            self.assertEqual(rows[guess][7], written("speedup_guess_cg", guess))
+            self.assertEqual(rows[guess][8], written("speedup_step", guess))
+        self.assertEqual(rows["direct"][7], written("speedup_guess_cg", "direct"))
+        said = parsed.text()
+        self.assertIn(f"left with quadratic {written('cg_ratio', 'quadratic', 0.01)[5:]}", said)    # no oracle wins
+        self.assertIn("the fewest of 2 guesses", said)
+        self.assertIn(f"CG with the fastest guess has {written('speedup_over_direct_guess_cg', 'quadratic')} times", said)
+
+    def test_charts_hold_the_planted_values_for_both_choices_of_newton_iterations(self):
+        _, (data, ) = self.report(samples=7)
+        family, = data["families"]
+        labels = [line["label"] for line in family["lines"]]
+        self.assertEqual(labels, [*GUESSES, "direct"])
+        axis = next(axis for axis in family["axes"] if axis["key"] == "scene.segments")
+        self.assertEqual([(panel["scene"], panel["x"]) for panel in axis["panels"]],
+                         [("bending_rod", [10, 20, 40]), ("helix", [10, 20, 40])])
+        value, low, high, count = (np.array(part, dtype=float) for part in axis["panels"][0]["values"]["ratio"])
+        shape = (2, 3, len(GUESSES), len(data["tolerances"]))     # Newton iterations, points, guesses, tolerances
+        for number, quality in enumerate((1, 0.5, 0.25, 0.1)):
+            np.testing.assert_allclose(value.reshape(shape)[0, :, number], quality, atol=0.01)
+        later = (0.5 + 2 * 0.9) / 3
+        np.testing.assert_allclose(value.reshape(shape)[1, :, 1], later, atol=0.01)
+        self.assertTrue((low <= value + 1e-3).all() and (value <= high + 1e-3).all() and (count == 7).all())
+        speed = np.array(axis["panels"][1]["values"]["speedup_cg"][0], dtype=float).reshape(2, 3, len(labels))
+        np.testing.assert_allclose(speed[0, :, 2], 4, rtol=1e-3)
+        np.testing.assert_allclose(speed[0, :, -1], np.array([10, 20, 40]) / 8, rtol=1e-3)
+
+    def test_measures_that_the_choice_does_not_concern_are_there_once(self):
+        _, (data, ) = self.report()
+        newton = {measure["name"]: measure["newton"] for measure in data["families"][0]["measures"]}
+        self.assertEqual((newton["ratio"], newton["iterations"], newton["speedup_step"]), (["first", "all"], [""], [""]))
+
+    def test_of_simulations_without_guesses_there_are_steps_and_the_direct_solve(self):
+        text, (data, ) = self.report(method="direct", solves=False)
+        family, = data["families"]
+        self.assertEqual(family["name"], "methods")
+        self.assertIn("length_drift", [measure["name"] for measure in family["measures"]])
+        self.assertNotIn("CG from zero with", Tables(text).text())
+
+    def test_closed_loops_have_the_steps_of_each_guess_in_their_charts(self):
+        plant = synthetic.Plant()
+        plant.length_drift = lambda step, steps, draw, guess: -{"zero": 1e-3, "previous": 2e-3}[guess] * step
+        _, (data, ) = self.report(closed_loop=True, guesses=("zero", "previous"), plant=plant)
+        drift = data["families"][0]["axes"][0]["panels"][0]["values"]["length_drift"][0]
+        np.testing.assert_allclose(drift, [1e-3, 2e-3] * 3, rtol=1e-3)
+
+    def test_only_some_tolerances_guesses_scenes_and_axes(self):
+        _, (data, ) = self.report("--tolerance", "1e-3", "--guess", "zero,quadratic", "--scene", "helix", "--x",
+                                  "scene.youngs_modulus_pa", samples=6)
+        family, = data["families"]
+        self.assertEqual(data["tolerances"], ["1e-3"])
+        self.assertEqual([line["label"] for line in family["lines"]], ["zero", "quadratic", "direct"])
+        self.assertEqual([axis["key"] for axis in family["axes"]], ["scene.youngs_modulus_pa"])
+        self.assertEqual({panel["scene"] for panel in family["axes"][0]["panels"]}, {"helix"})
+
+
+class Honesty(Report):
+    def said(self, *arguments, **settings):
+        return Tables(self.report(*arguments, **settings)[0]).text()
+
+    def test_half_finished_files_say_so(self):
+        self.assertIn("Half finished. 2 of 24 tasks are not done yet", self.said(pending=(1, 2)))
+        self.assertNotIn("Half finished", self.said())
+
+    def test_failures_are_listed_with_their_messages(self):
+        said = self.said(failed={0: "diverged", 5: "timed_out"})
+        for words in ("2 tasks, which are left out", "task 0: diverged – planted", "task 5: timed_out – planted"):
+            self.assertIn(words, said)
+
+    def test_times_of_too_many_ranks_win_nothing(self):
+        said = self.said(oversubscribed=True)
+        self.assertIn("more MPI ranks than cores", said)
+        self.assertIn("Nothing is said about the clock", said)
+        self.assertNotIn("the fastest guess", said)
+
+    def test_without_times_there_are_none(self):
+        text, (data, ) = self.report(solves=False)
+        self.assertIn("nothing is said about the clock", Tables(text).text())
+        self.assertEqual({measure["unit"] for measure in data["families"][0]["measures"]}, {"ratio", "count"})
+
+    def test_where_no_guess_saves_the_page_says_no(self):
+        plant = synthetic.Plant()
+        plant.quality = {"zero": 1.0, "previous": 1.5}
+        said = self.said(plant=plant, guesses=("zero", "previous"))
+        self.assertIn("no guess saves any", said)
+        self.assertIn("no guess wins time", said)
+
+    def test_a_file_without_a_simulation_or_a_zero_guess_is_a_page_too(self):
+        self.assertIn("No simulation is complete yet", self.said(pending=range(24)))
+        self.assertIn("no zero guess", self.said(guesses=("previous", "quadratic")))
+
+    def test_what_does_not_fit_is_named(self):
+        with unittest.mock.patch("report.ESTIMATES", 700):
+            text, (data, ) = self.report(samples=6)
+        self.assertEqual([axis["key"] for axis in data["families"][0]["axes"]], ["scene.segments"])
+        self.assertIn("so that it stays small: scene.length_m, scene.youngs_modulus_pa, scene.type", Tables(text).text())
+
+
+class Page(Report):
+    def test_it_is_one_file_that_asks_for_nothing(self):
+        text, _ = self.report()
+        self.assertEqual(re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', text), [])
+        self.assertIn("default-src 'none'", text)
+        self.assertLess(len(text), 1_500_000)
+
+    def test_texts_of_a_file_are_texts(self):
+        self.assertEqual(page.embedded(["</script>", "\u2028"]), r'["\u003c/script>","\u2028"]')
+        evil = "x<script>alert(1)</script>"
+        plant = synthetic.Plant()
+        plant.quality = {"zero": 1.0, evil: 0.5}
+        text, (data, ) = self.report(guesses=("zero", evil), plant=plant, scenes=("helix",))
+        self.assertNotIn(evil, text)
+        self.assertEqual(data["families"][0]["lines"][1]["label"], evil)
+        self.assertIn(evil, Tables(text).text())
+
+    def test_rods_are_points_between_segments_in_fewer_frames(self):
+        self.write(scenes=("helix",), grid={}, samples=1)
+        trajectories.plant(self.path, frames=300)
+        _, (data, ) = self.made()
+        film, = data["animations"]
+        self.assertEqual((film["points"], film["every"], len(film["time_s"])), (8, 4, 75))     # two rods of three segments
+        place = np.frombuffer(base64.b64decode(film["place"]), dtype="<u2").reshape(75, 8, 3) * film["step"] + film["low"]
+        np.testing.assert_allclose(place[:, 0, 1], 1 + 0.4 * np.arange(75), atol=1e-3)
+        np.testing.assert_allclose(sorted(place[0, :, 0]), sorted(2 * [-0.3, -0.1, 0.1, 0.3]), atol=1e-3)
+
+    def test_films_show_what_the_job_varies_and_stay_within_their_room(self):
+        self.write(samples=2)
+        trajectories.plant(self.path, frames=40)
+        _, (data, ) = self.made()
+        self.assertEqual([film["task"] for film in data["animations"]], [0, 2, 4, 6, 8, 10])
+        self.assertEqual(data["animations"][0]["title"], "Bending rod, number of segments N 10 (task 0)")
+        with unittest.mock.patch("report.ANIMATIONS", 10_000):
+            _, (data, ) = self.made()
+        self.assertTrue(all(8 <= len(film["time_s"]) for film in data["animations"]))
+        self.assertLess(len(data["animations"][0]["time_s"]), 40)
+        self.assertLess(sum(len(film["place"]) for film in data["animations"]), 10_000)
+        with unittest.mock.patch("report.ANIMATIONS", 300):
+            self.assertEqual(self.made()[1][0]["animations"], [])
+
+
+
+
+class Commands(Report):
+    def test_it_lies_beside_its_file_and_is_replaced_only_if_asked(self):
+        self.write()
+        done = self.run_script("report.py", "sweep.h5")
+        self.assertEqual(done.stdout, "sweep.html\n")
+        self.refused("report.py", "sweep.h5", words="is there already")
+        self.refused("report.py", "sweep.h5", "-o", "sweep.h5", "--force", words="give another name")
+        self.run_script("report.py", "sweep.h5", "--force")
+
+    def test_several_files_are_one_page_with_a_table_of_all(self):
+        self.write()
+        synthetic.Sweep(scenes=("helix",), steps=2).write("other.h5")
+        self.run_script("report.py", "sweep.h5", "other.h5", "-o", "both.html")
+        with open("both.html", encoding="utf-8") as file:
+            rows = Tables(file.read()).tables[0]
+        self.assertEqual([row[1] for row in rows[1:]], ["Bending rod", "Helix", "Helix"])
+        self.assertEqual([row[3] for row in rows[1:]], ["quadratic"] * 3)
+
+    def test_files_that_are_no_sweeps_are_refused_or_skipped(self):
+        self.write()
+        synthetic.Sweep(attributes={"program": "other"}).write("model.h5")
+        self.refused("report.py", "sweep.h5", "model.h5", "-o", "page.html", words="model.h5")
+        self.assertFalse(os.path.exists("page.html"))
+        self.run_script("report.py", "sweep.h5", "model.h5", "-o", "page.html", "--skip")
+        self.refused("report.py", "model.h5", "--skip", words="nothing to report")
+
+    def test_unknown_names_are_refused_with_the_nearest(self):
+        self.write()
+        self.refused("report.py", "sweep.h5", "--x", "scene.segmnts", words="did you mean scene.segments?")
+        self.refused("report.py", "sweep.h5", "--guess", "pod", words="guess 'pod'")
+
+
+if __name__ == "__main__":
+    unittest.main()
