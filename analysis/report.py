@@ -19,7 +19,7 @@ EXAMPLES = """examples:
   analysis/report.py results/demo.h5
   analysis/report.py results/*.h5 --skip -o all.html
   analysis/report.py results/demo.h5 --scene helix --x scene.torsion_modulus_pa --tolerance all -o helix.html --force"""
-ESTIMATES = 120_000         # in a page, 3 to 20 bytes each
+ESTIMATES = 80_000          # in a page, some 15 bytes each
 ANIMATIONS = 2_000_000      # bytes in a page
 
 
@@ -41,13 +41,12 @@ def main():
     options = arguments()
     path = options.output or default_output(options.files)
     outputs.check(path, options)
-    sweeps, known = [], {}
-    for k, name in enumerate(options.files):
+    sweeps, known, room = [], {}, room_of_page()
+    for left, name in zip(range(len(options.files), 0, -1), options.files):
         try:
             with SweepFile(name) as file:
                 known.update(dict.fromkeys(file.parameters))
-                sweeps.append(sweep.made(file, options, axes.Budget(ESTIMATES / len(options.files)),
-                                         ANIMATIONS // len(options.files)))
+                sweeps.append(sweep.made(file, options, *(budget.share(left) for budget in room)))
         except (SweepFileError, KeyNotFound):
             if not options.skip:
                 raise
@@ -61,6 +60,11 @@ def main():
     with outputs.whole(path) as part, open(part, "w", encoding="utf-8") as out:
         out.write(text)
     print(path)
+
+
+def room_of_page():
+    """For estimates and for animations: files have equal shares, and those after them what is left of one."""
+    return axes.Budget(ESTIMATES), axes.Budget(ANIMATIONS)
 
 
 def default_output(files):

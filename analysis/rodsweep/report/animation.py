@@ -24,19 +24,20 @@ MOST_TASKS = 8
 MOST_FRAMES = 90
 FEWEST_FRAMES = 8
 STEPS = 65535
+PER_SEGMENT = 10      # bytes
 WORDS = 4            # of a title, besides the scene
 
 
 def animations(file, chosen, room):
-    """Of tasks as different as there are, in at most `room` bytes of the page; [] where nothing was recorded."""
+    """Of tasks as different as there are, in the room (axes.Budget) of bytes that the page has for them, and how many
+    did not fit; ([], 0) where nothing was recorded."""
     tasks = _different(file, chosen)
     found = []
-    for k, task in enumerate(tasks):
-        made = _animation(file, task, tasks, room // (len(tasks) - k))
-        if made:
+    for left, task in zip(range(len(tasks), 0, -1), tasks):
+        made = _animation(file, task, tasks, int(room.share(left).left))
+        if made and room.takes(made.pop("bytes")):
             found.append(made)
-            room -= made.pop("bytes")
-    return found
+    return found, len(tasks) - len(found)
 
 
 def _different(file, chosen):
@@ -67,7 +68,7 @@ def _animation(file, task, tasks, room):
     if points > STEPS:
         return None
     per_frame = 8 * points     # 3 numbers of 2 bytes, 4 letters for 3 bytes
-    frames = _frames(shown.frames(), min(MOST_FRAMES, (room - 12 * len(shown.length)) // per_frame))
+    frames = _frames(shown.frames(), min(MOST_FRAMES, (room - PER_SEGMENT * len(shown.length)) // per_frame))
     if frames is None:
         return None
     try:
@@ -98,7 +99,7 @@ def _animation(file, task, tasks, room):
             "colour": _text(colour), "size": _text(size.astype("<u2")), "place": _text(place),
             "capsules": [{"start": _plain(one.start), "end": _plain(one.end), "radius": one.radius,
                           "velocity": _plain(one.velocity)} for one in touched if isinstance(one, obstacles.Capsule)],
-            "bytes": per_frame * len(frames)}
+            "bytes": per_frame * len(frames) + PER_SEGMENT * len(shown.length)}
 
 
 def _points(shown):

@@ -6,7 +6,6 @@ iterations, points, lines, tolerances, rounded to what a reader can see; None st
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,16 +17,26 @@ MOST_PANELS = 60
 POOLED = {"guesses": (), "methods": ("solve.",)}   # keys that make lines, not panels, of a family
 
 
-@dataclass
 class Budget:
-    """Of estimates that a page still takes."""
-    left: float
+    """What a page still takes: of estimates, or of bytes."""
+
+    def __init__(self, left, whole=None):
+        self.left, self.whole = left, whole
 
     def takes(self, count):
         if count > self.left:
             return False
-        self.left -= count
+        self._spend(count)
         return True
+
+    def share(self, parts):
+        """One of so many equal parts; what it is spent on is spent of the whole."""
+        return Budget(self.left / parts, self)
+
+    def _spend(self, count):
+        self.left -= count
+        if self.whole is not None:
+            self.whole._spend(count)
 
 
 def packed(file, family, budget, wanted=()):
@@ -53,14 +62,15 @@ def packed(file, family, budget, wanted=()):
 def candidates(file, sims):
     """Keys that can be an axis, the most telling first; the scene where nothing varies."""
     tasks = sims.any_task
-    gridded, distinct = groups.gridded_keys(file, tasks, None), {}
+    gridded, distinct, common = groups.gridded_keys(file, tasks, None), {}, set()
     for parameter in file.parameters.values():
         applies = parameter.applies()[tasks]
         if (parameter.swept or parameter.name == SCENE) and parameter.name != "guess" and applies.any():
             distinct[parameter.name] = len(np.unique(parameter.codes()[tasks][applies]))
+            common |= {parameter.name} if applies.all() else set()
 
     def rank(key):
-        return (key != PREFERRED, key not in gridded, not file.parameters[key].numeric, -distinct[key])
+        return (key != PREFERRED, key not in gridded, key not in common, not file.parameters[key].numeric, -distinct[key])
 
     found = sorted((key for key, count in distinct.items() if count > 1), key=rank)
     return found or [key for key in (SCENE,) if key in distinct]
@@ -99,11 +109,12 @@ def _estimates(measure):
 
 
 def _values(measure, sims, index):
-    """[value, low, high, count], flat."""
+    """[value, low, high, count], flat; a count that is everywhere the same is one number."""
     found = [measure.estimate(values[some], sims.sample[some]) for values in measure.values.values() for some in index]
     numbers = [np.concatenate([getattr(estimate, name).ravel() for estimate in found])
                for name in ("value", "low", "high", "count")]
-    return [_rounded(part, digits) for part, digits in zip(numbers, (4, 3, 3, 9))]
+    value, low, high, count = (_rounded(part, digits) for part, digits in zip(numbers, (4, 3, 3, 9)))
+    return [value, low, high, count[0] if len(set(count)) == 1 else count]
 
 
 def _rounded(numbers, digits=6):

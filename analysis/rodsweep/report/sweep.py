@@ -41,6 +41,7 @@ class Sweep:
     step_columns: dict
     runs: list
     revisions: str
+    films_left_out: int
     data: dict
 
     @property
@@ -53,7 +54,8 @@ class Sweep:
 
 
 def made(file, options, budget, room):
-    """A Sweep of an open file. budget: axes.Budget; room: bytes for animations; options: those of report.py."""
+    """A Sweep of an open file. budget, room: axes.Budgets of estimates and of bytes of animations; options: those of
+    report.py."""
     chosen = commandline.chosen_tasks(file, options)
     guesses, tolerances = commandline.chosen_guesses(file, options), commandline.chosen_tolerances(file, options)
     sims = measures.simulations(file, chosen)
@@ -71,18 +73,19 @@ def made(file, options, budget, room):
         shown = [family for family in charts if family["axes"]]
     timed = any(answer.block.times is not None for answer in found)
     columns = {name: title for name, title in STEP_TITLES.items() if any(name in block.steps for block in measured)}
+    films, films_left_out = animation.animations(file, chosen, room)
     data = {"families": shown,
             "tolerances": [texts.tolerance_label(file.tolerances[t]) for t in tolerances],
             "tolerance": tolerances.index(headline) if headline in tolerances else 0,
             "warning": remarks.timing_warning(file, tasks) if len(sims) else "",
-            "animations": animation.animations(file, chosen, room)}
+            "animations": films}
     return Sweep(job.get("name") or os.path.splitext(os.path.basename(file.path))[0], file.path, job,
                  measures.census(file, chosen), failures, more, remarks.conditions(file, tasks) if len(sims) else {},
                  data["warning"], answers.notes(file, sims, guesses) if len(sims) else [],
                  texts.tolerance_label(file.tolerances[headline]) if headline is not None else "",
                  remarks.solve_tolerance(file, tasks) if len(sims) else "", found, bool(found) and not timed,
                  "the job has no zero guess to relate the others to" if file.guesses and file.zero is None else "",
-                 answers.steps(measured, guesses, file.guesses), columns, answers.runs(file), remarks.revisions(file), data)
+                 answers.steps(measured, guesses, file.guesses), columns, answers.runs(file), remarks.revisions(file), films_left_out, data)
 
 
 def lines(found):

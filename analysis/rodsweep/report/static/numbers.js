@@ -35,7 +35,7 @@ function estimateAt(family, measure, panel, point, line, tolerance, newton) {
   const t = measure.tolerances > 1 ? tolerance : 0;
   const at = ((n * panel.x.length + point) * width + line) * measure.tolerances + t;
   const [value, low, high, count] = panel.values[measure.name];
-  return value[at] !== null ? { value: value[at], low: low[at], high: high[at], count: count[at] } : null;
+  return value[at] !== null ? { value: value[at], low: low[at], high: high[at], count: Array.isArray(count) ? count[at] : count } : null;
 }
 
 /** How many lines a measure has: the direct solve, the last of them, has no iterations. */
