@@ -40,10 +40,12 @@ function addCursor(frame, plot, { measure, axis, panel, series, say }) {
       element("p", { class: "small" }, countText(panel.simulations[k])),
     );
     box.hidden = false;
-    const left = frame.getBoundingClientRect().left + places[k];
-    const beyond = left + 14 + box.offsetWidth > document.documentElement.clientWidth && left > box.offsetWidth;
-    box.style.left = beyond ? "auto" : `${places[k] + 14}px`;
-    box.style.right = beyond ? `${frame.clientWidth - places[k] + 14}px` : "auto";
+    // On the side where it hides less of its own chart, if it fits there.
+    const there = frame.getBoundingClientRect().left + places[k], room = box.offsetWidth + 14;
+    const fitsLeft = there > room, fitsRight = there + room < document.documentElement.clientWidth;
+    const left = fitsLeft && (!fitsRight || places[k] < Math.min(room, frame.clientWidth - places[k]));
+    box.style.left = left ? "auto" : `${places[k] + 14}px`;
+    box.style.right = left ? `${frame.clientWidth - places[k] + 14}px` : "auto";
     if (spoken) {
       const one = lines.find((candidate) => candidate.index === chosen);
       const estimate = at(one, k);

@@ -16,7 +16,7 @@ function startExplorer(root, sweep, family, number) {
   const tables = element("div", { class: "tables" });
   const more = element("button", { type: "button", class: "more", onclick: () => { state.all = true; draw(); } });
   const note = element("p", { class: "conditions" });
-  const filters = element("div", { class: "controls filters" });
+  const filters = element("div", { class: "filters" });
   const measure = () => family.measures.find((one) => one.name === state.measure);
   const axis = () => family.axes[state.axis];
 
@@ -82,8 +82,8 @@ function startExplorer(root, sweep, family, number) {
 
   root.replaceChildren(
     element("div", { class: "controls" }, measureChoice, axisChoice, family.measures.some((one) => one.tolerances > 1) ? toleranceChoice : null,
-      family.measures.some((one) => one.newton.length > 1) ? newtonChoice : null),
-    filters, legend, note, charts, more, details, status);
+      family.measures.some((one) => one.newton.length > 1) ? newtonChoice : null, filters),
+    legend, note, charts, more, details, status);
 
   function update() {
     draw();
