@@ -25,7 +25,7 @@ EXAMPLES = """examples:
 
 
 def arguments():
-    made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
+    made = argparse.ArgumentParser(description=__doc__, epilog=commandline.examples(EXAMPLES),
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("files", nargs="+", metavar="MODEL", help="model file of `rodsweep run` with a job of kind \"train\"")
     study.add_figure_arguments(made)

@@ -1,1 +1,16 @@
-"""Results of rodsweep in Python: `reading` has files and all numbers made of them, `drawing` figures, pictures and films."""
+"""Results of rodsweep in Python. `rodsweep.open("results/demo.h5")` has them as pandas frames and xarray datasets.
+
+`reading` has files and all numbers made of them, `writing` their rows in other formats, `drawing` figures, pictures and
+films; the scripts of analysis/, installed as `rodsweep-summary` and so on, are made of these.
+"""
+
+from rodsweep.reading.errors import UserError
+from rodsweep.results import Results
+
+__version__ = "0.1.0"    # that of CMakeLists.txt (tested)
+__all__ = ["Results", "UserError", "open"]
+
+
+def open(path):
+    """The results of a sweep, finished or not, as Results. Raises UserError for a file that holds none."""
+    return Results(path)

@@ -26,7 +26,8 @@ struct QueryOptions {
 
 inline constexpr const char* query_help =
     "A condition is COLUMN, one of = != < <= > >= ~ (contains), and a value; = and != take several values with commas\n"
-    "between. All must be met. What is not there (a key of another scene, a result of a pending task) meets none.\n"
+    "between, and of numbers ranges LOW:HIGH, LOW: or :HIGH, ends included. All must be met. What is not there (a key\n"
+    "of another scene, a result of a pending task) meets none.\n"
     "Columns are keys of the job (scene.segments), state (done, pending), outcome, message, counts and ratios of a\n"
     "guess (cg_ratio.LABEL, at another tolerance cg_ratio.LABEL@1e-4), times (elapsed_s) and more: --columns help.\n"
     "Quote < and > against the shell. Reads only, also while the sweep writes.\n\n"

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include "runner/job/key.hpp"
@@ -34,6 +35,11 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
+FileError no_condition(const std::string& text) {
+  return FileError(
+      fmt::format("\"{}\" is no condition: write COLUMN=VALUE, or with one of != < <= > >= ~ (~: contains)", text));
+}
+
 struct Parts {
   std::string name, value;
   Operator comparison;
@@ -59,18 +65,22 @@ Parts parts_of(const std::string& text, const TaskTable& table) {
     if (table.find(parts.name)) return parts;
     if (!std::exchange(any, true)) first = parts;
   }
-  if (!any || first.name.empty())
-    throw FileError(
-        fmt::format("\"{}\" is no condition: write COLUMN=VALUE, or with one of != < <= > >= ~ (~: contains)", text));
+  if (!any || first.name.empty()) throw no_condition(text);
   return first;
 }
 
+/// What stands between commas outside of parentheses: labels may hold their own.
 std::vector<std::string> listed(const std::string& text) {
   std::vector<std::string> items;
-  for (std::size_t begin = 0, comma = 0; comma != std::string::npos; begin = comma + 1) {
-    comma = text.find(',', begin);
-    items.push_back(trimmed(text.substr(begin, comma - begin)));
+  std::size_t begin = 0;
+  int depth = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    depth += (text[at] == '(') - (text[at] == ')');
+    if (text[at] != ',' || depth != 0) continue;
+    items.push_back(trimmed(text.substr(begin, at - begin)));
+    begin = at + 1;
   }
+  items.push_back(trimmed(text.substr(begin)));
   return items;
 }
 
@@ -87,19 +97,41 @@ std::vector<std::string> words_of(const TaskColumn& column, const TaskTable& tab
 double number(const std::string& text, const std::string& condition, const TaskColumn& column) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || std::isnan(value))
+  const bool decimal = !text.empty() && text.find_first_of("xX") == std::string::npos;
+  if (!decimal || *end != '\0' || std::isnan(value))
     throw FileError(fmt::format("\"{}\": {} holds numbers, and \"{}\" is none", condition, column.name, text));
   return value;
 }
 
-bool same(double a, double b) { return a == b || std::abs(a - b) <= rounding * std::max(std::abs(a), std::abs(b)); }
+/// A number, or LOW:HIGH, LOW: or :HIGH.
+Condition::Range range(const std::string& text, const std::string& condition, const TaskColumn& column) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    const double value = number(text, condition, column);
+    return {value, value};
+  }
+  const std::string low = trimmed(text.substr(0, colon)), high = trimmed(text.substr(colon + 1));
+  if (low.empty() && high.empty())
+    throw FileError(fmt::format("\"{}\": a range has one end at least: LOW:HIGH, LOW: or :HIGH", condition));
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Condition::Range ends{low.empty() ? -infinity : number(low, condition, column),
+                              high.empty() ? infinity : number(high, condition, column)};
+  if (ends.low > ends.high)
+    throw FileError(fmt::format("\"{}\": nothing is in the range {}; write its lower end first", condition, text));
+  return ends;
+}
+
+/// Of the infinite, which are no distance from each other, only what is equal.
+bool same(double a, double b) {
+  return a == b || (std::isfinite(a - b) && std::abs(a - b) <= rounding * std::max(std::abs(a), std::abs(b)));
+}
 
 bool compare(Operator comparison, double a, double b) {
   switch (comparison) {
-    case Operator::less: return a < b;
-    case Operator::at_most: return a <= b;
-    case Operator::more: return a > b;
-    default: return a >= b;
+    case Operator::less: return a < b && !same(a, b);
+    case Operator::at_most: return a < b || same(a, b);
+    case Operator::more: return a > b && !same(a, b);
+    default: return a > b || same(a, b);
   }
 }
 
@@ -107,6 +139,7 @@ bool compare(Operator comparison, double a, double b) {
 
 Condition parse_condition(const std::string& text, const TaskTable& table) {
   const Parts parts = parts_of(text, table);
+  if (parts.value.empty()) throw no_condition(text);
   Condition condition;
   condition.column = table.column(parts.name);
   condition.comparison = parts.comparison;
@@ -114,8 +147,11 @@ Condition parse_condition(const std::string& text, const TaskTable& table) {
   if (condition.column.is_number()) {
     if (parts.comparison == Operator::contains)
       throw FileError(fmt::format("\"{}\": {} holds numbers; ~ is for texts", text, parts.name));
-    for (const std::string& item : equality ? listed(parts.value) : std::vector<std::string>{parts.value})
-      condition.numbers.push_back(number(item, text, condition.column));
+    if (equality)
+      for (const std::string& item : listed(parts.value))
+        condition.ranges.push_back(range(item, text, condition.column));
+    else
+      condition.limit = number(parts.value, text, condition.column);
     return condition;
   }
   if (!equality && parts.comparison != Operator::contains)
@@ -142,9 +178,10 @@ bool Condition::met(const ColumnValues& values, std::size_t task) const {
   if (column.is_number()) {
     const double value = values.numbers[task];
     if (std::isnan(value)) return false;
-    if (comparison != Operator::equal && comparison != Operator::not_equal)
-      return compare(comparison, value, numbers.front());
-    const bool found = std::any_of(numbers.begin(), numbers.end(), [&](double wanted) { return same(value, wanted); });
+    if (comparison != Operator::equal && comparison != Operator::not_equal) return compare(comparison, value, limit);
+    const bool found = std::any_of(ranges.begin(), ranges.end(), [&](const Range& wanted) {
+      return compare(Operator::at_least, value, wanted.low) && compare(Operator::at_most, value, wanted.high);
+    });
     return found == (comparison == Operator::equal);
   }
   const std::string& value = values.texts[task];

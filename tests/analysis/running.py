@@ -27,7 +27,7 @@ def run(name, *arguments, files=False):
     """What a script prints and its exit code, in this process: a start of Python with its libraries takes a second.
     files: figures are written and looked at, not only laid out."""
     script = importlib.import_module(name.removesuffix(".py"))
-    out, error, code = io.StringIO(), io.StringIO(), 0
+    out, error, code = io.TextIOWrapper(io.BytesIO(), "utf-8", write_through=True), io.StringIO(), 0
     with contextlib.ExitStack() as around:
         around.enter_context(contextlib.redirect_stdout(out))
         around.enter_context(contextlib.redirect_stderr(error))
@@ -38,13 +38,14 @@ def run(name, *arguments, files=False):
             commandline.run(script.main)
         except SystemExit as left:
             code = left.code
+    said = out.buffer.getvalue().decode()
     if files:
-        paths = [line for line in out.getvalue().splitlines() if line[-4:] in HEADS]
+        paths = [line for line in said.splitlines() if line[-4:] in HEADS]
         for path in paths:
             with open(path, "rb") as figure:
                 assert figure.read(4) == HEADS[path[-4:]] and os.path.getsize(path) > 5000, path
-        assert paths, out.getvalue()
-    return types.SimpleNamespace(stdout=out.getvalue(), stderr=error.getvalue(), code=code)
+        assert paths, said
+    return types.SimpleNamespace(stdout=said, stderr=error.getvalue(), code=code)
 
 
 class Scripts(unittest.TestCase):

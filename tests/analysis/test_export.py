@@ -113,7 +113,7 @@ class Export(Scripts):
         self.refused("export.py", "sweep.h5", "-o", "sweep.h5", "--force", words="sweep.h5 is there already")
         self.refused("export.py", "sweep.h5", "--columns", "iterationssum", words="did you mean iterations_sum?")
         self.refused("export.py", "sweep.h5", "--where", "newton", words="write COLUMN=VALUE")
-        self.refused("export.py", "sweep.h5", "--where", "sample=x", "-o", "x.csv", words="'x' is not a number")
+        self.refused("export.py", "sweep.h5", "--where", "sample=x", "-o", "x.csv", words='sample holds numbers, and "x" is none')
         self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("x.csv")], [])
         self.refused("export.py", "sweep.h5", "--columns", "task", "-o", "none/out.csv", words="No such file")
         self.assertIn("iterations_sum\n", self.run_script("export.py", "sweep.h5", "--list").stdout)

@@ -9,13 +9,15 @@ from pathlib import Path
 
 import synthetic
 
-ROOMS = ("rodsweep.reading", "rodsweep.drawing", "rodsweep.report", "")    # each may use those before it; the scripts are on top
-DRAW = {"matplotlib", "PIL"}          # what reading does without
+# Each may use those before it: `rodsweep` is what stands in the package itself, and the scripts are on top.
+ROOMS = ("rodsweep.reading", "rodsweep.writing", "rodsweep.drawing", "rodsweep.report", "rodsweep", "")
+DRAW = {"matplotlib", "PIL"}          # what reading and writing do without
 
 
 def imports(root):
     """(file, line, importing module, imported one) of all of them below root; by name in full: rodsweep.reading.measures."""
-    files = {".".join(path.relative_to(root).with_suffix("").parts): path for path in sorted(root.rglob("*.py"))}
+    files = {".".join(path.relative_to(root).with_suffix("").parts): path for path in sorted(root.rglob("*.py"))
+             if path.relative_to(root).parts[0] != "build"}    # pip's
     for module, path in files.items():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             names = [alias.name for alias in node.names] if isinstance(node, (ast.Import, ast.ImportFrom)) else []
@@ -52,7 +54,7 @@ def violations(root):
             yield f"{file}:{line}: a script must not use another, {name}"
         elif own and module in reachable(name):
             yield f"{file}:{line}: closes a circle with {name}"
-        elif here == "rodsweep.reading" and name.partition(".")[0] in DRAW:
+        elif here in ("rodsweep.reading", "rodsweep.writing") and name.partition(".")[0] in DRAW:
             yield f"{file}:{line}: {here} draws nothing, {name}"
 
 

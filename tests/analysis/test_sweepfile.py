@@ -146,8 +146,8 @@ class Parameters(Folder):
 
     def test_selections_that_cannot_be_met(self):
         file = self.open()
-        for conditions, words in ((["scene.segments"], "KEY=VALUE"), (["scene.segments=x"], "'x' is not a number"),
-                                  (["scene.segments=11"], "Known: 10, 20, 40"), (["scene.typ=helix"], "scene.type"),
+        for conditions, words in ((["scene.segments"], "COLUMN=VALUE"), (["scene.segments=x"], '"x" is none'),
+                                  (["scene.segments=11"], "known: 10, 20, 40"), (["scene.typ=helix"], "scene.type"),
                                   (["scene.segments=10", "scene.segments=20"], "no task meets all")):
             with self.assertRaisesRegex(KeyNotFound, words):
                 file.select(conditions)

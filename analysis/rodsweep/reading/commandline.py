@@ -2,11 +2,12 @@
 
 import argparse
 import os
+import re
 import sys
 
 import numpy as np
 
-from rodsweep.reading import measures, texts
+from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, UserError, not_found
 
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
@@ -15,14 +16,13 @@ DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True, files=False):
     """`tolerances`: what is shown by default, None for a script without that choice; newton: is there a choice? files:
     several instead of one."""
-    made = argparse.ArgumentParser(description=description, epilog=epilog,
+    made = argparse.ArgumentParser(description=description, epilog=examples(epilog or ""),
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     of_files = {"dest": "files", "nargs": "+", "metavar": "FILE"} if files else {"dest": "file"}
     made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
     made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
-    made.add_argument("--select", metavar="KEY=VALUE", action="append", default=[],
-                      help="only tasks with these values of a parameter: KEY=VALUE, KEY=A,B or KEY=LOW:HIGH; "
-                           "may be repeated")
+    made.add_argument("--select", metavar="CONDITION", action="append", default=[],
+                      help=f"only tasks that meet it: a parameter, {conditions.FORM}; may be repeated")
     made.add_argument("--guess", metavar="LABEL,…", help="only these guesses (default: all)")
     if tolerances:
         made.add_argument("--tolerance", metavar="T,…",
@@ -32,6 +32,12 @@ def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=Tr
         made.add_argument("--newton", choices=list(measures.NEWTON), default="first",
                           help="Newton iterations that count: the first of every step (j = 0, the default) or all")
     return made
+
+
+def examples(text):
+    """Examples of a script with its name as it was called: analysis/summary.py, or rodsweep-summary where installed."""
+    name = os.path.basename(sys.argv[0])
+    return text if name.endswith(".py") else re.sub(r"analysis/\w+\.py", name, text)
 
 
 def whole_number(text):

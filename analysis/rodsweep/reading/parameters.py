@@ -1,10 +1,8 @@
-"""A parameter of the job: its value for every task, and which tasks meet a condition on it."""
+"""A parameter of the job: its value for every task."""
 
 from dataclasses import dataclass
 
 import numpy as np
-
-from rodsweep.reading.errors import KeyNotFound
 
 
 @dataclass(frozen=True)
@@ -37,6 +35,9 @@ class Parameter:
         components = np.column_stack([codes(component) for component in self.values.T])  # NaN is no NaN's equal in rows
         return np.unique(components, axis=0, return_inverse=True)[1].reshape(len(self.values))
 
+    def texts(self):
+        return np.array([self.text(task) for task in range(len(self.values))], dtype=str)
+
     def text(self, task):
         value = self.values[task]
         if np.ndim(value):
@@ -44,23 +45,3 @@ class Parameter:
         if self.values.dtype.kind == "U":
             return str(value)
         return "none" if np.isnan(value) else f"{value:g}"
-
-    def meets(self, wanted):
-        """Mask of the tasks with one of the values A,B,… or a value within LOW:HIGH (both ends included)."""
-        if not self.numeric:
-            texts = np.array([self.text(t) for t in range(len(self.values))])
-            return (texts == wanted) | np.isin(texts, wanted.split(","))
-        if ":" in wanted:
-            low, _, high = wanted.partition(":")
-            return (self.values >= _number(low, -np.inf, wanted)) & (self.values <= _number(high, np.inf, wanted))
-        chosen = [np.isclose(self.values, _number(part, None, wanted), rtol=1e-9) for part in wanted.split(",")]
-        return np.any(chosen, axis=0)
-
-
-def _number(text, empty, whole):
-    if not text.strip() and empty is not None:
-        return empty
-    try:
-        return float(text)
-    except ValueError:
-        raise KeyNotFound(f"{whole!r}: {text!r} is not a number") from None

@@ -13,12 +13,15 @@ import os
 import h5py
 import numpy as np
 
+from rodsweep.reading import conditions
 from rodsweep.reading.errors import KeyNotFound, SweepFileError, not_found
 from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, opened
 from rodsweep.reading.parameters import Parameter
 
 SCHEMA_VERSION = 1
 BLOCK_ROWS = 1 << 17
+KNOWN_SHOWN = 12
+OF_TASKS = {"task": True, "sample": True, "outcome": False}   # can be selected by beside parameters; numbers?
 PLAN_COLUMNS = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")
 
 
@@ -125,21 +128,44 @@ class SweepFile:
             raise ValueError(f"{path} was asked for tasks that are not complete")
         return decoded(self.h5[path][:])[tasks] if self.has(path) else None
 
-    def select(self, conditions):
-        """Mask of the tasks that meet all of KEY=VALUE, KEY=A,B,… or KEY=LOW:HIGH (both ends included)."""
+    def select(self, texts):
+        """Mask of the tasks that meet all conditions (see conditions.py): on parameters, a vector's with .x, .y or .z
+        after its name, on task, sample and outcome."""
+        known = self._selectable()
         mask = np.ones(self.task_count, dtype=bool)
-        for condition in conditions:
-            key, equals, wanted = condition.partition("=")
-            if not equals or not wanted:
-                raise KeyNotFound(f"{condition!r}: write a selection as KEY=VALUE, KEY=A,B or KEY=LOW:HIGH")
-            parameter = self.parameter(key)
-            chosen = parameter.meets(wanted)
+        for text in texts:
+            condition = conditions.parse(text, known)
+            chosen = condition.met(self._of_tasks(condition.column))
             if not chosen.any():
-                raise not_found(f"{key} =", wanted, sorted({parameter.text(t) for t in range(self.task_count)})[:12])
+                raise self._none_meets(condition)
             mask &= chosen
         if not mask.any():
-            raise KeyNotFound("no task meets all of " + ", ".join(conditions))
+            raise KeyNotFound("no task meets all of " + ", ".join(texts))
         return mask
+
+    def _selectable(self):
+        known = {name: conditions.Column(numeric) for name, numeric in OF_TASKS.items()}
+        for name, parameter in self.parameters.items():
+            known[name] = conditions.Column(parameter.numeric)
+            if parameter.values.shape[1:] == (3,):
+                known.update({f"{name}.{letter}": conditions.Column(True) for letter in "xyz"})
+        return known
+
+    def _of_tasks(self, name):
+        if name in OF_TASKS:
+            return np.arange(self.task_count) if name == "task" else getattr(self, name)
+        if name in self.parameters:
+            parameter = self.parameters[name]
+            return parameter.texts() if parameter.values.ndim > 1 else parameter.values
+        name, _, letter = name.rpartition(".")
+        return self.parameters[name].values[:, "xyz".index(letter)]
+
+    def _none_meets(self, condition):
+        name = condition.column
+        if name not in self.parameters:
+            return KeyNotFound(f"no task meets {condition.text}")
+        known = sorted(set(self.parameters[name].texts()))[:KNOWN_SHOWN]
+        return KeyNotFound(f"no task meets {condition.text}; known: {', '.join(known)}")
 
     def runs(self):
         """One dictionary per start of the runner (rows of /runs that were used)."""

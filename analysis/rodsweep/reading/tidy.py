@@ -1,33 +1,79 @@
-"""The rows of export.py: blocks of a results file as flat columns, one array per column, all of one length.
+"""Flat columns of a results file, block by block: what export.py writes and rodsweep.open() hands out as frames.
 
 A row of the level `tasks` is one task x guess x tolerance, of `solves` one solve x guess (a column per tolerance of
 what has that axis), of `steps` one step. Every dataset of the level is a column by its name, with those of /timing after
-them, so that columns of later versions come along. Sentinels of whole numbers (-1: not reached, not run) and NaN are
-empty fields. Blocks have at most BLOCK_ROWS rows of the file, whatever its size.
+them, so that columns of later versions come along. Sentinels of whole numbers (-1: not reached, not run), NaN and empty
+texts stand for what is not there. Blocks are of at most BLOCK_ROWS rows of the file, whatever its size.
 """
+
+import itertools
+from dataclasses import dataclass
 
 import h5py
 import numpy as np
 
-from rodsweep.reading import measures, texts
+from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
-from rodsweep.reading.hdf5 import decoded
+from rodsweep.reading.hdf5 import as_text, decoded
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
-COUNTED = ("newton", "step", "rod")                 # whole numbers whose -1 says that the row was never reached
 INTERNAL = ("first_step", "first_solve", "first_frame_row", "first_segment_row", "first_system", "first_system_segment",
             "first_system_joint", "state", "checksum", "segments_total")
 COMPONENTS = ("x", "y", "z")
+OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # known of every task without reading
+OWN_MEANING = {"task": "number of the task: its row in /tasks", "guess": "label of the initial guess",
+               "tolerance": "what CG's residual is brought to, relative to the right-hand side's"}
+COUNTED = ("step", "newton", "rod", "newton_iterations")    # whole numbers of which none is missing in a row that was reached
+MARKS = ("newton", "newton_iterations", "time_s")    # the first of these that there is says which rows were reached
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column's rows: values, or values[index]. What many rows or blocks have in common is one array, so that whoever
+    works on values does so once."""
+    values: np.ndarray
+    index: np.ndarray = None
+
+    def __len__(self):
+        return len(self.values if self.index is None else self.index)
+
+    def array(self):
+        return self.values if self.index is None else self.values[self.index]
+
+    def kept(self, mask):
+        if mask.all():
+            return self
+        return Column(self.values, np.flatnonzero(mask) if self.index is None else self.index[mask])
+
+
+class Remembered:
+    """What `work` makes of an array; of each name, the last array's is kept."""
+
+    def __init__(self, work):
+        self.work, self.last = work, {}
+
+    def __call__(self, name, values):
+        if name not in self.last or self.last[name][0] is not values:
+            self.last[name] = (values, self.work(name, values))
+        return self.last[name][1]
+
+
+def require_rows(file, level):
+    """Raises KeyNotFound where a file has no rows of a level."""
+    if level != "tasks" and not any(file.has(f"/{level}/{name}") for name in MARKS):
+        raise KeyNotFound(f"{file.path} has no rows of {level} (/{level} is empty: record.solves of the job is "
+                          "\"summary\", or it has none)")
 
 
 class Tidy:
-    """Columns of a level. names: all there are; blocks(): chosen columns of complete tasks, as {name: values}."""
+    """Columns of a level, of complete tasks. names: all there are; blocks(): their rows."""
 
     def __init__(self, file, level, tasks, guesses, tolerances):
         self.file, self.level, self.tasks = file, level, np.asarray(tasks)
         self.guesses, self.tolerances = list(guesses), list(tolerances)
-        self.datasets = {}
+        self.labels, self.guessing = np.array(file.guesses, dtype=str), measures.has_guesses(file)
+        self.datasets, self.whole = {}, {}
         for folder in (f"/{level}", f"/timing/{level}"):
             for name, item in (file.h5[folder].items() if folder in file.h5 else []):
                 if isinstance(item, h5py.Dataset) and item.size and name not in INTERNAL:
@@ -79,69 +125,149 @@ class Tidy:
             if name not in self.names:
                 raise not_found("column", name, self.names)
 
-    def blocks(self, names):
-        """Yields {name: array} of the columns `names`, rows in the order of the file."""
-        for tasks, rows in self._row_blocks():
-            for g, t in self._combinations():
-                own = self.file.own_guess[tasks]
-                kept = np.ones(len(tasks), dtype=bool) if g is None else (own < 0) | (own == g)
-                if g is not None and self.level == "tasks":
-                    kept &= measures.has_guesses(self.file)[tasks]
-                if not kept.any():
-                    continue
-                yield {name: self._column(name, tasks[kept], rows, kept, g, t) for name in names}
+    def dtype(self, name):
+        """The type of a column's values."""
+        if not self._is_measured(name):
+            return self.shared(name).dtype
+        stored = self.file.h5[self.datasets[self._source(name)[0]]].dtype
+        return stored if stored.kind in "iuf" else np.dtype(str)
 
-    def _combinations(self):
-        guesses = self.guesses if self.by_guess else [None]
-        return [(g, t) for g in guesses for t in (self.tolerances if self.by_tolerance else [None])]
+    def about(self, name):
+        """(unit, meaning) of a column, as the file tells them."""
+        if name in OWN_MEANING:
+            return "", OWN_MEANING[name]
+        if not self._is_measured(name) and name in self.file.parameters:
+            return self.file.parameters[name].unit, self.file.parameters[name].meaning
+        base, index = (name, None) if name in OF_TASKS else self._source(name)
+        attributes = self.file.h5[f"/tasks/{name}" if name in OF_TASKS else self.datasets[base]].attrs
+        unit, meaning = (as_text(attributes.get(key, "")) for key in ("unit", "meaning"))
+        return unit, meaning if index is None else f"{meaning}; {name[len(base) + 1:]}".removeprefix("; ")
 
-    def _row_blocks(self):
+    def condition(self, text):
+        """What a condition says of these columns; see conditions.py."""
+        return conditions.parse(text, {name: conditions.Column(self.dtype(name).kind in "iuf",
+                                                               tuple(self.file.guesses) if name == "guess" else ())
+                                       for name in self.names})
+
+    def blocks(self, names, where=()):
+        """Yields {name: Column} of the columns `names` where all of the conditions are met, in the order of the file."""
+        tasks, guesses, tolerances, conditions_left = self._narrowed(where)
+        needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
+        guesses = guesses if self.by_guess else [None]
+        tolerances = tolerances if self.by_tolerance else [None]
+        for some, rows in self._row_blocks(tasks, self._paths(needed)):
+            parts = {}
+            for g, t in itertools.product(guesses, tolerances):
+                kept = self._belongs(some, g)
+                block = {name: self._column(name, some, rows, parts, g, t) for name in needed}
+                for condition in conditions_left:
+                    kept &= condition.met(block[condition.column].values)
+                if kept.any():
+                    yield {name: block[name].kept(kept) for name in names}
+
+    def arrays(self, names, where=()):
+        """(task of every row, indices of guesses, of tolerances, {dataset: rows}) of datasets, or of columns without
+        axes, in one piece with their axes. Raises KeyNotFound for a condition on what has several values in a row."""
+        tasks, guesses, tolerances, conditions_left = self._narrowed(where)
+        for condition in conditions_left:
+            if self.shape.get(condition.column) != ():
+                raise KeyNotFound(f"{condition.text}: {condition.column} has a value for every guess or tolerance, which "
+                                  "chooses no rows; use where() of the dataset")
+        needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
+        owners, found = [], {name: [] for name in names}
+        for some, rows in self._row_blocks(tasks, self._paths(needed)):
+            kept = np.ones(len(some), dtype=bool)
+            for condition in conditions_left:
+                kept &= condition.met(rows[self.datasets[condition.column]])
+            owners.append(some[kept])
+            for name in names:
+                values = rows[self.datasets[name]][kept]
+                axes = self.shape[name]
+                values = values[:, guesses] if "guess" in axes else values
+                found[name].append(values[:, :, tolerances] if "tolerance" in axes else values)
+        if not owners:
+            empty = {name: np.empty((0, *self.file.h5[self.datasets[name]].shape[1:])) for name in names}
+            return np.empty(0, dtype=np.int64), guesses, tolerances, empty
+        return np.concatenate(owners), guesses, tolerances, {name: np.concatenate(parts) for name, parts in found.items()}
+
+    def _narrowed(self, where):
+        """What conditions leave of tasks, guesses and tolerances, and those conditions that are on rows."""
+        tasks, guesses, tolerances, left = self.tasks, self.guesses, self.tolerances, []
+        for condition in where:
+            name = condition.column
+            if name == "guess":
+                guesses = [g for g in guesses if condition.met(self.labels)[g]]
+            elif name == "tolerance":
+                tolerances = [t for t in tolerances if condition.met(self.file.tolerances)[t]]
+            elif self._is_measured(name):
+                left.append(condition)
+            else:
+                tasks = tasks[condition.met(self._of_tasks(name))[tasks]]
+        return tasks, guesses, tolerances, left
+
+    def _belongs(self, tasks, g):
+        """Mask of the rows that there are for a guess: in a closed loop each task has its own."""
+        if g is None:
+            return np.ones(len(tasks), dtype=bool)
+        own = self.file.own_guess[tasks]
+        mask = (own < 0) | (own == g)
+        return mask & self.guessing[tasks] if self.level == "tasks" else mask
+
+    def _paths(self, names):
+        return list(dict.fromkeys(self.datasets[self._source(name)[0]] for name in names if self._is_measured(name)))
+
+    def _row_blocks(self, chosen, paths):
         """(task of every row, {dataset: rows}) with rows that were never reached left out."""
-        paths = list(self.datasets.values())
         if self.level == "tasks":
-            for begin in range(0, len(self.tasks), BLOCK_ROWS):
-                some = self.tasks[begin:begin + BLOCK_ROWS]
+            for begin in range(0, len(chosen), BLOCK_ROWS):
+                some = chosen[begin:begin + BLOCK_ROWS]
                 low, high = some.min(), some.max() + 1
                 yield some, {path: decoded(self.file.h5[path][low:high][some - low]) for path in paths}
             return
         read = self.file.solve_blocks if self.level == "solves" else self.file.step_blocks
-        for owners, starts, rows in read(self.tasks, paths, BLOCK_ROWS):
-            count = len(rows[paths[0]])
-            tasks = np.repeat(owners, np.diff(np.append(starts, count)))
-            reached = self._reached(rows, count)
-            if reached.any():
+        mark = next(f"/{self.level}/{name}" for name in MARKS if self.file.has(f"/{self.level}/{name}"))
+        for owners, starts, rows in read(chosen, list(dict.fromkeys([*paths, mark])), BLOCK_ROWS):
+            tasks = np.repeat(owners, np.diff(np.append(starts, len(rows[mark]))))
+            reached = np.isfinite(rows[mark]) if rows[mark].dtype.kind == "f" else rows[mark] >= 0
+            if reached.all():
+                yield tasks, rows
+            elif reached.any():
                 yield tasks[reached], {path: values[reached] for path, values in rows.items()}
 
-    def _reached(self, rows, count):
-        for mark in ("newton", "newton_iterations", "time_s"):
-            if f"/{self.level}/{mark}" in rows:
-                values = rows[f"/{self.level}/{mark}"]
-                return np.isfinite(values) if values.dtype.kind == "f" else values >= 0
-        return np.ones(count, dtype=bool)
+    def shared(self, name):
+        """The array that a column's values are in all blocks; None where every block has its own."""
+        if name in ("guess", "tolerance"):
+            return self.labels if name == "guess" else self.file.tolerances
+        return None if self._is_measured(name) else self._of_tasks(name)
 
-    def _column(self, name, tasks, rows, kept, g, t):
-        """Values of one column; parameters go by the task, datasets by the row."""
-        file = self.file
-        if name == "task":
-            return tasks
-        if name in ("sample", "outcome", "own_guess", "point"):
-            return getattr(file, name)[tasks]
-        if name == "guess":
-            return np.full(len(tasks), file.guesses[g])
-        if name == "tolerance":
-            return np.full(len(tasks), file.tolerances[t])
-        if name in file.parameters and name not in self.datasets:
-            parameter = file.parameters[name]
-            return parameter.values[tasks] if parameter.values.ndim == 1 else np.array(
-                [parameter.text(task) for task in tasks])
+    def _is_measured(self, name):
+        """Whether a column is read by the block; others go by the task, the guess or the tolerance."""
+        return name not in (*OF_TASKS, "guess", "tolerance") and (name in self.datasets or
+                                                                  name not in self.file.parameters)
+
+    def _column(self, name, tasks, rows, parts, g, t):
+        """`parts` holds the columns of a block's datasets: what is the same for all guesses is the same array."""
+        if not self._is_measured(name):
+            index = {"guess": g, "tolerance": t}
+            return Column(self.shared(name), np.full(len(tasks), index[name]) if name in index else tasks)
         base, index = self._source(name)
-        values = rows[self.datasets[base]][kept]
         axes = self.shape[base]
-        if axes == ("component",):
-            return values[:, index]
-        if axes == ("guess", "tolerance"):
-            return values[:, g, t if index is None else index]
-        return values[:, g] if axes == ("guess",) else values
+        where = () if not axes else (index,) if axes == ("component",) else \
+            (g,) if axes == ("guess",) else (g, t if index is None else index)
+        if (name, where) not in parts:
+            parts[name, where] = rows[self.datasets[base]][(slice(None), *where)]
+        return Column(parts[name, where])
+
+    def _of_tasks(self, name):
+        """A value for every task of the file; always the same array."""
+        if name not in self.whole:
+            if name in OF_TASKS:
+                values = np.arange(self.file.task_count) if name == "task" else getattr(self.file, name)
+            else:
+                parameter = self.file.parameters[name]
+                values = parameter.values if parameter.values.ndim == 1 else parameter.texts()
+            self.whole[name] = values
+        return self.whole[name]
 
     def _source(self, name):
         """The dataset of a column and the index of its component or tolerance."""
@@ -151,42 +277,3 @@ class Tidy:
         if self.shape[base] == ("component",):
             return base, COMPONENTS.index(last) if last in COMPONENTS else int(last)
         return base, next(t for t in self.tolerances if self._label(t) == last)
-
-
-def text_of(values):
-    """Fields of a column: the shortest digits that give the same number, empty for NaN and for -1 of whole numbers."""
-    if values.dtype.kind in "iu":
-        fields = values.astype(str)
-        return np.where(values == -1, "", fields) if values.dtype.kind == "i" else fields
-    if values.dtype.kind == "f":
-        return np.where(np.isnan(values), "", values.astype(str))
-    return values.astype(str)
-
-
-def conditions(texts):
-    """(column, test) of COLUMN=VALUE, COLUMN=A,B or COLUMN=LOW:HIGH; a test takes the column's values to a mask."""
-    found = []
-    for text in texts:
-        column, equals, wanted = text.partition("=")
-        if not equals or not wanted:
-            raise KeyNotFound(f"--where {text!r}: write COLUMN=VALUE, COLUMN=A,B or COLUMN=LOW:HIGH")
-        found.append((column, _test(column, wanted)))
-    return found
-
-
-def _test(column, wanted):
-    def number(text, empty):
-        try:
-            return float(text) if text.strip() else empty
-        except ValueError:
-            raise KeyNotFound(f"--where {column}={wanted}: {text!r} is not a number, as the column is") from None
-
-    def test(values):
-        if values.dtype.kind not in "iuf":
-            return np.isin(values.astype(str), [wanted, *texts.split_labels(wanted)])
-        if ":" in wanted:
-            low, _, high = wanted.partition(":")
-            return (values >= number(low, -np.inf)) & (values <= number(high, np.inf))
-        return np.any([np.isclose(values, number(part, np.nan), rtol=1e-6) for part in wanted.split(",")], axis=0)
-
-    return test

@@ -61,6 +61,8 @@ TEST_CASE("numbers are compared, listed, and met up to rounding") {
   CHECK(file.matching("scene.segments<5") == Tasks{0, 1});
   CHECK(file.matching("scene.segments=4,7") == Tasks{0, 1, 4, 5});
   CHECK(file.matching("scene.segments!=4,7") == Tasks{2, 3});
+  CHECK(file.matching("scene.segments=5:") == Tasks{2, 3, 4, 5});
+  CHECK(file.matching("scene.segments!=4:5,9") == Tasks{4, 5});
   CHECK(file.matching("time.step_s==0.0200000000001") == Tasks{0, 1, 2, 3, 4, 5});
   CHECK(file.matching("time.step_s=0.02001").empty());
   CHECK(file.matching("task=3") == Tasks{3});

@@ -1,0 +1,230 @@
+"""A sweep's results as pandas frames and xarray datasets, which are imported when they are first needed.
+
+Rows of tasks that are not complete are never handed out; `missing` says how many there are. What was not measured or not
+reached is NaN, so counts that may be missing are floating-point numbers. Units and meanings are those of the file: in the
+`attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "missing": ...}) and of every variable of a dataset
+("units", "long_name").
+"""
+
+import importlib
+
+import numpy as np
+
+from rodsweep.reading import blocks, conditions, groups, measures, tidy
+from rodsweep.reading.errors import SweepFileError, UserError, not_found
+from rodsweep.reading.hdf5 import as_text
+from rodsweep.reading.sweepfile import SweepFile
+
+ROWS = 100_000
+
+
+class Results:
+    """Use as `with rodsweep.open(path) as results:`, or close() it.
+
+    `columns` are names, by default all measured ones and the swept parameters; columns() lists them. `where` is one
+    condition or a list of them, as `rodsweep query` takes them: "scene.segments>=20", "guess=zero,quadratic".
+    """
+
+    def __init__(self, path):
+        self.file = SweepFile(path)
+        kind = as_text(self.file.h5.attrs.get("kind", "sweep"))
+        if kind != "sweep":
+            self.close()
+            raise SweepFileError(f"{self.file.path} is a {kind}, not the results of a sweep; read its /systems with h5py")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        self.file.h5.close()
+
+    def __repr__(self):
+        return f"<rodsweep results {self.file.path}: {self.census().text()}>"
+
+    @property
+    def job(self):
+        """The job as it was given."""
+        return self.file.job()
+
+    @property
+    def guesses(self):
+        return list(self.file.guesses)
+
+    @property
+    def tolerances(self):
+        return self.file.tolerances.tolist()
+
+    @property
+    def missing(self):
+        """What is not in the rows, or only with its outcome: "2 pending, 1 diverged of 24 tasks"; "" for nothing."""
+        census = self.census()
+        said = [f"{census.pending} pending"] if census.pending else []
+        said += [f"{count} {outcome}" for outcome, count in sorted(census.failed.items())]
+        return f"{', '.join(said)} of {census.total} tasks" if said else ""
+
+    def census(self):
+        """How many tasks there are in each state."""
+        return measures.census(self.file, np.ones(self.file.task_count, dtype=bool))
+
+    def columns(self, level="tasks"):
+        """Names, units and meanings of all columns of a level: "tasks", "solves" or "steps"."""
+        table = self._table(level)
+        return _pandas().DataFrame([(name, *table.about(name)) for name in table.names],
+                                   columns=["column", "unit", "meaning"]).set_index("column")
+
+    def tasks(self, columns=None, where=()):
+        """A row per task, guess and tolerance."""
+        return self._frame("tasks", columns, where)
+
+    def solves(self, columns=None, where=()):
+        """A row per linear solve and guess. They may be too many for the memory: see blocks()."""
+        return self._frame("solves", columns, where)
+
+    def steps(self, columns=None, where=()):
+        """A row per time step."""
+        return self._frame("steps", columns, where)
+
+    def blocks(self, level, columns=None, where=(), rows=ROWS):
+        """Yields the same frame in parts of about so many rows, in memory that does not grow with the file."""
+        table, names, tests = self._asked(level, columns, where)
+        return self._parts(table, names, tests, rows)
+
+    def dataset(self, level="tasks", columns=None, where=()):
+        """An xarray.Dataset with the axes `task`, or `row` of solves and steps, `guess`, `tolerance` and `xyz`. `columns`
+        are names of datasets in the file ("iterations") and of parameters, which become coordinates."""
+        table = self._table(level)
+        tests = [table.condition(text) for text in _listed(where)]
+        measured = [name for name, axes in table.shape.items() if "other" not in axes and table.shared(name) is None]
+        of_tasks = [*tidy.OF_TASKS, *self.file.parameters]
+        usual = [name for name in table.default_names() if name in self.file.parameters or name == "outcome"]
+        if columns is not None:
+            for name in columns:
+                if name not in (*measured, *of_tasks):
+                    raise not_found("dataset or parameter", name, (*measured, *of_tasks))
+            usual, measured = ([name for name in columns if name in known] for known in (of_tasks, measured))
+        owners, guesses, tolerances, found = table.arrays(measured, tests)
+        return self._dataset(table, owners, guesses, tolerances, found, usual)
+
+    def summary(self, by=None, newton="first", where=()):
+        """The numbers of `rodsweep-summary` with their 95 % intervals: CG ratios, speedups, times, how the steps went; a row
+        per number. `by`: a parameter by whose values they are split. `newton`: "first" or "all" Newton iterations."""
+        if newton not in measures.NEWTON:
+            raise UserError(f"newton={newton!r}: choose one of {', '.join(measures.NEWTON)}")
+        sims = measures.simulations(self.file, self.file.select(_listed(where)))
+        if by is not None and len(sims):
+            sims = sims.subset(groups.applicable(self.file, sims, by, without=True))
+        guesses, tolerances = range(len(self.file.guesses)), range(len(self.file.tolerances))
+        records = []
+        for block in blocks.blocks(self.file, sims, by, newton):
+            own = {} if by is None else {by: block.settings[by]}
+            records += [{**own, **record} for record in blocks.records(self.file, block, list(guesses), tolerances, newton)]
+        frame = _pandas().DataFrame(records).replace("", np.nan)
+        if by in frame and self.file.parameter(by).numeric:
+            frame[by] = frame[by].astype(float)
+        frame.attrs["missing"] = self.missing
+        return frame
+
+    def _table(self, level):
+        if level not in tidy.LEVELS:
+            raise UserError(f"there are no {level!r} in a results file; choose one of {', '.join(tidy.LEVELS)}")
+        tidy.require_rows(self.file, level)
+        return tidy.Tidy(self.file, level, np.flatnonzero(self.file.complete), range(len(self.file.guesses)),
+                         range(len(self.file.tolerances)))
+
+    def _asked(self, level, columns, where):
+        table = self._table(level)
+        names = table.default_names() if columns is None else list(columns)
+        table.check(names)
+        return table, names, [table.condition(text) for text in _listed(where)]
+
+    def _frame(self, level, columns, where):
+        table, names, tests = self._asked(level, columns, where)
+        return self._part(table, names, list(table.blocks(names, tests)))
+
+    def _parts(self, table, names, tests, rows):
+        gathered, count = [], 0
+        for block in table.blocks(names, tests):
+            gathered.append(block)
+            count += len(block[names[0]])
+            if count >= rows:
+                yield self._part(table, names, gathered)
+                gathered, count = [], 0
+        if gathered:
+            yield self._part(table, names, gathered)
+
+    def _part(self, table, names, gathered):
+        frame = _pandas().DataFrame({name: _column(table, name, [block[name] for block in gathered]) for name in names})
+        about = {name: table.about(name) for name in names}
+        frame.attrs = {"unit": {name: unit for name, (unit, _) in about.items() if unit},
+                       "meaning": {name: meaning for name, (_, meaning) in about.items() if meaning},
+                       "missing": self.missing}
+        return frame
+
+    def _dataset(self, table, owners, guesses, tolerances, found, parameters):
+        row = "task" if table.level == "tasks" else "row"
+
+        def variable(name, axes, values):
+            unit, meaning = table.about(name)
+            said = {"units": unit, "long_name": meaning}
+            return axes, values, {key: text for key, text in said.items() if text}
+
+        coordinates = {name: variable(name, (row,), _present(table.shared(name))[owners])
+                       for name in dict.fromkeys(["task", "sample", *parameters])}
+        if table.by_guess:
+            coordinates["guess"] = variable("guess", ("guess",), table.labels[guesses])
+            coordinates["tolerance"] = variable("tolerance", ("tolerance",), self.file.tolerances[tolerances])
+        variables = {}
+        for name, values in found.items():
+            axes = table.shape[name]
+            if axes == ("component",):
+                axes = (f"{name}_component",) if values.shape[1] != 3 else ("xyz",)
+                coordinates.update({"xyz": list("xyz")} if axes == ("xyz",) else {})
+            variables[name] = variable(name, (row, *axes), _measured(values, name))
+        attributes = {"missing": self.missing, "job": self.job.get("name", ""), "file": self.file.path}
+        return _library("xarray").Dataset(variables, coordinates, attributes)
+
+
+def _column(table, name, columns):
+    """The values of a frame's column: texts that many rows share as a categorical."""
+    shared = table.shared(name)
+    if shared is None:
+        values = np.concatenate([column.array() for column in columns] or [np.empty(0, dtype=table.dtype(name))])
+        return _measured(values, name)
+    index = np.concatenate([column.index for column in columns] or [np.empty(0, dtype=np.int64)])
+    if shared.dtype.kind in "iuf":
+        return _present(shared)[index]
+    categories, codes = np.unique(shared, return_inverse=True)
+    codes[conditions.absent(shared)] = -1
+    if len(categories) and categories[0] == "":
+        categories, codes = categories[1:], np.maximum(codes - 1, -1)
+    return _pandas().Categorical.from_codes(codes[index], categories)
+
+
+def _measured(values, name):
+    """Whole numbers that may be missing as floating-point ones, whether any of these is or not."""
+    if values.dtype.kind == "i" and name not in tidy.COUNTED:
+        return np.where(values == -1, np.nan, values)
+    return values.astype(object) if values.dtype.kind == "U" else values
+
+
+def _present(values):
+    """The same of a value for every task, where one is missing."""
+    return np.where(values == -1, np.nan, values) if values.dtype.kind == "i" and (values == -1).any() else values
+
+
+def _listed(where):
+    return [where] if isinstance(where, str) else list(where)
+
+
+def _pandas():
+    return _library("pandas")
+
+
+def _library(name):
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise UserError(f"{name} is not installed: apt-get install python3-{name}, or pip install {name}") from None

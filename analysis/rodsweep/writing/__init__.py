@@ -1,0 +1,1 @@
+"""Rows of results files in other formats: CSV and Parquet, a block at a time."""
