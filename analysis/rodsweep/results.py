@@ -16,6 +16,7 @@ from rodsweep.reading.hdf5 import as_text
 from rodsweep.reading.sweepfile import SweepFile
 
 ROWS = 100_000
+TOLERANCE = "cg_tolerance"    # the axis; `tolerance` is a word of xarray's sel(), which would take it for its own
 
 
 class Results:
@@ -93,8 +94,8 @@ class Results:
         return self._parts(table, names, tests, rows)
 
     def dataset(self, level="tasks", columns=None, where=()):
-        """An xarray.Dataset with the axes `task`, or `row` of solves and steps, `guess`, `tolerance` and `xyz`. `columns`
-        are names of datasets in the file ("iterations") and of parameters, which become coordinates."""
+        """An xarray.Dataset with the axes `task`, or `row` of solves and steps, `guess`, `cg_tolerance` and `xyz`.
+        `columns` are names of datasets in the file ("iterations") and of parameters, which become coordinates."""
         table = self._table(level)
         tests = [table.condition(text) for text in _listed(where)]
         measured = [name for name, axes in table.shape.items() if "other" not in axes and table.shared(name) is None]
@@ -175,10 +176,10 @@ class Results:
                        for name in dict.fromkeys(["task", "sample", *parameters])}
         if table.by_guess:
             coordinates["guess"] = variable("guess", ("guess",), table.labels[guesses])
-            coordinates["tolerance"] = variable("tolerance", ("tolerance",), self.file.tolerances[tolerances])
+            coordinates[TOLERANCE] = (TOLERANCE, self.file.tolerances[tolerances], {"long_name": table.about("tolerance")[1]})
         variables = {}
         for name, values in found.items():
-            axes = table.shape[name]
+            axes = tuple(TOLERANCE if axis == "tolerance" else axis for axis in table.shape[name])
             if axes == ("component",):
                 axes = (f"{name}_component",) if values.shape[1] != 3 else ("xyz",)
                 coordinates.update({"xyz": list("xyz")} if axes == ("xyz",) else {})

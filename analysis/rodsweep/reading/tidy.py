@@ -114,7 +114,7 @@ class Tidy:
 
     def default_names(self):
         """All but the parameters that are the same for every task."""
-        fixed = {name for name, p in self.file.parameters.items() if name not in self.swept and name != "scene.type"}
+        fixed = {name for name, p in self.file.parameters.items() if name not in self.swept and name not in ("scene.type", "guess")}
         return [name for name in self.names if name not in fixed]
 
     def _label(self, t):

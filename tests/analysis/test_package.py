@@ -1,0 +1,61 @@
+"""analysis/pyproject.toml: nothing of the folder is left out, the version is the program's, and what pip installs works."""
+
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+from pathlib import Path
+
+import synthetic
+import rodsweep
+
+ROOT = Path(synthetic.ANALYSIS)
+TOOLS = ("pip", "setuptools", "wheel")
+
+
+class Package(unittest.TestCase):
+    def setUp(self):
+        self.project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+    def test_every_script_has_a_program_and_every_folder_is_a_package(self):
+        programs = {f"rodsweep-{path.stem.replace('_', '-')}" for path in ROOT.glob("*.py")}
+        self.assertEqual(set(self.project["project"]["scripts"]), programs)
+        self.assertEqual(set(self.project["project"]["scripts"].values()), {"rodsweep.launch:run"})
+        folders = {".".join(path.parent.relative_to(ROOT).parts) for path in ROOT.glob("rodsweep/**/__init__.py")}
+        self.assertEqual(set(self.project["tool"]["setuptools"]["packages"]), folders | {"rodsweep.scripts"})
+
+    def test_the_version_is_that_of_the_program(self):
+        lists = (ROOT.parent / "CMakeLists.txt").read_text(encoding="utf-8")
+        self.assertEqual(rodsweep.__version__, re.search(r"project\(rodsweep VERSION ([\d.]+)", lists)[1])
+
+    @unittest.skipUnless(all(map(importlib.util.find_spec, TOOLS)), f"one of {', '.join(TOOLS)} is not installed")
+    def test_what_pip_installs_works_away_from_here(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source, installed = os.path.join(folder, "analysis"), os.path.join(folder, "installed")
+            shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns("results", "__pycache__", "build", "*.egg-info"))
+            subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-index",
+                            "--no-deps", "--root-user-action=ignore", "--target", installed, source], check=True,
+                           stdin=subprocess.DEVNULL)
+            shutil.rmtree(source)
+            synthetic.Sweep(scenes=("helix",)).write(os.path.join(folder, "sweep.h5"))
+
+            def said(*command):
+                return subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder,
+                                      env={**os.environ, "PYTHONPATH": installed}).stdout
+
+            summary = said(os.path.join(installed, "bin", "rodsweep-summary"), "sweep.h5", "--csv")
+            self.assertEqual(summary, said(sys.executable, ROOT / "summary.py", "sweep.h5", "--csv"))
+            long_term = said(os.path.join(installed, "bin", "rodsweep-long-term"), "--help")
+            self.assertIn("\n  rodsweep-long-term results/long_term.h5\n", long_term)
+            self.assertEqual(said(sys.executable, "-c", "import rodsweep; print(rodsweep.__file__, "
+                                  "rodsweep.open('sweep.h5').census().ok)").split(),
+                             [os.path.join(installed, "rodsweep", "__init__.py"), "12"])
+
+
+if __name__ == "__main__":
+    unittest.main()
