@@ -171,6 +171,12 @@ class Honesty(Report):
         self.assertIn("No simulation is complete yet", self.said(pending=range(24)))
         self.assertIn("no zero guess", self.said(guesses=("previous", "quadratic")))
 
+    def test_many_settings_are_folded_behind_the_first_ones(self):
+        for values, more in (([0.01, 0.02], 0), ([0.005, 0.01, 0.02, 0.04], 2)):
+            text, _ = self.report(grid={"time.step_s": values}, samples=1)
+            self.assertEqual("more settings of the job" in text, more > 0)
+            self.assertIn(f"{more} more settings of the job" if more else "What it found", text)
+
     def test_what_does_not_fit_is_named(self):
         with unittest.mock.patch("report.ESTIMATES", 700):
             text, (data, ) = self.report(samples=6)

@@ -80,12 +80,13 @@ def _ratios(file, sims, guesses, tolerances):
         return []
     ratios = {newton: measures.cg_ratios(file, sims, newton) for newton in measures.NEWTON}
     chosen = np.ix_(range(len(sims)), guesses, tolerances)
-    return [Measure("ratio", "CG ratio", "ratio", False, {newton: found.ratio[chosen] for newton, found in ratios.items()},
+    ratio = Measure("ratio", "CG ratio", "ratio", False, {newton: found.ratio[chosen] for newton, found in ratios.items()},
                     intervals.mean, "CG iterations with a guess over those from zero, summed over a simulation; mean over "
-                    "simulations. Below 1 the guess saves iterations."),
-            Measure("iterations", "CG iterations of a solve", "count", False,
-                    {"": ratios["first"].iterations_per_solve[chosen]}, intervals.mean,
-                    "Of first Newton iterations; mean over a simulation, mean over simulations.")]
+                    "simulations. Below 1 the guess saves iterations.")
+    iterations = Measure("iterations", "CG iterations of a solve", "count", False,
+                         {"": ratios["first"].iterations_per_solve[chosen]}, intervals.mean,
+                         "Of first Newton iterations; mean over a simulation, mean over simulations.")
+    return [iterations] if guesses == [file.zero] else [ratio, iterations]
 
 
 def _times(file, parts, guesses):

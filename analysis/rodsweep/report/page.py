@@ -13,6 +13,8 @@ HERE = Path(__file__).parent
 LIBRARIES = ("d3.min.js", "plot.min.js")
 SCRIPTS = ("numbers.js", "theme.js", "sorting.js", "chart.js", "cursor.js", "explorer.js", "rods.js", "main.js")
 
+ANSWERS_OPEN = 6    # of a sweep; those of further settings are folded
+
 
 def html(sweeps, title):
     """The page of a list of sweep.Sweep."""
@@ -21,7 +23,7 @@ def html(sweeps, title):
     environment.filters["finite"] = lambda number: number is not None and math.isfinite(number)
     return environment.get_template("page.html").render(
         sweeps=sweeps, title=title, dot=answers.DOT_WIDTH, bar=answers.BAR_WIDTH,
-        made=datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        answers_open=ANSWERS_OPEN, made=datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         style=_text("static", "report.css"), libraries=[_text("vendor", name) for name in LIBRARIES],
         script="\n".join(_text("static", name) for name in SCRIPTS), data=embedded([one.data for one in sweeps]))
 

@@ -55,7 +55,7 @@ function drawChart(family, measure, axis, panel, series, range, width) {
       type: axis.categorical ? "point" : axis.log ? "log" : "linear", label: axis.label + (axis.binned ? ", medians of bins" : ""),
       labelAnchor: "center", labelArrow: "none", insetLeft: 14, insetRight: 14, nice: false,
       ...(axis.categorical ? { domain: panel.text, tickRotate: longest(panel.text) * panel.text.length * 7 > width - 80 ? -20 : 0 }
-        : !axis.binned && !axis.log && fits(panel, width) ? { ticks: panel.x, tickFormat: (x) => texts.get(x) } : { ticks: 5, ...(axis.log ? { tickFormat: powerText } : {}) }),
+        : !axis.binned && fits(axis, panel, width) ? { ticks: panel.x, tickFormat: (x) => texts.get(x) } : { ticks: 5, ...(axis.log ? { tickFormat: powerText } : {}) }),
     },
     y: {
       type: measure.log ? "log" : "linear", domain: range, label: null, grid: true,
@@ -73,8 +73,8 @@ function drawChart(family, measure, axis, panel, series, range, width) {
 const longest = (texts) => Math.max(...texts.map((text) => text.length));
 
 /** Is there room for a label at every point? */
-function fits(panel, width) {
-  const x = [...panel.x].sort(d3.ascending);
+function fits(axis, panel, width) {
+  const x = panel.x.map((one) => (axis.log ? Math.log10(one) : one)).sort(d3.ascending);
   const span = x[x.length - 1] - x[0] || 1;
   const room = d3.min(d3.pairs(x, (a, b) => b - a)) / span * (width - 96);
   return x.length < 2 || room > 8 * longest(panel.text);
