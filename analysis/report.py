@@ -7,7 +7,9 @@ sweeps, with 95 % bootstrap intervals over simulations; recorded trajectories as
 are those of summary.py and spatial.py. A sweep may still be running.
 """
 
+import contextlib
 import os
+import sys
 
 from rodsweep.drawing import outputs
 from rodsweep.reading import commandline
@@ -41,20 +43,18 @@ def main():
     options = arguments()
     path = options.output or default_output(options.files)
     outputs.check(path, options)
-    sweeps, known, room = [], {}, room_of_page()
+    check_axes(options)
+    sweeps, room = [], (axes.Budget(ESTIMATES), axes.Budget(ANIMATIONS))
     for left, name in zip(range(len(options.files), 0, -1), options.files):
         try:
             with SweepFile(name) as file:
-                known.update(dict.fromkeys(file.parameters))
                 sweeps.append(sweep.made(file, options, *(budget.share(left) for budget in room)))
-        except (SweepFileError, KeyNotFound):
+        except (SweepFileError, KeyNotFound) as error:
             if not options.skip:
                 raise
+            print(f"left out: {error.args[0]}", file=sys.stderr)
     if not sweeps:
         raise KeyNotFound("nothing to report: none of the files is a sweep of which something is chosen")
-    for key in options.x:
-        if key not in known:
-            raise not_found("parameter", key, known)
     text = page.html(sweeps, options.title or ", ".join(one.name for one in sweeps[:3]) +
                      (f" and {len(sweeps) - 3} more" if len(sweeps) > 3 else ""))
     with outputs.whole(path) as part, open(part, "w", encoding="utf-8") as out:
@@ -62,9 +62,15 @@ def main():
     print(path)
 
 
-def room_of_page():
-    """For estimates and for animations: files have equal shares, and those after them what is left of one."""
-    return axes.Budget(ESTIMATES), axes.Budget(ANIMATIONS)
+def check_axes(options):
+    """Before anything is read: is every --x a parameter of one of the files?"""
+    known = {}
+    for name in options.files if options.x else []:
+        with contextlib.suppress(SweepFileError), SweepFile(name) as file:
+            known.update(file.parameters)
+    for key in options.x:
+        if key not in known:
+            raise not_found("parameter", key, known)
 
 
 def default_output(files):

@@ -251,8 +251,9 @@ class Commands(Report):
         synthetic.Sweep(attributes={"program": "other"}).write("model.h5")
         self.refused("report.py", "sweep.h5", "model.h5", "-o", "page.html", words="model.h5")
         self.assertFalse(os.path.exists("page.html"))
-        self.run_script("report.py", "sweep.h5", "model.h5", "-o", "page.html", "--skip")
-        self.refused("report.py", "model.h5", "--skip", words="nothing to report")
+        done = self.run_script("report.py", "sweep.h5", "model.h5", "-o", "page.html", "--skip")
+        self.assertIn("left out: model.h5 is an HDF5 file", done.stderr)
+        self.assertIn("nothing to report", self.run_script("report.py", "model.h5", "--skip", code=2).stderr)
 
     def test_unknown_names_are_refused_with_the_nearest(self):
         self.write()

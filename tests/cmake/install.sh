@@ -19,3 +19,5 @@ done
 "$bin/rodsweep-summary" smoke.h5 | cmp - summary.txt
 "$bin/rodsweep-summary" --help | grep -q '^  rodsweep-summary results/demo.h5'
 PYTHONPATH="$share/analysis" /usr/bin/python3 -c 'import rodsweep; print(rodsweep.open("smoke.h5"))' | grep 'tasks ok, none failed'
+"$bin/rodsweep-report" smoke.h5    # style, scripts and libraries of the page were installed too
+grep -q 'Observable Plot' smoke.html

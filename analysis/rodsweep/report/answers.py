@@ -40,6 +40,11 @@ class Answer:
     direct: Row = None
 
     @property
+    def few(self):
+        """Are simulations too few for intervals?"""
+        return not any(math.isfinite(row.estimates["ratio"].low) for row in self.rows if "ratio" in row.estimates)
+
+    @property
     def rivals(self):
         return sum(row.wins for row in self.rows)
 
@@ -150,7 +155,7 @@ def steps(found, guesses, labels):
     for block in found:
         for g in guesses if block.sims.closed_loop and guesses else [0]:
             title = f"{block.title}, {labels[g]}" if block.sims.closed_loop else block.title
-            rows.append((title, {name: (texts.short_text(float(estimate.value[g]), 2), texts.short_text(float(largest[g]), 2))
+            rows.append((title, {name: tuple(texts.short_text(float(number[g]), 2) for number in (estimate.value, largest))
                                  for name, (estimate, largest) in block.steps.items()}))
     return rows
 

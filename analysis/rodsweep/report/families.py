@@ -6,7 +6,7 @@ show; a measure says by which of their functions it becomes an estimate.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,7 +28,7 @@ class Measure:
     title: str
     unit: str            # how a value is written: ratio, times, us, count or part
     log: bool            # is its axis logarithmic?
-    values: dict         # {"first": …, "all": …}, or {"": …} of either: [simulation, line] or [simulation, line, tolerance]
+    values: dict         # {"first": …, "all": …}, or {"": …}, of [simulation, line] or [simulation, line, tolerance]
     estimate: Callable   # intervals.mean or intervals.median
     note: str = ""
 
@@ -46,7 +46,6 @@ class Family:
     lines: dict          # {label: looks.Look}
     reference: str       # the line that others are compared with: "zero", or empty
     measures: list
-    parts: dict = field(default_factory=dict)   # {"first": timings.Times, "all": …} where the file has times
 
 
 def families(file, sims, guesses, tolerances):
@@ -59,20 +58,15 @@ def families(file, sims, guesses, tolerances):
 
 def of_guesses(file, sims, guesses, tolerances):
     parts = timings.times(file, sims) if timings.timed(file) else {}
-    found = [*_ratios(file, sims, guesses, tolerances), *_times(file, parts, guesses)]
+    direct = bool(parts) and bool(np.isfinite(parts["all"].direct_s).any())
+    found = [*_ratios(file, sims, guesses, tolerances), *_times(file, parts, guesses, direct)]
     if sims.closed_loop:
         found += _steps(file, sims, guesses)
-    with_direct = any(measure.values and _width(measure) > len(guesses) for measure in found)
-    labels = [file.guesses[g] for g in guesses]
-    lines = looks.guess_looks(file.guesses)
-    lines = {label: lines[label] for label in labels}
-    if with_direct:
+    of_all = looks.guess_looks(file.guesses)
+    lines = {file.guesses[g]: of_all[file.guesses[g]] for g in guesses}
+    if direct:
         lines[DIRECT] = looks.Look(*looks.KINDS[DIRECT])
-    return Family("guesses", sims, lines, "zero" if file.zero in guesses else "", found, parts)
-
-
-def _width(measure):
-    return next(iter(measure.values.values())).shape[1]
+    return Family("guesses", sims, lines, "zero" if file.zero in guesses else "", found)
 
 
 def _ratios(file, sims, guesses, tolerances):
@@ -89,14 +83,14 @@ def _ratios(file, sims, guesses, tolerances):
     return [iterations] if guesses == [file.zero] else [ratio, iterations]
 
 
-def _times(file, parts, guesses):
+def _times(file, parts, guesses, with_direct):
     if not parts:
         return []
     found = []
 
     def beside(of_guesses, direct):
-        """Columns of the guesses, and one of the direct solve."""
-        return np.column_stack([of_guesses[:, guesses], direct])
+        """Columns of the guesses, and one of the direct solve where it was timed."""
+        return np.column_stack([of_guesses[:, guesses], *([direct] if with_direct else [])])
 
     if file.zero is not None:
         over_zero = {newton: timings.speedups(parts, newton) for newton in measures.NEWTON}

@@ -2,51 +2,48 @@
 
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from rodsweep.drawing import looks
 from rodsweep.reading import blocks, commandline, measures, remarks, texts
-from rodsweep.report import animation, answers, axes, families
+from rodsweep.report import animation, answers, axes, families, lines
 
-SYMBOLS = {"o": "circle", "v": "wye", "s": "square", ">": "diamond", "8": "hexagon", "P": "cross", "^": "triangle",
-           "<": "triangle2", "X": "times", "*": "star", "D": "diamond", "x": "times", "H": "hexagon", "h": "hexagon",
-           "p": "square2", "d": "diamond2", (5, 1, 0): "star", (4, 2, 0): "asterisk", (3, 1, 0): "wye",
-           (3, 2, 0): "asterisk", (6, 1, 0): "asterisk", (4, 1, 0): "star"}
-DASH = 1.6           # pixels of a unit of a dash
-ON_DARK = 0.30       # relative luminance that a line has at least on a dark page
 STEP_TITLES = {"newton_iterations": "Newton iterations a step", "newton_residual": "Newton residual",
                "momentum_residual": "momentum residual", "length_drift": "length drift",
                "joint_gap": "joint gap / length", "penetration": "penetration / radius",
                "contact_residual": "contact residual / radius"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Sweep:
-    """For the template: texts; `data`: what the scripts of the page draw from."""
+    """Texts for the template; `data` is what the scripts of the page draw from. Of a file without a simulation that
+    ended well there is nothing but its state."""
     name: str
     path: str
     job: dict
     census: measures.Census
-    failures: list
+    failures: list               # [task, outcome, message]
     more_failures: int
-    conditions: dict
-    warning: str
-    notes: list
-    tolerance: str
-    timed_tolerance: str
-    answers: list
-    untimed: bool
-    no_ratios: str
-    steps: list
-    step_columns: dict
     runs: list
     revisions: str
-    films_left_out: int
     data: dict
+    films_left_out: int
+    no_ratios: str               # why; or empty
+    conditions: dict = field(default_factory=dict)
+    warning: str = ""
+    notes: list = field(default_factory=list)
+    tolerance: str = ""          # of the iterations in the answers
+    timed_tolerance: str = ""
+    answers: list = field(default_factory=list)
+    steps: list = field(default_factory=list)
+    step_columns: dict = field(default_factory=dict)
 
     @property
     def unfinished(self):
         return self.census.pending > 0
+
+    @property
+    def untimed(self):
+        return bool(self.answers) and all(answer.block.times is None for answer in self.answers)
 
     @property
     def job_text(self):
@@ -57,48 +54,36 @@ def made(file, options, budget, room):
     """A Sweep of an open file. budget, room: axes.Budgets of estimates and of bytes of animations; options: those of
     report.py."""
     chosen = commandline.chosen_tasks(file, options)
-    guesses, tolerances = commandline.chosen_guesses(file, options), commandline.chosen_tolerances(file, options)
+    guesses = commandline.chosen_guesses(file, options)
+    tolerances = commandline.chosen_tolerances(file, options) or list(range(len(file.tolerances)))
     sims = measures.simulations(file, chosen)
-    tasks = sims.tasks()
     job = file.job()
     failures, more = answers.failures(file, chosen)
-    found, measured, shown, headline = [], [], [], None
-    if len(sims):
-        if file.guesses:
-            headline = answers.headline_tolerance(file, sims, tolerances)
-        measured = blocks.blocks(file, sims, None, "first")
-        found = answers.answers(file, measured, guesses, headline)
-        charts = [{**axes.packed(file, family, budget, options.x), "lines": lines(family.lines)}
-                  for family in families.families(file, sims, guesses, tolerances)]
-        shown = [family for family in charts if family["axes"]]
-    timed = any(answer.block.times is not None for answer in found)
-    columns = {name: title for name, title in STEP_TITLES.items() if any(name in block.steps for block in measured)}
     films, films_left_out = animation.animations(file, chosen, room)
-    data = {"families": shown,
-            "tolerances": [texts.tolerance_label(file.tolerances[t]) for t in tolerances],
-            "tolerance": tolerances.index(headline) if headline in tolerances else 0,
-            "warning": remarks.timing_warning(file, tasks) if len(sims) else "",
-            "animations": films}
-    return Sweep(job.get("name") or os.path.splitext(os.path.basename(file.path))[0], file.path, job,
-                 measures.census(file, chosen), failures, more, remarks.conditions(file, tasks) if len(sims) else {},
-                 data["warning"], answers.notes(file, sims, guesses) if len(sims) else [],
-                 texts.tolerance_label(file.tolerances[headline]) if headline is not None else "",
-                 remarks.solve_tolerance(file, tasks) if len(sims) else "", found, bool(found) and not timed,
-                 "the job has no zero guess to relate the others to" if file.guesses and file.zero is None else "",
-                 answers.steps(measured, guesses, file.guesses), columns, answers.runs(file), remarks.revisions(file), films_left_out, data)
+    data = {"families": [], "animations": films, "warning": "", "tolerance": 0,
+            "tolerances": [texts.tolerance_label(file.tolerances[t]) for t in tolerances]}
+    found = _found(file, options, sims, guesses, tolerances, budget, data) if len(sims) else {}
+    return Sweep(name=job.get("name") or os.path.splitext(os.path.basename(file.path))[0], path=file.path, job=job,
+                 census=measures.census(file, chosen), failures=failures, more_failures=more, runs=answers.runs(file),
+                 revisions=remarks.revisions(file), data=data, films_left_out=films_left_out,
+                 no_ratios="the job has no zero guess to relate the others to" if file.guesses and file.zero is None
+                 else "", **found)
 
 
-def lines(found):
-    """{label: looks.Look} with colours for light and dark pages, marker and dash as the charts take them."""
-    return [{"label": label, "light": look.colour, "dark": on_dark(look.colour),
-             "symbol": SYMBOLS.get(look.marker, "circle"),
-             "dash": " ".join(f"{DASH * length:g}" for length in look.dash[1]) if look.dash[1][-1] else ""}
-            for label, look in found.items()]
-
-
-def on_dark(colour):
-    """The colour, lighter where a dark page needs it."""
-    share = 0.0
-    while looks.luminance(looks.channels(looks.lighter(colour, share))) < ON_DARK:
-        share += 0.02
-    return looks.lighter(colour, share)
+def _found(file, options, sims, guesses, tolerances, budget, data):
+    """What simulations give of a Sweep, by name, and of its data."""
+    tasks, measured = sims.tasks(), blocks.blocks(file, sims, None, "first")
+    headline = answers.headline_tolerance(file, sims, tolerances) if file.guesses else None
+    shown = [{**axes.packed(file, family, budget, options.x), "lines": lines.packed(family.lines)}
+             for family in families.families(file, sims, guesses, tolerances)]
+    warning = remarks.timing_warning(file, tasks)
+    data.update(families=[family for family in shown if family["axes"]], warning=warning,
+                tolerance=0 if headline is None else tolerances.index(headline))
+    return {"conditions": remarks.conditions(file, tasks), "warning": warning,
+            "notes": answers.notes(file, sims, guesses),
+            "tolerance": "" if headline is None else texts.tolerance_label(file.tolerances[headline]),
+            "timed_tolerance": remarks.solve_tolerance(file, tasks),
+            "answers": answers.answers(file, measured, guesses, headline),
+            "steps": answers.steps(measured, guesses, file.guesses),
+            "step_columns": {name: title for name, title in STEP_TITLES.items()
+                             if any(name in block.steps for block in measured)}}
