@@ -169,6 +169,7 @@ class Charts(Page):
             self.assertIn("number of segments N: 20", said[0])
             self.assertRegex(said[0], r"quadratic 0\.25 \[0\.2\d, 0\.2\d\]")
             self.assertIn("6 simulations", said[0])
+            self.assertGreater(self.js("document.querySelector('.readout:not([hidden]) .swatch').getBoundingClientRect().width"), 20)
             self.browser.move(2, 2)
             self.assertEqual(self.texts(".readout:not([hidden])"), [])
 

@@ -13,7 +13,7 @@ HERE = Path(__file__).parent
 LIBRARIES = ("d3.min.js", "plot.min.js")
 SCRIPTS = ("numbers.js", "theme.js", "sorting.js", "chart.js", "cursor.js", "explorer.js", "rods.js", "main.js")
 
-ANSWERS_OPEN = 6    # of a sweep; those of further settings are folded
+ANSWERS_OPEN, STEPS_OPEN = 6, 12    # answers and rows of steps of a sweep; where there are more they are folded
 
 
 def html(sweeps, title):
@@ -23,7 +23,8 @@ def html(sweeps, title):
     environment.filters["finite"] = lambda number: number is not None and math.isfinite(number)
     return environment.get_template("page.html").render(
         sweeps=sweeps, title=title, dot=answers.DOT_WIDTH, bar=answers.BAR_WIDTH,
-        answers_open=ANSWERS_OPEN, made=datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        answers_open=ANSWERS_OPEN, steps_open=STEPS_OPEN,
+        made=datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         style=_text("static", "report.css"), libraries=[_text("vendor", name) for name in LIBRARIES],
         script="\n".join(_text("static", name) for name in SCRIPTS), data=embedded([one.data for one in sweeps]))
 

@@ -3,6 +3,7 @@
 
 const chartHeight = 320;
 const dodge = 9; // pixels that lines of one point are spread over, so that intervals do not hide each other
+const categoryDodge = 0.5; // the same between words, of their distance
 
 /** What a chart shows: [{line, index, points: [{k, x, value, low, high, count}]}] of the lines that are on. */
 function seriesOf(family, measure, axis, panel, state) {
@@ -33,9 +34,10 @@ function drawChart(family, measure, axis, panel, series, range, width) {
   const relative = measure.unit === "ratio" || measure.unit === "times";
   const marks = [];
   if (relative) marks.push(Plot.ruleY([1], { stroke: "var(--ink)", strokeWidth: 1 }));
+  const spread = axis.categorical ? categoryDodge * (width - 96) / panel.x.length : dodge;
   series.forEach(({ line, index, points }, rank) => {
     if (relative && index === family.reference) return;
-    const dx = series.length > 1 ? dodge * (rank / (series.length - 1) - 0.5) : 0;
+    const dx = series.length > 1 ? spread * (rank / (series.length - 1) - 0.5) : 0;
     const colour = `var(--line-${index})`;
     const sure = points.filter((point) => point.low !== null);
     const stroked = strokedSymbols.has(line.symbol);
