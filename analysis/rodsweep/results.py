@@ -124,7 +124,7 @@ class Results:
             records += [{**own, **record} for record in blocks.records(self.file, block, list(guesses), tolerances, newton)]
         frame = _pandas().DataFrame(records).replace("", np.nan)
         if by in frame and self.file.parameter(by).numeric:
-            frame[by] = frame[by].astype(float)
+            frame[by] = _pandas().to_numeric(frame[by])
         frame.attrs["missing"] = self.missing
         return frame
 

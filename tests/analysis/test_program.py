@@ -10,6 +10,7 @@ import unittest.mock
 import synthetic  # noqa: F401  (makes analysis/ importable)
 import h5py
 import numpy as np
+import rodsweep
 import temporal
 from rodsweep.reading import along_time, joints, measures, newton_levels, timings, trajectory
 from rodsweep.reading.sweepfile import SweepFile
@@ -58,6 +59,22 @@ class Program(unittest.TestCase):
             np.testing.assert_array_equal(file.parameter("scene.length_m").applies(),
                                           file.scene_types() == "bending_rod")
             self.assertEqual(len(file.runs()), 1)
+
+    def test_frames_and_datasets_hold_what_the_file_holds_with_its_units(self):
+        with rodsweep.open(self.run_job("paired")) as results, h5py.File(results.file.path) as h5:
+            tasks = results.tasks(where=["guess=quadratic", "tolerance=1e-3"])
+            np.testing.assert_array_equal(tasks.cg_ratio, h5["tasks/cg_ratio"][:, 2, 2])
+            self.assertEqual(tasks.attrs["unit"]["scene.youngs_modulus_pa"], "Pa")
+            self.assertIn("iterations_sum over that of the zero guess", tasks.attrs["meaning"]["cg_ratio"])
+            solves, rows = results.solves(["iterations_1e-2"], "guess=previous"), results.dataset("solves")
+            counts = h5["solves/iterations"][:][h5["solves/newton"][:] >= 0].astype(float)
+            counts[counts == -1] = np.nan
+            np.testing.assert_array_equal(solves["iterations_1e-2"], counts[:, 1, 1])
+            np.testing.assert_array_equal(rows.iterations, counts)
+            self.assertEqual(rows.cg_s.attrs["units"], "s")
+            np.testing.assert_array_equal(results.steps().length_drift, h5["steps/length_drift"][:])
+        with self.assertRaisesRegex(rodsweep.UserError, "is a dataset, not the results of a sweep"):
+            rodsweep.open(self.run_job("data", kind="dataset", solve=None, guesses=None))
 
     def test_ratios_are_those_of_the_rows_and_of_the_file(self):
         with SweepFile(self.run_job("paired")) as file:
