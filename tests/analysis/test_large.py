@@ -34,7 +34,7 @@ class Large(unittest.TestCase):
             path = synthetic.write_large(os.path.join(self.folder, "large.h5"), **shape)
             for script, *arguments in scripts:
                 with self.subTest(script=script, arguments=arguments):
-                    self.measured(script, path, *arguments)
+                    self.measured(script, path, *(word.format(folder=self.folder) for word in arguments))
 
     def test_many_short_tasks(self):
         self.check([("summary.py",), ("report.py",), ("spatial.py",), ("temporal.py",), ("heatmap.py", *BY_SIZE),
@@ -42,6 +42,7 @@ class Large(unittest.TestCase):
                     ("long_term.py",), ("newton.py",), ("export.py", "--where", "tolerance=1e-2"),
                     ("export.py", "--level", "solves", "--columns", "task,guess,iterations_1e-2", "--where",
                      "newton=0"),
+                    ("export.py", "--level", "solves", "-o", "{folder}/solves.parquet"),
                     ("export.py", "--level", "steps", "--columns", "task,length_drift")],
                    tasks=ROWS // 600, steps=100, newton=6)
 

@@ -41,10 +41,11 @@ class Column:
     def array(self):
         return self.values if self.index is None else self.values[self.index]
 
-    def kept(self, mask):
-        if mask.all():
-            return self
-        return Column(self.values, np.flatnonzero(mask) if self.index is None else self.index[mask])
+    def at(self, rows, made):
+        """Of some rows. What `made` of a block holds serves all its columns: they mostly have the same index."""
+        if id(self.index) not in made:
+            made[id(self.index)] = rows if self.index is None else self.index[rows]
+        return Column(self.values, made[id(self.index)])
 
 
 class Remembered:
@@ -162,8 +163,11 @@ class Tidy:
                 block = {name: self._column(name, some, rows, parts, g, t) for name in needed}
                 for condition in conditions_left:
                     kept &= condition.met(block[condition.column].values)
-                if kept.any():
-                    yield {name: block[name].kept(kept) for name in names}
+                if kept.all():
+                    yield {name: block[name] for name in names}
+                elif kept.any():
+                    rows_kept, made = np.flatnonzero(kept), {}
+                    yield {name: block[name].at(rows_kept, made) for name in names}
 
     def arrays(self, names, where=()):
         """(task of every row, indices of guesses, of tolerances, {dataset: rows}) of datasets, or of columns without

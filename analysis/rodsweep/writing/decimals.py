@@ -1,7 +1,7 @@
 """Whole arrays of floating-point numbers as text: the shortest digits that give the same number, as str() writes them.
 
 A number a = x 10^(e - 16) with x in [1e16, 1e17) is scaled with a table of powers in extended precision, so that x is
-known to 0.02 of its last digit; of its roundings to 15, 16 and 17 digits the first that is nearer to x than half of the distance between
+known to 0.011 of its last digit; of its roundings to 15, 16 and 17 digits the first that is nearer to x than half of the distance between
 neighbours gives a back (of 15 digits zeros at the end are left out, which makes the shortest). float32 does the same in
 double precision, with 6 to 9 digits. Where x is too near to a border to say, and for the few numbers near the limits of
 their type, numpy's own, slower text is taken. A text is a row of bytes in which zeros are nothing: they are taken out
@@ -33,7 +33,7 @@ class Precision:
 LARGEST_POWER = 308
 POWERS = np.array([np.longdouble(f"1e{k}") for k in range(-LARGEST_POWER, LARGEST_POWER + 1)])
 POWERS_64 = POWERS.astype(np.float64)
-PRECISIONS = {np.dtype(np.float64): Precision(POWERS, (15, 16, 17), 0.02, 1e-290, 1e290),
+PRECISIONS = {np.dtype(np.float64): Precision(POWERS, (15, 16, 17), 0.012, 1e-290, 1e290),
               np.dtype(np.float32): Precision(POWERS_64, (6, 7, 8, 9), 1e-5, 1e-35, 1e35)}
 EXTENDED = np.finfo(np.longdouble).nmant >= 63    # not so on every machine
 

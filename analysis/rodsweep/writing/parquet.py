@@ -7,6 +7,8 @@ https://github.com/apache/parquet-format.
 """
 
 import gzip
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,17 +52,17 @@ def write(out, table, names, blocks):
     kinds = {name: Kind.of(table.dtype(name)) for name in names}
     out.write(MAGIC)
     at, groups, total = len(MAGIC), [], 0
-    for group in _gathered(blocks):
-        rows = sum(len(block[names[0]]) for block in group)
-        begin, chunks = at, []
-        for name in names:
-            pages, chunk = _chunk(name, kinds[name], [block[name] for block in group], at)
-            out.write(pages)
-            at += len(pages)
-            chunks.append(chunk)
-        # RowGroup
-        groups.append([(1, ["struct"], chunks), (2, "i64", at - begin), (3, "i64", rows)])
-        total += rows
+    with ThreadPoolExecutor(os.cpu_count()) as pool:    # compressing is most of the work, and leaves Python alone
+        for group in _gathered(blocks):
+            begin, chunks = at, []
+            made = pool.map(lambda name: _pages(kinds[name], [block[name] for block in group]), names)
+            for name, pages in zip(names, made):
+                out.write(pages.data)
+                chunks.append(_chunk(name, kinds[name], pages, at))
+                at += len(pages.data)
+            # RowGroup
+            groups.append([(1, ["struct"], chunks), (2, "i64", at - begin), (3, "i64", pages.rows)])
+            total += pages.rows
     footer = _footer(table, names, kinds, groups, total)
     out.write(footer + len(footer).to_bytes(4, "little") + MAGIC)
     return total
@@ -89,28 +91,39 @@ def _footer(table, names, kinds, groups, rows):
                    (5, ["struct"], metadata), (6, "text", "rodsweep")])
 
 
-def _chunk(name, kind, columns, at):
-    """(pages, ColumnChunk) of a column in a row group that begins at byte `at` of the file."""
+@dataclass(frozen=True)
+class Pages:
+    """A column in a row group."""
+    data: bytes        # the page with its dictionary, if any, before it
+    dictionary: int    # bytes of that
+    raw: int           # all bytes before compression
+    rows: int
+    encoding: int
+
+
+def _pages(kind, columns):
     values, index = _joined(columns)
-    there = ~absent(values)[index]
-    dictionary, codes = _coded(kind, values, index[there])
-    levels = _levels(there)
-    pages, raw = b"", 0
-    if dictionary is not None:
-        count, data = dictionary
-        pages, raw = _page(DICTIONARY_PAGE, data, [(1, "i32", count), (2, "i32", PLAIN)])
-        width = codes.dtype.itemsize
-        body = bytes([8 * width]) + varint(-(-len(codes) // 8) << 1 | 1) + codes.tobytes() + bytes(-len(codes) % 8 * width)
+    there = ~_taken(absent(values), index)
+    dictionary, codes = _coded(kind, values, index, there)
+    data, raw = b"", 0
+    if dictionary is None:
+        encoding, body = PLAIN, _taken(values, index)[there].astype(kind.stored).tobytes()
     else:
-        body = values[index[there]].astype(kind.stored).tobytes()
-    encoding = PLAIN if dictionary is None else RLE_DICTIONARY
-    page, size = _page(DATA_PAGE, levels + body, [(1, "i32", len(there)), (2, "i32", encoding), (3, "i32", RLE),
-                                                  (4, "i32", RLE)])
+        encoding, (count, entries), width = RLE_DICTIONARY, dictionary, codes.dtype.itemsize
+        data, raw = _page(DICTIONARY_PAGE, entries, [(1, "i32", count), (2, "i32", PLAIN)])
+        body = bytes([8 * width]) + varint(-(-len(codes) // 8) << 1 | 1) + codes.tobytes() + bytes(-len(codes) % 8 * width)
+    page, size = _page(DATA_PAGE, _levels(there) + body, [(1, "i32", len(there)), (2, "i32", encoding), (3, "i32", RLE),
+                                                          (4, "i32", RLE)])
+    return Pages(data + page, len(data), raw + size, len(there), encoding)
+
+
+def _chunk(name, kind, pages, at):
+    """ColumnChunk of pages that begin at byte `at` of the file."""
     # ColumnMetaData
-    metadata = [(1, "i32", kind.physical), (2, ["i32"], sorted({PLAIN, RLE, encoding})), (3, ["text"], [name]),
-                (4, "i32", GZIP), (5, "i64", len(there)), (6, "i64", raw + size), (7, "i64", len(pages) + len(page)),
-                (9, "i64", at + len(pages)), (11, "i64", at if pages else None)]
-    return pages + page, [(2, "i64", at), (3, "struct", metadata)]
+    metadata = [(1, "i32", kind.physical), (2, ["i32"], sorted({PLAIN, RLE, pages.encoding})), (3, ["text"], [name]),
+                (4, "i32", GZIP), (5, "i64", pages.rows), (6, "i64", pages.raw), (7, "i64", len(pages.data)),
+                (9, "i64", at + pages.dictionary), (11, "i64", at if pages.dictionary else None)]
+    return [(2, "i64", at), (3, "struct", metadata)]
 
 
 def _page(kind, data, header):
@@ -122,7 +135,9 @@ def _page(kind, data, header):
 
 
 def _joined(columns):
-    """Values that all columns index, each array once, and the index of every row."""
+    """Values of all columns, each array once, and what index every row has in them; None: its own."""
+    if all(column.index is None for column in columns) and len({id(column.values) for column in columns}) == len(columns):
+        return np.concatenate([column.values for column in columns]), None
     arrays, offsets, index, size = [], {}, [], 0
     for column in columns:
         values = column.values
@@ -135,28 +150,39 @@ def _joined(columns):
     return np.concatenate(arrays), np.concatenate(index)
 
 
-def _coded(kind, values, index):
-    """((number of entries, their bytes), code of every row) where that is smaller than the values, else (None, None)."""
-    used = np.zeros(len(values), dtype=bool)
-    used[index] = True
-    entries = values[used]
-    if kind.physical == TEXT:
-        distinct, which = np.unique(entries.astype(str), return_inverse=True)
-        texts = [text.encode() for text in distinct.tolist()]
-        data = b"".join(len(text).to_bytes(4, "little") + text for text in texts)
-    elif values.dtype.kind in "iu" and len(entries) and int(entries.max()) - int(entries.min()) < FEW:
-        low = int(entries.min())
-        data = np.arange(low, int(entries.max()) + 1).astype(kind.stored).tobytes()
-        which = entries.astype(np.int64) - low
-    else:
-        data, which = entries.astype(kind.stored).tobytes(), np.arange(len(entries))
-    count = len(texts) if kind.physical == TEXT else len(data) // np.dtype(kind.stored).itemsize
-    width = next(size for size in (1, 2, 4) if count <= 1 << 8 * size)
-    if kind.physical != TEXT and len(data) + len(index) * width >= len(index) * np.dtype(kind.stored).itemsize:
+def _taken(values, index):
+    return values if index is None else values[index]
+
+
+def _coded(kind, values, index, there):
+    """((number of entries, their bytes), code of every row that is there) where this is smaller than the values; else
+    (None, None)."""
+    rows = int(there.sum())
+    if kind.physical != TEXT and values.dtype.kind in "iu" and rows:
+        low, high = int(values.min()), int(values.max())
+        if high - low < FEW:
+            entries, codes, count = np.arange(low, high + 1), values.astype(np.int64) - low, high - low + 1
+            return _smaller(kind, entries.astype(kind.stored).tobytes(), count, codes, index, there)
+    if index is None and kind.physical != TEXT:
         return None, None
-    code = np.zeros(len(values), dtype=f"<u{width}")
-    code[used] = which
-    return (count, data), code[index]
+    used = np.zeros(len(values), dtype=bool)
+    used[_taken(np.arange(len(values)), index)[there]] = True
+    codes = np.zeros(len(values), dtype=np.int64)
+    if kind.physical != TEXT:
+        entries = values[used]
+        codes[used] = np.arange(len(entries))
+        return _smaller(kind, entries.astype(kind.stored).tobytes(), len(entries), codes, index, there)
+    distinct, codes[used] = np.unique(values[used].astype(str), return_inverse=True)
+    texts = [text.encode() for text in distinct.tolist()]
+    return _smaller(kind, b"".join(len(text).to_bytes(4, "little") + text for text in texts), len(texts), codes, index, there)
+
+
+def _smaller(kind, entries, count, codes, index, there):
+    width = next(size for size in (1, 2, 4) if count <= 1 << 8 * size)
+    rows = int(there.sum())
+    if kind.physical != TEXT and len(entries) + rows * width >= rows * np.dtype(kind.stored).itemsize:
+        return None, None
+    return (count, entries), _taken(codes.astype(f"<u{width}"), index)[there]
 
 
 def _levels(there):
