@@ -7,8 +7,8 @@
 
 The first columns say which task, with the parameters that the job sweeps. Tasks that are not complete are left out;
 those that failed are in it with their outcome. What was not measured or not reached is an empty field, in Parquet null.
-Parquet keeps units and meanings, for every column NAME under the keys NAME.unit and NAME.meaning of the file's metadata.
-Rows are written block by block: a file of any size needs little memory.
+Parquet keeps units and meanings: of a column NAME under the keys NAME.unit and NAME.meaning of the file's metadata. Rows
+are written block by block: a file of any size needs little memory.
 """
 
 import contextlib

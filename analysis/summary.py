@@ -195,16 +195,12 @@ def _titled(block, counts):
     return ([], title) if len(title) <= TITLE_WIDTH else ([title], "")
 
 
-COLUMNS = ("scene", "settings", "newton", "quantity", "guess", "tolerance", "value", "low", "high", "simulations",
-           "unreached_solves")
-
-
 def write_csv(file, sims, census, records):
     """The first lines count the tasks."""
     counts = {"tasks": census.total, "tasks_ok": census.ok, "tasks_pending": census.pending,
               **{f"tasks_{outcome}": count for outcome, count in sorted(census.failed.items())},
               "tasks_timed_oversubscribed": int(bool(remarks.timing_warning(file, sims.tasks())))}
-    texts.write_csv(sys.stdout, COLUMNS,
+    texts.write_csv(sys.stdout, blocks.COLUMNS,
                     [{"quantity": name, "value": count} for name, count in counts.items()] + records)
 
 

@@ -1,9 +1,9 @@
 """A sweep's results as pandas frames and xarray datasets, which are imported when they are first needed.
 
-Rows of tasks that are not complete are never handed out; `missing` says how many there are. What was not measured or not
-reached is NaN, so counts that may be missing are floating-point numbers. Units and meanings are those of the file: in the
-`attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "missing": ...}) and of every variable of a dataset
-("units", "long_name").
+Rows of tasks that are not complete are never handed out; `missing` says how many there are. What was not measured or
+not reached is NaN, so counts that may be missing are floating-point numbers. Units and meanings are those of the file:
+in the `attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "missing": ...}) and of every variable of a
+dataset ("units", "long_name").
 """
 
 import importlib
@@ -31,7 +31,7 @@ class Results:
         kind = as_text(self.file.h5.attrs.get("kind", "sweep"))
         if kind != "sweep":
             self.close()
-            raise SweepFileError(f"{self.file.path} is a {kind}, not the results of a sweep; read its /systems with h5py")
+            raise SweepFileError(f"{self.file.path} is a {kind}, not the results of a sweep; h5py reads its /systems")
 
     def __enter__(self):
         return self
@@ -102,28 +102,28 @@ class Results:
         of_tasks = [*tidy.OF_TASKS, *self.file.parameters]
         usual = [name for name in table.default_names() if name in self.file.parameters or name == "outcome"]
         if columns is not None:
-            for name in columns:
+            for name in _listed(columns):
                 if name not in (*measured, *of_tasks):
                     raise not_found("dataset or parameter", name, (*measured, *of_tasks))
-            usual, measured = ([name for name in columns if name in known] for known in (of_tasks, measured))
+            usual, measured = ([name for name in _listed(columns) if name in known] for known in (of_tasks, measured))
         owners, guesses, tolerances, found = table.arrays(measured, tests)
         return self._dataset(table, owners, guesses, tolerances, found, usual)
 
     def summary(self, by=None, newton="first", where=()):
-        """The numbers of `rodsweep-summary` with their 95 % intervals: CG ratios, speedups, times, how the steps went; a row
-        per number. `by`: a parameter by whose values they are split. `newton`: "first" or "all" Newton iterations."""
+        """The numbers of `rodsweep-summary` with their 95 % intervals: CG ratios, speedups, times, how the steps went; a
+        row per number. `by`: a parameter by whose values they are split. `newton`: "first" or "all" iterations."""
         if newton not in measures.NEWTON:
             raise UserError(f"newton={newton!r}: choose one of {', '.join(measures.NEWTON)}")
         sims = measures.simulations(self.file, self.file.select(_listed(where)))
         if by is not None and len(sims):
             sims = sims.subset(groups.applicable(self.file, sims, by, without=True))
-        guesses, tolerances = range(len(self.file.guesses)), range(len(self.file.tolerances))
-        records = []
+        guesses, tolerances = list(range(len(self.file.guesses))), range(len(self.file.tolerances))
+        own, records = [] if by is None else [by], []
         for block in blocks.blocks(self.file, sims, by, newton):
-            own = {} if by is None else {by: block.settings[by]}
-            records += [{**own, **record} for record in blocks.records(self.file, block, list(guesses), tolerances, newton)]
-        frame = _pandas().DataFrame(records).replace("", np.nan)
-        if by in frame and self.file.parameter(by).numeric:
+            settings = {name: block.settings[name] for name in own}
+            records += [settings | record for record in blocks.records(self.file, block, guesses, tolerances, newton)]
+        frame = _pandas().DataFrame(records, columns=[*own, *blocks.COLUMNS]).replace("", np.nan)
+        if by is not None and self.file.parameter(by).numeric:
             frame[by] = _pandas().to_numeric(frame[by])
         frame.attrs["missing"] = self.missing
         return frame
@@ -137,7 +137,7 @@ class Results:
 
     def _asked(self, level, columns, where):
         table = self._table(level)
-        names = table.default_names() if columns is None else list(columns)
+        names = table.default_names() if columns is None else _listed(columns)
         table.check(names)
         return table, names, [table.condition(text) for text in _listed(where)]
 
@@ -176,7 +176,8 @@ class Results:
                        for name in dict.fromkeys(["task", "sample", *parameters])}
         if table.by_guess:
             coordinates["guess"] = variable("guess", ("guess",), table.labels[guesses])
-            coordinates[TOLERANCE] = (TOLERANCE, self.file.tolerances[tolerances], {"long_name": table.about("tolerance")[1]})
+            _, values, attributes = variable("tolerance", (), self.file.tolerances[tolerances])
+            coordinates[TOLERANCE] = (TOLERANCE, values, attributes)
         variables = {}
         for name, values in found.items():
             axes = tuple(TOLERANCE if axis == "tolerance" else axis for axis in table.shape[name])
@@ -216,8 +217,8 @@ def _present(values):
     return np.where(values == -1, np.nan, values) if values.dtype.kind == "i" and (values == -1).any() else values
 
 
-def _listed(where):
-    return [where] if isinstance(where, str) else list(where)
+def _listed(texts):
+    return [texts] if isinstance(texts, str) else list(texts)
 
 
 def _pandas():

@@ -1,4 +1,4 @@
-"""A reader of such Parquet files as rodsweep.writing.parquet writes, from the format's description alone: for its tests."""
+"""A reader of the Parquet files that rodsweep.writing.parquet writes, from the format's description: for its tests."""
 
 import gzip
 
@@ -56,8 +56,8 @@ class Thrift:
 
 
 class ParquetFile:
-    """columns: {name: list with None for null}; schema: {name: SchemaElement}; metadata: {key: value}; groups: rows of each;
-    dictionaries: names of columns with one."""
+    """columns: {name: list with None for null}; schema: {name: SchemaElement}; metadata: {key: value}; groups: rows of
+    each; dictionaries: names of columns with one."""
 
     def __init__(self, path):
         with open(path, "rb") as file:

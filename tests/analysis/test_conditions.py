@@ -1,4 +1,4 @@
-"""--select, export.py --where and rodsweep.open() read conditions as tests/conditions.json says, on tasks and on rows."""
+"""--select, export.py --where and rodsweep.open() read conditions as tests/conditions.json says, of tasks and rows."""
 
 import os
 import tempfile

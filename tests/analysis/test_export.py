@@ -69,7 +69,8 @@ class Export(Scripts):
         self.assertEqual({row["guess"] for row in rows}, {"previous", "quadratic"})
         self.assertEqual(self.rows("--where", "outcome=diverged"), [])
         tolerances = self.rows("--where", "tolerance<=1e-3", "--where", "guess!=zero", "--where", "iterations_sum>=100")
-        self.assertEqual({row["tolerance"] for row in tolerances}, {"0.001", "0.0001", "1e-05", "1e-06", "1e-07", "1e-08"})
+        self.assertEqual({row["tolerance"] for row in tolerances},
+                         {"0.001", "0.0001", "1e-05", "1e-06", "1e-07", "1e-08"})
         self.assertGreaterEqual(min(int(row["iterations_sum"]) for row in tolerances), 100)
         self.refused("export.py", "sweep.h5", "--where", "guess=quadratc", words="did you mean quadratic?")
 
@@ -118,7 +119,7 @@ class Export(Scripts):
         self.refused("export.py", "sweep.h5", "--columns", "iterationssum", words="did you mean iterations_sum?")
         self.refused("export.py", "sweep.h5", "--columns", "task,task", words="a column is named twice")
         self.refused("export.py", "sweep.h5", "--where", "newton", words="write COLUMN=VALUE")
-        self.refused("export.py", "sweep.h5", "--where", "sample=x", "-o", "x.csv", words='sample holds numbers, and "x" is none')
+        self.refused("export.py", "sweep.h5", "--where", "sample=x", "-o", "x.csv", words='numbers, and "x" is none')
         self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("x.csv")], [])
         self.refused("export.py", "sweep.h5", "--columns", "task", "-o", "none/out.csv", words="No such file")
         self.assertIn("iterations_sum\n", self.run_script("export.py", "sweep.h5", "--list").stdout)

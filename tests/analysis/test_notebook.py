@@ -1,4 +1,4 @@
-"""analysis/example.ipynb runs as it stands, on a planted file, and shows what was planted; it is kept without outputs."""
+"""analysis/example.ipynb runs as it stands, on a planted file, and shows what was planted; it has no outputs."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""analysis/pyproject.toml: nothing of the folder is left out, the version is the program's, and what pip installs works."""
+"""analysis/pyproject.toml: nothing is left out, the version is the program's, and what pip installs works."""
 
 import importlib.util
 import os
@@ -37,7 +37,8 @@ class Package(unittest.TestCase):
     def test_what_pip_installs_works_away_from_here(self):
         with tempfile.TemporaryDirectory() as folder:
             source, installed = os.path.join(folder, "analysis"), os.path.join(folder, "installed")
-            shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns("results", "__pycache__", "build", "*.egg-info"))
+            left_out = shutil.ignore_patterns("results", "__pycache__", "build", "*.egg-info")
+            shutil.copytree(ROOT, source, ignore=left_out)
             subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-index",
                             "--no-deps", "--root-user-action=ignore", "--target", installed, source], check=True,
                            stdin=subprocess.DEVNULL)

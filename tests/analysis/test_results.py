@@ -1,4 +1,4 @@
-"""rodsweep.open(): frames, blocks and datasets against the planted file; units, what is missing, refusals in plain words."""
+"""rodsweep.open(): frames, blocks and datasets against the planted file; units, what is missing, plain refusals."""
 
 import os
 import subprocess
@@ -25,7 +25,8 @@ class Opened(unittest.TestCase):
 
     def open(self, **settings):
         self.path = os.path.join(self.folder, f"{len(os.listdir(self.folder))}.h5")    # the one before may be open
-        settings = {"plant": PLANT, "counts_in_rows": True, "failed": {3: "diverged"}, "pending": (4,), "steps": 2, **settings}
+        settings = {"plant": PLANT, "counts_in_rows": True, "failed": {3: "diverged"}, "pending": (4,), "steps": 2,
+                    **settings}
         synthetic.Sweep(**settings).write(self.path)
         with synthetic.h5py.File(self.path, "r+") as h5:
             h5["steps/length_drift"].attrs.update({"unit": "1", "meaning": "relative change of the length"})
@@ -64,9 +65,11 @@ class Frames(Opened):
 
     def test_columns_and_conditions_are_chosen(self):
         results = self.open()
-        solves = results.solves(["guess", "step", "iterations_1e-2"], ["newton=0", "guess=zero,quadratic", "scene.segments>=20"])
+        solves = results.solves(["guess", "step", "iterations_1e-2"],
+                                ["newton=0", "guess=zero,quadratic", "scene.segments>=20"])
         self.assertEqual(list(solves), ["guess", "step", "iterations_1e-2"])
         self.assertEqual(len(solves), 15 * 2 * 2)
+        self.assertEqual(results.steps("task", "task<2").task.tolist(), [0, 0, 1, 1])
         self.assertEqual(len(results.tasks(where="task=99")), 0)
         self.assertEqual(list(results.tasks(where="task=99")), list(results.tasks()))
 
@@ -92,6 +95,7 @@ class Frames(Opened):
         results = self.open(pending=range(24), failed={})
         for frame in (results.tasks(), results.solves(), results.steps(), results.summary()):
             self.assertEqual((len(frame), frame.attrs["missing"]), (0, "24 pending of 24 tasks"))
+        self.assertIn("quantity", results.summary(by="scene.segments"))
         self.assertEqual(list(results.blocks("solves")), [])
         self.assertEqual(results.dataset("solves").sizes["row"], 0)
 
@@ -133,7 +137,8 @@ class Refusals(Opened):
 
     def test_what_is_no_sweep_is_refused(self):
         self.refused("there is no such file", lambda: rodsweep.open("none.h5"))
-        for kind, words in (("model", "of kind model without tasks"), ("dataset", "is a dataset, not the results of a sweep")):
+        for kind, words in (("model", "of kind model without tasks"),
+                            ("dataset", "is a dataset, not the results of a sweep")):
             self.open().close()
             with synthetic.h5py.File(self.path, "r+") as h5:
                 h5.attrs["kind"] = kind

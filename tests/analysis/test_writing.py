@@ -1,5 +1,5 @@
-"""CSV and Parquet of export.py: numbers to the last digit, nulls, units, and the same rows in either; read back by a reader
-of ours and, where npm can be reached, by another."""
+"""CSV and Parquet of export.py: numbers to the last digit, nulls, units, and the same rows in either; read back by a
+reader of ours and, where npm can be reached, by another."""
 
 import csv
 import io
@@ -20,7 +20,8 @@ READER = "hyparquet@1.31.5"    # fetched by the test, which is skipped where it 
 READ = """
 import { readFileSync } from "fs"; import { gunzipSync } from "zlib";
 import { parquetReadObjects, parquetMetadata } from "hyparquet";
-const bytes = readFileSync(process.argv[2]), file = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length);
+const bytes = readFileSync(process.argv[2]);
+const file = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length);
 const rows = await parquetReadObjects({ file, compressors: { GZIP: (page) => gunzipSync(page) } });
 const metadata = parquetMetadata(file).key_value_metadata;
 console.log(JSON.stringify({ rows, metadata }, (_, value) => typeof value == "bigint" ? Number(value) : value));
@@ -75,7 +76,8 @@ class Fields(unittest.TestCase):
     def test_whole_numbers_of_any_range_are_written_and_those_that_are_missing_left_out(self):
         near, far = np.array([3, -1, 0, 7], dtype=np.int16), np.array([2 ** 62, -1, -(2 ** 62), 0])
         _, rows = self.written(near=near, far=far, unsigned=np.array([255, 0, 1, 2], dtype=np.uint8))
-        self.assertEqual(rows[1:], [["3", str(2 ** 62), "255"], ["", "", "0"], ["0", str(-2 ** 62), "1"], ["7", "0", "2"]])
+        self.assertEqual(rows[1:], [["3", str(2 ** 62), "255"], ["", "", "0"], ["0", str(-2 ** 62), "1"],
+                                    ["7", "0", "2"]])
 
 
 def same(text, value):

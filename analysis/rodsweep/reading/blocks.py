@@ -7,6 +7,9 @@ import numpy as np
 from rodsweep.reading import groups, intervals, measures, timings
 
 TIMES = ("assemble_us", "guess_us", "cg_us", "direct_us")
+# The fields of records().
+COLUMNS = ("scene", "settings", "newton", "quantity", "guess", "tolerance", "value", "low", "high", "simulations",
+           "unreached_solves")
 # What stands beside the CG ratio of first or of all Newton iterations: of which, and what is counted.
 BESIDE = {"first": {"products": ("first", "matvecs"), "all": ("all", "iterations"), "all_products": ("all", "matvecs")},
           "all": {"products": ("all", "matvecs")}}

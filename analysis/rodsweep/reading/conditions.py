@@ -6,10 +6,10 @@
   < <= > >=    numbers
   ~            texts that contain the value
 
-Numbers are equal up to a relative 1e-9, whatever the operator. A value that is not there (NaN, an empty text, -1 of whole
-numbers) meets no condition. runner/command/query_condition.hpp reads the same language; tests/conditions.json has cases
-that both must meet. Raises KeyNotFound: an unknown column or word, with the nearest known one; a number or an operator
-that does not fit the column.
+Numbers are equal up to a relative 1e-9, whatever the operator. A value that is not there (NaN, an empty text, -1 of
+whole numbers) meets no condition. runner/command/query_condition.hpp reads the same language; tests/conditions.json has
+cases that both must meet. Raises KeyNotFound: an unknown column or word, with the nearest known one; a number or an
+operator that does not fit the column.
 """
 
 import re

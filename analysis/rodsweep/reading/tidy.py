@@ -1,8 +1,8 @@
 """Flat columns of a results file, block by block: what export.py writes and rodsweep.open() hands out as frames.
 
 A row of the level `tasks` is one task x guess x tolerance, of `solves` one solve x guess (a column per tolerance of
-what has that axis), of `steps` one step. Every dataset of the level is a column by its name, with those of /timing after
-them, so that columns of later versions come along. Sentinels of whole numbers (-1: not reached, not run), NaN and empty
+what has that axis), of `steps` one step. Every dataset of the level is a column by its name, with those of /timing
+after them, so that columns of later versions come along. Sentinels of whole numbers (-1: not reached, not run), NaN and empty
 texts stand for what is not there. Blocks are of at most BLOCK_ROWS rows of the file, whatever its size.
 """
 
@@ -24,7 +24,7 @@ COMPONENTS = ("x", "y", "z")
 OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # known of every task without reading
 OWN_MEANING = {"task": "number of the task: its row in /tasks", "guess": "label of the initial guess",
                "tolerance": "what CG's residual is brought to, relative to the right-hand side's"}
-COUNTED = ("step", "newton", "rod", "newton_iterations")    # whole numbers of which none is missing in a row that was reached
+COUNTED = ("step", "newton", "rod", "newton_iterations")    # whole numbers that no row which was reached lacks
 MARKS = ("newton", "newton_iterations", "time_s")    # the first of these that there is says which rows were reached
 
 
@@ -115,7 +115,7 @@ class Tidy:
 
     def default_names(self):
         """All but the parameters that are the same for every task."""
-        fixed = {name for name, p in self.file.parameters.items() if name not in self.swept and name not in ("scene.type", "guess")}
+        fixed = set(self.file.parameters) - {*self.swept, "scene.type", "guess"}
         return [name for name in self.names if name not in fixed]
 
     def _label(self, t):
@@ -151,7 +151,7 @@ class Tidy:
                                        for name in self.names})
 
     def blocks(self, names, where=()):
-        """Yields {name: Column} of the columns `names` where all of the conditions are met, in the order of the file."""
+        """Yields {name: Column} of the columns `names` where all of the conditions are met, in the file's order."""
         tasks, guesses, tolerances, conditions_left = self._narrowed(where)
         needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
         guesses = guesses if self.by_guess else [None]
@@ -175,8 +175,8 @@ class Tidy:
         tasks, guesses, tolerances, conditions_left = self._narrowed(where)
         for condition in conditions_left:
             if self.shape.get(condition.column) != ():
-                raise KeyNotFound(f"{condition.text}: {condition.column} has a value for every guess or tolerance, which "
-                                  "chooses no rows; use where() of the dataset")
+                raise KeyNotFound(f"{condition.text}: {condition.column} has a value for every guess or tolerance, "
+                                  "which chooses no rows; use where() of the dataset")
         needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
         owners, found = [], {name: [] for name in names}
         for some, rows in self._row_blocks(tasks, self._paths(needed)):
@@ -192,7 +192,8 @@ class Tidy:
         if not owners:
             empty = {name: np.empty((0, *self.file.h5[self.datasets[name]].shape[1:])) for name in names}
             return np.empty(0, dtype=np.int64), guesses, tolerances, empty
-        return np.concatenate(owners), guesses, tolerances, {name: np.concatenate(parts) for name, parts in found.items()}
+        whole = {name: np.concatenate(parts) for name, parts in found.items()}
+        return np.concatenate(owners), guesses, tolerances, whole
 
     def _narrowed(self, where):
         """What conditions leave of tasks, guesses and tolerances, and those conditions that are on rows."""

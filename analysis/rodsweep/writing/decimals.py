@@ -1,7 +1,7 @@
 """Whole arrays of floating-point numbers as text: the shortest digits that give the same number, as str() writes them.
 
 A number a = x 10^(e - 16) with x in [1e16, 1e17) is scaled with a table of powers in extended precision, so that x is
-known to 0.011 of its last digit; of its roundings to 15, 16 and 17 digits the first that is nearer to x than half of the distance between
+known to 0.011; of its roundings to 15, 16 and 17 digits the first that is nearer to x than half of the distance between
 neighbours gives a back (of 15 digits zeros at the end are left out, which makes the shortest). float32 does the same in
 double precision, with 6 to 9 digits. Where x is too near to a border to say, and for the few numbers near the limits of
 their type, numpy's own, slower text is taken. A text is a row of bytes in which zeros are nothing: they are taken out
@@ -39,8 +39,8 @@ EXTENDED = np.finfo(np.longdouble).nmant >= 63    # not so on every machine
 
 EXPONENTS = np.array([f"e{k:+03d}" for k in range(-LARGEST_POWER, LARGEST_POWER + 1)], dtype=f"S{SUFFIX}")
 EXPONENTS = EXPONENTS.view(np.uint8).reshape(-1, SUFFIX)
-FOUR_DIGITS = np.frombuffer(b"".join(b"%04d" % k for k in range(10_000)), dtype=np.uint32)
-LAST_DIGITS = np.frombuffer(b"".join((b"%04d" % k).rstrip(b"0").ljust(4, b"\0") for k in range(10_000)), dtype=np.uint32)
+FOUR_DIGITS = np.array([b"%04d" % k for k in range(10_000)], dtype="S4").view(np.uint32)
+LAST_DIGITS = np.array([(b"%04d" % k).rstrip(b"0") for k in range(10_000)], dtype="S4").view(np.uint32)
 
 
 def text_bytes(values):

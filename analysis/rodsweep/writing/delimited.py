@@ -32,7 +32,7 @@ def write(out, names, blocks):
 
 
 def _neighbours(columns):
-    """(number of the first, index, columns) of columns beside each other with the same index, as those of tasks have."""
+    """(number of the first, index, columns) of neighbours that have the same index, as columns of tasks do."""
     begin = 0
     for k in range(1, len(columns) + 1):
         index = columns[begin][1]

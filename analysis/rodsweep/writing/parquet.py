@@ -1,9 +1,9 @@
 """Blocks of columns as a Parquet file, without a library: data pages of version 1 with a dictionary or plain, gzip.
 
-All columns are flat and optional: what is not there (NaN, -1 of whole numbers, an empty text) is null. A row group is of
-about GROUP_ROWS rows, a column in it one page, which has a dictionary where that is smaller. Unit and meaning of a column
-NAME are the file's metadata NAME.unit and NAME.meaning. Numbers in comments are those of the format's parquet.thrift,
-https://github.com/apache/parquet-format.
+All columns are flat and optional: what is not there (NaN, -1 of whole numbers, an empty text) is null. A row group is
+of about GROUP_ROWS rows, a column in it one page, which has a dictionary where that is smaller. Unit and meaning of a
+column NAME are the file's metadata NAME.unit and NAME.meaning. The structures and the numbers of their fields are those
+of the format's parquet.thrift, https://github.com/apache/parquet-format.
 """
 
 import gzip
@@ -48,7 +48,7 @@ class Kind:
 
 
 def write(out, table, names, blocks):
-    """Writes all blocks to a binary file; returns how many rows there were. `table`: the Tidy whose columns they are."""
+    """Writes all blocks to a binary file; returns how many rows there were. `table`: the Tidy that they are of."""
     kinds = {name: Kind.of(table.dtype(name)) for name in names}
     out.write(MAGIC)
     at, groups, total = len(MAGIC), [], 0
@@ -84,8 +84,8 @@ def _footer(table, names, kinds, groups, rows):
     schema = [[(4, "text", "rows"), (5, "i32", len(names))]]    # SchemaElement, of the root and of the columns
     schema += [[(1, "i32", kinds[name].physical), (3, "i32", OPTIONAL), (4, "text", name),
                 (6, "i32", kinds[name].converted), (10, "struct", kinds[name].logical)] for name in names]
-    about = {f"{name}.{word}": said for name in names for word, said in zip(("unit", "meaning"), table.about(name)) if said}
-    metadata = [[(1, "text", key), (2, "text", value)] for key, value in about.items()]
+    about = [(f"{name}.{word}", said) for name in names for word, said in zip(("unit", "meaning"), table.about(name))]
+    metadata = [[(1, "text", key), (2, "text", said)] for key, said in about if said]    # KeyValue
     # FileMetaData
     return struct([(1, "i32", 1), (2, ["struct"], schema), (3, "i64", rows), (4, ["struct"], groups),
                    (5, ["struct"], metadata), (6, "text", "rodsweep")])
@@ -111,7 +111,8 @@ def _pages(kind, columns):
     else:
         encoding, (count, entries), width = RLE_DICTIONARY, dictionary, codes.dtype.itemsize
         data, raw = _page(DICTIONARY_PAGE, entries, [(1, "i32", count), (2, "i32", PLAIN)])
-        body = bytes([8 * width]) + varint(-(-len(codes) // 8) << 1 | 1) + codes.tobytes() + bytes(-len(codes) % 8 * width)
+        run = varint(-(-len(codes) // 8) << 1 | 1)    # of whole eights
+        body = bytes([8 * width]) + run + codes.tobytes() + bytes(-len(codes) % 8 * width)
     page, size = _page(DATA_PAGE, _levels(there) + body, [(1, "i32", len(there)), (2, "i32", encoding), (3, "i32", RLE),
                                                           (4, "i32", RLE)])
     return Pages(data + page, len(data), raw + size, len(there), encoding)
@@ -136,7 +137,8 @@ def _page(kind, data, header):
 
 def _joined(columns):
     """Values of all columns, each array once, and what index every row has in them; None: its own."""
-    if all(column.index is None for column in columns) and len({id(column.values) for column in columns}) == len(columns):
+    distinct = {id(column.values) for column in columns}
+    if len(distinct) == len(columns) and all(column.index is None for column in columns):
         return np.concatenate([column.values for column in columns]), None
     arrays, offsets, index, size = [], {}, [], 0
     for column in columns:
@@ -174,7 +176,8 @@ def _coded(kind, values, index, there):
         return _smaller(kind, entries.astype(kind.stored).tobytes(), len(entries), codes, index, there)
     distinct, codes[used] = np.unique(values[used].astype(str), return_inverse=True)
     texts = [text.encode() for text in distinct.tolist()]
-    return _smaller(kind, b"".join(len(text).to_bytes(4, "little") + text for text in texts), len(texts), codes, index, there)
+    entries = b"".join(len(text).to_bytes(4, "little") + text for text in texts)
+    return _smaller(kind, entries, len(texts), codes, index, there)
 
 
 def _smaller(kind, entries, count, codes, index, there):

@@ -1,7 +1,7 @@
 """Structures in Thrift's compact protocol, as Parquet's headers and footer are written.
 
-A structure is a list of fields (number, kind, value) in rising order of their numbers, those of value None left out; a kind
-is one of KINDS or a list of one, such as ["struct"].
+A structure is a list of fields (number, kind, value) in rising order of their numbers, those of value None left out; a
+kind is one of KINDS or a list of one, such as ["struct"].
 https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md
 """
 
