@@ -20,13 +20,4 @@ def planted(path):
             item = h5.create_dataset(f"tasks/parameters/{name}",
                                      data=np.array([absent if v is None else v for v in values], dtype=dtype))
             item.attrs.update({"unit": "", "meaning": f"the {name}", "swept": False})
-        _fix_lengths(h5)
-        h5.visititems(lambda _, item: _fix_lengths(item))
     return path
-
-
-def _fix_lengths(item):
-    """Texts of attributes as the program writes and wants them."""
-    for name, value in item.attrs.items():
-        if isinstance(value, str):
-            item.attrs[name] = np.bytes_(value or "1")

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
 
 #include "runner/command/query_condition.hpp"
 #include "runner/command/query_output.hpp"
@@ -67,6 +68,40 @@ TEST_CASE("numbers are compared, listed, and met up to rounding") {
   CHECK(file.matching("time.step_s=0.02001").empty());
   CHECK(file.matching("task=3") == Tasks{3});
   CHECK(file.matching("scene.gravity_m_s2.y=-9.81").size() == 6);
+}
+
+TEST_CASE("conditions are met and refused as the table says that the scripts of analysis/ are held to, too") {
+  std::ifstream stream(RODSWEEP_CONDITIONS);
+  const Json cases = Json::parse(stream);
+  const PartlyDone file;
+  {
+    const hdf5::File h5 = hdf5::open_file(file.path, H5F_ACC_RDWR);
+    for (const auto& [name, column] : cases["columns"].items()) {
+      const std::string kind = column.begin().key(), path = "/tasks/parameters/" + name;
+      const Json& values = column.begin().value();
+      std::vector<double> numbers;
+      std::vector<std::string> texts;
+      for (const Json& value : values) {
+        if (kind == "text") texts.push_back(value.is_null() ? "" : value.get<std::string>());
+        if (kind == "whole") numbers.push_back(value.is_null() ? -1 : value.get<double>());
+        if (kind == "real") numbers.push_back(value.is_null() ? std::nan("") : value.get<double>());
+      }
+      const hid_t number = kind == "whole" ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
+      hdf5::create_dataset(h5.id(), path, kind == "text" ? hdf5::text_type(32).id() : number, {values.size()});
+      if (kind == "text")
+        hdf5::write_texts(h5.id(), path, texts);
+      else
+        hdf5::write_all(h5.id(), path, numbers);
+    }
+  }
+  for (const auto& [text, tasks] : cases["met"].items()) {
+    INFO(text);
+    CHECK(file.matching(text) == tasks.get<Tasks>());
+  }
+  for (const auto& [text, words] : cases["refused"].items()) {
+    INFO(text);
+    CHECK_THAT(file.refusal(text), Contains(words.get<std::string>()));
+  }
 }
 
 TEST_CASE("texts are equal, different, or contain") {
