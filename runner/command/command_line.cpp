@@ -7,7 +7,9 @@
 #include <optional>
 #include <sstream>
 
+#include "runner/command/command_outline.hpp"
 #include "runner/command/completion.hpp"
+#include "runner/command/manual.hpp"
 #include "runner/job/job_schema.hpp"
 #include "runner/terminal/text.hpp"
 
@@ -45,9 +47,16 @@ constexpr const char* schema_help =
     "  rodsweep schema >schema.json";
 
 constexpr const char* completion_help =
-    "Commands, options, job files and results files after the Tab key.\n\n"
+    "Commands, options, job files and results files after the Tab key. `make install` puts all three where the shells\n"
+    "look for them; without:\n\n"
+    "  source <(rodsweep completion bash)                              in ~/.bashrc\n"
+    "  source <(rodsweep completion zsh)                               in ~/.zshrc, after compinit\n"
+    "  rodsweep completion fish >~/.config/fish/completions/rodsweep.fish";
+
+constexpr const char* manual_help =
+    "In the language of man(7), with all that the commands' own --help says.\n\n"
     "Example:\n"
-    "  source <(rodsweep completion bash)                              in ~/.bashrc";
+    "  rodsweep manual | man -l -";
 
 std::string with_exit_codes(const char* help) { return std::string(help) + "\n\n" + exit_codes; }
 
@@ -232,7 +241,7 @@ CLI::App* add(CLI::App& app, KeepOptions& keep) {
   command->footer(with_exit_codes(keep_help));
   command->add_option("COMMAND", keep.command, "After --: the run, as it would be typed, with mpirun")->required();
   command->add_option("--hosts", keep.hosts, "Start on the hosts of this file that answer: {hosts} in COMMAND")
-      ->type_name("FILE");
+      ->type_name("HOSTS");
   command
       ->add_option("--silence", keep.silence_s,
                    "End a sweep's start that shows no sign of life for so long; 0: never [300]")
@@ -298,7 +307,21 @@ Command parse_command_line(int argc, const char* const* argv) {
   CLI::App* completion = app.add_subcommand("completion", "Prints what a shell needs to complete this command line");
   completion->footer(completion_help);
   completion->require_subcommand(1);
-  completion->add_subcommand("bash", "For bash")->callback([&] { chosen = Answer{bash_completion(app)}; });
+  using Script = std::string(const CommandOutline&);
+  const auto offer_shell = [&](const char* shell, Script* script) {
+    completion->add_subcommand(shell, fmt::format("For {}", shell))->callback([&chosen, &app, script] {
+      chosen = Answer{script(outline_of(app))};
+    });
+  };
+  offer_shell("bash", bash_completion);
+  offer_shell("zsh", zsh_completion);
+  offer_shell("fish", fish_completion);
+  CLI::App* manual = app.add_subcommand("manual", "Prints the manual page");
+  manual->footer(manual_help);
+  manual->callback([&] {
+    const std::string versions = library_versions();
+    chosen = Answer{manual_page(outline_of(app), versions.substr(0, versions.find(';')))};
+  });
 
   try {
     app.parse(argc, argv);

@@ -321,7 +321,7 @@ class Output(Case):
         path = sweep()
         yield from ((), ("query", path), ("query", path, "--csv"), ("query", path, "--columns", "help"), ("status", path),
                     ("status", path, "--json"), ("info", path, "--job"), ("info", path, "--verify"),
-                    ("plan", "jobs/small.json"), ("validate", "jobs/small.json"), ("schema",), ("completion", "bash"),
+                    ("plan", "jobs/small.json"), ("validate", "jobs/small.json"), ("schema",), ("completion", "bash"), ("manual",),
                     ("--version",), ("--help",), ("run", "--help"))
 
     def without_reader(self, *words, of="stdout", **options):
@@ -371,29 +371,6 @@ class Output(Case):
         sweep()
         said = self.without_reader("run", "jobs/small.json", "-o", "unread.h5", of="stderr")
         self.assertIn("4 tasks: 4 ok", self.assert_exit(said, ALL_DONE))
-
-
-class Completion(Case):
-    def complete(self, *words):
-        """What the Tab key offers after these words, the last of them begun."""
-        script = 'source <("$RODSWEEP" completion bash); COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _rodsweep; ' \
-                 'printf "%s\\n" "${COMPREPLY[@]}"'
-        said = subprocess.run(["bash", "-c", script, "bash", "rodsweep", *words],
-                              capture_output=True, text=True)
-        self.assertEqual((said.returncode, said.stderr), (0, ""))
-        return said.stdout.split()
-
-    def test_commands_options_and_files(self):
-        for name in ("demo.json", "demo.h5", "notes.txt"):
-            open(name, "w", encoding="utf-8").close()
-        os.makedirs("deeper", exist_ok=True)
-        self.assertEqual(self.complete("re"), ["rerun"])
-        self.assertIn("query", self.complete(""))
-        self.assertEqual(self.complete("query", "--c"), ["--columns", "--csv"])
-        self.assertEqual(self.complete("run", "de"), ["demo.json", "deeper"])
-        self.assertEqual(self.complete("status", "de"), ["demo.h5", "deeper"])
-        self.assertEqual(self.complete("run", "demo.json", "-o", "de"), ["demo.h5", "deeper"])
-        self.assertEqual(self.complete("completion", ""), ["bash", "--help"])
 
 
 if __name__ == "__main__":

@@ -4,10 +4,12 @@
 #include <catch2/catch.hpp>
 
 #include "runner/command/command_line.hpp"
+#include "runner/command/manual.hpp"
 #include "runner/command/next_line.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;
+using Catch::Matchers::Matches;
 
 namespace {
 
@@ -55,7 +57,7 @@ TEST_CASE("the other commands take their options") {
   CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--verify"})).verify);
   CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--job"})).job);
   CHECK(answer({"--version"}).code == ExitCode::ok);
-  CHECK_THAT(answer({"--version"}).text, Catch::Matches("rodsweep [0-9.]+ \\(revision [^)]+\\)\n  [^]*HDF5[^]*\n"));
+  CHECK_THAT(answer({"--version"}).text, Matches("rodsweep [0-9.]+ \\(revision [^)]+\\)\n  [^]*HDF5[^]*\n"));
 }
 
 TEST_CASE("the commands on results files take their options") {
@@ -84,16 +86,33 @@ TEST_CASE("mistakes on the command line of results files are answered with exit 
   CHECK_THAT(answer({"rerun", "a.h5"}).text, Contains("TASK is required"));
   CHECK(answer({"rerun", "a.h5", "first"}).code == ExitCode::user_error);
   CHECK(answer({"rerun", "a.h5", "1", "--trajectory-every", "0"}).code == ExitCode::user_error);
-  CHECK(answer({"completion", "fish"}).code == ExitCode::user_error);
+  CHECK(answer({"completion", "tcsh"}).code == ExitCode::user_error);
 }
 
-TEST_CASE("completion knows every command and its options") {
-  const Answer script = answer({"completion", "bash"});
-  CHECK(script.code == ExitCode::ok);
-  for (const char* word : {"run", "plan", "validate", "status", "info", "query", "rerun", "pack", "schema"}) {
-    CAPTURE(word);
-    CHECK_THAT(script.text, Contains(std::string("    ") + word + ") words=\"--help"));
+TEST_CASE("completion and the manual know every command and its options") {
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    const Answer script = answer({"completion", shell});
+    CHECK(script.code == ExitCode::ok);
+    for (const char* command :
+         {"run", "keep", "plan", "validate", "status", "info", "query", "rerun", "pack", "merge"}) {
+      CAPTURE(shell, command);
+      CHECK_THAT(script.text, Contains(std::string(command) + ") ") || Contains(std::string("-a ") + command + " -d "));
+    }
+    CHECK_THAT(script.text, Contains("retry-failed"));
   }
+  const std::string manual = answer({"manual"}).text;
+  CHECK_THAT(manual, Matches("\\.TH RODSWEEP 1 \"\" \"rodsweep [0-9.]+\" [^]*"));
+  CHECK_THAT(manual, Contains(".SS merge\n\\fBrodsweep merge\\fR [\\fIOPTION\\fR]... \\fIFILE\\fR...\n"));
+  CHECK_THAT(manual, Contains(".TP\n\\fB\\-\\-watch\\fR [\\fISECONDS\\fR]\nSay it again"));
+  CHECK_THAT(manual, Contains(".SH EXIT STATUS\n.EX\n  0  all done\n"));
+}
+
+TEST_CASE("what troff would take for its own is escaped in the manual") {
+  const CommandOutline program{"p", "p: what\n.so /etc/passwd\n  'quoted' \\n ~^`-\n\nmore", "", {}, {}, {}};
+  CHECK_THAT(
+      manual_page(program, "p 1"),
+      Contains("\n.SH DESCRIPTION\n\\&.so /etc/passwd\n.PP\n.EX\n  \\(aqquoted\\(aq \\en \\(ti\\(ha\\(ga\\-\n.EE\n"
+               ".PP\nmore\n"));
 }
 
 TEST_CASE("mistakes on the command line are answered with exit code 2 and what is wrong") {
