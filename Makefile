@@ -9,7 +9,7 @@ CORES    := $(shell nproc)
 BUILD    ?= build
 PREFIX   ?= /usr/local
 PYTHON   := /usr/bin/python3
-BUILD_TYPE    ?= Release
+BUILD_TYPE    ?=
 PORTABLE      ?= 0
 WERROR        ?= 0
 SANITIZE      ?= 0
@@ -17,9 +17,10 @@ SKIP_PACKAGES ?= 0
 
 yes = $(filter-out 0 no off,$(1))
 packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt $(1))
-# $(call configure,FOLDER,OPTIONS): quiet unless it fails; a folder that exists keeps its generator.
-configure = log=$$(cmake -S . -B $(1) $$([ -e $(1)/CMakeCache.txt ] || echo -G Ninja) -DCMAKE_BUILD_TYPE=$(BUILD_TYPE) \
-  -DRODSWEEP_NATIVE=$(if $(call yes,$(PORTABLE)),OFF,ON) -DRODSWEEP_WERROR=$(if $(call yes,$(WERROR)),ON,OFF) $(2) 2>&1) \
+# $(call configure,PRESET,FOLDER): CMakePresets.json says how; quiet unless it fails; a folder that exists keeps its generator.
+configure = generator=$$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' $(2)/CMakeCache.txt 2>/dev/null) || true; \
+  log=$$(cmake --preset $(1) -B $(2) $${generator:+"-G$$generator"} $(if $(BUILD_TYPE),-DCMAKE_BUILD_TYPE=$(BUILD_TYPE)) \
+  $(if $(call yes,$(PORTABLE)),-DRODSWEEP_NATIVE=OFF) $(if $(call yes,$(WERROR)),-DRODSWEEP_WERROR=ON) 2>&1) \
   || { echo "$$log"; exit 1; }
 # $(call study,NAME): a job that is done is not run again, one that was stopped goes on.
 study = [ -e results/$(1).h5 ] && resume=--resume || resume=; \
@@ -34,7 +35,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo report studies variants ablation pictures test test-packages test-long test-arm bench sanitize schema docs format format-check tidy install clean
+.PHONY: help configure build demo report studies variants ablation pictures test test-packages test-long test-arm bench sanitize schema docs format format-check tidy install uninstall clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
@@ -47,20 +48,20 @@ help:
 	@echo 'make test-long     the slow physics and sweep tests'
 	@echo 'make test-arm      tests of the solver, but for CG, and the networks for 64-bit ARM, run in qemu, in $(BUILD)-arm/'
 	@echo 'make bench         build and run the benchmarks'
-	@echo 'make install       PREFIX=$(PREFIX): program, jobs and analysis scripts'
+	@echo 'make install       PREFIX=$(PREFIX): program, jobs, analysis scripts, manual page, completion; make uninstall'
 	@echo 'make build         build only, into $(BUILD)/'
 	@echo 'make sanitize      unit tests under the address and undefined-behaviour sanitizers, in $(BUILD)-sanitize/'
 	@echo 'make schema        refresh jobs/schema.json and docs/keys.md after a change of the keys of jobs'
 	@echo 'make docs          the pages as a site, $(BUILD)/site/index.html'
 	@echo 'make format        clang-format the tree; make format-check only looks'
 	@echo 'make tidy          clang-tidy'
-	@echo 'make clean         remove $(BUILD)/, $(BUILD)-sanitize/, -tidy/ and -arm/; results stay'
+	@echo 'make clean         remove $(BUILD)/ and those beside it (-sanitize/, -tidy/, ...); results stay'
 	@echo
 	@echo 'PORTABLE=1 builds for any processor of this kind, WERROR=1 makes warnings errors, SKIP_PACKAGES=1 leaves apt-get alone.'
 
 configure:
-	@$(call packages,build)
-	@$(call configure,$(BUILD))
+	@$(call packages,build run)
+	@$(call configure,default,$(BUILD))
 
 build: configure
 	@cmake --build $(BUILD) -j $(CORES) --target rodsweep
@@ -126,7 +127,7 @@ pictures: build
 # others, so that they are built once, as in .ci/run.
 test: configure test-packages $(if $(call yes,$(SANITIZE)),sanitize)
 	@cmake --build $(BUILD) -j $(CORES) $(if $(call yes,$(SANITIZE)),--target program_tests)
-	@ctest --test-dir $(BUILD) -j $$((2 * $(CORES))) -LE '$(if $(call yes,$(SANITIZE)),unit|)long' --output-on-failure --no-tests=error
+	@ctest --preset $(if $(call yes,$(SANITIZE)),program,default) --test-dir $(BUILD) -j $$((2 * $(CORES)))
 
 # Beside those of the build, so that nobody needs a browser to see the demo.
 test-packages:
@@ -134,27 +135,26 @@ test-packages:
 
 test-long: configure
 	@cmake --build $(BUILD) -j $(CORES)
-	@ctest --test-dir $(BUILD) -j $(CORES) -L long --output-on-failure --no-tests=error
+	@ctest --preset long --test-dir $(BUILD) -j $(CORES)
 
 # Two doubles in a register, another rounding and another compiler's code: what `make test` on x86 doesn't see.
 test-arm:
 	@$(call packages,build arm)
-	@$(call configure,$(BUILD)-arm,--toolchain cmake/aarch64.cmake -DRODSWEEP_PROGRAM=OFF -DRODSWEEP_NATIVE=OFF)
+	@$(call configure,arm,$(BUILD)-arm)
 	@cmake --build $(BUILD)-arm -j $(CORES)
-	@ctest --test-dir $(BUILD)-arm -j $(CORES) -L unit --output-on-failure --no-tests=error
+	@ctest --preset arm --test-dir $(BUILD)-arm -j $(CORES)
 
 # The bench programs are outside of `all`: only this target builds and runs them.
 bench:
-	@$(call packages,build develop)
-	@$(call configure,$(BUILD),-DRODSWEEP_BENCH=ON)
+	@$(call packages,build run develop)
+	@$(call configure,bench,$(BUILD))
 	@cmake --build $(BUILD) -j $(CORES) --target benchmarks </dev/null
 
-sanitize: BUILD_TYPE = Debug
 sanitize:
-	@$(call packages,build)
-	@$(call configure,$(BUILD)-sanitize,-DRODSWEEP_SANITIZE=ON -DCMAKE_CXX_FLAGS_DEBUG='-Og -g1')
+	@$(call packages,build run)
+	@$(call configure,sanitize,$(BUILD)-sanitize)
 	@cmake --build $(BUILD)-sanitize -j $(CORES) --target unit_tests
-	@ctest --test-dir $(BUILD)-sanitize -j $(CORES) -L unit --output-on-failure --no-tests=error
+	@ctest --preset sanitize --test-dir $(BUILD)-sanitize -j $(CORES)
 
 schema: build
 	@$(BUILD)/rodsweep schema >$(BUILD)/schema.json && mv $(BUILD)/schema.json jobs/schema.json
@@ -174,13 +174,23 @@ format-check:
 
 # Reads how things are compiled from a folder of its own: clang has no use for the compiler's precompiled headers.
 tidy:
-	@$(call packages,build develop)
-	@$(call configure,$(BUILD)-tidy,-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
+	@$(call packages,build run develop)
+	@$(call configure,tidy,$(BUILD)-tidy)
 	@cmake --build $(BUILD)-tidy --target revision_header
 	@run-clang-tidy -quiet -p $(BUILD)-tidy -j $(CORES) '^$(CURDIR)/(solver|network|runner)/.*\.cpp$$'
 
+# The list of what was installed stays with it, for `make uninstall`.
+installed = share/rodsweep/installed.txt
 install: build
-	@cmake --install $(BUILD) --prefix "$$(realpath -m -- "$(PREFIX)")"
+	@prefix=$$(realpath -m -- "$(PREFIX)"); cmake --install $(BUILD) --prefix "$$prefix"; \
+	{ cat $(BUILD)/install_manifest.txt; echo; echo "$$prefix/$(installed)"; } >"$${DESTDIR:-}$$prefix/$(installed)"; \
+	echo "Installed in $$prefix. Where mpirun needs the settings of one machine: $$prefix/share/rodsweep/mpi-env.sh mpirun ..."
+
+uninstall:
+	@prefix=$${DESTDIR:-}$$(realpath -m -- "$(PREFIX)"); list=$$prefix/$(installed); \
+	[ -e "$$list" ] || { echo "rodsweep: nothing was installed in $$prefix by this Makefile: there is no $$list" >&2; exit 1; }; \
+	sed "s:^:$${DESTDIR:-}:" "$$list" | tr '\n' '\0' | xargs -0 rm -f --; \
+	find "$$prefix"/share/{rodsweep,doc/rodsweep} -depth -type d -empty -delete; echo "Uninstalled from $$prefix."
 
 clean:
-	@for folder in $(BUILD) $(BUILD)-{sanitize,tidy,arm}; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done
+	@for folder in $(BUILD) $(BUILD)-{sanitize,tidy,arm,portable,develop,debug}; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done

@@ -66,7 +66,7 @@ std::string typed(int argc, const char* const* argv) {
   return line;
 }
 
-/// "rodsweep 0.1.0 (revision ...)" and the libraries, a line each.
+/// "rodsweep 1.0.0 (revision ...)" and the libraries, a line each.
 std::string version_text() {
   std::string text = library_versions() + '\n';
   for (std::size_t at = text.find("; "); at != std::string::npos; at = text.find("; ", at)) text.replace(at, 2, "\n  ");

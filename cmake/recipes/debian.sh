@@ -1,0 +1,36 @@
+#!/bin/sh
+# debian.sh packages | build | runtime: the steps by which Dockerfile and rodsweep.def make an image of Debian 12. The
+# first two run at the top of the tree, in a stage that is thrown away; `runtime` runs beside the /opt/rodsweep that they
+# made, which names the packages of its shared libraries in packages.txt.
+set -eu
+prefix=/opt/rodsweep
+export DEBIAN_FRONTEND=noninteractive
+
+case $1 in
+packages)
+  apt-get update
+  apt-get install --yes --no-install-recommends git make  # git: for the revision that `rodsweep info` tells
+  cmake/packages.sh packages.txt build run
+  ;;
+build)
+  make install SKIP_PACKAGES=1 PORTABLE=1 BUILD=/tmp/rodsweep-build PREFIX=$prefix
+  {
+    awk '$1 == "run" { print $2 }' packages.txt
+    # The linker's list, so that no version of a library is said here.
+    for library in $(objdump -p $prefix/bin/rodsweep | awk '$1 == "NEEDED" { print $2 }'); do
+      dpkg-query --search "*/$library" | cut -d: -f1
+    done
+  } | sort -u >$prefix/packages.txt
+  ;;
+runtime)
+  apt-get update
+  # shellcheck disable=SC2046  # one word per package
+  apt-get install --yes --no-install-recommends $(cat $prefix/packages.txt)
+  rm -rf /var/lib/apt/lists/*
+  $prefix/bin/rodsweep --version
+  ;;
+*)
+  echo "debian.sh: packages, build or runtime; not '$1'" >&2
+  exit 2
+  ;;
+esac
