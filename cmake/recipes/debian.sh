@@ -18,7 +18,7 @@ build)
     awk '$1 == "run" { print $2 }' packages.txt
     # The linker's list, so that no version of a library is said here.
     for library in $(objdump -p $prefix/bin/rodsweep | awk '$1 == "NEEDED" { print $2 }'); do
-      dpkg-query --search "*/$library" | cut -d: -f1
+      dpkg-query --search "*lib/$(gcc -dumpmachine)/$library" | cut -d: -f1  # not the links of a -dev package
     done
   } | sort -u >$prefix/packages.txt
   ;;
