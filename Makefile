@@ -184,7 +184,7 @@ installed = share/rodsweep/installed.txt
 install: build
 	@prefix=$$(realpath -m -- "$(PREFIX)"); cmake --install $(BUILD) --prefix "$$prefix"; \
 	{ cat $(BUILD)/install_manifest.txt; echo; echo "$$prefix/$(installed)"; } >"$${DESTDIR:-}$$prefix/$(installed)"; \
-	echo "Installed in $$prefix. Where mpirun needs the settings of one machine: $$prefix/share/rodsweep/mpi-env.sh mpirun ..."
+	echo "Installed in $$prefix. On one machine: $$prefix/share/rodsweep/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $$prefix/bin/rodsweep run JOB"
 
 uninstall:
 	@prefix=$${DESTDIR:-}$$(realpath -m -- "$(PREFIX)"); list=$$prefix/$(installed); \
