@@ -7,7 +7,7 @@ films; the scripts of analysis/, installed as `rodsweep-summary` and so on, are 
 from rodsweep.reading.errors import UserError
 from rodsweep.results import Results
 
-__version__ = "0.1.0"    # that of CMakeLists.txt (tested)
+__version__ = "1.0.0"    # that of CMakeLists.txt (tested)
 __all__ = ["Results", "UserError", "open"]
 
 
