@@ -33,8 +33,8 @@ def arguments():
                       help="this parameter along x, and no others; may be repeated (default: all that the job sweeps, "
                            "as far as the page stays small)")
     made.add_argument("--title", metavar="TEXT", help="title of the page")
-    made.add_argument("--skip", action="store_true", help="leave out files that are no sweeps, such as models, and those "
-                                                          "that nothing is chosen of")
+    made.add_argument("--skip", action="store_true", help="leave out files that are no sweeps, such as models, and "
+                                                          "those that nothing is chosen of")
     outputs.add_force(made)
     return made.parse_args()
 

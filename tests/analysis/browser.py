@@ -1,4 +1,4 @@
-"""A page in headless Chromium, through its DevTools protocol over a pipe: https://chromedevtools.github.io/devtools-protocol."""
+"""A page in headless Chromium, through its DevTools protocol over a pipe (chromedevtools.github.io/devtools-protocol)."""
 
 import base64
 import json
@@ -10,9 +10,9 @@ import threading
 from queue import Empty, Queue
 
 PROGRAM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-         "--disable-component-update", "--disable-sync", "--hide-scrollbars", "--disable-dev-shm-usage",
-         "--remote-debugging-pipe")
+FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
+         "--disable-dev-shm-usage", "--remote-debugging-pipe")
 PATIENCE_S = 60
 
 
@@ -84,7 +84,8 @@ class Browser:
                     "prefers-reduced-motion": "reduce" if still else "no-preference"}
         self.send("Emulation.setEmulatedMedia", features=[{"name": n, "value": v} for n, v in features.items()])
         self.send("Page.navigate", url=f"file://{os.path.abspath(path)}")
-        self.run("new Promise(done => { if (document.readyState === 'complete') done(); else addEventListener('load', done); })")
+        self.run("new Promise(done => { if (document.readyState === 'complete') done();"
+                 "else addEventListener('load', done); })")
         self.settle()
 
     def settle(self):
@@ -114,13 +115,15 @@ class Browser:
 
     def requests(self):
         """Addresses that the page asked for, but for those of data within it."""
-        urls = [event["params"]["request"]["url"] for event in self.events if event["method"] == "Network.requestWillBeSent"]
+        urls = [event["params"]["request"]["url"] for event in self.events
+                if event["method"] == "Network.requestWillBeSent"]
         return [url for url in urls if not url.startswith("data:")]
 
     def box(self, selector):
         """(left, top, width, height) of an element, scrolled into view."""
         return self.run(f"(() => {{ const found = document.querySelector({json.dumps(selector)});"
-                        "found.scrollIntoView({block: 'center', behavior: 'instant'}); const b = found.getBoundingClientRect();"
+                        "found.scrollIntoView({block: 'center', behavior: 'instant'});"
+                        "const b = found.getBoundingClientRect();"
                         "return [b.left, b.top, b.width, b.height]; })()")
 
     def move(self, x, y):
@@ -130,7 +133,8 @@ class Browser:
     def click(self, selector):
         left, top, width, height = self.box(selector)
         for kind in ("mousePressed", "mouseReleased"):
-            self.send("Input.dispatchMouseEvent", type=kind, x=left + width / 2, y=top + height / 2, button="left", clickCount=1)
+            self.send("Input.dispatchMouseEvent", type=kind, x=left + width / 2, y=top + height / 2, button="left",
+                      clickCount=1)
         self.settle()
 
     def key(self, name, code=0, text=""):

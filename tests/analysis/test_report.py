@@ -1,4 +1,4 @@
-"""The report: its sentences and tables are summary.py's numbers, its charts the planted ones, and it says what is wrong."""
+"""The report: sentences and tables are summary.py's numbers, charts the planted ones, and it says what is wrong."""
 
 import base64
 import html.parser

@@ -35,7 +35,8 @@ class Page(unittest.TestCase):
         return self.browser.run(code)
 
     def texts(self, selector):
-        return self.js(f"[...document.querySelectorAll({selector!r})].map(one => one.innerText.trim().replace(/\\s+/g, ' '))")
+        return self.js(f"[...document.querySelectorAll({selector!r})]"
+                       ".map(one => one.innerText.trim().replace(/\\s+/g, ' '))")
 
     def choose(self, label, value):
         """As a reader does: of the select with this label."""
@@ -169,7 +170,8 @@ class Charts(Page):
             self.assertIn("number of segments N: 20", said[0])
             self.assertRegex(said[0], r"quadratic 0\.25 \[0\.2\d, 0\.2\d\]")
             self.assertIn("6 simulations", said[0])
-            self.assertGreater(self.js("document.querySelector('.readout:not([hidden]) .swatch').getBoundingClientRect().width"), 20)
+            swatch = "document.querySelector('.readout:not([hidden]) .swatch').getBoundingClientRect().width"
+            self.assertGreater(self.js(swatch), 20)
             self.browser.move(2, 2)
             self.assertEqual(self.texts(".readout:not([hidden])"), [])
 

@@ -1,4 +1,4 @@
-"""How figures look: the colours, markers and dashes of `looks` as matplotlib takes them, type sizes and widths for print.
+"""How figures look: colours, markers and dashes of `looks` as matplotlib takes them, type sizes, widths for print.
 
 Widths: 84 mm is one column of a page of two, 174 mm the whole page.
 """

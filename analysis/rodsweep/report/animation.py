@@ -92,7 +92,8 @@ def _animation(file, task, tasks, room):
     colour = np.where(shown.static, len(RODS), rods).astype(np.uint8)
     sizes, size = np.unique(radius.astype(np.float32), return_inverse=True)
     return {"task": task, "title": _title(file, task, tasks), "up": up.tolist(), "low": _plain(low), "step": step,
-            "centre": _plain((low + high) / 2), "extent": extent, "azimuth": float(azimuth), "elevation": float(elevation),
+            "centre": _plain((low + high) / 2), "extent": extent, "azimuth": float(azimuth),
+            "elevation": float(elevation),
             "floor": staging.floor_level(shown, frames, up, "auto", extent, touched),
             "time_s": _plain(shown.time_s[frames]), "every": frames[1] - frames[0], "recorded": shown.frames(),
             "palette": [*RODS, HELD], "sizes": _plain(sizes), "points": points, "segments": _text(segments),

@@ -58,7 +58,7 @@ class Answer:
         return round(5 + (DOT_WIDTH - 10) * min(ratio / highest, 1), 1)
 
     def bars(self, row):
-        """(name, left edge, width) of the parts of a solve's time, in pixels; all guesses of an answer share a scale."""
+        """(name, left edge, width) of the parts of a solve's time, in pixels; an answer has one scale."""
         longest = max((sum(other.parts.values()) for other in self.rows if math.isfinite(sum(other.parts.values()))),
                       default=math.nan)
         found, left = [], 0.0
@@ -78,7 +78,8 @@ def answers(file, found, guesses, tolerance):
 def headline_tolerance(file, sims, tolerances):
     """That of the timed solves where it is shown, else 1e-2, else the first."""
     timed = timings.timed_rung(file)[sims.tasks()]
-    wanted = [int(np.bincount(timed).argmax())] + [k for k in tolerances if abs(math.log10(file.tolerances[k]) + 2) < 1e-6]
+    wanted = [int(np.bincount(timed).argmax())]
+    wanted += [k for k in tolerances if abs(math.log10(file.tolerances[k]) + 2) < 1e-6]
     return next((k for k in wanted if k in tolerances), tolerances[0])
 
 
@@ -144,8 +145,8 @@ def failures(file, chosen):
 def runs(file):
     """One dictionary per start: when, where, by which revision."""
     return [{"begin": run.get("begin", ""), "end": run.get("end", ""), "host": run.get("host", ""),
-             "ranks": int(run.get("ranks", 0)), "revision": run.get("revision", ""), "versions": run.get("versions", ""),
-             "command": run.get("command", ""), "oversubscribed": bool(run.get("oversubscribed", 0))}
+             "ranks": int(run.get("ranks", 0)), "revision": run.get("revision", ""),
+             "versions": run.get("versions", ""), "oversubscribed": bool(run.get("oversubscribed", 0))}
             for run in file.runs()]
 
 
@@ -155,7 +156,7 @@ def steps(found, guesses, labels):
     for block in found:
         for g in guesses if block.sims.closed_loop and guesses else [0]:
             title = f"{block.title}, {labels[g]}" if block.sims.closed_loop else block.title
-            rows.append((title, {name: tuple(texts.short_text(float(number[g]), 2) for number in (estimate.value, largest))
+            rows.append((title, {name: [texts.short_text(float(of[g]), 2) for of in (estimate.value, largest)]
                                  for name, (estimate, largest) in block.steps.items()}))
     return rows
 

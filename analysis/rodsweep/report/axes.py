@@ -1,7 +1,7 @@
 """Estimates of a family's measures at the points along every axis, panel by panel, packed for the page.
 
-Axes are the parameters that the job sweeps: those of a grid first, then those that are drawn at random, in bins, as long
-as the estimates fit into a budget; which of them did not is said. Estimates are flat arrays in the order Newton
+Axes are the parameters that the job sweeps: those of a grid first, then those that are drawn at random, in bins, as
+long as the estimates fit into a budget; which of them did not is said. Estimates are flat arrays in the order Newton
 iterations, points, lines, tolerances, rounded to what a reader can see; None stands for what is not known.
 """
 
@@ -70,7 +70,8 @@ def candidates(file, sims):
             common |= {parameter.name} if applies.all() else set()
 
     def rank(key):
-        return (key != PREFERRED, key not in gridded, key not in common, not file.parameters[key].numeric, -distinct[key])
+        return (key != PREFERRED, key not in gridded, key not in common, not file.parameters[key].numeric,
+                -distinct[key])
 
     found = sorted((key for key, count in distinct.items() if count > 1), key=rank)
     return found or [key for key in (SCENE,) if key in distinct]
@@ -92,7 +93,8 @@ def _axis(file, family, key, budget):
             "categorical": any(of_panel.categorical for of_panel in points),
             "binned": any(of_panel.binned for of_panel in points),
             "log": any(of_panel.log for of_panel in points),
-            "settings": [{"key": name, "label": texts.parameter_label(name, file.parameter(name).unit)} for name in keys],
+            "settings": [{"key": name, "label": texts.parameter_label(name, file.parameter(name).unit)}
+                         for name in keys],
             "panels": [_panel(family, rows, *one) for one in zip(panels, points)]}
 
 

@@ -74,9 +74,10 @@ def _ratios(file, sims, guesses, tolerances):
         return []
     ratios = {newton: measures.cg_ratios(file, sims, newton) for newton in measures.NEWTON}
     chosen = np.ix_(range(len(sims)), guesses, tolerances)
-    ratio = Measure("ratio", "CG ratio", "ratio", False, {newton: found.ratio[chosen] for newton, found in ratios.items()},
-                    intervals.mean, "CG iterations with a guess over those from zero, summed over a simulation; mean over "
-                    "simulations. Below 1 the guess saves iterations.")
+    ratio = Measure("ratio", "CG ratio", "ratio", False,
+                    {newton: found.ratio[chosen] for newton, found in ratios.items()}, intervals.mean,
+                    "CG iterations with a guess over those from zero, summed over a simulation; mean over simulations. "
+                    "Below 1 the guess saves iterations.")
     iterations = Measure("iterations", "CG iterations of a solve", "count", False,
                          {"": ratios["first"].iterations_per_solve[chosen]}, intervals.mean,
                          "Of first Newton iterations; mean over a simulation, mean over simulations.")
@@ -107,8 +108,8 @@ def _times(file, parts, guesses, with_direct):
         none = np.full(len(us["all"][name]), np.nan)
         of = {newton: beside(us[newton][name], us[newton]["direct_us"][:, stand_in] if name == "cg_us" else none)
               for newton in measures.NEWTON}
-        found.append(Measure(name, title, "us", True, of, intervals.median, "Mean time of a solve in a simulation; median "
-                             "over simulations."))
+        found.append(Measure(name, title, "us", True, of, intervals.median,
+                             "Mean time of a solve in a simulation; median over simulations."))
     return found
 
 

@@ -10,10 +10,13 @@ function seriesOf(family, measure, axis, panel, state) {
   const found = [];
   family.lines.forEach((line, index) => {
     if (!state.on.has(index)) return;
-    const points = panel.x.map((x, k) => ({
-      k, x: axis.categorical ? panel.text[k] : x,
-      ...estimateAt(family, measure, panel, k, index, state.tolerance, state.newton),
-    })).filter((point) => point.value !== undefined && (!measure.log || point.value > 0));
+    const points = panel.x
+      .map((x, k) => ({
+        k,
+        x: axis.categorical ? panel.text[k] : x,
+        ...estimateAt(family, measure, panel, k, index, state.tolerance, state.newton),
+      }))
+      .filter((point) => point.value !== undefined && (!measure.log || point.value > 0));
     if (points.length) found.push({ line, index, points });
   });
   return found;
@@ -21,7 +24,8 @@ function seriesOf(family, measure, axis, panel, state) {
 
 /** The range of all panels that are shown, so that they can be compared. */
 function commonRange(measure, allSeries, reference) {
-  const values = allSeries.flatMap((series) => series.points.flatMap((p) => [p.value, p.low ?? p.value, p.high ?? p.value]))
+  const values = allSeries
+    .flatMap((series) => series.points.flatMap((p) => [p.value, p.low ?? p.value, p.high ?? p.value]))
     .filter((value) => !measure.log || value > 0);
   if (reference) values.push(1);
   if (!values.length) return measure.log ? [0.1, 10] : [0, 1];
@@ -34,7 +38,7 @@ function drawChart(family, measure, axis, panel, series, range, width) {
   const relative = measure.unit === "ratio" || measure.unit === "times";
   const marks = [];
   if (relative) marks.push(Plot.ruleY([1], { stroke: "var(--ink)", strokeWidth: 1 }));
-  const spread = axis.categorical ? categoryDodge * (width - 96) / panel.x.length : dodge;
+  const spread = axis.categorical ? (categoryDodge * (width - 96)) / panel.x.length : dodge;
   series.forEach(({ line, index, points }, rank) => {
     if (relative && index === family.reference) return;
     const dx = series.length > 1 ? spread * (rank / (series.length - 1) - 0.5) : 0;
@@ -44,23 +48,57 @@ function drawChart(family, measure, axis, panel, series, range, width) {
     const common = { x: "x", dx, ariaDescription: `line-${index}` };
     marks.push(
       Plot.ruleX(sure, { ...common, y1: "low", y2: "high", stroke: colour, strokeWidth: 1.2, strokeOpacity: 0.7 }),
-      ...(axis.categorical ? [] : [Plot.line(points, { ...common, y: "value", stroke: colour, strokeWidth: 1.8, strokeDasharray: line.dash || null, strokeLinejoin: "round" })]),
-      Plot.dot(points, { ...common, y: "value", symbol: symbols[line.symbol], r: 3.8, fill: stroked ? "none" : colour, stroke: stroked ? colour : "var(--card)", strokeWidth: stroked ? 1.6 : 0.7 }),
+      ...(axis.categorical
+        ? []
+        : [
+            Plot.line(points, {
+              ...common,
+              y: "value",
+              stroke: colour,
+              strokeWidth: 1.8,
+              strokeDasharray: line.dash || null,
+              strokeLinejoin: "round",
+            }),
+          ]),
+      Plot.dot(points, {
+        ...common,
+        y: "value",
+        symbol: symbols[line.symbol],
+        r: 3.8,
+        fill: stroked ? "none" : colour,
+        stroke: stroked ? colour : "var(--card)",
+        strokeWidth: stroked ? 1.6 : 0.7,
+      }),
     );
   });
   const texts = new Map(panel.x.map((x, k) => [axis.categorical ? panel.text[k] : x, panel.text[k]]));
   const plot = Plot.plot({
-    width, height: chartHeight, marginLeft: 52, marginRight: 16, marginTop: 22,
+    width,
+    height: chartHeight,
+    marginLeft: 52,
+    marginRight: 16,
+    marginTop: 22,
     marginBottom: axis.categorical ? 62 : 40,
     style: { background: "none", color: "var(--ink)", fontFamily: "inherit", fontSize: "12px", overflow: "visible" },
     x: {
-      type: axis.categorical ? "point" : axis.log ? "log" : "linear", label: axis.label + (axis.binned ? ", medians of bins" : ""),
-      labelAnchor: "center", labelArrow: "none", insetLeft: 14, insetRight: 14, nice: false,
-      ...(axis.categorical ? { domain: panel.text, tickRotate: longest(panel.text) * panel.text.length * 7 > width - 80 ? -20 : 0 }
-        : !axis.binned && fits(axis, panel, width) ? { ticks: panel.x, tickFormat: (x) => texts.get(x) } : { ticks: 5, ...(axis.log ? { tickFormat: powerText } : {}) }),
+      type: axis.categorical ? "point" : axis.log ? "log" : "linear",
+      label: axis.label + (axis.binned ? ", medians of bins" : ""),
+      labelAnchor: "center",
+      labelArrow: "none",
+      insetLeft: 14,
+      insetRight: 14,
+      nice: false,
+      ...(axis.categorical
+        ? { domain: panel.text, tickRotate: longest(panel.text) * panel.text.length * 7 > width - 80 ? -20 : 0 }
+        : !axis.binned && fits(axis, panel, width)
+          ? { ticks: panel.x, tickFormat: (x) => texts.get(x) }
+          : { ticks: 5, ...(axis.log ? { tickFormat: powerText } : {}) }),
     },
     y: {
-      type: measure.log ? "log" : "linear", domain: range, label: null, grid: true,
+      type: measure.log ? "log" : "linear",
+      domain: range,
+      label: null,
+      grid: true,
       ...(measure.log ? { ticks: logTicks(...range), tickFormat: (y) => tickText(y, measure.unit) } : { ticks: 6 }),
     },
     marks,
@@ -78,7 +116,7 @@ const longest = (texts) => Math.max(...texts.map((text) => text.length));
 function fits(axis, panel, width) {
   const x = panel.x.map((one) => (axis.log ? Math.log10(one) : one)).sort(d3.ascending);
   const span = x[x.length - 1] - x[0] || 1;
-  const room = d3.min(d3.pairs(x, (a, b) => b - a)) / span * (width - 96);
+  const room = (d3.min(d3.pairs(x, (a, b) => b - a)) / span) * (width - 96);
   return x.length < 2 || room > 8 * longest(panel.text);
 }
 
@@ -97,7 +135,8 @@ function logTicks(low, high) {
 }
 
 function tickText(value, unit) {
-  const text = value >= 1e-3 && value < 1e5 ? String(Number(value.toPrecision(3))) : value.toExponential(0).replace("e+", "e");
+  const text =
+    value >= 1e-3 && value < 1e5 ? String(Number(value.toPrecision(3))) : value.toExponential(0).replace("e+", "e");
   return unit === "times" ? `${text}×` : text;
 }
 

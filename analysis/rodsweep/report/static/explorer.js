@@ -6,15 +6,29 @@ const onPaper = ["ratio", "speedup_guess_cg", "speedup_step"]; // besides what i
 function startExplorer(root, sweep, family, number) {
   const first = family.measures[0];
   const state = {
-    measure: first.name, axis: 0, tolerance: sweep.tolerance, newton: "first", settings: {},
-    on: new Set(family.lines.keys()), all: false,
+    measure: first.name,
+    axis: 0,
+    tolerance: sweep.tolerance,
+    newton: "first",
+    settings: {},
+    on: new Set(family.lines.keys()),
+    all: false,
   };
   const id = (name) => `explorer-${number}-${name}`;
   const status = element("p", { class: "hidden", role: "status" });
-  const say = (text) => { status.textContent = text; };
+  const say = (text) => {
+    status.textContent = text;
+  };
   const charts = element("div", { class: "charts" });
   const tables = element("div", { class: "tables" });
-  const more = element("button", { type: "button", class: "more", onclick: () => { state.all = true; draw(); } });
+  const more = element("button", {
+    type: "button",
+    class: "more",
+    onclick: () => {
+      state.all = true;
+      draw();
+    },
+  });
   const note = element("p", { class: "conditions" });
   const filters = element("div", { class: "filters" });
   const measure = () => family.measures.find((one) => one.name === state.measure);
@@ -23,32 +37,106 @@ function startExplorer(root, sweep, family, number) {
   root.style.cssText = family.lines.map((line, k) => `--line-${k}: ${colourOf(line)}`).join(";");
 
   function choice(name, label, options, value, onchange) {
-    const select = element("select", { id: id(name), onchange: (event) => { onchange(event.target.value); update(); } },
-      ...options.map(([key, text]) => element("option", { value: key }, text)));
+    const select = element(
+      "select",
+      {
+        id: id(name),
+        onchange: (event) => {
+          onchange(event.target.value);
+          update();
+        },
+      },
+      ...options.map(([key, text]) => element("option", { value: key }, text)),
+    );
     select.value = value;
     return element("div", { class: "control" }, element("label", { for: id(name) }, label), select);
   }
 
-  const measureChoice = choice("measure", "Show", family.measures.map((one) => [one.name, one.title]), state.measure,
-    (value) => { state.measure = value; });
-  const axisChoice = choice("axis", "Over", family.axes.map((one, k) => [String(k), one.label]), "0",
-    (value) => { state.axis = Number(value); state.settings = {}; state.all = false; buildFilters(); });
-  const toleranceChoice = choice("tolerance", "To the tolerance", sweep.tolerances.map((text, k) => [String(k), text]),
-    String(state.tolerance), (value) => { state.tolerance = Number(value); });
-  const newtonChoice = element("fieldset", { class: "control" }, element("legend", {}, "Newton iterations"),
-    element("div", { class: "segmented" }, ...[["first", "first"], ["all", "all"]].flatMap(([key, text]) => [
-      element("input", { type: "radio", name: id("newton"), id: id(`newton-${key}`), value: key, checked: key === state.newton,
-        onchange: () => { state.newton = key; update(); } }),
-      element("label", { for: id(`newton-${key}`) }, text)])));
+  const measureChoice = choice(
+    "measure",
+    "Show",
+    family.measures.map((one) => [one.name, one.title]),
+    state.measure,
+    (value) => {
+      state.measure = value;
+    },
+  );
+  const axisChoice = choice(
+    "axis",
+    "Over",
+    family.axes.map((one, k) => [String(k), one.label]),
+    "0",
+    (value) => {
+      state.axis = Number(value);
+      state.settings = {};
+      state.all = false;
+      buildFilters();
+    },
+  );
+  const toleranceChoice = choice(
+    "tolerance",
+    "To the tolerance",
+    sweep.tolerances.map((text, k) => [String(k), text]),
+    String(state.tolerance),
+    (value) => {
+      state.tolerance = Number(value);
+    },
+  );
+  const newtonChoice = element(
+    "fieldset",
+    { class: "control" },
+    element("legend", {}, "Newton iterations"),
+    element(
+      "div",
+      { class: "segmented" },
+      ...[
+        ["first", "first"],
+        ["all", "all"],
+      ].flatMap(([key, text]) => [
+        element("input", {
+          type: "radio",
+          name: id("newton"),
+          id: id(`newton-${key}`),
+          value: key,
+          checked: key === state.newton,
+          onchange: () => {
+            state.newton = key;
+            update();
+          },
+        }),
+        element("label", { for: id(`newton-${key}`) }, text),
+      ]),
+    ),
+  );
 
   /** A choice for the scene and for every grid of the job that is not along x. */
   function buildFilters() {
     const scenes = [...new Set(axis().panels.map((panel) => panel.scene))];
     const made = [];
-    if (scenes.length > 1) made.push(filter("scene", "Scene", scenes.map((scene) => [scene, scene.replaceAll("_", " ")])));
+    if (scenes.length > 1)
+      made.push(
+        filter(
+          "scene",
+          "Scene",
+          scenes.map((scene) => [scene, scene.replaceAll("_", " ")]),
+        ),
+      );
     for (const { key, label } of axis().settings) {
-      const values = [...new Set(axis().panels.filter((panel) => key in panel.settings).map((panel) => panel.settings[key]))];
-      if (values.length > 1) made.push(filter(key, label, values.map((value) => [value, value.replaceAll("_", " ")])));
+      const values = [
+        ...new Set(
+          axis()
+            .panels.filter((panel) => key in panel.settings)
+            .map((panel) => panel.settings[key]),
+        ),
+      ];
+      if (values.length > 1)
+        made.push(
+          filter(
+            key,
+            label,
+            values.map((value) => [value, value.replaceAll("_", " ")]),
+          ),
+        );
     }
     filters.replaceChildren(...made);
   }
@@ -61,29 +149,89 @@ function startExplorer(root, sweep, family, number) {
   }
 
   function shownPanels() {
-    return axis().panels.filter((panel) => Object.entries(state.settings).every(([key, value]) =>
-      (key === "scene" ? panel.scene : panel.settings[key]) === value));
+    return axis().panels.filter((panel) =>
+      Object.entries(state.settings).every(
+        ([key, value]) => (key === "scene" ? panel.scene : panel.settings[key]) === value,
+      ),
+    );
   }
 
   const chips = family.lines.map((line, index) => {
-    const swatch = svgElement("svg", { class: "swatch", width: 30, height: 12, viewBox: "0 0 30 12", "aria-hidden": "true" });
+    const swatch = svgElement("svg", {
+      class: "swatch",
+      width: 30,
+      height: 12,
+      viewBox: "0 0 30 12",
+      "aria-hidden": "true",
+    });
     drawSwatch(swatch, line);
-    return element("button", { type: "button", class: "chip", "aria-pressed": "true",
-      onclick: () => { state.on[state.on.has(index) ? "delete" : "add"](index); update(); } }, swatch, line.label);
+    return element(
+      "button",
+      {
+        type: "button",
+        class: "chip",
+        "aria-pressed": "true",
+        onclick: () => {
+          state.on[state.on.has(index) ? "delete" : "add"](index);
+          update();
+        },
+      },
+      swatch,
+      line.label,
+    );
   });
-  const legend = element("div", { class: "legend", role: "group", "aria-label": family.name === "guesses" ? "Guesses" : "Methods" },
-    ...chips);
+  const legend = element(
+    "div",
+    { class: "legend", role: "group", "aria-label": family.name === "guesses" ? "Guesses" : "Methods" },
+    ...chips,
+  );
   if (family.lines.length > 2) {
     legend.append(
-      element("button", { type: "button", class: "chip plain", onclick: () => { state.on = new Set(family.lines.keys()); update(); } }, "All"),
-      element("button", { type: "button", class: "chip plain", onclick: () => { state.on.clear(); update(); } }, "None"));
+      element(
+        "button",
+        {
+          type: "button",
+          class: "chip plain",
+          onclick: () => {
+            state.on = new Set(family.lines.keys());
+            update();
+          },
+        },
+        "All",
+      ),
+      element(
+        "button",
+        {
+          type: "button",
+          class: "chip plain",
+          onclick: () => {
+            state.on.clear();
+            update();
+          },
+        },
+        "None",
+      ),
+    );
   }
   const details = element("details", { class: "numbers" }, element("summary", {}, "The same as a table"), tables);
 
   root.replaceChildren(
-    element("div", { class: "controls" }, measureChoice, axisChoice, family.measures.some((one) => one.tolerances > 1) ? toleranceChoice : null,
-      family.measures.some((one) => one.newton.length > 1) ? newtonChoice : null, filters),
-    legend, note, charts, more, details, status);
+    element(
+      "div",
+      { class: "controls" },
+      measureChoice,
+      axisChoice,
+      family.measures.some((one) => one.tolerances > 1) ? toleranceChoice : null,
+      family.measures.some((one) => one.newton.length > 1) ? newtonChoice : null,
+      filters,
+    ),
+    legend,
+    note,
+    charts,
+    more,
+    details,
+    status,
+  );
 
   function update() {
     draw();
@@ -92,9 +240,14 @@ function startExplorer(root, sweep, family, number) {
   }
 
   function title(shown = measure()) {
-    return shown.title + (shown.tolerances > 1 ? ` at ${sweep.tolerances[state.tolerance]}` : "") +
-      (shown.newton.length > 1 ? `, ${state.newton === "all" ? "all Newton iterations" : "first Newton iteration"}` : "") +
-      ` over ${axis().label}`;
+    return (
+      shown.title +
+      (shown.tolerances > 1 ? ` at ${sweep.tolerances[state.tolerance]}` : "") +
+      (shown.newton.length > 1
+        ? `, ${state.newton === "all" ? "all Newton iterations" : "first Newton iteration"}`
+        : "") +
+      ` over ${axis().label}`
+    );
   }
 
   function draw() {
@@ -103,14 +256,19 @@ function startExplorer(root, sweep, family, number) {
     for (const input of newtonChoice.querySelectorAll("input")) input.disabled = chosen.newton.length === 1;
     chips.forEach((chip, index) => chip.setAttribute("aria-pressed", String(state.on.has(index))));
     const timed = chosen.unit === "us" || chosen.unit === "times";
-    note.replaceChildren(chosen.note, ...(timed && sweep.warning ? [" ", element("strong", { class: "warned" }, sweep.warning)] : []));
+    note.replaceChildren(
+      chosen.note,
+      ...(timed && sweep.warning ? [" ", element("strong", { class: "warned" }, sweep.warning)] : []),
+    );
     const panels = shownPanels();
     const few = state.all || printing ? panels : panels.slice(0, mostCharts);
     charts.classList.toggle("single", few.length === 1);
     const width = chartWidth(few.length);
     charts.replaceChildren();
     tables.replaceChildren();
-    for (const shown of printing ? family.measures.filter((one) => one === chosen || onPaper.includes(one.name)) : [chosen]) {
+    for (const shown of printing
+      ? family.measures.filter((one) => one === chosen || onPaper.includes(one.name))
+      : [chosen]) {
       const series = few.map((panel) => seriesOf(family, shown, axis(), panel, state));
       const range = commonRange(shown, series.flat(), shown.unit === "ratio" || shown.unit === "times");
       charts.append(...few.map((panel, k) => chart(shown, panel, series[k], range, width)));
@@ -129,12 +287,22 @@ function startExplorer(root, sweep, family, number) {
   function chart(shown, panel, series, range, width) {
     const caption = element("figcaption", {}, element("b", {}, panel.caption), ` ${shown.title}`);
     if (!series.length) {
-      return element("figure", { class: "chart" }, caption,
-        element("p", { class: "empty" }, state.on.size ? "Not measured." : "Nothing to show: choose a guess above."));
+      return element(
+        "figure",
+        { class: "chart" },
+        caption,
+        element("p", { class: "empty" }, state.on.size ? "Not measured." : "Nothing to show: choose a guess above."),
+      );
     }
-    const frame = element("div", { class: "frame", tabindex: "0", role: "application", "aria-roledescription": "chart",
-      "aria-label": `${title(shown)}, ${panel.caption}. Left and right go along the axis, up and down from line to line; ` +
-        "the same is in a table below." });
+    const frame = element("div", {
+      class: "frame",
+      tabindex: "0",
+      role: "application",
+      "aria-roledescription": "chart",
+      "aria-label":
+        `${title(shown)}, ${panel.caption}. Left and right go along the axis, up and down from line to line; ` +
+        "the same is in a table below.",
+    });
     const plot = drawChart(family, shown, axis(), panel, series, range, width);
     plot.setAttribute("aria-hidden", "true");
     frame.append(plot);
@@ -143,16 +311,42 @@ function startExplorer(root, sweep, family, number) {
   }
 
   function table(shown, panel, series) {
-    const made = element("table", { class: "sortable" }, element("caption", {}, `${panel.caption}: ${title(shown)}`),
-      element("thead", {}, element("tr", {}, heading(family.name === "guesses" ? "Guess" : "Method", ""),
-        ...panel.text.map((text, k) => heading(k ? text : `${axis().label} ${text}`, "number")))),
-      element("tbody", {}, ...series.map(({ line, points }) => element("tr", {}, element("th", { scope: "row" }, line.label),
-        ...panel.x.map((_, k) => {
-          const estimate = points.find((point) => point.k === k) ?? null;
-          return element("td", { class: "number", "data-value": estimate ? estimate.value : "" },
-            valueText(estimate, shown.unit), " ",
-            element("span", { class: "interval" }, intervalText(estimate, shown.unit)));
-        })))));
+    const made = element(
+      "table",
+      { class: "sortable" },
+      element("caption", {}, `${panel.caption}: ${title(shown)}`),
+      element(
+        "thead",
+        {},
+        element(
+          "tr",
+          {},
+          heading(family.name === "guesses" ? "Guess" : "Method", ""),
+          ...panel.text.map((text, k) => heading(k ? text : `${axis().label} ${text}`, "number")),
+        ),
+      ),
+      element(
+        "tbody",
+        {},
+        ...series.map(({ line, points }) =>
+          element(
+            "tr",
+            {},
+            element("th", { scope: "row" }, line.label),
+            ...panel.x.map((_, k) => {
+              const estimate = points.find((point) => point.k === k) ?? null;
+              return element(
+                "td",
+                { class: "number", "data-value": estimate ? estimate.value : "" },
+                valueText(estimate, shown.unit),
+                " ",
+                element("span", { class: "interval" }, intervalText(estimate, shown.unit)),
+              );
+            }),
+          ),
+        ),
+      ),
+    );
     makeSortable(made);
     return element("div", { class: "wide", tabindex: "0", role: "region", "aria-label": panel.caption }, made);
   }

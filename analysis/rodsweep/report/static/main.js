@@ -4,7 +4,9 @@ function start() {
   startTheme();
   for (const table of document.querySelectorAll("table.sortable")) makeSortable(table);
   for (const svg of document.querySelectorAll("svg.swatch[data-label]")) {
-    const family = data[svg.dataset.sweep].families.find((one) => one.lines.some((line) => line.label === svg.dataset.label));
+    const family = data[svg.dataset.sweep].families.find((one) =>
+      one.lines.some((line) => line.label === svg.dataset.label),
+    );
     const index = family?.lines.findIndex((line) => line.label === svg.dataset.label);
     if (family) drawSwatch(svg, family.lines[index], index === family.reference);
   }

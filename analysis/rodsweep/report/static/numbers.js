@@ -24,7 +24,9 @@ function valueText(estimate, unit) {
 }
 
 function intervalText(estimate, unit) {
-  return estimate === null || estimate.low === null ? "" : `[${units[unit](estimate.low)}, ${units[unit](estimate.high)}]`;
+  return estimate === null || estimate.low === null
+    ? ""
+    : `[${units[unit](estimate.low)}, ${units[unit](estimate.high)}]`;
 }
 
 /** The estimate of a measure in a panel; newton: "first" or "all", where the measure has a choice. */
@@ -35,7 +37,9 @@ function estimateAt(family, measure, panel, point, line, tolerance, newton) {
   const t = measure.tolerances > 1 ? tolerance : 0;
   const at = ((n * panel.x.length + point) * width + line) * measure.tolerances + t;
   const [value, low, high, count] = panel.values[measure.name];
-  return value[at] !== null ? { value: value[at], low: low[at], high: high[at], count: Array.isArray(count) ? count[at] : count } : null;
+  return value[at] !== null
+    ? { value: value[at], low: low[at], high: high[at], count: Array.isArray(count) ? count[at] : count }
+    : null;
 }
 
 /** How many lines a measure has: the direct solve, the last of them, has no iterations. */
@@ -65,29 +69,52 @@ const colourOf = (line) => `light-dark(${line.light}, ${line.dark})`;
 
 /** Draws a line as it is in the charts into an svg of 30 x 12 pixels: colour, dash and marker. */
 function drawSwatch(svg, line, isReference = false) {
-  svg.replaceChildren(svgElement("line", {
-    x1: 0, x2: 30, y1: 6, y2: 6, "stroke-width": 2, "stroke-dasharray": line.dash, style: `stroke: ${colourOf(line)}`,
-  }));
+  svg.replaceChildren(
+    svgElement("line", {
+      x1: 0,
+      x2: 30,
+      y1: 6,
+      y2: 6,
+      "stroke-width": 2,
+      "stroke-dasharray": line.dash,
+      style: `stroke: ${colourOf(line)}`,
+    }),
+  );
   if (isReference) return;
   const symbol = symbols[line.symbol];
-  svg.append(svgElement("path", {
-    d: d3.symbol(symbol, 36)(), transform: "translate(15,6)",
-    style: strokedSymbols.has(line.symbol)
-      ? `fill: none; stroke: ${colourOf(line)}; stroke-width: 1.6` : `fill: ${colourOf(line)}`,
-  }));
+  svg.append(
+    svgElement("path", {
+      d: d3.symbol(symbol, 36)(),
+      transform: "translate(15,6)",
+      style: strokedSymbols.has(line.symbol)
+        ? `fill: none; stroke: ${colourOf(line)}; stroke-width: 1.6`
+        : `fill: ${colourOf(line)}`,
+    }),
+  );
 }
 
 const symbols = {
-  asterisk: d3.symbolAsterisk, circle: d3.symbolCircle, cross: d3.symbolCross, diamond: d3.symbolDiamond,
-  diamond2: d3.symbolDiamond2, square: d3.symbolSquare, square2: d3.symbolSquare2, star: d3.symbolStar,
-  times: d3.symbolTimes, triangle: d3.symbolTriangle, triangle2: d3.symbolTriangle2, wye: d3.symbolWye,
-  hexagon: { draw(context, size) {
-    const radius = Math.sqrt((2 * size) / (3 * Math.sqrt(3)));
-    for (let k = 0; k < 6; ++k) {
-      const angle = (k * Math.PI) / 3;
-      context[k ? "lineTo" : "moveTo"](radius * Math.cos(angle), radius * Math.sin(angle));
-    }
-    context.closePath();
-  } },
+  asterisk: d3.symbolAsterisk,
+  circle: d3.symbolCircle,
+  cross: d3.symbolCross,
+  diamond: d3.symbolDiamond,
+  diamond2: d3.symbolDiamond2,
+  square: d3.symbolSquare,
+  square2: d3.symbolSquare2,
+  star: d3.symbolStar,
+  times: d3.symbolTimes,
+  triangle: d3.symbolTriangle,
+  triangle2: d3.symbolTriangle2,
+  wye: d3.symbolWye,
+  hexagon: {
+    draw(context, size) {
+      const radius = Math.sqrt((2 * size) / (3 * Math.sqrt(3)));
+      for (let k = 0; k < 6; ++k) {
+        const angle = (k * Math.PI) / 3;
+        context[k ? "lineTo" : "moveTo"](radius * Math.cos(angle), radius * Math.sin(angle));
+      }
+      context.closePath();
+    },
+  },
 };
 const strokedSymbols = new Set(["asterisk", "times"]);

@@ -2,8 +2,10 @@
 // straight ways. Dragging or the arrow keys turn the view; nothing plays by itself for readers who want less motion.
 
 const lessMotion = window.matchMedia("(prefers-reduced-motion: reduce)");
-const filmColours = { light: { paper: "#f4f2ec", floor: "#e6e2d8", shadow: "rgb(60 52 40 / 22%)", solid: "#b9b4aa" },
-  dark: { paper: "#191d22", floor: "#23282e", shadow: "rgb(0 0 0 / 45%)", solid: "#6d7178" } };
+const filmColours = {
+  light: { paper: "#f4f2ec", floor: "#e6e2d8", shadow: "rgb(60 52 40 / 22%)", solid: "#b9b4aa" },
+  dark: { paper: "#191d22", floor: "#23282e", shadow: "rgb(0 0 0 / 45%)", solid: "#6d7178" },
+};
 
 function decoded(text, Type) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -20,7 +22,9 @@ function viewFrom(film, azimuth, elevation) {
   const level = Math.abs(film.up[0]) > 0.9 ? [0, -1, 0] : [1, 0, 0];
   const back = cross(level, film.up);
   const [a, e] = [azimuth, elevation].map((degrees) => (degrees * Math.PI) / 180);
-  const towards = [0, 1, 2].map((k) => Math.cos(e) * (Math.sin(a) * level[k] + Math.cos(a) * back[k]) + Math.sin(e) * film.up[k]);
+  const towards = [0, 1, 2].map(
+    (k) => Math.cos(e) * (Math.sin(a) * level[k] + Math.cos(a) * back[k]) + Math.sin(e) * film.up[k],
+  );
   const forward = towards.map((value) => -value);
   const right = unit(cross(forward, film.up));
   return { forward, right, up: cross(right, forward), distance: 2.4 * film.extent };
@@ -41,20 +45,47 @@ function shaded(colour, light) {
 }
 
 function startFilm(figure, film) {
-  const canvas = figure.querySelector("canvas"), context = canvas.getContext("2d");
-  const place = decoded(film.place, Uint16Array), segments = decoded(film.segments, Uint16Array);
-  const colour = decoded(film.colour, Uint8Array), size = decoded(film.size, Uint16Array);
-  const frames = film.time_s.length, count = segments.length / 2, end = film.time_s[frames - 1] - film.time_s[0];
-  let view = viewFrom(film, film.azimuth, film.elevation), turned = [film.azimuth, film.elevation];
-  let time = lessMotion.matches ? end / 2 : 0, playing = false, before = null, visible = false, width = 0, height = 0;
+  const canvas = figure.querySelector("canvas"),
+    context = canvas.getContext("2d");
+  const place = decoded(film.place, Uint16Array),
+    segments = decoded(film.segments, Uint16Array);
+  const colour = decoded(film.colour, Uint8Array),
+    size = decoded(film.size, Uint16Array);
+  const frames = film.time_s.length,
+    count = segments.length / 2,
+    end = film.time_s[frames - 1] - film.time_s[0];
+  let view = viewFrom(film, film.azimuth, film.elevation),
+    turned = [film.azimuth, film.elevation];
+  let time = lessMotion.matches ? end / 2 : 0,
+    playing = false,
+    before = null,
+    visible = false,
+    width = 0,
+    height = 0;
   const fit = fitted();
 
   const play = element("button", { type: "button", class: "play", onclick: () => (playing ? pause() : start()) });
-  const scrub = element("input", { type: "range", min: 0, max: end, step: end / 1000, value: 0, "aria-label": "Time",
-    oninput: () => { pause(); time = Number(scrub.value); draw(); } });
+  const scrub = element("input", {
+    type: "range",
+    min: 0,
+    max: end,
+    step: end / 1000,
+    value: 0,
+    "aria-label": "Time",
+    oninput: () => {
+      pause();
+      time = Number(scrub.value);
+      draw();
+    },
+  });
   const clock = element("output", { class: "clock" });
-  const rate = element("select", { "aria-label": "Speed" },
-    ...[0.1, 0.25, 0.5, 1, 2].map((value) => element("option", { value, selected: value === usualRate() }, `${value}×`)));
+  const rate = element(
+    "select",
+    { "aria-label": "Speed" },
+    ...[0.1, 0.25, 0.5, 1, 2].map((value) =>
+      element("option", { value, selected: value === usualRate() }, `${value}×`),
+    ),
+  );
   figure.append(element("div", { class: "playback" }, play, scrub, clock, rate));
 
   function usualRate() {
@@ -63,12 +94,13 @@ function startFilm(figure, film) {
 
   /** Where the scene is in the first view, over all frames. */
   function fitted() {
-    const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    const low = [Infinity, Infinity],
+      high = [-Infinity, -Infinity];
     const reach = Math.max(...film.sizes);
     const include = (point, radius) => {
       const [x, y, , scale] = projected(film, view, ...point);
-      low[0] = Math.min(low[0], x - radius * scale), low[1] = Math.min(low[1], y - radius * scale);
-      high[0] = Math.max(high[0], x + radius * scale), high[1] = Math.max(high[1], y + radius * scale);
+      ((low[0] = Math.min(low[0], x - radius * scale)), (low[1] = Math.min(low[1], y - radius * scale)));
+      ((high[0] = Math.max(high[0], x + radius * scale)), (high[1] = Math.max(high[1], y + radius * scale)));
     };
     for (let frame = 0; frame < frames; frame += Math.max(1, Math.floor(frames / 12))) {
       for (let k = 0; k < film.points; ++k) {
@@ -85,7 +117,8 @@ function startFilm(figure, film) {
   }
 
   function pointAt(k, frame, next, share) {
-    const a = 3 * (frame * film.points + k), b = 3 * (next * film.points + k);
+    const a = 3 * (frame * film.points + k),
+      b = 3 * (next * film.points + k);
     return [0, 1, 2].map((c) => film.low[c] + film.step * ((1 - share) * place[a + c] + share * place[b + c]));
   }
 
@@ -94,24 +127,37 @@ function startFilm(figure, film) {
     const now = film.time_s[0] + time;
     let frame = d3.bisectRight(film.time_s, now) - 1;
     frame = Math.max(0, Math.min(frames - 1, frame));
-    const next = Math.min(frames - 1, frame + 1), gap = film.time_s[next] - film.time_s[frame];
+    const next = Math.min(frames - 1, frame + 1),
+      gap = film.time_s[next] - film.time_s[frame];
     const share = gap > 0 ? Math.min(1, (now - film.time_s[frame]) / gap) : 0;
     const zoom = 0.92 * Math.min(width / fit.span[0], height / fit.span[1]);
-    const onto = ([x, y, away, scale]) => [width / 2 + zoom * (x - fit.middle[0]), height / 2 - zoom * (y - fit.middle[1]), away, zoom * scale];
+    const onto = ([x, y, away, scale]) => [
+      width / 2 + zoom * (x - fit.middle[0]),
+      height / 2 - zoom * (y - fit.middle[1]),
+      away,
+      zoom * scale,
+    ];
     context.fillStyle = colours.paper;
     context.fillRect(0, 0, width, height);
     context.lineCap = "round";
 
     const points = Array.from({ length: film.points }, (_, k) => pointAt(k, frame, next, share));
-    if (film.floor !== null && view.forward[0] * film.up[0] + view.forward[1] * film.up[1] + view.forward[2] * film.up[2] < 0) {
+    if (
+      film.floor !== null &&
+      view.forward[0] * film.up[0] + view.forward[1] * film.up[1] + view.forward[2] * film.up[2] < 0
+    ) {
       const onFloor = (point) => along(point, film.up, film.floor - dot(point, film.up));
       ground(onFloor(film.centre), onto, colours);
-      shadows(points.map((point) => onto(projected(film, view, ...onFloor(point)))), colours.shadow);
+      shadows(
+        points.map((point) => onto(projected(film, view, ...onFloor(point)))),
+        colours.shadow,
+      );
     }
     const tubes = [];
     const seen = points.map((point) => onto(projected(film, view, ...point)));
     for (let k = 0; k < count; ++k) {
-      const a = seen[segments[2 * k]], b = seen[segments[2 * k + 1]];
+      const a = seen[segments[2 * k]],
+        b = seen[segments[2 * k + 1]];
       tubes.push({ a, b, away: (a[2] + b[2]) / 2, radius: film.sizes[size[k]], colour: film.palette[colour[k]] });
     }
     for (const { start: from, end: to, radius, velocity } of film.capsules) {
@@ -126,7 +172,7 @@ function startFilm(figure, film) {
         ball(a, wide / 2, own, depth);
         continue;
       }
-      context.lineCap = "butt";    // a dark end would show on the next segment
+      context.lineCap = "butt"; // a dark end would show on the next segment
       context.strokeStyle = shaded(own, 0.62 * depth);
       line(a, b, wide);
       context.lineCap = "round";
@@ -147,7 +193,8 @@ function startFilm(figure, film) {
   function shadows(points, colour) {
     const paths = film.sizes.map(() => new Path2D());
     for (let k = 0; k < count; ++k) {
-      const a = points[segments[2 * k]], b = points[segments[2 * k + 1]];
+      const a = points[segments[2 * k]],
+        b = points[segments[2 * k + 1]];
       paths[size[k]].moveTo(a[0], a[1]);
       paths[size[k]].lineTo(b[0], b[1]);
     }
@@ -171,10 +218,12 @@ function startFilm(figure, film) {
   }
 
   function ground(middle, onto, colours) {
-    const level = Math.abs(film.up[0]) > 0.9 ? [0, -1, 0] : [1, 0, 0], back = cross(level, film.up);
+    const level = Math.abs(film.up[0]) > 0.9 ? [0, -1, 0] : [1, 0, 0],
+      back = cross(level, film.up);
     context.beginPath();
     for (let k = 0; k < 48; ++k) {
-      const angle = (k * Math.PI) / 24, radius = 0.72 * film.extent;
+      const angle = (k * Math.PI) / 24,
+        radius = 0.72 * film.extent;
       const rim = along(along(middle, level, radius * Math.cos(angle)), back, radius * Math.sin(angle));
       const [x, y] = onto(projected(film, view, ...rim));
       context[k ? "lineTo" : "moveTo"](x, y);
@@ -229,13 +278,19 @@ function startFilm(figure, film) {
   }
 
   let from = null;
-  canvas.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
+  canvas.addEventListener("pointerdown", (event) => {
+    from = [event.clientX, event.clientY];
+    canvas.setPointerCapture(event.pointerId);
+  });
   canvas.addEventListener("pointermove", (event) => {
     if (from === null) return;
     turn(-0.4 * (event.clientX - from[0]), 0.4 * (event.clientY - from[1]));
     from = [event.clientX, event.clientY];
   });
-  for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, () => { from = null; });
+  for (const name of ["pointerup", "pointercancel"])
+    canvas.addEventListener(name, () => {
+      from = null;
+    });
   canvas.addEventListener("keydown", (event) => {
     const turns = { ArrowLeft: [-6, 0], ArrowRight: [6, 0], ArrowUp: [0, 6], ArrowDown: [0, -6] };
     if (!(event.key in turns)) return;
@@ -253,14 +308,17 @@ function startFilm(figure, film) {
     draw();
   }
   new ResizeObserver(resize).observe(canvas);
-  new IntersectionObserver(([entry]) => {
-    const came = entry.isIntersecting && !visible;
-    visible = entry.isIntersecting;
-    if (came && !lessMotion.matches && !figure.dataset.played) {
-      figure.dataset.played = "";
-      start();
-    }
-  }, { threshold: 0.4 }).observe(canvas);
+  new IntersectionObserver(
+    ([entry]) => {
+      const came = entry.isIntersecting && !visible;
+      visible = entry.isIntersecting;
+      if (came && !lessMotion.matches && !figure.dataset.played) {
+        figure.dataset.played = "";
+        start();
+      }
+    },
+    { threshold: 0.4 },
+  ).observe(canvas);
   document.addEventListener("theme", draw);
   document.addEventListener("printing", draw);
   label();
