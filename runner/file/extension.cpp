@@ -13,6 +13,7 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
+#include "runner/file/stored_plan.hpp"
 #include "runner/job/job_extension.hpp"
 
 namespace rodsweep {
@@ -51,8 +52,10 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
       note_ = fmt::format("{} was made by revision {}, and this is {}: what is copied is the former's", path.native(),
                           revision, source_revision());
     }
-    before_.emplace(parse_job(file.job_text, path));
-    check_extends(plan.job(), before_->job());
+    Job before = stored_job(file, plan.job().path);
+    before.path = path;  // which messages name
+    check_extends(plan.job(), before);
+    before_.emplace(std::move(before));
     if (file.rerun_of_task)
       throw FileError(fmt::format(
           "{} holds one task of a sweep, made by `rodsweep rerun`: extend the file of the sweep", path.native()));

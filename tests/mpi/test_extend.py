@@ -5,6 +5,7 @@ Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
 """
 
 import os
+import shutil
 import signal
 import tempfile
 import unittest
@@ -184,6 +185,54 @@ class Damage(ExtendCase):
         process.send_signal(signal.SIGTERM)
         _, stderr = process.communicate(timeout=30)
         self.assertIn(f"run {path} -o stopped.h5 --extend {old} --resume", stderr)
+
+
+class Elsewhere(ExtendCase):
+    """The job names a model beside it, and the results lie far away."""
+
+    def setUp(self):
+        super().setUp()
+        os.makedirs("jobs/models")
+        os.makedirs("far/away")
+        shutil.copy(os.path.join(os.environ["SOURCE_DIR"], "network", "pretrained", "rods.h5"), "jobs/models/net.h5")
+        guesses = ["zero", {"copingnet": {"model": "models/net.h5"}}]
+        for name, samples in (("old", 1), ("new", 2)):
+            shutil.move(self.new(name, samples=samples, guesses=guesses), "jobs")
+        self.assert_exit(rodsweep(0, "run", "jobs/old.json", "-o", "far/away/old.h5"), ALL_DONE)
+
+    def assert_extended(self, path, ranks):
+        ran = rodsweep(ranks, "run", path, "-o", f"new-{ranks}.h5", "--extend", "far/away/old.h5")
+        self.assert_exit(ran, ALL_DONE)
+        self.assertIn("of 4 tasks 2 are copied from far/away/old.h5, 0 get their new guesses, 2 are run", ran.stderr)
+        self.assert_exit(rodsweep(0, "run", path, "-o", f"fresh-{ranks}.h5"), ALL_DONE)
+        self.assert_same_results(f"fresh-{ranks}.h5", f"new-{ranks}.h5")
+
+    def test_its_paths_begin_where_its_job_was_or_where_the_new_one_is(self):
+        self.assert_extended("jobs/new.json", 3)
+        shutil.move("jobs", "moved")
+        self.assert_extended("moved/new.json", 0)
+
+    def test_a_model_that_is_another_now_or_nowhere_is_no_reason_to_copy(self):
+        with h5py.File("jobs/models/net.h5", "r+") as h5:
+            h5.attrs["remark"] = "not the same bytes"
+        refused = rodsweep(0, "run", "jobs/new.json", "-o", "no.h5", "--extend", "far/away/old.h5")
+        self.assert_exit(refused, USER_ERROR)
+        self.assertIn("or the files that the job names have changed (/job, plan_hash)", refused.stderr)
+        os.remove("jobs/models/net.h5")
+        for words in (("rerun", "far/away/old.h5", "0"), ("merge", "far/away/old.h5", "-o", "merged.h5")):
+            refused = rodsweep(0, *words)
+            self.assert_exit(refused, USER_ERROR)
+            self.assertIn("put the job's files back where they were:\n", refused.stderr)
+            self.assertIn("jobs/models/net.h5 is not there", refused.stderr)
+
+    def test_rerun_and_merge_find_the_model_and_resume_takes_that_of_its_own_job(self):
+        self.assertIn("identical", rodsweep(0, "rerun", "far/away/old.h5", "1").stdout)
+        self.assert_exit(rodsweep(0, "merge", "far/away/old.h5", "-o", "far/merged.h5"), ALL_DONE)
+        self.assertIn("identical", rodsweep(0, "rerun", "far/merged.h5", "1").stdout)
+        with h5py.File("far/away/old.h5", "r+") as h5:
+            h5["tasks/state"][1] = 0
+        shutil.move("jobs", "moved")
+        self.assert_exit(rodsweep(0, "run", "moved/old.json", "-o", "far/away/old.h5", "--resume"), ALL_DONE)
 
 
 class Refusing(ExtendCase):
