@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <ctime>
 #include <optional>
 
 #include "runner/command/exit_codes.hpp"
@@ -18,9 +20,20 @@ std::string outcomes_text(const FileSummary& file) {
 
 namespace {
 
-std::string ending(const RunRow& run, bool is_last, std::optional<bool> being_written) {
-  if (run.end_utc.empty() && is_last && !being_written) return "runs still, or was killed";
-  if (run.end_utc.empty()) return is_last && *being_written ? "runs still" : "was killed";
+constexpr double alive_s = 30;  // six times as long as a run takes to renew the file's time
+constexpr double hung_s = 60;   // a run that says nothing for so long may hang, as `keep` takes it to after 300 s
+
+std::string life_text(const FileSummary& file) {
+  const std::string silence = duration_text(std::round(file.silent_s));
+  if (!is_alive(file))
+    return file.being_written ? "was killed" : fmt::format("was killed, or hangs: no sign of life for {}", silence);
+  if (file.silent_s > hung_s)
+    return fmt::format("runs still, but shows no sign of life for {}: it may hang, or a disk does", silence);
+  return fmt::format("runs still, last sign of life {} ago", silence);
+}
+
+std::string ending(const RunRow& run, bool is_last, const FileSummary& file) {
+  if (run.end_utc.empty()) return is_last ? life_text(file) : "was killed";
   switch (static_cast<ExitCode>(run.exit_code)) {
     case ExitCode::ok: return "all done";
     case ExitCode::tasks_failed: return "complete, some tasks failed";
@@ -38,7 +51,20 @@ std::string start_text(const FileSummary& file, std::size_t index) {
                      run.source.empty() ? "" : fmt::format(" (of {}, extended here)", run.source), p.begin_utc,
                      run.end_utc.empty() ? "?" : run.end_utc, p.host, p.ranks, p.ranks == 1 ? "" : "s",
                      p.oversubscribed ? " (more than cores: times are worthless)" : "", run.tasks,
-                     duration_text(run.task_seconds), ending(run, index + 1 == file.runs.size(), file.being_written));
+                     duration_text(run.task_seconds), ending(run, index + 1 == file.runs.size(), file));
+}
+
+bool is_alive(const FileSummary& file) {
+  if (file.runs.empty() || !file.runs.back().end_utc.empty()) return false;
+  return file.being_written.value_or(file.silent_s < alive_s);
+}
+
+std::optional<double> rate_of(const FileSummary& file) {
+  if (!is_alive(file)) return std::nullopt;
+  const RunRow& run = file.runs.back();
+  const double since = std::difftime(std::time(nullptr), seconds_of_utc(run.provenance.begin_utc));
+  if (run.tasks == 0 || !(since > 0)) return std::nullopt;
+  return static_cast<double>(run.tasks) / since;
 }
 
 nlohmann::ordered_json to_json(const FileSummary& file) {
@@ -50,7 +76,12 @@ nlohmann::ordered_json to_json(const FileSummary& file) {
             {"failed", file.failed},
             {"pending", file.pending},
             {"outcomes", file.done_by_outcome},
-            {"being_written", file.being_written ? Json(*file.being_written) : Json()}};
+            {"being_written", file.being_written ? Json(*file.being_written) : Json()},
+            {"alive", is_alive(file)},
+            {"silent_s", is_alive(file) ? Json(file.silent_s) : Json()}};
+  const std::optional<double> rate = rate_of(file);
+  json["tasks_per_s"] = rate ? Json(*rate) : Json();
+  json["left_s"] = rate ? Json(static_cast<double>(file.pending) / *rate) : Json();
   json["failures"] = Json::array();
   for (const FailedTask& task : file.failures)
     json["failures"].push_back({{"task", task.index}, {"outcome", task.outcome}, {"message", task.message}});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "runner/file/inspect.hpp"
@@ -9,6 +10,13 @@
 namespace rodsweep {
 
 std::string outcomes_text(const FileSummary& file);  ///< "98 ok, 2 torn"
+
+/// Does a run work on it? By its lock, which dies with it; where the file system has none, by the file's time, which a
+/// run renews.
+bool is_alive(const FileSummary& file);
+
+/// Tasks a second of the start that works on it; none before its first.
+std::optional<double> rate_of(const FileSummary& file);
 
 /// Start `index` of the sweep, a line.
 std::string start_text(const FileSummary& file, std::size_t index);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <optional>
 #include <thread>
 
@@ -18,22 +17,10 @@ namespace {
 
 constexpr std::size_t failures_shown = 10, running_shown = 10;
 
-/// Tasks a second of the start that runs; none before its first.
-std::optional<double> rate_of(const FileSummary& file) {
-  const RunRow& run = file.runs.back();
-  const double since = std::difftime(std::time(nullptr), seconds_of_utc(run.provenance.begin_utc));
-  if (run.tasks == 0 || !(since > 0)) return std::nullopt;
-  return static_cast<double>(run.tasks) / since;
-}
-
-bool runs(const FileSummary& file) {
-  return file.being_written.value_or(false) && !file.runs.empty() && file.runs.back().end_utc.empty();
-}
-
 std::string progress_text(const FileSummary& file) {
   std::string text = fmt::format("{}: {} of {} tasks done ({} %): {}", file.job_name, file.done, file.tasks,
                                  file.tasks > 0 ? 100 * file.done / file.tasks : 100, outcomes_text(file));
-  if (const auto rate = runs(file) ? rate_of(file) : std::nullopt)
+  if (const auto rate = rate_of(file))
     text += fmt::format("; {:.3g} tasks/s, {} left", *rate, duration_text(static_cast<double>(file.pending) / *rate));
   return text;
 }
@@ -63,7 +50,7 @@ std::string status_text(const FileSummary& file) {
         fmt::format("  task {} {}: {}\n", file.failures[i].index, file.failures[i].outcome, file.failures[i].message);
   if (file.failures.size() > failures_shown)
     text += fmt::format("  and {} more: --json lists them all\n", file.failures.size() - failures_shown);
-  if (runs(file)) text += running_text(file);
+  if (is_alive(file)) text += running_text(file);
   if (!file.runs.empty()) text += start_text(file, file.runs.size() - 1);
   text.pop_back();
   return text;
@@ -79,7 +66,7 @@ ExitCode execute(const StatusOptions& options, Console& console) {
   }
   for (;;) {
     const FileSummary file = inspect(options.file);
-    const bool last = options.watch_s == 0 || !runs(file);
+    const bool last = options.watch_s == 0 || !is_alive(file);
     if (options.json)
       console.result(to_json(file).dump(options.watch_s == 0 ? 2 : -1));  // watched: an object a line
     else

@@ -17,8 +17,9 @@ struct StatusOptions {
 
 inline constexpr const char* status_help =
     "Reads only, also while the sweep writes. The exit code is 0 whatever the state: scripts read --json.\n"
-    "Whether a sweep runs is known by its lock on the file, which dies with it. The time left is for tasks as\n"
-    "long as those so far: long ones come first.\n\n"
+    "Whether a sweep runs is known by its lock on the file, which dies with it, or where there are no locks by its\n"
+    "heartbeat: it renews the file's time every 5 seconds. The time left is for tasks as long as those so far: long\n"
+    "ones come first.\n\n"
     "Examples:\n"
     "  rodsweep status results/demo.h5 --json | jq .pending\n"
     "  rodsweep status results/demo.h5 --watch           a line every 5 seconds until it ends";

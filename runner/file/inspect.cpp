@@ -1,5 +1,10 @@
 #include "runner/file/inspect.hpp"
 
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <ctime>
+
 #include "runner/file/file_lock.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
@@ -10,6 +15,13 @@ namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// By this host's clock, which need not be that of whoever keeps the file: at least 0.
+double seconds_since(const fs::path& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return 0;
+  return std::max(0.0, std::difftime(std::time(nullptr), file.st_mtime));
+}
 
 void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
   const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
@@ -65,6 +77,7 @@ FileSummary inspect(const fs::path& path) {
     FileSummary summary;
     summary.path = path;
     summary.bytes = fs::file_size(path);
+    summary.silent_s = seconds_since(path);
     summary.schema_version = schema_version;
     summary.job_name = hdf5::read_text_attribute(file.id(), "/job", "name");
     summary.job_kind = kind_of(file);

@@ -46,6 +46,7 @@ struct FileSummary {
   std::vector<FailedTask> failures;         ///< in order of their index
   std::vector<BegunTask> begun;             ///< likewise
   std::optional<bool> being_written;        ///< by a run that lives; empty: the file system does not tell
+  double silent_s = 0;                      ///< since the file's time changed, which a run renews every 5 s
   std::optional<double> momentum_residual;  ///< the largest of finished tasks that measured it
   std::vector<RunRow> runs;
 };
