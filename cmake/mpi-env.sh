@@ -12,4 +12,5 @@ default OMPI_MCA_mpi_yield_when_idle 1
 default OMPI_MCA_btl_vader_single_copy_mechanism none     # containers forbid process_vm_readv
 default OMPI_MCA_pml ob1                                  # no search for network hardware: start-up in half the time
 default OMPI_MCA_btl self,vader
+default OMPI_MCA_orte_execute_quiet 1                     # no banner of mpirun's about how ranks ended, whose own words it buries
 exec "$@"

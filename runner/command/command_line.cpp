@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include "runner/command/completion.hpp"
 #include "runner/command/manual.hpp"
 #include "runner/job/job_schema.hpp"
+#include "runner/job/nearest.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -30,7 +32,7 @@ constexpr const char* exit_codes =
 
 constexpr const char* main_help =
     "Examples:\n"
-    "  rodsweep validate jobs/*.json            are these jobs sound?\n"
+    "  rodsweep validate jobs/demo.json         is this job sound?\n"
     "  rodsweep plan jobs/demo.json             how many tasks, bytes, core-hours?\n"
     "  mpirun -n 9 rodsweep run jobs/demo.json  8 workers and a master, which sleeps\n"
     "  rodsweep keep -- mpirun -n 9 rodsweep run jobs/demo.json\n"
@@ -154,6 +156,7 @@ CLI::App* add(CLI::App& app, ValidateOptions& validate) {
   CLI::App* command = app.add_subcommand("validate", "Checks jobs without running them");
   command->footer(with_exit_codes(validate_help));
   command->add_option("JOB", validate.jobs, "Job files (JSON)")->required();
+  command->add_flag("--later", validate.later, "Pass models and data sets that are not there yet");
   return command;
 }
 
@@ -256,6 +259,30 @@ CLI::App* add(CLI::App& app, KeepOptions& keep) {
   return command;
 }
 
+/// What is said of words that are no command and no option: what may have been meant.
+std::string complaint_text(const CLI::App* app, const CLI::Error& error) {
+  const std::string more = "\nRun with --help for more information.\n";
+  const auto chosen = app->get_subcommands();
+  const CLI::App& command = chosen.empty() ? *app : *chosen.front();
+  const std::vector<std::string> words = command.remaining();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || words.empty())
+    return CLI::FailureMessage::simple(app, error);
+  const auto is_option = [](const std::string& word) { return word.rfind('-', 0) == 0; };
+  const auto option = std::find_if(words.begin(), words.end(), is_option);
+  std::vector<std::string> known;
+  if (option != words.end()) {
+    for (const CLI::Option* offered : command.get_options())
+      for (const std::string& name : offered->get_lnames()) known.push_back("--" + name);
+    const std::string typed = option->substr(0, option->find('='));
+    return fmt::format("rodsweep{}: there is no option {}{}{}", chosen.empty() ? "" : " " + command.get_name(), typed,
+                       did_you_mean(typed, known), more);
+  }
+  if (!chosen.empty()) return CLI::FailureMessage::simple(app, error);
+  for (const CLI::App* offered : app->get_subcommands({})) known.push_back(offered->get_name());
+  return fmt::format("rodsweep: there is no command \"{}\"{}{}", words.front(), did_you_mean(words.front(), known),
+                     more);
+}
+
 /// The run that is kept, understood like one that is typed. Not one: an Answer that says why.
 Command with_its_run(KeepOptions keep) {
   const std::vector<std::string> words = run_words(keep.command);
@@ -280,6 +307,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   app.footer(with_exit_codes(main_help));
   app.require_subcommand(0, 1);
   app.get_formatter()->column_width(28);
+  app.failure_message(complaint_text);
   bool version = false;
   app.add_flag("--version", version, "Version, revision and libraries");
 

@@ -47,7 +47,7 @@ std::string run_line(const RunOptions& options, int ranks) {
 
 std::string stopped_text(int signal, RunOptions options, int ranks) {
   options.resume = true;
-  return fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_name(signal),
+  return fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_cause(signal),
                      run_line(options, ranks));
 }
 

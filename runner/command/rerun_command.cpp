@@ -67,7 +67,7 @@ ExitCode execute(const RerunOptions& options, Console& console) {
   });
   const TaskResult result = body({0}, [&] { return signal.received() != 0; }).front();
   if (result.outcome == TaskOutcome::pending) {
-    console.note(fmt::format("stopped early by {}; nothing was written", signal_name(signal.received())));
+    console.note(fmt::format("stopped early by {}; nothing was written", signal_cause(signal.received())));
     return ExitCode::stopped;
   }
   console.result(fmt::format("task {}: {}{}\nresults: {}", options.task, to_string(result.outcome),

@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "runner/experiment/inputs.hpp"
+#include "runner/file/file_error.hpp"
 #include "runner/job/plan.hpp"
+#include "runner/job/plausible.hpp"
+#include "runner/job/training_job.hpp"
+#include "runner/training/learning_sets.hpp"
 
 namespace rodsweep {
 namespace {
@@ -17,31 +22,95 @@ std::string extent_text(const Job& job) {
   return fmt::format("{} task{}", plan.size(), plan.size() == 1 ? "" : "s");
 }
 
-/// jobs/schema.json stands among the jobs, and `validate jobs/*.json` should pass.
-bool is_json_schema(const std::filesystem::path& path) {
+/// What stands in a file, as far as it can be told without reading it as a job; null if it is no JSON.
+nlohmann::json glance(const std::filesystem::path& path) {
   std::ifstream in(path);
-  const auto json = nlohmann::json::parse(in, nullptr, false);
-  const auto found = json.is_object() ? json.find("$schema") : json.end();
-  return json.is_object() && found != json.end() && found->is_string() &&
-         found->get<std::string>().find("json-schema.org/") != std::string::npos;
+  return nlohmann::json::parse(in, nullptr, false);
 }
+
+std::string text_of(const nlohmann::json& json, const char* key) {
+  const auto found = json.is_object() ? json.find(key) : json.end();
+  return json.is_object() && found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+/// Of a training whose data sets are all there: can it learn from them?
+void check_data(const Job& job) {
+  if (!is_training(job) || !missing_files(job).empty()) return;
+  try {
+    const LearningSets sets(training_job(job), job);
+  } catch (const FileError& error) {
+    throw job_error(job.path, "data", error.what());
+  }
+}
+
+/// jobs/schema.json stands among the jobs, and `validate jobs/*.json` should pass it.
+bool is_json_schema(const nlohmann::json& json) {
+  return text_of(json, "$schema").find("json-schema.org/") != std::string::npos;
+}
+
+/// Which of the jobs makes a data set or model NAME.h5, by that name.
+std::map<std::string, std::filesystem::path> makers(const std::vector<std::filesystem::path>& jobs) {
+  std::map<std::string, std::filesystem::path> found;
+  for (const auto& path : jobs) {
+    const nlohmann::json job = glance(path);
+    if (text_of(job, "kind") != "sweep") found.emplace(text_of(job, "name"), path);
+  }
+  return found;
+}
+
+class Validation {
+ public:
+  Validation(const ValidateOptions& options, Console& console)
+      : options_(options), makers_(makers(options.jobs)), console_(console) {}
+
+  /// Throws JobError.
+  void check(const std::filesystem::path& path) {
+    const Job job = read_job(path, MissingFiles::accepted);
+    const std::vector<std::string> notes = check_missing(job);
+    check_inputs(job);
+    check_data(job);
+    console_.result(fmt::format("{}: sound, {}", path.native(), extent_text(job)));
+    for (const std::string& note : notes) console_.note(note);
+    for (const std::string& warning : implausible_values(job)) console_.warn(warning);
+  }
+
+ private:
+  /// Who will make what is missing, a line each.
+  std::vector<std::string> check_missing(const Job& job) const {
+    std::string mistakes;
+    std::vector<std::string> notes;
+    for (const MissingFile& file : missing_files(job)) {
+      const auto maker = makers_.find(file.path.stem().native());
+      const bool made = maker != makers_.end() && maker->second != job.path;
+      if (made || options_.later)
+        notes.push_back(fmt::format("{}: {}: {} is not there yet{}", job.path.native(), file.key_path,
+                                    file.path.native(), made ? "; " + maker->second.native() + " makes it" : ""));
+      else
+        mistakes += (mistakes.empty() ? "" : "\n") + missing_file_text(job.path, file);
+    }
+    if (!mistakes.empty())
+      throw JobError(fmt::format("{}\n{}: what another job makes passes if that job is given too, or with --later",
+                                 mistakes, job.path.native()));
+    return notes;
+  }
+
+  const ValidateOptions& options_;
+  std::map<std::string, std::filesystem::path> makers_;
+  Console& console_;
+};
 
 }  // namespace
 
 ExitCode execute(const ValidateOptions& options, Console& console) {
   ExitCode code = ExitCode::ok;
+  Validation validation(options, console);
   for (const auto& path : options.jobs) {
-    if (is_json_schema(path)) {
+    if (is_json_schema(glance(path))) {
       console.result(fmt::format("{}: a JSON Schema for editors, not a job", path.native()));
       continue;
     }
     try {
-      const Job job = read_job(path, MissingFiles::accepted);
-      check_inputs(job);
-      console.result(fmt::format("{}: sound, {}", path.native(), extent_text(job)));
-      for (const auto& [written, file] : job.files)
-        if (file.hash.empty())
-          console.note(fmt::format("{}: {}: {} is not there yet", path.native(), file.key_path, file.path.native()));
+      validation.check(path);
     } catch (const JobError& error) {
       console.error(error.what());
       code = ExitCode::user_error;

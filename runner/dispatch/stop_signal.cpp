@@ -1,22 +1,31 @@
 #include "runner/dispatch/stop_signal.hpp"
 
+#include <unistd.h>
+
+#include <cstdlib>
+
 namespace rodsweep {
 
 namespace {
 
 volatile std::sig_atomic_t first_signal = 0;
+volatile std::sig_atomic_t from_parent = 0;  ///< the process that started this one sent it
 
-void note(int signal) {
-  if (first_signal == 0) first_signal = signal;
+void note(int signal, siginfo_t* told, void*) {
+  if (first_signal != 0) return;
+  from_parent = told->si_code <= 0 && told->si_pid == getppid() ? 1 : 0;
+  first_signal = signal;
 }
+
+bool is_under_mpirun() { return std::getenv("OMPI_COMM_WORLD_RANK") != nullptr; }
 
 }  // namespace
 
 StopSignal::StopSignal() {
   first_signal = 0;
   struct sigaction action {};
-  action.sa_handler = note;
-  action.sa_flags = SA_RESTART;  // a signal must not fail a write to the results file
+  action.sa_sigaction = note;
+  action.sa_flags = SA_SIGINFO | SA_RESTART;  // a signal must not fail a write to the results file
   sigemptyset(&action.sa_mask);
   for (std::size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &action, &before_[i]);
 }
@@ -34,6 +43,13 @@ const char* signal_name(int signal) {
     case SIGUSR1: return "SIGUSR1";
     default: return "a signal";
   }
+}
+
+std::string signal_cause(int signal) {
+  if (signal == SIGINT) return "Ctrl-C (SIGINT)";
+  if (signal == SIGTERM && from_parent != 0 && is_under_mpirun())
+    return "mpirun (SIGTERM), which got Ctrl-C or a signal, or lost a rank";
+  return signal_name(signal);
 }
 
 }  // namespace rodsweep

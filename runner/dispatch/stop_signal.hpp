@@ -5,6 +5,7 @@
 
 #include <array>
 #include <csignal>
+#include <string>
 
 namespace rodsweep {
 
@@ -25,5 +26,10 @@ class StopSignal {
 
 /// "SIGTERM", for messages.
 const char* signal_name(int signal);
+
+/// What this process knows of the signal that it received: "SIGUSR1", "Ctrl-C (SIGINT)". mpirun makes SIGTERM of
+/// Ctrl-C, of a SIGTERM of its own and of the death of another rank; which it was cannot be told: "mpirun (SIGTERM),
+/// which got Ctrl-C or a signal, or lost a rank".
+std::string signal_cause(int signal);
 
 }  // namespace rodsweep

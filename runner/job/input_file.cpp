@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -9,8 +10,59 @@
 
 #include "runner/job/checksum.hpp"
 #include "runner/job/job.hpp"
+#include "runner/job/key_path.hpp"
+#include "runner/job/nearest.hpp"
 
 namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The file of the same kind in the missing one's folder whose name is nearest, as it would be written; empty: none.
+std::string nearest_name(const MissingFile& file) {
+  std::vector<std::string> stems;
+  std::error_code error;
+  const fs::path folder = file.path.has_parent_path() ? file.path.parent_path() : fs::path(".");
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == file.path.extension() && !entry->is_directory(error))
+      stems.push_back(entry->path().stem());
+  std::sort(stems.begin(), stems.end());
+  const std::string near = nearest(file.path.stem().native(), stems);
+  return near.empty() ? "" : fs::path(file.written).replace_filename(near + file.path.extension().native()).native();
+}
+
+}  // namespace
+
+std::vector<MissingFile> missing_files(const Job& job) {
+  std::vector<MissingFile> missing;
+  for (const auto& [written, file] : job.files)
+    if (file.hash.empty()) missing.push_back({file.key_path, written, file.path});
+  if (!is_training(job)) return missing;
+  const auto& data = job.values["data"];
+  const bool listed = data.is_array();
+  for (std::size_t i = 0; i < (listed ? data.size() : 1); ++i) {
+    const std::string written = listed ? data[i] : data;
+    const fs::path path = job.path.parent_path() / written;
+    std::error_code error;
+    if (!fs::exists(path, error)) missing.push_back({listed ? element("data", i) : "data", written, path});
+  }
+  return missing;
+}
+
+std::string missing_file_text(const fs::path& job, const MissingFile& file) {
+  const fs::path maker = job.parent_path() / file.path.stem().concat(".json");
+  std::error_code error;
+  std::string advice;
+  if (fs::exists(maker, error))
+    advice = fmt::format("; does {} make it? Then run that first", maker.native());
+  else if (const std::string near = nearest_name(file); !near.empty())
+    advice = fmt::format("; did you mean \"{}\"?", near);
+  return job_error(
+             job, file.key_path,
+             fmt::format("\"{}\" is not allowed: {} is not there; the path is relative to the job file's folder{}",
+                         file.written, file.path.native(), advice))
+      .what();
+}
 
 InputFile input_file(const std::filesystem::path& job, const std::string& key_path, const std::string& text,
                      MissingFiles missing) {
@@ -21,10 +73,10 @@ InputFile input_file(const std::filesystem::path& job, const std::string& key_pa
                                 path.native(), reason));
   };
   std::error_code error;
-  if (!std::filesystem::exists(path, error) && missing == MissingFiles::accepted) return {key_path, path, ""};
-  const std::filesystem::path maker = job.parent_path() / path.stem().concat(".json");
-  if (!std::filesystem::exists(path, error) && std::filesystem::exists(maker, error))
-    refuse(fmt::format("is not there; does {} make it? Then run that first", maker.native()));
+  if (!std::filesystem::exists(path, error)) {
+    if (missing == MissingFiles::accepted) return {key_path, path, ""};
+    throw JobError(missing_file_text(job, {key_path, text, path}));
+  }
   if (std::filesystem::is_directory(path, error)) refuse("is a folder");
   errno = 0;
   std::ifstream in(path, std::ios::binary);

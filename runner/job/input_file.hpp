@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace rodsweep {
 
@@ -18,5 +19,20 @@ enum class MissingFiles { refused, accepted };  ///< accepted: without a hash, f
 /// The file named `text` under `key_path` of a job file. Throws JobError where it cannot be read.
 InputFile input_file(const std::filesystem::path& job, const std::string& key_path, const std::string& text,
                      MissingFiles missing);
+
+/// A file that a job names and that is not there.
+struct MissingFile {
+  std::string key_path, written;  ///< the path as it stands in the job
+  std::filesystem::path path;     ///< from the current folder
+};
+
+struct Job;
+
+/// Those of a job that was read with MissingFiles::accepted, and the data sets of a training.
+std::vector<MissingFile> missing_files(const Job& job);
+
+/// Why that is no sound job, with what may have been meant: a job beside that makes the file, or the nearest name in
+/// its folder.
+std::string missing_file_text(const std::filesystem::path& job, const MissingFile& file);
 
 }  // namespace rodsweep

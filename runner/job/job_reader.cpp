@@ -25,6 +25,34 @@ std::string written(const Json& value) {
   return text.substr(0, end) + "...";
 }
 
+/// Is this of the JSON type of the key's values? (A list of numbers is one of vectors' values, and no list of them.)
+bool looks_like_one(const Key& key, const Json& value) {
+  switch (key.kind) {
+    case Key::Kind::integer:
+    case Key::Kind::number: return value.is_number() || (value.is_string() && !key.choices.empty());
+    case Key::Kind::boolean: return value.is_boolean();
+    case Key::Kind::text:
+    case Key::Kind::choice: return value.is_string();
+    case Key::Kind::vector: return value.is_array() && value.size() == 3 && value[0].is_number();
+    default: return value.is_object();
+  }
+}
+
+/// What to write for a list of values where one is wanted: a sweep, which a bare list is not.
+std::string sweep_advice(const Key& key, const Json& value) {
+  const auto fits = [&](const Json& item) { return looks_like_one(key, item); };
+  if (!key.sweepable || !value.is_array() || value.empty() || !std::all_of(value.begin(), value.end(), fits)) return "";
+  std::string items;
+  for (const Json& item : value) items += (items.empty() ? "" : ", ") + item.dump();
+  if (items.size() > 40) items = value[0].dump() + ", ...";
+  std::string advice = fmt::format("; to sweep over these values write {{\"grid\": [{}]}}", items);
+  const bool of_numbers = key.kind == Key::Kind::integer || key.kind == Key::Kind::number;
+  if (of_numbers && value.size() == 2 && value[0].is_number() && value[0] < value[1])
+    advice += fmt::format(", to draw from the range {{\"{}\": [{}]}}",
+                          key.kind == Key::Kind::integer ? "integer" : "uniform", items);
+  return advice;
+}
+
 bool within(const Key& key, double value) {
   return std::isfinite(value) && value <= key.high && (key.above_low ? value > key.low : value >= key.low);
 }
@@ -46,7 +74,8 @@ void JobReader::mistake(const std::string& path, const std::string& text) {
 }
 
 void JobReader::refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark) {
-  mistake(path, fmt::format("{} is not allowed; must be {}{}", written(value), allowed(key), remark));
+  mistake(path, fmt::format("{} is not allowed; must be {}{}{}", written(value), allowed(key), remark,
+                            sweep_advice(key, value)));
 }
 
 void JobReader::throw_mistakes() const {
@@ -128,6 +157,7 @@ Json JobReader::read_range(const Key& key, const std::string& word, const Json& 
   Key end_key = key;
   if (whole) end_key.kind = Key::Kind::integer;
   end_key.choices.clear();  // a word is no end of a range
+  end_key.sweepable = false;
   const std::size_t before = mistakes_.size();
   Json result = Json::array();
   for (std::size_t i = 0; i < 2; ++i) {

@@ -1,6 +1,7 @@
 // The part of JobReader that reads objects of keys, and lists, those of guesses above all.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 
 #include "runner/job/guess_keys.hpp"
@@ -55,6 +56,42 @@ std::string varying_label(const Json& guess) {
   std::string label;
   for (const Json& option : guess[word]) label += (label.empty() ? "" : " | ") + varying_label(option);
   return label;
+}
+
+/// Some value that the key takes: the one given, if it does.
+Json example_value(const Key& key, const Json& given) {
+  switch (key.kind) {
+    case Key::Kind::integer:
+    case Key::Kind::number: {
+      const double wanted = given.is_number() ? given.get<double>() : NAN;
+      const bool fits = wanted <= key.high && (key.above_low ? wanted > key.low : wanted >= key.low) &&
+                        (key.kind == Key::Kind::number || std::trunc(wanted) == wanted);
+      return fits ? number(wanted) : key.preset.value_or(Json(1));
+    }
+    case Key::Kind::choice: return key.preset.value_or(Json(key.choices.front()));
+    case Key::Kind::text: return given.is_string() && !given.empty() ? given : Json("FILE.h5");
+    case Key::Kind::guess: return given.is_string() && find_key(guess_keys(), given) ? given : Json("previous");
+    default: return Json();
+  }
+}
+
+/// How a guess is written with parameters: those that it must have, or the first of all with the value that was given.
+Json guess_example(const Key& guess, const Json& given) {
+  Json parameters = Json::object();
+  for (const Key& key : guess.keys)
+    if (!key.preset) parameters[key.name] = example_value(key, given);
+  if (parameters.empty() && !guess.keys.empty())
+    parameters[guess.keys.front().name] = example_value(guess.keys.front(), given);
+  return Json{{guess.name, parameters}};
+}
+
+/// {"pod": {"size": 10}}, with spaces.
+std::string spaced(const Json& object) {
+  std::string text;
+  for (const auto& [name, value] : object.items())
+    text +=
+        fmt::format("{}\"{}\": {}", text.empty() ? "" : ", ", name, value.is_object() ? spaced(value) : value.dump());
+  return "{" + text + "}";
 }
 
 }  // namespace
@@ -193,7 +230,9 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
   Key keys = *guess;
   if (labelled) keys.keys.push_back(Key(guess_label_key()).defaults_to(name));
   if (!given.is_object()) {
-    refuse(keys, given, member(path, name));
+    refuse(keys, given, member(path, name),
+           guess->keys.empty() ? fmt::format("; \"{}\" has no parameters: write it alone", name)
+                               : " with its parameters; for example " + spaced(guess_example(*guess, given)));
     return value;
   }
   const std::size_t before = mistakes_.size();

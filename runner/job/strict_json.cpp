@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runner/job/job.hpp"
+#include "runner/job/syntax_error.hpp"
 
 namespace rodsweep {
 namespace {
@@ -53,12 +54,8 @@ class StrictReader : public nlohmann::json_sax<Json> {
     const std::size_t column_mark = problem.find(", column ");
     const std::size_t end_of_prefix = column_mark == std::string::npos ? column_mark : problem.find(": ", column_mark);
     if (end_of_prefix != std::string::npos) problem.erase(0, end_of_prefix + 2);
-    const std::size_t at = std::min(position == 0 ? 0 : position - 1, text_.size());
-    const auto begin = text_.begin(), end = begin + static_cast<std::ptrdiff_t>(at);
-    const std::size_t line_start = at == 0 ? std::string::npos : text_.rfind('\n', at - 1);
-    const std::size_t column = line_start == std::string::npos ? at + 1 : at - line_start;
-    throw JobError(fmt::format("{}: line {}, column {}: {} (JSON has no comments and no comma after the last entry)",
-                               file_.string(), 1 + std::count(begin, end, '\n'), column, problem));
+    const std::size_t last = std::min(position == 0 ? 0 : position - 1, text_.size());
+    throw JobError(file_.string() + ": " + syntax_error_text(text_, last, last_token, problem));
   }
 
  private:

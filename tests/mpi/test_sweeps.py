@@ -237,8 +237,11 @@ class Signalled(InterruptedCase):
 
     def test_after_sigterm_to_mpirun_which_kills_soon_after(self):
         self.sweep(long_job("longer", 100))  # mpirun takes a second to pass it on
-        self.interrupt("term.h5", 3, lambda p: p.send_signal(signal.SIGTERM))
-        self.assertEqual(self.resume("term.h5", 3)[0]["exit_code"], STOPPED)
+        for name, number in (("term.h5", signal.SIGTERM), ("typed.h5", signal.SIGINT)):  # the second as Ctrl-C sends it
+            _, _, stderr = self.interrupt(name, 3, lambda p: p.send_signal(number))
+            self.assertIn("stopped early by mpirun (SIGTERM), which got Ctrl-C or a signal, or lost a rank; nothing is lost. "
+                          "To continue: ", stderr)
+            self.assertEqual(self.resume(name, 3)[0]["exit_code"], STOPPED)
 
     def test_without_mpirun_and_with_a_second_signal_during_the_stop(self):
         def twice(process):
@@ -247,6 +250,7 @@ class Signalled(InterruptedCase):
 
         result = self.interrupt("alone.h5", 0, twice)
         self.assert_stopped(*result, "alone.h5")
+        self.assertIn("stopped early by Ctrl-C (SIGINT); nothing is lost", result[2])
 
 
 class Killers(SweepCase):
@@ -311,11 +315,16 @@ class Watching(SweepCase):
         process = start(3, "run", path, "-o", "watched.h5")
         wait_for_tasks(process, "watched.h5", 2)
         now = status("watched.h5")
-        self.assertIs(now["being_written"], True)
+        self.assertEqual((now["being_written"], now["alive"]), (True, True))
+        self.assertLess(now["silent_s"], 30)
         self.assertIn(len(now["running"]), (1, 2))
         self.assertEqual({r["host"] for r in now["running"]}, {os.uname().nodename})
         self.assertLessEqual({r["rank"] for r in now["running"]}, {1, 2})
-        self.assertRegex(rodsweep(0, "status", "watched.h5").stdout, r"tasks/s, .* left\n  task \d+ runs on .*, rank [12]\n")
+        self.assertRegex(rodsweep(0, "status", "watched.h5").stdout, r"tasks/s, .* left\n  task \d+ runs on .*, rank [12]\n"
+                         r"(.*\n)?start 0: .*; runs still, last sign of life \S+ m?s ago\n$")
+
+        now = status("watched.h5")
+        self.assertAlmostEqual(now["left_s"], now["pending"] / now["tasks_per_s"])
 
         watch = start(0, "status", "watched.h5", "--watch", "0.2")
         self.assertIn("left", watch.stdout.readline())
@@ -324,7 +333,23 @@ class Watching(SweepCase):
         rest, _ = watch.communicate(timeout=30)  # ends by itself
         self.assertIn("was killed", rest)
         dead = status("watched.h5")
-        self.assertEqual((dead["being_written"], dead["running"]), (False, []))
+        self.assertEqual((dead["being_written"], dead["alive"], dead["running"]), (False, False, []))
+        self.assertEqual((dead["silent_s"], dead["tasks_per_s"], dead["left_s"]), (None, None, None))
+
+    def test_a_run_that_hangs_is_told_by_its_silence(self):
+        path = job("hung", samples=200, segments=(40,), steps=200, record={"solves": "summary"})
+        process = start(3, "run", path, "-o", "hung.h5")
+        wait_for_tasks(process, "hung.h5", 2)
+        ranks = ranks_of(process)
+        for pid in ranks.values():
+            os.kill(pid, signal.SIGSTOP)
+        before = time.time() - 200
+        os.utime("hung.h5", (before, before))  # as if it had been so for long
+        self.assertRegex(rodsweep(0, "status", "hung.h5").stdout,
+                         r"runs still, but shows no sign of life for 3 min 2\d s: it may hang, or a disk does\n")
+        for pid in [process.pid, *ranks.values()]:
+            os.kill(pid, signal.SIGKILL)
+        process.communicate(timeout=30)
 
 
 class Refusals(SweepCase):
@@ -332,6 +357,7 @@ class Refusals(SweepCase):
         self.assert_exit(process, USER_ERROR)
         self.assertEqual(process.stderr.count(text), 1, process.stderr)
         self.assertEqual(process.stderr.count("rodsweep: error:"), 1, process.stderr)
+        self.assertNotIn("Primary job", process.stderr)  # nor does mpirun say it again, in twelve lines
         self.assertEqual(process.stdout, "")
 
     def test_an_existing_file_stays_as_it_is(self):

@@ -53,6 +53,7 @@ TEST_CASE("the other commands take their options") {
   CHECK_FALSE(std::get<PlanOptions>(parse({"plan", "a.json", "--no-probe"})).probe);
   CHECK(std::get<PlanOptions>(parse({"plan", "a.json", "--json"})).json);
   CHECK(std::get<ValidateOptions>(parse({"validate", "a.json", "b.json"})).jobs.size() == 2);
+  CHECK(std::get<ValidateOptions>(parse({"validate", "--later", "a.json"})).later);
   CHECK(std::get<StatusOptions>(parse({"status", "a.h5", "--json"})).json);
   CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--verify"})).verify);
   CHECK(std::get<InfoOptions>(parse({"info", "a.h5", "--job"})).job);

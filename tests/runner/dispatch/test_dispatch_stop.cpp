@@ -1,6 +1,10 @@
 // Signals: what runs is abandoned, what is in hand comes back, nothing more is handed out, everybody leaves.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <cstdlib>
 
 #include "runner/dispatch/stop_signal.hpp"
 #include "tests/runner/dispatch_examples.hpp"
@@ -108,4 +112,34 @@ TEST_CASE("a stop signal is noted, a second one changes nothing, and the old han
   sigaction(SIGUSR1, nullptr, &after);
   CHECK(after.sa_handler == before.sa_handler);
   CHECK(StopSignal().received() == 0);
+}
+
+TEST_CASE("of a signal that mpirun sent it is said that Ctrl-C may have been the reason") {
+  CHECK(signal_cause(SIGUSR1) == "SIGUSR1");
+  CHECK(signal_cause(SIGINT) == "Ctrl-C (SIGINT)");
+  const auto cause_of_sigterm = [](bool from_parent, bool under_mpirun) {
+    int texts[2], ready[2];
+    REQUIRE((pipe(texts) == 0 && pipe(ready) == 0));
+    const pid_t child = fork();
+    if (child == 0) {
+      if (under_mpirun) setenv("OMPI_COMM_WORLD_RANK", "0", 1);
+      const StopSignal signal;
+      char byte = 0;
+      if (write(ready[1], &byte, 1) != 1) _exit(1);
+      if (!from_parent) raise(SIGTERM);
+      while (signal.received() == 0) usleep(1000);
+      const std::string text = signal_cause(signal.received());
+      _exit(write(texts[1], text.data(), text.size()) < 0);
+    }
+    char byte = 0, text[100] = {};
+    REQUIRE(read(ready[0], &byte, 1) == 1);
+    if (from_parent) kill(child, SIGTERM);
+    REQUIRE(read(texts[0], text, sizeof text - 1) > 0);
+    waitpid(child, nullptr, 0);
+    for (const int end : {texts[0], texts[1], ready[0], ready[1]}) close(end);
+    return std::string(text);
+  };
+  CHECK(cause_of_sigterm(true, true) == "mpirun (SIGTERM), which got Ctrl-C or a signal, or lost a rank");
+  CHECK(cause_of_sigterm(false, true) == "SIGTERM");
+  CHECK(cause_of_sigterm(true, false) == "SIGTERM");
 }

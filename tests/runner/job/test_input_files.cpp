@@ -27,7 +27,11 @@ TEST_CASE("a file that cannot be read is refused with key, path and reason") {
   CHECK(folder.refusal(learned("models/none.h5")) ==
         (folder.path() / "job.json").native() + ": guesses[1].copingnet.model: \"models/none.h5\" is not allowed: " +
             (folder.path() / "models/none.h5").native() +
-            " cannot be read: No such file or directory; the path is relative to the job file's folder");
+            " is not there; the path is relative to the job file's folder");
+  folder.write("models/bending.h5", "weights");
+  CHECK_THAT(folder.refusal(learned("models/bendin.h5")),
+             Catch::EndsWith("folder; did you mean \"models/bending.h5\"?"));
+  CHECK_THAT(folder.refusal(learned("nowhere/bending.h5")), Catch::EndsWith("the job file's folder"));
   CHECK_THAT(folder.refusal(learned("models")), Catch::Contains("is a folder"));
   CHECK_THAT(folder.refusal(learned("")), Catch::Contains("must be the path of a file"));
 }
@@ -36,9 +40,24 @@ TEST_CASE("a file that is missing may come from a job beside, and may be missing
   const JobFolder folder;
   folder.write("data.json", "{}");
   CHECK_THAT(folder.refusal(learned("../results/data.h5")),
-             Catch::Contains("is not there; does " + (folder.path() / "data.json").native() + " make it?"));
+             Catch::EndsWith("; does " + (folder.path() / "data.json").native() + " make it? Then run that first"));
   const Job job = parse_job(learned("none.h5").dump(), folder.path() / "job.json", MissingFiles::accepted);
   CHECK(job.files.at("none.h5").hash.empty());
+  REQUIRE(missing_files(job).size() == 1);
+  CHECK(missing_files(job).front().key_path == "guesses[1].copingnet.model");
+  CHECK(missing_files(job_of(small_job())).empty());
+}
+
+TEST_CASE("a training misses the data sets that are not there") {
+  const JobFolder folder;
+  folder.write("here.h5", "data");
+  const std::vector<MissingFile> missing =
+      missing_files(folder.job(with("/data", R"(["here.h5", "there.h5"])", train_job())));
+  REQUIRE(missing.size() == 1);
+  CHECK(missing_file_text(folder.path() / "job.json", missing.front()) ==
+        (folder.path() / "job.json").native() +
+            ": data[1]: \"there.h5\" is not allowed: " + (folder.path() / "there.h5").native() +
+            " is not there; the path is relative to the job file's folder; did you mean \"here.h5\"?");
 }
 
 TEST_CASE("what a task is depends on what its files hold, not on their names") {

@@ -1,3 +1,4 @@
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "tests/runner/job_examples.hpp"
@@ -120,17 +121,81 @@ TEST_CASE("a job's name must be usable as a file name") {
   CHECK(refusal(with("/name", "\"N_10-v1.2\"")) == "");
 }
 
-TEST_CASE("text that is not JSON is refused with line and column") {
-  const std::string advice = " (JSON has no comments and no comma after the last entry)";
+TEST_CASE("text that is not JSON is refused with line, column and a caret under the place") {
+  CHECK(refusal_of_text("{\n  \"a\": 1\n  \"b\": 2\n}") ==
+        "job.json: line 2, column 9: a comma is missing here\n"
+        "  \"a\": 1\n"
+        "        ^");
   CHECK(refusal_of_text("{\"a\": 1,\n  \"b\": 2,\n}") ==
-        "job.json: line 3, column 1: syntax error while parsing object key - unexpected '}'; expected string literal" +
-            advice);
-  CHECK(refusal_of_text("{\"a\": NaN}") ==
-        "job.json: line 1, column 7: syntax error while parsing value - invalid literal; last read: '\"a\": N'" +
-            advice);
+        "job.json: line 2, column 9: a comma after the last entry, which JSON does not have: remove it\n"
+        "  \"b\": 2,\n"
+        "        ^");
+  CHECK(
+      refusal_of_text("{\"a\": NaN}") ==
+      "job.json: line 1, column 7: syntax error while parsing value - invalid literal; last read: '\"a\": N' (JSON has "
+      "no comments)\n"
+      "{\"a\": NaN}\n"
+      "      ^");
+  CHECK(refusal_of_text("{\"a\": 1\n\n") ==
+        "job.json: line 1, column 8: syntax error while parsing object - unexpected end of input; expected '}'\n"
+        "{\"a\": 1\n"
+        "       ^");
   CHECK_THAT(refusal_of_text(""), StartsWith("job.json: line 1, column 1: syntax error while parsing value"));
   CHECK_THAT(refusal_of_text("{} {}"), StartsWith("job.json: line 1, column 4: syntax error while parsing value"));
   CHECK_THAT(refusal_of_text("// no\n{}"), StartsWith("job.json: line 1, column 1: syntax error while parsing value"));
+}
+
+TEST_CASE("a missing comma is found before whatever stands in its place, also behind tabs and letters of two bytes") {
+  const auto shown = [](const std::string& text) {
+    const std::string said = refusal_of_text(text);
+    return said.substr(said.find(": ", 10) + 2);
+  };
+  CHECK(shown("[1 2]") == "a comma is missing here\n[1 2]\n  ^");
+  CHECK(shown("[1\n{\"a\": 1}]") == "a comma is missing here\n[1\n  ^");
+  CHECK(shown("[true\tfalse]") == "a comma is missing here\n[true\tfalse]\n     ^");
+  CHECK(shown("{\n\t\"\u00e4\": \"\u00f6\" \"c\": 2}") ==
+        "a comma is missing here\n\t\"\u00e4\": \"\u00f6\" \"c\": 2}\n\t        ^");
+  CHECK(shown("[\"" + std::string(200, 'a') + "\" 5]") ==
+        "a comma is missing here\n" + std::string(59, 'a') + "\" 5]\n" + std::string(60, ' ') + "^");
+}
+
+TEST_CASE("a list where one value is wanted is answered with the sweep that was meant") {
+  CHECK(refusal(with("/scene/segments", "[20, 60]")) ==
+        "job.json: scene.segments: [20,60] is not allowed; must be an integer from 1 to 1000000; to sweep over these "
+        "values write {\"grid\": [20, 60]}, to draw from the range {\"integer\": [20, 60]}");
+  CHECK(refusal(with("/scene/length_m", "[3, 2, 1]")) ==
+        "job.json: scene.length_m: [3,2,1] is not allowed; must be a number above 0 and at most 1000000; to sweep over "
+        "these values write {\"grid\": [3, 2, 1]}");
+  CHECK(
+      refusal(with("/scene/gravity_m_s2", "[[0, 0, 0], [0, 0, -9.81]]")) ==
+      "job.json: scene.gravity_m_s2: [[0,0,0],[0,0,-9.81]] is not allowed; must be three numbers [x, y, z], each from "
+      "-1000000 to 1000000; to sweep over these values write {\"grid\": [[0,0,0], [0,0,-9.81]]}");
+  CHECK(refusal(with("/scene/clamp", R"(["wall", "free"])")) ==
+        "job.json: scene.clamp: [\"wall\",\"free\"] is not allowed; must be one of \"segment\", \"wall\", \"free\"; to "
+        "sweep over these values write {\"grid\": [\"wall\", \"free\"]}");
+  CHECK(refusal(with("/samples", "[1, 2]")) ==
+        "job.json: samples: [1,2] is not allowed; must be an integer from 1 to 1000000");
+}
+
+TEST_CASE("a guess with a bare value is answered with an example that is accepted") {
+  const auto with_guess = [](const std::string& guess) { return with("/guesses", "[\"zero\", " + guess + "]"); };
+  const std::string begin = " is not allowed; must be an object {...} with its parameters; for example ";
+  for (const auto& [guess, place, example] :
+       std::vector<std::array<const char*, 3>>{{R"({"pod": 10})", "pod: 10", R"({"pod": {"size": 10}})"},
+                                               {R"({"pod": 2.5})", "pod: 2.5", R"({"pod": {"size": 10}})"},
+                                               {R"({"oracle": 0.2})", "oracle: 0.2", R"({"oracle": {"error": 0.2}})"},
+                                               {R"({"guarded": "linear"})", "guarded: \"linear\"",
+                                                R"({"guarded": {"guess": "linear", "threshold": 1}})"}}) {
+    CAPTURE(guess);
+    CHECK(refusal(with_guess(guess)) == "job.json: guesses[1]." + std::string(place) + begin + example);
+    CHECK(refusal(with_guess(example)) == "");
+  }
+  CHECK(refusal(with_guess(R"({"copingnet": "net.h5"})")) ==
+        "job.json: guesses[1].copingnet: \"net.h5\"" + begin + R"({"copingnet": {"model": "net.h5"}})");
+  CHECK(
+      refusal(with_guess(R"({"linear": 3})")) ==
+      "job.json: guesses[1].linear: 3 is not allowed; must be an object {...}; \"linear\" has no parameters: write it "
+      "alone");
 }
 
 TEST_CASE("what a lenient JSON parser lets through is refused") {
