@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <sstream>
 
@@ -39,6 +40,7 @@ constexpr const char* main_help =
     "                                           again and again until it is done, whatever dies\n"
     "  rodsweep status results/demo.h5          how far is it? (also while it runs)\n"
     "  rodsweep query results/demo.h5           its tasks as a table, CSV or JSON\n"
+    "  rodsweep compare before.h5 after.h5      what differs between two sweeps\n"
     "'rodsweep COMMAND --help' tells more.";
 
 constexpr const char* schema_help =
@@ -210,6 +212,23 @@ CLI::App* add(CLI::App& app, QueryOptions& query) {
   return command;
 }
 
+CLI::App* add(CLI::App& app, CompareOptions& compare) {
+  CLI::App* command = app.add_subcommand("compare", "Says what differs between two sweeps");
+  command->footer(compare_help);
+  command->add_option("FILE", compare.a, "Results file (HDF5)")->required();
+  command->add_option("OTHER", compare.b, "Another")->required();
+  const std::map<std::string, MatchBy> by{{"everything", MatchBy::everything}, {"parameters", MatchBy::parameters}};
+  command->add_option("--by", compare.by, "What makes two tasks the same: everything, or what varies within a job")
+      ->transform(CLI::CheckedTransformer(by).description(""))
+      ->type_name("everything|parameters");
+  command->add_flag("--tasks", compare.tasks, "List every task that differs");
+  using Format = CompareOptions::Format;
+  const auto set = [&compare](Format format) { return [&compare, format] { compare.format = format; }; };
+  CLI::Option* csv = command->add_flag_callback("--csv", set(Format::csv), "For spreadsheets and programs");
+  command->add_flag_callback("--json", set(Format::json), "For programs")->excludes(csv);
+  return command;
+}
+
 CLI::App* add(CLI::App& app, RerunOptions& rerun) {
   CLI::App* command = app.add_subcommand("rerun", "Runs one task of a sweep again, with its trajectory");
   command->footer(rerun_help);
@@ -321,13 +340,14 @@ Command parse_command_line(int argc, const char* const* argv) {
   StatusOptions status;
   InfoOptions info;
   QueryOptions query;
+  CompareOptions compare;
   PackOptions pack;
   KeepOptions keep;
   std::optional<Command> chosen;
   const auto offer = [&](auto&... options) {
     (add(app, options)->callback([&chosen, &options] { chosen = options; }), ...);
   };
-  offer(run, keep, plan, validate, status, info, query, rerun, pack, merge);
+  offer(run, keep, plan, validate, status, info, query, compare, rerun, pack, merge);
 
   CLI::App* schema = app.add_subcommand("schema", "Prints the JSON Schema of jobs, for editors");
   schema->footer(schema_help);

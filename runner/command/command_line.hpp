@@ -4,6 +4,7 @@
 #include <string>
 #include <variant>
 
+#include "runner/command/compare_command.hpp"
 #include "runner/command/exit_codes.hpp"
 #include "runner/command/info_command.hpp"
 #include "runner/command/keep_command.hpp"
@@ -25,7 +26,7 @@ struct Answer {
 };
 
 using Command = std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, QueryOptions,
-                             RerunOptions, PackOptions, KeepOptions, MergeOptions, Answer>;
+                             CompareOptions, RerunOptions, PackOptions, KeepOptions, MergeOptions, Answer>;
 
 Command parse_command_line(int argc, const char* const* argv);
 

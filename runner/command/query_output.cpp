@@ -6,16 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "runner/terminal/text.hpp"
+
 namespace rodsweep {
 namespace {
 
 constexpr std::size_t piece_bytes = 1 << 16;
-
-/// Characters, not bytes.
-std::size_t width(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
 
 std::string one_line(std::string text) {
   std::replace_if(
@@ -31,13 +27,6 @@ std::string table_cell(const ShownColumn& shown, std::size_t task) {
   const double number = shown.values->numbers[task];
   if (std::isnan(number)) return "-";
   return shown.column.whole ? fmt::format("{:.0f}", number) : fmt::format("{:.6g}", number);
-}
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string csv_cell(const ShownColumn& shown, std::size_t task) {
@@ -63,7 +52,7 @@ std::string table_line(const std::vector<ShownColumn>& columns, const std::vecto
                        const Cells& cells) {
   std::string line;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::string space(widths[i] - width(cells[i]), ' ');
+    const std::string space(widths[i] - characters(cells[i]), ' ');
     line += (i > 0 ? "  " : "") + (columns[i].column.is_number() ? space + cells[i] : cells[i] + space);
   }
   return line.erase(line.find_last_not_of(' ') + 1) + '\n';
@@ -86,9 +75,9 @@ void write_tasks(QueryOptions::Format format, const std::vector<ShownColumn>& co
   if (format == QueryOptions::Format::table) {
     std::vector<std::size_t> widths;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      widths.push_back(width(names[i]));
+      widths.push_back(characters(names[i]));
       for (const std::int64_t task : tasks)
-        widths[i] = std::max(widths[i], width(table_cell(columns[i], static_cast<std::size_t>(task))));
+        widths[i] = std::max(widths[i], characters(table_cell(columns[i], static_cast<std::size_t>(task))));
     }
     put(table_line(columns, widths, names));
     for (const std::int64_t task : tasks) {

@@ -33,6 +33,7 @@ struct ParameterColumn {
 struct TaskIdentity {
   std::string trajectory;            ///< in a closed loop with the guess that advances it
   std::vector<std::string> guesses;  ///< by place on the guess axis: name and parameters, not the label; empty without
+  std::string record;                ///< what of them the job writes
 };
 
 class Plan {

@@ -50,8 +50,8 @@ TaskIdentity Plan::identity(std::int64_t index) const {
   }
   const auto own = static_cast<std::size_t>(task.own_guess);
   identity.trajectory +=
-      fmt::format("seed {} sample {} record {}\n{}", job_.seed, task.sample,
-                  nlohmann::json(job_.values["record"]).dump(), task.own_guess < 0 ? "" : identity.guesses[own]);
+      fmt::format("seed {} sample {}\n{}", job_.seed, task.sample, task.own_guess < 0 ? "" : identity.guesses[own]);
+  identity.record = job_.values["record"].dump();
   return identity;
 }
 

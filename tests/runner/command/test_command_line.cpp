@@ -77,6 +77,10 @@ TEST_CASE("the commands on results files take their options") {
   CHECK((rerun.file == "a.h5" && rerun.task == 12 && rerun.trajectory_every == 4 && !rerun.output));
   CHECK(rerun.command == "build/rodsweep rerun a.h5 12 --trajectory-every 4");
   CHECK(std::get<PackOptions>(parse({"pack", "a.h5", "-o", "b.h5"})).output == "b.h5");
+  const auto compare = std::get<CompareOptions>(parse({"compare", "a.h5", "b.h5", "--by", "parameters", "--tasks"}));
+  CHECK((compare.a == "a.h5" && compare.b == "b.h5" && compare.by == MatchBy::parameters && compare.tasks));
+  CHECK(std::get<CompareOptions>(parse({"compare", "a.h5", "b.h5"})).by == MatchBy::everything);
+  CHECK(answer({"compare", "a.h5"}).code == ExitCode::user_error);
 }
 
 TEST_CASE("mistakes on the command line of results files are answered with exit code 2") {
@@ -95,7 +99,7 @@ TEST_CASE("completion and the manual know every command and its options") {
     const Answer script = answer({"completion", shell});
     CHECK(script.code == ExitCode::ok);
     for (const char* command :
-         {"run", "keep", "plan", "validate", "status", "info", "query", "rerun", "pack", "merge"}) {
+         {"run", "keep", "plan", "validate", "status", "info", "query", "compare", "rerun", "pack", "merge"}) {
       CAPTURE(shell, command);
       CHECK_THAT(script.text, Contains(std::string(command) + ") ") || Contains(std::string("-a ") + command + " -d "));
     }
@@ -129,7 +133,7 @@ TEST_CASE("mistakes on the command line are answered with exit code 2 and what i
 }
 
 TEST_CASE("every command's help shows an example and the exit codes") {
-  for (const char* command : {"run", "plan", "validate", "status", "info", "query", "rerun", "pack"}) {
+  for (const char* command : {"run", "plan", "validate", "status", "info", "query", "compare", "rerun", "pack"}) {
     CAPTURE(command);
     const Answer help = answer({command, "--help"});
     CHECK(help.code == ExitCode::ok);
