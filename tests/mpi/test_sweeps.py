@@ -243,6 +243,11 @@ class Signalled(InterruptedCase):
                           "To continue: ", stderr)
             self.assertEqual(self.resume(name, 3)[0]["exit_code"], STOPPED)
 
+    def test_without_mpirun_ctrl_c_is_called_that(self):
+        result = self.interrupt("typed-alone.h5", 0, lambda p: p.send_signal(signal.SIGINT))
+        self.assert_stopped(*result, "typed-alone.h5")
+        self.assertIn("stopped early by Ctrl-C (SIGINT); nothing is lost", result[2])
+
     def test_without_mpirun_and_with_a_second_signal_during_the_stop(self):
         def twice(process):
             process.send_signal(signal.SIGINT)
@@ -250,7 +255,6 @@ class Signalled(InterruptedCase):
 
         result = self.interrupt("alone.h5", 0, twice)
         self.assert_stopped(*result, "alone.h5")
-        self.assertIn("stopped early by Ctrl-C (SIGINT); nothing is lost", result[2])
 
 
 class Killers(SweepCase):
@@ -345,11 +349,11 @@ class Watching(SweepCase):
             os.kill(pid, signal.SIGSTOP)
         before = time.time() - 200
         os.utime("hung.h5", (before, before))  # as if it had been so for long
-        self.assertRegex(rodsweep(0, "status", "hung.h5").stdout,
-                         r"runs still, but shows no sign of life for 3 min 2\d s: it may hang, or a disk does\n")
+        said = rodsweep(0, "status", "hung.h5").stdout
         for pid in [process.pid, *ranks.values()]:
             os.kill(pid, signal.SIGKILL)
         process.communicate(timeout=30)
+        self.assertRegex(said, r"runs still, but shows no sign of life for 3 min \d\d s: it may hang, or a disk does\n")
 
 
 class Refusals(SweepCase):

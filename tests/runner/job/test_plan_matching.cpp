@@ -97,9 +97,9 @@ TEST_CASE("jobs differ in keys, in values of sweeps and in guesses by their labe
   other["guesses"] = Json::parse(R"(["zero", {"oracle": {"error": 0.1}}, {"previous": {"label": "last"}}])");
   CHECK(differences(sweep_job(), other) ==
         "scene.segments: {\"grid\":[4,6]}, {\"grid\":[4,8]}\n"
-        "solve.tolerance: 0.01, 0.001\n"
         "guesses.previous: {\"previous\":{}}, null\n"
-        "guesses.last: null, {\"previous\":{}}\n");
+        "guesses.last: null, {\"previous\":{}}\n"
+        "solve.tolerance: 0.01, 0.001\n");
   Job a = job_of(sweep_job()), b = a;
   a.files["net.h5"] = {"guesses[1].copingnet.model", "net.h5", "01"};
   b.files["net.h5"] = {"guesses[1].copingnet.model", "net.h5", "02"};
