@@ -91,12 +91,12 @@ class Validate(Case):
         self.assertEqual(rodsweep("validate", "--later", tree).returncode, USER_ERROR)
 
     def test_a_data_set_that_does_not_do_is_refused_as_run_refuses_it(self):
-        sweep("few", kind="dataset", solve=None, guesses=None)
+        sweep("some", kind="dataset", solve=None, guesses=None)
         with open("jobs/greedy.json", "w", encoding="utf-8") as file:
-            json.dump({"name": "greedy", "kind": "train", "data": "../results/few.h5"}, file)
+            json.dump({"name": "greedy", "kind": "train", "data": "../results/some.h5"}, file)
         said = rodsweep("validate", "jobs/greedy.json")
         self.assertEqual(said.returncode, USER_ERROR)
-        self.assertIn("validation_simulations: 100 is not allowed, since results/few.h5 holds 4 simulations", said.stderr)
+        self.assertIn("validation_simulations: 100 is not allowed, since results/some.h5 holds 4 simulations", said.stderr)
 
     def test_every_job_of_the_project_validates_without_a_warning(self):
         folder = os.path.join(SOURCE_DIR, "jobs")
