@@ -320,8 +320,9 @@ class Output(Case):
     def every_command(self):
         path = sweep()
         yield from ((), ("query", path), ("query", path, "--csv"), ("query", path, "--columns", "help"), ("status", path),
-                    ("status", path, "--json"), ("info", path, "--job"), ("info", path, "--verify"),
-                    ("plan", "jobs/small.json"), ("validate", "jobs/small.json"), ("schema",), ("completion", "bash"), ("manual",),
+                    ("status", path, "--json"), ("compare", path, path), ("info", path, "--job"), ("info", path, "--verify"),
+                    ("plan", "jobs/small.json"), ("validate", "jobs/small.json"), ("schema",), ("completion", "bash"),
+                    ("manual",),
                     ("--version",), ("--help",), ("run", "--help"))
 
     def without_reader(self, *words, of="stdout", **options):
