@@ -42,7 +42,7 @@ TEST_CASE("what nearest neighbours are depends on what their data set holds") {
 TEST_CASE("nearest neighbours without data, or with none, are refused") {
   const JobFolder folder;
   CHECK_THAT(folder.refusal(neighbours("{}")), Catch::Contains("guesses[1].knn.data: missing"));
-  CHECK_THAT(folder.refusal(neighbours(R"({"data": "none.h5"})")), Catch::Contains("cannot be read"));
+  CHECK_THAT(folder.refusal(neighbours(R"({"data": "none.h5"})")), Catch::Contains("is not there"));
   folder.write("data.h5", "systems");
   CHECK_THAT(folder.refusal(neighbours(R"({"data": "data.h5", "k": 0})")),
              Catch::Contains("guesses[1].knn.k: 0 is not allowed"));
