@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+
+#include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
 namespace {
@@ -9,6 +12,12 @@ namespace {
 constexpr int depth_at_once = 144;  // columns of a tile that stay in the first cache
 constexpr int tiles_at_once = 12;   // of that depth, in the second one
 constexpr int blocks_at_once = 8;   // of a panel: what is left of it is updated by all earlier ones together
+
+/// After so many products of blocks.
+void look_up(std::int64_t products) {
+  constexpr std::int64_t product_ns = 20;
+  check_interrupted(product_ns * products);
+}
 
 /// L of a 6x6 block on the diagonal, and the reciprocals of its own diagonal.
 struct Pivot {
@@ -60,6 +69,7 @@ bool Panel::factorise(double* inverse_pivot) const {
             subtract_product(column(tile(t), k), b, depth, column(tile(t), 6 * block));
         }
       }
+      look_up(std::int64_t{tile_blocks} * (last - first) * (end - begin) * end);
     }
     for (int t = begin / tile_blocks; t < tiles_; ++t)
       for (int block = begin; block < end && block / tile_blocks <= t; ++block) {
@@ -91,6 +101,7 @@ void Panel::subtract_square(double* u) const {
         for (int t = std::max(first, block / tile_blocks); t < last; ++t)
           subtract_product(column(row_tile(t), k), b, depth, column(u + update_tile(t), 6 * block));
       }
+      look_up(std::int64_t{tile_blocks} * (last - first) * std::min(node_.row_count, tile_blocks * last) * depth / 6);
     }
   }
 }

@@ -3,7 +3,9 @@
 //
 //   P = L L^T,   R <- R L^-T,   U <- U - R R^T
 //
-// Everything is in place and nothing allocates. `inverse_pivot` are the reciprocals of L's diagonal.
+// Everything is in place and nothing allocates. `inverse_pivot` are the reciprocals of L's diagonal. Large fronts take
+// many seconds: both steps look up now and then whether anybody waits for them, and throw InterruptedComputation
+// (interruption.hpp) where nobody does.
 #pragma once
 
 #include "solver/linear/assembly_tree.hpp"

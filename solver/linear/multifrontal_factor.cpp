@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "solver/linear/front_kernels.hpp"
-#include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
 namespace {
@@ -90,8 +89,6 @@ bool MultifrontalFactor::factorise(const BlockMatrix& a) {
     const Panel panel(node, first);
     if (!panel.factorise(inverse_pivot_.data() + 6 * node.first)) return false;
     panel.subtract_square(update_of(node));
-    const std::int64_t rows = node.columns + node.row_count;
-    check_interrupted(20 * node.columns * rows * rows);
   }
   return true;
 }

@@ -5,6 +5,7 @@
 
 #include "solver/linear/block_factor.hpp"
 #include "solver/linear/elimination_order.hpp"
+#include "solver/linear/interruption.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/linear/nested_dissection.hpp"
 #include "tests/solver/support.hpp"
@@ -97,6 +98,21 @@ TEST_CASE("systems of lattices and nets are solved to rounding, with the same bi
       CHECK(y == z);
     }
   }
+}
+
+TEST_CASE("within a large front it is asked whether anybody waits, and an interrupted factor can be made again") {
+  Edges all;
+  couple_all(0, 150, all);
+  const BlockMatrix a = test::random_matrix(all, 150, 3);
+  MultifrontalFactor factor = in_fronts(a, in_order(150));
+  int asked = 0;
+  {
+    const Interruptible interruptible([&] { return ++asked == 4; });
+    CHECK_THROWS_AS(factor.factorise(a), InterruptedComputation);
+  }
+  CHECK(asked == 4);
+  REQUIRE(factor.factorise(a));
+  CHECK(error_of(factor, a, 1) < 1e-12);
 }
 
 TEST_CASE("what is not positive definite is refused, wherever its bad pivot is, and forgotten by the next matrix") {
