@@ -29,9 +29,13 @@ struct Extent {
 
 template <class Member>
 Extent extent(const Plan& plan, Member member) {
-  const auto [least, most] = std::minmax_element(plan.tasks().begin(), plan.tasks().end(),
-                                                 [&](const Task& a, const Task& b) { return a.*member < b.*member; });
-  return {(*least).*member, (*most).*member};
+  const std::int64_t first = plan.task(0).*member;
+  Extent out{first, first};
+  for (const Task& task : plan.tasks()) {
+    out.least = std::min<std::int64_t>(out.least, task.*member);
+    out.most = std::max<std::int64_t>(out.most, task.*member);
+  }
+  return out;
 }
 
 /// Linear systems (of Gauss-Seidel: iterations) at most, were no step to end early: Task::cost is segments x steps x

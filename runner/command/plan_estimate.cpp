@@ -19,7 +19,7 @@ void truncate(Task& task, TaskSpec& spec, int steps) {
 }
 
 Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate) {
-  const Task& whole = plan.task(index);
+  const Task whole = plan.task(index);
   const TaskSpec whole_spec = plan.spec(index);
   TaskRecord record;
   for (std::int64_t steps = std::min<std::int64_t>(whole.steps, 4);; steps = std::min(2 * steps, whole.steps)) {
@@ -63,7 +63,7 @@ std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate) {
   std::vector<std::int64_t> by_cost(static_cast<std::size_t>(plan.size()));
   std::iota(by_cost.begin(), by_cost.end(), 0);
   std::stable_sort(by_cost.begin(), by_cost.end(),
-                   [&](std::int64_t a, std::int64_t b) { return plan.task(a).cost < plan.task(b).cost; });
+                   [&](std::int64_t a, std::int64_t b) { return plan.cost(a) < plan.cost(b); });
   std::vector<std::size_t> places{0, by_cost.size() / 2, by_cost.size() - 1};
   places.erase(std::unique(places.begin(), places.end()), places.end());
   std::vector<Probe> probes;

@@ -55,7 +55,7 @@ ExitCode execute(const RerunOptions& options, Console& console) {
   Provenance provenance = provenance_of_this_process(options.command);
   provenance.job = whole.job().path.native();
 
-  const Task& task = plan.task(0);
+  const Task task = plan.task(0);
   console.note(
       fmt::format("task {}: {} segments, {} steps, {} frames", options.task, task.segments, task.steps, task.frames));
   const BatchBody body = task_body(plan, [&](const Task& done, const TaskRecord& record, const TaskOrigin*) {

@@ -13,17 +13,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rank 0 reads the job and its text travels, so that every rank has the same one, wherever its own copy of the file
-/// stands.
+/// Rank 0 reads the job and the files that it names; its text and their hashes travel, so that every rank has the same
+/// ones, wherever its own copies stand, and a data set is not read by every rank to know what it holds.
 Job read_job_everywhere(const fs::path& path, const MpiSession& mpi) {
   std::optional<Job> job;
-  collectively(mpi.world(), [&] {
-    if (mpi.rank() > 0) return;
+  by_rank_0(mpi.world(), [&] {
     job = read_job(path);
     check_inputs(*job);
   });
   const std::string text = broadcast(job ? job->text : std::string(), mpi.world());
-  return collectively(mpi.world(), [&] { return job ? std::move(*job) : parse_job(text, path); });
+  const InputFiles files = from_bytes(broadcast(job ? to_bytes(job->files) : std::string(), mpi.world()));
+  return collectively(mpi.world(), [&] { return job ? std::move(*job) : parse_job(text, path, files); });
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/task_body.hpp"
+#include "runner/experiment/training_sets.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
@@ -87,7 +88,7 @@ std::vector<bool> in_shard(const Plan& plan, const std::optional<Shard>& shard) 
   std::vector<std::int64_t> order(static_cast<std::size_t>(plan.size()));
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::int64_t a, std::int64_t b) { return plan.task(a).cost > plan.task(b).cost; });
+                   [&](std::int64_t a, std::int64_t b) { return plan.cost(a) > plan.cost(b); });
   std::vector<bool> mine(order.size(), false);
   for (auto i = static_cast<std::size_t>(shard->number) - 1; i < order.size(); i += static_cast<std::size_t>(shard->of))
     mine[static_cast<std::size_t>(order[i])] = true;
@@ -235,6 +236,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   });
   const StopSignal signal;  // from here on a signal is a request, until the file is closed
   const fs::path path = output_of(options, job.name);
+  read_knn_sets(plan, mpi.world());
   const Placement where = placement(mpi.world());
   limit_memory(options.memory_limit_gb ? 1e9 * *options.memory_limit_gb
                                        : (1 - memory_reserve) * host_memory() / where.host_workers);
@@ -256,8 +258,12 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const FileSummary before =
       collectively(mpi.world(), [&] { return continues && mpi.rank() == 0 ? inspect(path) : FileSummary(); });
 
-  const std::vector<bool> mine = in_shard(plan, options.shard);
-  std::vector<PendingTask> pending = pending_tasks(plan, file, extension, mine);
+  std::vector<bool> mine;
+  std::vector<PendingTask> pending;
+  if (mpi.rank() == 0) {  // who alone hands them out
+    mine = in_shard(plan, options.shard);
+    pending = pending_tasks(plan, file, extension, mine);
+  }
   advise(console, options, where, pending.size());
   const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
   console.note(to_do == total

@@ -77,7 +77,7 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   console_.note(fmt::format("reading {}", paths_of(training_job_.data)));
   std::vector<StoredSimulation> simulations;
   collectively(mpi_.world(), [&] {
-    const LearningSets sets(training_job_, job_);
+    const LearningSets sets(training_job_, job_, mpi_.world());
     if (earlier && earlier->card.data_hash != sets.hash())
       throw FileError(fmt::format("{} cannot be continued: {} is not the data set that it was begun with",
                                   path_.native(), paths_of(training_job_.data)));

@@ -5,11 +5,13 @@
 #include <algorithm>
 
 #include "runner/dataset/stored_systems.hpp"
+#include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/stored_plan.hpp"
 #include "runner/job/checksum.hpp"
+#include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/text.hpp"
 #include "solver/step/time_step.hpp"
 
@@ -58,12 +60,24 @@ std::string failures_text(const FileSummary& file) {
 
 }  // namespace
 
-DatasetReader::DatasetReader(const fs::path& path) : path_(path) {
-  const FileSummary file = inspect(path);
+DatasetReader::DatasetReader(const fs::path& path, std::optional<MPI_Comm> ranks) : path_(path), ranks_(ranks) {
+  by_rank_0(ranks_, [this] { open(); });
+  if (!ranks_) return;
+  const auto text = [&](std::string value) { return broadcast(std::move(value), *ranks_); };
+  const Job job = plan_ ? plan_->job() : Job();
+  const std::string job_text = text(job.text), job_path = text(job.path.native()), files = text(to_bytes(job.files));
+  hash_ = text(hash_);
+  note_ = text(note_);
+  broadcast(tasks_, *ranks_);
+  if (!plan_) plan_.emplace(parse_job(job_text, job_path, from_bytes(files)));
+}
+
+void DatasetReader::open() {
+  const FileSummary file = inspect(path_);
   check_usable(file);
   plan_ = stored_plan(file);
-  check_same_plan(path, *plan_, "Use that revision, or make the data set again");
-  reader_.emplace(path);
+  check_same_plan(path_, *plan_, "Use that revision, or make the data set again");
+  reader_.emplace(path_);
   for (const Task& task : plan_->tasks())
     if (reader_->outcome(task.index) == TaskOutcome::ok) tasks_.push_back(task.index);
   std::stable_sort(tasks_.begin(), tasks_.end(),
@@ -72,17 +86,21 @@ DatasetReader::DatasetReader(const fs::path& path) : path_(path) {
   note_ = failures_text(file);
 }
 
-const Task& DatasetReader::task(std::int64_t simulation) const {
+Task DatasetReader::task(std::int64_t simulation) const {
   return plan_->task(tasks_.at(static_cast<std::size_t>(simulation)));
 }
 
 StoredSimulation DatasetReader::read(std::int64_t simulation) const {
   const std::int64_t index = task(simulation).index;
   TaskRecord record;
-  if (!reader_->read_intact(index, record)) {
+  by_rank_0(ranks_, [&] {
+    if (reader_->read_intact(index, record)) return;
     throw FileError(fmt::format("{} is damaged: the data of task {} are not what was written; make the data set again",
                                 path_.native(), index));
-  }
+  });
+  if (ranks_)
+    for (const Column& column : columns())
+      std::visit([this](auto* values) { broadcast(*values, *ranks_); }, column.values(record));
   const TaskSpec spec = plan_->spec(index);
   StoredSimulation result;
   result.scene = build_scene(spec.scene);

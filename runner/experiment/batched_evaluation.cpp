@@ -28,7 +28,7 @@ struct Member {
   Member(const TaskRun& of, Scene start)
       : run(of),
         scene(std::move(start)),
-        simulation(*of.task, of.spec, *of.record, scene),
+        simulation(of.task, of.spec, *of.record, scene),
         systems(scene, of.spec.output.stored_iterations(of.spec.time.newton_iterations), *of.record) {}
   Member(const Member&) = delete;
   Member& operator=(const Member&) = delete;
@@ -168,8 +168,8 @@ bool evaluate_batch(const std::vector<TaskRun>& runs, const StopRequested& stop)
 bool evaluate_among_equals(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
   if (!steps_in_batches(spec)) return evaluate(task, spec, record, stop);
   std::vector<TaskRecord> others(BatchedRods::lanes - 1, record);
-  std::vector<TaskRun> runs{{&task, spec, &record}};
-  for (TaskRecord& other : others) runs.push_back({&task, spec, &other});
+  std::vector<TaskRun> runs{{task, spec, &record}};
+  for (TaskRecord& other : others) runs.push_back({task, spec, &other});
   return evaluate_batch(runs, stop);
 }
 

@@ -13,7 +13,7 @@ namespace rodsweep {
 
 /// A task to evaluate, with its prepared record.
 struct TaskRun {
-  const Task* task = nullptr;
+  Task task;
   TaskSpec spec;
   TaskRecord* record = nullptr;
 };

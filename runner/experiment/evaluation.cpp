@@ -56,7 +56,7 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
 }  // namespace
 
 bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
-  if (steps_in_batches(spec)) return evaluate_batch({{&task, spec, &record}}, stop);
+  if (steps_in_batches(spec)) return evaluate_batch({{task, spec, &record}}, stop);
   const Stopwatch watch;
   bool finished = true;
   try {

@@ -20,14 +20,14 @@ namespace {
 /// Of a task that throws nothing is kept but why.
 bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& evaluate, const StopRequested& stop) {
   try {
-    return evaluate(*run.task, run.spec, *run.record, stop);
+    return evaluate(run.task, run.spec, *run.record, stop);
   } catch (const std::bad_alloc&) {
     run.record->message = out_of_memory_text();
   } catch (const std::exception& error) {
     run.record->message = error.what();
   }
   const std::string message = std::move(run.record->message);
-  run.record->prepare(*run.task, sizes);
+  run.record->prepare(run.task, sizes);
   run.record->outcome = TaskOutcome::error;
   run.record->message = message;
   return true;
@@ -75,20 +75,20 @@ BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
     records.resize(std::max(records.size(), tasks.size()));  // their memory is used again
     std::vector<TaskRun> runs;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-      const Task& task = plan.task(tasks[i]);
+      const Task task = plan.task(tasks[i]);
       try {
         records[i].prepare(task, sizes);
       } catch (const std::bad_alloc&) {
         throw std::runtime_error(fmt::format("the results of task {} alone do not fit: {}", task.index,
                                              out_of_memory_text() + "; \"record\" of the job says what is kept"));
       }
-      runs.push_back({&task, plan.spec(tasks[i]), &records[i]});
+      runs.push_back({task, plan.spec(tasks[i]), &records[i]});
     }
     std::vector<TaskResult> results(tasks.size());
     if (runs.size() == 1 ? !evaluate_alone(runs.front(), sizes, evaluate, stop) : !evaluate_batch(runs, stop))
       return results;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-      write(*runs[i].task, records[i], nullptr);
+      write(runs[i].task, records[i], nullptr);
       results[i] = {records[i].outcome, records[i].message};
     }
     return results;
@@ -100,7 +100,7 @@ BatchBody extending_body(const Plan& plan, const Extension& extension, WriteReco
   return one_by_one([&plan, &extension, write, warn = std::move(warn), evaluate, run = task_body(plan, write, evaluate),
                      sizes = axis_sizes(plan), taken = TaskRecord(),
                      record = TaskRecord()](std::int64_t index, const StopRequested& stop) mutable -> TaskResult {
-    const Task& task = plan.task(index);
+    const Task task = plan.task(index);
     const Extension::Use use = extension.use(index);
     if (use == Extension::Use::run) return run({index}, stop).front();
     taken.prepare(task, sizes);

@@ -2,23 +2,53 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "runner/dataset/dataset_reader.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
+namespace {
 
-std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations, KnnInputs inputs) {
-  static std::map<std::tuple<std::filesystem::path, int, KnnInputs>, std::shared_ptr<const KnnSet>> sets;
-  std::shared_ptr<const KnnSet>& shared = sets[{data, simulations, inputs}];
+using Wanted = std::tuple<std::filesystem::path, int, KnnInputs>;
+
+std::shared_ptr<const KnnSet> read_set(const Wanted& wanted, std::optional<MPI_Comm> ranks) {
+  static std::map<Wanted, std::shared_ptr<const KnnSet>> sets;
+  std::shared_ptr<const KnnSet>& shared = sets[wanted];
   if (shared) return shared;
-  const DatasetReader reader(data);
+  const auto& [data, simulations, inputs] = wanted;
+  const DatasetReader reader(data, ranks);
   const std::int64_t count = simulations > 0 ? std::min<std::int64_t>(simulations, reader.size()) : reader.size();
   const auto set = std::make_shared<KnnSet>(inputs);
   for (std::int64_t i = 0; i < count; ++i) set->add(reader.read(i));
   set->finish();
   shared = set;
   return shared;
+}
+
+void collect(const std::vector<GuessSpec>& guesses, std::set<Wanted>& all) {
+  for (const GuessSpec& guess : guesses) {
+    collect(guess.inner, all);
+    if (guess.kind == GuessSpec::Kind::knn) all.emplace(guess.data, guess.simulations, guess.knn_inputs);
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations, KnnInputs inputs) {
+  return read_set({data, simulations, inputs}, std::nullopt);
+}
+
+void read_knn_sets(const Plan& plan, MPI_Comm ranks) {
+  const InputFiles& files = plan.job().files;
+  const auto is_of_knn = [](const auto& file) { return file.second.key_path.find(".knn.") != std::string::npos; };
+  if (std::none_of(files.begin(), files.end(), is_of_knn)) return;
+  std::set<Wanted> all;
+  for (const Task& task : plan.tasks()) collect(plan.spec(task.index).guesses, all);
+  collectively(ranks, [&] {
+    for (const Wanted& wanted : all) read_set(wanted, ranks);
+  });
 }
 
 }  // namespace rodsweep

@@ -1,10 +1,14 @@
 // Training sets of nearest neighbours by data set, each read once in a process: every task that uses one shares it.
+// Ranks can read what they will need together, so that one of them reads it from the disk.
 #pragma once
+
+#include <mpi.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "network/guess/knn.hpp"
+#include "runner/job/plan.hpp"
 
 namespace rodsweep {
 
@@ -12,5 +16,8 @@ namespace rodsweep {
 /// Throws FileError for what is not a data set, SceneError for rods that are no chains.
 std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations,
                                              KnnInputs inputs = KnnInputs::all);
+
+/// Collective: of all guesses of a plan. Throws CollectiveError.
+void read_knn_sets(const Plan& plan, MPI_Comm ranks);
 
 }  // namespace rodsweep

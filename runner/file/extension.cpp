@@ -135,7 +135,7 @@ double Extension::cost(std::int64_t task) const {
 
 bool Extension::take(std::int64_t index, TaskRecord& record) const {
   TaskRecord earlier;
-  const Task &task = plan_->task(index), &from = before_->task(source(index));
+  const Task task = plan_->task(index), from = before_->task(source(index));
   if (!reader_->read_intact(from.index, earlier)) return false;
   record.outcome = earlier.outcome;
   record.message = earlier.message;

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <vector>
 
 #include "runner/job/checksum.hpp"
 #include "runner/job/job.hpp"
@@ -87,6 +88,22 @@ InputFile input_file(const std::filesystem::path& job, const std::string& key_pa
     sum.add(block.data(), static_cast<std::size_t>(in.gcount()));
   if (in.bad()) refuse(fmt::format("cannot be read: {}", std::strerror(errno ? errno : EIO)));
   return {key_path, path, fmt::format("{:016x}", sum.value())};
+}
+
+std::string to_bytes(const InputFiles& files) {
+  std::string bytes;
+  for (const auto& [written, file] : files)
+    for (const std::string& text : {written, file.key_path, file.path.native(), file.hash}) bytes += text + '\0';
+  return bytes;
+}
+
+InputFiles from_bytes(const std::string& bytes) {
+  std::vector<std::string> texts;
+  for (std::size_t begin = 0, end = 0; (end = bytes.find('\0', begin)) != std::string::npos; begin = end + 1)
+    texts.push_back(bytes.substr(begin, end - begin));
+  InputFiles files;
+  for (std::size_t i = 0; i + 3 < texts.size(); i += 4) files[texts[i]] = {texts[i + 1], texts[i + 2], texts[i + 3]};
+  return files;
 }
 
 }  // namespace rodsweep

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,13 @@ struct InputFile {
   std::filesystem::path path;  ///< from the current folder
   std::string hash;            ///< of its bytes, sixteen hexadecimal digits
 };
+
+/// By their path as the job has it.
+using InputFiles = std::map<std::string, InputFile>;
+
+/// For other ranks, which need not read whole data sets to know what they hold.
+std::string to_bytes(const InputFiles& files);
+InputFiles from_bytes(const std::string& bytes);
 
 enum class MissingFiles { refused, accepted };  ///< accepted: without a hash, for a job that is only looked at
 

@@ -42,23 +42,14 @@ void check_samples(const Job& job, const SweepSpace& space) {
                   job.samples));
 }
 
-}  // namespace
-
-JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text) {
-  return JobError(file.string() + ": " + (key_path.empty() ? "" : key_path + ": ") + text);
-}
-
-bool is_training(const Job& job) { return job.values["kind"] == "train"; }
-
-nlohmann::ordered_json Job::guesses() const { return values.value("guesses", nlohmann::ordered_json::array()); }
-
-Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles missing) {
+/// `look(written, key_path)` says what an input file is.
+template <class Look>
+Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   JobReader reader(path);
   Job job;
   job.values = reader.read(job_key(), parse_strict_json(text, path), "");
   reader.throw_mistakes();
-  for (const auto& [file, key_path] : reader.files())
-    job.files.emplace(file, input_file(path, key_path, file, missing));
+  for (const auto& [file, key_path] : reader.files()) job.files.emplace(file, look(file, key_path));
   job.path = path;
   job.text = std::move(text);
   job.name = job.values["name"];
@@ -73,6 +64,27 @@ Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles 
   check_samples(job, space);
   check_obstacles(job.values["scene"], "scene", path);
   return job;
+}
+
+}  // namespace
+
+JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text) {
+  return JobError(file.string() + ": " + (key_path.empty() ? "" : key_path + ": ") + text);
+}
+
+bool is_training(const Job& job) { return job.values["kind"] == "train"; }
+
+nlohmann::ordered_json Job::guesses() const { return values.value("guesses", nlohmann::ordered_json::array()); }
+
+Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles missing) {
+  return parsed(std::move(text), path, [&](const std::string& written, const std::string& key_path) {
+    return input_file(path, key_path, written, missing);
+  });
+}
+
+Job parse_job(std::string text, const std::filesystem::path& path, const InputFiles& files) {
+  return parsed(std::move(text), path,
+                [&](const std::string& written, const std::string&) { return files.at(written); });
 }
 
 Job read_job(const std::filesystem::path& path, MissingFiles missing) {

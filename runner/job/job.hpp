@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -32,9 +31,9 @@ struct Job {
   std::string text;            ///< the file as it was read, byte for byte: stored in /job/text
   std::string name;
   std::uint64_t seed = 0;
-  std::int64_t samples = 1;                ///< of a training 1
-  std::map<std::string, InputFile> files;  ///< that it names, by their path as written
-  nlohmann::ordered_json values;           ///< validated, every default filled in, sweeps still in place
+  std::int64_t samples = 1;       ///< of a training 1
+  InputFiles files;               ///< that it names
+  nlohmann::ordered_json values;  ///< validated, every default filled in, sweeps still in place
 
   /// The list of guesses; empty in a kind of job that has none.
   nlohmann::ordered_json guesses() const;
@@ -47,5 +46,7 @@ bool is_training(const Job& job);
 /// at one parameter point (such as a duration of a whole number of steps) is checked by Plan (runner/job/plan.hpp).
 Job read_job(const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);
 Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);
+/// Of a job that another rank has read with its files.
+Job parse_job(std::string text, const std::filesystem::path& path, const InputFiles& files);
 
 }  // namespace rodsweep

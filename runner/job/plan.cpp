@@ -70,10 +70,9 @@ Plan::Plan(Job job)
       guess_labels_(rodsweep::guess_labels(job_)),
       task_time_limit_s_(job_.values["task_time_limit_s"]) {
   expand();
-  place_rows();
 }
 
-/// Checks every parameter point and makes its tasks, their rows counted but not placed.
+/// Checks every parameter point and makes its tasks.
 void Plan::expand() {
   const std::int64_t points = point_count(space_, job_);
   const OutputSpec output = output_spec(job_);
@@ -90,36 +89,29 @@ void Plan::expand() {
     Task task;
     task.point = point;
     task.sample = point % job_.samples;
+    task.rows[Rows::contact_task].count = 1;
     size_rows(task, scene, time, output);
+    task.rows[Rows::balanced_segment].count = task.rows[Rows::system_segment].count;
     task.cost = static_cast<double>(task.segments) * time.steps * time.newton_iterations;
     const bool own_trajectories =
         evaluation(values) == Evaluation::closed_loop && solve_spec(values, job_).method == Method::cg;
     const int copies = own_trajectories ? static_cast<int>(guess_labels_.size()) : 1;
     for (int copy = 0; copy < copies; ++copy) {
-      if (size() == most_tasks) throw too_large(job_);
-      task.index = size();
       task.own_guess = own_trajectories ? copy : -1;
-      tasks_.push_back(task);
+      add(task);
     }
   }
-  for (Task& task : tasks_) {
-    if (contact) task.rows[Rows::contact_task].count = 1, task.rows[Rows::contact_step].count = task.steps;
-    if (balance) task.rows[Rows::balanced_segment].count = task.rows[Rows::system_segment].count;
-  }
+  if (!contact) tasks_.drop(Rows::contact_task), tasks_.drop(Rows::contact_step);
+  if (!balance) tasks_.drop(Rows::balanced_segment);
 }
 
-/// Gives every task its rows, after those of the task before it.
-void Plan::place_rows() {
-  rows_.fill(0);
-  max_frames_ = 0;
-  for (Task& task : tasks_) {
-    for (std::size_t kind = 0; kind < row_kinds; ++kind) {
-      task.rows[kind].first = rows_[kind];
-      rows_[kind] += task.rows[kind].count;
-      if (static_cast<double>(rows_[kind]) > most_rows) throw too_large(job_);
-    }
-    max_frames_ = std::max(max_frames_, task.frames);
-  }
+void Plan::add(const Task& task) {
+  tasks_.add(task);
+  max_frames_ = std::max(max_frames_, task.frames);
+  const auto& rows = tasks_.rows();
+  if (size() > most_tasks ||
+      std::any_of(rows.begin(), rows.end(), [](std::int64_t count) { return static_cast<double>(count) > most_rows; }))
+    throw too_large(job_);
 }
 
 Plan Plan::alone(std::int64_t index, int trajectory_every) const {
@@ -127,12 +119,12 @@ Plan Plan::alone(std::int64_t index, int trajectory_every) const {
   plan.task_alone_ = index;
   for (const ParameterColumn& column : parameters()) plan.kept_.push_back(column.path);
   plan.job_.values["record"]["trajectory_every"] = trajectory_every;
-  plan.tasks_ = {tasks_.at(static_cast<std::size_t>(index))};
-  Task& task = plan.tasks_.front();
-  task.index = 0;
-  const TaskSpec spec = plan.spec(0);
-  size_rows(task, spec.scene, spec.time, spec.output);
-  plan.place_rows();
+  plan.tasks_ = TaskList();
+  plan.max_frames_ = 0;
+  Task task = tasks_.at(index);
+  const TaskSpec spec = this->spec(index);
+  size_rows(task, spec.scene, spec.time, output_spec(plan.job_));
+  plan.add(task);
   return plan;
 }
 
@@ -141,7 +133,7 @@ void Plan::fill(Point& point, std::int64_t index) const {
 }
 
 TaskSpec Plan::spec(std::int64_t index) const {
-  const Task& task = tasks_.at(static_cast<std::size_t>(index));
+  const Task task = tasks_.at(index);
   Point point;
   fill(point, task.point);
   TaskSpec spec;

@@ -15,6 +15,7 @@
 #include "runner/job/job.hpp"
 #include "runner/job/sweep_space.hpp"
 #include "runner/job/task.hpp"
+#include "runner/job/task_list.hpp"
 
 namespace rodsweep {
 
@@ -46,9 +47,10 @@ class Plan {
   const std::optional<std::int64_t>& task_alone() const { return task_alone_; }  ///< its number in the whole plan
 
   const Job& job() const { return job_; }
-  std::int64_t size() const { return static_cast<std::int64_t>(tasks_.size()); }
-  const Task& task(std::int64_t index) const { return tasks_[static_cast<std::size_t>(index)]; }
-  const std::vector<Task>& tasks() const { return tasks_; }
+  std::int64_t size() const { return tasks_.size(); }
+  Task task(std::int64_t index) const { return tasks_.at(index); }
+  double cost(std::int64_t index) const { return tasks_.cost(index); }
+  const TaskList& tasks() const { return tasks_; }
   TaskSpec spec(std::int64_t index) const;  ///< built on demand: a plan of 100,000 tasks stays small
 
   /// Of this start, in place of the job's; 0: none. What tasks that meet it result in does not depend on it.
@@ -65,21 +67,20 @@ class Plan {
   std::vector<ParameterColumn> parameters() const;
 
   /// Rows of all tasks; 0 of a kind that the job does not record.
-  std::int64_t rows(Rows kind) const { return rows_[kind]; }
+  std::int64_t rows(Rows kind) const { return tasks_.rows()[kind]; }
   std::int64_t max_frames() const { return max_frames_; }
 
  private:
   void fill(Point& point, std::int64_t index) const;
   void expand();
-  void place_rows();
+  void add(const Task& task);
 
   Job job_;
   SweepSpace space_;
-  std::vector<Task> tasks_;
+  TaskList tasks_;
   std::vector<std::string> guess_labels_;
   std::optional<std::int64_t> task_alone_;
   std::vector<std::string> kept_;  ///< of a task alone: parameters that the whole plan has columns of
-  PerRows<std::int64_t> rows_{};
   std::int64_t max_frames_ = 0;
   double task_time_limit_s_;
 };

@@ -30,7 +30,7 @@ void append(std::string& text, std::string_view path, const Point::Value& value,
 }  // namespace
 
 TaskIdentity Plan::identity(std::int64_t index) const {
-  const Task& task = tasks_.at(static_cast<std::size_t>(index));
+  const Task task = tasks_.at(index);
   Point point;
   fill(point, task.point);
   TaskIdentity identity;

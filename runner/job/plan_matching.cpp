@@ -56,7 +56,7 @@ std::string value_text(const ParameterColumn& column, std::int64_t task) {
 Identify by_parameters(const Plan& plan, const std::map<std::string, ParameterColumn>& columns,
                        const std::set<std::string>& paths) {
   return [&plan, &columns, &paths](std::int64_t index) {
-    const Task& task = plan.task(index);
+    const Task task = plan.task(index);
     TaskIdentity identity;
     identity.guesses = plan.guess_labels();
     identity.trajectory = fmt::format("sample {}\n", task.sample);

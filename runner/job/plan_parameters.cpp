@@ -54,18 +54,20 @@ void put(ParameterColumn& column, std::size_t task, const Point::Value& value) {
 
 std::vector<ParameterColumn> Plan::parameters() const {
   const std::vector<Parameter>& parameters = space_.parameters();
+  const auto task_count = static_cast<std::size_t>(size());
   std::vector<ParameterColumn> columns;
   for (const Parameter& parameter : parameters) {
-    columns.push_back(empty_column(parameter.path, parameter.key, tasks_.size()));
+    columns.push_back(empty_column(parameter.path, parameter.key, task_count));
   }
   std::vector<Point::Value> first(parameters.size());
   Point point;
-  for (std::size_t task = 0; task < tasks_.size(); ++task) {
-    if (task == 0 || tasks_[task].point != tasks_[task - 1].point) fill(point, tasks_[task].point);
+  std::int64_t filled = -1;
+  for (const Task& task : tasks_) {
+    if (filled != task.point) fill(point, filled = task.point);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const Point::Value& value = point[i];
       if (value.state == State::absent) continue;
-      put(columns[i], task, value);
+      put(columns[i], static_cast<std::size_t>(task.index), value);
       if (first[i].state == State::absent) first[i] = value;
       columns[i].swept = columns[i].swept || !equal(first[i], value);
     }
@@ -74,10 +76,11 @@ std::vector<ParameterColumn> Plan::parameters() const {
   // `steps` in every job, whichever of its two forms was given.
   auto steps = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.path == "time.steps"; });
   if (steps == columns.end())
-    steps = columns.insert(columns.end(), empty_column("time.steps", steps_key(), tasks_.size()));
-  for (std::size_t task = 0; task < tasks_.size(); ++task) {
-    std::get<std::vector<std::int64_t>>(steps->values)[task] = tasks_[task].steps;
-    steps->swept = steps->swept || tasks_[task].steps != tasks_[0].steps;
+    steps = columns.insert(columns.end(), empty_column("time.steps", steps_key(), task_count));
+  auto& step_counts = std::get<std::vector<std::int64_t>>(steps->values);
+  for (const Task& task : tasks_) {
+    step_counts[static_cast<std::size_t>(task.index)] = task.steps;
+    steps->swept = steps->swept || task.steps != step_counts.front();
   }
 
   // A guess that is the same in all tasks is in its label already, and what stands for many keys in their columns. Of a

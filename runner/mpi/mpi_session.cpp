@@ -48,6 +48,14 @@ int broadcast(int value, MPI_Comm comm) {
   return value;
 }
 
+void broadcast(void* data, std::size_t bytes, MPI_Comm comm) {
+  constexpr std::size_t at_once = std::size_t{1} << 30;  // MPI counts in int
+  for (std::size_t done = 0; done < bytes; done += at_once)
+    check_mpi(MPI_Bcast(static_cast<char*>(data) + done, static_cast<int>(std::min(at_once, bytes - done)), MPI_BYTE, 0,
+                        comm),
+              "MPI_Bcast");
+}
+
 std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm) {
   constexpr std::size_t bytes = 256;
   int size = 1;
@@ -76,6 +84,15 @@ void collectively(MPI_Comm comm, const std::function<void()>& part) {
   int lowest = size;
   check_mpi(MPI_Allreduce(&failed, &lowest, 1, MPI_INT, MPI_MIN, comm), "MPI_Allreduce");
   if (lowest < size) throw CollectiveError(broadcast_from(lowest, std::move(text), comm));
+}
+
+void by_rank_0(const std::optional<MPI_Comm>& ranks, const std::function<void()>& part) {
+  if (!ranks) return part();
+  int rank = 0;
+  check_mpi(MPI_Comm_rank(*ranks, &rank), "MPI_Comm_rank");
+  collectively(*ranks, [&] {
+    if (rank == 0) part();
+  });
 }
 
 Placement placement(MPI_Comm comm, Share share) {

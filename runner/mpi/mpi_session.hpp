@@ -6,12 +6,14 @@
 
 #include <mpi.h>
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace rodsweep {
 
@@ -47,6 +49,17 @@ class MpiSession {
 /// Rank 0's text on every rank.
 std::string broadcast(std::string text, MPI_Comm comm);
 int broadcast(int value, MPI_Comm comm);
+void broadcast(void* data, std::size_t bytes, MPI_Comm comm);
+
+/// Rank 0's values, on every rank as many.
+template <class T>
+void broadcast(std::vector<T>& values, MPI_Comm comm) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  std::uint64_t size = values.size();
+  broadcast(&size, sizeof size, comm);
+  values.resize(size);
+  broadcast(values.data(), size * sizeof(T), comm);
+}
 
 /// The short text of every rank, by rank, on every rank; cut after 255 bytes.
 std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm);
@@ -62,6 +75,10 @@ Made collectively(MPI_Comm comm, const Part& part) {
   collectively(comm, std::function<void()>([&] { made.emplace(part()); }));
   return std::move(*made);
 }
+
+/// Rank 0 does `part` for all; if it throws, every rank throws a CollectiveError with its message. Without ranks, this
+/// process does it.
+void by_rank_0(const std::optional<MPI_Comm>& ranks, const std::function<void()>& part);
 
 /// The ranks beside the cores that they may run on (their affinity masks put together), host by host.
 struct Placement {

@@ -5,19 +5,22 @@
 #include <algorithm>
 
 #include "runner/job/checksum.hpp"
+#include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
 namespace {
 
-DatasetReader opened(const std::filesystem::path& path, const TrainingJob& training, const Job& job) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
+DatasetReader opened(const std::filesystem::path& path, const TrainingJob& training, const Job& job,
+                     std::optional<MPI_Comm> ranks) {
+  by_rank_0(ranks, [&] {
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) return;
     throw job_error(job.path, "data",
                     fmt::format("there is no file {}: make the data set first, with `rodsweep run` and a job of kind "
                                 "\"dataset\"",
                                 path.native()));
-  }
-  DatasetReader set(path);
+  });
+  DatasetReader set(path, ranks);
   if (set.size() <= training.validation_simulations) {
     throw job_error(job.path, "validation_simulations",
                     fmt::format("{} is not allowed, since {} holds {} simulations and some must be left to learn from",
@@ -34,8 +37,8 @@ DatasetReader opened(const std::filesystem::path& path, const TrainingJob& train
 
 }  // namespace
 
-LearningSets::LearningSets(const TrainingJob& training, const Job& job) {
-  for (const std::filesystem::path& path : training.data) sets_.push_back(opened(path, training, job));
+LearningSets::LearningSets(const TrainingJob& training, const Job& job, std::optional<MPI_Comm> ranks) {
+  for (const std::filesystem::path& path : training.data) sets_.push_back(opened(path, training, job, ranks));
   Checksum sum;
   for (const DatasetReader& set : sets_) {
     sum.add(set.hash().data(), set.hash().size());

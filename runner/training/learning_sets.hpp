@@ -19,8 +19,9 @@ class LearningSets {
     std::int64_t number;
   };
 
-  /// Throws JobError where a set is missing or too small, FileError for what is wrong with one.
-  LearningSets(const TrainingJob& training, const Job& job);
+  /// Throws JobError where a set is missing or too small, FileError for what is wrong with one. With ranks: of those
+  /// that read the sets together (runner/dataset/dataset_reader.hpp).
+  LearningSets(const TrainingJob& training, const Job& job, std::optional<MPI_Comm> ranks = std::nullopt);
   LearningSets(const LearningSets&) = delete;
   LearningSets& operator=(const LearningSets&) = delete;
 

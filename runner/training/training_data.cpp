@@ -58,8 +58,10 @@ std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, con
                                                 int parts) {
   const auto all = static_cast<std::int64_t>(sets.validation().size());
   std::vector<StoredSimulation> out;
-  for (std::int64_t i = part; i < std::min(training.ratio_simulations, all); i += parts)
-    out.push_back(read(sets.validation()[static_cast<std::size_t>(i)]));
+  for (std::int64_t i = 0; i < std::min(training.ratio_simulations, all); ++i) {
+    StoredSimulation simulation = read(sets.validation()[static_cast<std::size_t>(i)]);
+    if (i % parts == part) out.push_back(std::move(simulation));
+  }
   return out;
 }
 

@@ -37,7 +37,7 @@ Json full_data_job() {
 }
 
 TaskRecord synthetic_record(const Plan& plan, std::int64_t index) {
-  const Task& task = plan.task(index);
+  const Task task = plan.task(index);
   TaskRecord record;
   record.prepare(task, axis_sizes(plan));
   record.outcome = TaskOutcome::ok;

@@ -104,7 +104,7 @@ TEST_CASE("simulations are of different sizes, and a range of them is read") {
   const std::vector<StoredSimulation> last = data.read(1, 2);
   REQUIRE(last.size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {
-    const Task& task = plan.task(static_cast<std::int64_t>(i) + 1);
+    const Task task = plan.task(static_cast<std::int64_t>(i) + 1);
     CHECK(last[i].scene.rods.front().segment_count() == task.segments);
     CHECK(last[i].systems.size() == 4);
   }

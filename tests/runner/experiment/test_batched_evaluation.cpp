@@ -41,7 +41,7 @@ struct Evaluated {
   }
   bool together(const std::vector<std::int64_t>& tasks, const StopRequested& stop = never) {
     std::vector<TaskRun> runs;
-    for (const std::int64_t task : tasks) runs.push_back({&plan.task(task), plan.spec(task), &record(task)});
+    for (const std::int64_t task : tasks) runs.push_back({plan.task(task), plan.spec(task), &record(task)});
     return evaluate_batch(runs, stop);
   }
 

@@ -14,8 +14,8 @@ TaskRecord evaluated(const std::string& solve, Json job = small_job()) {
   job["solve"] = Json::parse(solve);
   const Plan plan = plan_of(job);
   TaskRecord record;
-  record.prepare(plan.tasks().front(), axis_sizes(plan));
-  REQUIRE(evaluate(plan.tasks().front(), plan.spec(0), record, [] { return false; }));
+  record.prepare(plan.task(0), axis_sizes(plan));
+  REQUIRE(evaluate(plan.task(0), plan.spec(0), record, [] { return false; }));
   return record;
 }
 

@@ -121,7 +121,7 @@ TEST_CASE("what is taken over stands at its new rows, and a simulation that diff
   CHECK(extension.source(4) == 3);
   CHECK(extension.source(2) == -1);
 
-  const Task& task = plan.task(4);
+  const Task task = plan.task(4);
   TaskRecord taken;
   taken.prepare(task, axis_sizes(plan));
   REQUIRE(extension.take(4, taken));

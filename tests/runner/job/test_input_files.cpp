@@ -73,6 +73,17 @@ TEST_CASE("what a task is depends on what its files hold, not on their names") {
   CHECK(identity("a.h5").trajectory == before.trajectory);
 }
 
+TEST_CASE("a job whose files another process has read needs none of them") {
+  const JobFolder folder;
+  folder.write("a.h5", "weights");
+  const Job read = folder.job(learned("a.h5"));
+  fs::remove(folder.path() / "a.h5");
+  const Job told = parse_job(read.text, read.path, from_bytes(to_bytes(read.files)));
+  CHECK(told.files.at("a.h5").hash == read.files.at("a.h5").hash);
+  CHECK(told.files.at("a.h5").path == read.files.at("a.h5").path);
+  CHECK(Plan(told).identity(0).guesses == Plan(read).identity(0).guesses);
+}
+
 TEST_CASE("models can be swept") {
   const JobFolder folder;
   folder.write("a.h5", "one");

@@ -20,18 +20,18 @@ TEST_CASE("pbd and xpbd count their own iterations, in a trajectory without gues
   REQUIRE(plan.size() == 3);
   CHECK(plan.spec(0).solve.method == Method::xpbd);
   CHECK(plan.spec(0).time.newton_iterations == 30);
-  CHECK(plan.tasks()[0].rows[Rows::solve].count == 30 * plan.tasks()[0].steps);
+  CHECK(plan.task(0).rows[Rows::solve].count == 30 * plan.task(0).steps);
   CHECK(plan.spec(1).solve.method == Method::pbd);
   CHECK(plan.spec(1).time.newton_iterations == 20);
   CHECK(plan.spec(1).solve.stiffness.stretch == 0.9);
   CHECK(plan.spec(1).solve.stiffness.bending == 1);
   CHECK(plan.spec(2).time.newton_iterations == 4);
-  CHECK(plan.tasks()[2].rows[Rows::solve].count == 4 * plan.tasks()[2].steps);
+  CHECK(plan.task(2).rows[Rows::solve].count == 4 * plan.task(2).steps);
   for (const Task& task : plan.tasks()) {
     CHECK(task.own_guess == -1);
     CHECK(plan.spec(task.index).guesses.empty());
   }
-  CHECK(plan.tasks()[0].cost == 7.5 * plan.tasks()[2].cost);
+  CHECK(plan.task(0).cost == 7.5 * plan.task(2).cost);
 }
 
 TEST_CASE("of a grid of methods, those of Gauss-Seidel have their defaults too") {

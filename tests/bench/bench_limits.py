@@ -1,0 +1,85 @@
+#!/usr/bin/python3
+"""What one master and one file take, however little the tasks do: docs/scale.md says from this where they saturate.
+
+bench_limits.py RODSWEEP MPIRUN [MOST_TASKS]
+
+  start   wall time of a sweep of one task, over the number of ranks
+  begin   wall time until tasks begin (plan, file), and largest memory of master and worker, over the number of tasks
+  rate    tasks of next to no work a second, over the number of ranks
+
+Ranks beyond the cores wait for each other: their times are upper bounds.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+AS_RANK = "--as-rank"
+JOB = {
+    "name": "limits", "kind": "sweep", "seed": 1,
+    "scene": {"type": "bending_rod", "segments": 2, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
+              "density_kg_m3": 1000, "youngs_modulus_pa": 1e5, "torsion_modulus_pa": 1e6},
+    "time": {"step_s": 0.02, "steps": 1, "newton_iterations": 1},
+    "guesses": ["zero", "previous"],
+}
+
+
+class Sweeps:
+    def __init__(self, rodsweep, mpirun):
+        self.rodsweep, self.mpirun = rodsweep, mpirun
+
+    def run(self, ranks, tasks, *options):
+        """Wall time, and the largest resident memory of every rank in MB."""
+        with open("job.json", "w") as file:
+            json.dump({**JOB, "samples": tasks}, file)
+        begin = time.monotonic()
+        done = subprocess.run([self.mpirun, "-n", str(ranks), sys.executable, os.path.abspath(__file__), AS_RANK,
+                               self.rodsweep, "run", "job.json", "-o", "out.h5", *options],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        seconds = time.monotonic() - begin
+        if not os.path.exists("out.h5"):
+            sys.exit(done.stderr)
+        os.remove("out.h5")
+        memory = []
+        for rank in range(ranks):
+            with open(f"rank-{rank}.mb") as file:
+                memory.append(float(file.read()))
+        return seconds, memory
+
+
+def as_rank(command):
+    """Runs what a rank is to run, and writes down how much memory it took."""
+    process = subprocess.Popen(command)
+    _, _, usage = os.wait4(process.pid, 0)
+    with open(f"rank-{os.environ['OMPI_COMM_WORLD_RANK']}.mb", "w") as file:
+        file.write(str(usage.ru_maxrss / 1024))
+    sys.exit(0)  # so that mpirun lets the other ranks write down theirs
+
+
+def main():
+    if sys.argv[1] == AS_RANK:
+        as_rank(sys.argv[2:])
+    sweeps = Sweeps(*sys.argv[1:3])
+    most = int(sys.argv[3]) if len(sys.argv) > 3 else 1_000_000
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        for ranks in (2, 4, 8, 16, 32):
+            print(f"limits: start of {ranks} ranks: {sweeps.run(ranks, 1)[0]:.2f} s", flush=True)
+        tasks = 1000
+        while tasks <= most:
+            seconds, memory = sweeps.run(3, tasks, "--time-limit", "0.001")
+            print(f"limits: begin of {tasks} tasks: {seconds:.2f} s, master {memory[0]:.0f} MB, workers "
+                  f"{max(memory[1:]):.0f} MB", flush=True)
+            tasks *= 10
+        tasks = 20_000
+        for ranks in (2, 3, 5, 9, 17):
+            begin = sweeps.run(ranks, tasks, "--time-limit", "0.001")[0]
+            print(f"limits: rate of {ranks - 1} workers: {tasks / (sweeps.run(ranks, tasks)[0] - begin):.0f} tasks/s",
+                  flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,71 @@
+// One data set and several ranks, of which one alone can see the file: run in an empty folder.
+#include <catch2/catch.hpp>
+
+#include "runner/dataset/dataset_reader.hpp"
+#include "runner/job/checksum.hpp"
+#include "runner/mpi/mpi_session.hpp"
+#include "tests/runner/data_set_examples.hpp"
+
+using namespace rodsweep;
+using Catch::Matchers::Contains;
+
+namespace {
+
+int own_rank() {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank;
+}
+
+Json ragged_job() {
+  Json job = data_job();
+  job["samples"] = 3;
+  job["scene"]["segments"] = {{"integer", {4, 12}}};
+  return job;
+}
+
+/// Over all numbers of all systems and of the scene.
+std::string fingerprint(const StoredSimulation& simulation) {
+  Checksum sum;
+  const auto add = [&](const auto& values) { sum.add(values.data(), values.size() * sizeof(*values.data())); };
+  for (const StoredSystem& system : simulation.systems) {
+    add(system.position);
+    add(system.orientation);
+    add(system.velocity);
+    add(system.lambda);
+    add(system.solution);
+  }
+  for (const Segment& segment : simulation.scene.rods.at(0).segments) sum.add(&segment.length_m, sizeof segment.length_m);
+  sum.add(&simulation.constraint_dt_s, sizeof simulation.constraint_dt_s);
+  return std::to_string(sum.value());
+}
+
+}  // namespace
+
+TEST_CASE("ranks that read a data set together have what a process alone reads, though one of them sees the file") {
+  if (own_rank() == 0) make_data_set("shared.h5", ragged_job());
+  const DatasetReader data(own_rank() == 0 ? "shared.h5" : "nowhere.h5", MPI_COMM_WORLD);
+  REQUIRE(data.size() == 3);
+  CHECK(broadcast(data.hash(), MPI_COMM_WORLD) == data.hash());
+  for (std::int64_t i = 0; i < data.size(); ++i) {
+    const StoredSimulation simulation = data.read(i);
+    CHECK(simulation.systems.size() == 4);
+    const std::string alone = own_rank() == 0 ? fingerprint(DatasetReader("shared.h5").read(i)) : "";
+    CHECK(fingerprint(simulation) == broadcast(alone, MPI_COMM_WORLD));
+  }
+}
+
+TEST_CASE("what goes wrong with a data set is said by all ranks") {
+  CHECK_THAT(message_of<CollectiveError>([] { DatasetReader("none.h5", MPI_COMM_WORLD); }), Contains("none.h5"));
+  if (own_rank() == 0) {
+    const Plan plan = make_data_set("damaged.h5", ragged_job());
+    const hdf5::File file = hdf5::open_file("damaged.h5", H5F_ACC_RDWR);
+    const auto row = static_cast<hsize_t>(plan.task(1).rows[Rows::system_joint].first);
+    const std::vector<double> wrong(6, 0.5);
+    hdf5::RowDataset(file.id(), "/systems/joints/solution").write(hdf5::type_of<double>(), row, 1, wrong.data());
+  }
+  const DatasetReader data("damaged.h5", MPI_COMM_WORLD);
+  CHECK(data.read(0).systems.size() == 4);
+  CHECK_THAT(message_of<CollectiveError>([&] { data.read(1); }),
+             Contains("is damaged: the data of task 1 are not what was written"));
+}

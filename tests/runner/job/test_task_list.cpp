@@ -1,0 +1,91 @@
+// Tasks in a few bytes each are the tasks that were put in, and their rows follow each other.
+#include <catch2/catch.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "runner/job/task_list.hpp"
+
+using namespace rodsweep;
+
+namespace {
+
+/// Of a few shapes, in no order; what a list gives for them is `index` and the first rows.
+std::vector<Task> some_tasks(int count) {
+  std::vector<Task> tasks;
+  PerRows<std::int64_t> first{};
+  for (int i = 0; i < count; ++i) {
+    Task task;
+    task.index = i;
+    task.point = i / 2;
+    task.sample = i / 2 % 7;
+    task.own_guess = i % 2;
+    task.segments = 4 + i * i % 5;
+    task.joints = task.segments - 1;
+    task.steps = 10 + i % 3;
+    task.frames = i % 4 == 0 ? 2 : 0;
+    task.cost = 1.5 * task.segments;
+    for (std::size_t kind = 0; kind < row_kinds; ++kind) {
+      task.rows[kind] = {first[kind], static_cast<std::int64_t>(kind) * task.segments + i % 3};
+      first[kind] += task.rows[kind].count;
+    }
+    tasks.push_back(task);
+  }
+  return tasks;
+}
+
+TaskList listed(const std::vector<Task>& tasks) {
+  TaskList list;
+  for (const Task& task : tasks) list.add(task);
+  return list;
+}
+
+void check_equal(const Task& a, const Task& b) {
+  CHECK(a.index == b.index);
+  CHECK(a.point == b.point);
+  CHECK(a.sample == b.sample);
+  CHECK(a.own_guess == b.own_guess);
+  CHECK(a.segments == b.segments);
+  CHECK(a.joints == b.joints);
+  CHECK(a.steps == b.steps);
+  CHECK(a.frames == b.frames);
+  CHECK(a.cost == b.cost);
+  for (std::size_t kind = 0; kind < row_kinds; ++kind) {
+    CHECK(a.rows[kind].first == b.rows[kind].first);
+    CHECK(a.rows[kind].count == b.rows[kind].count);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a list of tasks gives back what it was given, one by one and in order") {
+  const std::vector<Task> tasks = some_tasks(150);
+  const TaskList list = listed(tasks);
+  REQUIRE(list.size() == 150);
+  for (const std::size_t i : {149, 0, 63, 64, 65, 127, 128}) {
+    check_equal(list.at(static_cast<std::int64_t>(i)), tasks[i]);
+    CHECK(list.cost(static_cast<std::int64_t>(i)) == tasks[i].cost);
+  }
+  std::size_t next = 0;
+  for (const Task& task : list) check_equal(task, tasks.at(next++));
+  CHECK(next == 150);
+  const auto& last = tasks.back().rows[Rows::step];
+  CHECK(list.rows()[Rows::step] == last.first + last.count);
+  CHECK_THROWS_AS(list.at(150), std::out_of_range);
+  CHECK_THROWS_AS(list.at(-1), std::out_of_range);
+}
+
+TEST_CASE("rows of a kind that is dropped are nowhere, and the others stay") {
+  std::vector<Task> tasks = some_tasks(100);
+  TaskList list = listed(tasks);
+  list.drop(Rows::contact_step);
+  for (Task& task : tasks) task.rows[Rows::contact_step] = {0, 0};
+  check_equal(list.at(99), tasks[99]);
+  CHECK(list.rows()[Rows::contact_step] == 0);
+
+  tasks.push_back(tasks.front());
+  Task& added = tasks.back();
+  added.index = 100;
+  for (std::size_t kind = 0; kind < row_kinds; ++kind) added.rows[kind].first = list.rows()[kind];
+  list.add(added);
+  check_equal(list.at(100), added);
+}
