@@ -35,7 +35,8 @@ std::string fingerprint(const StoredSimulation& simulation) {
     add(system.lambda);
     add(system.solution);
   }
-  for (const Segment& segment : simulation.scene.rods.at(0).segments) sum.add(&segment.length_m, sizeof segment.length_m);
+  for (const Segment& segment : simulation.scene.rods.at(0).segments)
+    sum.add(&segment.length_m, sizeof segment.length_m);
   sum.add(&simulation.constraint_dt_s, sizeof simulation.constraint_dt_s);
   return std::to_string(sum.value());
 }
