@@ -35,7 +35,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo report studies variants ablation pictures test test-packages test-long test-arm bench sanitize schema docs format format-check tidy install uninstall clean
+.PHONY: help configure build demo report studies variants ablation pictures test test-packages test-long test-cluster drill test-arm bench sanitize schema docs format format-check tidy install uninstall clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
@@ -46,6 +46,8 @@ help:
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind), draw their films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'
+	@echo 'make test-cluster  sweeps under a real Slurm and over hosts that die or are cut off, on this machine (as root, some minutes)'
+	@echo 'make drill         of these the one in which all happens to one sweep, with its timeline'
 	@echo 'make test-arm      tests of the solver, but for CG, and the networks for 64-bit ARM, run in qemu, in $(BUILD)-arm/'
 	@echo 'make bench         build and run the benchmarks'
 	@echo 'make install       PREFIX=$(PREFIX): program, jobs, analysis scripts, manual page, completion; make uninstall'
@@ -136,6 +138,17 @@ test-packages:
 test-long: configure
 	@cmake --build $(BUILD) -j $(CORES)
 	@ctest --preset long --test-dir $(BUILD) -j $(CORES)
+
+# A Slurm and hosts of their own, in namespaces that end with the test. One after the other, since their times are told.
+test-cluster: configure
+	@$(call packages,cluster)
+	@cmake --build $(BUILD) -j $(CORES) --target program_tests
+	@ctest --preset cluster --test-dir $(BUILD)
+
+drill: configure
+	@$(call packages,cluster)
+	@cmake --build $(BUILD) -j $(CORES) --target rodsweep
+	@ctest --preset cluster --test-dir $(BUILD) -R cluster/drill
 
 # Two doubles in a register, another rounding and another compiler's code: what `make test` on x86 doesn't see.
 test-arm:

@@ -29,7 +29,9 @@ constexpr const char* exit_codes =
     "  0  all done\n"
     "  2  the command line, a job or a file is at fault; nothing of yours was changed\n"
     "  3  the sweep is complete, some of its tasks failed; or a training diverged\n"
-    "  4  stopped early; --resume continues";
+    "  4  stopped early; --resume continues\n"
+    "  5  likewise, but what is left needs a longer --time-limit\n"
+    "  6  no worker was left; --resume continues";
 
 constexpr const char* main_help =
     "Examples:\n"
@@ -126,6 +128,10 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->check(above_zero())
       ->type_name("SECONDS");
   command
+      ->add_option("--time-passed", run.time_passed_s, "So much of it is over already (keep says it to later starts)")
+      ->check(not_negative())
+      ->type_name("SECONDS");
+  command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
                    "Memory of a rank; a task that wants more is an error [an equal share of nine tenths of the host's]")
       ->check(above_zero())
@@ -150,6 +156,9 @@ CLI::App* add(CLI::App& app, PlanOptions& plan) {
   command->add_option("JOB", plan.job, "Job file (JSON)")->required();
   command->add_flag_callback(
       "--no-probe", [&plan] { plan.probe = false; }, "Run nothing, so tell no core-hours");
+  command->add_option("--workers", plan.workers, "Tell the time for so many workers [one for each core here]")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
   command->add_flag("--json", plan.json, "For programs");
   return command;
 }
@@ -272,7 +281,7 @@ CLI::App* add(CLI::App& app, KeepOptions& keep) {
   command->add_option("--pause", keep.pause_s, "Before the next start; doubles while nothing gets done [1]")
       ->check(above_zero())
       ->type_name("SECONDS");
-  command->add_option("--vain-starts", keep.vain_starts, "Give up after so many in a row that get nothing done [6]")
+  command->add_option("--vain-starts", keep.vain_starts, "Give up after so many in a row that get nothing done [10]")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
   return command;

@@ -38,6 +38,8 @@ std::string ending(const RunRow& run, bool is_last, const FileSummary& file) {
     case ExitCode::ok: return "all done";
     case ExitCode::tasks_failed: return "complete, some tasks failed";
     case ExitCode::stopped: return "stopped early";
+    case ExitCode::too_long: return "stopped early: what is left needs a longer time limit";
+    case ExitCode::lost: return "no worker was left";
     default: return fmt::format("exit code {}", run.exit_code);
   }
 }

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <exception>
+#include <functional>
 #include <thread>
 #include <utility>
 
 #include "runner/command/kept_hosts.hpp"
 #include "runner/dispatch/stop_signal.hpp"
+#include "runner/file/file_lock.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/runs.hpp"
@@ -27,6 +30,8 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds look_pause{0.1}, longest_pause{300}, time_to_end{15}, time_to_leave{5};
+constexpr Seconds longest_lock{300};
+constexpr int no_start = 1 << 8;      // as wait() gives the exit code 1
 constexpr double slow_begin = 10;     // a start may verify a large file, or wait for hosts, before it shows any sign
 constexpr Seconds time_to_stop{100};  // a sweep gives its workers a minute, batch systems often two
 
@@ -96,15 +101,20 @@ class Keeper {
     int vain = 0;
     bool any_begun = false;
     for (Story before = read_story(file_, training_);;) {
+      if (!wait_for_lock()) return ExitCode::stopped;
       const int status = start(before);
-      const Story after = read_story(file_, training_);
+      const Story after = story_after(before);
       const bool begun = after.goes_on_from(before);
       any_begun = any_begun || begun;
-      const bool stopped_here = hung_ && after.ended == ExitCode::stopped;
-      if (begun && after.ended && !stopped_here) return *after.ended;
+      const bool lost = after.ended == ExitCode::lost || (hung_ && after.ended == ExitCode::stopped);
+      if (begun && after.ended && !lost) return *after.ended;
       // A start that never began may be refused for good, or find the one before still dying.
       if (!any_begun && exit_code_of(status) == static_cast<int>(ExitCode::user_error)) return ExitCode::user_error;
       if (stop_.received() != 0) return ExitCode::stopped;
+      if (options_->run.time_limit_s && passed().count() >= *options_->run.time_limit_s) {
+        console_->warn("the time limit is over, and so is this: the same again goes on");
+        return ExitCode::stopped;
+      }
 
       if (after.done > before.done) vain = 0, pause = Seconds(options_->pause_s);
       if (++vain >= options_->vain_starts) {
@@ -124,14 +134,31 @@ class Keeper {
   }
 
  private:
+  /// That before, where nothing more can be read, be it that the disk does not answer.
+  Story story_after(const Story& before) const {
+    try {
+      return read_story(file_, training_);
+    } catch (const std::exception& failure) {
+      console_->warn(failure.what());
+      return before;
+    }
+  }
+
+  bool has_begun(const Story& before, Story& now) const {
+    if (training_ || !fs::exists(file_)) return false;
+    try {
+      now = story_of(read_runs(open_results(file_)), 0);
+    } catch (const std::exception&) {  // after the start it is read once more
+      return false;
+    }
+    return now.goes_on_from(before);
+  }
+
   /// The exit status of one start, as wait() gives it.
   int start(const Story& before) {
-    const auto has_begun = [&](Story& now) {
-      if (training_ || !fs::exists(file_)) return false;
-      now = story_of(read_runs(open_results(file_)), 0);
-      return now.goes_on_from(before);
-    };
-    ChildProcess child(words());
+    const std::vector<std::string> command = words();
+    if (command.empty()) return no_start;
+    ChildProcess child(command);
     SignsOfLife signs(file_);
     std::optional<Clock::time_point> told, ended;
     auto looked = Clock::now();
@@ -147,7 +174,7 @@ class Keeper {
       if (Clock::now() - looked > time_to_leave / 5) {  // a lost rank may keep mpirun from leaving
         looked = Clock::now();
         Story now;
-        begun = has_begun(now);
+        begun = has_begun(before, now);
         if (!ended && begun && now.ended) ended = looked;
         if (ended && looked - *ended > time_to_leave) end(child);
       }
@@ -162,19 +189,37 @@ class Keeper {
     return child.status();
   }
 
+  /// Of the next start; empty: there can be none now.
   std::vector<std::string> words() const {
     std::vector<std::string> words = options_->command;
     if (!options_->run.resume) words.emplace_back("--resume");
+    if (options_->run.time_limit_s)
+      words.insert(words.end(), {"--time-passed", fmt::format("{:.0f}", passed().count())});
     if (options_->hosts) {
       const fs::path answering = answering_hosts(*options_->hosts, file_, *console_);
+      if (answering.empty()) return {};
       for (std::string& word : words)
         if (word == "{hosts}") word = answering.native();
     }
     return words;
   }
 
-  bool wait(Seconds pause) const {
-    for (const auto begin = Clock::now(); Clock::now() - begin < pause;) {
+  Seconds passed() const { return Clock::now() - begin_; }
+
+  /// What is left of a start, on a host that was cut off or under a batch system that gave it up, may write for a
+  /// while.
+  bool wait_for_lock() const {
+    const auto is_free = [&] { return !FileLock::is_held(file_).value_or(false); };
+    if (is_free()) return true;
+    console_->warn(fmt::format("{} is being written by another run: its end is waited for, up to {}", file_.native(),
+                               duration_text(longest_lock.count())));
+    return wait(longest_lock, is_free);
+  }
+
+  /// False: told to stop.
+  bool wait(
+      Seconds pause, const std::function<bool()>& is_over = [] { return false; }) const {
+    for (const auto begin = Clock::now(); Clock::now() - begin < pause && !is_over();) {
       if (stop_.received() != 0) return false;
       std::this_thread::sleep_for(look_pause);
     }
@@ -185,6 +230,7 @@ class Keeper {
   fs::path file_;
   bool training_;
   Console* console_;
+  Clock::time_point begin_ = Clock::now();
   StopSignal stop_;
   bool hung_ = false;  ///< the last start, which was ended for it
 };

@@ -60,6 +60,7 @@ fs::path answering_hosts(const fs::path& hosts, const fs::path& results, Console
   while (waits() && Clock::now() - begin < time_to_answer) std::this_thread::sleep_for(look_pause);
 
   std::string answering;
+  bool all = true;
   for (const Asked& one : asked) {
     if (one.question->runs())
       one.question->kill_group();
@@ -67,14 +68,20 @@ fs::path answering_hosts(const fs::path& hosts, const fs::path& results, Console
       answering += one.line + '\n';
       continue;
     }
+    all = false;
     console.warn(fmt::format("{} does not answer: this start does without it", one.host));
   }
-  if (answering.empty()) throw FileError(fmt::format("none of the hosts of {} answers", hosts.native()));
+  if (all) return hosts;
+  if (answering.empty()) {
+    console.warn(fmt::format("none of the hosts of {} answers", hosts.native()));
+    return {};
+  }
   fs::path path = results;
   path += ".hosts";
-  std::ofstream(path) << answering;
-  if (!fs::exists(path)) throw FileError(fmt::format("{} cannot be written", path.native()));
-  return path;
+  std::ofstream some(path);
+  if (some << answering << std::flush) return path;
+  console.warn(fmt::format("{} cannot be written, be the disk full", path.native()));
+  return {};
 }
 
 }  // namespace rodsweep

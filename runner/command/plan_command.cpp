@@ -52,7 +52,27 @@ std::int64_t all_steps(const Plan& plan) {
   return steps;
 }
 
-nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probes) {
+int cores_here() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+int workers_of(const PlanOptions& options) { return options.workers > 0 ? options.workers : cores_here(); }
+
+/// As sbatch --time takes it, in whole minutes.
+std::string slurm_time(double seconds) {
+  const auto minutes = std::llround(std::ceil(seconds / 60));
+  const auto hours = minutes / 60, days = hours / 24;
+  return (days > 0 ? fmt::format("{}-", days) : "") + fmt::format("{:02}:{:02}:00", hours % 24, minutes % 60);
+}
+
+std::string slurm_text(const Estimate& needs, const PlanOptions& options) {
+  const int workers = workers_of(options);
+  return fmt::format(
+      "slurm    sbatch --ntasks={} --time={} jobs/slurm/sweep.sbatch {} does it at once; --time={} is the least, "
+      "for task {}, the longest, of about {}\n",
+      workers, slurm_time(time_limit_for(needs.wall_s(workers))), shell_quoted(options.job.native()),
+      slurm_time(time_limit_for(needs.longest_s)), needs.longest, duration_text(needs.longest_s));
+}
+
+nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probes, const PlanOptions& options) {
   nlohmann::ordered_json json{{"job", plan.job().path.native()},
                               {"name", plan.job().name},
                               {"tasks", plan.size()},
@@ -65,7 +85,15 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
   for (const ParameterColumn& parameter : plan.parameters())
     if (parameter.swept) json["swept"].push_back(parameter.path);
   if (probes.empty()) return json;
-  json["core_hours"] = core_seconds(plan, probes) / 3600;
+  const Estimate needs = estimate(plan, probes);
+  const int workers = workers_of(options);
+  json["core_hours"] = needs.core_s / 3600;
+  json["workers"] = workers;
+  json["wall_seconds"] = needs.wall_s(workers);
+  json["time_limit_seconds"] = time_limit_for(needs.wall_s(workers));
+  json["longest_task"] = needs.longest;
+  json["longest_task_seconds"] = needs.longest_s;
+  json["least_time_limit_seconds"] = time_limit_for(needs.longest_s);
   json["probes"] = nlohmann::ordered_json::array();
   for (const Probe& p : probes)
     json["probes"].push_back({{"task", p.task},
@@ -79,7 +107,7 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
 }
 
 std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const PlanOptions& options) {
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int workers = workers_of(options);
   RunOptions run;
   run.job = options.job;
   run.program = options.program;
@@ -98,14 +126,14 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
                       guesses > 0 ? fmt::format(", guesses: {}", fmt::join(plan.guess_labels(), ", ")) : "");
   text += fmt::format("file     {}\n", bytes_text(file_bytes(plan)));
   if (!probes.empty()) {
-    const double seconds = core_seconds(plan, probes);
+    const Estimate needs = estimate(plan, probes);
     const auto [shortest, longest] = std::minmax_element(
         probes.begin(), probes.end(), [](const Probe& a, const Probe& b) { return a.seconds < b.seconds; });
-    text += fmt::format(
-        "time     about {:.2g} core-hours: {} on the {} core{} here (from {} task{} tried, {} to {} each)\n",
-        seconds / 3600, duration_text(std::max(longest->seconds, seconds / cores)), cores, cores == 1 ? "" : "s",
-        probes.size(), probes.size() == 1 ? "" : "s", duration_text(shortest->seconds),
-        duration_text(longest->seconds));
+    text += fmt::format("time     about {:.2g} core-hours: {} with {} worker{} (from {} task{} tried, {} to {} each)\n",
+                        needs.core_s / 3600, duration_text(needs.wall_s(workers)), workers, workers == 1 ? "" : "s",
+                        probes.size(), probes.size() == 1 ? "" : "s", duration_text(shortest->seconds),
+                        duration_text(longest->seconds));
+    text += slurm_text(needs, options);
     const auto most = std::max_element(probes.begin(), probes.end(), [](const Probe& a, const Probe& b) {
                         return a.memory_bytes < b.memory_bytes;
                       })->memory_bytes;
@@ -117,7 +145,7 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
       else if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
         text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);
   }
-  text += "next     " + run_line(run, ranks_for(cores));
+  text += "next     " + run_line(run, ranks_for(workers));
   return text;
 }
 
@@ -132,7 +160,7 @@ ExitCode execute(const PlanOptions& options, Console& console) {
   check_factors(plan);
   limit_memory((1 - memory_reserve) * host_memory());
   const std::vector<Probe> probes = options.probe ? probe(plan, evaluate_among_equals) : std::vector<Probe>();
-  console.result(options.json ? to_json(plan, probes).dump(2) : to_text(plan, probes, options));
+  console.result(options.json ? to_json(plan, probes, options).dump(2) : to_text(plan, probes, options));
   return ExitCode::ok;
 }
 

@@ -71,10 +71,21 @@ std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate) {
   return probes;
 }
 
-double core_seconds(const Plan& plan, const std::vector<Probe>& probes) {
-  double sum = 0;
-  for (const Task& task : plan.tasks()) sum += task.cost * rate(probes, task.cost);
-  return sum;
+Estimate estimate(const Plan& plan, const std::vector<Probe>& probes) {
+  Estimate all;
+  for (const Task& task : plan.tasks()) {
+    const double seconds = task.cost * rate(probes, task.cost);
+    all.core_s += seconds;
+    if (seconds > all.longest_s) all.longest_s = seconds, all.longest = task.index;
+  }
+  return all;
+}
+
+double Estimate::wall_s(int workers) const { return std::max(longest_s, core_s / workers); }
+
+double time_limit_for(double wall_s) {
+  constexpr double margin = 1.5, stop_s = 210, start_s = 60;
+  return margin * wall_s + stop_s + start_s;
 }
 
 }  // namespace rodsweep

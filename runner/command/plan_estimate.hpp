@@ -25,7 +25,19 @@ struct Probe {
 
 std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate);
 
-/// Of all tasks on one core.
-double core_seconds(const Plan& plan, const std::vector<Probe>& probes);
+/// What tasks will take on one core.
+struct Estimate {
+  double core_s = 0;     ///< all of them
+  double longest_s = 0;  ///< the longest
+  std::int64_t longest = 0;
+
+  double wall_s(int workers) const;
+};
+
+Estimate estimate(const Plan& plan, const std::vector<Probe>& probes);
+
+/// What to ask a batch system for, in seconds, so that jobs/slurm/sweep.sbatch has `wall_s` to run: half as much again,
+/// since estimates are what they are, and what starting and stopping take.
+double time_limit_for(double wall_s);
 
 }  // namespace rodsweep

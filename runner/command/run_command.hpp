@@ -29,6 +29,7 @@ struct RunOptions {
   std::optional<double> task_time_limit_s;      ///< in place of the job's
   std::optional<double> memory_limit_gb;        ///< of every rank; default: its share of the host's memory
   std::optional<double> time_limit_s;           ///< of this start
+  double time_passed_s = 0;                     ///< of that limit, before this start
   double worker_timeout_s = 120;                ///< a worker that is silent for so long is lost; 0: none ever is
   std::string program = "rodsweep";             ///< as the user typed it
   std::string command;                          ///< the whole line, for /runs

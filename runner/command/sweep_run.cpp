@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <functional>
@@ -22,15 +23,19 @@
 #include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/experiment/training_sets.hpp"
+#include "runner/file/attempt.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
+#include "runner/terminal/text.hpp"
 
 namespace rodsweep {
 
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
 
 /// Every rank looks for itself into the file to extend.
 std::optional<Extension> open_extension(const RunOptions& options, const fs::path& path, const Plan& plan) {
@@ -100,6 +105,7 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
   // Tasks of an earlier file are looked at one by one.
   const std::vector<std::int64_t> batch =
       extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
+  const double limit_s = plan.spec(0).time_limit_s;
   std::vector<PendingTask> pending;
   for (const Task& task : plan.tasks())
     if (const auto i = static_cast<std::size_t>(task.index);
@@ -107,8 +113,21 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
       const int lost = file.starts()[i];
       pending.push_back(
           {task.index, task.cost * (extension ? extension->cost(task.index) : 1), lost > 0 ? -1 : batch[i], lost});
+      if (limit_s > 0) pending.back().limit_s = limit_s;
     }
   return pending;
+}
+
+/// What the starts before tell of how long tasks take.
+void learn_from_earlier_starts(const fs::path& path, const Plan& plan, const ResultsFile& file,
+                               std::vector<PendingTask>& pending, TimeBudget& time) {
+  const std::vector<Attempt> attempts = read_attempts(path);
+  for (const Task& task : plan.tasks()) {
+    const auto i = static_cast<std::size_t>(task.index);
+    const double share = file.done()[i] != 0 ? 1 : attempts[i].steps / static_cast<double>(task.steps);
+    time.learn(task.cost * share, Seconds(attempts[i].elapsed_s));
+  }
+  for (PendingTask& task : pending) task.tried_s = attempts[static_cast<std::size_t>(task.index)].elapsed_s;
 }
 
 void advise(Console& console, const RunOptions& options, const Placement& where, std::size_t pending) {
@@ -125,8 +144,14 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
 /// Keeps account of starts in the file: a task whose count stands though it is not complete had its worker end.
 BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
   return [body = std::move(body), &plan, &file](const std::vector<std::int64_t>& tasks, const StopRequested& stop) {
+    const auto begin = Clock::now();
     for (const std::int64_t task : tasks) file.begin(plan.task(task));
-    const auto take_back = [&](std::int64_t task) { file.abandon(plan.task(task)); };
+    const auto give_up = [&](std::int64_t task, double share) {
+      const Seconds ran = (Clock::now() - begin) / static_cast<double>(tasks.size());
+      const Task& given_up = plan.task(task);
+      file.abandon(given_up,
+                   {ran.count(), static_cast<std::int32_t>(std::lround(share * static_cast<double>(given_up.steps)))});
+    };
     // What fails while a task looks up (a sync, a message) is not that task's outcome.
     std::exception_ptr failure;
     const StopRequested look_up = [&] {
@@ -141,10 +166,10 @@ BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
       std::vector<TaskResult> results = body(tasks, look_up);
       if (failure) std::rethrow_exception(failure);
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        if (results[i].outcome == TaskOutcome::pending) take_back(tasks[i]);
+        if (results[i].outcome == TaskOutcome::pending) give_up(tasks[i], results[i].share);
       return results;
     } catch (...) {  // a rank that can say so did not lose its life to the task
-      std::for_each(tasks.begin(), tasks.end(), take_back);
+      for (const std::int64_t task : tasks) file.abandon(plan.task(task));
       throw;
     }
   };
@@ -156,7 +181,7 @@ Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, co
   const auto received = [&] { return signal.received(); };
   MemoryNetwork network(2);
   Patience alone;  // of itself
-  alone.limit = patience.limit;
+  alone.time = patience.time;
   Master master(network[0], std::move(pending), progress, received, alone);
   Worker worker(network[1], std::move(body), received, [&] {
     master.step();
@@ -206,19 +231,35 @@ Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pen
   return master.dispatch();
 }
 
-Patience patience_of(const RunOptions& options) {
+/// Of a start that began then.
+Patience patience_of(const RunOptions& options, Clock::time_point begin) {
   constexpr std::chrono::minutes drain{1};
   Patience patience;
   patience.drain = drain;
-  if (options.time_limit_s) patience.limit = std::chrono::duration<double>(*options.time_limit_s);
+  if (options.time_limit_s) {
+    const Seconds whole(*options.time_limit_s);
+    patience.time = TimeBudget(whole - Seconds(options.time_passed_s) - (Clock::now() - begin), whole);
+  }
   if (options.worker_timeout_s > 0) patience.silence = std::chrono::duration<double>(options.worker_timeout_s);
   return patience;
 }
 
 std::string ended_text(const Dispatch& dispatch, const RunOptions& options, int ranks) {
-  if (dispatch.signal != 0) return stopped_text(dispatch.signal, options, ranks);
   RunOptions again = options;
   again.resume = true;
+  again.time_passed_s = 0;
+  if (dispatch.too_long) {
+    again.time_limit_s.reset();
+    return fmt::format(
+        "no task that is left would end within a time limit of {}: task {}, the longest, would take {} {}. "
+        "To continue, give more time (--time-limit, under Slurm sbatch --time), or with --task-time-limit a bound "
+        "after "
+        "which tasks are given up: {}",
+        duration_text(*options.time_limit_s), dispatch.too_long->index,
+        dispatch.too_long_s > dispatch.too_long->tried_s ? "about" : "more than", duration_text(dispatch.too_long_s),
+        run_line(again, ranks));
+  }
+  if (dispatch.signal != 0) return stopped_text(dispatch.signal, again, ranks);
   return fmt::format("{}; nothing is lost that was finished. To continue: {}",
                      dispatch.late ? "there is no time left for the rest" : "no worker is left",
                      run_line(again, ranks));
@@ -227,6 +268,7 @@ std::string ended_text(const Dispatch& dispatch, const RunOptions& options, int 
 }  // namespace
 
 ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
+  const auto begin = Clock::now();
   const Plan plan = collectively(mpi.world(), [&] {
     Plan made(job);
     check_guesses(made);
@@ -298,7 +340,9 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     file.commit_if_due();
     if (mpi.rank() == 0) file.beat();
   };
-  const Patience patience = patience_of(options);
+  Patience patience = patience_of(options, begin);
+  if (options.time_limit_s && continues && mpi.rank() == 0)
+    learn_from_earlier_starts(path, plan, file, pending, patience.time);
   const Dispatch dispatch =
       mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then, patience)
                       : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), now_and_then,
@@ -310,7 +354,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
     dispatch.apart ? file.leave() : file.close();
     console.result(summary_text(summary));
-    if (code == ExitCode::stopped) console.note(ended_text(dispatch, options, mpi.size()));
+    if (dispatch.left > 0) console.note(ended_text(dispatch, options, mpi.size()));
     return code;
   };
   if (dispatch.apart) {

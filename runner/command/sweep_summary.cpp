@@ -31,7 +31,9 @@ std::int64_t finished_now(const Dispatch& dispatch) {
 }  // namespace
 
 ExitCode exit_code(const SweepSummary& summary) {
-  if (summary.dispatch.left > 0) return ExitCode::stopped;
+  if (summary.dispatch.too_long) return ExitCode::too_long;
+  if (summary.dispatch.left > 0)
+    return summary.dispatch.signal != 0 || summary.dispatch.late ? ExitCode::stopped : ExitCode::lost;
   const auto counts = finished(summary);
   const bool failures = std::any_of(counts.begin(), counts.end(), [](const auto& c) { return c.first != ok_name; });
   return failures ? ExitCode::tasks_failed : ExitCode::ok;

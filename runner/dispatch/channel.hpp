@@ -55,6 +55,7 @@ struct Report {
   std::int64_t task = 0;
   TaskOutcome outcome = TaskOutcome::pending;  ///< pending: abandoned, nothing was written
   double busy_s = 0;                           ///< wall time, writing included
+  double share = 1;                            ///< of its work that was done; below 1 if abandoned
   std::array<char, 200> text{};                ///< what went wrong, cut if long; ends with a zero
 
   Report() = default;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -55,7 +54,7 @@ Master::Step Master::step() {
   const bool traffic = receive();
   if (const int signal = signal_(); signal != 0) stop(signal);
   look_for_lost();
-  if (Clock::now() - begin_ > patience_.limit) stop(0);
+  if (patience_.time.is_over(Clock::now() - begin_)) stop(0);
   if (!stopping_) hand_out();
 
   const auto now = Clock::now();
@@ -66,9 +65,11 @@ Master::Step Master::step() {
 
   progress_->clear();
   dispatch_.late = dispatch_.left > 0 && (nothing_fits_ || (stopping_ && dispatch_.signal == 0));
+  if (dispatch_.left > 0) look_for_too_long();
   dispatch_.wall_s = std::chrono::duration<double>(now - begin_).count();
   dispatch_.apart = std::any_of(workers_.begin() + 1, workers_.end(), [](const Worker& worker) { return worker.lost; });
-  for (int rank = 1; rank < channel_->size(); ++rank) channel_->send(rank, Finish{dispatch_.apart});
+  for (int rank = 1; rank < channel_->size(); ++rank)
+    if (!workers_[static_cast<std::size_t>(rank)].lost) channel_->send(rank, Finish{dispatch_.apart});
   return Step::finished;
 }
 
@@ -90,6 +91,8 @@ bool Master::receive() {
     any = true;
     Worker& worker = workers_[static_cast<std::size_t>(envelope->source)];
     worker.heard = last_heard_ = Clock::now();
+    if (worker.lost && !std::exchange(worker.told, true))
+      stopping_ ? channel_->send(envelope->source, Stop{}) : channel_->send(envelope->source, Drop{});
     switch (envelope->tag) {
       case Tag::report: report(envelope->source, channel_->receive<Report>(*envelope)); break;
       case Tag::alive:
@@ -98,7 +101,7 @@ bool Master::receive() {
         break;
       case Tag::dropped:
         channel_->receive<Dropped>(*envelope);
-        worker.lost = false;
+        worker.lost = worker.told = false;
         if (notices_.found_again) notices_.found_again(envelope->source);
         break;
       case Tag::gone: channel_->receive<Gone>(*envelope), worker.gone = true; break;
@@ -125,6 +128,9 @@ void Master::report(int rank, const Report& report) {
   }
   if (!finished) {
     dispatch_.busy_s += report.busy_s;
+    patience_.time.learn(task.cost * report.share, TimeBudget::Seconds(report.busy_s));
+    task.tried_s = std::max(task.tried_s, report.busy_s);
+    if (has_it) given_up_.push_back(task);
     return;
   }
   bool counted = has_it;
@@ -148,8 +154,7 @@ void Master::forget_kept(Worker& worker) {
 
 void Master::count(const PendingTask& task, const Report& report) {
   dispatch_.busy_s += report.busy_s;
-  known_s_ += report.busy_s;
-  known_cost_ += task.cost;
+  patience_.time.learn(task.cost, TimeBudget::Seconds(report.busy_s));
   nothing_fits_ = false;
   --dispatch_.left;
   ++dispatch_.finished.at(static_cast<std::size_t>(report.outcome));
@@ -183,7 +188,6 @@ void Master::lose(int rank) {
   Worker& worker = workers_[static_cast<std::size_t>(rank)];
   worker.lost = true;
   if (notices_.lost) notices_.lost(rank);
-  if (!stopping_) channel_->send(rank, Drop{});
   const std::vector<PendingTask> tasks = std::exchange(worker.tasks, {});
   in_flight_ -= static_cast<std::int64_t>(tasks.size());
   for (const PendingTask& task : tasks) put_back(task, task.batch >= 0 || &task == &tasks.front());
@@ -210,7 +214,8 @@ void Master::stop(int signal) {
   if (std::exchange(stopping_, true)) return;
   dispatch_.signal = signal;
   stopped_ = Clock::now();
-  for (int rank = 1; rank < channel_->size(); ++rank) channel_->send(rank, Stop{});
+  for (int rank = 1; rank < channel_->size(); ++rank)
+    if (!workers_[static_cast<std::size_t>(rank)].lost) channel_->send(rank, Stop{});
 }
 
 void Master::hand_out() {
@@ -224,16 +229,26 @@ void Master::hand_out() {
 
 bool Master::next_fits() {
   if (next_ >= pool_.size() || nothing_fits_) return false;
-  if (!std::isfinite(patience_.limit.count()) || known_cost_ <= 0) return true;
-  constexpr double margin = 1.5;  // costs are estimates
-  const std::chrono::duration<double> left = patience_.limit - (Clock::now() - begin_);
+  const TimeBudget::Seconds since_begin = Clock::now() - begin_;
   const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(next_);
-  const auto fits = std::find_if(first, pool_.end(), [&](const PendingTask& task) {
-    return margin * task.cost * known_s_ / known_cost_ < left.count();
-  });
+  const auto fits =
+      std::find_if(first, pool_.end(), [&](const PendingTask& task) { return patience_.time.fits(task, since_begin); });
   nothing_fits_ = fits == pool_.end();
   if (!nothing_fits_) std::rotate(first, fits, fits + 1);
   return !nothing_fits_;
+}
+
+void Master::look_for_too_long() {
+  const TimeBudget& time = patience_.time;
+  std::vector<PendingTask> left(pool_.begin() + static_cast<std::ptrdiff_t>(next_), pool_.end());
+  left.insert(left.end(), given_up_.begin(), given_up_.end());
+  if (left.empty() ||
+      std::any_of(left.begin(), left.end(), [&](const PendingTask& task) { return time.ever_fits(task); }))
+    return;
+  dispatch_.too_long = *std::max_element(left.begin(), left.end(), [&](const PendingTask& a, const PendingTask& b) {
+    return time.expected(a) < time.expected(b);
+  });
+  dispatch_.too_long_s = time.expected(*dispatch_.too_long).count();
 }
 
 bool Master::is_idle(int rank) const {
@@ -250,6 +265,8 @@ bool Master::next_goes_alone() const { return next_ < pool_.size() && pool_[next
 bool Master::may_hold_another(const Worker& worker) const {
   constexpr double margin = 2;  // costs are estimates
   if (worker.tasks.size() != 1 || pool_[next_].batch >= 0 || pool_[next_].lost > 0) return false;
+  const TimeBudget::Seconds begins = Clock::now() - begin_ + patience_.time.expected(worker.tasks.front());
+  if (!patience_.time.fits(pool_[next_], begins)) return false;
   const double second = pool_[next_].cost;
   const auto workers = static_cast<double>(channel_->size() - 1);
   return margin * workers * (worker.tasks.front().cost + second) <= pool_cost_ - second;

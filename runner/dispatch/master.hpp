@@ -10,15 +10,17 @@
 // twice, one at a time, with nothing beside it: should a task be what ends workers, it has only itself to take along.
 //
 // A worker that was not heard for too long (it hangs, died, or its host is cut off) is lost: its tasks go back to the
-// others, as tasks that lost their workers, and so does what it finished and had not brought to disk. Should it come
-// back, it gives up what it had and is welcome again. What it finished meanwhile has the same bits, whoever writes them
-// last. Is nobody left for as long again, the sweep ends.
+// others, as tasks that lost their workers, and so does what it finished and had not brought to disk. Nothing is sent
+// to it, since Open MPI may end a rank that cannot reach another. Should it come back, it is told (Drop), gives up what
+// it had and is welcome again. What it finished meanwhile has the same bits, whoever writes them last. Is nobody left
+// for as long again, the sweep ends.
 //
 // On a signal, here or on a worker, nothing more is handed out and running tasks are abandoned; workers that have not
 // given theirs up in good time are lost.
-// With a limit, no task is begun that would probably not end before it, by its cost and what the tasks so far took;
-// what runs then is abandoned. Every Assign is answered by one Report for each of its tasks; the workers are dismissed
-// (Finish) when the last one is in. Are some lost by then, the others part without doing anything that would take all.
+// With a time limit, no task is begun that would probably not end before it (time_budget.hpp); what runs then is
+// abandoned. Where nothing of what is left would end within a whole limit either, the end says so. Every Assign is
+// answered by one Report for each of its tasks; the workers are dismissed (Finish) when the last one is in. Are some
+// lost by then, the others part without doing anything that would take all.
 #pragma once
 
 #include <array>
@@ -27,30 +29,22 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "runner/dispatch/channel.hpp"
+#include "runner/dispatch/pending_task.hpp"
+#include "runner/dispatch/time_budget.hpp"
 #include "runner/terminal/progress.hpp"
 
 namespace rodsweep {
-
-struct PendingTask {
-  std::int64_t index = 0;
-  double cost = 0;
-  std::int64_t batch = -1;  ///< tasks of equal cost and number here may be evaluated together; -1: this one alone
-  int lost = 0;             ///< workers that ended while they ran it
-
-  /// So often a task is begun. The first time it may have run beside the one that is to blame; the last time it is
-  /// alone.
-  static constexpr int most_starts = 3;
-};
 
 /// How long the master waits for workers; by default for ever.
 struct Patience {
   std::chrono::duration<double> silence{std::numeric_limits<double>::infinity()};  ///< of any worker
   std::chrono::duration<double> drain{std::numeric_limits<double>::infinity()};    ///< after a request to stop
-  std::chrono::duration<double> limit{std::numeric_limits<double>::infinity()};    ///< of the whole sweep
+  TimeBudget time;                                                                 ///< of the whole start
 };
 
 /// What the master tells its owner. Empty functions are not called.
@@ -73,6 +67,8 @@ struct Dispatch {
   std::int64_t left = 0;                               ///< not run, or abandoned: 0 unless stopped early
   int signal = 0;                                      ///< the signal that stopped it
   bool late = false;                                   ///< there was no time for what is left
+  std::optional<PendingTask> too_long;                 ///< the longest of what is left, none of which would ever fit
+  double too_long_s = 0;                               ///< what it is expected to take
   bool apart = false;                                  ///< workers are lost: nothing may be done that takes all ranks
   double busy_s = 0;                                   ///< of all workers
   double wall_s = 0;
@@ -108,8 +104,8 @@ class Master {
   struct Worker {
     std::vector<PendingTask> tasks;  ///< the running one, then the one in hand
     Clock::time_point heard;
-    bool lost = false, gone = false;
-    std::deque<Finished> unkept;           ///< what it finished and would take along
+    bool lost = false, told = false, gone = false;  ///< told: when it was heard again
+    std::deque<Finished> unkept;                       ///< what it finished and would take along
     std::int64_t kept = 0, forgotten = 0;  ///< of all that it finished: on disk, as it says; no more in `unkept`
   };
 
@@ -128,6 +124,7 @@ class Master {
   bool any_left() const;
   bool may_hold_another(const Worker& worker) const;
   bool next_fits();
+  void look_for_too_long();
   bool next_goes_alone() const;
 
   Channel* channel_;
@@ -141,7 +138,7 @@ class Master {
   std::vector<Worker> workers_;  ///< by rank; that of the master stays empty
   std::int64_t in_flight_ = 0;
   bool stopping_ = false, nothing_fits_ = false;
-  double known_s_ = 0, known_cost_ = 0;  ///< of the tasks that ended
+  std::vector<PendingTask> given_up_;  ///< abandoned on a stop
   Clock::time_point begin_, stepped_, stopped_, last_heard_;
   Dispatch dispatch_;
 };

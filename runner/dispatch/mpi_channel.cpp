@@ -1,5 +1,9 @@
 #include "runner/dispatch/mpi_channel.hpp"
 
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
 #include "runner/mpi/mpi_session.hpp"
 
 namespace rodsweep {
@@ -11,7 +15,19 @@ MpiChannel::MpiChannel(MPI_Comm comm) {
 }
 
 MpiChannel::~MpiChannel() {
-  if (comm_ != MPI_COMM_NULL && std::uncaught_exceptions() == exceptions_) MPI_Comm_free(&comm_);
+  if (comm_ == MPI_COMM_NULL) return;
+  if (std::uncaught_exceptions() > exceptions_) {
+    abandon();
+    return;
+  }
+  for (Outgoing& message : outgoing_) MPI_Wait(&message.request, MPI_STATUS_IGNORE);
+  MPI_Comm_free(&comm_);
+}
+
+void MpiChannel::abandon() {
+  for (Outgoing& message : outgoing_) static_cast<void>(message.data.release());  // MPI may still read it
+  outgoing_.clear();
+  comm_ = MPI_COMM_NULL;
 }
 
 std::optional<Envelope> MpiChannel::probe() {
@@ -24,7 +40,22 @@ std::optional<Envelope> MpiChannel::probe() {
 }
 
 void MpiChannel::send_bytes(int destination, Tag tag, const void* data, std::size_t bytes) {
-  check_mpi(MPI_Send(data, static_cast<int>(bytes), MPI_BYTE, destination, static_cast<int>(tag), comm_), "MPI_Send");
+  forget_sent();
+  Outgoing message{std::make_unique<char[]>(bytes)};
+  std::memcpy(message.data.get(), data, bytes);
+  check_mpi(MPI_Isend(message.data.get(), static_cast<int>(bytes), MPI_BYTE, destination, static_cast<int>(tag), comm_,
+                      &message.request),
+            "MPI_Isend");
+  outgoing_.push_back(std::move(message));
+}
+
+void MpiChannel::forget_sent() {
+  const auto is_sent = [](Outgoing& message) {
+    int sent = 0;
+    check_mpi(MPI_Test(&message.request, &sent, MPI_STATUS_IGNORE), "MPI_Test");
+    return sent != 0;
+  };
+  outgoing_.erase(std::remove_if(outgoing_.begin(), outgoing_.end(), is_sent), outgoing_.end());
 }
 
 void MpiChannel::receive_bytes(const Envelope& envelope, void* data) {

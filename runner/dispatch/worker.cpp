@@ -99,8 +99,12 @@ void Worker::run(const std::vector<std::int64_t>& tasks) {
   const std::vector<TaskResult> results = body_(tasks, [this] { return stop_requested(); });
   const std::chrono::duration<double> busy = Clock::now() - begin;
   const double share_s = busy.count() / static_cast<double>(tasks.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i)
-    channel_->send(master, Report(tasks[i], results.at(i).outcome, share_s, results[i].message));
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const TaskResult& result = results.at(i);
+    Report report(tasks[i], result.outcome, share_s, result.message);
+    if (result.outcome == TaskOutcome::pending) report.share = result.share;
+    channel_->send(master, report);
+  }
 }
 
 bool Worker::stop_requested() {

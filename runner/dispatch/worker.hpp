@@ -22,6 +22,7 @@ namespace rodsweep {
 struct TaskResult {
   TaskOutcome outcome = TaskOutcome::pending;  ///< pending: abandoned on request
   std::string message;
+  double share = 0;  ///< of its steps that were done, if abandoned
 };
 
 /// Runs one task.

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/file/attempt.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/file_lock.hpp"
@@ -62,8 +63,9 @@ class ResultsFile {
 
   /// Independent, before a rank runs a task: counts the start, and says who runs it.
   void begin(const Task& task);
-  /// Independent: takes a start back that this rank was told to give up.
-  void abandon(const Task& task);
+  /// Independent: takes a start back that this rank was told to give up. Where the task ran longer than ever, what came
+  /// of it stands in the file as the task's elapsed_s and steps_done until it is done.
+  void abandon(const Task& task, const Attempt& attempt = {});
 
   /// Independent: any rank, any task that is not done() yet, once. It is complete with the next commit(), which this is
   /// too where one is due. `origin`: who ran it, where that was not this start of this sweep.

@@ -219,6 +219,24 @@ class KeptCommand(LostCase):
         self.assertIn("3 starts in a row got nothing done, the last one ended with exit code 7", stderr)
         self.assertGreater(time.monotonic() - begin, 0.6)  # 0.2 s, then 0.4 s
 
+    def test_a_sweep_that_still_runs_elsewhere_is_waited_for(self):
+        first = start(3, "run", self.job, "-o", "still.h5")
+        wait_for_tasks(first, "still.h5", 1)
+        _, stderr = self.end(keep(*command(3, "run", self.job, "-o", "still.h5")), ALL_DONE)
+        self.assertIn("still.h5 is being written by another run: its end is waited for", stderr)
+        self.end(first, ALL_DONE)
+        self.assertEqual([s["tasks"] for s in status("still.h5")["starts"]], [40, 0])
+
+    def test_later_starts_have_what_is_left_of_the_time_limit(self):
+        with open("run.sh", "w", encoding="ascii") as file:  # begins a sweep twice in vain
+            file.write('echo "$*" >>said\n[ "$(wc -l <said)" -lt 3 ] || shift; [ "$1" = -c ] && exit 9; exec "$@"\n')
+        self.end(keep("sh", "run.sh", "-c", RODSWEEP, "run", self.job, "-o", "limited.h5", "--time-limit", "50",
+                      options=("--pause", "1")), ALL_DONE)
+        with open("said", encoding="ascii") as file:
+            passed = [int(line.split()[-1]) for line in file]
+        self.assertEqual(passed[0], 0)
+        self.assertGreaterEqual(passed[2], 3)
+
     def test_a_command_without_a_run_is_refused(self):
         _, stderr = self.end(keep("mpirun", "-n", "3", "true"), USER_ERROR)
         self.assertIn("there is no 'rodsweep run JOB' in it", stderr)

@@ -17,7 +17,7 @@ import numpy as np
 
 RODSWEEP = os.environ["RODSWEEP"]
 MPIRUN = os.environ.get("MPIRUN", "mpirun")
-ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED = 0, 2, 3, 4
+ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, TOO_LONG = 0, 2, 3, 4, 5
 
 
 def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):
@@ -422,6 +422,21 @@ class Outcomes(SweepCase):
         self.assert_exit(rodsweep(2, "run", path, "--resume", "--retry-failed"), ALL_DONE)
         self.assert_exit(rodsweep(2, "run", path, "-o", "unlimited.h5"), ALL_DONE)
         self.assert_same_results("unlimited.h5", "results/limited.h5")
+
+    def test_a_task_that_no_start_has_time_for_is_named_and_ends_the_sweep_once_the_others_are_done(self):
+        path = job("lengthy", samples=1, segments=[6, 8, 400], guesses=["zero"], record={"solves": "summary"},
+                   time={"step_s": 0.001, "steps": 3000})
+        limit = ("--time-limit", "2")
+        self.assert_exit(rodsweep(2, "run", path, *limit), STOPPED)  # it comes first, and nothing is known of it
+        second = rodsweep(2, "run", path, *limit, "--resume")
+        self.assert_exit(second, TOO_LONG)
+        self.assertEqual(status("results/lengthy.h5")["outcomes"], {"ok": 2})
+        self.assertIn("no task that is left would end within a time limit of 2.0 s: task 2, the longest, would take about",
+                      second.stderr)
+        self.assertRegex(rodsweep(0, "status", "results/lengthy.h5").stdout, "what is left needs a longer time limit")
+        bounded = rodsweep(2, "run", path, *limit, "--resume", "--task-time-limit", "1")
+        self.assert_exit(bounded, TASKS_FAILED)
+        self.assertEqual(status("results/lengthy.h5")["outcomes"], {"ok": 2, "timed_out": 1})
 
     def test_a_task_beyond_its_share_of_memory_is_an_error_and_no_death(self):
         path = job("large", samples=1, segments=[6, 300000], guesses=["zero"], record={"solves": "summary"},

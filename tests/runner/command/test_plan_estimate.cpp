@@ -41,7 +41,12 @@ TEST_CASE("when time is proportional to cost the estimate is exact, also from tr
   const double seconds_per_cost = GENERATE(1e-9, 1e-3);
   const Plan plan = plan_of(with("/time/steps", "1000", with("/scene/segments", R"({"grid": [10, 20, 30, 40]})")));
   const auto probes = probe(plan, taking(seconds_per_cost));
-  CHECK(core_seconds(plan, probes) == Approx(seconds_per_cost * all_cost(plan)));
+  const Estimate needs = estimate(plan, probes);
+  CHECK(needs.core_s == Approx(seconds_per_cost * all_cost(plan)));
+  CHECK(needs.longest == 3);
+  CHECK(needs.longest_s == Approx(seconds_per_cost * plan.task(3).cost));
+  CHECK(needs.wall_s(2) == Approx(needs.core_s / 2));
+  CHECK(needs.wall_s(1000) == needs.longest_s);
   if (seconds_per_cost > 1e-6) {
     CHECK(probes.back().steps < 1000);
     CHECK(probes.back().of_steps == 1000);

@@ -1,0 +1,104 @@
+"""Sweeps over the hosts of hosts.py, kept by `rodsweep keep`, as seen from outside: who runs where, what was said when, and how
+far they are. Times are seconds since the sweep was started."""
+
+import os
+import re
+import subprocess
+import sys
+import threading
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "mpi"))
+
+import h5py  # noqa: E402
+from test_sweeps import ALL_DONE, MPIRUN, RODSWEEP, command  # noqa: E402
+
+
+def run_undisturbed(job, path):
+    done = subprocess.run(command(3, "run", job, "-o", path), stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=600, check=False)
+    assert done.returncode == ALL_DONE, done.stderr
+
+
+def ranks_on(host):
+    """Process numbers of the program's ranks there, by rank."""
+    space = os.readlink(f"/proc/{host.first}/ns/pid")
+    ranks = {}
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{entry}/comm", encoding="ascii") as file:
+                if file.read() != "rodsweep\n" or os.readlink(f"/proc/{entry}/ns/pid") != space:
+                    continue
+            with open(f"/proc/{entry}/environ", encoding="utf-8", errors="replace") as file:
+                found = re.search(r"\0OMPI_COMM_WORLD_RANK=(\d+)\0", "\0" + file.read())
+            if found:
+                ranks[int(found.group(1))] = int(entry)
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+    return ranks
+
+
+def states(path):
+    """Which tasks are done; None while there is no file."""
+    try:
+        with h5py.File(path, "r", locking=False) as file:
+            return file["tasks/state"][:] != 0
+    except OSError:
+        return None
+
+
+class KeptSweep:
+    """`rodsweep keep` over all hosts, the master on the first one, and two workers on each."""
+
+    def __init__(self, hosts, job, path, run=(), keep=(), slots=2):
+        self.path, self.begin, self.lines = path, time.monotonic(), []
+        ranks = slots * len(hosts) + 1
+        words = [RODSWEEP, "keep", "--hosts", hosts.file, *keep, "--", MPIRUN, "--hostfile", "{hosts}", "--map-by", "node",
+                 "--oversubscribe", "-n", str(ranks), RODSWEEP, "run", job, "-o", path, *run]
+        self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                        text=True, errors="replace")
+        self.reader = threading.Thread(target=self.read, daemon=True)
+        self.reader.start()
+
+    def read(self):
+        for line in self.process.stdout:
+            self.lines.append((self.now(), line.rstrip("\n")))
+
+    def now(self):
+        return time.monotonic() - self.begin
+
+    def runs(self):
+        return self.process.poll() is None
+
+    def said(self, pattern, since=0.0):
+        """When a line matched."""
+        return next((when for when, line in list(self.lines) if when >= since and re.search(pattern, line)), None)
+
+    def text(self):
+        return "\n".join(f"{when:6.1f} {line}" for when, line in list(self.lines))
+
+    def done(self):
+        found = states(self.path)
+        return 0 if found is None else int(found.sum())
+
+    def wait_until(self, what, ready, seconds=300):
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            found = ready()
+            if found:
+                return found
+            assert self.runs(), f"it ended before {what}:\n{self.text()}"
+            time.sleep(0.02)
+        raise AssertionError(f"{what}: not within {seconds} s:\n{self.text()}")
+
+    def wait_for_tasks(self, count, seconds=300):
+        self.wait_until(f"{count} tasks", lambda: self.done() >= count, seconds)
+
+    def end(self, seconds=300):
+        try:
+            self.process.wait(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"not done within {seconds} s:\n{self.text()}") from None
+        self.reader.join(timeout=10)
+        return self.process.returncode
