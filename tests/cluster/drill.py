@@ -16,7 +16,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import threading
 import time
 
@@ -26,12 +25,12 @@ from sweeps import KeptSweep, ranks_on, run_undisturbed, states
 
 import h5py
 from test_power_cut import Disk
-from test_sweeps import ALL_DONE, STOPPED, TASKS_FAILED, job, rodsweep, status
+from test_sweeps import STOPPED, TASKS_FAILED, job, rodsweep, status
 
 TASKS, KILLER = 2000, 1999
-RUN = ("--worker-timeout", "2")
-KEEP = ("--pause", "0.5", "--silence", "10")
-LIMITED = ("--time-limit", "20")  # of the first two times that the batch system gives
+RUN = ("--worker-timeout", "3")
+KEEP = ("--pause", "0.5", "--silence", "20")
+LIMITED = ("--time-limit", "12")  # of the first two times that the batch system gives
 
 
 def drill_job():
@@ -41,7 +40,7 @@ def drill_job():
     rod = {"type": "bending_rod", "segments": {"zip": segments}, "length_m": {"zip": spread}, "radius_m": 0.05,
            "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6,
            "initial_angle_deg": {"uniform": [0, 45]}}
-    return job("drill", samples=1, scene=rod, steps=40, guesses=["zero", "previous"],
+    return job("drill", samples=1, scene=rod, steps=20, guesses=["zero", "previous"],
                record={"solves": "summary", "norms": "one"})
 
 
@@ -71,73 +70,83 @@ class Killer(threading.Thread):
             before = starts
 
 
+class BatchSystem(threading.Thread):
+    """Begins the job again where it stopped at its time limit, and where the power is back, until it is done."""
+
+    def __init__(self, drill):
+        super().__init__(daemon=True)
+        self.drill, self.limits_met, self.code = drill, 0, None
+        self.power = threading.Event()
+        self.power.set()
+        self.sweep = self.begin()
+        self.start()
+
+    def begin(self):
+        limit = LIMITED if self.limits_met < 2 else ()
+        drill = self.drill
+        return KeptSweep(drill.hosts, drill.job, drill.path, run=(*RUN, *limit, "--resume"), keep=KEEP)
+
+    def run(self):
+        while True:
+            code = self.sweep.end(seconds=1000)
+            what = "the power was back"
+            if code == STOPPED:
+                self.limits_met += 1
+                what = f"the time limit was met, the {self.limits_met}. time"
+                self.drill.tell(what)
+            elif self.power.is_set():
+                self.code = code
+                return
+            self.power.wait()
+            begin = time.monotonic()
+            self.sweep = self.begin()
+            self.drill.work_goes_on(what, begin)
+
+
 class Drill:
     def __init__(self):
         self.begin = time.monotonic()
         self.table = []
+        self.disk = Disk("disk", megabytes=64)  # before the hosts, which see what is mounted when they come up
         self.hosts = Hosts("hosts")
-        self.disk = Disk("disk", megabytes=64)
         self.path = os.path.join(self.disk.folder, "drill.h5")
         self.job = drill_job()
-        self.sweep, self.limits_met = None, 0
 
     def tell(self, text):
-        done = "" if self.sweep is None else f"{self.done():5} tasks  "
-        print(f"{time.monotonic() - self.begin:6.1f} s  {done}{text}", flush=True)
+        print(f"{time.monotonic() - self.begin:6.1f} s  {self.done():5} tasks  {text}", flush=True)
 
     def done(self):
         found = states(self.path)
         return 0 if found is None else int(found.sum())
 
-    def submit(self):
-        """What a batch system does with a job, again and again."""
-        limit = LIMITED if self.limits_met < 2 else ()
-        self.sweep = KeptSweep(self.hosts, self.job, self.path, run=(*RUN, *limit, "--resume"), keep=KEEP)
-
-    def watch(self):
-        """The batch system's part: is it to be begun again? True: it was."""
-        if self.sweep.runs():
-            return False
-        if self.sweep.end() != STOPPED:
-            return False
-        self.limits_met += 1
-        self.tell(f"the time limit is met, the {self.limits_met}. time")
-        at = time.monotonic()
-        self.submit()
-        self.recovered("the time limit", at)
-        return True
-
-    def wait_for(self, count):
-        deadline = time.monotonic() + 600
-        while self.done() < count:
-            self.watch()
-            assert self.sweep.runs() and time.monotonic() < deadline, self.sweep.text()
-            time.sleep(0.05)
-
-    def recovered(self, what, since, text="work goes on"):
-        before = self.done()
-        while self.done() <= before:
-            assert time.monotonic() - since < 300, self.sweep.text()
-            if not self.sweep.runs() and self.sweep.end() != STOPPED:
-                break
+    def wait_until(self, ready, seconds=600):
+        """Or until the sweep is over."""
+        deadline = time.monotonic() + seconds
+        while not ready() and self.batch.is_alive():
+            assert time.monotonic() < deadline, self.batch.sweep.text()
             time.sleep(0.02)
-        self.note(what, since, text)
 
-    def note(self, what, since, text):
+    def note(self, text, what, since):
         seconds = time.monotonic() - since
         self.table.append((what, seconds))
         self.tell(f"{text}, {seconds:.1f} s after {what}")
 
-    def given_to_others(self, what, since, ranks):
-        """Until what these ranks had in hand is in others', or another start has it."""
-        start = self.sweep.begin + 0
-        at = since - start
-        while not all(self.sweep.said(rf"rank {rank} on .* was not heard", at) for rank in ranks):
-            assert time.monotonic() - since < 300, self.sweep.text()
-            if self.watch() or not self.sweep.runs():
-                break
-            time.sleep(0.05)
-        self.note(what, since, "others have its tasks")
+    def work_goes_on(self, what, since, restarted=False):
+        if restarted:  # workers without a master end what they have in hand
+            sweep, at = self.batch.sweep, self.batch.sweep.now()
+            self.wait_until(lambda: self.batch.sweep is not sweep or sweep.said("tasks of drill are left to do", at))
+        before = self.done()
+        self.wait_until(lambda: self.done() > before)
+        self.note("work goes on", what, since)
+
+    def others_have_its_tasks(self, what, ranks):
+        """They are missed by their master, or another start has begun."""
+        since, sweep = time.monotonic(), self.batch.sweep
+        at = sweep.now()
+        self.wait_until(lambda: self.batch.sweep is not sweep
+                        or all(sweep.said(rf"rank {rank} on .* was not heard", at) for rank in ranks)
+                        or sweep.said("tasks of drill are left to do", at))
+        self.note("others have its tasks", what, since)
 
     # ---- what happens
 
@@ -145,25 +154,25 @@ class Drill:
         rank, pid = max(ranks_on(self.hosts[1]).items())
         self.tell(f"rank {rank} on {self.hosts[1].name} is killed")
         os.kill(pid, signal.SIGKILL)
-        self.given_to_others("a worker was killed", time.monotonic(), [rank])
+        self.others_have_its_tasks("a worker was killed", [rank])
 
     def stop_a_worker(self):
         rank, pid = max(ranks_on(self.hosts[0]).items())
         self.tell(f"rank {rank} on {self.hosts[0].name} is stopped")
         os.kill(pid, signal.SIGSTOP)
-        self.given_to_others("a worker was stopped", time.monotonic(), [rank])
+        self.others_have_its_tasks("a worker was stopped", [rank])
 
     def cut_off_a_host(self):
         host = self.hosts[2]
         ranks = list(ranks_on(host))
         self.tell(f"{host.name} is cut off, with ranks {ranks}")
         host.cut_off()
-        self.given_to_others("a host was cut off", time.monotonic(), ranks)
+        self.others_have_its_tasks("a host was cut off", ranks)
 
     def kill_the_master(self):
         self.tell("the master is killed")
         os.kill(ranks_on(self.hosts[0])[0], signal.SIGKILL)
-        self.recovered("the master was killed", time.monotonic())
+        self.work_goes_on("the master was killed", time.monotonic(), restarted=True)
 
     def fill_the_disk(self):
         self.tell("the disk is full")
@@ -178,45 +187,40 @@ class Drill:
         time.sleep(10)
         os.remove(full)
         self.tell("there is room again")
-        self.recovered("there was room again", time.monotonic())
+        self.work_goes_on("there was room again", time.monotonic())
 
     def cut_the_power(self):
         self.tell("the power is cut, while the disk is being written to")
         writing = threading.Thread(target=subprocess.run, args=(["sync", "-f", self.disk.folder],),
                                    kwargs={"capture_output": True, "check": False})
         writing.start()
+        self.batch.power.clear()
         self.disk.cut()
-        self.sweep.process.kill()
+        self.batch.sweep.kill()
         for host in self.hosts:
             host.die()
-        self.sweep.process.wait()
         writing.join()
         self.disk.unmount()
         self.disk.mount()
         for host in self.hosts:
             host.up()
         self.tell("the power is back")
-        at = time.monotonic()
-        self.submit()
-        self.recovered("the power was back", at)
+        self.batch.power.set()
 
     def run(self):
-        run_undisturbed(self.job, "whole.h5")
+        if not os.path.exists("whole.h5"):
+            run_undisturbed(self.job, "whole.h5")
         self.tell("the undisturbed run is done")
-        self.submit()
+        self.batch = BatchSystem(self)
         killer = Killer(self.hosts, self.path, self.tell)
         killer.start()
-        for count, happens in ((100, self.kill_a_worker), (250, self.stop_a_worker), (400, self.kill_the_master),
+        for tasks, happens in ((100, self.kill_a_worker), (250, self.stop_a_worker), (400, self.kill_the_master),
                                (650, self.fill_the_disk), (900, self.cut_off_a_host), (1200, self.cut_the_power)):
-            self.wait_for(count)
+            self.wait_until(lambda tasks=tasks: self.done() >= tasks)
             happens()
-            if happens == self.cut_the_power:
-                continue
-        self.hosts[2].reconnect()
-        while self.sweep.runs() or self.watch():
-            time.sleep(0.1)
-        self.tell(f"it ended with {self.sweep.end()}")
-        assert self.sweep.end() == TASKS_FAILED, self.sweep.text()
+        self.batch.join(timeout=1000)
+        self.tell(f"it ended with {self.batch.code}")
+        assert self.batch.code == TASKS_FAILED, self.batch.sweep.text()
         self.check(killer)
 
     def check(self, killer):
@@ -225,7 +229,7 @@ class Drill:
         assert after["outcomes"] == {"ok": TASKS - 1, "crashed": 1}, after["outcomes"]
         assert [f["task"] for f in after["failures"]] == [KILLER], after["failures"]
         assert killer.killed == 3, killer.killed
-        assert self.limits_met >= 2, self.limits_met
+        assert self.batch.limits_met >= 2, self.batch.limits_met
         same = compare("whole.h5", self.path)
         verified = json.loads(rodsweep(0, "info", self.path, "--verify", "--json").stdout)["verified"]
         assert verified == {"checked": TASKS, "damaged": []}, verified
@@ -259,10 +263,4 @@ def compare(whole, path):
 
 
 if __name__ == "__main__":
-    drill = Drill()
-    try:
-        drill.run()
-    finally:
-        if drill.sweep is not None and drill.sweep.runs():
-            print(drill.sweep.text())
-    sys.exit(ALL_DONE)
+    Drill().run()

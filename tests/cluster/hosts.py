@@ -63,6 +63,7 @@ class Host:
             os.kill(self.first, signal.SIGKILL)
             self.process.wait()
             self.process.stdout.close()
+            subprocess.run(["ip", "link", "del", self.link], capture_output=True, check=False)  # unless the kernel was faster
 
 
 class Hosts(list):

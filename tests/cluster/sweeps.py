@@ -3,6 +3,7 @@ far they are. Times are seconds since the sweep was started."""
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -12,12 +13,13 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "mpi"))
 
 import h5py  # noqa: E402
+from hosts import children_of  # noqa: E402
 from test_sweeps import ALL_DONE, MPIRUN, RODSWEEP, command  # noqa: E402
 
 
-def run_undisturbed(job, path):
-    done = subprocess.run(command(3, "run", job, "-o", path), stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          timeout=600, check=False)
+def run_undisturbed(job, path, ranks=5):
+    done = subprocess.run(command(ranks, "run", job, "-o", path), stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=900, check=False)
     assert done.returncode == ALL_DONE, done.stderr
 
 
@@ -62,8 +64,9 @@ class KeptSweep:
         self.reader.start()
 
     def read(self):
-        for line in self.process.stdout:
-            self.lines.append((self.now(), line.rstrip("\n")))
+        with self.process.stdout as lines:
+            for line in lines:
+                self.lines.append((self.now(), line.rstrip("\n")))
 
     def now(self):
         return time.monotonic() - self.begin
@@ -95,7 +98,16 @@ class KeptSweep:
     def wait_for_tasks(self, count, seconds=300):
         self.wait_until(f"{count} tasks", lambda: self.done() >= count, seconds)
 
-    def end(self, seconds=300):
+    def kill(self):
+        """With its mpirun, where it has one, and without any other start."""
+        if self.runs():
+            mpiruns = children_of(self.process.pid)
+            self.process.kill()
+            for mpirun in mpiruns:
+                os.killpg(mpirun, signal.SIGKILL)
+        self.process.wait()
+
+    def end(self, seconds=600):
         try:
             self.process.wait(timeout=seconds)
         except subprocess.TimeoutExpired:

@@ -9,7 +9,7 @@ import signal
 import time
 import unittest
 
-from hosts import Host, Hosts
+from hosts import Hosts
 from sweeps import KeptSweep, ranks_on, run_undisturbed
 from test_sweeps import ALL_DONE, SweepCase, job, status
 
@@ -34,8 +34,10 @@ class HostsCase(SweepCase):
             host.up()
 
     def start(self):
-        return KeptSweep(self.hosts, self.job, self.id().split(".")[-1] + ".h5", run=("--worker-timeout", str(TIMEOUT_S)),
-                         keep=("--pause", "0.2", "--silence", str(SILENCE_S)))
+        sweep = KeptSweep(self.hosts, self.job, self.id().split(".")[-1] + ".h5", run=("--worker-timeout", str(TIMEOUT_S)),
+                          keep=("--pause", "0.2", "--silence", str(SILENCE_S)))
+        self.addCleanup(sweep.kill)
+        return sweep
 
     def assert_done(self, sweep, starts):
         self.assertEqual(sweep.end(), ALL_DONE, sweep.text())
@@ -43,19 +45,16 @@ class HostsCase(SweepCase):
         self.assert_same_results("whole.h5", sweep.path)
         self.assertEqual([s["exit_code"] for s in status(sweep.path)["starts"]], starts, sweep.text())
 
-    def assert_work_again(self, sweep, fault_s, within_s):
-        """Tasks get done after the fault at that time."""
-        sweep.wait_for_tasks(sweep.done() + 1)
-        seconds = sweep.now() - fault_s
-        print(f"{self.id().split('.')[-1]}: work again after {seconds:.1f} s", flush=True)
-        self.assertLess(seconds, within_s, sweep.text())
+    def assert_goes_on(self, sweep, fault_s, lost=()):
+        """What was lost with the fault at that time is in others' hands, or the next start has it."""
+        def given_to_others():
+            return lost and all(sweep.said(f"rank {rank} on .* was not heard") for rank in lost)
 
-    def assert_given_to_others(self, sweep, fault_s, ranks, host):
-        """What these ranks had in hand is in others' hands."""
-        heard = [sweep.wait_until(f"rank {rank} is missed", lambda rank=rank: sweep.said(f"rank {rank} on {host} was not heard"))
-                 for rank in ranks]
-        print(f"{self.id().split('.')[-1]}: given to others after {max(heard) - fault_s:.1f} s", flush=True)
-        self.assertLess(max(heard) - fault_s, 30, sweep.text())
+        sweep.wait_until("the loss is noticed", lambda: given_to_others() or sweep.said("are left to do", fault_s))
+        seconds = sweep.now() - fault_s
+        print(f"{self.id().split('.')[-1]}: {'others have' if given_to_others() else 'another start has'} it after {seconds:.1f} s",
+              flush=True)
+        self.assertLess(seconds, 200, sweep.text())
 
 
 class WithinAStart(HostsCase):
@@ -66,7 +65,7 @@ class WithinAStart(HostsCase):
         sweep.wait_for_tasks(20)
         rank, pid = max(ranks_on(self.hosts[2]).items())
         os.kill(pid, number)
-        self.assert_given_to_others(sweep, sweep.now(), [rank], "h3")
+        self.assert_goes_on(sweep, sweep.now(), [rank])
         self.assert_done(sweep, [ALL_DONE])
 
     def test_a_worker_is_killed(self):
@@ -75,29 +74,30 @@ class WithinAStart(HostsCase):
     def test_a_worker_hangs(self):
         self.assert_goes_on_without_a_worker(signal.SIGSTOP)
 
-    def assert_goes_on_without_a_host(self, lose):
+    def test_a_host_is_cut_off(self):
         sweep = self.start()
         sweep.wait_for_tasks(20)
-        ranks = list(ranks_on(self.hosts[2]))
-        lose(self.hosts[2])
-        self.assert_given_to_others(sweep, sweep.now(), ranks, "h3")
+        lost = list(ranks_on(self.hosts[2]))
+        self.hosts[2].cut_off()
+        self.assert_goes_on(sweep, sweep.now(), lost)
         self.assert_done(sweep, [ALL_DONE])
-
-    def test_a_host_is_cut_off(self):
-        self.assert_goes_on_without_a_host(Host.cut_off)
-
-    def test_a_host_dies(self):
-        self.assert_goes_on_without_a_host(Host.die)
 
 
 class NextStart(HostsCase):
     """Another start does what is left."""
 
+    def test_a_host_dies(self):
+        sweep = self.start()
+        sweep.wait_for_tasks(20)
+        self.hosts[2].die()
+        self.assert_goes_on(sweep, sweep.now())
+        self.assert_done(sweep, [None, ALL_DONE])
+
     def test_the_masters_host_dies(self):
         sweep = self.start()
         sweep.wait_for_tasks(20)
         self.hosts[0].die()
-        self.assert_work_again(sweep, sweep.now(), within_s=120)
+        self.assert_goes_on(sweep, sweep.now())
         self.assertIsNotNone(sweep.said("h1 does not answer: this start does without it"), sweep.text())
         self.assert_done(sweep, [None, ALL_DONE])
 
@@ -106,7 +106,6 @@ class NextStart(HostsCase):
         sweep = self.start()
         sweep.wait_for_tasks(20)
         self.hosts[0].cut_off()
-        self.assert_work_again(sweep, sweep.now(), within_s=120)
         self.assertEqual(sweep.end(), ALL_DONE, sweep.text())
         self.assert_whole(sweep.path)
         self.assert_same_results("whole.h5", sweep.path)
@@ -118,7 +117,7 @@ class NextStart(HostsCase):
         self.assertIsNotNone(sweep.said("h3 does not answer: this start does without it"), sweep.text())
         self.hosts[2].reconnect()
         os.kill(ranks_on(self.hosts[0])[0], signal.SIGKILL)
-        self.assert_work_again(sweep, sweep.now(), within_s=120)
+        self.assert_goes_on(sweep, sweep.now())
         self.assert_done(sweep, [None, ALL_DONE])
         self.assertEqual([s["host"] for s in status(sweep.path)["starts"]], ["h1 h2", "h1 h2 h3"])
 

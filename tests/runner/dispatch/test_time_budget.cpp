@@ -1,5 +1,6 @@
 // What fits into a start's time limit: by the pace of what is known, and by what was tried in vain.
 #include <catch2/catch.hpp>
+#include <thread>
 
 #include "runner/dispatch/time_budget.hpp"
 #include "tests/runner/dispatch_examples.hpp"
