@@ -44,7 +44,7 @@ namespace rodsweep {
 struct Patience {
   std::chrono::duration<double> silence{std::numeric_limits<double>::infinity()};  ///< of any worker
   std::chrono::duration<double> drain{std::numeric_limits<double>::infinity()};    ///< after a request to stop
-  TimeBudget time;                                                                 ///< of the whole start
+  TimeBudget time{};                                                               ///< of the whole start
 };
 
 /// What the master tells its owner. Empty functions are not called.
@@ -105,7 +105,7 @@ class Master {
     std::vector<PendingTask> tasks;  ///< the running one, then the one in hand
     Clock::time_point heard;
     bool lost = false, told = false, gone = false;  ///< told: when it was heard again
-    std::deque<Finished> unkept;                       ///< what it finished and would take along
+    std::deque<Finished> unkept;                    ///< what it finished and would take along
     std::int64_t kept = 0, forgotten = 0;  ///< of all that it finished: on disk, as it says; no more in `unkept`
   };
 

@@ -30,7 +30,7 @@ from test_sweeps import STOPPED, TASKS_FAILED, job, rodsweep, status
 TASKS, KILLER = 2000, 1999
 RUN = ("--worker-timeout", "3")
 KEEP = ("--pause", "0.5", "--silence", "20")
-LIMITED = ("--time-limit", "12")  # of the first two times that the batch system gives
+LIMITED = ("--time-limit", "25")  # of the first two times that the batch system gives
 
 
 def drill_job():
@@ -40,7 +40,7 @@ def drill_job():
     rod = {"type": "bending_rod", "segments": {"zip": segments}, "length_m": {"zip": spread}, "radius_m": 0.05,
            "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6,
            "initial_angle_deg": {"uniform": [0, 45]}}
-    return job("drill", samples=1, scene=rod, steps=20, guesses=["zero", "previous"],
+    return job("drill", samples=1, scene=rod, steps=60, guesses=["zero", "previous"],
                record={"solves": "summary", "norms": "one"})
 
 
@@ -135,9 +135,10 @@ class Drill:
         if restarted:  # workers without a master end what they have in hand
             sweep, at = self.batch.sweep, self.batch.sweep.now()
             self.wait_until(lambda: self.batch.sweep is not sweep or sweep.said("tasks of drill are left to do", at))
-        before = self.done()
-        self.wait_until(lambda: self.done() > before)
-        self.note("work goes on", what, since)
+        before, sweep = self.done(), self.batch.sweep
+        self.wait_until(lambda: self.done() > before or not sweep.runs())
+        if self.done() > before:
+            self.note("work goes on", what, since)
 
     def others_have_its_tasks(self, what, ranks):
         """They are missed by their master, or another start has begun."""
@@ -184,10 +185,11 @@ class Drill:
                         file.write(bytes(size))
                 except OSError:
                     pass
-        time.sleep(10)
+        begin = time.monotonic()
+        time.sleep(5)
+        self.work_goes_on("the disk was full", begin)  # the file has had its room from the start
         os.remove(full)
         self.tell("there is room again")
-        self.work_goes_on("there was room again", time.monotonic())
 
     def cut_the_power(self):
         self.tell("the power is cut, while the disk is being written to")
@@ -214,8 +216,8 @@ class Drill:
         self.batch = BatchSystem(self)
         killer = Killer(self.hosts, self.path, self.tell)
         killer.start()
-        for tasks, happens in ((100, self.kill_a_worker), (250, self.stop_a_worker), (400, self.kill_the_master),
-                               (650, self.fill_the_disk), (900, self.cut_off_a_host), (1200, self.cut_the_power)):
+        for tasks, happens in ((100, self.kill_a_worker), (300, self.stop_a_worker), (500, self.kill_the_master),
+                               (800, self.cut_off_a_host), (1100, self.cut_the_power), (1300, self.fill_the_disk)):
             self.wait_until(lambda tasks=tasks: self.done() >= tasks)
             happens()
         self.batch.join(timeout=1000)

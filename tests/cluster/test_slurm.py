@@ -115,7 +115,7 @@ class TimeLimits(SlurmCase):
 
     def submit_short(self, *words, stop_s, **others):
         os.environ["RODSWEEP_STOP_S"] = str(stop_s)
-        self.addCleanup(os.environ.pop, "RODSWEEP_STOP_S")
+        self.addCleanup(os.environ.pop, "RODSWEEP_STOP_S", None)
         return self.submit(*words, options=("--time=1", "--signal=B:USR1@5"), **others)
 
     def test_a_job_stops_before_its_limit_and_requeues_itself_until_all_is_done(self):

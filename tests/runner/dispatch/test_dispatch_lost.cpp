@@ -76,11 +76,16 @@ TEST_CASE("a worker that comes back gives up what it had and gets more") {
             std::this_thread::sleep_for(patience / 8);
             sweep.master.step();
           }
-          if (stop()) return {};
+          for (int looks = 0; looks < 1000 && !stop(); ++looks) {  // it is heard, and told
+            std::this_thread::sleep_for(patience / 8);
+            sweep.master.step();
+          }
+          return {};
         }
         return {TaskOutcome::ok, ""};
       },
       [] { return 0; });
+  worker.set_beat(patience / 4, [] { return 0; });
   while (sweep.master.step() != Master::Step::finished) worker.step();
   CHECK(found == 1);
   CHECK(begun == std::vector<std::int64_t>{0, 1, 2, 0});
@@ -252,7 +257,7 @@ TEST_CASE("with a time limit no task is begun that would not end before it, and 
   endless.master.step();
   CHECK(runs.assigned().empty());
   CHECK(runs.stops == 1);
-  runs.report(0, TaskOutcome::pending);
+  endless.network[1].send(0, Report(0, TaskOutcome::pending, 0.1, ""));
   while (endless.master.step() != Master::Step::finished) {
   }
   CHECK(endless.master.dispatch().late);

@@ -1,5 +1,6 @@
 // Progress, summaries and the words they are put in.
 #include <catch2/catch.hpp>
+#include <csignal>
 
 #include "runner/command/sweep_summary.hpp"
 #include "runner/terminal/progress.hpp"
@@ -40,10 +41,18 @@ TEST_CASE("progress counts earlier starts, but judges the rate by this one") {
   CHECK(progress.text(start + seconds(10)) == "120 of 400 tasks (30 %), 2 failed, 2/s, 2 min 20 s left");
 }
 
-TEST_CASE("a finished sweep exits 0, with failures 3, with tasks left 4") {
+TEST_CASE("a finished sweep exits 0, with failures 3, stopped 4, with tasks that are too long 5, without workers 6") {
   CHECK(exit_code({5, {}, dispatch_of(5, 0, 0), 1, "x.h5"}) == ExitCode::ok);
   CHECK(exit_code({5, {}, dispatch_of(4, 1, 0), 1, "x.h5"}) == ExitCode::tasks_failed);
-  CHECK(exit_code({5, {}, dispatch_of(3, 1, 1), 1, "x.h5"}) == ExitCode::stopped);
+  Dispatch ended = dispatch_of(3, 1, 1);
+  CHECK(exit_code({5, {}, ended, 1, "x.h5"}) == ExitCode::lost);
+  ended.signal = SIGTERM;
+  CHECK(exit_code({5, {}, ended, 1, "x.h5"}) == ExitCode::stopped);
+  ended.signal = 0;
+  ended.late = true;
+  CHECK(exit_code({5, {}, ended, 1, "x.h5"}) == ExitCode::stopped);
+  ended.too_long = PendingTask{};
+  CHECK(exit_code({5, {}, ended, 1, "x.h5"}) == ExitCode::too_long);
   CHECK(exit_code({5, {{"ok", 1}, {"error", 1}}, dispatch_of(3, 0, 0), 1, "x.h5"}) == ExitCode::tasks_failed);
 }
 
