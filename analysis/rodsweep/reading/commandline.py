@@ -49,7 +49,8 @@ def whole_number(text):
 
 
 def run(main):
-    """Calls main(); what the user can put right is one line on stderr and exit code 2."""
+    """Calls main(); what the user can put right is one line on stderr and exit code 2. So is whatever else goes wrong, since a
+    damaged file can make any line fail; `python3 -X dev SCRIPT` shows where."""
     try:
         main()
         sys.stdout.flush()
@@ -60,6 +61,14 @@ def run(main):
     except OSError as error:
         # h5py raises it for rows that cannot be read, without a number
         _stop(f"{error.filename or 'output'}: {error.strerror}" if error.errno else f"the file is damaged: {error}")
+    except MemoryError:
+        _stop("there is not enough memory, or the file is damaged; `rodsweep info FILE --verify` tells")
+    except Exception as error:
+        if sys.flags.dev_mode:
+            raise
+        words = " ".join(str(error).split())
+        _stop(f"the file is damaged, or this script has a fault: {type(error).__name__}: {words}; "
+              "`rodsweep info FILE --verify` tells which")
 
 
 def _stop(message):

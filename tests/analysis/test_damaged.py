@@ -1,0 +1,68 @@
+"""Scripts on damaged files: whatever was done to them, one plain line and exit code 2, or the figures, and never a traceback."""
+
+import random
+import unittest
+
+import h5py
+import running
+
+SCRIPTS = (("summary.py",), ("summary.py", "--json"), ("export.py",), ("spatial.py",))
+
+
+class Damaged(running.Scripts):
+    def setUp(self):
+        super().setUp()
+        self.write(scenes=("helix",), samples=2)
+        with open(self.path, "rb") as whole:
+            self.whole = whole.read()
+
+    def assert_plain(self, contents, script, *arguments):
+        with open(self.path, "wb") as damaged:
+            damaged.write(contents)
+        done = running.run(script, self.path, *arguments)
+        if done.code:
+            self.assertEqual(done.code, 2, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+            self.assertTrue(done.stderr.startswith(f"{script}: "), done.stderr)
+        return done.code
+
+    def test_a_file_that_was_cut_short(self):
+        for part in range(16):
+            with self.subTest(part=part):
+                self.assertEqual(self.assert_plain(self.whole[:len(self.whole) * part // 16], *SCRIPTS[part % len(SCRIPTS)]), 2)
+
+    def test_datasets_that_are_missing_or_of_another_shape_or_kind(self):
+        paths = []
+        with h5py.File(self.path) as file:
+            file.visititems(lambda name, item: paths.append(name) if isinstance(item, h5py.Dataset) else None)
+        draw = random.Random(5)
+        for number, path in enumerate(draw.sample(paths, 24)):
+            script = SCRIPTS[number % len(SCRIPTS)]
+            with self.subTest(path=path, script=script):
+                with open(self.path, "wb") as file:
+                    file.write(self.whole)
+                with h5py.File(self.path, "a") as file:
+                    values = file[path][()]
+                    del file[path]
+                    if number % 4 == 1:
+                        file[path] = values.ravel()[:1]
+                    elif number % 4 == 2:
+                        file[path] = "text"
+                    elif number % 4 == 3:
+                        file.create_group(path)
+                with open(self.path, "rb") as file:
+                    self.assert_plain(file.read(), *script)
+
+    def test_bytes_that_were_changed(self):
+        draw = random.Random(7)
+        for number in range(24):
+            script = SCRIPTS[number % len(SCRIPTS)]
+            contents = bytearray(self.whole)
+            for at in draw.sample(range(len(contents)), 3):
+                contents[at] ^= 1 << draw.randrange(8)
+            with self.subTest(number=number, script=script):
+                self.assert_plain(bytes(contents), *script)
+
+
+if __name__ == "__main__":
+    unittest.main()
