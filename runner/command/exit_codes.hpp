@@ -8,7 +8,7 @@ enum class ExitCode : int {
   user_error = 2,    ///< the command line, a job or a file: nothing was computed, or a result could not be written,
                      ///< be it to standard output, after all else went well
   tasks_failed = 3,  ///< the sweep is complete, some of its tasks failed; or a training diverged
-  stopped = 4,       ///< stopped early, by a signal or its time limit; --resume continues
+  stopped = 4,       ///< stopped early, by a signal, its time limit, a full disk; --resume continues
   too_long = 5,      ///< likewise, and no task that is left would end within a whole time limit
   lost = 6,          ///< stopped early since no worker was left; --resume continues
 };

@@ -6,7 +6,10 @@
 
 #include "runner/command/file_report.hpp"
 #include "runner/command/training_summary.hpp"
+#include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
+#include "runner/file/resume_check.hpp"
+#include "runner/file/stored_plan.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/model_file.hpp"
 
@@ -47,6 +50,21 @@ ExitCode show_model(const InfoOptions& options, Console& console) {
   return ExitCode::ok;
 }
 
+/// Compares what the checksums of tasks do not cover, parameters, axes and places of rows, with the job, of which this
+/// program makes the same again if it wrote the file. Whether it could.
+bool verify_plan(const FileSummary& file) {
+  if (file.rerun_of_task || file.runs.empty() || file.runs.front().provenance.revision != source_revision())
+    return false;
+  try {
+    const Job job = parse_job(file.job_text, stored_job_path(file), MissingFiles::accepted);
+    if (!job.files.empty()) return false;  // they may have changed
+    check_same_plan(file.path, Plan(job), "This is that revision, so the file is damaged: make it again");
+    return true;
+  } catch (const JobError& error) {
+    throw damaged_error(file.path, error.what());
+  }
+}
+
 }  // namespace
 
 ExitCode execute(const InfoOptions& options, Console& console) {
@@ -57,6 +75,7 @@ ExitCode execute(const InfoOptions& options, Console& console) {
     return ExitCode::ok;
   }
   const Verification verified = options.verify ? verify(options.file) : Verification{};
+  const bool plan_verified = options.verify && verify_plan(file);
   if (options.json) {
     using Json = nlohmann::ordered_json;
     Json json = to_json(file);
@@ -74,12 +93,15 @@ ExitCode execute(const InfoOptions& options, Console& console) {
     console.result(provenance_text(file));
     if (options.verify)
       console.result(fmt::format(
-          "verified {} finished tasks: {}", verified.checked,
-          verified.damaged.empty() ? "all as they were written" : fmt::format("{} differ", verified.damaged.size())));
+          "verified {} finished tasks: {}{}", verified.checked,
+          verified.damaged.empty() ? "all as they were written" : fmt::format("{} differ", verified.damaged.size()),
+          plan_verified ? "; the parameters are those of the job" : ""));
   }
   if (verified.damaged.empty()) return ExitCode::ok;
-  console.error(fmt::format("{} is damaged: the data of task{} {} are not what was written", options.file.native(),
-                            verified.damaged.size() == 1 ? "" : "s", fmt::join(verified.damaged, ", ")));
+  console.error(
+      fmt::format("{} is damaged: the data of task{} {} are not what was written. Run its job again with "
+                  "--resume, which does such tasks again; of a packed copy, pack the original again",
+                  options.file.native(), verified.damaged.size() == 1 ? "" : "s", fmt::join(verified.damaged, ", ")));
   return ExitCode::user_error;
 }
 

@@ -2,9 +2,10 @@
 //
 // An error that all ranks share (a bad job, an existing file) is said once and ends all of them with exit code 2. An
 // error of one rank alone (a full disk) is said by that rank, which then aborts the others: they would wait for it for
-// ever. What is printed on stdout and does not arrive is an error too (a full disk, a closed descriptor), but it ends
-// nothing: a sweep goes on, and its results are in their file. Only a reader that has left (`| head`) is none: then the
-// program ends as if the signal SIGPIPE had ended it, without a word.
+// ever; the file keeps what was finished, so this is exit code 4. Commands that only read a file do so in a copy of
+// this process, since HDF5 crashes on some damaged ones. What is printed on stdout and does not arrive is an error too
+// (a full disk, a closed descriptor), but it ends nothing: a sweep goes on, and its results are in their file. Only a
+// reader that has left (`| head`) is none: then the program ends as if the signal SIGPIPE had ended it, without a word.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -17,6 +18,8 @@
 #include <exception>
 
 #include "runner/command/command_line.hpp"
+#include "runner/command/next_line.hpp"
+#include "runner/file/inspect.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
@@ -54,6 +57,22 @@ ExitCode start(const Options& options, Console& console) {
   return is_first_rank() ? execute(options, console) : ExitCode::ok;
 }
 
+/// A command that reads a file, and nothing else that matters.
+template <class Options>
+ExitCode execute_as_copy(const Options& options, Console& console) {
+  if (!is_first_rank()) return ExitCode::ok;
+  go_on_as_reader(options.file);
+  return execute(options, console);
+}
+
+ExitCode start(const StatusOptions& options, Console& console) { return execute_as_copy(options, console); }
+
+ExitCode start(const InfoOptions& options, Console& console) { return execute_as_copy(options, console); }
+
+ExitCode start(const QueryOptions& options, Console& console) { return execute_as_copy(options, console); }
+
+ExitCode start(const PackOptions& options, Console& console) { return execute_as_copy(options, console); }
+
 ExitCode start(const RerunOptions& options, Console& console) { return execute_with_petsc(options, console); }
 
 ExitCode start(const MergeOptions& options, Console& console) { return execute_with_petsc(options, console); }
@@ -79,9 +98,12 @@ ExitCode start(const RunOptions& options, Console& console) {
     return ExitCode::user_error;
   } catch (const std::exception& error) {
     fmt::print(stderr, "rodsweep: error: rank {} on {} cannot go on: {}\n", mpi.rank(), host_name(), error.what());
-    fmt::print(stderr, "rodsweep: what was finished is in the file; once the cause is gone, --resume continues\n");
+    RunOptions again = options;
+    again.resume = true;
+    fmt::print(stderr, "rodsweep: what was finished is kept in the file; once the cause is gone, this continues: {}\n",
+               run_line(again, mpi.size()));
     std::fflush(nullptr);
-    MPI_Abort(mpi.world(), static_cast<int>(ExitCode::user_error));
+    MPI_Abort(mpi.world(), static_cast<int>(ExitCode::stopped));
     std::abort();
   }
 }

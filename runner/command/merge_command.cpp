@@ -16,6 +16,7 @@
 #include "runner/file/stored_plan.hpp"
 #include "runner/file/task_checksum.hpp"
 #include "runner/file/task_reader.hpp"
+#include "runner/file/unfinished_file.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -59,6 +60,8 @@ std::vector<Part> open_parts(const std::vector<fs::path>& files, const FileSumma
 }  // namespace
 
 ExitCode execute(const MergeOptions& options, Console& console) {
+  for (const fs::path& file : options.files) refuse_crashing(file);
+  if (const std::string left = unfinished_text(options.output); !left.empty()) console.warn(left);
   const FileSummary first = inspect(options.files.front());
   const Plan plan = stored_plan(first);
   const std::vector<Part> parts = open_parts(options.files, first, plan);

@@ -10,6 +10,7 @@ namespace rodsweep {
 
 ExitCode execute(const PackOptions& options, Console& console) {
   const std::filesystem::path output = options.output.value_or(file_beside(options.file, "-packed"));
+  if (const std::string left = unfinished_text(output); !left.empty()) console.warn(left);
   const Packing packing = pack_results(options.file, output);
   if (packing.verified < packing.tasks)
     console.warn(

@@ -45,10 +45,12 @@ ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan
 
 ExitCode execute(const RerunOptions& options, Console& console) {
   const StopSignal signal;
+  refuse_crashing(options.file);
   const FileSummary before = inspect(options.file);
   check_task(options, before);
   const fs::path output = options.output.value_or(file_beside(options.file, fmt::format("-task-{}", options.task)));
   refuse_existing(output);
+  if (const std::string left = unfinished_text(output); !left.empty()) console.warn(left);
   const Plan whole = stored_plan(before);
   check_same_tasks(options.file, whole);
   const Plan plan = whole.alone(options.task, options.trajectory_every);

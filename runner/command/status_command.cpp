@@ -9,11 +9,14 @@
 
 #include "runner/command/file_report.hpp"
 #include "runner/command/training_summary.hpp"
+#include "runner/file/unfinished_file.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/model_file.hpp"
 
 namespace rodsweep {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::size_t failures_shown = 10, running_shown = 10;
 
@@ -59,6 +62,8 @@ std::string status_text(const FileSummary& file) {
 }  // namespace
 
 ExitCode execute(const StatusOptions& options, Console& console) {
+  if (const std::string left = unfinished_text(options.file); fs::exists(options.file) && !left.empty())
+    console.warn(left);
   if (is_model_file(options.file)) {
     const StoredModel stored = read_training(options.file);
     console.result(options.json ? to_json(stored, options.file).dump(2) : training_summary(stored.card, options.file));

@@ -27,6 +27,7 @@
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
+#include "runner/file/unfinished_file.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -58,6 +59,7 @@ std::string extension_text(const Extension& extension, std::int64_t total) {
 /// Is there a file to be continued? Else it is to be created.
 bool has_begun(const RunOptions& options, const fs::path& path, const std::optional<Extension>& extension) {
   if (!options.resume || !fs::exists(path)) return false;
+  refuse_crashing(path);
   if (extension) extension->check_started(path);
   return true;
 }
@@ -282,6 +284,10 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const Placement where = placement(mpi.world());
   limit_memory(options.memory_limit_gb ? 1e9 * *options.memory_limit_gb
                                        : (1 - memory_reserve) * host_memory() / where.host_workers);
+  if (const std::string left = unfinished_text(path); !left.empty()) console.warn(left);
+  collectively(mpi.world(), [&] {
+    if (mpi.rank() == 0 && options.extend) refuse_crashing(*options.extend);
+  });
   const auto extension = collectively(mpi.world(), [&] { return open_extension(options, path, plan); });
   const int begun =
       collectively(mpi.world(), [&] { return mpi.rank() == 0 && has_begun(options, path, extension) ? 1 : 0; });

@@ -9,6 +9,8 @@
 #include "runner/command/training_resume.hpp"
 #include "runner/command/training_summary.hpp"
 #include "runner/dispatch/stop_signal.hpp"
+#include "runner/file/file_reading.hpp"
+#include "runner/file/unfinished_file.hpp"
 #include "runner/job/training_job.hpp"
 #include "runner/terminal/progress_line.hpp"
 #include "runner/training/training.hpp"
@@ -187,6 +189,10 @@ void TrainingRun::save() {
 ExitCode run_training(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
   const StopSignal signal;  // from here on a signal is a request, until the file is closed
   const fs::path path = output_of(options, job.name);
+  if (const std::string left = unfinished_text(path); !left.empty()) console.warn(left);
+  collectively(mpi.world(), [&] {
+    if (mpi.rank() == 0 && options.resume && fs::exists(path)) rehearse(path, [&] { read_training(path); });
+  });
   const auto earlier = collectively(mpi.world(), [&] {
     if (options.extend) throw job_error(job.path, "kind", "a training extends nothing: remove --extend");
     if (options.task_time_limit_s || options.time_limit_s || options.memory_limit_gb || options.shard)

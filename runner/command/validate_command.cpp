@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -24,8 +23,11 @@ std::string extent_text(const Job& job) {
 
 /// What stands in a file, as far as it can be told without reading it as a job; null if it is no JSON.
 nlohmann::json glance(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  return nlohmann::json::parse(in, nullptr, false);
+  try {
+    return nlohmann::json::parse(read_job_text(path), nullptr, false);
+  } catch (const JobError&) {
+    return nullptr;
+  }
 }
 
 std::string text_of(const nlohmann::json& json, const char* key) {

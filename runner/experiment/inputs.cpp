@@ -2,7 +2,7 @@
 
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/experiment/models.hpp"
-#include "runner/file/file_error.hpp"
+#include "runner/file/file_reading.hpp"
 
 namespace rodsweep {
 namespace {
@@ -11,16 +11,21 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+void open(const InputFile& file) {
+  if (ends_with(file.key_path, "model"))
+    shared_model(file.path);
+  else if (!ends_with(file.key_path, "skeleton"))  // which the plan has read
+    DatasetReader reader(file.path);
+}
+
 }  // namespace
 
 void check_inputs(const Job& job) {
   for (const auto& [written, file] : job.files) {
     if (file.hash.empty()) continue;
     try {
-      if (ends_with(file.key_path, "model"))
-        shared_model(file.path);
-      else if (!ends_with(file.key_path, "skeleton"))  // which the plan has read
-        DatasetReader reader(file.path);
+      rehearse(file.path, [&, &input = file] { open(input); });
+      open(file);
     } catch (const FileError& error) {
       throw job_error(job.path, file.key_path, error.what());
     }

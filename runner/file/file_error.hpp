@@ -12,6 +12,12 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What is wrong with the contents of a file: what() is the reason alone, without the file.
+class Damage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A failing HDF5 call: its name, the object it was about, and HDF5's own error text.
 class Hdf5Error : public std::runtime_error {
  public:

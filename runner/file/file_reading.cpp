@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 
 #include "runner/file/layout.hpp"
+#include "runner/file/unfinished_file.hpp"
+#include "runner/job/job.hpp"
+#include "runner/terminal/process_copy.hpp"
 
 namespace rodsweep {
 namespace {
@@ -24,13 +28,32 @@ bool has_hdf5_signature(const fs::path& path) {
 }  // namespace
 
 FileError damaged_error(const fs::path& path, const std::string& reason) {
-  return FileError(fmt::format("{} is damaged or incomplete: {}", path.native(), reason));
+  return FileError(fmt::format("{} is damaged or incomplete: {}. Use a copy of it if there is one, or make it again",
+                               path.native(), reason));
+}
+
+FileError crashed_error(const fs::path& path, int signal) {
+  return damaged_error(path, fmt::format("reading it ended the reader by signal {} ({})", signal, strsignal(signal)));
+}
+
+std::string damage_text(const std::exception& failure) {
+  const bool told = dynamic_cast<const Hdf5Error*>(&failure) != nullptr ||
+                    dynamic_cast<const Damage*>(&failure) != nullptr ||
+                    dynamic_cast<const JobError*>(&failure) != nullptr;
+  return told ? failure.what() : "what it holds does not fit together";
+}
+
+void rehearse(const fs::path& path, const std::function<void()>& work) {
+  if (const int signal = signal_of_copy(work)) throw crashed_error(path, signal);
 }
 
 hdf5::File open_own(const fs::path& path, const char* what) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw FileError(fmt::format("{}: there is no such file", path.native()));
+  if (!fs::exists(status)) {
+    const std::string left = unfinished_text(path);
+    throw FileError(fmt::format("{}: there is no such file{}{}", path.native(), left.empty() ? "" : "; ", left));
+  }
   if (!fs::is_regular_file(status)) throw FileError(fmt::format("{} is not a file", path.native()));
   if (!std::ifstream(path)) throw FileError(fmt::format("{} cannot be read: no permission", path.native()));
   if (!has_hdf5_signature(path)) throw FileError(fmt::format("{} is not an HDF5 file", path.native()));
@@ -42,7 +65,7 @@ hdf5::File open_own(const fs::path& path, const char* what) {
     }
     return file;
   } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, failure.what());
+    throw damaged_error(path, damage_text(failure));
   }
 }
 

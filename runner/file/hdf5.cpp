@@ -147,6 +147,17 @@ std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path) {
   return sizes;
 }
 
+hsize_t value_count(const Dataset& dataset, const std::string& path) {
+  constexpr double densest = 1100, index_bytes = 1 << 16;  // deflate's, and of chunks that hold nothing yet
+  const Datatype type(check(H5Dget_type(dataset.id()), "H5Dget_type", path));
+  double bytes = static_cast<double>(H5Tget_size(type.id()));
+  hsize_t count = 1;
+  for (const hsize_t n : extent(dataset, path)) count *= n, bytes *= static_cast<double>(n);
+  if (bytes > densest * (static_cast<double>(H5Dget_storage_size(dataset.id())) + index_bytes))
+    throw Damage(path + " has a shape that is larger than the file");
+  return count;
+}
+
 std::vector<std::string> members(hid_t group) {
   H5G_info_t info;
   check(H5Gget_info(group, &info), "H5Gget_info");
@@ -168,6 +179,7 @@ RowDataset::RowDataset(hid_t file, std::string path) : path_(std::move(path)) {
   extent_ = hdf5::extent(dataset_, path_);
   if (extent_.empty() || extent_.size() > most_axes) throw Hdf5Error(path_ + " does not consist of rows");
   space_ = Dataspace(check(H5Dget_space(dataset_.id()), "H5Dget_space", path_));
+  value_count(dataset_, path_);
   row_values_ = std::accumulate(extent_.begin() + 1, extent_.end(), hsize_t{1}, std::multiplies<>());
 }
 
@@ -197,8 +209,7 @@ std::vector<std::string> read_texts(hid_t file, const std::string& path) {
   const Dataset dataset = open_dataset(file, path);
   const Datatype type(check(H5Dget_type(dataset.id()), "H5Dget_type", path));
   const std::size_t bytes = text_bytes(type.id(), path);
-  const std::vector<hsize_t> sizes = extent(dataset, path);
-  const auto count = std::accumulate(sizes.begin(), sizes.end(), hsize_t{1}, std::multiplies<>());
+  const hsize_t count = value_count(dataset, path);
   std::vector<char> buffer(count * bytes);
   check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer.data()), "H5Dread", path);
   std::vector<std::string> texts(count);

@@ -110,6 +110,8 @@ Dataset create_dataset(hid_t file, const std::string& path, hid_t type, const st
 Dataset open_dataset(hid_t file, const std::string& path);
 bool exists(hid_t file, const std::string& path);  ///< also false where a group on the way is missing
 std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path);
+/// How many values it has. Refuses more than its part of the file can hold: a damaged extent would ask for all memory.
+hsize_t value_count(const Dataset& dataset, const std::string& path);
 
 std::vector<std::string> members(hid_t group);           ///< their names, sorted
 std::vector<std::string> attribute_names(hid_t object);  ///< sorted
@@ -142,9 +144,7 @@ class RowDataset {
 template <class T>
 std::vector<T> read_all(hid_t file, const std::string& path) {
   const Dataset dataset = open_dataset(file, path);
-  hsize_t size = 1;
-  for (const hsize_t n : extent(dataset, path)) size *= n;
-  std::vector<T> values(size);
+  std::vector<T> values(value_count(dataset, path));
   check(H5Dread(dataset.id(), type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dread", path);
   return values;
 }

@@ -10,6 +10,7 @@
 #include "runner/file/layout.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/task_reader.hpp"
+#include "runner/terminal/process_copy.hpp"
 
 namespace rodsweep {
 namespace {
@@ -95,6 +96,19 @@ FileSummary inspect(const fs::path& path) {
     find_begun(file, states, summary);
     find_momentum_residual(file, states, summary);
     return summary;
+  });
+}
+
+void go_on_as_reader(const fs::path& path) {
+  if (const int signal = go_on_as_copy()) throw crashed_error(path, signal);
+}
+
+void refuse_crashing(const fs::path& path) {
+  rehearse(path, [&] {
+    inspect(path);
+    const TaskReader reader(path);
+    TaskRecord record;
+    if (!reader.tasks().empty()) reader.read(0, record);
   });
 }
 

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <system_error>
 
 #include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/pack.hpp"
+#include "runner/file/planned_columns.hpp"
 #include "runner/file/runs.hpp"
 
 namespace rodsweep {
@@ -85,18 +87,35 @@ void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& 
                         "its list of tasks is another, or the files that the job names have changed (/job, plan_hash)",
                         advice);
   }
+  if (!plan.guess_labels().empty() && hdf5::read_texts(file.id(), "/axes/guess") != plan.guess_labels())
+    throw other_program(file, path, "the labels of its guesses are others (/axes/guess)", advice);
+  if (hdf5::read_all<double>(file.id(), "/axes/tolerance") != tolerance_ladder())
+    throw other_program(file, path, "its tolerances are others (/axes/tolerance)", advice);
+  const auto compare = [&](const std::string& name, int width, const auto& here, const auto& there, const auto& equal) {
+    const auto [a, b] = std::mismatch(here.begin(), here.end(), there.begin(), there.end(), equal);
+    if (a == here.end() && b == there.end()) return;
+    if (a == here.end() || b == there.end())
+      throw other_program(file, path, fmt::format("{} has another length", name), advice);
+    throw other_program(
+        file, path,
+        fmt::format("{} of task {} is {} here and {} in the file", name, (a - here.begin()) / width, *a, *b), advice);
+  };
   for (const ParameterColumn& parameter : parameters) {
-    const auto* here = std::get_if<std::vector<double>>(&parameter.values);
-    if (here == nullptr) continue;
-    const std::vector<double> there = hdf5::read_all<double>(file.id(), "/tasks/parameters/" + parameter.path);
-    const auto [a, b] = std::mismatch(here->begin(), here->end(), there.begin(), there.end(), same);
-    if (a != here->end()) {
-      throw other_program(file, path,
-                          fmt::format("{} of task {} is {} here and {} in the file", parameter.path,
-                                      (a - here->begin()) / parameter.width, *a, *b),
-                          advice);
-    }
+    const std::string dataset = "/tasks/parameters/" + parameter.path;
+    if (const auto* numbers = std::get_if<std::vector<double>>(&parameter.values))
+      compare(parameter.path, parameter.width, *numbers, hdf5::read_all<double>(file.id(), dataset), same);
+    else if (const auto* integers = std::get_if<std::vector<std::int64_t>>(&parameter.values))
+      compare(parameter.path, parameter.width, *integers, hdf5::read_all<std::int64_t>(file.id(), dataset),
+              std::equal_to<>());
+    else
+      compare(parameter.path, parameter.width, std::get<std::vector<std::string>>(parameter.values),
+              hdf5::read_texts(file.id(), dataset), std::equal_to<>());
   }
+  visit_planned_values(plan, [&](const char* column, const char*, const auto& values) {
+    using Value = typename std::decay_t<decltype(values)>::value_type;
+    if (!hdf5::exists(file.id(), column)) return;  // of a program that had no rows of that kind
+    compare(column, 1, values, hdf5::read_all<Value>(file.id(), column), std::equal_to<>());
+  });
 }
 
 void check_plan(const hdf5::File& file, const fs::path& path, const Plan& plan, const char* advice) {

@@ -1,6 +1,5 @@
 #include "runner/file/task_reader.hpp"
 
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
@@ -20,7 +19,7 @@ std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
   visit_planned_columns(holds, [&](const char* path, const char*, auto member) {
     using T = std::decay_t<decltype(member(tasks[0]))>;
     const auto values = hdf5::read_all<T>(file.id(), path);
-    if (values.size() != count) throw std::length_error(std::string(path) + " has another length than /tasks/state");
+    if (values.size() != count) throw Damage(std::string(path) + " has another length than /tasks/state");
     for (std::size_t i = 0; i < count; ++i) member(tasks[i]) = values[i];
   });
   const bool contact = hdf5::exists(file.id(), "/steps/contacts");
@@ -49,9 +48,9 @@ std::int64_t axis_size(const hdf5::File& file, const std::string& path, std::siz
 void check_rows(const RowRange& rows, std::int64_t width, const hdf5::RowDataset& dataset) {
   const auto most = static_cast<std::int64_t>(dataset.rows());
   if (rows.first < 0 || rows.count < 0 || rows.count > most || rows.first > most - rows.count)
-    throw std::out_of_range("a task has rows outside " + dataset.path());
+    throw Damage("a task has rows outside " + dataset.path());
   if (static_cast<std::int64_t>(dataset.row_values()) != width)
-    throw std::length_error(dataset.path() + " has axes of other lengths than /axes");
+    throw Damage(dataset.path() + " has axes of other lengths than /axes");
 }
 
 template <class T>
@@ -68,8 +67,7 @@ TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(o
     // The states first: of a task that is complete now, everything else is there to be read.
     states_ = read_states(file_, path);
     outcomes_ = hdf5::read_texts(file_.id(), "/tasks/outcome");
-    if (outcomes_.size() != states_.size())
-      throw std::length_error("/tasks/outcome has another length than /tasks/state");
+    if (outcomes_.size() != states_.size()) throw Damage("/tasks/outcome has another length than /tasks/state");
     tasks_ = read_tasks(file_, states_.size());
     sizes_ = {axis_size(file_, "/axes/guess", 0), axis_size(file_, "/axes/tolerance", 0),
               axis_size(file_, "/trajectories/first_row", 1)};

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <stdexcept>
 
 #include "runner/file/file_reading.hpp"
 #include "runner/file/planned_columns.hpp"
@@ -73,7 +72,7 @@ TaskTable::TaskTable(const std::filesystem::path& path) : path_(path), file_(ope
   } catch (const FileError&) {
     throw;
   } catch (const std::exception& failure) {
-    throw damaged_error(path, failure.what());
+    throw damaged_error(path, damage_text(failure));
   }
 }
 
@@ -102,7 +101,7 @@ void TaskTable::list(const char* group, bool parameters) {
 
 void TaskTable::add(const std::string& name, const std::string& path, bool parameter) {
   const hdf5::RowDataset rows(file_.id(), path);
-  if (rows.rows() != states_.size()) throw std::length_error(path + " has another length than /tasks/state");
+  if (rows.rows() != states_.size()) throw Damage(path + " has another length than /tasks/state");
   const H5T_class_t type = H5Tget_class(rows.type().id());
   TaskColumn column;
   column.name = name;
@@ -212,7 +211,7 @@ ColumnValues TaskTable::read(const TaskColumn& column) const {
       case TaskColumn::Kind::text: values.texts = hdf5::read_texts(file_.id(), column.path); break;
     }
   } catch (const std::exception& failure) {
-    throw damaged_error(path_, failure.what());
+    throw damaged_error(path_, damage_text(failure));
   }
   if (!column.result) return values;
   for (std::size_t task = 0; task < states_.size(); ++task) {

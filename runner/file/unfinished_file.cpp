@@ -6,9 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <random>
 #include <system_error>
+#include <vector>
 
 #include "runner/file/durable.hpp"
 #include "runner/file/provenance.hpp"
@@ -23,6 +27,23 @@ FileError exists_error(const fs::path& path) {
   return FileError(
       fmt::format("{} exists already and is never overwritten: name another file with -o FILE", path.native()));
 }
+
+constexpr const char* mark = ".unfinished-";
+
+/// Who makes an unfinished file, by the end of its name, HOST-PROCESS-RANDOM.
+struct Maker {
+  std::string host;
+  pid_t process = 0;
+};
+
+Maker maker_of(const std::string& end) {
+  const std::size_t random = end.rfind('-');
+  const std::size_t process = random == std::string::npos || random == 0 ? random : end.rfind('-', random - 1);
+  if (process == std::string::npos || process == 0) return {};
+  return {end.substr(0, process), static_cast<pid_t>(std::atol(end.c_str() + process + 1))};
+}
+
+bool lives(pid_t process) { return process > 0 && (kill(process, 0) == 0 || errno != ESRCH); }
 
 }  // namespace
 
@@ -54,8 +75,29 @@ FileIdentity identity_of(const fs::path& path) {
 
 UnfinishedFile::UnfinishedFile(const fs::path& path)
     : path_(path),
-      temporary_(
-          fmt::format("{}.unfinished-{}-{}-{:08x}", path.native(), host_name(), getpid(), std::random_device()())) {}
+      temporary_(fmt::format("{}{}{}-{}-{:08x}", path.native(), mark, host_name(), getpid(), std::random_device()())) {}
+
+std::string unfinished_text(const fs::path& path) {
+  const std::string begin = path.filename().native() + mark;
+  std::vector<std::string> left;
+  bool elsewhere = false;
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().native();
+    if (name.compare(0, begin.size(), begin) != 0) continue;
+    const Maker maker = maker_of(name.substr(begin.size()));
+    const bool here = maker.host == host_name();
+    if (here && lives(maker.process)) continue;
+    elsewhere = elsewhere || !here;
+    left.push_back((path.parent_path() / name).native());
+  }
+  if (left.empty()) return "";
+  std::sort(left.begin(), left.end());
+  return fmt::format("{} {} left by a program that was ended while it made {}: it can be deleted{}",
+                     fmt::join(left, " and "), left.size() == 1 ? "was" : "were", path.native(),
+                     elsewhere ? ", unless that program still runs on the host in its name" : "");
+}
 
 UnfinishedFile::~UnfinishedFile() {
   std::error_code ignored;

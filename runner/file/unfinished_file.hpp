@@ -43,6 +43,9 @@ class UnfinishedFile {
   std::filesystem::path path_, temporary_;
 };
 
+/// What a program left that was ended while it made `path`, as a sentence for the user: empty where there is nothing.
+std::string unfinished_text(const std::filesystem::path& path);
+
 /// Refuses a path that exists, be it as a dangling link.
 void refuse_existing(const std::filesystem::path& path);
 

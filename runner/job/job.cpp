@@ -2,20 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "runner/job/job_keys.hpp"
 #include "runner/job/job_reader.hpp"
 #include "runner/job/obstacle_keys.hpp"
+#include "runner/job/shortened.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/job/sweep_space.hpp"
 #include "runner/job/training_job.hpp"
 
 namespace rodsweep {
 namespace {
+
+constexpr std::size_t most_bytes = 16 << 20;  // read in a second, in a gigabyte
+constexpr std::size_t longest_path = 200;
 
 void check_guesses(const Job& job, const SweepSpace& space) {
   if (!job.values.contains("guesses")) return;
@@ -69,7 +73,7 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
 }  // namespace
 
 JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text) {
-  return JobError(file.string() + ": " + (key_path.empty() ? "" : key_path + ": ") + text);
+  return JobError(file.string() + ": " + (key_path.empty() ? "" : shortened(key_path, longest_path) + ": ") + text);
 }
 
 bool is_training(const Job& job) { return job.values["kind"] == "train"; }
@@ -87,7 +91,7 @@ Job parse_job(std::string text, const std::filesystem::path& path, const InputFi
                 [&](const std::string& written, const std::string&) { return files.at(written); });
 }
 
-Job read_job(const std::filesystem::path& path, MissingFiles missing) {
+std::string read_job_text(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (std::filesystem::is_directory(status)) throw job_error(path, "", "is a folder, not a job file");
@@ -95,10 +99,23 @@ Job read_job(const std::filesystem::path& path, MissingFiles missing) {
     throw job_error(path, "", "is a device, not a job file");
   errno = 0;
   std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (!in) throw job_error(path, "", fmt::format("cannot be read: {}", std::strerror(errno ? errno : EIO)));
-  return parse_job(std::move(text).str(), path, missing);
+  std::string text;
+  std::array<char, 1 << 16> block{};
+  while (in && text.size() <= most_bytes) {
+    in.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(in.gcount()));
+  }
+  if (text.size() > most_bytes)
+    throw job_error(path, "",
+                    fmt::format("is larger than a job may be, {} MB: let `samples` draw from ranges, such as "
+                                "{{\"uniform\": [a, b]}}, in the place of lists, or make several jobs of it",
+                                most_bytes >> 20));
+  if (!in.eof()) throw job_error(path, "", fmt::format("cannot be read: {}", std::strerror(errno ? errno : EIO)));
+  return text;
+}
+
+Job read_job(const std::filesystem::path& path, MissingFiles missing) {
+  return parse_job(read_job_text(path), path, missing);
 }
 
 }  // namespace rodsweep

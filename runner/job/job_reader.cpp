@@ -8,6 +8,7 @@
 #include "runner/job/job.hpp"
 #include "runner/job/key_path.hpp"
 #include "runner/job/nearest.hpp"
+#include "runner/job/shortened.hpp"
 #include "runner/job/sweep.hpp"
 
 namespace rodsweep {
@@ -15,15 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t most_told = 20;  // mistakes
+
 /// A value as the user wrote it, shortened.
-std::string written(const Json& value) {
-  constexpr std::size_t longest = 60;
-  std::string text = value.dump();
-  if (text.size() <= longest) return text;
-  std::size_t end = longest;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not within a character
-  return text.substr(0, end) + "...";
-}
+std::string written(const Json& value) { return shortened(value.dump()); }
 
 /// Is this of the JSON type of the key's values? (A list of numbers is one of vectors' values, and no list of them.)
 bool looks_like_one(const Key& key, const Json& value) {
@@ -70,7 +66,7 @@ bool has_form(const std::string& text, Key::Text form) {
 }  // namespace
 
 void JobReader::mistake(const std::string& path, const std::string& text) {
-  mistakes_.emplace_back(job_error(file_, path, text).what());
+  if (mistakes_++ < most_told) told_.emplace_back(job_error(file_, path, text).what());
 }
 
 void JobReader::refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark) {
@@ -79,11 +75,9 @@ void JobReader::refuse(const Key& key, const Json& value, const std::string& pat
 }
 
 void JobReader::throw_mistakes() const {
-  if (mistakes_.empty()) return;
-  constexpr std::size_t most = 20;
-  std::string text;
-  for (std::size_t i = 0; i < mistakes_.size() && i < most; ++i) text += (i == 0 ? "" : "\n") + mistakes_[i];
-  if (mistakes_.size() > most) text += fmt::format("\n{}: and {} more", file_.string(), mistakes_.size() - most);
+  if (mistakes_ == 0) return;
+  std::string text = fmt::format("{}", fmt::join(told_, "\n"));
+  if (mistakes_ > told_.size()) text += fmt::format("\n{}: and {} more", file_.string(), mistakes_ - told_.size());
   throw JobError(text);
 }
 
@@ -158,7 +152,7 @@ Json JobReader::read_range(const Key& key, const std::string& word, const Json& 
   if (whole) end_key.kind = Key::Kind::integer;
   end_key.choices.clear();  // a word is no end of a range
   end_key.sweepable = false;
-  const std::size_t before = mistakes_.size();
+  const std::size_t before = mistakes_;
   Json result = Json::array();
   for (std::size_t i = 0; i < 2; ++i) {
     if (sweep_word(ends[i]).empty()) {
@@ -167,7 +161,7 @@ Json JobReader::read_range(const Key& key, const std::string& word, const Json& 
       refuse(end_key, ends[i], element(path, i), "; a range's ends are not swept");
     }
   }
-  if (mistakes_.size() != before) return ends;
+  if (mistakes_ != before) return ends;
   const double low = result[0].get<double>(), high = result[1].get<double>();
   if (low > high) {
     mistake(path, fmt::format("{} is not allowed; the first end must not be above the second", written(ends)));

@@ -25,7 +25,7 @@ class JobReader {
   /// The files that the job names, each with the first key path that does.
   const std::map<std::string, std::string>& files() const { return files_; }
 
-  /// Throws JobError with one line per mistake, if there was any.
+  /// Throws JobError with one line for each of the first mistakes, if there was any.
   void throw_mistakes() const;
 
  private:
@@ -54,7 +54,8 @@ class JobReader {
 
   std::filesystem::path file_;
   Tag tag_;
-  std::vector<std::string> mistakes_;
+  std::size_t mistakes_ = 0;
+  std::vector<std::string> told_;  ///< of the first of them
   std::map<std::string, std::string> files_;
 };
 

@@ -235,9 +235,9 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
                                : " with its parameters; for example " + spaced(guess_example(*guess, given)));
     return value;
   }
-  const std::size_t before = mistakes_.size();
+  const std::size_t before = mistakes_;
   Json parameters = read_object(keys, given, member(path, name));
-  const bool sound = mistakes_.size() == before;  // else parameters may be anything
+  const bool sound = mistakes_ == before;  // else parameters may be anything
   if (labelled && sound && !given.contains("label")) parameters["label"] = default_label(name, parameters);
   return Json{{name, std::move(parameters)}};
 }
@@ -249,9 +249,9 @@ Json JobReader::read_varying_guess(const Key& key, Json sweep, std::size_t index
     label = read(label_key, sweep[label_key.name], member(path, label_key.name));
     sweep.erase(label_key.name);
   }
-  const std::size_t before = mistakes_.size();
+  const std::size_t before = mistakes_;
   Json result = read_sweep(key, sweep, path);
-  if (mistakes_.size() != before) return result;
+  if (mistakes_ != before) return result;
   if (label.is_null()) {
     label = varying_label(result);
     if (static_cast<double>(label.get_ref<const std::string&>().size()) > label_key.high) {
@@ -271,10 +271,10 @@ Json JobReader::read_guesses(const Json& value, const std::string& path) {
   Json result = Json::array();
   std::map<std::string, std::size_t> labels;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    const std::size_t before = mistakes_.size();
+    const std::size_t before = mistakes_;
     result.push_back(sweep_word(value[i]).empty() ? read_guess(guess, value[i], element(path, i), true)
                                                   : read_varying_guess(guess, value[i], i, element(path, i)));
-    if (mistakes_.size() != before) continue;
+    if (mistakes_ != before) continue;
     const std::string label = guess_label(result.back());
     const auto [first, is_new] = labels.emplace(label, i);
     if (!is_new) {

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "runner/job/shortened.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -73,7 +75,7 @@ class Reader {
     T value{};
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(static_cast<double>(value)))
-      refuse(fmt::format("{} is \"{}\"; must be {}", columns[column], word,
+      refuse(fmt::format("{} is \"{}\"; must be {}", columns[column], shortened(word),
                          std::is_integral_v<T> ? "an integer" : "a finite number"));
     return value;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runner/job/job.hpp"
+#include "runner/job/shortened.hpp"
 #include "runner/job/syntax_error.hpp"
 
 namespace rodsweep {
@@ -14,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t deepest = 64;  // bounds every recursion over a job
+constexpr std::size_t deepest = 64;      // bounds every recursion over a job
+constexpr std::size_t most_keys = 1000;  // of an object: they are searched one after the other
 
 class StrictReader : public nlohmann::json_sax<Json> {
  public:
@@ -27,7 +29,7 @@ class StrictReader : public nlohmann::json_sax<Json> {
   bool number_integer(number_integer_t value) override { return add(value); }
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t& written) override {
-    if (!std::isfinite(value)) throw job_error(file_, path(), written + " is too large for a number");
+    if (!std::isfinite(value)) throw job_error(file_, path(), shortened(written) + " is too large for a number");
     return add(value);
   }
   bool string(string_t& value) override { return add(std::move(value)); }
@@ -44,16 +46,20 @@ class StrictReader : public nlohmann::json_sax<Json> {
     if (level.container->contains(name)) {
       throw job_error(file_, path(), "this key is given more than once; remove all but one");
     }
+    if (level.container->size() == most_keys)
+      throw job_error(file_, path(), fmt::format("this object has more than {} keys", most_keys));
     return true;
   }
 
   bool parse_error(std::size_t position, const std::string& last_token, const nlohmann::detail::exception& e) override {
     constexpr int overflow = 406;
-    if (e.id == overflow) throw job_error(file_, path(), last_token + " is too large for a number");
+    if (e.id == overflow) throw job_error(file_, path(), shortened(last_token) + " is too large for a number");
     std::string problem = e.what();
     const std::size_t column_mark = problem.find(", column ");
     const std::size_t end_of_prefix = column_mark == std::string::npos ? column_mark : problem.find(": ", column_mark);
     if (end_of_prefix != std::string::npos) problem.erase(0, end_of_prefix + 2);
+    if (const std::size_t token = problem.find(last_token); token != std::string::npos)
+      problem.replace(token, last_token.size(), shortened(last_token));
     const std::size_t last = std::min(position == 0 ? 0 : position - 1, text_.size());
     throw JobError(file_.string() + ": " + syntax_error_text(text_, last, last_token, problem));
   }

@@ -6,6 +6,7 @@
 
 #include "runner/file/file_reading.hpp"
 #include "runner/job/job_reader.hpp"
+#include "runner/job/strict_json.hpp"
 #include "runner/job/training_job.hpp"
 #include "runner/job/training_keys.hpp"
 #include "runner/training/model_file.hpp"
@@ -15,12 +16,6 @@ namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Something about the file that cannot be; what() is the reason alone.
-class Damage : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// All numbers of a dataset of that extent.
 template <class T>
@@ -41,7 +36,7 @@ std::vector<float> read_finite(hid_t file, const std::string& path, const std::v
 CopingNetSettings read_settings(hid_t file, const fs::path& path) {
   const std::string text = hdf5::read_texts(file, "/model/settings").at(0);
   JobReader reader(path);
-  const auto values = reader.read(network_key(), nlohmann::ordered_json::parse(text), "/model/settings");
+  const auto values = reader.read(network_key(), parse_strict_json(text, path), "/model/settings");
   reader.throw_mistakes();
   return network_settings(values);
 }
@@ -171,7 +166,7 @@ hdf5::File open_model(const fs::path& path) {
                                   path.native(), kind));
     check_version(file, path, model_schema_version);
   } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, failure.what());
+    throw damaged_error(path, damage_text(failure));
   }
   return file;
 }
@@ -183,7 +178,7 @@ bool is_model_file(const fs::path& path) {
   try {
     return kind_of(file) == "model";
   } catch (const Hdf5Error& failure) {
-    throw damaged_error(path, failure.what());
+    throw damaged_error(path, damage_text(failure));
   }
 }
 
@@ -194,7 +189,7 @@ StoredModel read_training(const fs::path& path) {
     stored.checkpoint = read_checkpoint(file.id(), stored.model->net.parameters().values().size());
     return stored;
   } catch (const std::exception& failure) {
-    throw damaged_error(path, failure.what());
+    throw damaged_error(path, damage_text(failure));
   }
 }
 

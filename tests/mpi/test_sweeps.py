@@ -211,9 +211,11 @@ class Interrupted(InterruptedCase):
         finally:
             for name in preload:
                 del os.environ[name]
-        self.assertEqual(code, USER_ERROR, stderr)
+        self.assertEqual(code, STOPPED, stderr)
         self.assertEqual(stderr.count("cannot go on: H5Dwrite failed"), 1, stderr)
         self.assertIn("error: rank 2 on", stderr)
+        self.assertIn("what was finished is kept in the file; once the cause is gone, this continues: ", stderr)
+        self.assertIn("-o full.h5 --resume", stderr)
         self.resume("full.h5", 3)
 
 

@@ -248,19 +248,19 @@ TEST_CASE("files that are no models are refused") {
 
 TEST_CASE("weights that cannot be are refused") {
   CHECK_THAT(refusal_after([](hid_t file) { replace_weights(file, 8, 2); }),
-             EndsWith("/model/weights/encode.bias has the shape [8, 2], not [8, 1]"));
+             Contains("/model/weights/encode.bias has the shape [8, 2], not [8, 1]"));
   CHECK_THAT(refusal_after([](hid_t file) { replace_weights(file, 8, 1); }),
-             EndsWith("the model is not what was written: it has another hash"));
+             Contains("the model is not what was written: it has another hash"));
   CHECK_THAT(refusal_after([](hid_t file) {
                hdf5::write_all(file, "/model/weights/encode.bias",
                                std::vector<float>(8, std::numeric_limits<float>::quiet_NaN()));
              }),
-             EndsWith("/model/weights/encode.bias holds something that is not a finite number"));
+             Contains("/model/weights/encode.bias holds something that is not a finite number"));
   CHECK_THAT(refusal_after([](hid_t file) { H5Ldelete(file, "/model/weights/encode.bias", H5P_DEFAULT); }),
              Contains("encode.bias"));
   CHECK_THAT(refusal_after(
                  [](hid_t file) { hdf5::write_all(file, "/model/scales/edges/deviation", std::vector<float>(17, 0)); }),
-             EndsWith("/model/scales/edges/deviation is not above 0 everywhere"));
+             Contains("/model/scales/edges/deviation is not above 0 everywhere"));
 }
 
 TEST_CASE("settings and cards that cannot be are refused") {
@@ -271,12 +271,12 @@ TEST_CASE("settings and cards that cannot be are refused") {
              }),
              Contains("/model/settings.latent: 100000 is not allowed"));
   CHECK_THAT(refusal_after([](hid_t file) { set_text_attribute(file, "/training", "ending", "tired"); }),
-             EndsWith("the training is said to have ended \"tired\""));
+             Contains("the training is said to have ended \"tired\""));
   CHECK_THAT(refusal_after([](hid_t file) {
                H5Adelete_by_name(file, "/training", "best_epoch", H5P_DEFAULT);
                hdf5::write_attribute(hdf5::Object(H5Oopen(file, "/training", H5P_DEFAULT)).id(), "best_epoch", 3);
              }),
-             EndsWith("the best epoch is said to be 3 of 2"));
+             Contains("the best epoch is said to be 3 of 2"));
   CHECK_THAT(refusal_after([](hid_t file) {
                H5Adelete(file, "schema_version");
                hdf5::write_attribute(file, "schema_version", model_schema_version + 1);

@@ -1,0 +1,170 @@
+#!/usr/bin/python3
+"""The commands on damaged files, on disks that fill up and on what a killed program left: plain errors, never a signal."""
+
+import os
+import random
+import resource
+import signal
+import socket
+import subprocess
+import unittest
+
+import h5py
+from program import ALL_DONE, RODSWEEP, STOPPED, TASKS_FAILED, USER_ERROR, rodsweep, sweep
+
+JOB = os.path.join("jobs", "small.json")
+
+
+def contents_of(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def write(path, contents):
+    with open(path, "wb") as file:
+        file.write(contents)
+    return path
+
+
+def with_room_for(size):
+    """What a child process does first: its files cannot grow further, as on a disk that is full."""
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+    return limit
+
+
+class Case(unittest.TestCase):
+    def assert_plain(self, said, *codes):
+        self.assertIn(said.returncode, codes, said.stderr)
+        for word in ("std::", "json.exception", "bad_alloc", "Traceback"):
+            self.assertNotIn(word, said.stderr)
+        if said.returncode == USER_ERROR:
+            self.assertIn("error: ", said.stderr)
+
+    def assert_only(self, folder, *names):
+        self.assertEqual(sorted(os.listdir(folder)), sorted(names))
+
+
+class Damaged(Case):
+    def test_flipped_bits_end_no_command(self):
+        whole = contents_of(sweep())
+        draw = random.Random(3)
+        commands = (("status",), ("info", "--verify"), ("query", "--csv"), ("pack", "-o", "packed.h5"))
+        for number in range(24):
+            contents = bytearray(whole)
+            contents[draw.randrange(12000 if number % 2 else len(whole))] ^= 1 << draw.randrange(8)
+            write("flipped.h5", contents)
+            command, *rest = commands[number % len(commands)]
+            with self.subTest(number=number, command=command):
+                self.assert_plain(rodsweep(command, "flipped.h5", *rest), ALL_DONE, USER_ERROR)
+            if os.path.exists("packed.h5"):
+                os.remove("packed.h5")
+
+    def test_commands_that_write_refuse_a_file_or_do_what_is_left(self):
+        whole = contents_of(sweep())
+        draw = random.Random(4)
+        for number in range(12):
+            contents = bytearray(whole)
+            contents[draw.randrange(12000)] ^= 1 << draw.randrange(8)
+            write("flipped.h5", contents)
+            words = (("run", JOB, "-o", "flipped.h5", "--resume"), ("rerun", "flipped.h5", 0, "-o", "new.h5"),
+                     ("merge", "flipped.h5", "-o", "new.h5"), ("run", JOB, "-o", "new.h5", "--extend", "flipped.h5"))[number % 4]
+            with self.subTest(number=number, words=words):
+                self.assert_plain(rodsweep(*words), ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED)
+            if os.path.exists("new.h5"):
+                os.remove("new.h5")
+
+    def test_a_parameter_that_is_not_the_jobs_is_found(self):
+        self.assertIn("the parameters are those of the job", rodsweep("info", sweep(), "--verify").stdout)
+        for column, value in (("tasks/parameters/scene.segments", 7), ("tasks/first_solve", 1), ("axes/tolerance", 0.3)):
+            with self.subTest(column=column):
+                write("changed.h5", contents_of(sweep()))
+                with h5py.File("changed.h5", "r+") as file:
+                    file[column][1] = value
+                said = rodsweep("info", "changed.h5", "--verify")
+                self.assert_plain(said, USER_ERROR)
+                self.assertIn("changed.h5", said.stderr)
+
+    def test_data_that_are_not_what_was_written_come_with_what_to_do(self):
+        write("changed.h5", contents_of(sweep()))
+        with h5py.File("changed.h5", "r+") as file:
+            file["steps/joint_gap"][0] = 0.5
+        said = rodsweep("info", "changed.h5", "--verify")
+        self.assert_plain(said, USER_ERROR)
+        self.assertIn("the data of task 0 are not what was written. Run its job again with --resume", said.stderr)
+        self.assert_plain(rodsweep("run", JOB, "-o", "changed.h5", "--resume"), ALL_DONE)
+        self.assertEqual(rodsweep("info", "changed.h5", "--verify").returncode, ALL_DONE)
+
+
+class Full(Case):
+    """A disk that is full when a file is about half written."""
+
+    def test_nothing_is_left_of_a_file_that_has_no_room(self):
+        path = os.path.abspath(sweep("roomy", samples=10, record={"trajectory_every": 1}))
+        os.makedirs("full", exist_ok=True)
+        for words, room in ((("pack", path, "-o", "a.h5"), 0.15), (("merge", path, "-o", "a.h5"), 0.5),
+                            (("rerun", path, "0", "-o", "a.h5"), 0.05),
+                            (("run", os.path.abspath("jobs/roomy.json"), "-o", "a.h5"), 0.5)):
+            with self.subTest(command=words[0]):
+                size = int(room * os.path.getsize(path))
+                said = rodsweep(*words, cwd="full", preexec_fn=with_room_for(size),
+                                env={**os.environ, "PMIX_MCA_gds": "hash"})  # Open MPI needs room for files otherwise
+                self.assert_plain(said, USER_ERROR)
+                self.assertIn("a.h5", said.stderr)
+                self.assert_only("full")
+
+    def test_text_that_has_no_room_is_an_error(self):
+        for words in (("query", sweep(), "--csv"), ("schema",)):
+            with open("text", "w", encoding="utf-8") as text:
+                said = rodsweep(*words, stdout=text, preexec_fn=with_room_for(100))
+            self.assertEqual(said.returncode, USER_ERROR)
+            self.assertIn("writing to standard output failed: File too large", said.stderr)
+
+
+class Left(Case):
+    """X.h5.unfinished-HOST-PROCESS-RANDOM of a program that was killed while it made X.h5."""
+
+    def test_what_a_killed_program_left_is_named(self):
+        ended = subprocess.Popen(["true"])
+        ended.wait()
+        name = f"left.h5.unfinished-{socket.gethostname()}-{ended.pid}-0123abcd"
+        write(name, b"half")
+        words = f"{name} was left by a program that was ended while it made left.h5: it can be deleted"
+        said = rodsweep("status", "left.h5")
+        self.assert_plain(said, USER_ERROR)
+        self.assertIn(f"left.h5: there is no such file; {words}", said.stderr)
+        sweep()
+        self.assertIn(words, rodsweep("run", JOB, "-o", "left.h5").stderr)
+        self.assertIn(words, rodsweep("status", "left.h5").stderr)
+        os.remove(name)
+        self.assertNotIn("unfinished", rodsweep("status", "left.h5").stderr)
+
+    def test_what_a_program_makes_now_is_not(self):
+        write(f"made.h5.unfinished-{socket.gethostname()}-{os.getpid()}-0123abcd", b"half")
+        self.assertNotIn("unfinished", rodsweep("status", "made.h5").stderr)
+        write("made.h5.unfinished-elsewhere-1-0123abcd", b"half")
+        self.assertIn("unless that program still runs on the host in its name", rodsweep("status", "made.h5").stderr)
+
+
+class Copies(Case):
+    """Commands that read do so in a copy of the process, which is not to be seen."""
+
+    def test_a_signal_to_the_program_ends_both(self):
+        path = sweep("watched", samples=1)
+        with h5py.File(path, "r+") as file:  # as if it ran
+            file["tasks/state"][:] = 0
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
+            reader, writer = os.pipe()
+            process = subprocess.Popen([RODSWEEP, "query", path, "--csv"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                       stderr=subprocess.DEVNULL, pass_fds=[writer])
+            os.close(writer)
+            process.send_signal(number)
+            process.communicate(timeout=30)
+            with os.fdopen(reader) as both:
+                self.assertEqual(both.read(), "")  # ends when neither has it open
+            self.assertIn(process.returncode, (ALL_DONE, -number))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,92 @@
+// Every job of the project with something wrong in it: refused in plain words, or a job like any other.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/runner/job_mutations.hpp"
+
+using namespace rodsweep;
+using Catch::Matchers::Contains;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> shipped_jobs() {
+  std::vector<fs::path> jobs;
+  for (const auto& entry : fs::directory_iterator(RODSWEEP_JOBS))
+    if (entry.path().extension() == ".json" && entry.path().filename() != "schema.json") jobs.push_back(entry.path());
+  std::sort(jobs.begin(), jobs.end());
+  return jobs;
+}
+
+}  // namespace
+
+TEST_CASE("what is wrong with a job is said in plain words with its file and key, and ends nothing") {
+  std::mt19937_64 random(19);
+  int refused = 0, tried = 0;
+  for (const fs::path& path : shipped_jobs()) {
+    std::ifstream in(path);
+    Json job = Json::parse(in);
+    job["samples"] = 2;  // or plans would take the time
+    for (int i = 0; i < 8; ++i) {
+      const std::string text = mutated(job, random).dump();
+      INFO(text);
+      const std::string refusal = verdict(text, path);
+      CHECK(fault_of(refusal, path) == "");
+      refused += refusal.empty() ? 0 : 1;
+      ++tried;
+    }
+  }
+  CHECK(tried > 300);
+  CHECK(refused > tried / 2);
+}
+
+TEST_CASE("a key that is misspelt within the parameter of a guess is named") {
+  CHECK_THAT(refusal(with("/guesses", R"(["zero", {"pod": {"size": {"gird": [5, 10]}}}])")),
+             Contains("job.json: guesses[1].pod.size: ") && Contains("did you mean \"grid\"?"));
+  CHECK_THAT(
+      refusal(with("/guesses", R"(["zero", {"guarded": {"threshold": 1, "guess": {"oracle": {"error": {}}}}}])")),
+      Contains("guesses[1].guarded.guess.oracle.error: {} is not allowed"));
+  CHECK_THAT(refusal(with("/guesses", R"(["zero", {"copingnet": {"model": 5}}])")),
+             Contains("guesses[1].copingnet.model: 5 is not allowed; must be the path of a file"));
+}
+
+TEST_CASE("what is long is not repeated whole") {
+  const std::string job = small_job().dump();
+  const auto with_long = [&](const std::string& what, const std::string& by) {
+    std::string text = job;
+    text.replace(text.find(what), what.size(), by);
+    return refusal_of_text(text);
+  };
+  const std::string digits(1 << 20, '1');
+  for (const std::string& refusal :
+       {with_long("0.05", digits), with_long("0.05", '"' + digits + '"'), with_long("0.05", "0x" + digits),
+        with_long("\"radius_m\"", '"' + digits + '"'), with_long("0.05", '-' + digits + 'e' + digits)}) {
+    CHECK(refusal.size() > 20);
+    CHECK(refusal.size() < 1000);
+  }
+}
+
+TEST_CASE("a job with more than anyone writes is refused before it takes the memory") {
+  std::string keys = "{";
+  for (int i = 0; i < 1001; ++i) keys += (i > 0 ? ",\"" : "\"") + std::to_string(i) + "\": 1";
+  CHECK_THAT(refusal_of_text(keys + "}"), Contains("job.json: 1000: this object has more than 1000 keys"));
+
+  const fs::path path = fs::temp_directory_path() / "rodsweep-large-job.json";
+  std::ofstream(path) << std::string(17 << 20, ' ');
+  try {
+    read_job(path);
+    FAIL("a job of 17 MB was read");
+  } catch (const JobError& error) {
+    CHECK_THAT(error.what(),
+               Contains("rodsweep-large-job.json: is larger than a job may be, 16 MB") && Contains("samples"));
+  }
+  fs::remove(path);
+
+  Json many = small_job();
+  many["scene"]["segments"] = grid(Json(std::vector<std::string>(100000, "x")));
+  const std::string refusal = rodsweep::refusal(many);
+  CHECK(std::count(refusal.begin(), refusal.end(), '\n') == 20);
+  CHECK_THAT(refusal, Contains("and 99980 more"));
+}
