@@ -150,7 +150,7 @@ BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
     for (const std::int64_t task : tasks) file.begin(plan.task(task));
     const auto give_up = [&](std::int64_t task, double share) {
       const Seconds ran = (Clock::now() - begin) / static_cast<double>(tasks.size());
-      const Task& given_up = plan.task(task);
+      const Task given_up = plan.task(task);
       file.abandon(given_up,
                    {ran.count(), static_cast<std::int32_t>(std::lround(share * static_cast<double>(given_up.steps)))});
     };
