@@ -19,6 +19,7 @@
 
 #include "runner/command/command_line.hpp"
 #include "runner/command/next_line.hpp"
+#include "runner/file/broken_library.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/mpi/mpi_session.hpp"
@@ -43,12 +44,26 @@ bool is_first_rank() {
   return true;
 }
 
+/// After a failed write HDF5 would crash as MPI finalises: the error is said, and this process leaves at once.
+void leave_if_broken(const MpiSession& mpi, const std::exception& error, Console& console) {
+  if (!hdf5_is_broken()) return;
+  console.error(error.what());
+  std::fflush(nullptr);
+  if (mpi.size() > 1) MPI_Abort(mpi.world(), static_cast<int>(ExitCode::user_error));
+  std::_Exit(static_cast<int>(ExitCode::user_error));
+}
+
 /// A command that computes, on one rank. All must start MPI where one does.
 template <class Options>
 ExitCode execute_with_petsc(const Options& options, Console& console) {
   const MpiSession mpi;
   const PetscSession petsc;
-  return mpi.rank() == 0 ? execute(options, console) : ExitCode::ok;
+  try {
+    return mpi.rank() == 0 ? execute(options, console) : ExitCode::ok;
+  } catch (const std::exception& error) {
+    leave_if_broken(mpi, error, console);
+    throw;
+  }
 }
 
 /// A command that one rank does for all.
@@ -94,6 +109,7 @@ ExitCode start(const RunOptions& options, Console& console) {
   try {
     return execute(options, mpi, console);
   } catch (const CollectiveError& error) {
+    leave_if_broken(mpi, error, console);
     console.error(error.what());
     return ExitCode::user_error;
   } catch (const std::exception& error) {
@@ -136,5 +152,6 @@ int main(int argc, char** argv) {
     std::raise(SIGPIPE);
   }
   if (failure != 0 && code == ExitCode::ok) code = ExitCode::user_error;
+  if (hdf5_is_broken()) std::_Exit(static_cast<int>(code));
   return static_cast<int>(code);
 }

@@ -141,11 +141,16 @@ int create_results_file(const fs::path& path, const Plan& plan, const FreeSpace&
 
   const UnfinishedFile unfinished(path);
   unfinished.check_creatable();
-  hdf5::File file = hdf5::create_file(unfinished.path());
-  create_datasets(file.id(), fields);
-  write_constants(file.id(), plan, parameters);
-  const int runs = copy_runs(file, earlier);
-  hdf5::close(file, "H5Fclose", unfinished.path().native());
+  int runs = 0;
+  try {
+    hdf5::File file = hdf5::create_file(unfinished.path());
+    create_datasets(file.id(), fields);
+    write_constants(file.id(), plan, parameters);
+    runs = copy_runs(file, earlier);
+    hdf5::close(file, "H5Fclose", unfinished.path().native());
+  } catch (const Hdf5Error& failure) {
+    throw writing_error(path, failure.what());
+  }
   reserve_blocks(unfinished.path(), path);
   unfinished.publish();
   return runs;

@@ -4,6 +4,20 @@
 #include <new>
 #include <numeric>
 
+#include "runner/file/broken_library.hpp"
+
+namespace rodsweep {
+namespace {
+
+bool broken = false;
+
+}  // namespace
+
+bool hdf5_is_broken() { return broken; }
+void set_hdf5_broken() { broken = true; }
+
+}  // namespace rodsweep
+
 namespace rodsweep::hdf5 {
 namespace {
 
@@ -63,6 +77,15 @@ std::size_t text_bytes(hid_t type, const std::string& path) {
   return H5Tget_size(type);
 }
 
+/// What the system said, where a call of it failed: the rest of the error stack says how HDF5 came there.
+std::string system_reason(const std::string& text) {
+  const std::string mark = "error message = '";
+  const std::size_t begin = text.find(mark);
+  if (begin == std::string::npos) return "";
+  const std::size_t end = text.find('\'', begin + mark.size());
+  return text.substr(begin + mark.size(), end == std::string::npos ? end : end - begin - mark.size());
+}
+
 std::string without_padding(const char* text, std::size_t bytes) { return {text, std::find(text, text + bytes, '\0')}; }
 
 }  // namespace
@@ -70,6 +93,9 @@ std::string without_padding(const char* text, std::size_t bytes) { return {text,
 void fail(const char* call, std::string_view object) {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, append_description, &text);
+  const std::string_view name = call;
+  if (name == "H5Fclose" || name == "H5Dwrite" || name == "H5Awrite" || name == "H5Dcreate2") set_hdf5_broken();
+  if (const std::string reason = system_reason(text); !reason.empty()) text = reason;
   std::string what = std::string(call) + " failed";
   if (!object.empty()) what += " on " + std::string(object);
   throw Hdf5Error(what + ": " + (text.empty() ? "no error text" : text));

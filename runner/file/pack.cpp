@@ -145,7 +145,7 @@ Packing pack_results(const fs::path& source_path, const fs::path& target_path) {
     hdf5::write_all(target.id(), state_path, states);
     hdf5::close(target, "H5Fclose", unfinished.path().native());
   } catch (const Hdf5Error& failure) {
-    throw creation_error(target_path, failure.what());
+    throw writing_error(target_path, failure.what());
   }
   const Verification verified = verify(unfinished.path());
   refuse_damaged(unfinished.path(), verified, "the copy was thrown away, and the original is as it was");

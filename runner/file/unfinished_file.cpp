@@ -51,6 +51,11 @@ FileError creation_error(const fs::path& path, const std::string& reason) {
   return FileError(fmt::format("{} cannot be created: {}", path.native(), reason));
 }
 
+FileError writing_error(const fs::path& path, const std::string& reason) {
+  return creation_error(
+      path, reason + ". Nothing of it is left: free some space, or name a file on another disk with -o FILE");
+}
+
 void refuse_existing(const fs::path& path) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(path, error))) throw exists_error(path);

@@ -13,6 +13,8 @@
 namespace rodsweep {
 
 FileError creation_error(const std::filesystem::path& path, const std::string& reason);
+/// The same in the middle, most often for want of space.
+FileError writing_error(const std::filesystem::path& path, const std::string& reason);
 
 /// Which file a path leads to, whatever its name.
 struct FileIdentity {
