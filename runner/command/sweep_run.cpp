@@ -123,13 +123,16 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
 /// What the starts before tell of how long tasks take.
 void learn_from_earlier_starts(const fs::path& path, const Plan& plan, const ResultsFile& file,
                                std::vector<PendingTask>& pending, TimeBudget& time) {
-  const std::vector<Attempt> attempts = read_attempts(path);
-  for (const Task& task : plan.tasks()) {
-    const auto i = static_cast<std::size_t>(task.index);
-    const double share = file.done()[i] != 0 ? 1 : attempts[i].steps / static_cast<double>(task.steps);
-    time.learn(task.cost * share, Seconds(attempts[i].elapsed_s));
+  const TaskTimes times = read_task_times(path);
+  for (const Task& task : plan.tasks())
+    if (const auto i = static_cast<std::size_t>(task.index); file.done()[i] != 0)
+      time.learn(task.cost, Seconds(times.elapsed_s.at(i)));
+  for (PendingTask& task : pending) {
+    const Attempt& tried = times.tried.at(static_cast<std::size_t>(task.index));
+    const auto steps = static_cast<double>(plan.task(task.index).steps);
+    task.tried_s = tried.elapsed_s;
+    time.learn_part(task.cost, tried.steps / steps, Seconds(tried.elapsed_s));
   }
-  for (PendingTask& task : pending) task.tried_s = attempts[static_cast<std::size_t>(task.index)].elapsed_s;
 }
 
 void advise(Console& console, const RunOptions& options, const Placement& where, std::size_t pending) {

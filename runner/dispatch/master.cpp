@@ -128,7 +128,7 @@ void Master::report(int rank, const Report& report) {
   }
   if (!finished) {
     dispatch_.busy_s += report.busy_s;
-    patience_.time.learn(task.cost * report.share, TimeBudget::Seconds(report.busy_s));
+    patience_.time.learn_part(task.cost, report.share, TimeBudget::Seconds(report.busy_s));
     task.tried_s = std::max(task.tried_s, report.busy_s);
     if (has_it) given_up_.push_back(task);
     return;

@@ -12,8 +12,15 @@ constexpr double nearly_whole = 0.9;  // starting takes some of it
 
 void TimeBudget::learn(double cost, Seconds took) {
   if (!(cost > 0) || !(took.count() > 0)) return;
-  known_ += took;
-  known_cost_ += cost;
+  whole_tasks_.took += took;
+  whole_tasks_.cost += cost;
+}
+
+void TimeBudget::learn_part(double cost, double share, Seconds took) {
+  if (!(cost * share > 0) || !(took.count() > 0)) return;
+  parts_.took += took;
+  parts_.cost += cost * share;
+  least_given_up_ = std::min(least_given_up_, cost);
 }
 
 bool TimeBudget::fits(const PendingTask& task, Seconds since_begin) const {
@@ -26,9 +33,11 @@ bool TimeBudget::ever_fits(const PendingTask& task) const {
 }
 
 TimeBudget::Seconds TimeBudget::expected(const PendingTask& task) const {
-  if (!(known_cost_ > 0)) return Seconds(task.tried_s);
-  return std::clamp(known_ * (task.cost / known_cost_), Seconds(task.tried_s),
-                    std::max(Seconds(task.tried_s), Seconds(task.limit_s)));
+  const Seconds tried(task.tried_s);
+  Pace pace = whole_tasks_;
+  if (task.cost >= least_given_up_) pace = {pace.took + parts_.took, pace.cost + parts_.cost};
+  if (!(pace.cost > 0)) return tried;
+  return std::clamp(pace.took * (task.cost / pace.cost), tried, std::max(tried, Seconds(task.limit_s)));
 }
 
 }  // namespace rodsweep

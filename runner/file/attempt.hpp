@@ -1,5 +1,4 @@
-// How long a task took and how far it came, as its file says: a task that is done, or the longest that one which is not
-// ran in a start that gave it up. What tasks still need is judged by that.
+// How long tasks took, and how far those came that a start gave up, as their file says: what is left is judged by that.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +7,19 @@
 
 namespace rodsweep {
 
+/// The longest that a start ran a task which it gave up.
 struct Attempt {
   double elapsed_s = 0;  ///< 0: none
   std::int32_t steps = 0;
 };
 
-/// Of every task. Throws FileError.
-std::vector<Attempt> read_attempts(const std::filesystem::path& path);
+/// By task.
+struct TaskTimes {
+  std::vector<double> elapsed_s;  ///< of those that are done
+  std::vector<Attempt> tried;
+};
+
+/// Throws FileError.
+TaskTimes read_task_times(const std::filesystem::path& path);
 
 }  // namespace rodsweep

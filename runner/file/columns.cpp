@@ -186,9 +186,7 @@ std::vector<Column> all_columns() {
           "task of the extended file that its rows, or some guesses' rows, were copied from; -1: none"),
       column<&R::copied_guess>("/timing/tasks/copied_guess", Rows::task, guess, "1",
                                "1: the guess's rows and times were copied from source_task; -1: they were not"),
-      column<&R::elapsed_s>(
-          "/timing/tasks/elapsed_s", Rows::task, none, "s",
-          "wall time of the task, without writing; of a pending one, the longest that it ran in vain"),
+      column<&R::elapsed_s>("/timing/tasks/elapsed_s", Rows::task, none, "s", "wall time of the task, without writing"),
   };
 }
 

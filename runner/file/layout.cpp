@@ -90,6 +90,10 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
       number_field<std::int32_t>("/timing/tasks/attempt", {plan.size()}, "1", "row of /runs in which it ran"));
   fields.push_back(number_field<std::uint8_t>("/timing/tasks/starts", {plan.size()}, "1",
                                               "workers that began it and ended without saying what came of it"));
+  fields.push_back(number_field<double>("/timing/tasks/tried_s", {plan.size()}, "s",
+                                        "the longest that a start ran it and gave it up; 0: never"));
+  fields.push_back(
+      number_field<std::int32_t>("/timing/tasks/tried_steps", {plan.size()}, "1", "time steps completed in that time"));
   check_sizes(fields, plan);
   fields.erase(std::remove_if(fields.begin(), fields.end(), [](const Field& field) { return data_bytes(field) == 0; }),
                fields.end());

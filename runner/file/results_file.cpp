@@ -155,7 +155,7 @@ struct ResultsFile::Open {
   AxisSizes sizes;
   RunRow run;                             // this start's
   std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: the file leaves it out
-  hdf5::RowDataset state, outcome, message, checksum, starts, rank, host, attempt, write_s, elapsed_s, steps_done;
+  hdf5::RowDataset state, outcome, message, checksum, starts, rank, host, attempt, write_s, tried_s, tried_steps;
   hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
   hdf5::Datatype host_type = hdf5::text_type(host_bytes);
   std::string own_host = host_name();
@@ -234,8 +234,8 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->host = open_rows("/timing/tasks/host");
     open_->attempt = open_rows("/timing/tasks/attempt");
     open_->write_s = open_rows("/timing/tasks/write_s");
-    open_->elapsed_s = open_rows("/timing/tasks/elapsed_s");
-    open_->steps_done = open_rows("/tasks/steps_done");
+    open_->tried_s = open_rows("/timing/tasks/tried_s");
+    open_->tried_steps = open_rows("/timing/tasks/tried_steps");
     for (const Column& column : columns()) open_->columns.push_back(open_rows(column.path));
   });
   open_->run.provenance = provenance;
@@ -251,8 +251,6 @@ void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm com
       if (again[i]) {
         open_->set_state(static_cast<std::int64_t>(i), 0);
         open_->set_starts(static_cast<std::int64_t>(i), 0);
-        constexpr double unknown = 0;
-        if (again[i] == damaged) open_->elapsed_s.write(hdf5::type_of<double>(), static_cast<hsize_t>(i), 1, &unknown);
       }
     open_->synced.sync();
   });
@@ -285,10 +283,10 @@ void ResultsFile::begin(const Task& task) {
 void ResultsFile::abandon(const Task& task, const Attempt& attempt) {
   const auto row = static_cast<hsize_t>(task.index);
   double longest = 0;
-  open_->elapsed_s.read(hdf5::type_of<double>(), row, 1, &longest);
+  open_->tried_s.read(hdf5::type_of<double>(), row, 1, &longest);
   if (!(longest >= attempt.elapsed_s) && attempt.elapsed_s > 0) {
-    open_->elapsed_s.write(hdf5::type_of<double>(), row, 1, &attempt.elapsed_s);
-    open_->steps_done.write(hdf5::type_of<std::int32_t>(), row, 1, &attempt.steps);
+    open_->tried_s.write(hdf5::type_of<double>(), row, 1, &attempt.elapsed_s);
+    open_->tried_steps.write(hdf5::type_of<std::int32_t>(), row, 1, &attempt.steps);
   }
   open_->set_starts(task.index, begun_.at(task.index));
   begun_.erase(task.index);

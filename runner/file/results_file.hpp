@@ -63,8 +63,8 @@ class ResultsFile {
 
   /// Independent, before a rank runs a task: counts the start, and says who runs it.
   void begin(const Task& task);
-  /// Independent: takes a start back that this rank was told to give up. Where the task ran longer than ever, what came
-  /// of it stands in the file as the task's elapsed_s and steps_done until it is done.
+  /// Independent: takes a start back that this rank was told to give up, and keeps how far it came if it ran longer
+  /// than ever. Another rank may have the task by now, or have finished it: nothing of its results is touched.
   void abandon(const Task& task, const Attempt& attempt = {});
 
   /// Independent: any rank, any task that is not done() yet, once. It is complete with the next commit(), which this is

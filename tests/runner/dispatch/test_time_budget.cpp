@@ -43,10 +43,13 @@ TEST_CASE("a task takes what its cost says at the pace of what is known, two thi
 
 TEST_CASE("the part of a task that was done before it was given up tells the pace too") {
   TimeBudget time(Seconds(100), Seconds(100));
-  time.learn(0.1 * 50, Seconds(100));
+  time.learn_part(50, 0.1, Seconds(100));
   CHECK(time.expected(of_cost(50)).count() == Approx(1000));
-  time.learn(0, Seconds(100));  // not one step
+  time.learn_part(50, 0, Seconds(100));  // not one step
   CHECK(time.expected(of_cost(50)).count() == Approx(1000));
+  CHECK(time.ever_fits(of_cost(49)));  // but not of cheaper ones
+  time.learn(5, Seconds(5));
+  CHECK(time.expected(of_cost(49)).count() == Approx(49));
 }
 
 TEST_CASE("a start that has the whole limit tries what may just fit, once") {
@@ -77,16 +80,16 @@ TEST_CASE("a task's own limit bounds what it is expected to take") {
 TEST_CASE("a sweep whose tasks ran for a whole limit in vain says which is the longest") {
   Patience limited;
   limited.time = TimeBudget(Seconds(0.1), Seconds(0.1));
-  Sweep sweep(1, tasks_of_cost({2, 3}), limited);
+  Sweep sweep(1, tasks_of_cost({3, 3}), limited);
   Inbox worker(sweep.network[1]);
   sweep.master.step();
-  REQUIRE(worker.assigned() == std::vector<std::int64_t>{1});
+  REQUIRE(worker.assigned() == std::vector<std::int64_t>{0});
   std::this_thread::sleep_for(Seconds(0.12));
   sweep.master.step();
   worker.assigned();
   REQUIRE(worker.stops == 1);
-  Report report(1, TaskOutcome::pending, 0.1, "");
-  report.share = 0.1;  // so a second, and the other one two thirds of that
+  Report report(0, TaskOutcome::pending, 0.1, "");
+  report.share = 0.1;  // so a second, and the other one too
   sweep.network[1].send(0, report);
   while (sweep.master.step() != Master::Step::finished) {
   }
