@@ -8,6 +8,9 @@ namespace {
 constexpr double margin = 1.5;        // costs are estimates
 constexpr double nearly_whole = 0.9;  // starting takes some of it
 
+/// What it takes at least: nothing is longer than its own limit.
+TimeBudget::Seconds tried(const PendingTask& task) { return TimeBudget::Seconds(std::min(task.tried_s, task.limit_s)); }
+
 }  // namespace
 
 void TimeBudget::learn(double cost, Seconds took) {
@@ -29,15 +32,14 @@ bool TimeBudget::fits(const PendingTask& task, Seconds since_begin) const {
 }
 
 bool TimeBudget::ever_fits(const PendingTask& task) const {
-  return Seconds(task.tried_s) < nearly_whole * whole_ && expected(task) < margin * whole_;
+  return tried(task) < nearly_whole * whole_ && expected(task) < margin * whole_;
 }
 
 TimeBudget::Seconds TimeBudget::expected(const PendingTask& task) const {
-  const Seconds tried(task.tried_s);
   Pace pace = whole_tasks_;
   if (task.cost >= least_given_up_) pace = {pace.took + parts_.took, pace.cost + parts_.cost};
-  if (!(pace.cost > 0)) return tried;
-  return std::clamp(pace.took * (task.cost / pace.cost), tried, std::max(tried, Seconds(task.limit_s)));
+  if (!(pace.cost > 0)) return tried(task);
+  return std::clamp(pace.took * (task.cost / pace.cost), tried(task), Seconds(task.limit_s));
 }
 
 }  // namespace rodsweep

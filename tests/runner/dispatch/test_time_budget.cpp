@@ -75,6 +75,10 @@ TEST_CASE("a task's own limit bounds what it is expected to take") {
   task.limit_s = 95;  // more than before, when it was given up after 80 s
   task.tried_s = 80;
   CHECK(time.ever_fits(task));
+  task.limit_s = 10;  // less
+  task.tried_s = 95;
+  CHECK(time.expected(task).count() == Approx(10));
+  CHECK(time.ever_fits(task));
 }
 
 TEST_CASE("a sweep whose tasks ran for a whole limit in vain says which is the longest") {
