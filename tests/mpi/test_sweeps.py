@@ -426,14 +426,14 @@ class Outcomes(SweepCase):
         self.assert_same_results("unlimited.h5", "results/limited.h5")
 
     def test_a_task_that_no_start_has_time_for_is_named_and_ends_the_sweep_once_the_others_are_done(self):
-        path = job("lengthy", samples=1, segments=[6, 8, 400], guesses=["zero"], record={"solves": "summary"},
-                   time={"step_s": 0.001, "steps": 3000})
-        limit = ("--time-limit", "2")
+        path = job("lengthy", samples=1, segments=[6, 8, 2000], guesses=["zero"], record={"solves": "summary"},
+                   time={"step_s": 0.001, "steps": 1000})
+        limit = ("--time-limit", "5")    # ten times what the short ones take
         self.assert_exit(rodsweep(2, "run", path, *limit), STOPPED)  # it comes first, and nothing is known of it
         second = rodsweep(2, "run", path, *limit, "--resume")
         self.assert_exit(second, TOO_LONG)
         self.assertEqual(status("results/lengthy.h5")["outcomes"], {"ok": 2})
-        self.assertIn("no task that is left would end within a time limit of 2.0 s: task 2, the longest, would take about",
+        self.assertIn("no task that is left would end within a time limit of 5.0 s: task 2, the longest, would take about",
                       second.stderr)
         self.assertRegex(rodsweep(0, "status", "results/lengthy.h5").stdout, "what is left needs a longer time limit")
         bounded = rodsweep(2, "run", path, *limit, "--resume", "--task-time-limit", "1")
