@@ -147,7 +147,7 @@ class Schema(unittest.TestCase):
             paths[name] = f"{number}.json"
             with open(paths[name], "w", encoding="utf-8") as file:
                 json.dump(changed(changes), file)
-        said = rodsweep("validate", *paths.values())
+        said = rodsweep("validate", "--later", *paths.values())
         self.assertIn(said.returncode, (0, 2))
         lines = said.stdout.splitlines()
         return {name for name, path in paths.items() if any(line.startswith(path + ": sound") for line in lines)}
