@@ -43,6 +43,9 @@ class Rodsweep(CMakePackage):
         depends_on("py-h5py", type="run")
         depends_on("py-matplotlib", type="run")
         depends_on("py-pillow", type="run")
+        depends_on("py-pandas", type="run")
+        depends_on("py-xarray", type="run")
+        depends_on("py-jinja2", type="run")
 
     def cmake_args(self):
         return [
