@@ -30,7 +30,7 @@ from test_sweeps import STOPPED, TASKS_FAILED, job, rodsweep, status
 TASKS, KILLER = 2000, 1999
 RUN = ("--worker-timeout", "3")
 KEEP = ("--pause", "0.5", "--silence", "20")
-LIMITED = ("--time-limit", "25")  # of the first two times that the batch system gives
+LIMITED = ("--time-limit", "12")  # of the first two times that the batch system gives
 
 
 def drill_job():
@@ -50,11 +50,11 @@ class Killer(threading.Thread):
     def __init__(self, hosts, path, tell):
         super().__init__(daemon=True)
         self.hosts, self.path, self.tell, self.killed = hosts, path, tell, 0
+        self.over = threading.Event()
 
     def run(self):
         before = 0
-        while True:
-            time.sleep(0.01)
+        while not self.over.wait(0.01):
             try:
                 with h5py.File(self.path, "r", locking=False) as file:
                     starts, rank = int(file["timing/tasks/starts"][KILLER]), int(file["timing/tasks/rank"][KILLER])
@@ -221,6 +221,8 @@ class Drill:
             self.wait_until(lambda tasks=tasks: self.done() >= tasks)
             happens()
         self.batch.join(timeout=1000)
+        killer.over.set()  # a thread that reads a file keeps the interpreter from ending
+        killer.join()
         self.tell(f"it ended with {self.batch.code}")
         assert self.batch.code == TASKS_FAILED, self.batch.sweep.text()
         self.check(killer)

@@ -119,13 +119,17 @@ class TimeLimits(SlurmCase):
         return self.submit(*words, options=("--time=1", "--signal=B:USR1@5"), **others)
 
     def test_a_job_stops_before_its_limit_and_requeues_itself_until_all_is_done(self):
-        number = self.submit_short(self.path, stop_s=50)
+        path = job("longer", samples=600, segments=(15, 30), steps=40, record={"solves": "summary", "norms": "one"})
+        run_undisturbed(path, "longer-whole.h5")
+        number = self.submit_short(self.path, stop_s=45, job_file=path)
         found = self.wait_for_end(number, seconds=800)
         starts = status(self.path)["starts"]
         self.assertGreaterEqual(int(found["Restarts"]), 1, self.log())
         self.assertEqual([s["exit_code"] for s in starts], [4] * int(found["Restarts"]) + [ALL_DONE])
-        self.assertEqual(self.log().count("there is no time left for the rest"), int(found["Restarts"]), self.log())
-        self.assert_as_undisturbed()
+        self.assertEqual(self.log().count("left to do\n"), int(found["Restarts"]), self.log())
+        self.assert_whole(self.path)
+        self.assert_same_results("longer-whole.h5", self.path)
+        self.tell(f"{found['Restarts']} restarts")
 
     def test_tasks_longer_than_the_limit_end_the_job_and_are_named(self):
         path = job("lengthy", samples=1, segments=[10, 12, 14, 800], guesses=["zero"], record={"solves": "summary"},
