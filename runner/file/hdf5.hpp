@@ -167,6 +167,15 @@ void write_row(hid_t file, const std::string& path, hsize_t row, T value) {
   RowDataset(file, path).write(type_of<T>(), row, 1, &value);
 }
 
+/// The one number of a row.
+template <class T>
+T read_row(const RowDataset& rows, hsize_t row) {
+  if (rows.row_values() != 1) throw Damage(rows.path() + " has rows of several values");
+  T value{};
+  rows.read(type_of<T>(), row, 1, &value);
+  return value;
+}
+
 void write_attribute(hid_t object, const char* name, std::string_view value);
 void write_attribute(hid_t object, const char* name, std::int32_t value);
 bool has_attribute(hid_t file, const std::string& object, const char* name);

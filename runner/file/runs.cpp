@@ -83,9 +83,8 @@ std::vector<RunRow> read_runs(const hdf5::File& file) {
       visit_value(
           column, runs[row], [&](std::string& text) { text = hdf5::read_text_row(rows, row); },
           [&](auto& number) {
-            Stored<std::decay_t<decltype(number)>> stored{};
-            rows.read(hdf5::type_of<decltype(stored)>(), row, 1, &stored);
-            number = static_cast<std::decay_t<decltype(number)>>(stored);
+            using T = std::decay_t<decltype(number)>;
+            number = static_cast<T>(hdf5::read_row<Stored<T>>(rows, row));
           });
     }
   }

@@ -53,13 +53,6 @@ void check_rows(const RowRange& rows, std::int64_t width, const hdf5::RowDataset
     throw Damage(dataset.path() + " has axes of other lengths than /axes");
 }
 
-template <class T>
-T value_of(const hdf5::RowDataset& dataset, std::int64_t row) {
-  T value{};
-  dataset.read(hdf5::type_of<T>(), static_cast<hsize_t>(row), 1, &value);
-  return value;
-}
-
 }  // namespace
 
 TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(open_results(path)) {
@@ -109,7 +102,7 @@ bool TaskReader::read(std::int64_t index, TaskRecord& record) const {
     record.message = hdf5::read_text_row(message_, static_cast<hsize_t>(index));
     const auto outcome = outcome_called(outcomes_[static_cast<std::size_t>(index)]);
     record.outcome = outcome.value_or(TaskOutcome::error);
-    return outcome && task_checksum(index, record) == value_of<std::uint64_t>(checksum_, index);
+    return outcome && task_checksum(index, record) == hdf5::read_row<std::uint64_t>(checksum_, index);
   });
 }
 
@@ -120,8 +113,8 @@ bool TaskReader::read_intact(std::int64_t task, TaskRecord& record) const try {
 }
 
 TaskOrigin TaskReader::origin(std::int64_t task) const {
-  return {value_of<std::int32_t>(rank_, task), value_of<std::int32_t>(attempt_, task),
-          hdf5::read_text_row(host_, static_cast<hsize_t>(task)), value_of<double>(write_s_, task)};
+  return {hdf5::read_row<std::int32_t>(rank_, task), hdf5::read_row<std::int32_t>(attempt_, task),
+          hdf5::read_text_row(host_, static_cast<hsize_t>(task)), hdf5::read_row<double>(write_s_, task)};
 }
 
 }  // namespace rodsweep

@@ -140,10 +140,10 @@ std::string verdict(const std::string& text, const std::string& file) {
   return "";
 }
 
-std::string inside_word(const std::string& message) {
+std::string inside_word(const std::string& message, std::string_view input) {
   for (const char* word : {"json.exception", "std::", "bad_alloc", "basic_string", "vector::", "map::", "_M_", "H5T_",
                            "the job has no value", "is not a text"})
-    if (message.find(word) != std::string::npos) return word;
+    if (message.find(word) != std::string::npos && input.find(word) == std::string::npos) return word;
   return "";
 }
 
@@ -153,11 +153,12 @@ std::string fault_of(const std::string& refusal, const std::string& file) {
   for (std::string line; std::getline(lines, line);) {
     if (line.compare(0, file.size() + 2, file + ": ") != 0) return "a line does not begin with the file: " + line;
     const std::string rest = line.substr(file.size() + 2);
-    const bool of_all = rest.find("too many tasks") != std::string::npos ||
+    const bool of_all = rest.find("zero byte") != std::string::npos ||
+                        rest.find("too many tasks") != std::string::npos ||
                         rest.find("too large") != std::string::npos || rest.find(" more") == rest.size() - 5 ||
                         rest.compare(0, 5, "line ") == 0;
-    const std::size_t end = rest.find(": ");
-    if (!of_all && (end == std::string::npos || rest.find(' ') < end)) return "a line names no key: " + line;
+    if (!of_all && (rest.find(": ") == std::string::npos || rest[0] == '{' || rest[0] == '['))
+      return "a line names no key: " + line;
   }
   return "";
 }

@@ -3,6 +3,7 @@
 
 #include <random>
 #include <string>
+#include <string_view>
 
 #include "tests/runner/job_examples.hpp"
 
@@ -20,7 +21,7 @@ std::string verdict(const std::string& text, const std::string& file);
 /// "" where it is plain.
 std::string fault_of(const std::string& refusal, const std::string& file);
 
-/// A word of the program's insides in a message; "" if there is none.
-std::string inside_word(const std::string& message);
+/// A word of the program's insides in a message that is not in the input; "" if there is none.
+std::string inside_word(const std::string& message, std::string_view input = "");
 
 }  // namespace rodsweep

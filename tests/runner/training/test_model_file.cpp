@@ -285,6 +285,11 @@ TEST_CASE("settings and cards that cannot be are refused") {
   CHECK_THAT(refusal_after([](hid_t file) { H5Adelete(file, "multiplier_frame"); }),
              Contains("which measured stretch and shear in the world") &&
                  EndsWith("Use that revision, or train the model again"));
+  CHECK_THAT(refusal_after([](hid_t file) {
+               H5Adelete(file, "multiplier_frame");
+               H5Ldelete(file, "/runs/revision", H5P_DEFAULT);
+             }),
+             Contains("net.h5 is damaged or incomplete") && Contains("/runs/revision"));
 }
 
 TEST_CASE("a training of which no epoch has ended has no model to use, but can be looked at") {
