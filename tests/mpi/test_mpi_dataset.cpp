@@ -44,14 +44,14 @@ std::string fingerprint(const StoredSimulation& simulation) {
 }  // namespace
 
 TEST_CASE("ranks that read a data set together have what a process alone reads, though one of them sees the file") {
-  if (own_rank() == 0) make_data_set("shared.h5", ragged_job());
-  const DatasetReader data(own_rank() == 0 ? "shared.h5" : "nowhere.h5", MPI_COMM_WORLD);
+  if (own_rank() == 0) make_data_set("data.h5", ragged_job());
+  const DatasetReader data(own_rank() == 0 ? "data.h5" : "nowhere.h5", MPI_COMM_WORLD);
   REQUIRE(data.size() == 3);
   CHECK(broadcast(data.hash(), MPI_COMM_WORLD) == data.hash());
   for (std::int64_t i = 0; i < data.size(); ++i) {
     const StoredSimulation simulation = data.read(i);
     CHECK(simulation.systems.size() == 4);
-    const std::string alone = own_rank() == 0 ? fingerprint(DatasetReader("shared.h5").read(i)) : "";
+    const std::string alone = own_rank() == 0 ? fingerprint(DatasetReader("data.h5").read(i)) : "";
     CHECK(fingerprint(simulation) == broadcast(alone, MPI_COMM_WORLD));
   }
 }
