@@ -48,7 +48,8 @@ double EnergyLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>& d,
     loss += std::sqrt(ratio);
     if (!gradient) continue;
     // dE/dx0 = -2 v, v = P_k(A^) r_k, x0 = c d:  dE/dd = -2 (c v + (d.v) dc/dd),  dc/dd = (r^ - 2 c A^ d) / d.A^ d
-    const auto ds = part(d, a.first_place, s), v = part(v_, a.first_place, s);
+    const auto ds = part(d, a.first_place, s);
+    const auto v = part(v_, a.first_place, s);
     const double c = length[i], slope = best_length_ && curvature[i] > 0 ? dot(ds, v) / curvature[i] : 0;
     const double dloss = -1 / (std::sqrt(ratio) * a.solution_energy[i]);  // dL/dE * (-2)
     auto g = part(*gradient, a.first_place, s);

@@ -289,7 +289,7 @@ TEST_CASE("settings and cards that cannot be are refused") {
                H5Adelete(file, "multiplier_frame");
                H5Ldelete(file, "/runs/revision", H5P_DEFAULT);
              }),
-             Contains("net.h5 is damaged or incomplete") && Contains("/runs/revision"));
+             Contains("model.h5 is damaged or incomplete") && Contains("/runs/revision"));
 }
 
 TEST_CASE("a training of which no epoch has ended has no model to use, but can be looked at") {
