@@ -14,6 +14,7 @@ PORTABLE      ?= 0
 WERROR        ?= 0
 SANITIZE      ?= 0
 SKIP_PACKAGES ?= 0
+FUZZ_SECONDS  ?= 600
 
 yes = $(filter-out 0 no off,$(1))
 packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt $(1))
@@ -35,7 +36,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo report studies variants ablation pictures test test-packages test-long test-cluster drill test-arm bench sanitize schema docs format format-check tidy install uninstall clean
+.PHONY: help configure build demo report studies variants ablation pictures test test-packages test-long test-cluster drill test-arm bench sanitize fuzz schema docs format format-check tidy install uninstall clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
@@ -53,6 +54,7 @@ help:
 	@echo 'make install       PREFIX=$(PREFIX): program, jobs, analysis scripts, manual page, completion; make uninstall'
 	@echo 'make build         build only, into $(BUILD)/'
 	@echo 'make sanitize      unit tests under the address and undefined-behaviour sanitizers, in $(BUILD)-sanitize/'
+	@echo 'make fuzz          look for input that a reader of files crashes on, FUZZ_SECONDS=$(FUZZ_SECONDS) (tests/fuzz/README.md)'
 	@echo 'make schema        refresh jobs/schema.json and docs/keys.md after a change of the keys of jobs'
 	@echo 'make docs          the pages as a site, $(BUILD)/site/index.html'
 	@echo 'make format        clang-format the tree; make format-check only looks'
@@ -169,6 +171,15 @@ sanitize:
 	@cmake --build $(BUILD)-sanitize -j $(CORES) --target unit_tests
 	@ctest --preset sanitize --test-dir $(BUILD)-sanitize -j $(CORES)
 
+# By clang, whose coverage guides what is tried.
+fuzz: export CC = clang
+fuzz: export CXX = clang++
+fuzz:
+	@$(call packages,build run fuzz)
+	@$(call configure,sanitize,$(BUILD)-fuzz)
+	@cmake --build $(BUILD)-fuzz -j $(CORES) --target fuzzers
+	@tests/fuzz/run.sh $(BUILD)-fuzz/tests $(FUZZ_SECONDS)
+
 schema: build
 	@$(BUILD)/rodsweep schema >$(BUILD)/schema.json && mv $(BUILD)/schema.json jobs/schema.json
 	@docs/tools/keys.py --update
@@ -206,4 +217,4 @@ uninstall:
 	find "$$prefix"/share/{rodsweep,doc/rodsweep} -depth -type d -empty -delete; echo "Uninstalled from $$prefix."
 
 clean:
-	@for folder in $(BUILD) $(BUILD)-{sanitize,tidy,arm,portable,develop,debug}; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done
+	@for folder in $(BUILD) $(BUILD)-{sanitize,fuzz,tidy,arm,portable,develop,debug}; do [ ! -e $$folder/CMakeCache.txt ] || rm -rf $$folder; done
