@@ -10,14 +10,14 @@ each=$((seconds * (cores < ${#fuzzers[@]} ? cores : ${#fuzzers[@]}) / ${#fuzzers
 
 # As in the unit tests: Open MPI's hooks into malloc and the address sanitizer's exclude each other.
 export OMPI_MCA_memory=^patcher UBSAN_OPTIONS=print_stacktrace=1
-export ASAN_OPTIONS=allow_addr2line=1
+export ASAN_OPTIONS=allow_addr2line=1:detect_leaks=0  # what MPI keeps to the end
 
 fuzz() {
   local name=$1 seeds=()
   [ "$name" != jobs ] || seeds=("$jobs")
   mkdir -p "$folder/corpus/$name"
   if "$folder/fuzz_$name" -max_total_time="$each" -max_len=$([ "$name" = jobs ] && echo 20000 || echo 300) -timeout=60 \
-      -rss_limit_mb=4096 -detect_leaks=0 -print_final_stats=1 -artifact_prefix="$folder/corpus/found-$name-" \
+      -rss_limit_mb=4096 -print_final_stats=1 -artifact_prefix="$folder/corpus/found-$name-" \
       "$folder/corpus/$name" "${seeds[@]}" >"$folder/corpus/$name.log" 2>&1; then
     echo "fuzz_$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$folder/corpus/$name.log") inputs in $each s, nothing found"
     return
