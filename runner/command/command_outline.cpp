@@ -21,7 +21,7 @@ ArgumentOutline outline_of(const CLI::Option& option) {
   outline.value = option.get_type_name();
   outline.value.resize(std::min(outline.value.size(), outline.value.find(':')));  // what a check adds
   outline.optional_value = option.get_expected_min() == 0;
-  if (outline.optional_value && outline.value.front() == '[')  // as the help shows it
+  if (outline.optional_value && outline.value.rfind('[', 0) == 0)  // as the help shows it
     outline.value = outline.value.substr(1, outline.value.size() - 2);
   return outline;
 }

@@ -288,9 +288,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   limit_memory(options.memory_limit_gb ? 1e9 * *options.memory_limit_gb
                                        : (1 - memory_reserve) * host_memory() / where.host_workers);
   if (const std::string left = unfinished_text(path); !left.empty()) console.warn(left);
-  collectively(mpi.world(), [&] {
-    if (mpi.rank() == 0 && options.extend) refuse_crashing(*options.extend);
-  });
+  if (options.extend) by_rank_0(mpi.world(), [&] { refuse_crashing(*options.extend); });
   const auto extension = collectively(mpi.world(), [&] { return open_extension(options, path, plan); });
   const int begun =
       collectively(mpi.world(), [&] { return mpi.rank() == 0 && has_begun(options, path, extension) ? 1 : 0; });
@@ -303,9 +301,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
                                            options.extend ? std::vector{*options.extend} : std::vector<fs::path>());
   });
   if (!file.note().empty()) console.warn(file.note());
-  collectively(mpi.world(), [&] {
-    if (mpi.rank() == 0) give_up_what_was_begun_too_often(plan, file);
-  });
+  by_rank_0(mpi.world(), [&] { give_up_what_was_begun_too_often(plan, file); });
   const FileSummary before =
       collectively(mpi.world(), [&] { return continues && mpi.rank() == 0 ? inspect(path) : FileSummary(); });
 

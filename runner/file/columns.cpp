@@ -220,6 +220,8 @@ std::int64_t row_width(const Column& column, const AxisSizes& sizes) {
   return std::accumulate(extent.begin(), extent.end(), std::int64_t{1}, std::multiplies<>());
 }
 
+bool has_guesses(const Column& column) { return !column.axes.empty() && column.axes.front() == Axis::guess; }
+
 bool is_timing(const Column& column) { return std::string_view(column.path).substr(0, 8) == "/timing/"; }
 
 char* data_of(const Column& column, TaskRecord& record) {

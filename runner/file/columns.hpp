@@ -39,6 +39,9 @@ std::vector<std::int64_t> row_extent(const Column& column, const AxisSizes& size
 /// Values in one row.
 std::int64_t row_width(const Column& column, const AxisSizes& sizes);
 
+/// Is its first axis after the row that of the guesses?
+bool has_guesses(const Column& column);
+
 /// Does it hold what may differ between two runs of the same job, and is in no checksum?
 bool is_timing(const Column& column);
 

@@ -21,9 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Is its first axis after the row that of the guesses?
-bool has_guesses(const Column& column) { return !column.axes.empty() && column.axes.front() == Axis::guess; }
-
 /// Guess `guess` of the columns of a record that has so many.
 struct GuessPlace {
   std::size_t guess, guesses;

@@ -21,10 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-struct Sizes {
-  std::int64_t guesses, tolerances;
-};
-
 /// What of a column differs in a task: how many values, and the largest difference.
 struct Found {
   std::int64_t values = 0;
@@ -42,8 +38,6 @@ void compare_values(const Value* a, const Value* b, std::size_t count, Found& fo
   }
 }
 
-bool has_guesses(const Column& column) { return !column.axes.empty() && column.axes.front() == Axis::guess; }
-
 /// Does it say where frames of this file are, or how many of them its longest task has?
 bool is_place(const Column& column) {
   return std::string_view(column.path).rfind("/trajectories/", 0) == 0 && column.rows == Rows::task;
@@ -56,7 +50,7 @@ struct Read {
 };
 
 /// Values of a row that are of one guess.
-std::size_t guess_block(const Column& column, const Sizes& sizes) {
+std::size_t guess_block(const Column& column, const AxisSizes& sizes) {
   return column.axes.size() > 1 ? static_cast<std::size_t>(sizes.tolerances) : 1;
 }
 
@@ -65,8 +59,8 @@ class Comparison {
   Comparison(const fs::path& a, const Plan& plan_a, const fs::path& b, const Plan& plan_b)
       : a_(a),
         b_(b),
-        sizes_a_{static_cast<std::int64_t>(plan_a.guess_labels().size()), tolerances()},
-        sizes_b_{static_cast<std::int64_t>(plan_b.guess_labels().size()), tolerances()},
+        sizes_a_(axis_sizes(plan_a)),
+        sizes_b_(axis_sizes(plan_b)),
         plan_a_(&plan_a),
         same_frames_(frames_every(plan_a) == frames_every(plan_b)),
         found_(columns().size()) {}
@@ -93,7 +87,6 @@ class Comparison {
   SweepComparison finish();
 
  private:
-  static std::int64_t tolerances() { return static_cast<std::int64_t>(tolerance_ladder().size()); }
   static std::int64_t frames_every(const Plan& plan) { return plan.job().values["record"]["trajectory_every"]; }
 
   void compare(const TaskPair& pair, const Read& a, const Read& b);
@@ -103,7 +96,7 @@ class Comparison {
   void add_time(const std::string& what, double a, double b);
 
   TaskReader a_, b_;
-  Sizes sizes_a_, sizes_b_;
+  AxisSizes sizes_a_, sizes_b_;
   const Plan* plan_a_;
   bool same_frames_;
   std::vector<ColumnDifference> found_;  ///< by place in columns()

@@ -4,18 +4,13 @@
 #include "runner/dataset/dataset_reader.hpp"
 #include "runner/job/checksum.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "tests/mpi/world.hpp"
 #include "tests/runner/data_set_examples.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;
 
 namespace {
-
-int own_rank() {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank;
-}
 
 Json ragged_job() {
   Json job = data_job();

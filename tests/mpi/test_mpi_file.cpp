@@ -5,26 +5,11 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "tests/mpi/world.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;
-
-namespace {
-
-int own_rank() {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank;
-}
-
-int rank_count() {
-  int size = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
-  return size;
-}
-
-}  // namespace
 
 TEST_CASE("ranks that write their tasks in any order leave the file that one rank leaves") {
   const Plan plan = plan_of(full_job());

@@ -3,24 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "runner/mpi/mpi_session.hpp"
+#include "tests/mpi/world.hpp"
 
 using namespace rodsweep;
-
-namespace {
-
-int world_rank() {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank;
-}
-
-int world_size() {
-  int size = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
-  return size;
-}
-
-}  // namespace
 
 TEST_CASE("what all ranks do without an error raises none") {
   int done = 0;
@@ -30,15 +15,15 @@ TEST_CASE("what all ranks do without an error raises none") {
 
 TEST_CASE("an error of rank 0 is thrown by every rank, in its words") {
   const auto part = [] {
-    if (world_rank() == 0) throw std::runtime_error("job.json: no such file");
+    if (own_rank() == 0) throw std::runtime_error("job.json: no such file");
   };
   CHECK_THROWS_WITH(collectively(MPI_COMM_WORLD, part), "job.json: no such file");
 }
 
 TEST_CASE("of several errors the lowest rank's is thrown by every rank, and names it") {
-  if (world_size() == 1) return;
+  if (rank_count() == 1) return;
   const auto part = [] {
-    if (world_rank() > 0) throw std::runtime_error("cannot open out.h5");
+    if (own_rank() > 0) throw std::runtime_error("cannot open out.h5");
   };
   CHECK_THROWS_WITH(collectively(MPI_COMM_WORLD, part), "rank 1: cannot open out.h5");
 }
@@ -46,13 +31,13 @@ TEST_CASE("of several errors the lowest rank's is thrown by every rank, and name
 TEST_CASE("a text of any size travels from rank 0") {
   for (const std::size_t size : {0, 5, 3000000}) {
     const std::string text(size, 'x');
-    CHECK(broadcast(world_rank() == 0 ? text : "mine", MPI_COMM_WORLD) == text);
+    CHECK(broadcast(own_rank() == 0 ? text : "mine", MPI_COMM_WORLD) == text);
   }
 }
 
 TEST_CASE("placement counts workers without the master, and cores once") {
   const Placement here = placement(MPI_COMM_WORLD);
-  CHECK(here.workers == std::max(1, world_size() - 1));
+  CHECK(here.workers == std::max(1, rank_count() - 1));
   CHECK(here.cores >= 1);
   CHECK(here.oversubscribed == (here.workers > here.cores));
 }
