@@ -5,7 +5,8 @@ bench_limits.py RODSWEEP MPIRUN [MOST_TASKS]
 
   start   wall time of a sweep of one task, over the number of ranks
   begin   wall time until tasks begin (plan, file), and largest memory of master and worker, over the number of tasks
-  rate    tasks of next to no work a second, over the number of ranks
+  rate    tasks of next to no work a second, over the number of workers, and the processor time that a task takes of
+          the master, which bounds how many a second it can hand out
 
 Ranks beyond the cores wait for each other: their times are upper bounds.
 """
@@ -32,7 +33,7 @@ class Sweeps:
         self.rodsweep, self.mpirun = rodsweep, mpirun
 
     def run(self, ranks, tasks, *options):
-        """Wall time, and the largest resident memory of every rank in MB."""
+        """Wall time, and of every rank the largest resident memory in MB and the processor time."""
         with open("job.json", "w") as file:
             json.dump({**JOB, "samples": tasks}, file)
         begin = time.monotonic()
@@ -43,19 +44,21 @@ class Sweeps:
         if not os.path.exists("out.h5"):
             sys.exit(done.stderr)
         os.remove("out.h5")
-        memory = []
+        memory, processor = [], []
         for rank in range(ranks):
-            with open(f"rank-{rank}.mb") as file:
-                memory.append(float(file.read()))
-        return seconds, memory
+            with open(f"rank-{rank}.json") as file:
+                usage = json.load(file)
+            memory.append(usage["mb"])
+            processor.append(usage["processor_s"])
+        return seconds, memory, processor
 
 
 def as_rank(command):
-    """Runs what a rank is to run, and writes down how much memory it took."""
+    """Runs what a rank is to run, and writes down what it took."""
     process = subprocess.Popen(command)
     _, _, usage = os.wait4(process.pid, 0)
-    with open(f"rank-{os.environ['OMPI_COMM_WORLD_RANK']}.mb", "w") as file:
-        file.write(str(usage.ru_maxrss / 1024))
+    with open(f"rank-{os.environ['OMPI_COMM_WORLD_RANK']}.json", "w") as file:
+        json.dump({"mb": usage.ru_maxrss / 1024, "processor_s": usage.ru_utime + usage.ru_stime}, file)
     sys.exit(0)  # so that mpirun lets the other ranks write down theirs
 
 
@@ -70,15 +73,16 @@ def main():
             print(f"limits: start of {ranks} ranks: {sweeps.run(ranks, 1)[0]:.2f} s", flush=True)
         tasks = 1000
         while tasks <= most:
-            seconds, memory = sweeps.run(3, tasks, "--time-limit", "0.001")
+            seconds, memory, _ = sweeps.run(3, tasks, "--time-limit", "0.001")
             print(f"limits: begin of {tasks} tasks: {seconds:.2f} s, master {memory[0]:.0f} MB, workers "
                   f"{max(memory[1:]):.0f} MB", flush=True)
             tasks *= 10
         tasks = 20_000
         for ranks in (2, 3, 5, 9, 17):
-            begin = sweeps.run(ranks, tasks, "--time-limit", "0.001")[0]
-            print(f"limits: rate of {ranks - 1} workers: {tasks / (sweeps.run(ranks, tasks)[0] - begin):.0f} tasks/s",
-                  flush=True)
+            begin, _, idle = sweeps.run(ranks, tasks, "--time-limit", "0.001")
+            end, _, busy = sweeps.run(ranks, tasks)
+            print(f"limits: rate of {ranks - 1} workers: {tasks / (end - begin):.0f} tasks/s, "
+                  f"{1e6 * (busy[0] - idle[0]) / tasks:.0f} us of the master's processor each", flush=True)
 
 
 if __name__ == "__main__":
