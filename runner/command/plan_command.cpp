@@ -72,6 +72,17 @@ std::string slurm_text(const Estimate& needs, const PlanOptions& options) {
       slurm_time(time_limit_for(needs.longest_s)), needs.longest, duration_text(needs.longest_s));
 }
 
+/// Says so where the workers want more than a single master hands out; else nothing.
+std::string master_text(const Estimate& needs, int workers) {
+  const double wanted = needs.tasks_per_s(workers);
+  const int shards = shards_for(wanted);
+  if (shards == 1) return "";
+  return fmt::format(
+      "master   {} workers take {:.0f} tasks a second, one master hands out about {:.0f}: divide them among {} shards "
+      "(run --shard, then merge)\n",
+      workers, wanted, master_tasks_per_s, shards);
+}
+
 nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probes, const PlanOptions& options) {
   nlohmann::ordered_json json{{"job", plan.job().path.native()},
                               {"name", plan.job().name},
@@ -91,6 +102,8 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
   json["workers"] = workers;
   json["wall_seconds"] = needs.wall_s(workers);
   json["time_limit_seconds"] = time_limit_for(needs.wall_s(workers));
+  json["tasks_per_second"] = needs.tasks_per_s(workers);
+  json["shards"] = shards_for(needs.tasks_per_s(workers));
   json["longest_task"] = needs.longest;
   json["longest_task_seconds"] = needs.longest_s;
   json["least_time_limit_seconds"] = time_limit_for(needs.longest_s);
@@ -133,6 +146,7 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
                         needs.core_s / 3600, duration_text(needs.wall_s(workers)), workers, workers == 1 ? "" : "s",
                         probes.size(), probes.size() == 1 ? "" : "s", duration_text(shortest->seconds),
                         duration_text(longest->seconds));
+    text += master_text(needs, workers);
     text += slurm_text(needs, options);
     const auto most = std::max_element(probes.begin(), probes.end(), [](const Probe& a, const Probe& b) {
                         return a.memory_bytes < b.memory_bytes;

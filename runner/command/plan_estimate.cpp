@@ -1,6 +1,7 @@
 #include "runner/command/plan_estimate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "runner/experiment/host_memory.hpp"
@@ -73,6 +74,7 @@ std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate) {
 
 Estimate estimate(const Plan& plan, const std::vector<Probe>& probes) {
   Estimate all;
+  all.tasks = plan.size();
   for (const Task& task : plan.tasks()) {
     const double seconds = task.cost * rate(probes, task.cost);
     all.core_s += seconds;
@@ -82,6 +84,12 @@ Estimate estimate(const Plan& plan, const std::vector<Probe>& probes) {
 }
 
 double Estimate::wall_s(int workers) const { return std::max(longest_s, core_s / workers); }
+
+double Estimate::tasks_per_s(int workers) const { return static_cast<double>(tasks) / wall_s(workers); }
+
+int shards_for(double tasks_per_s) {
+  return std::max(1, static_cast<int>(std::ceil(tasks_per_s / (master_tasks_per_s / 2))));
+}
 
 double time_limit_for(double wall_s) {
   constexpr double margin = 1.5, stop_s = 210, start_s = 60;

@@ -47,12 +47,21 @@ TEST_CASE("when time is proportional to cost the estimate is exact, also from tr
   CHECK(needs.longest_s == Approx(seconds_per_cost * plan.task(3).cost));
   CHECK(needs.wall_s(2) == Approx(needs.core_s / 2));
   CHECK(needs.wall_s(1000) == needs.longest_s);
+  CHECK(needs.tasks_per_s(2) == Approx(4 / needs.wall_s(2)));
   if (seconds_per_cost > 1e-6) {
     CHECK(probes.back().steps < 1000);
     CHECK(probes.back().of_steps == 1000);
   } else {
     CHECK(probes.back().steps == 1000);
   }
+}
+
+TEST_CASE("no shard's master hands out more than half of what it can") {
+  CHECK(shards_for(0.1) == 1);
+  CHECK(shards_for(0.5 * master_tasks_per_s) == 1);
+  CHECK(shards_for(0.51 * master_tasks_per_s) == 2);
+  const double wanted = GENERATE(3e3, 2e4, 1e6);
+  CHECK(wanted / shards_for(wanted) <= master_tasks_per_s / 2);
 }
 
 TEST_CASE("a probe that fails says so and is extrapolated from the steps that it took") {
