@@ -107,7 +107,7 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop) {
   };
   for (int s = 0; s < time.steps; ++s) {
     if (stop && stop()) return false;
-    keep([&](int, Member& member) { return !member.simulation.out_of_time(s, watch.seconds()); });
+    keep([&](int, Member& member) { return !member.simulation.out_of_time(watch.seconds()); });
     if (left.empty()) break;
     const Stopwatch step_watch;
     const std::vector<StepReport>& reports = step(stepper, members, s);

@@ -18,7 +18,8 @@
 namespace rodsweep {
 namespace {
 
-/// Runs the steps; sets outcome and message. Returns false when abandoned.
+/// Builds the scene and its systems and runs the steps; sets outcome and message. Returns false when abandoned. Throws
+/// InterruptedComputation in the middle of either: without ratios, since not every guess was tried on the last system.
 bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop,
               const Stopwatch& watch) {
   const auto is_late = [&] { return spec.time_limit_s > 0 && watch.seconds() > spec.time_limit_s; };
@@ -35,17 +36,10 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   SimulationLog simulation(task, spec, record, scene);
   for (int step = 0; step < spec.time.steps; ++step) {
     if (stop && stop()) return false;
-    if (simulation.out_of_time(step, watch.seconds())) break;
+    if (simulation.out_of_time(watch.seconds())) break;
     solve.take_elapsed_s();
     const Stopwatch step_watch;
-    StepReport report;
-    try {
-      report = stepper.step(*projection);
-    } catch (const InterruptedComputation&) {
-      if (stop && stop()) return false;
-      simulation.out_of_time(step, watch.seconds());
-      return true;  // without ratios: not every guess was tried on the last system
-    }
+    const StepReport report = stepper.step(*projection);
     record.rest_s[static_cast<std::size_t>(step)] = static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
     if (!simulation.finish_step(step, scene, report, stepper.constraint_dt())) break;
   }
@@ -61,6 +55,9 @@ bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
   bool finished = true;
   try {
     finished = simulate(task, spec, record, stop, watch);
+  } catch (const InterruptedComputation&) {
+    finished = !(stop && stop());
+    if (finished) end_late(spec, record);
   } catch (const std::bad_alloc&) {
     record.outcome = TaskOutcome::error;
     record.message = out_of_memory_text();

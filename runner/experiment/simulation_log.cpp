@@ -43,6 +43,14 @@ void log_segments(const Scene& scene, TaskRecord& record) {
 
 }  // namespace
 
+void end_late(const TaskSpec& spec, TaskRecord& record) {
+  int& step = record.steps_done[0];
+  step = std::max(step, 0);  // it has its fill value until the scene is built
+  record.outcome = TaskOutcome::timed_out;
+  record.message = fmt::format("step {}: the time limit of {:g} s has passed (task_time_limit_s or --task-time-limit)",
+                               step, spec.time_limit_s);
+}
+
 SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene)
     : task_(task), spec_(spec), record_(record) {
   for (const Rod& rod : scene.rods) {
@@ -97,10 +105,9 @@ void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepRep
   record_.deepest_penetration[0] = std::fmax(record_.deepest_penetration[0], report.penetration);
 }
 
-bool SimulationLog::out_of_time(int step, double elapsed_s) {
+bool SimulationLog::out_of_time(double elapsed_s) {
   if (spec_.time_limit_s <= 0 || elapsed_s <= spec_.time_limit_s) return false;
-  fail(TaskOutcome::timed_out, step,
-       fmt::format("the time limit of {:g} s has passed (task_time_limit_s or --task-time-limit)", spec_.time_limit_s));
+  end_late(spec_, record_);
   return true;
 }
 

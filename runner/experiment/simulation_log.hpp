@@ -13,13 +13,16 @@
 
 namespace rodsweep {
 
+/// Ends a task whose time limit has passed: in the step that it was in, or while its systems were built for the first.
+void end_late(const TaskSpec& spec, TaskRecord& record);
+
 class SimulationLog {
  public:
   /// `scene` at the start, which is frame 0. All but the scene must outlive this.
   SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene);
 
   /// Ends the task if its time limit has passed: true.
-  bool out_of_time(int step, double elapsed_s);
+  bool out_of_time(double elapsed_s);
 
   /// `scene` after the step. False: the task has ended here, by a failure.
   bool finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "solver/linear/interruption.hpp"
 #include "solver/numbers/lane_vectors.hpp"
 #include "solver/rod/joint_kernels.hpp"
 
@@ -15,6 +16,8 @@ LinearSystem::LinearSystem(const Rod& rod)
       displacements_(rod.segments.size()),
       balance_(rod),
       balancing_(rod.segments.size()) {
+  const std::int64_t a_third_ns = 500ll * rod.joint_count();  // with a million joints this lasts seconds
+  check_interrupted(a_third_ns);
   refuse_static_joints(rod);  // their rows would be alpha~ alone, and must not be singular
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
@@ -32,7 +35,9 @@ LinearSystem::LinearSystem(const Rod& rod)
     sides_.insert(sides_.end(), sides.begin(), sides.end());
     side_start_.push_back(static_cast<int>(sides_.size()));
   }
+  check_interrupted(a_third_ns);
   matrix_ = BlockMatrix(rod.joint_count(), couplings);
+  check_interrupted(a_third_ns);
   if (matrix_.block_count() >= ConstraintProduct::least_blocks) product_.emplace(rod);
 
   std::vector<bool> written(matrix_.blocks.size(), false);

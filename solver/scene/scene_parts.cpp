@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "solver/linear/interruption.hpp"
 #include "solver/numbers/rotation.hpp"
 
 namespace rodsweep {
@@ -32,6 +33,7 @@ std::vector<SegmentSpec> segments_through(const std::vector<Vector3>& vertices, 
 }
 
 Rod chain(const std::vector<SegmentSpec>& segments, const RodParameters& p, double force_n, bool straight) {
+  check_interrupted(500ll * static_cast<std::int64_t>(segments.size()));
   std::vector<JointSpec> joints;
   for (int b = 1; b < static_cast<int>(segments.size()); ++b) {
     joints.push_back(joint_between(segments, b - 1, b, p, force_n));

@@ -62,8 +62,25 @@ TEST_CASE("a time limit and a stop are met in the middle of a solve") {
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
   int asked = 0;
-  CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, [&] { return ++asked > 2; }));
+  const auto stop = [&] { return record.steps_done[0] == 0 && ++asked > 2; };  // once everything is built
+  CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, stop));
   CHECK(record.steps_done[0] == 0);
+}
+
+TEST_CASE("a time limit and a stop are met while scene and systems are built") {
+  Json job = with("/scene/segments", "20000", job_with(R"(["zero"])"));
+  job["task_time_limit_s"] = 1e-9;
+  const TaskRecord late = evaluated(job, TaskOutcome::timed_out);
+  CHECK(late.steps_done[0] == 0);
+  CHECK(late.message.find("step 0: the time limit of 1e-09 s has passed") == 0);
+  CHECK(std::isnan(late.length_drift[0]));
+
+  job["task_time_limit_s"] = 0;
+  const Plan plan = plan_of(job);
+  TaskRecord record;
+  record.prepare(plan.task(0), axis_sizes(plan));
+  CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, [] { return true; }));
+  CHECK(record.steps_done[0] == -1);  // not so far as to log anything
 }
 
 TEST_CASE("with CG as the reference the counts are those beside the direct solve, which is not run") {
