@@ -32,7 +32,8 @@ std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
     rows[Rows::task] = {task.index, 1};
     if (contact) rows[Rows::contact_task] = rows[Rows::task], rows[Rows::contact_step] = rows[Rows::step];
     if (balance) rows[Rows::balanced_segment] = rows[Rows::system_segment];
-    rows[Rows::frame_segment].count = task.frames * task.segments;
+    if (__builtin_mul_overflow(task.frames, task.segments, &rows[Rows::frame_segment].count))
+      throw Damage("a task has rows outside /trajectories");
     rows[Rows::segment].count = task.frames > 0 ? task.segments : 0;
   }
   return tasks;

@@ -11,7 +11,7 @@ import time
 import types
 import unittest
 
-from test_sweeps import ALL_DONE, MPIRUN, RODSWEEP, STOPPED, SweepCase, TASKS_FAILED, USER_ERROR, command, job, kill_all, \
+from test_sweeps import ALL_DONE, RODSWEEP, STOPPED, SweepCase, TASKS_FAILED, USER_ERROR, command, job, kill_all, \
     long_job, ranks_of, rodsweep, start, status, wait_for_tasks
 from test_training import TrainingCase, train_job
 
