@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <limits>
 
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
@@ -153,6 +154,15 @@ TEST_CASE("a state byte that is neither 0 nor 1 is damage") {
   hdf5::write_row<std::uint8_t>(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/tasks/state", 4, 7);
   CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("/tasks/state of task 4 is 7, neither 0 nor 1"));
   CHECK_THAT(resume_refusal(folder / "a.h5", plan), Contains("/tasks/state of task 4 is 7, neither 0 nor 1"));
+}
+
+TEST_CASE("frames whose rows no number can count are damage") {
+  const TemporaryFolder folder;
+  make_file(folder / "a.h5", plan_of(full_job()), 2);
+  hdf5::write_row<std::int64_t>(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/tasks/frames", 0,
+                                std::numeric_limits<std::int64_t>::max());
+  CHECK_THAT(message_of<FileError>([&] { verify(folder / "a.h5"); }),
+             Contains("a task has rows outside /trajectories"));
 }
 
 TEST_CASE("a file of another schema version is refused with both versions") {
