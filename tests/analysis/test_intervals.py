@@ -27,6 +27,24 @@ class Centres(unittest.TestCase):
 
 
 class Intervals(unittest.TestCase):
+    def test_medians_of_several_are_those_of_each(self):
+        generator = np.random.default_rng(3)
+        values = {"flat": generator.normal(size=9), "deep": generator.normal(size=(9, 2, 3)),
+                  "gaps": np.where(generator.random((9, 4)) < 0.3, np.nan, 1.0) * generator.normal(size=(9, 4))}
+        draws = np.array([0, 0, 1, 2, 3, 4, 5, 5, 6])
+        together = intervals.medians(values, draws)
+        self.assertEqual(list(together), list(values))
+        for name, of in values.items():
+            alone = intervals.median(of, draws)
+            for part in ("value", "low", "high", "count"):
+                np.testing.assert_array_equal(getattr(together[name], part), getattr(alone, part), name)
+        self.assertEqual(intervals.medians({}), {})
+
+    def test_without_resamples_there_is_a_value_and_no_interval(self):
+        estimate = intervals.mean(np.arange(8.0), resamples=0)
+        self.assertEqual(float(estimate.value), 3.5)
+        self.assertTrue(np.isnan([estimate.low, estimate.high]).all())
+
     def test_equal_values_have_an_interval_of_no_width(self):
         estimate = intervals.mean(np.full(5, 0.5))
         self.assertEqual((estimate.low, estimate.high), (0.5, 0.5))

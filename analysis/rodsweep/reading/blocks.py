@@ -61,45 +61,47 @@ def _measured(file, sims, title, panel, settings, index, newton):
     else:
         direct = timings.direct_times(file, sims)
         if np.isfinite(direct["direct_us"]).any():
-            parts["direct_times"] = {name: intervals.median(values, sims.sample)[0] for name, values in direct.items()}
+            parts["direct_times"] = {name: e[0] for name, e in intervals.medians(direct, sims.sample).items()}
     return Block(title, panel.scene, settings, sims, **parts)
 
 
 def _steps(file, sims):
-    figures = measures.step_figures(file, sims)
-    found = {}
-    for name in ("newton_iterations", *measures.LARGEST):
-        values = getattr(figures, name)
-        if np.isfinite(values).any():
-            found[name] = (intervals.median(values, sims.sample), np.fmax.reduce(values, axis=0))
-    return found
+    figures = vars(measures.step_figures(file, sims))
+    there = {name: values for name, values in figures.items() if np.isfinite(values).any()}
+    if not sims.closed_loop:  # one trajectory for all guesses
+        there = {name: values[:, :1] for name, values in there.items()}
+    guesses = sims.task.shape[1]
+    return {name: (estimate.broadcast(guesses), np.broadcast_to(np.fmax.reduce(there[name], axis=0), guesses))
+            for name, estimate in intervals.medians(there, sims.sample).items()}
 
 
 def _ratios(file, sims, newton):
-    if file.zero is None:
-        return {}
+    return {} if file.zero is None else {**_own_ratios(file, sims, newton), "beside": _beside(file, sims, newton)}
+
+
+def _own_ratios(file, sims, newton):
     ratios = measures.cg_ratios(file, sims, newton)
-    per_solve = intervals.mean(ratios.iterations_per_solve[:, file.zero], sims.sample).value
-    beside = {name: intervals.mean(measures.cg_ratios(file, sims, of, counted).ratio, sims.sample)
-              for name, (of, counted) in BESIDE[newton].items()}
+    per_solve = intervals.mean(ratios.iterations_per_solve[:, file.zero], resamples=0).value
     return {"ratio": intervals.mean(ratios.ratio, sims.sample), "unreached": np.nansum(ratios.unreached, axis=0),
-            "beside": {name: e for name, e in beside.items() if np.isfinite(e.value).any()},
             "zero_iterations": per_solve if newton == "first" else None}
+
+
+def _beside(file, sims, newton):
+    found = {name: intervals.mean(measures.cg_ratios(file, sims, of, counted).ratio, sims.sample)
+             for name, (of, counted) in BESIDE[newton].items()}
+    return {name: estimate for name, estimate in found.items() if np.isfinite(estimate.value).any()}
 
 
 def _times(file, sims, newton):
     by_newton = timings.times(file, sims)
     part = by_newton[newton]
-
-    def medians(values):
-        return {name: intervals.median(v, sims.sample) for name, v in values.items()}
-
-    found = {"times": medians(per_solve_us(part)), "interruptions": timings.interruptions(by_newton["all"], sims),
-             "speedup_over_direct": medians(timings.speedups(by_newton, newton, "direct"))}
+    timed = {"times": per_solve_us(part), "speedup_over_direct": timings.speedups(by_newton, newton, "direct")}
     if file.zero is not None:
-        found["speedup"] = medians(timings.speedups(by_newton, newton))
-        found["direct_speedup"] = medians(timings.direct_speedups(by_newton, newton, file.zero))
-    return found
+        timed["speedup"] = timings.speedups(by_newton, newton)
+        timed["direct_speedup"] = timings.direct_speedups(by_newton, newton, file.zero)
+    found = intervals.medians({(kind, name): v for kind, of in timed.items() for name, v in of.items()}, sims.sample)
+    return {"interruptions": timings.interruptions(by_newton["all"], sims),
+            **{kind: {name: found[kind, name] for name in of} for kind, of in timed.items()}}
 
 
 def per_solve_us(part):

@@ -30,16 +30,41 @@ class Estimate:
     count: np.ndarray
 
     def __getitem__(self, index):
-        return Estimate(self.value[index], self.low[index], self.high[index], self.count[index])
+        return self._each(lambda part: part[index])
+
+    def broadcast(self, shape):
+        return self._each(lambda part: np.broadcast_to(part, shape))
+
+    def reshape(self, shape):
+        return self._each(lambda part: part.reshape(shape))
+
+    def _each(self, of):
+        return Estimate(of(self.value), of(self.low), of(self.high), of(self.count))
 
 
 def mean(values, draws=None, level=LEVEL, resamples=RESAMPLES):
-    """Mean over the first axis, NaN left out per column; `draws` labels the draw of each simulation."""
+    """Mean over the first axis, NaN left out per column; `draws` labels the draw of each simulation. Without resamples
+    it has no interval."""
     return _estimate(values, draws, level, resamples, _weighted_means)
 
 
 def median(values, draws=None, level=LEVEL, resamples=RESAMPLES):
     return _estimate(values, draws, level, resamples, _weighted_medians)
+
+
+def medians(values, draws=None):
+    """{name: Estimate} of {name: values}, each as median() finds it, from one set of resamples: of many simulations these
+    cost more than the medians."""
+    values = {name: np.asarray(of, dtype=float) for name, of in values.items()}
+    if not values:
+        return {}
+    found = median(np.concatenate([of.reshape(len(of), -1) for of in values.values()], axis=1), draws)
+    begin, estimates = 0, {}
+    for name, of in values.items():
+        end = begin + int(np.prod(of.shape[1:]))
+        estimates[name] = found[begin:end].reshape(of.shape[1:])
+        begin = end
+    return estimates
 
 
 def ratio_of_sums(numerator, denominator, draws=None, level=LEVEL, resamples=RESAMPLES):
@@ -78,11 +103,12 @@ def _estimate(values, draws, level, resamples, statistic, parts=1):
     resamples = min(resamples, max(FEWEST_RESAMPLES, MOST_DRAWN // groups))
     finite = np.isfinite(values).all(axis=2)
     drawn = _distinct(draws, finite, groups)
-    value = statistic(values, finite, np.ones((1, len(values))))[0]
+    value = statistic(values, finite)(np.ones((1, len(values))))[0]
     low, high = np.full(columns, np.nan), np.full(columns, np.nan)
-    uncertain = np.flatnonzero(drawn >= FEWEST_DRAWS)
+    uncertain = np.flatnonzero((drawn >= FEWEST_DRAWS) & (resamples > 0))
     for block in np.array_split(uncertain, max(1, -(-len(uncertain) * resamples * 8 // BLOCK_BYTES))):
-        resampled = _resampled(values[:, block], finite[:, block], draws, groups, resamples, statistic)
+        of = slice(None) if len(block) == columns else block  # no copy
+        resampled = _resampled(statistic(values[:, of], finite[:, of]), len(block), draws, groups, resamples)
         for n in np.unique(drawn[block]):
             same = drawn[block] == n
             tail = special.ndtr(-np.sqrt(n / (n - 1)) * special.stdtrit(n - 1, (1 + level) / 2))
@@ -98,34 +124,50 @@ def _distinct(draws, finite, groups):
     return found.sum(axis=0)
 
 
-def _resampled(values, finite, draws, groups, resamples, statistic):
+def _resampled(statistic, columns, draws, groups, resamples):
     """The statistic of every resample, [resample, column]."""
     generator = np.random.Generator(np.random.PCG64(20210))
-    found, at_once = np.empty((resamples, values.shape[1])), max(1, BLOCK_BYTES // (16 * len(values)))
-    for begin in range(0, resamples if values.shape[1] else 0, at_once):
+    found, at_once = np.empty((resamples, columns)), max(1, BLOCK_BYTES // (16 * len(draws)))
+    for begin in range(0, resamples if columns else 0, at_once):
         size = min(at_once, resamples - begin)
         weights = generator.multinomial(groups, np.full(groups, 1 / groups), size=size)[:, draws].astype(float)
-        found[begin:begin + size] = statistic(values, finite, weights)
+        found[begin:begin + size] = statistic(weights)
     return found
 
 
-def _weighted_means(values, finite, weights):
-    return _weighted_ratios(np.concatenate([values, np.ones(values.shape)], axis=2), finite, weights)
+# Each is a function of values [simulation, column, part] and which of them are finite [simulation, column], and gives
+# one of weights [resample, simulation]: what all resamples share is done once.
 
 
-def _weighted_ratios(values, finite, weights):
-    above, below = (weights @ np.where(finite, values[..., k], 0) for k in (0, 1))
-    return np.divide(above, below, out=np.full(below.shape, np.nan), where=below > 0)
+def _weighted_means(values, finite):
+    return _weighted_quotients(np.where(finite, values[..., 0], 0), finite.astype(float))
 
 
-def _weighted_medians(values, finite, weights):
+def _weighted_ratios(values, finite):
+    return _weighted_quotients(*(np.where(finite, values[..., k], 0) for k in (0, 1)))
+
+
+def _weighted_quotients(numerator, denominator):
+    def quotients(weights):
+        above, below = weights @ numerator, weights @ denominator
+        return np.divide(above, below, out=np.full(below.shape, np.nan), where=below > 0)
+    return quotients
+
+
+def _weighted_medians(values, finite):
     """Median of each resample: the mean of the lower and the upper one, as for an even count."""
-    found = np.full((len(weights), values.shape[1]), np.nan)
-    for k in np.flatnonzero(finite.any(axis=0)):
-        column, of_column = values[finite[:, k], k, 0], weights[:, finite[:, k]]
-        order = np.argsort(column, kind="stable")
-        column, cumulative = column[order], np.cumsum(of_column[:, order], axis=1)
-        half = cumulative[:, -1:] / 2
-        lower, upper = np.argmax(cumulative >= half, axis=1), np.argmax(cumulative > half, axis=1)
-        found[:, k] = np.where(half[:, 0] > 0, (column[lower] + column[upper]) / 2, np.nan)
-    return found
+    ordered = []
+    for k in range(values.shape[1]):
+        rows = np.flatnonzero(finite[:, k])
+        ordered.append(rows[np.argsort(values[rows, k, 0], kind="stable")])
+
+    def medians_of(weights):
+        found = np.full((len(weights), len(ordered)), np.nan)
+        for k, rows in enumerate(ordered):
+            if len(rows):
+                cumulative = np.cumsum(weights[:, rows], axis=1)
+                half = cumulative[:, -1:] / 2
+                lower, upper = (rows[np.argmax(reached, axis=1)] for reached in (cumulative >= half, cumulative > half))
+                found[:, k] = np.where(half[:, 0] > 0, (values[lower, k, 0] + values[upper, k, 0]) / 2, np.nan)
+        return found
+    return medians_of

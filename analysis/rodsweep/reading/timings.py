@@ -89,9 +89,11 @@ def times(file, sims):
             for name, values in parts.items():
                 np.add.at(sums[which][name], owners, np.add.reduceat(values.astype(float), starts, axis=0))
     rest = np.broadcast_to(_rest_s(file, tasks)[:, None], (file.task_count, guesses))
-    first, later = _scaled(sums["first"]), _scaled(sums["later"])
-    every = {name: first[name] + later[name] for name in first}
-    return {"first": _gathered(sims, zero, first, rest), "all": _gathered(sims, zero, every, rest)}
+    first, every = _scale(sums["first"]), _scale(sums["later"])  # in place: most of the memory of a large file is here
+    found = {"first": _gathered(sims, zero, first, rest)}
+    for name in list(first):
+        every[name] += first.pop(name)
+    return {**found, "all": _gathered(sims, zero, every, rest)}
 
 
 def timed_rung(file):
@@ -135,13 +137,14 @@ def _medians(rates, otherwise, fewest=1):
     return np.where(count >= fewest, middle, otherwise)
 
 
-def _scaled(sums):
-    """Sums over the rows kept as sums over all rows; direct_s is NaN unless all rows kept have it."""
+def _scale(sums):
+    """Makes sums over the rows kept sums over all rows; direct_s is NaN unless all rows kept have it."""
     none = np.where(sums["solves"] > 0, np.nan, 1.0)
     scale = np.divide(sums["solves"], sums["kept"], out=none, where=sums["kept"] > 0)
-    scaled = {name: values if name in ("solves", "kept") else values * scale for name, values in sums.items()}
-    scaled["direct_s"] = np.where(sums["direct_kept"] == sums["kept"], scaled["direct_s"], np.nan)
-    return scaled
+    for name in sums.keys() - {"solves", "kept", "direct_kept"}:
+        sums[name] *= scale
+    sums["direct_s"][sums["direct_kept"] != sums["kept"]] = np.nan
+    return sums
 
 
 def _gathered(sims, zero, sums, rest):
