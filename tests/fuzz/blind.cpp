@@ -1,6 +1,7 @@
-// main() of a fuzzer where the compiler has no libFuzzer: random inputs, or changed ones of a folder of examples, which
-// nothing guides. NAME SECONDS [EXAMPLES]. The same inputs in every run, as many as the time allows; what an input that
-// ends the process was, is left in the file that is named at the beginning.
+// main() of a fuzzer where the compiler has no libFuzzer. NAME SECONDS CORPUS: all inputs that libFuzzer once found to
+// reach new code, of a file with a line of hexadecimal digits for each, then random ones; or, of a folder of jobs,
+// changed ones. The same inputs in every run, as many as the time allows; what an input that ends the process was, is
+// left in the file that is named at the beginning.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,15 +37,26 @@ Input contents(const std::filesystem::path& path) {
   return Input(std::istreambuf_iterator<char>(file), {});
 }
 
-std::vector<Input> examples_of(const std::filesystem::path& folder) {
+std::vector<Input> jobs_of(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".json") paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
-  std::vector<Input> examples;
+  std::vector<Input> jobs;
   for (const auto& path : paths)
-    if (Input input = contents(path); input.size() <= most_text) examples.push_back(std::move(input));
-  return examples;
+    if (Input input = contents(path); input.size() <= most_text) jobs.push_back(std::move(input));
+  return jobs;
+}
+
+std::vector<Input> inputs_of(const std::filesystem::path& file) {
+  std::vector<Input> inputs;
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    Input& input = inputs.emplace_back(line.size() / 2);
+    for (std::size_t k = 0; k < input.size(); ++k)
+      input[k] = static_cast<std::uint8_t>(std::stoi(line.substr(2 * k, 2), nullptr, 16));
+  }
+  return inputs;
 }
 
 Input random_edits() {
@@ -78,22 +90,28 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 }
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: {} SECONDS [EXAMPLES]\n", argv[0]);
+  if (argc != 3) {
+    fmt::print(stderr, "usage: {} SECONDS CORPUS\n", argv[0]);
     return 2;
   }
   const std::chrono::duration<double> limit(std::stod(argv[1]));
-  const std::vector<Input> examples = argc > 2 ? examples_of(argv[2]) : std::vector<Input>();
+  const bool of_jobs = std::filesystem::is_directory(argv[2]);
+  const std::vector<Input> corpus = of_jobs ? jobs_of(argv[2]) : inputs_of(argv[2]);
+  if (corpus.empty()) {
+    fmt::print(stderr, "{}: no inputs in {}\n", argv[0], argv[2]);
+    return 2;
+  }
   const std::filesystem::path tried = rodsweep::fuzz::scratch_folder() / "input";
   fmt::print("every input is in {} while it is tried\n", tried.native());
-  const auto begin = std::chrono::steady_clock::now();
-  std::int64_t inputs = 0;
-  for (; std::chrono::steady_clock::now() - begin < limit; ++inputs) {
-    const Input input = examples.empty() ? random_edits() : changed(examples[below(examples.size())]);
+  const auto try_one = [&tried](const Input& input) {
     std::ofstream(tried, std::ios::binary)
         .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
     LLVMFuzzerTestOneInput(input.data(), input.size());
-  }
-  fmt::print("{} inputs, nothing found\n", inputs);
-  return inputs > 0 ? 0 : 1;
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  for (const Input& input : corpus) try_one(input);
+  std::int64_t blind = 0;
+  for (; std::chrono::steady_clock::now() - begin < limit; ++blind)
+    try_one(of_jobs ? changed(corpus[below(corpus.size())]) : random_edits());
+  fmt::print("{} inputs of the corpus and {} others, nothing found\n", corpus.size(), blind);
 }
