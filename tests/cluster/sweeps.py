@@ -23,21 +23,30 @@ def run_undisturbed(job, path, ranks=5):
     assert done.returncode == ALL_DONE, done.stderr
 
 
-def ranks_on(host):
-    """Process numbers of the program's ranks there, by rank."""
-    space = os.readlink(f"/proc/{host.first}/ns/pid")
-    ranks = {}
+def processes_on(host, name):
+    """Numbers of the processes there of this name."""
+    space, found = os.readlink(f"/proc/{host.first}/ns/pid"), []
     for entry in filter(str.isdigit, os.listdir("/proc")):
         try:
             with open(f"/proc/{entry}/comm", encoding="ascii") as file:
-                if file.read() != "rodsweep\n" or os.readlink(f"/proc/{entry}/ns/pid") != space:
-                    continue
-            with open(f"/proc/{entry}/environ", encoding="utf-8", errors="replace") as file:
-                found = re.search(r"\0OMPI_COMM_WORLD_RANK=(\d+)\0", "\0" + file.read())
-            if found:
-                ranks[int(found.group(1))] = int(entry)
+                if file.read() == name + "\n" and os.readlink(f"/proc/{entry}/ns/pid") == space:
+                    found.append(int(entry))
         except (FileNotFoundError, ProcessLookupError):
             continue
+    return found
+
+
+def ranks_on(host):
+    """Process numbers of the program's ranks there, by rank."""
+    ranks = {}
+    for pid in processes_on(host, "rodsweep"):
+        try:
+            with open(f"/proc/{pid}/environ", encoding="utf-8", errors="replace") as file:
+                found = re.search(r"\0OMPI_COMM_WORLD_RANK=(\d+)\0", "\0" + file.read())
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+        if found:
+            ranks[int(found.group(1))] = pid
     return ranks
 
 

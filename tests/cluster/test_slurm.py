@@ -13,7 +13,7 @@ import time
 import unittest
 
 from slurm import Slurm, wait_until
-from sweeps import ranks_on, run_undisturbed, states
+from sweeps import processes_on, ranks_on, run_undisturbed, states
 from test_sweeps import ALL_DONE, SweepCase, TASKS_FAILED, TOO_LONG, job, rodsweep, status
 
 SCRIPT = os.path.join(os.environ["SOURCE_DIR"], "jobs", "slurm", "sweep.sbatch")
@@ -169,6 +169,9 @@ class Nodes(SlurmCase):
         number = self.submit()
         self.wait_for_tasks(20)
         host = self.host_of(number)
+        for pid in processes_on(host, "slurmd"):  # else it may end its job before the next start looks
+            os.kill(pid, signal.SIGSTOP)
+            self.addCleanup(os.kill, pid, signal.SIGCONT)
         subprocess.run(["scontrol", "update", "NodeName=" + host.name, "State=DOWN", "Reason=test"], check=True)
         self.wait_for_end(number)
         self.assertIn("is being written by another run: its end is waited for", self.log())
