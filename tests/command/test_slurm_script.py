@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""What jobs/slurm/sweep.sbatch makes of Slurm's environment, with stand-ins for Slurm and the program. Under a real one:
+tests/cluster.
+
+Run by CTest in an empty folder, with SOURCE_DIR in the environment.
+"""
+
+import os
+import subprocess
+import unittest
+
+SCRIPT = os.path.join(os.environ["SOURCE_DIR"], "jobs", "slurm", "sweep.sbatch")
+
+
+def stand_in(name, text):
+    os.makedirs("bin", exist_ok=True)
+    path = os.path.abspath(os.path.join("bin", name))
+    with open(path, "w", encoding="ascii") as file:
+        file.write("#!/bin/sh\n" + text + "\n")
+    os.chmod(path, 0o755)
+    return path
+
+
+class SlurmScript(unittest.TestCase):
+    def setUp(self):
+        with open("job.json", "w", encoding="ascii") as file:
+            file.write('{"kind": "sweep"}')
+        stand_in("squeue", "date -d '+1 hour' +%FT%T")
+        stand_in("scontrol", 'echo "scontrol $*"')
+        self.program = stand_in("program", 'echo "$*"; exit ${CODE:-0}')
+
+    def run_script(self, *words, code=0, **slurm):
+        slurm = {"SLURM_JOB_ID": 7, "SLURM_NTASKS": 4, "SLURM_JOB_NUM_NODES": 2, "CODE": code, "RODSWEEP": self.program,
+                 "PATH": os.path.abspath("bin") + os.pathsep + os.environ["PATH"], **slurm}
+        ran = subprocess.run(["bash", SCRIPT, "job.json", *words], capture_output=True, text=True, timeout=60, check=False,
+                             env={**os.environ, **{name: str(value) for name, value in slurm.items()}})
+        self.assertEqual(ran.returncode, code, ran.stderr)
+        return ran.stdout + ran.stderr
+
+    def array(self, number, least, most, **slurm):
+        return self.run_script("out.h5", SLURM_ARRAY_TASK_ID=number, SLURM_ARRAY_TASK_COUNT=most - least + 1,
+                               SLURM_ARRAY_TASK_MIN=least, SLURM_ARRAY_TASK_MAX=most, **slurm)
+
+    def test_a_sweep_has_a_master_beside_its_workers_and_what_is_left_of_the_time(self):
+        said = self.run_script("out.h5", "--worker-timeout", "9")
+        self.assertRegex(said, r"keep -- mpirun -n 5 --oversubscribe .* run job.json -o out.h5 --time-limit 3[34]\d\d --resume "
+                               r"--worker-timeout 9\n")
+        self.assertNotIn("scontrol", said)
+        self.assertIn("scontrol requeue 7", self.run_script(code=4))
+
+    def test_an_array_is_shards(self):
+        self.assertIn("-o out-3of16.h5 --shard 3/16", self.array(3, 1, 16))
+
+    def test_some_shards_again_need_to_be_told_of_how_many(self):
+        self.assertIn("-o out-3of16.h5 --shard 3/16", self.array(3, 3, 3, RODSWEEP_SHARDS=16))
+        for least, most in ((3, 3), (0, 15), (2, 5)):
+            said = self.array(least, least, most, code=2)
+            self.assertIn("shards are counted from 1, so --array=1-N", said)
+            self.assertNotIn("--shard ", said)
+
+    def test_what_failed_is_tried_again_by_the_first_start_alone(self):
+        words = ("--retry-failed", "--task-time-limit", "60")
+        self.assertIn("--resume --retry-failed --task-time-limit 60", self.run_script(*words))
+        self.assertIn("--resume --task-time-limit 60", self.run_script(*words, SLURM_RESTART_COUNT=1))
+
+
+if __name__ == "__main__":
+    unittest.main()
