@@ -72,6 +72,18 @@ std::string written(const Json& value) {
   return text.size() <= longest ? text : text.substr(0, longest) + "...";
 }
 
+/// Names the files of the same bytes alike: a job that moved has other paths to them.
+void rename(Json& value, const InputFiles& files, const InputFiles& as) {
+  if (value.is_structured())
+    for (Json& part : value) rename(part, files, as);
+  if (!value.is_string()) return;
+  const auto file = files.find(value.get<std::string>());
+  if (file == files.end() || file->second.hash.empty()) return;
+  const auto same =
+      std::find_if(as.begin(), as.end(), [&](const auto& other) { return other.second.hash == file->second.hash; });
+  if (same != as.end()) value = same->first;
+}
+
 }  // namespace
 
 void check_extends(const Job& job, const Job& before) {
@@ -87,11 +99,18 @@ void check_extends(const Job& job, const Job& before) {
   if (job.samples < before.samples) {
     refuse("samples", fmt::format("{} here are fewer than the {} in {}", job.samples, before.samples, file));
   }
-  for (const Json& guess : before.guesses()) {
-    if (any_extends(job.guesses(), guess)) continue;
+  Json now = job.values, then = before.values;
+  rename(then, before.files, job.files);
+  const Json guesses = job.guesses();
+  for (Json guess : before.guesses()) {
+    rename(guess, before.files, job.files);
+    if (any_extends(guesses, guess)) continue;
+    for (std::size_t i = 0; i < guesses.size(); ++i)
+      if (guess_label(guesses[i]) == guess_label(guess))
+        if (const auto found = difference(guesses[i], guess, element("guesses", i)))
+          refuse(found->path, fmt::format("{} here, {} in {}", written(found->now), written(found->before), file));
     refuse("guesses", fmt::format("\"{}\" of {} is not among them", guess_label(guess), file));
   }
-  Json now = job.values, then = before.values;
   for (const char* free : {"$schema", "name", "description", "samples", "guesses", "task_time_limit_s"})
     now.erase(free), then.erase(free);
   if (const auto found = difference(now, then, "")) {

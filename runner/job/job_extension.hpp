@@ -1,6 +1,6 @@
 // Does a job hold all of an earlier one and more of it? More samples, more values in a grid or zip (a plain value may
-// become a grid that holds it), more guesses, in any order; name and description do not count. Everything else must be
-// as it was, the seed first of all.
+// become a grid that holds it), more guesses, in any order; name and description do not count, nor do the paths to
+// files of the same bytes. Everything else must be as it was, the seed first of all.
 #pragma once
 
 #include "runner/job/job.hpp"

@@ -212,6 +212,21 @@ class Elsewhere(ExtendCase):
         shutil.move("jobs", "moved")
         self.assert_extended("moved/new.json", 0)
 
+    def test_a_path_to_the_same_bytes_is_the_same_model(self):
+        with open("jobs/new.json", encoding="utf-8") as file:
+            moved = file.read().replace("models/net.h5", "jobs/models/net.h5")
+        with open("adapted.json", "w", encoding="utf-8") as file:
+            file.write(moved)
+        self.assert_extended("adapted.json", 0)
+        shutil.copy("jobs/models/net.h5", "jobs/models/other.h5")
+        with h5py.File("jobs/models/other.h5", "r+") as h5:
+            h5.attrs["remark"] = "not the same bytes"
+        with open("adapted.json", "w", encoding="utf-8") as file:
+            file.write(moved.replace("models/net.h5", "models/other.h5"))
+        refused = rodsweep(0, "run", "adapted.json", "-o", "no.h5", "--extend", "far/away/old.h5")
+        self.assert_exit(refused, USER_ERROR)
+        self.assertIn("guesses", refused.stderr)
+
     def test_a_model_that_is_another_now_or_nowhere_is_no_reason_to_copy(self):
         with h5py.File("jobs/models/net.h5", "r+") as h5:
             h5.attrs["remark"] = "not the same bytes"
