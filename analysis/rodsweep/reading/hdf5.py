@@ -22,8 +22,9 @@ def opened(path, what):
     except OSError as error:
         if not os.access(path, os.R_OK):
             raise SweepFileError(f"{path}: no permission to read it") from error
-        kind = "damaged" if h5py.is_hdf5(path) else "not an HDF5 file"
-        raise SweepFileError(f"{path} is {kind}; give a file written by `rodsweep run`") from error
+        raise SweepFileError(f"{path} is " + (
+            "damaged or incomplete; use a copy of it if there is one, or make it again" if h5py.is_hdf5(path) else
+            "not an HDF5 file; give a file written by `rodsweep run`")) from error
 
 
 def as_text(value):
