@@ -31,8 +31,9 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds look_pause{0.1}, longest_pause{300}, time_to_end{15}, time_to_leave{5};
 constexpr Seconds longest_lock{300};
-constexpr int no_start = 1 << 8;      // as wait() gives the exit code 1
-constexpr double slow_begin = 10;     // a start may verify a large file, or wait for hosts, before it shows any sign
+constexpr int no_start = 1 << 8;   // as wait() gives the exit code 1
+constexpr double slow_begin = 10;  // a start may wait for hosts or read data before it shows any sign, and a training
+                                   // shows none while it measures CG ratios
 constexpr Seconds time_to_stop{100};  // a sweep gives its workers a minute, batch systems often two
 
 /// What the results say of the starts so far.
@@ -85,6 +86,7 @@ class SignsOfLife {
 
 void end(ChildProcess& start) {
   start.signal(SIGTERM);  // mpirun ends all its ranks, also those that are stopped or on other hosts
+  start.signal(SIGCONT);  // and a training may be stopped itself
   const auto begin = Clock::now();
   while (start.runs() && Clock::now() - begin < time_to_end) std::this_thread::sleep_for(look_pause);
   if (start.runs()) start.kill_group();
@@ -102,12 +104,11 @@ class Keeper {
     bool any_begun = false;
     for (Story before = read_story(file_, training_);;) {
       if (!wait_for_lock()) return ExitCode::stopped;
-      const int status = start(before);
+      const int status = start(before, any_begun);
       const Story after = story_after(before);
       const bool begun = after.goes_on_from(before);
       any_begun = any_begun || begun;
-      const bool lost = after.ended == ExitCode::lost || (hung_ && after.ended == ExitCode::stopped);
-      if (begun && after.ended && !lost) return *after.ended;
+      if (begun && after.ended && !is_lost(*after.ended)) return *after.ended;
       // A start that never began may be refused for good, or find the one before still dying.
       if (!any_begun && exit_code_of(status) == static_cast<int>(ExitCode::user_error)) return ExitCode::user_error;
       if (stop_.received() != 0) return ExitCode::stopped;
@@ -125,8 +126,7 @@ class Keeper {
         return ExitCode::user_error;
       }
       console_->warn(fmt::format("the start ended with {}, {} done; the next one comes in {}", status_text(status),
-                                 training_ ? fmt::format("{} steps", after.done) : fmt::format("{} tasks", after.done),
-                                 duration_text(pause.count())));
+                                 counted(after.done, training_ ? "step" : "task"), duration_text(pause.count())));
       if (!wait(pause)) return ExitCode::stopped;
       before = after;
       pause = std::min(2 * pause, longest_pause);
@@ -144,6 +144,13 @@ class Keeper {
     }
   }
 
+  /// Stopped by whom? A signal that this did not send comes from a host that shuts down, or from mpirun, which lost
+  /// ranks.
+  bool is_lost(ExitCode ended) const {
+    const bool told = stop_.received() != 0 || options_->run.time_limit_s;
+    return ended == ExitCode::lost || (ended == ExitCode::stopped && (hung_ || !told));
+  }
+
   bool has_begun(const Story& before, Story& now) const {
     if (training_ || !fs::exists(file_)) return false;
     try {
@@ -155,8 +162,8 @@ class Keeper {
   }
 
   /// The exit status of one start, as wait() gives it.
-  int start(const Story& before) {
-    const std::vector<std::string> command = words();
+  int start(const Story& before, bool any_begun) {
+    const std::vector<std::string> command = words(any_begun);
     if (command.empty()) return no_start;
     ChildProcess child(command);
     SignsOfLife signs(file_);
@@ -179,7 +186,7 @@ class Keeper {
         if (ended && looked - *ended > time_to_leave) end(child);
       }
       const Seconds patience(begun ? options_->silence_s : slow_begin * options_->silence_s);
-      if (!training_ && patience.count() > 0 && signs.silence() > patience) {
+      if (patience.count() > 0 && signs.silence() > patience) {
         console_->warn(fmt::format("{} shows no sign of life since {}: this start is ended", file_.native(),
                                    duration_text(patience.count())));
         hung_ = true;
@@ -189,9 +196,11 @@ class Keeper {
     return child.status();
   }
 
-  /// Of the next start; empty: there can be none now.
-  std::vector<std::string> words() const {
+  /// Of the next start; empty: there can be none now. What fails from the first start on is not tried again in every
+  /// one: neither a task that runs out of time nor one that ends its worker would ever be given up.
+  std::vector<std::string> words(bool any_begun) const {
     std::vector<std::string> words = options_->command;
+    if (any_begun) words.erase(std::remove(words.begin(), words.end(), "--retry-failed"), words.end());
     if (!options_->run.resume) words.emplace_back("--resume");
     if (options_->run.time_limit_s)
       words.insert(words.end(), {"--time-passed", fmt::format("{:.0f}", passed().count())});

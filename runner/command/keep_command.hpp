@@ -2,12 +2,13 @@
 //
 // The command that it keeps is typed behind `--`, with mpirun and all. It runs in a process group of its own; a start
 // ends by itself, or is ended where its results file shows no sign of life (a sweep's master shows one every five
-// seconds). What then? What the last start wrote into the file decides: its exit code says that the job is done (0, 3)
-// or was stopped (4, 5); a start that left none was killed, one that lost all workers (6) says so, and either is
-// followed by the next after a pause that doubles while nothing more gets done. A time limit of the run is one of all
-// starts together. What is left of a start elsewhere, as its lock on the file tells, is given time to end. Open MPI is
-// told to let ranks die alone (its own exit code is worth nothing then), so that a sweep goes on without the ranks that
-// it loses, and to notice a host that is cut off within a minute.
+// seconds, a training whenever it saves). What then? What the last start wrote into the file decides: its exit code
+// says that the job is done (0, 3), that it stopped for its time limit or since this was told to stop (4), or that what
+// is left never fits (5); a start that left none was killed, one that lost all workers (6) or was stopped by somebody
+// else (4) says so, and either is followed by the next after a pause that doubles while nothing more gets done. A time
+// limit of the run is one of all starts together. What is left of a start elsewhere, as its lock on the file tells, is
+// given time to end. Open MPI is told to let ranks die alone (its own exit code is worth nothing then), so that a sweep
+// goes on without the ranks that it loses, and to notice a host that is cut off within a minute.
 //
 // A signal to stop is handed on, as SIGUSR1, once; should this process die, its sweep is stopped likewise.
 #pragma once

@@ -11,7 +11,7 @@ namespace rodsweep {
 
 class ChildProcess {
  public:
-  /// Words of the command line; the program is looked for as a shell does. Exit code 127: there is none.
+  /// Words of the command line; the program is looked for as a shell does.
   explicit ChildProcess(const std::vector<std::string>& words);
   /// Waits for it.
   ~ChildProcess();

@@ -152,6 +152,18 @@ class KeptWorkers(KeptCase):
         self.assertEqual(len(killed), times)
 
 
+    def test_a_task_that_ends_workers_is_named_though_failures_are_tried_again(self):
+        path = job("again", samples=1, segments=[20, 21, 22, 400], steps=40, record={"solves": "summary", "norms": "one"})
+        self.assert_exit(rodsweep(3, "run", path, "-o", "again.h5", "--task-time-limit", "1e-6"), TASKS_FAILED)
+        process = keep(*command(2, "run", path, "-o", "again.h5", "--resume", "--retry-failed", "--worker-timeout", "1"),
+                       options=("--pause", "0.1"))
+        for start in range(3):
+            mpirun = start_of(process, mpirun.pid if start else None)
+            self.kill_whoever_runs("again.h5", 3, mpirun, 1)
+        self.end(process, TASKS_FAILED)
+        self.assertEqual(status("again.h5")["outcomes"], {"ok": 3, "crashed": 1})
+
+
 class Kept(KeptCase):
     """What keep does of itself. The fault hits in the middle."""
 
@@ -178,6 +190,10 @@ class Kept(KeptCase):
         self.assertIn([s["exit_code"] for s in status("hung.h5")["starts"]],
                       ([STOPPED, ALL_DONE], [ALL_DONE], [None, ALL_DONE]))
 
+    def test_a_signal_from_elsewhere_is_followed_by_the_next_start(self):
+        self.kept("elsewhere.h5", lambda p: os.kill(ranks_of(p)[2], signal.SIGTERM), ranks=4)
+        self.assert_as_undisturbed("elsewhere.h5", [STOPPED, ALL_DONE])
+
     def test_a_signal_stops_it_and_the_same_line_goes_on(self):
         process = keep(*command(3, "run", self.job, "-o", "signal.h5"))
         wait_for_tasks(start_of(process), "signal.h5", 4)
@@ -197,19 +213,33 @@ class Kept(KeptCase):
 
 
 class KeptTraining(TrainingCase):
-    def test_it_goes_on_to_the_same_bits_after_being_killed(self):
-        path = train_job("long", training={"epochs": 600, "batch": 60, "ratio_every_epochs": 100})
-        self.assert_exit(rodsweep(0, "run", path, "-o", "whole.h5"), ALL_DONE)
-        process = keep(RODSWEEP, "run", path, "-o", "kept.h5", options=("--pause", "0.1"))
+    def setUp(self):
+        super().setUp()
+        self.job = train_job("long", training={"epochs": 600, "batch": 60, "ratio_every_epochs": 100})
+        if not os.path.exists("whole.h5"):
+            self.assert_exit(rodsweep(0, "run", self.job, "-o", "whole.h5"), ALL_DONE)
+
+    def hit(self, path, number, options=()):
+        """Sends the signal in mid-training, and sees it to its end: what keep said."""
+        process = keep(RODSWEEP, "run", self.job, "-o", path, options=("--pause", "0.1", *options))
         deadline = time.monotonic() + 30
-        while not os.path.exists("kept.h5") and time.monotonic() < deadline:
+        while not os.path.exists(path) and time.monotonic() < deadline:
             time.sleep(0.005)
         with open(f"/proc/{process.pid}/task/{process.pid}/children") as file:
-            os.kill(int(file.read().split()[0]), signal.SIGKILL)
+            os.kill(int(file.read().split()[0]), number)
         stdout, stderr = process.communicate(timeout=60)
         self.assertEqual(process.returncode, ALL_DONE, f"{stdout}\n{stderr}")
+        self.assert_same_results("whole.h5", path)
+        return stderr
+
+    def test_it_goes_on_to_the_same_bits_after_being_killed(self):
+        self.hit("kept.h5", signal.SIGKILL)
         self.assertEqual([s["exit_code"] for s in status("kept.h5")["starts"]], [None, ALL_DONE])
-        self.assert_same_results("whole.h5", "kept.h5")
+
+    def test_it_goes_on_after_it_hung(self):
+        said = self.hit("hung.h5", signal.SIGSTOP, options=("--silence", "0.6"))
+        self.assertIn("hung.h5 shows no sign of life since 6.0 s: this start is ended", said)
+        self.assertEqual([s["exit_code"] for s in status("hung.h5")["starts"]], [STOPPED, ALL_DONE])
 
 
 class KeptCommand(LostCase):
@@ -241,6 +271,11 @@ class KeptCommand(LostCase):
             passed = [int(line.split()[-1]) for line in file]
         self.assertEqual(passed[0], 0)
         self.assertGreaterEqual(passed[2], 3)
+
+    def test_a_launcher_that_is_not_there_is_named_at_once(self):
+        _, stderr = self.end(keep("mpirum", "-n", "3", RODSWEEP, "run", self.job), USER_ERROR)
+        self.assertIn("mpirum cannot be started: No such file or directory", stderr)
+        self.assertEqual(stderr.count("\n"), 1, stderr)
 
     def test_a_command_without_a_run_is_refused(self):
         _, stderr = self.end(keep("mpirun", "-n", "3", "true"), USER_ERROR)
