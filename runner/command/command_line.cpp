@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -94,16 +93,6 @@ CLI::Validator number_check(bool zero, const char* bound) {
 CLI::Validator above_zero() { return number_check(false, "above 0 and up to 1e9"); }
 CLI::Validator not_negative() { return number_check(true, "from 0 to 1e9"); }
 
-/// "3/16", from 1.
-Shard shard_of(const std::string& text) {
-  Shard shard;
-  int end = 0;
-  if (std::sscanf(text.c_str(), "%d/%d%n", &shard.number, &shard.of, &end) != 2 ||
-      static_cast<std::size_t>(end) != text.size() || shard.number < 1 || shard.number > shard.of)
-    throw CLI::ValidationError("--shard", text + " is no I/N with 1 <= I <= N");
-  return shard;
-}
-
 // Each adds a command, whose arguments fill the options given.
 
 CLI::App* add(CLI::App& app, RunOptions& run) {
@@ -134,8 +123,11 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
   command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
                    "Memory of a rank; a task that wants more is an error [an equal share of nine tenths of the host's]")
-      ->check(above_zero())
+      ->check(CLI::Range(0.1, 1e9))  // the program itself has most of that
       ->type_name("GB");
+  command->add_option("--attempts", run.attempts, "Set a task aside as crashed that ended so many workers [3]")
+      ->check(CLI::Range(1, 100))
+      ->type_name("N");
   command
       ->add_option("--worker-timeout", run.worker_timeout_s,
                    "Go on without a worker that was silent for so long; 0: wait for ever [120]")
@@ -143,7 +135,11 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->type_name("SECONDS");
   command
       ->add_option_function<std::string>(
-          "--shard", [&run](const std::string& text) { run.shard = shard_of(text); },
+          "--shard",
+          [&run](const std::string& text) {
+            run.shard = shard_of(text);
+            if (!run.shard) throw CLI::ValidationError("--shard", text + " is no I/N with 1 <= I <= N");
+          },
           "Run the I-th of N parts of the tasks, into a file of its own, for `merge`")
       ->type_name("I/N");
   command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
@@ -275,7 +271,7 @@ CLI::App* add(CLI::App& app, KeepOptions& keep) {
       ->type_name("HOSTS");
   command
       ->add_option("--silence", keep.silence_s,
-                   "End a sweep's start that shows no sign of life for so long; 0: never [300]")
+                   "End a start that shows no sign of life for so long, a training's ten times; 0: never [300]")
       ->check(not_negative())
       ->type_name("SECONDS");
   command->add_option("--pause", keep.pause_s, "Before the next start; doubles while nothing gets done [1]")

@@ -62,14 +62,14 @@ std::string value_text(const Json& value) {
 std::string heads_text(const ComparedFiles& files) {
   std::string text;
   for (const auto& [letter, file] : {std::pair("A", &files.a), std::pair("B", &files.b)})
-    text += fmt::format("{}  {}: {}, {} of {} tasks done, revision {}\n", letter, file->path.native(), file->job_name,
-                        file->done, file->tasks, revision(*file));
+    text += fmt::format("{}  {}: {}, {} of {} done, revision {}\n", letter, file->path.native(), file->job_name,
+                        file->done, counted(file->tasks, "task"), revision(*file));
   return text;
 }
 
 std::string keys_text(const ComparedFiles& files) {
   if (files.keys.empty()) return "jobs: the same\n";
-  std::string text = fmt::format("jobs: differ in {} key{}\n", files.keys.size(), files.keys.size() == 1 ? "" : "s");
+  std::string text = fmt::format("jobs: differ in {}\n", counted(static_cast<std::int64_t>(files.keys.size()), "key"));
   for (std::size_t i = 0; i < files.keys.size() && i < most_keys; ++i)
     text += fmt::format("  {}: {} in A, {} in B\n", files.keys[i].path, value_text(files.keys[i].a),
                         value_text(files.keys[i].b));
@@ -92,7 +92,7 @@ std::string left_out_text(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) ++groups[path.substr(0, path.find('/', 1))];
   std::string text;
   for (const auto& [group, count] : groups)
-    text += fmt::format("{}{} ({} column{})", text.empty() ? "" : ", ", group, count, count == 1 ? "" : "s");
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", group, counted(count, "column"));
   return fmt::format("not compared, since it is not in both or of another length: {}\n", text);
 }
 

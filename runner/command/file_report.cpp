@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <optional>
@@ -38,7 +39,7 @@ std::string ending(const RunRow& run, bool is_last, const FileSummary& file) {
     case ExitCode::ok: return "all done";
     case ExitCode::tasks_failed: return "complete, some tasks failed";
     case ExitCode::stopped: return "stopped early";
-    case ExitCode::too_long: return "stopped early: what is left needs a longer time limit";
+    case ExitCode::too_long: return "stopped early: what is left needs a longer time limit, or more memory";
     case ExitCode::lost: return "no worker was left";
     default: return fmt::format("exit code {}", run.exit_code);
   }
@@ -49,11 +50,22 @@ std::string ending(const RunRow& run, bool is_last, const FileSummary& file) {
 std::string start_text(const FileSummary& file, std::size_t index) {
   const RunRow& run = file.runs.at(index);
   const Provenance& p = run.provenance;
-  return fmt::format("start {}{}: {} to {} on {}, {} rank{}{}: {} tasks in {} of work; {}\n", index,
+  return fmt::format("start {}{}: {} to {} on {}, {}{}: {} in {} of work; {}\n", index,
                      run.source.empty() ? "" : fmt::format(" (of {}, extended here)", run.source), p.begin_utc,
-                     run.end_utc.empty() ? "?" : run.end_utc, p.host, p.ranks, p.ranks == 1 ? "" : "s",
-                     p.oversubscribed ? " (more than cores: times are worthless)" : "", run.tasks,
+                     run.end_utc.empty() ? "?" : run.end_utc, p.host, counted(p.ranks, "rank"),
+                     p.oversubscribed ? " (more than cores: times are worthless)" : "", counted(run.tasks, "task"),
                      duration_text(run.task_seconds), ending(run, index + 1 == file.runs.size(), file));
+}
+
+Share share_of(const FileSummary& file) {
+  Share share{std::nullopt, file.tasks, file.pending};
+  if (file.runs.empty()) return share;
+  share.shard = shard_of_command(file.runs.back().provenance.user_command);
+  if (share.shard) {
+    share.tasks = share_of(*share.shard, file.tasks);
+    share.left = std::max<std::int64_t>(share.tasks - file.done, 0);
+  }
+  return share;
 }
 
 bool is_alive(const FileSummary& file) {
@@ -82,14 +94,17 @@ nlohmann::ordered_json to_json(const FileSummary& file) {
             {"alive", is_alive(file)},
             {"silent_s", is_alive(file) ? Json(file.silent_s) : Json()}};
   const std::optional<double> rate = rate_of(file);
+  const Share share = share_of(file);
   json["tasks_per_s"] = rate ? Json(*rate) : Json();
-  json["left_s"] = rate ? Json(static_cast<double>(file.pending) / *rate) : Json();
+  json["left_s"] = rate ? Json(static_cast<double>(share.left) / *rate) : Json();
+  json["shard"] =
+      share.shard ? Json{{"number", share.shard->number}, {"of", share.shard->of}, {"tasks", share.tasks}} : Json();
   json["failures"] = Json::array();
   for (const FailedTask& task : file.failures)
     json["failures"].push_back({{"task", task.index}, {"outcome", task.outcome}, {"message", task.message}});
   json["running"] = Json::array();
   for (const BegunTask& task : file.begun)
-    if (file.being_written.value_or(false) && task.start + 1 == static_cast<int>(file.runs.size()))
+    if (is_alive(file) && task.start + 1 == static_cast<int>(file.runs.size()))
       json["running"].push_back({{"task", task.index}, {"host", task.host}, {"rank", task.rank}});
   json["starts"] = Json::array();
   for (const RunRow& run : file.runs) {

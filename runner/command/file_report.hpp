@@ -5,11 +5,20 @@
 #include <optional>
 #include <string>
 
+#include "runner/command/shard.hpp"
 #include "runner/file/inspect.hpp"
 
 namespace rodsweep {
 
 std::string outcomes_text(const FileSummary& file);  ///< "98 ok, 2 torn"
+
+/// What its last start had to do: all tasks, or those of its shard.
+struct Share {
+  std::optional<Shard> shard;
+  std::int64_t tasks = 0;
+  std::int64_t left = 0;
+};
+Share share_of(const FileSummary& file);
 
 /// Does a run work on it? By its lock, which dies with it; where the file system has none, by the file's time, which a
 /// run renews.

@@ -18,12 +18,13 @@ namespace rodsweep {
 namespace {
 
 std::string provenance_text(const FileSummary& file) {
-  std::string text = fmt::format("file     {}, {}, schema {}\njob      {} ({})\nplan     {} tasks, hash {}\n",
-                                 file.path.native(), bytes_text(static_cast<std::int64_t>(file.bytes)),
-                                 file.schema_version, file.job_name, file.job_kind, file.tasks, file.plan_hash);
+  std::string text =
+      fmt::format("file     {}, {}, schema {}\njob      {} ({})\nplan     {}, hash {}\n", file.path.native(),
+                  bytes_text(static_cast<std::int64_t>(file.bytes)), file.schema_version, file.job_name, file.job_kind,
+                  counted(file.tasks, "task"), file.plan_hash);
   if (file.rerun_of_task) text += fmt::format("holds    task {} of the job alone, run again\n", *file.rerun_of_task);
   if (!file.guesses.empty()) text += fmt::format("guesses  {}\n", fmt::join(file.guesses, ", "));
-  text += fmt::format("done     {} of {} tasks: {}\n", file.done, file.tasks, outcomes_text(file));
+  text += fmt::format("done     {} of {}: {}\n", file.done, counted(file.tasks, "task"), outcomes_text(file));
   if (file.momentum_residual)
     text += fmt::format("momentum in a step, forces on a segment lack at most {:.2g} of the greatest of a joint\n",
                         *file.momentum_residual);

@@ -103,8 +103,9 @@ ExitCode execute(const MergeOptions& options, Console& console) {
   if (!different.empty())
     console.warn(fmt::format("{} differ between files (other machines round differently); the first file's are taken",
                              these(different)));
-  console.result(fmt::format("{}: {} of {} tasks of {} from {} files{}", options.output.native(), done, plan.size(),
-                             first.job_name, parts.size(),
+  console.result(fmt::format("{}: {} of {} of {} from {}{}", options.output.native(), done,
+                             counted(plan.size(), "task"), first.job_name,
+                             counted(static_cast<std::int64_t>(parts.size()), "file"),
                              done == plan.size() ? "" : "; run the job with this output and --resume for the rest"));
   return code;
 }

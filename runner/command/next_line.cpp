@@ -40,6 +40,7 @@ std::string run_line(const RunOptions& options, int ranks) {
   if (options.task_time_limit_s) line += fmt::format(" --task-time-limit {:g}", *options.task_time_limit_s);
   if (options.time_limit_s) line += fmt::format(" --time-limit {:g}", *options.time_limit_s);
   if (options.memory_limit_gb) line += fmt::format(" --memory-limit-gb {:g}", *options.memory_limit_gb);
+  if (options.attempts != RunOptions().attempts) line += fmt::format(" --attempts {}", options.attempts);
   if (options.worker_timeout_s != RunOptions().worker_timeout_s)
     line += fmt::format(" --worker-timeout {:g}", options.worker_timeout_s);
   return line;
@@ -49,6 +50,18 @@ std::string stopped_text(int signal, RunOptions options, int ranks) {
   options.resume = true;
   return fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_cause(signal),
                      run_line(options, ranks));
+}
+
+std::string merge_line(const std::string& program, const fs::path& file, const Shard& shard) {
+  const std::string name = file.filename().native();
+  const std::string own = fmt::format("-{}of{}.h5", shard.number, shard.of);
+  std::string files = "SHARDS... -o FILE";
+  if (name.size() > own.size() && name.compare(name.size() - own.size(), own.size(), own) == 0) {
+    const fs::path merged = file.parent_path() / name.substr(0, name.size() - own.size());
+    files = fmt::format("{}-*of{}.h5 -o {}", shell_quoted(merged.native()), shard.of,
+                        shell_quoted(merged.native() + ".h5"));
+  }
+  return fmt::format("{} merge {}", shell_quoted(program), files);
 }
 
 std::string script_line(const std::string& script, const fs::path& file) {

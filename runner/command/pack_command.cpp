@@ -19,10 +19,9 @@ ExitCode execute(const PackOptions& options, Console& console) {
                     packing.tasks - packing.verified, packing.tasks, options.file.native()));
   const auto before = static_cast<std::int64_t>(packing.bytes_before);
   const auto after = static_cast<std::int64_t>(packing.bytes_after);
-  console.result(fmt::format("{}: {}, from {} ({:.0f} %); {} finished task{} verified", output.native(),
-                             bytes_text(after), bytes_text(before),
-                             100 * static_cast<double>(after) / static_cast<double>(before), packing.verified,
-                             packing.verified == 1 ? "" : "s"));
+  console.result(fmt::format("{}: {}, from {} ({:.0f} %); {} verified", output.native(), bytes_text(after),
+                             bytes_text(before), 100 * static_cast<double>(after) / static_cast<double>(before),
+                             counted(packing.verified, "finished task")));
   return ExitCode::ok;
 }
 

@@ -142,9 +142,9 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
     const Estimate needs = estimate(plan, probes);
     const auto [shortest, longest] = std::minmax_element(
         probes.begin(), probes.end(), [](const Probe& a, const Probe& b) { return a.seconds < b.seconds; });
-    text += fmt::format("time     about {:.2g} core-hours: {} with {} worker{} (from {} task{} tried, {} to {} each)\n",
-                        needs.core_s / 3600, duration_text(needs.wall_s(workers)), workers, workers == 1 ? "" : "s",
-                        probes.size(), probes.size() == 1 ? "" : "s", duration_text(shortest->seconds),
+    text += fmt::format("time     about {:.2g} core-hours: {} with {} (from {} tried, {} to {} each)\n",
+                        needs.core_s / 3600, duration_text(needs.wall_s(workers)), counted(workers, "worker"),
+                        counted(static_cast<std::int64_t>(probes.size()), "task"), duration_text(shortest->seconds),
                         duration_text(longest->seconds));
     text += master_text(needs, workers);
     text += slurm_text(needs, options);

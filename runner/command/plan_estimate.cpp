@@ -22,17 +22,19 @@ void truncate(Task& task, TaskSpec& spec, int steps) {
 Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate) {
   const Task whole = plan.task(index);
   const TaskSpec whole_spec = plan.spec(index);
+  const AxisSizes sizes = axis_sizes(plan);
   TaskRecord record;
   for (std::int64_t steps = std::min<std::int64_t>(whole.steps, 4);; steps = std::min(2 * steps, whole.steps)) {
     Task task = whole;
     TaskSpec spec = whole_spec;
     truncate(task, spec, static_cast<int>(steps));
-    record.prepare(task, axis_sizes(plan));
+    record.prepare(task, sizes);
     evaluate(task, spec, record, [] { return false; });
     const double seconds = record.elapsed_s.front();
     if (seconds < enough_s && steps < whole.steps && record.outcome == TaskOutcome::ok) continue;
 
     const auto done = static_cast<std::int64_t>(record.steps_done.front());
+    const auto memory = static_cast<std::int64_t>(peak_memory());
     // Where the time was over within a step, half of that step, unless it was the first.
     const double cut = record.outcome == TaskOutcome::timed_out ? 0.5 : 0;
     const double step_s = seconds / std::max(1.0, static_cast<double>(done) + cut);
@@ -41,7 +43,7 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
             done,
             whole.steps,
             step_s * static_cast<double>(whole.steps),
-            static_cast<std::int64_t>(peak_memory()),
+            memory > 0 ? memory + record_bytes(whole, sizes) - record_bytes(task, sizes) : 0,
             record.outcome,
             record.message};
   }

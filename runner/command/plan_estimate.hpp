@@ -18,7 +18,8 @@ struct Probe {
   double cost = 0;
   std::int64_t steps = 0, of_steps = 0;  ///< run, and in the whole task
   double seconds = 0;                    ///< of the whole task, extrapolated from the steps run; without any, at least
-  std::int64_t memory_bytes = 0;  ///< the most that the process had so far, cheaper probes included; 0: not known
+  /// The most that the process had so far, cheaper probes included, and the record of the steps left out; 0: not known.
+  std::int64_t memory_bytes = 0;
   TaskOutcome outcome{};
   std::string message;
 };

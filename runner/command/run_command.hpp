@@ -7,17 +7,12 @@
 #include <string>
 
 #include "runner/command/exit_codes.hpp"
+#include "runner/command/shard.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
 
 namespace rodsweep {
-
-/// One of the parts that a sweep's tasks are dealt out to.
-struct Shard {
-  int number = 1;  ///< from 1
-  int of = 1;
-};
 
 struct RunOptions {
   std::filesystem::path job;
@@ -30,6 +25,7 @@ struct RunOptions {
   std::optional<double> memory_limit_gb;        ///< of every rank; default: its share of the host's memory
   std::optional<double> time_limit_s;           ///< of this start
   double time_passed_s = 0;                     ///< of that limit, before this start
+  int attempts = 3;                             ///< to run a task, of those that end its worker
   double worker_timeout_s = 120;                ///< a worker that is silent for so long is lost; 0: none ever is
   std::string program = "rodsweep";             ///< as the user typed it
   std::string command;                          ///< the whole line, for /runs

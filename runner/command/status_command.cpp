@@ -21,10 +21,14 @@ namespace fs = std::filesystem;
 constexpr std::size_t failures_shown = 10, running_shown = 10;
 
 std::string progress_text(const FileSummary& file) {
-  std::string text = fmt::format("{}: {} of {} tasks done ({} %): {}", file.job_name, file.done, file.tasks,
-                                 file.tasks > 0 ? 100 * file.done / file.tasks : 100, outcomes_text(file));
+  const Share share = share_of(file);
+  const std::int64_t done = share.tasks - share.left;
+  std::string text = file.job_name;
+  if (share.shard) text += fmt::format(", shard {} of {}", share.shard->number, share.shard->of);
+  text += fmt::format(": {} of {} done ({} %): {}", done, counted(share.tasks, "task"),
+                      share.tasks > 0 ? 100 * done / share.tasks : 100, outcomes_text(file));
   if (const auto rate = rate_of(file))
-    text += fmt::format("; {:.3g} tasks/s, {} left", *rate, duration_text(static_cast<double>(file.pending) / *rate));
+    text += fmt::format("; {:.3g} tasks/s, {} left", *rate, duration_text(static_cast<double>(share.left) / *rate));
   return text;
 }
 

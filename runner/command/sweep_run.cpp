@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <exception>
 #include <functional>
-#include <numeric>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -51,7 +50,7 @@ std::optional<Extension> open_extension(const RunOptions& options, const fs::pat
 
 std::string extension_text(const Extension& extension, std::int64_t total) {
   using Use = Extension::Use;
-  return fmt::format("of {} tasks {} are copied from {}, {} get their new guesses, {} are run", total,
+  return fmt::format("of {} {} are copied from {}, {} get their new guesses, {} are run", counted(total, "task"),
                      extension.count(Use::copy), extension.path().native(), extension.count(Use::complete),
                      extension.count(Use::run));
 }
@@ -65,9 +64,9 @@ bool has_begun(const RunOptions& options, const fs::path& path, const std::optio
 }
 
 /// A task that was begun often enough, and of whose workers none said what came of it, is tried no more.
-bool is_given_up(const ResultsFile& file, std::int64_t task) {
+bool is_given_up(const ResultsFile& file, std::int64_t task, int attempts) {
   const auto i = static_cast<std::size_t>(task);
-  return file.done()[i] == 0 && file.starts()[i] >= PendingTask::most_starts;
+  return file.done()[i] == 0 && file.starts()[i] >= attempts;
 }
 
 /// Writes down what is known of a task that is tried no more, so that it has an outcome; returns the same. One rank.
@@ -75,35 +74,24 @@ std::string give_up(const Task& task, int lost, const Plan& plan, ResultsFile& f
   TaskRecord record;
   record.prepare(task, axis_sizes(plan));
   record.outcome = TaskOutcome::crashed;
-  record.message = fmt::format(
-      "its worker, or the whole sweep, ended or fell silent without a word each of the {} times that it was begun, "
-      "last with nothing beside it",
-      lost);
+  record.message =
+      fmt::format("its worker, or the whole sweep, ended or fell silent without a word {}",
+                  lost == 1 ? "when it was begun"
+                            : fmt::format("each of the {} times that it was begun, last with nothing beside it", lost));
   file.write(task, record);
   return record.message;
 }
 
-void give_up_what_was_begun_too_often(const Plan& plan, ResultsFile& file) {
+void give_up_what_was_begun_too_often(const Plan& plan, ResultsFile& file, int attempts) {
   for (const Task& task : plan.tasks())
-    if (is_given_up(file, task.index)) give_up(task, file.starts()[static_cast<std::size_t>(task.index)], plan, file);
+    if (is_given_up(file, task.index, attempts))
+      give_up(task, file.starts()[static_cast<std::size_t>(task.index)], plan, file);
   file.commit();
 }
 
-/// Which tasks are a shard's: dealt out in the order of their costs, so that shards take about as long.
-std::vector<bool> in_shard(const Plan& plan, const std::optional<Shard>& shard) {
-  if (!shard) return std::vector<bool>(static_cast<std::size_t>(plan.size()), true);
-  std::vector<std::int64_t> order(static_cast<std::size_t>(plan.size()));
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::int64_t a, std::int64_t b) { return plan.cost(a) > plan.cost(b); });
-  std::vector<bool> mine(order.size(), false);
-  for (auto i = static_cast<std::size_t>(shard->number) - 1; i < order.size(); i += static_cast<std::size_t>(shard->of))
-    mine[static_cast<std::size_t>(order[i])] = true;
-  return mine;
-}
-
 std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
-                                       const std::optional<Extension>& extension, const std::vector<bool>& mine) {
+                                       const std::optional<Extension>& extension, const std::vector<bool>& mine,
+                                       int attempts) {
   // Tasks of an earlier file are looked at one by one.
   const std::vector<std::int64_t> batch =
       extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
@@ -111,13 +99,48 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
   std::vector<PendingTask> pending;
   for (const Task& task : plan.tasks())
     if (const auto i = static_cast<std::size_t>(task.index);
-        mine[i] && !file.done()[i] && !is_given_up(file, task.index)) {
+        mine[i] && !file.done()[i] && !is_given_up(file, task.index, attempts)) {
       const int lost = file.starts()[i];
       pending.push_back(
           {task.index, task.cost * (extension ? extension->cost(task.index) : 1), lost > 0 ? -1 : batch[i], lost});
       if (limit_s > 0) pending.back().limit_s = limit_s;
     }
   return pending;
+}
+
+std::string begin_text(const std::string& name, const std::optional<Shard>& shard, std::int64_t total,
+                       std::int64_t to_do, const fs::path& path) {
+  if (shard) {
+    const std::int64_t share = share_of(*shard, total);
+    return fmt::format("shard {} of {} of {}, {} of {}{}, results in {}", shard->number, shard->of, name, share,
+                       counted(total, "task"), to_do == share ? "" : fmt::format(", {} left to do", to_do),
+                       path.native());
+  }
+  if (to_do == total) return fmt::format("{} for {}, results in {}", counted(total, "task"), name, path.native());
+  return fmt::format("{} of {} of {} are left to do in {}", to_do, counted(total, "task"), name, path.native());
+}
+
+/// Takes out of `pending` what no rank can keep the results of, beside what it has in memory already.
+TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending, double memory) {
+  const AxisSizes sizes = axis_sizes(plan);
+  TooLarge found;
+  const auto is_too_large = [&](const PendingTask& task) {
+    const std::int64_t bytes = record_bytes(plan.task(task.index), sizes);
+    if (static_cast<double>(bytes) <= memory) return false;
+    ++found.tasks;
+    if (bytes > found.bytes) found.task = task.index, found.bytes = bytes;
+    return true;
+  };
+  pending.erase(std::remove_if(pending.begin(), pending.end(), is_too_large), pending.end());
+  return found;
+}
+
+std::string too_large_text(const TooLarge& found, double memory) {
+  return fmt::format(
+      "task {} keeps {} of results in memory until it ends, and a rank has {} left: {} left out. {}; \"record\" of the "
+      "job says what is kept",
+      found.task, bytes_text(found.bytes), bytes_text(static_cast<std::int64_t>(memory)),
+      found.tasks == 1 ? "it is" : counted(found.tasks, "such task") + " are", more_memory_text);
 }
 
 /// What the starts before tell of how long tasks take.
@@ -241,6 +264,7 @@ Patience patience_of(const RunOptions& options, Clock::time_point begin) {
   constexpr std::chrono::minutes drain{1};
   Patience patience;
   patience.drain = drain;
+  patience.attempts = options.attempts;
   if (options.time_limit_s) {
     const Seconds whole(*options.time_limit_s);
     patience.time = TimeBudget(whole - Seconds(options.time_passed_s) - (Clock::now() - begin), whole);
@@ -249,7 +273,7 @@ Patience patience_of(const RunOptions& options, Clock::time_point begin) {
   return patience;
 }
 
-std::string ended_text(const Dispatch& dispatch, const RunOptions& options, int ranks) {
+std::string ended_text(const Dispatch& dispatch, std::int64_t too_large, const RunOptions& options, int ranks) {
   RunOptions again = options;
   again.resume = true;
   again.time_passed_s = 0;
@@ -265,6 +289,9 @@ std::string ended_text(const Dispatch& dispatch, const RunOptions& options, int 
         run_line(again, ranks));
   }
   if (dispatch.signal != 0) return stopped_text(dispatch.signal, again, ranks);
+  if (dispatch.left == too_large)
+    return fmt::format("what is left does not fit into memory, as said above. To continue with more: {}",
+                       run_line(again, ranks));
   return fmt::format("{}; nothing is lost that was finished. To continue: {}",
                      dispatch.late ? "there is no time left for the rest" : "no worker is left",
                      run_line(again, ranks));
@@ -294,37 +321,45 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
       collectively(mpi.world(), [&] { return mpi.rank() == 0 && has_begun(options, path, extension) ? 1 : 0; });
   const bool continues = broadcast(begun, mpi.world()) != 0;
   const Provenance provenance = provenance_of(options, mpi, where);
-  ResultsFile file = collectively(mpi.world(), [&] {
+  const auto stop = [&] {
+    const Seconds passed = Clock::now() - begin;
+    return signal.received() != 0 ||
+           (options.time_limit_s && options.time_passed_s + passed.count() > *options.time_limit_s);
+  };
+  std::optional<ResultsFile> opened = collectively(mpi.world(), [&] {
     return continues ? ResultsFile::resume(path, plan, provenance, mpi.world(),
-                                           options.retry_failed ? Retry::failed : Retry::none)
+                                           options.retry_failed ? Retry::failed : Retry::none, stop)
                      : ResultsFile::create(path, plan, provenance, mpi.world(), free_bytes,
                                            options.extend ? std::vector{*options.extend} : std::vector<fs::path>());
   });
+  if (!opened) {
+    Dispatch none;
+    none.left = plan.size(), none.signal = signal.received(), none.late = true;
+    console.note("stopped while what is there was verified: " + ended_text(none, 0, options, mpi.size()));
+    return ExitCode::stopped;
+  }
+  ResultsFile& file = *opened;
   if (!file.note().empty()) console.warn(file.note());
-  by_rank_0(mpi.world(), [&] { give_up_what_was_begun_too_often(plan, file); });
+  by_rank_0(mpi.world(), [&] { give_up_what_was_begun_too_often(plan, file, options.attempts); });
   const FileSummary before =
       collectively(mpi.world(), [&] { return continues && mpi.rank() == 0 ? inspect(path) : FileSummary(); });
 
-  std::vector<bool> mine;
   std::vector<PendingTask> pending;
-  if (mpi.rank() == 0) {  // who alone hands them out
-    mine = in_shard(plan, options.shard);
-    pending = pending_tasks(plan, file, extension, mine);
-  }
+  if (mpi.rank() == 0)  // who alone hands them out
+    pending = pending_tasks(plan, file, extension, in_shard(plan, options.shard), options.attempts);
   advise(console, options, where, pending.size());
   const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
-  console.note(to_do == total
-                   ? fmt::format("{} tasks for {}, results in {}", total, job.name, path.native())
-                   : fmt::format("{} of {} tasks of {} are left to do in {}", to_do, total, job.name, path.native()));
-  if (options.shard)
-    console.note(fmt::format("shard {} of {}: {} of these tasks; `rodsweep merge` puts the shards together",
-                             options.shard->number, options.shard->of, std::count(mine.begin(), mine.end(), true)));
+  const double memory = least(memory_left(), mpi.world());
+  const TooLarge too_large = leave_out_too_large(plan, pending, memory);
+  const std::int64_t share = options.shard ? share_of(*options.shard, total) : total;
+  console.note(begin_text(job.name, options.shard, total, to_do, path));
+  if (too_large.tasks > 0) console.warn(too_large_text(too_large, memory));
   if (extension) console.note(extension_text(*extension, total));
   if (extension && !extension->note().empty()) console.warn(extension->note());
 
   double cost = 0;
   for (const PendingTask& task : pending) cost += task.cost;
-  Progress progress(console, {total, total - to_do, before.failed, cost, where.workers}, Progress::Clock::now());
+  Progress progress(console, {share, share - to_do, before.failed, cost, where.workers}, Progress::Clock::now());
   const WriteRecord write = [&](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
     file.write(task, record, origin);
   };
@@ -338,6 +373,10 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   notices.found_again = [&](int rank) {
     console.note(fmt::format("rank {} on {} is back", rank, hosts[static_cast<std::size_t>(rank)]));
   };
+  notices.stopping = [&](int number) {
+    console.note(
+        fmt::format("told to stop by {}: what is finished is kept, and --resume goes on", signal_cause(number)));
+  };
   notices.give_up = [&](std::int64_t task, int lost) { return give_up(plan.task(task), lost, plan, file); };
   BatchBody body =
       counting_starts(extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write), plan, file);
@@ -348,18 +387,20 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   Patience patience = patience_of(options, begin);
   if (options.time_limit_s && continues && mpi.rank() == 0)
     learn_from_earlier_starts(path, plan, file, pending, patience.time);
-  const Dispatch dispatch =
+  Dispatch dispatch =
       mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then, patience)
                       : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), now_and_then,
                                             file, patience, notices);
+  dispatch.left += too_large.tasks;
   file.commit();
 
-  const SweepSummary summary{total, before.done_by_outcome, dispatch, where.workers, path};
+  const SweepSummary summary{total, before.done_by_outcome, dispatch,  where.workers,
+                             path,  options.program,        too_large, options.shard};
   const auto end = [&](ExitCode code) {
     if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
     dispatch.apart ? file.leave() : file.close();
     console.result(summary_text(summary));
-    if (dispatch.left > 0) console.note(ended_text(dispatch, options, mpi.size()));
+    if (dispatch.left > 0) console.note(ended_text(dispatch, too_large.tasks, options, mpi.size()));
     return code;
   };
   if (dispatch.apart) {

@@ -32,6 +32,7 @@ std::int64_t finished_now(const Dispatch& dispatch) {
 
 ExitCode exit_code(const SweepSummary& summary) {
   if (summary.dispatch.too_long) return ExitCode::too_long;
+  if (const auto left = summary.dispatch.left; left > 0 && left == summary.too_large.tasks) return ExitCode::too_long;
   if (summary.dispatch.left > 0)
     return summary.dispatch.signal != 0 || summary.dispatch.late ? ExitCode::stopped : ExitCode::lost;
   const auto counts = finished(summary);
@@ -42,7 +43,10 @@ ExitCode exit_code(const SweepSummary& summary) {
 std::string summary_text(const SweepSummary& summary) {
   const Dispatch& dispatch = summary.dispatch;
   auto counts = finished(summary);
-  std::string text = fmt::format("{} tasks: {} ok", summary.tasks, counts[ok_name]);
+  std::string text = counted(summary.tasks, "task");
+  if (const auto& shard = summary.shard)
+    text = fmt::format("shard {} of {}, {} of {}", shard->number, shard->of, share_of(*shard, summary.tasks), text);
+  text += fmt::format(": {} ok", counts[ok_name]);
   counts.erase(ok_name);
   for (const auto& [outcome, count] : counts) text += fmt::format(", {} {}", count, outcome);
   if (dispatch.left > 0) text += fmt::format(", {} left to do", dispatch.left);
@@ -58,17 +62,21 @@ std::string summary_text(const SweepSummary& summary) {
 
   if (const auto now = finished_now(dispatch); now > 0 && dispatch.wall_s > 0)
     text +=
-        fmt::format("{} for {} tasks, {:.3g} tasks/s, {} worker{} busy {:.0f} % of the time\n",
-                    duration_text(dispatch.wall_s), now, static_cast<double>(now) / dispatch.wall_s, summary.workers,
-                    summary.workers == 1 ? "" : "s", 100 * dispatch.busy_s / (summary.workers * dispatch.wall_s));
+        fmt::format("{} for {}, {:.3g} tasks/s, {} busy {:.0f} % of the time\n", duration_text(dispatch.wall_s),
+                    counted(now, "task"), static_cast<double>(now) / dispatch.wall_s,
+                    counted(summary.workers, "worker"), 100 * dispatch.busy_s / (summary.workers * dispatch.wall_s));
   std::int64_t again = 0;
   for (const TaskOutcome outcome : {TaskOutcome::error, TaskOutcome::timed_out, TaskOutcome::crashed})
     again += counts[to_string(outcome)];
   if (again > 0 && dispatch.left == 0)
     text += fmt::format("--resume --retry-failed runs the {} again that ended in an error, timed out or crashed\n",
-                        again == 1 ? "task" : fmt::format("{} tasks", again));
+                        again == 1 ? "task" : counted(again, "task"));
   text += "results: " + summary.path.native();
-  if (dispatch.left == 0) text += "\nnext: " + script_line("summary.py", summary.path);
+  if (dispatch.left > 0) return text;
+  if (summary.shard)
+    text += "\nnext, when all shards are done: " + merge_line(summary.program, summary.path, *summary.shard);
+  else
+    text += "\nnext: " + script_line("summary.py", summary.path);
   return text;
 }
 

@@ -161,8 +161,7 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
     const double seconds = probe->reading_s + (probe->training_s + probe->validation_s) / threads;
     text += fmt::format("memory    about {}, once for all threads of a rank\n",
                         bytes_text(static_cast<std::int64_t>(probe->bytes)));
-    text +=
-        fmt::format("time      about {} on {} core{} here\n", duration_text(seconds), threads, threads == 1 ? "" : "s");
+    text += fmt::format("time      about {} on {} here\n", duration_text(seconds), counted(threads, "core"));
   }
   return text + "next      " + run_line(run, 1);
 }

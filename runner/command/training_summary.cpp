@@ -126,9 +126,9 @@ std::string provenance_text(const StoredModel& stored) {
                       card.validation_simulations);
   for (std::size_t i = 0; i < card.starts.size(); ++i) {
     const Provenance& p = card.starts[i].provenance;
-    text += fmt::format("start {}: {} to {} on {}, {} rank{}\n  command   {}\n  revision  {}\n  versions  {}\n", i,
-                        p.begin_utc, card.starts[i].end_utc.empty() ? "?" : card.starts[i].end_utc, p.host, p.ranks,
-                        p.ranks == 1 ? "" : "s", p.user_command, p.revision, p.versions);
+    text += fmt::format("start {}: {} to {} on {}, {}\n  command   {}\n  revision  {}\n  versions  {}\n", i,
+                        p.begin_utc, card.starts[i].end_utc.empty() ? "?" : card.starts[i].end_utc, p.host,
+                        counted(p.ranks, "rank"), p.user_command, p.revision, p.versions);
   }
   text.pop_back();
   return text;

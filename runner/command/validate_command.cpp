@@ -10,6 +10,7 @@
 #include "runner/job/plan.hpp"
 #include "runner/job/plausible.hpp"
 #include "runner/job/training_job.hpp"
+#include "runner/terminal/text.hpp"
 #include "runner/training/learning_sets.hpp"
 
 namespace rodsweep {
@@ -18,7 +19,7 @@ namespace {
 std::string extent_text(const Job& job) {
   if (is_training(job)) return "trains a model";
   const Plan plan(job);
-  return fmt::format("{} task{}", plan.size(), plan.size() == 1 ? "" : "s");
+  return counted(plan.size(), "task");
 }
 
 /// What stands in a file, as far as it can be told without reading it as a job; null if it is no JSON.

@@ -13,7 +13,6 @@ namespace rodsweep {
 namespace {
 
 constexpr std::size_t failures_kept = 5;
-constexpr int lost_before_alone = PendingTask::most_starts - 1;
 
 auto order(const PendingTask& task) { return std::tuple(task.lost, -task.cost, task.batch, task.index); }
 bool comes_first(const PendingTask& a, const PendingTask& b) { return order(a) < order(b); }
@@ -201,7 +200,7 @@ void Master::lose(int rank) {
 
 void Master::put_back(PendingTask task, bool begun) {
   if (begun) ++task.lost, task.batch = -1;
-  if (task.lost >= PendingTask::most_starts && !stopping_ && notices_.give_up) {
+  if (task.lost >= patience_.attempts && !stopping_ && notices_.give_up) {
     count(task, Report(task.index, TaskOutcome::crashed, 0, notices_.give_up(task.index, task.lost)));
     return;
   }
@@ -214,6 +213,7 @@ void Master::stop(int signal) {
   if (std::exchange(stopping_, true)) return;
   dispatch_.signal = signal;
   stopped_ = Clock::now();
+  if (signal != 0 && notices_.stopping) notices_.stopping(signal);
   for (int rank = 1; rank < channel_->size(); ++rank)
     if (!workers_[static_cast<std::size_t>(rank)].lost) channel_->send(rank, Stop{});
 }
@@ -260,7 +260,10 @@ bool Master::any_left() const {
   return std::any_of(workers_.begin() + 1, workers_.end(), [](const Worker& worker) { return !worker.lost; });
 }
 
-bool Master::next_goes_alone() const { return next_ < pool_.size() && pool_[next_].lost >= lost_before_alone; }
+bool Master::next_goes_alone() const {
+  const int lost_before = std::max(patience_.attempts - 1, 1);
+  return next_ < pool_.size() && pool_[next_].lost >= lost_before;
+}
 
 bool Master::may_hold_another(const Worker& worker) const {
   constexpr double margin = 2;  // costs are estimates

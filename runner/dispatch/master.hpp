@@ -45,12 +45,17 @@ struct Patience {
   std::chrono::duration<double> silence{std::numeric_limits<double>::infinity()};  ///< of any worker
   std::chrono::duration<double> drain{std::numeric_limits<double>::infinity()};    ///< after a request to stop
   TimeBudget time{};                                                               ///< of the whole start
+  /// So often a task is begun. The first time it may have run beside the one that is to blame; the last time it is
+  /// alone.
+  int attempts = 3;
 };
 
 /// What the master tells its owner. Empty functions are not called.
 struct Notices {
   std::function<void(int rank)> lost, found_again;
-  /// It was begun most_starts times: to be written down. Returns what is said of it.
+  /// Said before the workers have drained: mpirun kills all a second after its SIGTERM.
+  std::function<void(int signal)> stopping;
+  /// It was begun Patience::attempts times: to be written down. Returns what is said of it.
   std::function<std::string(std::int64_t task, int lost)> give_up;
 };
 

@@ -13,10 +13,6 @@ struct PendingTask {
   int lost = 0;             ///< workers that ended while they ran it
   double tried_s = 0;       ///< the longest for which it ran and was given up
   double limit_s = std::numeric_limits<double>::infinity();  ///< of its own, after which it ends as timed out
-
-  /// So often a task is begun. The first time it may have run beside the one that is to blame; the last time it is
-  /// alone.
-  static constexpr int most_starts = 3;
 };
 
 }  // namespace rodsweep

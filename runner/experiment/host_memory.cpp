@@ -79,12 +79,14 @@ void limit_memory(double bytes) {
 #endif
 }
 
+double memory_left() { return allowed - of_status("RssAnon:"); }
+
+const char* const more_memory_text = "fewer ranks on a host leave each more, --memory-limit-gb sets it";
+
 std::string out_of_memory_text() {
   if (allowed == unlimited) return "out of memory";
-  return fmt::format(
-      "out of memory: it wants more than the {} that this process may have; fewer ranks on a host leave "
-      "each more, --memory-limit-gb sets it",
-      bytes_text(static_cast<std::int64_t>(allowed)));
+  return fmt::format("out of memory: it wants more than the {} that this process may have; {}",
+                     bytes_text(static_cast<std::int64_t>(allowed)), more_memory_text);
 }
 
 double peak_memory() { return of_status("VmHWM:"); }

@@ -17,6 +17,12 @@ inline constexpr double memory_reserve = 0.1;
 /// For good: what this process allocates from now on beyond `bytes` in all is refused. Nothing where the system cannot.
 void limit_memory(double bytes);
 
+/// Bytes that this process may still allocate; infinity where nothing bounds it.
+double memory_left();
+
+/// How to have more: "fewer ranks on a host leave each more, --memory-limit-gb sets it".
+extern const char* const more_memory_text;
+
 /// "out of memory: ..." with this process's bound, for messages.
 std::string out_of_memory_text();
 

@@ -34,7 +34,13 @@ void SyncedFile::sync() const {
   if (fdatasync(descriptor_.number()) != 0 && !cannot(errno)) throw sync_error(path_, errno);
 }
 
-void SyncedFile::touch() const { futimens(descriptor_.number(), nullptr); }
+void SyncedFile::beat() {
+  constexpr std::chrono::seconds pause{5};
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_beat_) return;
+  next_beat_ = now + pause;
+  futimens(descriptor_.number(), nullptr);
+}
 
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");

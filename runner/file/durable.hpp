@@ -4,6 +4,7 @@
 // (a state byte, a name in a folder), the other has to be synced first. Throws FileError where the disk says no.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 
 #include "runner/file/descriptor.hpp"
@@ -17,10 +18,11 @@ class SyncedFile {
   explicit SyncedFile(const std::filesystem::path& path);
 
   void sync() const;
-  /// Says "now" in the file's modification time: a sign of life for those who watch the file.
-  void touch() const;
+  /// Every few seconds, says "now" in the file's modification time: a sign of life for those who watch the file.
+  void beat();
 
  private:
+  std::chrono::steady_clock::time_point next_beat_{};
   std::filesystem::path path_;
   Descriptor descriptor_;
 };

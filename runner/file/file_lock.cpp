@@ -32,7 +32,8 @@ std::optional<bool> FileLock::is_held(const std::filesystem::path& path) {
 FileLock::FileLock(const std::filesystem::path& path) : descriptor_(open(path.c_str(), O_RDWR | O_CLOEXEC)) {
   if (!descriptor_) return;  // whoever opens it next says why
   struct flock byte = far_byte();
-  if (fcntl(descriptor_.number(), F_OFD_SETLK, &byte) == 0 || (errno != EAGAIN && errno != EACCES)) return;
+  held_ = fcntl(descriptor_.number(), F_OFD_SETLK, &byte) == 0;
+  if (held_ || (errno != EAGAIN && errno != EACCES)) return;
   throw FileError(fmt::format(
       "{} is being written by another run: wait until it ends, or stop it (`rodsweep info {}` says where it "
       "was started)",

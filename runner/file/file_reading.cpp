@@ -111,8 +111,10 @@ std::vector<std::uint8_t> read_states(const hdf5::File& file, const fs::path& pa
   std::vector<std::uint8_t> states = hdf5::read_all<std::uint8_t>(file.id(), "/tasks/state");
   const auto odd = std::find_if(states.begin(), states.end(), [](std::uint8_t state) { return state > 1; });
   if (odd != states.end()) {
-    throw damaged_error(path,
-                        fmt::format("/tasks/state of task {} is {}, neither 0 nor 1", odd - states.begin(), *odd));
+    throw FileError(
+        fmt::format("{} is damaged: /tasks/state of task {} is {}, neither 0 nor 1. Its job, run into this file with "
+                    "--resume, verifies all tasks, and runs those again that are not what was written",
+                    path.native(), odd - states.begin(), *odd));
   }
   return states;
 }

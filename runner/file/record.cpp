@@ -30,4 +30,14 @@ void TaskRecord::prepare(const Task& task, const AxisSizes& sizes) {
   std::fill(reason.begin(), reason.end(), static_cast<std::int8_t>(SolveOutcome::not_run));
 }
 
+std::int64_t record_bytes(const Task& task, const AxisSizes& sizes) {
+  TaskRecord any;
+  std::int64_t bytes = 0;
+  for (const Column& column : columns()) {
+    const auto one = std::visit([](auto* values) { return sizeof(*values->data()); }, column.values(any));
+    bytes += task.rows[column.rows].count * row_width(column, sizes) * static_cast<std::int64_t>(one);
+  }
+  return bytes;
+}
+
 }  // namespace rodsweep

@@ -87,4 +87,7 @@ struct TaskRecord {
   void prepare(const Task& task, const AxisSizes& sizes);
 };
 
+/// What a record takes once it is prepared for this task.
+std::int64_t record_bytes(const Task& task, const AxisSizes& sizes);
+
 }  // namespace rodsweep

@@ -11,6 +11,7 @@
 
 #include "runner/file/columns.hpp"
 #include "runner/file/durable.hpp"
+#include "runner/file/file_reading.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
@@ -70,27 +71,67 @@ std::string host_names(MPI_Comm comm) {
 /// Why a task that is said to be complete is run again.
 enum Again : std::uint8_t { not_again, failed, damaged };
 
-/// Of every task, found by all ranks together. Collective.
-std::vector<std::uint8_t> to_run_again(const fs::path& path, const std::vector<std::uint8_t>& done, Retry retry,
-                                       MPI_Comm comm) {
+/// A state byte that is neither of the two says that the task is not complete: so its reader shall find it.
+void mend_states(const fs::path& path, const std::vector<std::uint8_t>& states) {
+  if (std::all_of(states.begin(), states.end(), [](std::uint8_t state) { return state <= 1; })) return;
+  const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
+  for (std::size_t task = 0; task < states.size(); ++task)
+    if (states[task] > 1) hdf5::write_row<std::uint8_t>(file.id(), "/tasks/state", task, 0);
+}
+
+/// Where the file system has no locks: a run that has not ended shows every few seconds that it lives.
+void refuse_living(const fs::path& path) {
+  const std::vector<RunRow> runs = read_runs(open_results(path));
+  const std::chrono::duration<double> silent = fs::file_time_type::clock::now() - fs::last_write_time(path);
+  constexpr std::chrono::seconds dead{30};
+  if (runs.empty() || !runs.back().end_utc.empty() || silent > dead) return;
+  throw FileError(
+      fmt::format("{} seems to be written by another run, which showed a sign of life {:.0f} s ago (there are no locks "
+                  "on this file system): wait until it ends, or, where it was killed, until that is {} s ago",
+                  path.native(), silent.count(), dead.count()));
+}
+
+bool intact(const TaskReader& reader, std::int64_t task, TaskRecord& record, const fs::path& path) try {
+  return reader.read_intact(task, record);
+} catch (const std::bad_alloc&) {
+  throw FileError(
+      fmt::format("{}: the results of task {} are more than this process may have of memory, and cannot be verified: "
+                  "use fewer ranks on a host, or --memory-limit-gb",
+                  path.native(), task));
+}
+
+/// Of every task, found by all ranks together; nothing where any is told to stop before. Collective.
+std::optional<std::vector<std::uint8_t>> to_run_again(const fs::path& path, const std::vector<std::uint8_t>& done,
+                                                      Retry retry, MPI_Comm comm, const std::function<bool()>& stop) {
   int rank = 0, size = 1;
   check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
   check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
   std::vector<std::uint8_t> again(done.size(), not_again);
+  std::uint8_t stopped = 0;
   collectively(comm, [&] {
     const TaskReader reader(path, TaskReader::Times::left_out);
+    SyncedFile file(path);
     TaskRecord record;
     for (auto i = static_cast<std::size_t>(rank); i < done.size(); i += static_cast<std::size_t>(size)) {
-      if (!done[i]) continue;
+      if (done[i] > 1) again[i] = damaged;
+      if (done[i] != 1) continue;
+      if (rank == 0) file.beat();
+      if (stop()) {
+        stopped = 1;
+        return;
+      }
       const auto task = static_cast<std::int64_t>(i);
-      if (!reader.read_intact(task, record))
+      if (!intact(reader, task, record, path))
         again[i] = damaged;
       else if (retry == Retry::failed && may_change(record.outcome))
         again[i] = failed;
     }
   });
+  again.push_back(stopped);
   check_mpi(MPI_Allreduce(MPI_IN_PLACE, again.data(), static_cast<int>(again.size()), MPI_UINT8_T, MPI_MAX, comm),
             "MPI_Allreduce");
+  if (again.back() != 0) return std::nullopt;
+  again.pop_back();
   return again;
 }
 
@@ -148,9 +189,9 @@ struct ResultsFile::Open {
   bool sync_failed = false;
   FileLock lock;  // of the first rank
   SyncedFile synced;
+  Clock::time_point next_commit = Clock::now();
   std::vector<std::int64_t> written;  ///< tasks whose data are, and whose state is to follow
   std::int64_t committed = 0;
-  Clock::time_point next_commit = Clock::now(), next_beat = next_commit;
   int own_rank = 0;
   AxisSizes sizes;
   RunRow run;                             // this start's
@@ -179,28 +220,32 @@ ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Pr
   return ResultsFile(path, plan, none, runs, none, provenance, comm, std::move(lock));
 }
 
-ResultsFile ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
-                                Retry retry) {
+std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance,
+                                               MPI_Comm comm, Retry retry, const std::function<bool()>& stop) {
   ResumePoint point;
   FileLock lock;
   on_first_rank(comm, [&] {
     check_path(path);
     lock = FileLock(path);
     point = check_resumable(path, plan);
+    if (!lock.held()) refuse_living(path);
+    mend_states(path, point.done);
   });
   for (std::vector<std::uint8_t>* bytes : {&point.done, &point.starts}) {
     bytes->resize(static_cast<std::size_t>(plan.size()));
     check_mpi(MPI_Bcast(bytes->data(), static_cast<int>(bytes->size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
   }
   point.runs = broadcast(point.runs, comm);
-  const std::vector<std::uint8_t> again = to_run_again(path, point.done, retry, comm);
-  for (std::size_t i = 0; i < again.size(); ++i) {
-    if (again[i]) point.done[i] = 0;
-    if (again[i] || retry == Retry::failed) point.starts[i] = 0;
+  const auto again = to_run_again(path, point.done, retry, comm, stop);
+  if (!again) return std::nullopt;
+  for (std::size_t i = 0; i < again->size(); ++i) {
+    const bool is_again = again->at(i) != not_again;
+    if (is_again) point.done[i] = 0;
+    if (is_again || retry == Retry::failed) point.starts[i] = 0;
   }
   ResultsFile file(path, plan, std::move(point.done), point.runs, std::move(point.starts), provenance, comm,
                    std::move(lock));
-  file.take_back(again, comm);
+  file.take_back(*again, comm);
   return file;
 }
 
@@ -238,6 +283,8 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->tried_steps = open_rows("/timing/tasks/tried_steps");
     for (const Column& column : columns()) open_->columns.push_back(open_rows(column.path));
   });
+  if (open_->own_rank == 0 && !open_->lock.held())
+    add_note(path.native() + " is on a file system without locks: a second run is only kept away by its time");
   open_->run.provenance = provenance;
   open_->run.provenance.host = host_names(comm);
   on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(attempt_), open_->run); });
@@ -256,12 +303,13 @@ void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm com
   });
   const auto note = [&](Again why, const char* text) {
     const std::string tasks = these_tasks(again, why);
-    if (!tasks.empty())
-      note_ += fmt::format("{}{}: {} run again, {}", note_.empty() ? "" : "; ", open_->path.native(), tasks, text);
+    if (!tasks.empty()) add_note(fmt::format("{}: {} run again, {}", open_->path.native(), tasks, text));
   };
   note(damaged, "since the data there are not what was written (checksum)");
   note(failed, "after an error, for want of time or after a crash");
 }
+
+void ResultsFile::add_note(const std::string& text) { note_ += (note_.empty() ? "" : "; ") + text; }
 
 void ResultsFile::commit() { open_->commit(); }
 
@@ -330,12 +378,7 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
   commit_if_due();
 }
 
-void ResultsFile::beat() {
-  constexpr std::chrono::seconds pause{5};
-  if (Clock::now() < open_->next_beat) return;
-  open_->next_beat = Clock::now() + pause;
-  open_->synced.touch();
-}
+void ResultsFile::beat() { open_->synced.beat(); }
 
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
   open_->run.end_utc = end_utc;

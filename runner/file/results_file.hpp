@@ -16,8 +16,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,10 +44,13 @@ class ResultsFile {
                             MPI_Comm comm, const FreeSpace& free_space = free_bytes,
                             const std::vector<std::filesystem::path>& earlier = {});
   /// Collective. Refuses a file of another program, schema version, plan or job text, and one that another run is
-  /// writing. Tasks whose data are not what was written (checksums; the ranks share the work) count as pending again,
-  /// and on request those that failed and may end otherwise (may_change()). Appends a row to /runs.
-  static ResultsFile resume(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
-                            MPI_Comm comm, Retry retry = Retry::none);
+  /// writing. Tasks whose data are not what was written (checksums; the ranks share the work, and show meanwhile that
+  /// they live) count as pending again, and on request those that failed and may end otherwise (may_change()). Appends
+  /// a row to /runs. Nothing, the same on every rank, where any rank is told to `stop` before all are verified: the
+  /// file stays as it is.
+  static std::optional<ResultsFile> resume(
+      const std::filesystem::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
+      Retry retry = Retry::none, const std::function<bool()>& stop = [] { return false; });
 
   ResultsFile(ResultsFile&&) noexcept;
   ResultsFile& operator=(ResultsFile&&) noexcept;
@@ -93,6 +98,7 @@ class ResultsFile {
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
               std::vector<std::uint8_t> starts, const Provenance& provenance, MPI_Comm comm, FileLock lock);
 
+  void add_note(const std::string& text);
   void take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm);
 
   std::unique_ptr<Open> open_;

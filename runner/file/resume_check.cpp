@@ -14,6 +14,7 @@
 #include "runner/file/layout.hpp"
 #include "runner/file/pack.hpp"
 #include "runner/file/planned_columns.hpp"
+#include "runner/file/provenance.hpp"
 #include "runner/file/runs.hpp"
 
 namespace rodsweep {
@@ -57,9 +58,12 @@ void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
 
 FileError other_program(const hdf5::File& file, const fs::path& path, const std::string& difference,
                         const char* advice) {
+  const std::string revision = hdf5::read_text_row(file.id(), "/runs/revision", 0);
+  if (revision == source_revision() && revision.find("-dirty") == std::string::npos && revision != "unknown")
+    return damaged_error(path, difference + ", though this very program made it");
   return FileError(
       fmt::format("{} was made from its job by a rodsweep that expands it differently (revision {}): {}. {}",
-                  path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference, advice));
+                  path.native(), revision, difference, advice));
 }
 
 void check_layout(const hdf5::File& file, const fs::path& path, const std::vector<Field>& fields, const char* advice) {
@@ -164,7 +168,8 @@ ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
     check_job(file, path, plan);
     check_frame(file, path, other_revision);
     check_plan(file, path, plan, other_revision);
-    return ResumePoint{read_states(file, path), hdf5::read_all<std::uint8_t>(file.id(), "/timing/tasks/starts"),
+    return ResumePoint{hdf5::read_all<std::uint8_t>(file.id(), "/tasks/state"),
+                       hdf5::read_all<std::uint8_t>(file.id(), "/timing/tasks/starts"),
                        static_cast<int>(read_runs(file).size())};
   });
 }

@@ -11,7 +11,7 @@
 namespace rodsweep {
 
 struct ResumePoint {
-  std::vector<std::uint8_t> done;    ///< state bytes, by task index
+  std::vector<std::uint8_t> done;    ///< state bytes, by task index, whatever they are
   std::vector<std::uint8_t> starts;  ///< /timing/tasks/starts, likewise
   int runs = 0;                      ///< rows of /runs in use
 };

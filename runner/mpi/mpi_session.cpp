@@ -48,6 +48,11 @@ int broadcast(int value, MPI_Comm comm) {
   return value;
 }
 
+double least(double value, MPI_Comm comm) {
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MIN, comm), "MPI_Allreduce");
+  return value;
+}
+
 void broadcast(void* data, std::size_t bytes, MPI_Comm comm) {
   constexpr std::size_t at_once = std::size_t{1} << 30;  // MPI counts in int
   for (std::size_t done = 0; done < bytes; done += at_once)

@@ -51,6 +51,9 @@ std::string broadcast(std::string text, MPI_Comm comm);
 int broadcast(int value, MPI_Comm comm);
 void broadcast(void* data, std::size_t bytes, MPI_Comm comm);
 
+/// The least of all ranks' values, on every rank.
+double least(double value, MPI_Comm comm);
+
 /// Rank 0's values, on every rank as many.
 template <class T>
 void broadcast(std::vector<T>& values, MPI_Comm comm) {

@@ -1,8 +1,10 @@
 // Preloaded into the program: once the file named by FAIL_FILE exists, writes at an offset (MPI-IO's) of rank FAIL_RANK fail as
-// on a full disk.
+// on a full disk; with FAIL_LOCKS there are no locks, as on some network file systems.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -23,4 +25,25 @@ ssize_t pwrite(int descriptor, const void* data, size_t bytes, off_t offset) {
 
 ssize_t pwrite64(int descriptor, const void* data, size_t bytes, off_t offset) {
   return pwrite(descriptor, data, bytes, offset);
+}
+
+int fcntl64(int descriptor, int command, ...) {
+  va_list arguments;
+  va_start(arguments, command);
+  void* argument = va_arg(arguments, void*);
+  va_end(arguments);
+  if ((command == F_OFD_SETLK || command == F_OFD_GETLK) && getenv("FAIL_LOCKS")) {
+    errno = ENOLCK;
+    return -1;
+  }
+  int (*real)(int, int, ...) = dlsym(RTLD_NEXT, "fcntl64");
+  return real(descriptor, command, argument);
+}
+
+int fcntl(int descriptor, int command, ...) {
+  va_list arguments;
+  va_start(arguments, command);
+  void* argument = va_arg(arguments, void*);
+  va_end(arguments);
+  return fcntl64(descriptor, command, argument);
 }

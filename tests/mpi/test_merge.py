@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 import h5py
-from test_sweeps import ALL_DONE, STOPPED, SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, rodsweep, status
+from test_sweeps import ALL_DONE, RODSWEEP, STOPPED, SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, rodsweep, status
 
 
 class Merging(SweepCase):
@@ -45,6 +45,21 @@ class Merging(SweepCase):
                 self.assertEqual(rodsweep(0, "merge", *files, "-o", "merged.h5").returncode, USER_ERROR)  # never overwritten
                 for file in ("single.h5", "merged.h5", *files):
                     os.remove(file)
+
+    def test_a_shard_counts_its_own_tasks(self):
+        path = job("counted", samples=5)
+        run = rodsweep(2, "run", path, "--shard", "2/4")
+        self.assert_exit(run, ALL_DONE)
+        self.assertIn("shard 2 of 4 of counted, 3 of 10 tasks, results in results/counted-2of4.h5", run.stderr)
+        self.assertIn("shard 2 of 4, 3 of 10 tasks: 3 ok", run.stdout)
+        self.assertIn(f"{RODSWEEP} merge results/counted-*of4.h5 -o results/counted.h5", run.stdout)
+        self.assertIn("counted, shard 2 of 4: 3 of 3 tasks done (100 %): 3 ok",
+                      rodsweep(0, "status", "results/counted-2of4.h5").stdout)
+        self.assertEqual(status("results/counted-2of4.h5")["shard"], {"number": 2, "of": 4, "tasks": 3})
+        self.shards(path, 4, (1, 3, 4))
+        self.assert_exit(rodsweep(0, "merge", *(f"results/counted-{n}of4.h5" for n in range(1, 5)), "-o", "results/counted.h5"),
+                         ALL_DONE)
+        self.assertEqual(status("results/counted.h5")["shard"], None)
 
     def test_costs_are_shared_out(self):
         path = job("costs", samples=1, segments=[5] * 4 + [50] * 4)

@@ -38,7 +38,7 @@ TEST_CASE("ranks resume a file together and agree on what is done") {
   const Plan plan = plan_of(full_job());
   if (own_rank() == 0) make_file("parts.h5", plan, 2);
   MPI_Barrier(MPI_COMM_WORLD);
-  ResultsFile file = ResultsFile::resume("parts.h5", plan, test_provenance(), MPI_COMM_WORLD);
+  ResultsFile file = ResultsFile::resume("parts.h5", plan, test_provenance(), MPI_COMM_WORLD).value();
   CHECK(file.done() == std::vector<std::uint8_t>{1, 1, 0, 0, 0, 0});
   CHECK(file.attempt() == 1);
   if (own_rank() == rank_count() - 1) {

@@ -187,8 +187,10 @@ class InterruptedCase(SweepCase):
 
 class Interrupted(InterruptedCase):
     def test_after_a_worker_is_killed(self):
-        code, _, _ = self.interrupt("worker.h5", 3, lambda p: os.kill(ranks_of(p)[2], signal.SIGKILL))
-        self.assertNotEqual(code, 0)
+        code, _, stderr = self.interrupt("worker.h5", 3, lambda p: os.kill(ranks_of(p)[2], signal.SIGKILL))
+        self.assertEqual(code, 128 + signal.SIGKILL)
+        self.assertIn("told to stop by mpirun (SIGTERM), which got Ctrl-C or a signal, or lost a rank: what is finished is "
+                      "kept, and --resume goes on", stderr)
         self.assertIsNone(self.resume("worker.h5", 2)[0]["end"])
 
     def test_after_all_ranks_are_killed(self):
@@ -380,6 +382,22 @@ class Refusals(SweepCase):
                                  "first.h5 holds the results of another job")
         self.assertEqual(checksum("first.h5"), before)
 
+    def test_where_there_are_no_locks_a_file_that_is_being_written_is_known_by_its_time(self):
+        os.environ.update({"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_LOCKS": "1"})
+        self.addCleanup(lambda: [os.environ.pop(name) for name in ("LD_PRELOAD", "FAIL_LOCKS")])
+        path = long_job()
+        first = start(3, "run", path, "-o", "unlocked.h5")
+        wait_for_tasks(first, "unlocked.h5", 1)
+        self.assert_refused_once(rodsweep(2, "run", path, "-o", "unlocked.h5", "--resume"), "unlocked.h5 seems to be written by "
+                                 "another run, which showed a sign of life")
+        _, stderr = first.communicate(timeout=60)
+        self.assertEqual((first.returncode, stderr.count("is on a file system without locks")), (ALL_DONE, 1), stderr)
+        with h5py.File("unlocked.h5", "r+") as file:
+            file["runs/end"][0] = b""  # killed, then
+        before = time.time() - 31
+        os.utime("unlocked.h5", (before, before))
+        self.assert_exit(rodsweep(2, "run", path, "-o", "unlocked.h5", "--resume"), ALL_DONE)
+
     def test_a_foreign_file_is_not_continued(self):
         with open("notes.h5", "w") as file:
             file.write("not HDF5 at all")
@@ -447,6 +465,25 @@ class Outcomes(SweepCase):
         self.assert_exit(bounded, TASKS_FAILED)
         self.assertEqual(status("results/large.h5")["outcomes"], {"ok": 1, "error": 1})
         self.assertIn("more than the 400 MB that this process may have", bounded.stdout)
+
+    def test_a_bound_on_memory_below_what_the_program_needs_is_refused(self):
+        refused = rodsweep(0, "run", job("tiny"), "--memory-limit-gb", "0.005")
+        self.assert_exit(refused, USER_ERROR)
+        self.assertIn("--memory-limit-gb", refused.stderr)
+
+    def test_tasks_whose_results_do_not_fit_into_memory_are_left_out_and_named(self):
+        path = job("record", samples=1, segments=[6, 4000], guesses=["zero"],
+                   time={"step_s": 0.02, "steps": 2000, "newton_iterations": 1},
+                   record={"solves": "summary", "trajectory_every": 1})  # of 460 MB, of which none is written
+        bounded = rodsweep(2, "run", path, "--memory-limit-gb", "0.3")
+        self.assert_exit(bounded, TOO_LONG)
+        self.assertRegex(bounded.stderr, r"task 1 keeps 4\d\d MB of results in memory until it ends, and a rank has "
+                                         r"2\d\d MB left: it is left out\. fewer ranks on a host leave each more")
+        self.assertIn("To continue with more: ", bounded.stderr)
+        now = status("results/record.h5")
+        self.assertEqual((now["outcomes"], now["pending"]), ({"ok": 1}, 1))
+        plan = json.loads(rodsweep(0, "plan", path, "--json").stdout)
+        self.assertGreater(plan["probes"][-1]["memory_bytes"], 448e6)
 
     def test_resume_starts_a_sweep_that_has_no_file_and_does_nothing_to_a_finished_one(self):
         path = job("fresh")

@@ -1,6 +1,7 @@
 // What the user types, and what the program makes of it.
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "runner/command/command_line.hpp"
@@ -36,6 +37,33 @@ TEST_CASE("run takes a job, a file and --resume, and remembers the line for the 
 TEST_CASE("without -o a job named demo is written to results/demo.h5") {
   CHECK(output_of(std::get<RunOptions>(parse({"run", "job.json"})), "demo") == "results/demo.h5");
   CHECK(output_of(std::get<RunOptions>(parse({"run", "job.json", "-o", "out.h5"})), "demo") == "out.h5");
+}
+
+TEST_CASE("a shard is told by its number, and known again by the line that the file remembers") {
+  const auto shard = [](const std::string& text) {
+    const auto run = std::get<RunOptions>(parse({"run", "job.json", text.c_str()}));
+    return std::pair(run.shard.value().number, shard_of_command(run.command).value().number);
+  };
+  CHECK(shard("--shard=3/16") == std::pair(3, 3));
+  CHECK(output_of(std::get<RunOptions>(parse({"run", "job.json", "--shard", "3/16"})), "demo") ==
+        "results/demo-3of16.h5");
+  CHECK(shard_of_command("rodsweep run a.json --shard 2/4 --resume").value().of == 4);
+  for (const char* none : {"rodsweep run a.json", "rodsweep run a.json --shard", "rodsweep run a.json --shards 1/2"})
+    CHECK_FALSE(shard_of_command(none));
+  for (const char* wrong : {"0/4", "5/4", "1/0", "-1/4", "1/4x", "1", "a/b", "", "4294967297/4", "1/4294967297"})
+    CHECK_FALSE(shard_of(wrong));
+}
+
+TEST_CASE("shards of a sweep have tasks that differ by one at most, and together all") {
+  for (const std::int64_t tasks : {0, 1, 7, 16, 100}) {
+    std::int64_t sum = 0, most = 0, least = tasks;
+    for (int number = 1; number <= 7; ++number) {
+      const std::int64_t share = share_of({number, 7}, tasks);
+      sum += share, most = std::max(most, share), least = std::min(least, share);
+    }
+    CHECK(sum == tasks);
+    CHECK(most - least <= 1);
+  }
 }
 
 TEST_CASE("the command that continues a sweep can be typed as it stands") {

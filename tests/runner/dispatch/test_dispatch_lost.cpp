@@ -138,6 +138,28 @@ TEST_CASE("what a lost worker finished and had not brought to disk is done again
   CHECK(sweep.master.dispatch().left == 0);
 }
 
+TEST_CASE("a task may be given up with the first worker that it loses") {
+  std::vector<std::int64_t> given_up;
+  Notices notices;
+  notices.give_up = [&](std::int64_t task, int) {
+    given_up.push_back(task);
+    return "gone";
+  };
+  Patience once{patience, patience};
+  once.attempts = 1;
+  Sweep sweep(2, tasks_of_cost({9, 2}), once, notices);
+  Inbox dead(sweep.network[1]), good(sweep.network[2]);
+  for (bool finished = false; !finished;) {
+    dead.assigned();
+    for (const std::int64_t task : good.assigned()) good.report(task);
+    alive(good);
+    std::this_thread::sleep_for(patience / 8);
+    finished = sweep.master.step() == Master::Step::finished;
+  }
+  CHECK(given_up == std::vector<std::int64_t>{0});
+  CHECK(sweep.master.dispatch().left == 0);
+}
+
 TEST_CASE("a task that loses three workers is given up, the last of them with nothing beside it") {
   std::vector<std::int64_t> given_up;
   Notices notices;

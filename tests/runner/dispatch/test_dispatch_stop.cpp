@@ -13,7 +13,10 @@ using namespace rodsweep;
 using namespace rodsweep::examples;
 
 TEST_CASE("a signal to the master stops the sweep, and every task is accounted for") {
-  Sweep sweep(2, tasks_of_cost(std::vector<double>(100, 1.0)));
+  std::vector<int> told;
+  Notices notices;
+  notices.stopping = [&](int signal) { told.push_back(signal); };
+  Sweep sweep(2, tasks_of_cost(std::vector<double>(100, 1.0)), {}, notices);
   Inbox one(sweep.network[1]), two(sweep.network[2]);
   sweep.master.step();
   const auto ones = one.assigned(), twos = two.assigned();
@@ -27,6 +30,7 @@ TEST_CASE("a signal to the master stops the sweep, and every task is accounted f
   CHECK(two.assigned().empty());
   CHECK(one.stops == 1);
   CHECK(two.stops == 1);
+  CHECK(told == std::vector<int>{SIGTERM});  // at once: it may be killed before the others have answered
 
   one.report(ones[1], TaskOutcome::pending);
   two.report(twos[0], TaskOutcome::pending);
@@ -36,6 +40,7 @@ TEST_CASE("a signal to the master stops the sweep, and every task is accounted f
   one.assigned();
   CHECK(one.finishes == 1);
   CHECK(one.stops == 1);
+  CHECK(told.size() == 1);
   CHECK(sweep.master.dispatch().signal == SIGTERM);
   CHECK(sweep.master.dispatch().left == 99);
 }

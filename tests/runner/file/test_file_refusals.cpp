@@ -152,8 +152,12 @@ TEST_CASE("a state byte that is neither 0 nor 1 is damage") {
   const Plan plan = plan_of(full_job());
   make_file(folder / "a.h5", plan, 2);
   hdf5::write_row<std::uint8_t>(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/tasks/state", 4, 7);
-  CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("/tasks/state of task 4 is 7, neither 0 nor 1"));
-  CHECK_THAT(resume_refusal(folder / "a.h5", plan), Contains("/tasks/state of task 4 is 7, neither 0 nor 1"));
+  CHECK_THAT(inspect_refusal(folder / "a.h5"),
+             Contains("/tasks/state of task 4 is 7, neither 0 nor 1. Its job, run into this file with --resume"));
+  const auto file = ResultsFile::resume(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
+  CHECK_THAT(file.value().note(), Contains("task 4 is run again"));
+  CHECK(file.value().done().at(4) == 0);
+  CHECK(inspect(folder / "a.h5").pending >= 1);
 }
 
 TEST_CASE("frames whose rows no number can count are damage") {

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 ResultsFile resume(const fs::path& path, const Plan& plan) {
-  return ResultsFile::resume(path, plan, test_provenance(), MPI_COMM_SELF);
+  return ResultsFile::resume(path, plan, test_provenance(), MPI_COMM_SELF).value();
 }
 
 void flip_bit(const fs::path& path, const std::string& dataset, std::size_t byte) {
@@ -146,12 +146,28 @@ TEST_CASE("failed tasks are run again on request, if they may end otherwise") {
     write(3, TaskOutcome::timed_out);
   }
   CHECK(resume(folder / "a.h5", plan).done() == std::vector<std::uint8_t>{1, 1, 1, 1, 0, 0});
-  const ResultsFile file = ResultsFile::resume(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF, Retry::failed);
+  const ResultsFile file =
+      ResultsFile::resume(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF, Retry::failed).value();
   CHECK(file.done() == std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0});
   CHECK(file.note() ==
         (folder / "a.h5").native() +
             ": 2 tasks, the first being 1, are run again, after an error, for want of time or after a crash");
   CHECK(inspect(folder / "a.h5").done == 2);
+}
+
+TEST_CASE("verifying shows that it lives, and stops when told to, with the file as it was") {
+  const TemporaryFolder folder;
+  const Plan plan = plan_of(full_job());
+  const auto path = folder / "a.h5";
+  make_file(path, plan, 4);
+  fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  int asked = 0;
+  CHECK_FALSE(
+      ResultsFile::resume(path, plan, test_provenance(), MPI_COMM_SELF, Retry::none, [&] { return ++asked == 3; }));
+  CHECK(asked == 3);
+  CHECK(fs::file_time_type::clock::now() - fs::last_write_time(path) < std::chrono::minutes(1));
+  CHECK(inspect(path).runs.size() == 1);
+  CHECK(resume(path, plan).done() == std::vector<std::uint8_t>{1, 1, 1, 1, 0, 0});
 }
 
 TEST_CASE("status can be read while the sweep writes") {

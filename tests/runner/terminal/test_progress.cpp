@@ -10,6 +10,7 @@ using namespace rodsweep;
 
 namespace {
 
+using Catch::Matchers::EndsWith;
 using std::chrono::seconds;
 const Progress::Clock::time_point start{};
 
@@ -51,6 +52,7 @@ TEST_CASE("a finished sweep exits 0, with failures 3, stopped 4, with tasks that
   ended.signal = 0;
   ended.late = true;
   CHECK(exit_code({5, {}, ended, 1, "x.h5"}) == ExitCode::stopped);
+  CHECK(exit_code({5, {}, ended, 1, "x.h5", "rodsweep", TooLarge{1, 0, 1}}) == ExitCode::too_long);
   ended.too_long = PendingTask{};
   CHECK(exit_code({5, {}, ended, 1, "x.h5"}) == ExitCode::too_long);
   CHECK(exit_code({5, {{"ok", 1}, {"error", 1}}, dispatch_of(3, 0, 0), 1, "x.h5"}) == ExitCode::tasks_failed);
@@ -74,6 +76,19 @@ TEST_CASE("the summary of a sweep stopped early says what is left") {
         "15 tasks: 6 ok, 9 left to do\n"
         "10.0 s for 6 tasks, 0.6 tasks/s, 2 workers busy 75 % of the time\n"
         "results: x.h5");
+}
+
+TEST_CASE("the summary of a shard counts its own tasks, and says how the shards are put together") {
+  const auto summary = [](const char* path, const Dispatch& dispatch) {
+    return summary_text({15, {}, dispatch, 1, path, "build/rodsweep", {}, Shard{2, 4}});
+  };
+  CHECK(summary("results/my-2of4.h5", dispatch_of(4, 0, 0)) ==
+        "shard 2 of 4, 4 of 15 tasks: 4 ok\n"
+        "10.0 s for 4 tasks, 0.4 tasks/s, 1 worker busy 150 % of the time\n"
+        "results: results/my-2of4.h5\n"
+        "next, when all shards are done: build/rodsweep merge results/my-*of4.h5 -o results/my.h5");
+  CHECK_THAT(summary("other.h5", dispatch_of(4, 0, 0)), EndsWith("build/rodsweep merge SHARDS... -o FILE"));
+  CHECK_THAT(summary("my-2of4.h5", dispatch_of(3, 0, 1)), EndsWith("results: my-2of4.h5"));
 }
 
 TEST_CASE("durations and sizes are short and never rounded to a unit too large") {
