@@ -61,6 +61,33 @@ bool lacks_comma(const std::string& problem) {
           unexpected("false literal") || unexpected("null literal") || unexpected("'{'") || unexpected("'['"));
 }
 
+bool expects(const std::string& problem, const char* token) {
+  return problem.find(fmt::format("expected '{}'", token)) != std::string::npos;
+}
+
+/// What is not closed at the end of the text, or before the other kind of bracket; "" where that is not what is wrong.
+std::string unclosed_text(const std::string& problem) {
+  if (expects(problem, "]")) return "the list before this is not closed: ] is missing";
+  if (expects(problem, "}")) return "the object before this is not closed: } is missing";
+  return "";
+}
+
+/// What stands at the place instead of a value or key, in words of its own; else the parser's.
+std::string wrong_token_text(const std::string& text, std::size_t at, const std::string& problem) {
+  const char c = text[at];
+  if (c == '/' || c == '#') return "JSON has no comments: remove it, or put it into \"description\"";
+  if (c == '\'') return "texts and keys stand in double quotes";
+  std::size_t end = at;
+  while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
+  std::string word = text.substr(at, std::min<std::size_t>(end - at, 20));
+  if (word.empty() || problem.find("invalid literal") == std::string::npos) return problem;
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  if (word == "true" || word == "false") return fmt::format("{} is written in small letters", word);
+  if (word == "none") return "null is JSON's word for none";
+  if (word == "nan" || word == "inf" || word == "infinity") return "JSON has numbers only: no NaN, no infinity";
+  return "texts and keys stand in double quotes";
+}
+
 }  // namespace
 
 std::string syntax_error_text(const std::string& text, std::size_t last, const std::string& token,
@@ -69,14 +96,21 @@ std::string syntax_error_text(const std::string& text, std::size_t last, const s
     while (place > 0 && is_space(text[place - 1])) --place;
     return place;
   };
-  if (problem.find("unexpected end of input") != std::string::npos)
-    return placed(text, after_last_entry(text.size()), problem);
+  if (problem.find("unexpected end of input") != std::string::npos) {
+    const std::string unclosed = unclosed_text(problem);
+    return placed(text, after_last_entry(text.size()), unclosed.empty() ? problem : unclosed);
+  }
   if (last < text.size() && lacks_comma(problem))
     return placed(text, after_last_entry(token_begin(text, last, token)), "a comma is missing here");
   const std::size_t before = after_last_entry(last);
   if (last < text.size() && (text[last] == '}' || text[last] == ']') && before > 0 && text[before - 1] == ',')
     return placed(text, before - 1, "a comma after the last entry, which JSON does not have: remove it");
-  return placed(text, last, problem + " (JSON has no comments)");
+  if (last >= text.size()) return placed(text, last, problem);
+  const bool other_bracket =
+      (text[last] == '}' && expects(problem, "]")) || (text[last] == ']' && expects(problem, "}"));
+  if (other_bracket) return placed(text, last, unclosed_text(problem));
+  const std::size_t begin = token_begin(text, last, token);
+  return placed(text, begin, wrong_token_text(text, begin, problem));
 }
 
 }  // namespace rodsweep
