@@ -14,6 +14,7 @@
 
 #include "runner/command/next_line.hpp"
 #include "runner/command/sweep_summary.hpp"
+#include "runner/command/sweep_tasks.hpp"
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/stop_signal.hpp"
@@ -22,7 +23,6 @@
 #include "runner/experiment/host_memory.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/experiment/training_sets.hpp"
-#include "runner/file/attempt.hpp"
 #include "runner/file/extension.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
@@ -63,12 +63,6 @@ bool has_begun(const RunOptions& options, const fs::path& path, const std::optio
   return true;
 }
 
-/// A task that was begun often enough, and of whose workers none said what came of it, is tried no more.
-bool is_given_up(const ResultsFile& file, std::int64_t task, int attempts) {
-  const auto i = static_cast<std::size_t>(task);
-  return file.done()[i] == 0 && file.starts()[i] >= attempts;
-}
-
 /// Writes down what is known of a task that is tried no more, so that it has an outcome; returns the same. One rank.
 std::string give_up(const Task& task, int lost, const Plan& plan, ResultsFile& file) {
   TaskRecord record;
@@ -89,25 +83,6 @@ void give_up_what_was_begun_too_often(const Plan& plan, ResultsFile& file, int a
   file.commit();
 }
 
-std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
-                                       const std::optional<Extension>& extension, const std::vector<bool>& mine,
-                                       int attempts) {
-  // Tasks of an earlier file are looked at one by one.
-  const std::vector<std::int64_t> batch =
-      extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
-  const double limit_s = plan.spec(0).time_limit_s;
-  std::vector<PendingTask> pending;
-  for (const Task& task : plan.tasks())
-    if (const auto i = static_cast<std::size_t>(task.index);
-        mine[i] && !file.done()[i] && !is_given_up(file, task.index, attempts)) {
-      const int lost = file.starts()[i];
-      pending.push_back(
-          {task.index, task.cost * (extension ? extension->cost(task.index) : 1), lost > 0 ? -1 : batch[i], lost});
-      if (limit_s > 0) pending.back().limit_s = limit_s;
-    }
-  return pending;
-}
-
 std::string begin_text(const std::string& name, const std::optional<Shard>& shard, std::int64_t total,
                        std::int64_t to_do, const fs::path& path) {
   if (shard) {
@@ -120,42 +95,12 @@ std::string begin_text(const std::string& name, const std::optional<Shard>& shar
   return fmt::format("{} of {} of {} are left to do in {}", to_do, counted(total, "task"), name, path.native());
 }
 
-/// Takes out of `pending` what no rank can keep the results of, beside what it has in memory already.
-TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending, double memory) {
-  const AxisSizes sizes = axis_sizes(plan);
-  TooLarge found;
-  const auto is_too_large = [&](const PendingTask& task) {
-    const std::int64_t bytes = record_bytes(plan.task(task.index), sizes);
-    if (static_cast<double>(bytes) <= memory) return false;
-    ++found.tasks;
-    if (bytes > found.bytes) found.task = task.index, found.bytes = bytes;
-    return true;
-  };
-  pending.erase(std::remove_if(pending.begin(), pending.end(), is_too_large), pending.end());
-  return found;
-}
-
 std::string too_large_text(const TooLarge& found, double memory) {
   return fmt::format(
       "task {} keeps {} of results in memory until it ends, and a rank has {} left: {} left out. {}; \"record\" of the "
       "job says what is kept",
       found.task, bytes_text(found.bytes), bytes_text(static_cast<std::int64_t>(memory)),
       found.tasks == 1 ? "it is" : counted(found.tasks, "such task") + " are", more_memory_text);
-}
-
-/// What the starts before tell of how long tasks take.
-void learn_from_earlier_starts(const fs::path& path, const Plan& plan, const ResultsFile& file,
-                               std::vector<PendingTask>& pending, TimeBudget& time) {
-  const TaskTimes times = read_task_times(path);
-  for (const Task& task : plan.tasks())
-    if (const auto i = static_cast<std::size_t>(task.index); file.done()[i] != 0)
-      time.learn(task.cost, Seconds(times.elapsed_s.at(i)));
-  for (PendingTask& task : pending) {
-    const Attempt& tried = times.tried.at(static_cast<std::size_t>(task.index));
-    const auto steps = static_cast<double>(plan.task(task.index).steps);
-    task.tried_s = tried.elapsed_s;
-    time.learn_part(task.cost, tried.steps / steps, Seconds(tried.elapsed_s));
-  }
 }
 
 void advise(Console& console, const RunOptions& options, const Placement& where, std::size_t pending) {
@@ -346,7 +291,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
 
   std::vector<PendingTask> pending;
   if (mpi.rank() == 0)  // who alone hands them out
-    pending = pending_tasks(plan, file, extension, in_shard(plan, options.shard), options.attempts);
+    pending = pending_tasks(plan, file, extension, options.shard, options.attempts);
   advise(console, options, where, pending.size());
   const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
   const double memory = least(memory_left(), mpi.world());

@@ -1,0 +1,63 @@
+#include "runner/command/sweep_tasks.hpp"
+
+#include <algorithm>
+
+#include "runner/experiment/task_body.hpp"
+#include "runner/file/attempt.hpp"
+
+namespace rodsweep {
+
+bool is_given_up(const ResultsFile& file, std::int64_t task, int attempts) {
+  const auto i = static_cast<std::size_t>(task);
+  return file.done()[i] == 0 && file.starts()[i] >= attempts;
+}
+
+std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
+                                       const std::optional<Extension>& extension, const std::optional<Shard>& shard,
+                                       int attempts) {
+  const std::vector<bool> mine = in_shard(plan, shard);
+  // Tasks of an earlier file are looked at one by one.
+  const std::vector<std::int64_t> batch =
+      extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
+  const double limit_s = plan.spec(0).time_limit_s;
+  std::vector<PendingTask> pending;
+  for (const Task& task : plan.tasks())
+    if (const auto i = static_cast<std::size_t>(task.index);
+        mine[i] && !file.done()[i] && !is_given_up(file, task.index, attempts)) {
+      const int lost = file.starts()[i];
+      pending.push_back(
+          {task.index, task.cost * (extension ? extension->cost(task.index) : 1), lost > 0 ? -1 : batch[i], lost});
+      if (limit_s > 0) pending.back().limit_s = limit_s;
+    }
+  return pending;
+}
+
+TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending, double memory) {
+  const AxisSizes sizes = axis_sizes(plan);
+  TooLarge found;
+  const auto is_too_large = [&](const PendingTask& task) {
+    const std::int64_t bytes = record_bytes(plan.task(task.index), sizes);
+    if (static_cast<double>(bytes) <= memory) return false;
+    ++found.tasks;
+    if (bytes > found.bytes) found.task = task.index, found.bytes = bytes;
+    return true;
+  };
+  pending.erase(std::remove_if(pending.begin(), pending.end(), is_too_large), pending.end());
+  return found;
+}
+
+void learn_from_earlier_starts(const std::filesystem::path& path, const Plan& plan, const ResultsFile& file,
+                               std::vector<PendingTask>& pending, TimeBudget& time) {
+  const TaskTimes times = read_task_times(path);
+  for (const Task& task : plan.tasks())
+    if (const auto i = static_cast<std::size_t>(task.index); file.done()[i] != 0)
+      time.learn(task.cost, TimeBudget::Seconds(times.elapsed_s.at(i)));
+  for (PendingTask& task : pending) {
+    const Attempt& tried = times.tried.at(static_cast<std::size_t>(task.index));
+    const auto steps = static_cast<double>(plan.task(task.index).steps);
+    task.tried_s = tried.elapsed_s;
+    time.learn_part(task.cost, tried.steps / steps, TimeBudget::Seconds(tried.elapsed_s));
+  }
+}
+
+}  // namespace rodsweep
