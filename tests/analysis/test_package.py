@@ -9,6 +9,7 @@ import sys
 import tempfile
 import tomllib
 import unittest
+import venv
 from pathlib import Path
 
 import synthetic
@@ -34,28 +35,34 @@ class Package(unittest.TestCase):
         self.assertEqual(rodsweep.__version__, re.search(r"project\(rodsweep VERSION ([\d.]+)", lists)[1])
 
     @unittest.skipUnless(all(map(importlib.util.find_spec, TOOLS)), f"one of {', '.join(TOOLS)} is not installed")
-    def test_what_pip_installs_works_away_from_here(self):
+    def test_what_pip_installs_as_the_page_says_works_away_from_here(self):
         with tempfile.TemporaryDirectory() as folder:
-            source, installed = os.path.join(folder, "analysis"), os.path.join(folder, "installed")
+            source, programs = os.path.join(folder, "analysis"), os.path.join(folder, "environment", "bin")
+            python = os.path.join(programs, "python3")
             left_out = shutil.ignore_patterns("results", "__pycache__", "build", "*.egg-info")
             shutil.copytree(ROOT, source, ignore=left_out)
-            subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-index",
-                            "--no-deps", "--root-user-action=ignore", "--target", installed, source], check=True,
-                           stdin=subprocess.DEVNULL)
-            shutil.rmtree(source)
-            synthetic.Sweep(scenes=("helix",)).write(os.path.join(folder, "sweep.h5"))
+            venv.create(os.path.join(folder, "environment"), system_site_packages=True)    # whose pip is Debian's
 
             def said(*command):
-                return subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder,
-                                      env={**os.environ, "PYTHONPATH": installed}).stdout
+                return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, check=True,
+                                      cwd=folder).stdout
 
-            summary = said(os.path.join(installed, "bin", "rodsweep-summary"), "sweep.h5", "--csv")
+            said(python, "-m", *self.offline().split())
+            shutil.rmtree(source)
+            synthetic.Sweep(scenes=("helix",)).write(os.path.join(folder, "sweep.h5"))
+            summary = said(os.path.join(programs, "rodsweep-summary"), "sweep.h5", "--csv")
             self.assertEqual(summary, said(sys.executable, ROOT / "summary.py", "sweep.h5", "--csv"))
-            long_term = said(os.path.join(installed, "bin", "rodsweep-long-term"), "--help")
+            long_term = said(os.path.join(programs, "rodsweep-long-term"), "--help")
             self.assertIn("\n  rodsweep-long-term results/long_term.h5\n", long_term)
-            self.assertEqual(said(sys.executable, "-c", "import rodsweep; print(rodsweep.__file__, "
-                                  "rodsweep.open('sweep.h5').census().ok)").split(),
-                             [os.path.join(installed, "rodsweep", "__init__.py"), "12"])
+            place, ok = said(python, "-c", "import rodsweep; print(rodsweep.__file__, "
+                             "rodsweep.open('sweep.h5').census().ok)").split()
+            self.assertTrue(place.startswith(os.path.join(folder, "environment", "lib")), place)
+            self.assertEqual(ok, "12")
+
+    def offline(self):
+        """The line for pip without network, as the page writes it."""
+        page = (ROOT.parent / "docs" / "python.md").read_text(encoding="utf-8")
+        return re.search(r"`(pip install [^`]*--no-index [^`]*)`", page)[1]
 
 
 if __name__ == "__main__":
