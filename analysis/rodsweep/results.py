@@ -143,7 +143,10 @@ class Results:
 
     def _frame(self, level, columns, where):
         table, names, tests = self._asked(level, columns, where)
-        return self._part(table, names, list(table.blocks(names, tests)))
+        frame = self._part(table, names, list(table.blocks(names, tests)))
+        for name, values in frame.select_dtypes("category").items():    # else groupby() has groups that `where` excludes
+            frame[name] = values.cat.remove_unused_categories()
+        return frame
 
     def _parts(self, table, names, tests, rows):
         gathered, count = [], 0

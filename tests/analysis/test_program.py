@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -75,6 +76,14 @@ class Program(unittest.TestCase):
             np.testing.assert_array_equal(results.steps().length_drift, h5["steps/length_drift"][:])
         with self.assertRaisesRegex(rodsweep.UserError, "is a dataset, not the results of a sweep"):
             rodsweep.open(self.run_job("data", kind="dataset", solve=None, guesses=None))
+
+    def test_the_page_shows_the_demo_with_the_tasks_that_it_has(self):
+        source = os.environ["SOURCE_DIR"]
+        with open(os.path.join(source, "docs", "python.md"), encoding="utf-8") as page:
+            shown = re.search(r"# \.\.\. (\d+) of (\d+) tasks ok", page.read())
+        plan = subprocess.run([os.environ["RODSWEEP"], "plan", os.path.join(source, "jobs", "demo.json"), "--no-probe",
+                               "--json"], check=True, capture_output=True, stdin=subprocess.DEVNULL)
+        self.assertEqual({int(shown[1]), int(shown[2])}, {json.loads(plan.stdout)["tasks"]})
 
     def test_ratios_are_those_of_the_rows_and_of_the_file(self):
         with SweepFile(self.run_job("paired")) as file:

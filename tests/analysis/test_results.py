@@ -73,6 +73,17 @@ class Frames(Opened):
         self.assertEqual(len(results.tasks(where="task=99")), 0)
         self.assertEqual(list(results.tasks(where="task=99")), list(results.tasks()))
 
+    def test_categories_are_what_the_rows_have_so_that_groups_are_too(self):
+        results = self.open()
+        tasks = results.tasks(where=["tolerance=1e-2", "guess!=zero", "scene.type=helix"])
+        means = tasks.groupby(["scene.segments", "guess"]).iterations_sum.mean().unstack()
+        self.assertEqual(list(means), ["oracle(0.1)", "previous", "quadratic"])
+        self.assertTrue(means.notna().all(axis=None))
+        self.assertEqual(tasks["scene.type"].cat.categories.tolist(), ["helix"])
+        self.assertEqual(tasks.attrs["missing"], results.missing)
+        for block in results.blocks("solves", where="guess!=zero", rows=50):
+            self.assertEqual(set(block.guess.cat.categories), set(results.guesses))
+
     def test_blocks_are_the_frame_in_parts_of_bounded_size(self):
         results = self.open()
         with unittest.mock.patch.object(tidy, "BLOCK_ROWS", 20):
