@@ -45,6 +45,7 @@ class Notebook(unittest.TestCase):
             whole = json.load(file)
         self.assertEqual((whole["nbformat"], whole["metadata"]["kernelspec"]["name"]), (4, "python3"))
         self.assertEqual(len({cell["id"] for cell in whole["cells"]}), len(whole["cells"]))
+        self.assertIn("`pip install 'analysis/[frames]'`", "".join(whole["cells"][0]["source"]))    # pandas and xarray too
         for cell in whole["cells"]:
             if cell["cell_type"] == "code":
                 self.assertEqual((cell["outputs"], cell["execution_count"]), ([], None))
