@@ -1,4 +1,5 @@
-// A network instead of the solve ("end to end" on the deck): its increments move the rod, and nobody checks them.
+// A network instead of the solve ("end to end" in Shao et al. 2021): its increments move the rod, and nobody checks
+// them.
 //
 // In every Newton iteration   lambda += Delta lambda,   x += R u,   q <- normalise(q + q [0, phi] / 2)
 // on free segments; static ones stay. The system is assembled for the network's features and for Newton's test.

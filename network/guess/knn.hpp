@@ -1,4 +1,4 @@
-// The training set of the deck's baseline: stored systems of unbranched rods, found again by their likeness.
+// What the nearest-neighbour guess learned: stored systems of unbranched rods, found again by their likeness.
 //
 // A system is known by a query: the state of its rod (network/guess/chain_profile.hpp) at `points` values of the arc
 // length, and the rod's constants. Each quantity is shifted and divided by its deviation over the training set; the

@@ -1,5 +1,5 @@
-// The deck's loss: the mean squared error of normalised outputs, over joints (delta lambda) and, where the network has
-// them, segments (delta p = M^-1 J^T delta lambda); one term each.
+// The loss of Shao et al. 2021: the mean squared error of normalised outputs, over joints (delta lambda) and, where the
+// network has them, segments (delta p = M^-1 J^T delta lambda); one term each.
 #pragma once
 
 #include "network/layers/tensor.hpp"

@@ -5,7 +5,7 @@
 // and what keeps Newton steady when it drives g to zero. p - p* is R^T (x - x*) and 2 Im(d) / Re(d), d = conj(q*) q,
 // the rotation vector that the time step's update undoes (rotation.hpp; its axis is the same in both frames); f_c are
 // the contacts' impulses. With g = 0 a rod at rest is in equilibrium whatever the time step: p* - p is then M^-1 dt_c^2
-// times the loads. The deck's step (Deul et al. 2018; Shao et al. 2021) never looks at g; it takes p - p* = sum_j M^-1
+// times the loads. The step of Deul et al. 2018 and Shao et al. 2021 never looks at g; it takes p - p* = sum_j M^-1
 // J_j^T dlambda_j, with J at each Newton iteration's own positions.
 //
 // Geometric stiffness K = -d(J^T lambda)/dp: under the force f of a joint at its arm r a segment turns back by

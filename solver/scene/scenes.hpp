@@ -1,6 +1,6 @@
-// The scenes that jobs name, each a struct of its parameters (SI units): the deck's bending rod and hanging helix, a
-// ring, nets and lattices, trees, and rods that touch each other. A scene's struct has the name by which jobs know it
-// and, in a source of its own:
+// The scenes that jobs name, each a struct of its parameters (SI units): the bending rod and the hanging helix of Shao
+// et al. 2021, a ring, nets and lattices, trees, and rods that touch each other. A scene's struct has the name by which
+// jobs know it and, in a source of its own:
 //
 //   check()  throws SceneError where parameters do not fit together, with the bound
 //   size()   counts, without building anything

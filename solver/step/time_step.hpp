@@ -1,4 +1,4 @@
-// One time step of position-based Cosserat rods, the deck's algorithm (Shao et al. 2021; Deul et al. 2018):
+// One time step of position-based Cosserat rods, the algorithm of Shao et al. 2021 (after Deul et al. 2018):
 //
 //   free flight from v, w to x*, q* (free_flight.hpp); held segments go to their pose at the end of the step
 //   contacts, if the scene has any, are found from x and x*

@@ -137,7 +137,7 @@ std::vector<int> changed(const Tensor<float>& a, const Tensor<float>& b) {
   return out;
 }
 
-TEST_CASE("a shifted rod differs in the deck's positions only, and in nothing of physics") {
+TEST_CASE("a shifted rod differs in deck's positions only, and in nothing of physics") {
   Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
   for (Vector3& v : rod.velocity) v = {1, 2, 3};
   const Rod shifted = moved(rod, {1, -2, 3}, 0);

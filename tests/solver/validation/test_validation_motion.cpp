@@ -12,7 +12,7 @@ using namespace rodsweep;
 
 namespace {
 
-/// As the deck's bending rods: N = 20, 2 m, r = 0.05 m, held by its first segment, falling from 20 degrees.
+/// As the bending rods of Shao et al. 2021: N = 20, 2 m, r = 0.05 m, held by its first segment, at 20 degrees at first.
 BendingRod deck_rod() {
   BendingRod p;
   p.segments = 20;
