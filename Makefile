@@ -43,7 +43,7 @@ help:
 	@echo 'make report        results/report.html: what the demo found, and the studies that were run, as a page to read'
 	@echo 'make studies       run the studies of jobs/, draw analysis/results (two hours; continued if it was stopped)'
 	@echo 'make variants      train what rods.h5 and lattices.h5 could have been, draw how they were chosen (an hour; likewise)'
-	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (three hours; likewise)'
+	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind), draw their films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
 	@echo 'make test-long     the slow physics and sweep tests'

@@ -138,6 +138,30 @@ class Jobs(unittest.TestCase):
                     found += 1
         self.assertGreaterEqual(found, 4)
 
+    def test_the_page_names_all_sweeps_and_those_that_make_studies_runs(self):
+        """Data sets and trainings have tables of their own."""
+        made = re.search(r"^studies = ((?:.*\\\n)*.*)", keys.read(os.path.join(ROOT, "Makefile")), re.M)[1].split()
+        folder = os.path.join(ROOT, "jobs")
+        kinds = {name[:-5]: json.loads(keys.read(os.path.join(folder, name))).get("kind", "sweep")
+                 for name in os.listdir(folder) if name.endswith(".json") and name != "schema.json"}
+        sweeps = {name for name, kind in kinds.items() if kind == "sweep"}
+        section = keys.read(os.path.join(ROOT, "docs", "jobs.md")).partition("## The jobs that come along")[2]
+        studies, others = (self.named(table, sweeps) for table in re.findall(r"(?:^\|.*\n)+", section, re.M))
+        self.assertEqual(sorted(studies), sorted(sweeps & set(made)))
+        self.assertEqual(sorted(others), sorted(sweeps - set(made)))
+
+    @staticmethod
+    def named(table, known):
+        """Of the first column. `_length` continues the name before it, or takes the place of its last word."""
+        found = []
+        for row in table.splitlines()[2:]:
+            for name in re.findall(r"`(\w+)`", row.split("|")[1]):
+                if not name.startswith("_"):
+                    begun = name
+                ways = (name, begun + name, begun.rpartition("_")[0] + name)
+                found.append(next((way for way in ways if way in known), name))
+        return found
+
 
 if __name__ == "__main__":
     unittest.main()
