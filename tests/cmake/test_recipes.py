@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import subprocess
+import tomllib
 import unittest
 
 import yaml
@@ -73,6 +74,20 @@ class Libraries(unittest.TestCase):
             if debian.startswith("python3-"):
                 self.assertIn(f"py-{name}", self.spack)
                 self.assertTrue({name, f"{name}-base"} & self.conda.keys(), name)
+
+    def test_python_is_the_one_that_the_scripts_want(self):
+        lowest = tomllib.loads(text_of("analysis/pyproject.toml"))["project"]["requires-python"].removeprefix(">=")
+        self.assertEqual(self.spack["python"], f"python@{lowest}:")
+        self.assertEqual(self.conda["python"], f"python>={lowest}")
+        self.assertIn(f"Python {lowest},", text_of("docs/python.md"))
+
+    def test_headers_have_the_lines_of_the_page(self):
+        page = text_of("docs/installing.md").splitlines()
+        for recipe in (f"{RECIPES}/environment.yml", PACKAGE):
+            lines = re.findall(r"^#   (\S.*)", text_of(recipe), re.M)
+            self.assertGreaterEqual(len(lines), 2, recipe)
+            for line in lines:
+                self.assertIn(line, [shown.partition("  #")[0].rstrip() for shown in page])
 
     def test_mpi_is_one(self):
         variants = [spec for spec in self.conda.values() if "mpi_" in spec]
