@@ -126,6 +126,18 @@ class Keys(unittest.TestCase):
             ["`soft`", "`true`, `false`", "", "`true`, `false` of `rod`", "gives way", ""]])
 
 
+class Environment(unittest.TestCase):
+    def test_every_variable_that_is_read_has_a_row(self):
+        table = keys.read(os.path.join(ROOT, "docs", "running.md")).partition("## Environment")[2]
+        told = set(re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in re.findall(r"^\|.*\|$", table, re.M))))
+        sources = [os.path.join(folder, name) for layer in ("runner", "network", "solver")
+                   for folder, _, names in os.walk(os.path.join(ROOT, layer)) for name in names if name.endswith("pp")]
+        asked = {name for path in sources for name in re.findall(r'getenv\("(\w+)"\)', keys.read(path))}
+        asked |= set(re.findall(r"\$\{(RODSWEEP\w*)", keys.read(os.path.join(ROOT, "jobs", "slurm", "sweep.sbatch"))))
+        self.assertGreater(len(asked), 5)
+        self.assertEqual(asked - told, set())
+
+
 class Jobs(unittest.TestCase):
     def test_jobs_in_the_pages_are_sound(self):
         validator, found = jsonschema.Draft7Validator(json.loads(keys.read(keys.SCHEMA))), 0
