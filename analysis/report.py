@@ -14,7 +14,7 @@ import sys
 from rodsweep.drawing import outputs
 from rodsweep.reading import commandline
 from rodsweep.reading.errors import KeyNotFound, SweepFileError, not_found
-from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.reading.sweepfile import ALL_BY, SweepFile
 from rodsweep.report import axes, page, sweep
 
 EXAMPLES = """examples:
@@ -70,7 +70,7 @@ def check_axes(options):
             known.update(file.parameters)
     for key in options.x:
         if key not in known:
-            raise not_found("parameter", key, known)
+            raise not_found("parameter", key, known, ALL_BY)
 
 
 def default_output(files):

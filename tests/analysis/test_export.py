@@ -117,6 +117,8 @@ class Export(Scripts):
         self.refused("export.py", "sweep.h5", "-o", "out.csv", words="out.csv is there already; give another name")
         self.refused("export.py", "sweep.h5", "-o", "sweep.h5", "--force", words="sweep.h5 is there already")
         self.refused("export.py", "sweep.h5", "--columns", "iterationssum", words="did you mean iterations_sum?")
+        self.refused("export.py", "sweep.h5", "--where", "newton=0", words="did you mean time.newton_iterations?\n")
+        self.refused("export.py", "sweep.h5", "--columns", "nope", words=" more (export.py --list and results.columns()")
         self.refused("export.py", "sweep.h5", "--columns", "task,task", words="a column is named twice")
         self.refused("export.py", "sweep.h5", "--where", "newton", words="write COLUMN=VALUE")
         self.refused("export.py", "sweep.h5", "--where", "sample=x", "-o", "x.csv", words='numbers, and "x" is none')

@@ -7,6 +7,7 @@ import unittest
 import synthetic
 import h5py
 import numpy as np
+from rodsweep.reading import errors
 from rodsweep.reading.errors import KeyNotFound, SweepFileError
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -125,6 +126,20 @@ class Parameters(Folder):
             with self.assertRaises(KeyNotFound) as caught:
                 file.parameter(asked)
             self.assertIn(f"{asked!r} is not in the file; did you mean {answer}?", caught.exception.args[0])
+
+    def test_the_nearest_is_near(self):
+        """The program's own cases (tests/runner/job/test_job_parts.cpp), and those of names with a point."""
+        known = ["length_m", "segments", "step_s", "gravity_m_s2", "zero", "previous", "scene.type", "evaluation",
+                 "0.01"]
+        for word, wanted in (("lenght_m", "length_m"), ("Segment", "segments"), ("steps", "step_s"), ("zreo", "zero"),
+                             ("gravity", "gravity_m_s2"), ("types", "scene.type"), ("temperature", ""), ("", ""),
+                             ("x" * 100_000, ""), ("nope", ""), ("newton", ""), ("0.03", "")):
+            self.assertEqual(errors.nearest(word, known), wanted, word[:20])
+        many = [f"column_{k}" for k in range(65)]
+        self.assertEqual(errors.not_found("column", "nope", many, "all: here").args[0], "column 'nope' is not in the "
+                         f"file; known: {', '.join(many[:12])} and 53 more (all: here)")
+        self.assertEqual(errors.not_found("guess", "zreo", known[4:6]).args[0],
+                         "guess 'zreo' is not in the file; did you mean zero? Known: zero, previous")
 
     def test_unknown_guesses_and_tolerances(self):
         file = self.open()

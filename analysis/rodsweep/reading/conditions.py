@@ -71,13 +71,13 @@ def absent(values):
     return np.zeros(len(values), dtype=bool) if values.dtype.kind == "u" else values == ""
 
 
-def parse(text, columns):
-    """The condition that a text says of one of {name: Column}."""
+def parse(text, columns, all_by=""):
+    """The condition that a text says of one of {name: Column}. all_by: what lists them (errors.not_found)."""
     name, operator, value = _parts(text, columns)
     if not value:
         raise _no_condition(text)
     if name not in columns:
-        raise not_found("column", name, columns)
+        raise not_found("column", name, columns, all_by)
     column, equality = columns[name], operator in ("=", "!=")
     if column.numeric:
         if operator == "~":

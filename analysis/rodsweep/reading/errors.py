@@ -1,6 +1,12 @@
 """What the user can put right: a message for him, which commandline.run() prints."""
 
 import difflib
+import re
+
+LISTED = 12       # names that a message lists
+CLOSE = 0.7       # difflib's measure: one letter of four, or a third of a long word, may be wrong
+CONTAINED = 4     # letters that are found within a name
+NUMBER = re.compile(r"[+-]?[\d.]+(e[+-]?\d+)?")
 
 
 class UserError(Exception):
@@ -15,11 +21,32 @@ class KeyNotFound(UserError):
     """A name or value that the user asked for and that the file does not have."""
 
 
-def not_found(what, name, known):
+def not_found(what, name, known, all_by=""):
+    """A KeyNotFound of one line, with the nearest known name, and the known ones where they are few or none is near."""
     known = [str(k) for k in known]
-    close = difflib.get_close_matches(str(name), known, 1, 0.4)
-    by_last_part = [k for k in known if k.rsplit(".", 1)[-1] == name]
-    hint = f"; did you mean {(by_last_part or close)[0]}?" if by_last_part or close else ""
-    listed = ", ".join(known) if known else "none"
-    return KeyNotFound(f"{what} {name!r} is not in the file{hint} Known: {listed}" if hint else
-                       f"{what} {name!r} is not in the file; known: {listed}")
+    near = nearest(str(name), known)
+    if near:
+        hint = f"did you mean {near}?" + (f" Known: {listed(known)}" if len(known) <= LISTED else "")
+    else:
+        hint = f"known: {listed(known, all_by)}"
+    return KeyNotFound(f"{what} {name!r} is not in the file; {hint}")
+
+
+def listed(names, all_by=""):
+    """The first ones, how many more there are, and where all are told."""
+    shown, more = ", ".join(names[:LISTED]) or "none", len(names) - LISTED
+    return shown if more <= 0 else f"{shown} and {more} more" + (f" ({all_by})" if all_by else "")
+
+
+def nearest(word, known):
+    """The known name that a mistyped one is meant for, "" where none is near. As in the program (runner/job/nearest.hpp)
+    case does not count, and where none is spelled alike one that holds the word is near ("length": "length_m"). Here the
+    last part alone is a name too ("segments": "scene.segments"), and no number is near to another."""
+    typed = word.lower()
+    if NUMBER.fullmatch(typed):
+        return ""
+    forms = {k.rpartition(".")[2].lower(): k for k in reversed(known)} | {k.lower(): k for k in reversed(known)}
+    close = difflib.get_close_matches(typed, forms, 1, CLOSE)
+    if close:
+        return forms[close[0]]
+    return next((k for k in known if len(typed) >= CONTAINED and typed in k.lower()), "")

@@ -14,13 +14,13 @@ import h5py
 import numpy as np
 
 from rodsweep.reading import conditions
-from rodsweep.reading.errors import KeyNotFound, SweepFileError, not_found
+from rodsweep.reading.errors import KeyNotFound, SweepFileError, listed, not_found
 from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, opened
 from rodsweep.reading.parameters import Parameter
 
 SCHEMA_VERSION = 1
 BLOCK_ROWS = 1 << 17
-KNOWN_SHOWN = 12
+ALL_BY = "rodsweep query FILE --columns help has all"    # of an answer to a parameter that there is not
 OF_TASKS = {"task": True, "sample": True, "outcome": False}   # can be selected by beside parameters; numbers?
 PLAN_COLUMNS = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")
 
@@ -96,7 +96,7 @@ class SweepFile:
 
     def parameter(self, name):
         if name not in self.parameters:
-            raise not_found("parameter", name, self.parameters)
+            raise not_found("parameter", name, self.parameters, ALL_BY)
         return self.parameters[name]
 
     def swept(self):
@@ -134,7 +134,7 @@ class SweepFile:
         known = self._selectable()
         mask = np.ones(self.task_count, dtype=bool)
         for text in texts:
-            condition = conditions.parse(text, known)
+            condition = conditions.parse(text, known, ALL_BY)
             chosen = condition.met(self._of_tasks(condition.column))
             if not chosen.any():
                 raise self._none_meets(condition)
@@ -164,8 +164,8 @@ class SweepFile:
         name = condition.column
         if name not in self.parameters:
             return KeyNotFound(f"no task meets {condition.text}")
-        known = sorted(set(self.parameters[name].texts()))[:KNOWN_SHOWN]
-        return KeyNotFound(f"no task meets {condition.text}; known: {', '.join(known)}")
+        known = sorted(set(self.parameters[name].texts()))
+        return KeyNotFound(f"no task meets {condition.text}; known: {listed(known)}")
 
     def runs(self):
         """One dictionary per start of the runner (rows of /runs that were used)."""

@@ -25,6 +25,7 @@ OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # known of eve
 OWN_MEANING = {"task": "number of the task: its row in /tasks", "guess": "label of the initial guess",
                "tolerance": "what CG's residual is brought to, relative to the right-hand side's"}
 COUNTED = ("step", "newton", "rod", "newton_iterations")    # whole numbers that no row which was reached lacks
+ALL_BY = "export.py --list and results.columns() have all"    # of an answer to a name that there is not
 MARKS = ("newton", "newton_iterations", "time_s")    # the first of these that there is says which rows were reached
 
 
@@ -124,7 +125,7 @@ class Tidy:
     def check(self, names):
         for name in names:
             if name not in self.names:
-                raise not_found("column", name, self.names)
+                raise not_found("column", name, self.names, ALL_BY)
 
     def dtype(self, name):
         """The type of a column's values."""
@@ -148,7 +149,7 @@ class Tidy:
         """What a condition says of these columns; see conditions.py."""
         return conditions.parse(text, {name: conditions.Column(self.dtype(name).kind in "iuf",
                                                                tuple(self.file.guesses) if name == "guess" else ())
-                                       for name in self.names})
+                                       for name in self.names}, ALL_BY)
 
     def blocks(self, names, where=()):
         """Yields {name: Column} of the columns `names` where all of the conditions are met, in the file's order."""
