@@ -171,6 +171,22 @@ class Honesty(Report):
         self.assertIn("No simulation is complete yet", self.said(pending=range(24)))
         self.assertIn("no zero guess", self.said(guesses=("previous", "quadratic")))
 
+    def test_the_first_lines_say_how_guesses_were_tried(self):
+        same, timed = "Each guess was tried on the same systems and its iterations", "and time were measured"
+        undirected = synthetic.Plant()
+        undirected.direct_s = np.nan    # as "reference": "cg" leaves it
+        for settings, words in (({}, f"{same} {timed}, with a direct solve beside it."),
+                                ({"plant": undirected}, f"{same} {timed}."), ({"solves": False}, f"{same} were counted."),
+                                ({"closed_loop": True, "plant": undirected},
+                                 f"Each guess led simulations of its own and its iterations {timed}.")):
+            self.assertIn(words, self.said(**settings))
+        synthetic.Sweep(scenes=("helix",), steps=2).write("paired.h5")
+        self.write(closed_loop=True, plant=undirected)
+        self.run_script("report.py", "paired.h5", self.path, "-o", "both.html")
+        with open("both.html", encoding="utf-8") as file:
+            self.assertIn("on the same systems, or in closed loops led simulations of its own, and its iterations "
+                          f"{timed}, in part with a direct solve beside it.", Tables(file.read()).text())
+
     def test_many_settings_are_folded_behind_the_first_ones(self):
         for values, more in (([0.01, 0.02], 0), ([0.005, 0.01, 0.02, 0.04], 2)):
             text, _ = self.report(grid={"time.step_s": values}, samples=1)

@@ -75,6 +75,19 @@ def answers(file, found, guesses, tolerance):
     return [_answer(file, block, guesses, tolerance) for block in found if block.ratio is not None]
 
 
+def tried(found):
+    """How the guesses of some Answers were tried: a sentence for a reader who knows nothing of it."""
+    loops = [answer.block.sims.closed_loop for answer in found]
+    direct = [answer.direct is not None for answer in found]
+    how = "was tried on the same systems" if not all(loops) else "led simulations of its own"
+    if any(loops) and not all(loops):
+        how += ", or in closed loops led simulations of its own,"
+    timed = any(answer.block.times is not None for answer in found)
+    what = "its iterations and time were measured" if timed else "its iterations were counted"
+    beside = "" if not any(direct) else f",{'' if all(direct) else ' in part'} with a direct solve beside it"
+    return f"Each guess {how} and {what}{beside}."
+
+
 def headline_tolerance(file, sims, tolerances):
     """That of the timed solves where it is shown, else 1e-2, else the first."""
     timed = timings.timed_rung(file)[sims.tasks()]

@@ -21,8 +21,10 @@ def html(sweeps, title):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE / "static"), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters["finite"] = lambda number: number is not None and math.isfinite(number)
+    found = [answer for sweep in sweeps for answer in sweep.answers]
     return environment.get_template("page.html").render(
-        sweeps=sweeps, title=title, dot=answers.DOT_WIDTH, bar=answers.BAR_WIDTH,
+        sweeps=sweeps, title=title, tried=answers.tried(found) if found else "",
+        dot=answers.DOT_WIDTH, bar=answers.BAR_WIDTH,
         answers_open=ANSWERS_OPEN, steps_open=STEPS_OPEN,
         made=datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         style=_text("static", "report.css"), libraries=[_text("vendor", name) for name in LIBRARIES],
