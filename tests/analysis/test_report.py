@@ -119,6 +119,11 @@ class Numbers(Report):
         self.assertIn("length_drift", [measure["name"] for measure in family["measures"]])
         self.assertNotIn("CG from zero with", Tables(text).text())
 
+    def test_where_nothing_is_swept_the_charts_are_over_the_scene(self):
+        _, (data, ) = self.report(scenes=("helix",), grid={}, random={}, samples=1)
+        axis, = data["families"][0]["axes"]
+        self.assertEqual((axis["key"], [panel["text"] for panel in axis["panels"]]), ("scene.type", [["helix"]]))
+
     def test_closed_loops_have_the_steps_of_each_guess_in_their_charts(self):
         plant = synthetic.Plant()
         plant.length_drift = lambda step, steps, draw, guess: -{"zero": 1e-3, "previous": 2e-3}[guess] * step

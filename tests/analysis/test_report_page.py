@@ -17,12 +17,14 @@ CHART = '.explorer .chart [role="application"]'
 
 
 class Page(unittest.TestCase):
+    sweep = {"samples": 6}
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.page, sweep = (os.path.join(folder.name, name) for name in ("page.html", "sweep.h5"))
-        synthetic.Sweep(samples=6, steps=2).write(sweep)
+        synthetic.Sweep(steps=2, **cls.sweep).write(sweep)
         trajectories.plant(sweep, frames=20)
         done = run("report.py", sweep, "-o", cls.page)
         assert done.code == 0, done.stderr
@@ -139,6 +141,13 @@ class Charts(Page):
         self.assertIn("number of segments N", self.texts(".explorer .filters label"))
         self.assertIn("over Young's modulus (Pa), 6 charts", self.texts(".explorer [role=status]")[0])
 
+    def test_what_is_said_of_a_choice_counts_the_lines_that_it_shows(self):
+        """Of four guesses and the direct solve, which has no CG ratio."""
+        self.browser.click('.explorer input[value="all"] + label')
+        self.assertRegex(self.texts(".explorer [role=status]")[0], r"^CG ratio .*, 2 charts, 4 lines$")
+        self.choose("Show", "speedup of CG alone")
+        self.assertRegex(self.texts(".explorer [role=status]")[0], r", 2 charts, 5 lines$")
+
     def test_speedups_have_the_direct_solve_beside_them_and_say_what_they_are_of(self):
         self.choose("Show", "speedup of CG alone")
         self.browser.click(".explorer details summary")
@@ -184,6 +193,18 @@ class Charts(Page):
         self.assertEqual(self.js("document.querySelector('.answer thead th:nth-child(2)').ariaSort"), "descending")
         self.browser.click(".answer thead th:first-child button")
         self.assertEqual(self.texts(first)[:3], ["direct", "oracle(0.1)", "previous"])
+
+
+class NothingSwept(Page):
+    sweep = {"scenes": ("helix",), "grid": {}, "random": {}, "samples": 1}
+
+    def test_charts_are_over_the_scene_and_rows_have_their_swatches(self):
+        self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual(self.texts(".explorer .control select option:checked")[:2], ["CG ratio", "type"])
+        self.assertEqual(len(self.texts(CHART)), 1)
+        self.assertAlmostEqual(self.value_at(2, 0), 0.25, delta=0.01)
+        self.assertEqual(self.js("[...document.querySelectorAll('.answer .swatch')].map(one => one.children.length > 0)"),
+                         [True] * 5)
 
 
 class Access(Page):

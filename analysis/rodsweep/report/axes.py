@@ -41,7 +41,7 @@ class Budget:
 
 def packed(file, family, budget, wanted=()):
     """The family as the page reads it. `wanted`: the keys of its axes that the user asked for, whatever they need. An
-    axis along which most panels have a single point is none."""
+    axis along which most panels have a single point is none; the scene stands in where there is no other."""
     keys = [key for key in wanted if key in candidates(file, family.sims)]
     if keys:
         budget = Budget(math.inf)
@@ -52,6 +52,9 @@ def packed(file, family, budget, wanted=()):
             left_out.append(key)
         elif sum(len(panel["x"]) > 1 for panel in axis["panels"]) > len(axis["panels"]) / 2:
             axes.append(axis)
+    if not axes and SCENE in file.parameters:
+        axis = _axis(file, family, SCENE, budget)
+        axes = [axis] if axis is not None else []
     return {"name": family.name,
             "reference": list(family.lines).index(family.reference) if family.reference else None,
             "measures": [{"name": m.name, "title": m.title, "unit": m.unit, "log": m.log, "newton": list(m.values),
@@ -60,7 +63,7 @@ def packed(file, family, budget, wanted=()):
 
 
 def candidates(file, sims):
-    """Keys that can be an axis, the most telling first; the scene where nothing varies."""
+    """Keys that can be an axis, the most telling first."""
     tasks = sims.any_task
     gridded, distinct, common = groups.gridded_keys(file, tasks, None), {}, set()
     for parameter in file.parameters.values():
@@ -73,8 +76,7 @@ def candidates(file, sims):
         return (key != PREFERRED, key not in gridded, key not in common, not file.parameters[key].numeric,
                 -distinct[key])
 
-    found = sorted((key for key, count in distinct.items() if count > 1), key=rank)
-    return found or [key for key in (SCENE,) if key in distinct]
+    return sorted((key for key, count in distinct.items() if count > 1), key=rank)
 
 
 def _axis(file, family, key, budget):

@@ -234,9 +234,9 @@ function startExplorer(root, sweep, family, number) {
   );
 
   function update() {
-    draw();
-    const panels = shownPanels();
-    say(`${title()}, ${panels.length} chart${panels.length === 1 ? "" : "s"}, ${state.on.size} lines`);
+    const lines = draw();
+    const count = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
+    say(`${title()}, ${count(shownPanels().length, "chart")}, ${count(lines.size, "line")}`);
   }
 
   function title(shown = measure()) {
@@ -250,6 +250,7 @@ function startExplorer(root, sweep, family, number) {
     );
   }
 
+  /** The lines that have a point of what is chosen, by index; the reference's may be the rule at 1. */
   function draw() {
     const chosen = measure();
     toleranceChoice.querySelector("select").disabled = chosen.tolerances === 1;
@@ -266,16 +267,19 @@ function startExplorer(root, sweep, family, number) {
     const width = chartWidth(few.length);
     charts.replaceChildren();
     tables.replaceChildren();
+    const lines = new Set();
     for (const shown of printing
       ? family.measures.filter((one) => one === chosen || onPaper.includes(one.name))
       : [chosen]) {
       const series = few.map((panel) => seriesOf(family, shown, axis(), panel, state));
       const range = commonRange(shown, series.flat(), shown.unit === "ratio" || shown.unit === "times");
+      if (shown === chosen) series.flat().forEach(({ index }) => lines.add(index));
       charts.append(...few.map((panel, k) => chart(shown, panel, series[k], range, width)));
       tables.append(...few.map((panel, k) => table(shown, panel, series[k])));
     }
     more.hidden = few.length === panels.length;
     more.textContent = `Show all ${panels.length} charts`;
+    return lines;
   }
 
   function chartWidth(count) {

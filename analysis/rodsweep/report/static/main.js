@@ -9,6 +9,7 @@ function start() {
     );
     const index = family?.lines.findIndex((line) => line.label === svg.dataset.label);
     if (family) drawSwatch(svg, family.lines[index], index === family.reference);
+    else svg.remove();
   }
   document.querySelectorAll(".explorer").forEach((root, number) => {
     const sweep = data[root.dataset.sweep];
