@@ -126,6 +126,44 @@ class Keys(unittest.TestCase):
             ["`soft`", "`true`, `false`", "", "`true`, `false` of `rod`", "gives way", ""]])
 
 
+class Extending(unittest.TestCase):
+    """docs/extending.md: what its examples build on is there."""
+
+    OWN = {"MeanGuess", "mean_keys", "averaged", "Arch", "span_m"}    # what they add
+    EIGEN = {"isApproxToConstant"}                                    # what only they use of it
+
+    def setUp(self):
+        self.page = keys.read(os.path.join(ROOT, "docs", "extending.md"))
+        self.code = "\n".join(re.findall(r"^```cpp\n(.*?)^```", self.page, re.S | re.M))
+        self.sources = {path: keys.read(os.path.join(ROOT, path)) for layer in ("solver", "network", "runner", "tests")
+                        for folder, _, names in os.walk(os.path.join(ROOT, layer)) for name in names
+                        if name.endswith("pp") for path in (os.path.relpath(os.path.join(folder, name), ROOT),)}
+
+    def test_files(self):
+        paths = {path for path in re.findall(r'[`"]((?:solver|runner|analysis|tests)/[\w/]+\.\w+)[`"]', self.page)
+                 if "mean_guess" not in path}
+        self.assertGreater(len(paths), 8)
+        for path in paths:
+            self.assertTrue(os.path.exists(os.path.join(ROOT, path)), path)
+
+    def test_names(self):
+        code = re.sub(r'//.*|"[^"\n]*"', "", self.code)
+        used = set(re.findall(r"\b[A-Za-z_]\w{2,}", code)) - self.OWN - self.EIGEN
+        known = set(re.findall(r"\w+", "\n".join(self.sources.values())))
+        self.assertGreater(len(used), 60)
+        self.assertEqual(used - known, set())
+
+    def test_signatures(self):
+        base = self.sources["solver/guess/initial_guess.hpp"]
+        overridden = re.findall(r"^ +(\w.*\)) override;", self.code, re.M)
+        self.assertEqual(len(overridden), 2)
+        for signature in overridden:
+            self.assertIn(f"virtual {signature}", base)
+        scenes = [re.findall(r"\w+", re.search(r"using SceneSpec = std::variant<(.*?)>;", text, re.S)[1])
+                  for text in (self.code, self.sources["solver/scene/scenes.hpp"])]
+        self.assertEqual([scene for scene in scenes[0] if scene not in self.OWN], scenes[1])
+
+
 class Environment(unittest.TestCase):
     def test_every_variable_that_is_read_has_a_row(self):
         table = keys.read(os.path.join(ROOT, "docs", "running.md")).partition("## Environment")[2]
