@@ -7,6 +7,8 @@ bench_limits.py RODSWEEP MPIRUN [MOST_TASKS]
   begin   wall time until tasks begin (plan, file), and largest memory of master and worker, over the number of tasks
   rate    tasks of next to no work a second, over the number of workers, and the processor time that a task takes of
           the master, which bounds how many a second it can hand out
+  write   MB a second that workers bring into the one file while they write (/timing/tasks/write_s; the page cache takes
+          them first), each and together, over the number of workers
 
 Ranks beyond the cores wait for each other: their times are upper bounds.
 """
@@ -18,6 +20,8 @@ import sys
 import tempfile
 import time
 
+import h5py
+
 AS_RANK = "--as-rank"
 JOB = {
     "name": "limits", "kind": "sweep", "seed": 1,
@@ -26,16 +30,22 @@ JOB = {
     "time": {"step_s": 0.02, "steps": 1, "newton_iterations": 1},
     "guesses": ["zero", "previous"],
 }
+LARGE = {  # records of 11 MB
+    **JOB, "scene": {**JOB["scene"], "segments": 2000}, "time": {**JOB["time"], "steps": 100},
+    "guesses": ["zero"], "record": {"trajectory_every": 1, "solves": "summary"},
+}
 
 
 class Sweeps:
     def __init__(self, rodsweep, mpirun):
         self.rodsweep, self.mpirun = rodsweep, mpirun
 
-    def run(self, ranks, tasks, *options):
-        """Wall time, and of every rank the largest resident memory in MB and the processor time."""
+    def run(self, ranks, tasks, *options, job=None):
+        """Wall time, and of every rank the largest resident memory in MB and the processor time. The last file stays."""
+        if os.path.exists("out.h5"):
+            os.remove("out.h5")
         with open("job.json", "w") as file:
-            json.dump({**JOB, "samples": tasks}, file)
+            json.dump({**(job or JOB), "samples": tasks}, file)
         begin = time.monotonic()
         done = subprocess.run([self.mpirun, "-n", str(ranks), sys.executable, os.path.abspath(__file__), AS_RANK,
                                self.rodsweep, "run", "job.json", "-o", "out.h5", *options],
@@ -43,7 +53,6 @@ class Sweeps:
         seconds = time.monotonic() - begin
         if not os.path.exists("out.h5"):
             sys.exit(done.stderr)
-        os.remove("out.h5")
         memory, processor = [], []
         for rank in range(ranks):
             with open(f"rank-{rank}.json") as file:
@@ -83,6 +92,13 @@ def main():
             end, _, busy = sweeps.run(ranks, tasks)
             print(f"limits: rate of {ranks - 1} workers: {tasks / (end - begin):.0f} tasks/s, "
                   f"{1e6 * (busy[0] - idle[0]) / tasks:.0f} us of the master's processor each", flush=True)
+        for workers in (1, 2, 4, 8, 16):
+            sweeps.run(workers + 1, 4 * workers, job=LARGE)
+            with h5py.File("out.h5") as file:
+                megabytes = sum(file[name].nbytes for name in ("trajectories/position_m", "trajectories/orientation")) / 1e6
+                writing = float(file["timing/tasks/write_s"][:].sum())
+            print(f"limits: write of {workers} workers: {megabytes / writing:.0f} MB/s each, "
+                  f"{workers * megabytes / writing:.0f} MB/s together", flush=True)
 
 
 if __name__ == "__main__":
