@@ -151,7 +151,10 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
     const auto most = std::max_element(probes.begin(), probes.end(), [](const Probe& a, const Probe& b) {
                         return a.memory_bytes < b.memory_bytes;
                       })->memory_bytes;
-    if (most > 0) text += fmt::format("memory   {} at most of the tasks tried, a process each\n", bytes_text(most));
+    if (most > 0)
+      text +=
+          fmt::format("memory   {} at most of the tasks tried, a process each; this host has room for {:.0f}\n",
+                      bytes_text(most), std::floor((1 - memory_reserve) * host_memory() / static_cast<double>(most)));
     for (const Probe& p : probes)
       if (p.outcome == TaskOutcome::timed_out && p.steps == 0)
         text += fmt::format("warning  task {}: not one step in {}; the time above is a lower bound\n", p.task,

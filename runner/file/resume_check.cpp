@@ -58,24 +58,30 @@ void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
 
 FileError other_program(const hdf5::File& file, const fs::path& path, const std::string& difference,
                         const char* advice) {
-  const std::string revision = hdf5::read_text_row(file.id(), "/runs/revision", 0);
-  if (revision == source_revision() && revision.find("-dirty") == std::string::npos && revision != "unknown")
-    return damaged_error(path, difference + ", though this very program made it");
   return FileError(
       fmt::format("{} was made from its job by a rodsweep that expands it differently (revision {}): {}. {}",
-                  path.native(), revision, difference, advice));
+                  path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference, advice));
+}
+
+/// Where the job's expansion is told in the file otherwise than here: the same revision says the same.
+FileError other_value(const hdf5::File& file, const fs::path& path, const std::string& difference, const char* advice) {
+  const std::string own = source_revision();
+  const bool is_known = own != "unknown" && own.find("-dirty") == std::string::npos;
+  if (is_known && hdf5::read_text_row(file.id(), "/runs/revision", 0) == own)
+    return damaged_error(path, difference + ", though this very revision made it");
+  return other_program(file, path, difference, advice);
 }
 
 void check_layout(const hdf5::File& file, const fs::path& path, const std::vector<Field>& fields, const char* advice) {
   for (const Field& field : fields) {
-    if (!hdf5::exists(file.id(), field.path)) throw other_program(file, path, "it has no " + field.path, advice);
+    if (!hdf5::exists(file.id(), field.path)) throw other_value(file, path, "it has no " + field.path, advice);
     const hdf5::Dataset dataset = hdf5::open_dataset(file.id(), field.path);
     const std::vector<hsize_t> extent = hdf5::extent(dataset, field.path);
     const hdf5::Datatype type(hdf5::check(H5Dget_type(dataset.id()), "H5Dget_type", field.path));
     if (!std::equal(extent.begin(), extent.end(), field.extent.begin(), field.extent.end(),
                     [](hsize_t a, std::int64_t b) { return a == static_cast<hsize_t>(b); }) ||
         H5Tequal(type.id(), type_of(field).id()) <= 0) {
-      throw other_program(file, path, field.path + " has another shape or type", advice);
+      throw other_value(file, path, field.path + " has another shape or type", advice);
     }
   }
 }
@@ -84,23 +90,28 @@ bool same(double a, double b) {
   return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= rounding * std::max(std::abs(a), std::abs(b));
 }
 
-void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& plan,
-                      const std::vector<ParameterColumn>& parameters, const char* advice) {
+/// Before anything that a file named by the job may have a say in.
+void check_hash(const hdf5::File& file, const fs::path& path, const Plan& plan,
+                const std::vector<ParameterColumn>& parameters, const char* advice) {
   if (hdf5::read_text_attribute(file.id(), "/job", "plan_hash") != plan_hash(plan, parameters)) {
     throw other_program(file, path,
                         "its list of tasks is another, or the files that the job names have changed (/job, plan_hash)",
                         advice);
   }
+}
+
+void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& plan,
+                      const std::vector<ParameterColumn>& parameters, const char* advice) {
   if (!plan.guess_labels().empty() && hdf5::read_texts(file.id(), "/axes/guess") != plan.guess_labels())
     throw other_program(file, path, "the labels of its guesses are others (/axes/guess)", advice);
   if (hdf5::read_all<double>(file.id(), "/axes/tolerance") != tolerance_ladder())
-    throw other_program(file, path, "its tolerances are others (/axes/tolerance)", advice);
+    throw other_value(file, path, "its tolerances are others (/axes/tolerance)", advice);
   const auto compare = [&](const std::string& name, int width, const auto& here, const auto& there, const auto& equal) {
     const auto [a, b] = std::mismatch(here.begin(), here.end(), there.begin(), there.end(), equal);
     if (a == here.end() && b == there.end()) return;
     if (a == here.end() || b == there.end())
-      throw other_program(file, path, fmt::format("{} has another length", name), advice);
-    throw other_program(
+      throw other_value(file, path, fmt::format("{} has another length", name), advice);
+    throw other_value(
         file, path,
         fmt::format("{} of task {} is {} here and {} in the file", name, (a - here.begin()) / width, *a, *b), advice);
   };
@@ -124,6 +135,7 @@ void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& 
 
 void check_plan(const hdf5::File& file, const fs::path& path, const Plan& plan, const char* advice) {
   const std::vector<ParameterColumn> parameters = plan.parameters();
+  check_hash(file, path, plan, parameters, advice);
   check_layout(file, path, layout(plan, parameters), advice);
   check_parameters(file, path, plan, parameters, advice);
 }
@@ -147,7 +159,11 @@ void refuse_copies(const hdf5::File& file, const fs::path& path) {
 
 void check_same_tasks(const fs::path& path, const Plan& plan) {
   const hdf5::File file = open_results(path);
-  reading(path, [&] { check_parameters(file, path, plan, plan.parameters(), other_revision); });
+  reading(path, [&] {
+    const std::vector<ParameterColumn> parameters = plan.parameters();
+    check_hash(file, path, plan, parameters, other_revision);
+    check_parameters(file, path, plan, parameters, other_revision);
+  });
 }
 
 void check_same_plan(const fs::path& path, const Plan& plan, const char* advice) {

@@ -62,7 +62,7 @@ bool lacks_comma(const std::string& problem) {
 }
 
 bool expects(const std::string& problem, const char* token) {
-  return problem.find(fmt::format("expected '{}'", token)) != std::string::npos;
+  return problem.find(fmt::format("; expected '{}'", token)) != std::string::npos;
 }
 
 /// What is not closed at the end of the text, or before the other kind of bracket; "" where that is not what is wrong.
