@@ -122,6 +122,10 @@ class KeptWorkers(KeptCase):
         self.wait_for_end(ranks[1])
         self.assert_as_undisturbed("hangs.h5", [ALL_DONE])
 
+
+class KeptKillers(KeptCase):
+    """Tasks that end their workers."""
+
     def test_a_task_that_ends_workers_is_named_in_one_start(self):
         killer = 40
         path = job("killer", samples=1, segments=[20 + n % 7 for n in range(killer)] + [400], steps=40,
@@ -138,6 +142,17 @@ class KeptWorkers(KeptCase):
         self.assert_exit(rodsweep(3, "run", path, "-o", "killer.h5", "--resume", "--retry-failed"), ALL_DONE)
         self.assert_same_results("undisturbed.h5", "killer.h5")
 
+    def test_a_task_that_ends_workers_is_named_though_failures_are_tried_again(self):
+        path = job("again", samples=1, segments=[20, 21, 22, 400], steps=40, record={"solves": "summary", "norms": "one"})
+        self.assert_exit(rodsweep(3, "run", path, "-o", "again.h5", "--task-time-limit", "1e-6"), TASKS_FAILED)
+        process = keep(*command(2, "run", path, "-o", "again.h5", "--resume", "--retry-failed", "--worker-timeout", "1"),
+                       options=("--pause", "0.1"))
+        for start in range(3):
+            mpirun = start_of(process, mpirun.pid if start else None)
+            self.kill_whoever_runs("again.h5", 3, mpirun, 1)
+        self.end(process, TASKS_FAILED)
+        self.assertEqual(status("again.h5")["outcomes"], {"ok": 3, "crashed": 1})
+
     def kill_whoever_runs(self, path, task, mpirun, times):
         killed = []
         deadline = time.monotonic() + 40
@@ -150,18 +165,6 @@ class KeptWorkers(KeptCase):
                     os.kill(ranks_of(mpirun)[running["rank"]], signal.SIGKILL)
                     killed.append(running["rank"])
         self.assertEqual(len(killed), times)
-
-
-    def test_a_task_that_ends_workers_is_named_though_failures_are_tried_again(self):
-        path = job("again", samples=1, segments=[20, 21, 22, 400], steps=40, record={"solves": "summary", "norms": "one"})
-        self.assert_exit(rodsweep(3, "run", path, "-o", "again.h5", "--task-time-limit", "1e-6"), TASKS_FAILED)
-        process = keep(*command(2, "run", path, "-o", "again.h5", "--resume", "--retry-failed", "--worker-timeout", "1"),
-                       options=("--pause", "0.1"))
-        for start in range(3):
-            mpirun = start_of(process, mpirun.pid if start else None)
-            self.kill_whoever_runs("again.h5", 3, mpirun, 1)
-        self.end(process, TASKS_FAILED)
-        self.assertEqual(status("again.h5")["outcomes"], {"ok": 3, "crashed": 1})
 
 
 class Kept(KeptCase):
