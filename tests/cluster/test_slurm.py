@@ -166,7 +166,9 @@ class Nodes(SlurmCase):
         self.slurm.start_node(host)
 
     def test_a_node_that_is_given_up_and_works_on_is_waited_for(self):
-        number = self.submit()
+        longer = job("longer", samples=900, segments=(15, 30), steps=40, record={"solves": "all", "norms": "one"})
+        run_undisturbed(longer, "longer.h5")
+        number = self.submit(job_file=longer)  # which lasts until the job has begun again
         self.wait_for_tasks(20)
         host = self.host_of(number)
         for pid in processes_on(host, "slurmd"):  # else it may end its job before the next start looks
@@ -175,7 +177,8 @@ class Nodes(SlurmCase):
         subprocess.run(["scontrol", "update", "NodeName=" + host.name, "State=DOWN", "Reason=test"], check=True)
         self.wait_for_end(number)
         self.assertIn("is being written by another run: its end is waited for", self.log())
-        self.assert_as_undisturbed()
+        self.assert_whole(self.path)
+        self.assert_same_results("longer.h5", self.path)
 
 
 if __name__ == "__main__":
