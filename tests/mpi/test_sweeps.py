@@ -388,7 +388,7 @@ class Refusals(SweepCase):
     def test_where_there_are_no_locks_a_file_that_is_being_written_is_known_by_its_time(self):
         os.environ.update({"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_LOCKS": "1"})
         self.addCleanup(lambda: [os.environ.pop(name) for name in ("LD_PRELOAD", "FAIL_LOCKS")])
-        path = long_job()
+        path = long_job("longer", 200)  # the second run is to find the first one at work
         first = start(3, "run", path, "-o", "unlocked.h5")
         wait_for_tasks(first, "unlocked.h5", 1)
         self.assert_refused_once(rodsweep(2, "run", path, "-o", "unlocked.h5", "--resume"), "unlocked.h5 seems to be written by "
