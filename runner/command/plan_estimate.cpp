@@ -23,6 +23,7 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
   const Task whole = plan.task(index);
   const TaskSpec whole_spec = plan.spec(index);
   const AxisSizes sizes = axis_sizes(plan);
+  const PerRows<std::int64_t> of_a_row = row_bytes(sizes);
   TaskRecord record;
   for (std::int64_t steps = std::min<std::int64_t>(whole.steps, 4);; steps = std::min(2 * steps, whole.steps)) {
     Task task = whole;
@@ -43,7 +44,7 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
             done,
             whole.steps,
             step_s * static_cast<double>(whole.steps),
-            memory > 0 ? memory + record_bytes(whole, sizes) - record_bytes(task, sizes) : 0,
+            memory > 0 ? memory + record_bytes(whole, of_a_row) - record_bytes(task, of_a_row) : 0,
             record.outcome,
             record.message};
   }

@@ -33,10 +33,10 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
 }
 
 TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending, double memory) {
-  const AxisSizes sizes = axis_sizes(plan);
+  const PerRows<std::int64_t> of_a_row = row_bytes(axis_sizes(plan));
   TooLarge found;
   const auto is_too_large = [&](const PendingTask& task) {
-    const std::int64_t bytes = record_bytes(plan.task(task.index), sizes);
+    const std::int64_t bytes = record_bytes(plan.task(task.index), of_a_row);
     if (static_cast<double>(bytes) <= memory) return false;
     ++found.tasks;
     if (bytes > found.bytes) found.task = task.index, found.bytes = bytes;

@@ -30,13 +30,19 @@ void TaskRecord::prepare(const Task& task, const AxisSizes& sizes) {
   std::fill(reason.begin(), reason.end(), static_cast<std::int8_t>(SolveOutcome::not_run));
 }
 
-std::int64_t record_bytes(const Task& task, const AxisSizes& sizes) {
+PerRows<std::int64_t> row_bytes(const AxisSizes& sizes) {
   TaskRecord any;
-  std::int64_t bytes = 0;
+  PerRows<std::int64_t> bytes{};
   for (const Column& column : columns()) {
     const auto one = std::visit([](auto* values) { return sizeof(*values->data()); }, column.values(any));
-    bytes += task.rows[column.rows].count * row_width(column, sizes) * static_cast<std::int64_t>(one);
+    bytes[column.rows] += row_width(column, sizes) * static_cast<std::int64_t>(one);
   }
+  return bytes;
+}
+
+std::int64_t record_bytes(const Task& task, const PerRows<std::int64_t>& of_a_row) {
+  std::int64_t bytes = 0;
+  for (std::size_t kind = 0; kind < row_kinds; ++kind) bytes += task.rows[kind].count * of_a_row[kind];
   return bytes;
 }
 

@@ -87,7 +87,10 @@ struct TaskRecord {
   void prepare(const Task& task, const AxisSizes& sizes);
 };
 
+/// What a row of each kind takes in a record.
+PerRows<std::int64_t> row_bytes(const AxisSizes& sizes);
+
 /// What a record takes once it is prepared for this task.
-std::int64_t record_bytes(const Task& task, const AxisSizes& sizes);
+std::int64_t record_bytes(const Task& task, const PerRows<std::int64_t>& of_a_row);
 
 }  // namespace rodsweep
