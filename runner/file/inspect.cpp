@@ -17,13 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// By this host's clock, which need not be that of whoever keeps the file: at least 0.
-double seconds_since(const fs::path& path) {
-  struct stat file {};
-  if (::stat(path.c_str(), &file) != 0) return 0;
-  return std::max(0.0, std::difftime(std::time(nullptr), file.st_mtime));
-}
-
 void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
   const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
   const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/attempt");
@@ -72,13 +65,19 @@ void find_momentum_residual(const hdf5::File& file, const std::vector<std::uint8
 
 }  // namespace
 
+double silent_seconds(const fs::path& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return 0;
+  return std::max(0.0, std::difftime(std::time(nullptr), file.st_mtime));
+}
+
 FileSummary inspect(const fs::path& path) {
   const hdf5::File file = open_results(path);
   return reading(path, [&] {
     FileSummary summary;
     summary.path = path;
     summary.bytes = fs::file_size(path);
-    summary.silent_s = seconds_since(path);
+    summary.silent_s = silent_seconds(path);
     summary.schema_version = schema_version;
     summary.job_name = hdf5::read_text_attribute(file.id(), "/job", "name");
     summary.job_kind = kind_of(file);

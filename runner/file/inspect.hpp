@@ -51,6 +51,12 @@ struct FileSummary {
   std::vector<RunRow> runs;
 };
 
+/// A run renews its file's time every 5 s: one that is silent for longer does not live.
+inline constexpr double alive_s = 30;
+
+/// Since the file's time changed, by this host's clock, which need not be that of whoever keeps the file: at least 0.
+double silent_seconds(const std::filesystem::path& path);
+
 FileSummary inspect(const std::filesystem::path& path);
 
 /// From here on the program is a copy of this process: for commands that only read a file. Where the copy crashes, the

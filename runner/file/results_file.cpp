@@ -12,6 +12,7 @@
 #include "runner/file/columns.hpp"
 #include "runner/file/durable.hpp"
 #include "runner/file/file_reading.hpp"
+#include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
@@ -82,13 +83,12 @@ void mend_states(const fs::path& path, const std::vector<std::uint8_t>& states) 
 /// Where the file system has no locks: a run that has not ended shows every few seconds that it lives.
 void refuse_living(const fs::path& path) {
   const std::vector<RunRow> runs = read_runs(open_results(path));
-  const std::chrono::duration<double> silent = fs::file_time_type::clock::now() - fs::last_write_time(path);
-  constexpr std::chrono::seconds dead{30};
-  if (runs.empty() || !runs.back().end_utc.empty() || silent > dead) return;
+  const double silent_s = silent_seconds(path);
+  if (runs.empty() || !runs.back().end_utc.empty() || silent_s > alive_s) return;
   throw FileError(
       fmt::format("{} seems to be written by another run, which showed a sign of life {:.0f} s ago (there are no locks "
-                  "on this file system): wait until it ends, or, where it was killed, until that is {} s ago",
-                  path.native(), silent.count(), dead.count()));
+                  "on this file system): wait until it ends, or, where it was killed, until that is {:.0f} s ago",
+                  path.native(), silent_s, alive_s));
 }
 
 bool intact(const TaskReader& reader, std::int64_t task, TaskRecord& record, const fs::path& path) try {
