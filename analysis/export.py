@@ -6,9 +6,8 @@
   steps   a row per time step: length drift, joint gap, energies, momenta
 
 The first columns say which task, with the parameters that the job sweeps. Tasks that are not complete are left out;
-those that failed are in it with their outcome. What was not measured or not reached is an empty field, in Parquet null.
-Parquet keeps units and meanings: of a column NAME under the keys NAME.unit and NAME.meaning of the file's metadata. Rows
-are written block by block: a file of any size needs little memory.
+failed ones have their outcome. A value that was not measured or not reached is an empty field (null in Parquet). CSV is
+written block by block, so a file of any size needs little memory. Parquet needs pyarrow, and memory for all its rows.
 """
 
 import contextlib
@@ -21,7 +20,7 @@ from rodsweep.drawing import outputs
 from rodsweep.reading import commandline, conditions, tidy
 from rodsweep.reading.errors import UserError
 from rodsweep.reading.sweepfile import SweepFile
-from rodsweep.writing import delimited, parquet
+from rodsweep.writing import tables
 
 EXAMPLES = """examples:
   analysis/export.py results/demo.h5 -o demo.csv
@@ -62,10 +61,8 @@ def main():
             raise UserError(f"--columns {options.columns}: a column is named twice")
         blocks = table.blocks(names, [table.condition(text) for text in options.where])
         with opened(options) as out:
-            if (options.output or "").endswith(".parquet"):
-                count = parquet.write(out, table, names, blocks)
-            else:
-                count = delimited.write(out, names, blocks)
+            write = tables.write_parquet if (options.output or "").endswith(".parquet") else tables.write_csv
+            count = write(out, names, blocks)
         if options.output:
             print(f"{count} rows: {options.output}")
 

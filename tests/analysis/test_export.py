@@ -5,9 +5,13 @@ import gzip
 import io
 import os
 import unittest
+import unittest.mock
 
 import synthetic
 import numpy as np
+import pandas
+from rodsweep.reading.tidy import Column
+from rodsweep.writing import tables
 from running import Scripts
 
 
@@ -110,6 +114,27 @@ class Export(Scripts):
         self.write(method="direct")
         self.assertEqual(len(self.rows()), 24)
         self.assertEqual(len(self.rows("--level", "steps")), 48)
+
+    def test_texts_are_quoted_and_missing_whole_numbers_are_empty(self):
+        out = io.BytesIO()
+        columns = {"a,b": np.array(['say "hi", you', "two\nlines", ""]), "near": np.array([3, -1, 0], dtype=np.int16),
+                   "far": np.array([2 ** 62, 0, -1]), "single": np.array([0.1, np.nan, 1e-30], dtype=np.float32)}
+        tables.write_csv(out, list(columns), [{name: Column(values) for name, values in columns.items()}])
+        self.assertEqual(list(csv.reader(io.StringIO(out.getvalue().decode(), newline=""))),
+                         [list(columns), ['say "hi", you', "3", str(2 ** 62), "0.1"], ["two\nlines", "", "0", ""],
+                          ["", "0", "", "1e-30"]])
+
+    def test_parquet_holds_the_rows_of_the_csv_and_needs_pyarrow(self):
+        self.write(scenes=("helix",), failed={3: "diverged"})
+        with unittest.mock.patch.object(pandas.DataFrame, "to_parquet", side_effect=ImportError):
+            self.refused("export.py", "sweep.h5", "-o", "out.parquet", words="pip install pyarrow")
+        self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("out")], [])
+        for level in ("tasks", "solves", "steps"):
+            with unittest.mock.patch.object(pandas.DataFrame, "to_parquet", autospec=True) as written:
+                self.run_script("export.py", "sweep.h5", "--level", level, "-o", "out.parquet", "--force")
+            frame = written.call_args.args[0]
+            read = pandas.read_csv(io.StringIO(self.run_script("export.py", "sweep.h5", "--level", level).stdout))
+            pandas.testing.assert_frame_equal(frame.astype(read.dtypes), read)
 
     def test_nothing_is_overwritten_and_mistakes_are_one_line(self):
         self.write(scenes=("helix",))

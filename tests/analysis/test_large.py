@@ -42,7 +42,7 @@ class Large(unittest.TestCase):
                     ("long_term.py",), ("newton.py",), ("export.py", "--where", "tolerance=1e-2"),
                     ("export.py", "--level", "solves", "--columns", "task,guess,iterations_1e-2", "--where",
                      "newton=0"),
-                    ("export.py", "--level", "solves", "-o", "{folder}/solves.parquet"),
+                    ("export.py", "--level", "solves", "-o", "{folder}/solves.csv.gz"),
                     ("export.py", "--level", "steps", "--columns", "task,length_drift")],
                    tasks=ROWS // 600, steps=100, newton=6)
 

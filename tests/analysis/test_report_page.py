@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 import synthetic
-from browser import PROGRAM, Browser
+from browser import DRIVER, Browser
 
 import trajectories
 from running import run
@@ -270,7 +270,7 @@ class Films(Page):
 
 
 if __name__ == "__main__":
-    if PROGRAM is None:
-        print("no browser: install the Debian package chromium (make test)")
+    if DRIVER is None:
+        print("no browser: install the Debian packages python3-selenium and chromium-driver (make test-long)")
         sys.exit(77)
     unittest.main()

@@ -49,18 +49,6 @@ class Column:
         return Column(self.values, made[id(self.index)])
 
 
-class Remembered:
-    """What `work` makes of an array; of each name, the last array's is kept."""
-
-    def __init__(self, work):
-        self.work, self.last = work, {}
-
-    def __call__(self, name, values):
-        if name not in self.last or self.last[name][0] is not values:
-            self.last[name] = (values, self.work(name, values))
-        return self.last[name][1]
-
-
 def require_rows(file, level):
     """Raises KeyNotFound where a file has no rows of a level."""
     if level != "tasks" and not any(file.has(f"/{level}/{name}") for name in MARKS):
