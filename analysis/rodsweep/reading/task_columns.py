@@ -1,0 +1,153 @@
+"""The tasks of a results file as flat columns, a value per task; each column is read when it is asked for.
+
+  task, state ("done", "pending"), outcome, message
+  scene.segments, scene.gravity_m_s2.x, ...   /tasks/parameters
+  sample, point, own_guess (its label), ...   /tasks
+  cg_ratio.LABEL[@TOLERANCE], ...             /tasks, of one guess; without a tolerance at that of `headline`
+  elapsed_s, rank, host, run, ...             /timing/tasks
+
+A missing value (a key that does not apply, a result of a pending task, -1 of whole numbers) is NaN or "".
+"""
+
+from dataclasses import dataclass, replace
+
+import h5py
+import numpy as np
+
+from rodsweep.reading import conditions, texts
+from rodsweep.reading.errors import KeyNotFound, not_found
+from rodsweep.reading.hdf5 import as_text, decoded
+
+ALL_BY = "--columns help"
+OUTCOMES = ("pending", "ok", "diverged", "not_a_number", "indefinite", "iteration_limit", "timed_out", "error", "torn",
+            "crashed")
+PLANNED = ("point", "sample", "own_guess", "segments", "joints", "steps", "solves", "frames", "systems", "system_segments",
+           "system_joints")    # known before a task runs, like all first_...
+LEFT_OUT = ("state", "checksum")
+
+
+@dataclass(frozen=True)
+class TaskColumn:
+    name: str
+    path: str = ""        # of the dataset; "" of columns that are made here
+    index: tuple = ()     # of the value within a row
+    unit: str = ""
+    meaning: str = ""
+    numeric: bool = True
+    whole: bool = False
+    swept: bool = False
+    parameter: bool = False
+    result: bool = False    # missing until the task is done
+    guess: str = ""
+    by_tolerance: bool = False
+
+
+class TaskColumns:
+    """`names`: of all columns, in their order."""
+
+    def __init__(self, file):
+        self.file = file
+        self.headline = self._headline()
+        self.closed_loop = bool((file.own_guess >= 0).any())
+        self.columns = {}
+        self._add(TaskColumn("task", meaning="number of the task: its row in /tasks", whole=True))
+        self._add(TaskColumn("state", meaning='"done" or "pending"', numeric=False))
+        for group in ("/tasks", "/tasks/parameters", "/timing/tasks"):
+            for name, item in sorted(file.h5[group].items()) if group in file.h5 else ():
+                if isinstance(item, h5py.Dataset) and (group, name) not in [("/tasks", one) for one in LEFT_OUT]:
+                    self._add_dataset(name, f"{group}/{name}", item)
+        self.names = list(self.columns)
+
+    def __getitem__(self, name):
+        """The column of a name, which may end in @TOLERANCE. KeyNotFound where there is none."""
+        if name in self.columns:
+            return self.columns[name]
+        base, at, tolerance = name.rpartition("@")
+        if at and base in self.columns and self.columns[base].by_tolerance:
+            try:
+                place = self.file.tolerance_index(float(tolerance))
+            except ValueError:
+                raise not_found("tolerance", tolerance, self.tolerances()) from None
+            column = self.columns[base]
+            return replace(column, name=name, index=(*column.index[:-1], place))
+        raise not_found("column", name, self.names, ALL_BY)
+
+    def condition(self, text):
+        """A condition on a column of this table."""
+        return conditions.parse(text, _Known(self), ALL_BY)
+
+    def values(self, column):
+        """An array with a value of every task."""
+        if column.name == "task":
+            return np.arange(self.file.task_count)
+        if column.name == "state":
+            return np.where(self.file.complete, "done", "pending")
+        if column.path == "/tasks/outcome":
+            return self.file.outcome
+        values = decoded(self.file.h5[column.path][(slice(None), *column.index)])
+        if column.path == "/tasks/own_guess":
+            return np.array([self.file.guesses[k] if k >= 0 else "" for k in values], dtype=str)
+        missing = conditions.absent(values)
+        if column.result:
+            missing = missing | ~self.file.complete
+        if not column.numeric:
+            return np.where(missing, "", values)
+        return np.where(missing, np.nan, values) if missing.any() else values
+
+    def tolerances(self):
+        return [texts.tolerance_label(value) for value in self.file.tolerances]
+
+    def _headline(self):
+        """Index of the tolerance of the job's timed solves, where all tasks have one on the ladder; else of 1e-2."""
+        wanted = 1e-2
+        if "solve.tolerance" in self.file.parameters:
+            used = np.unique(self.file.parameters["solve.tolerance"].values)
+            if len(used) == 1 and np.isclose(self.file.tolerances, used[0], rtol=1e-6, atol=0).any():
+                wanted = used[0]
+        found = np.flatnonzero(np.isclose(self.file.tolerances, wanted, rtol=1e-6, atol=0))
+        return int(found[0]) if len(found) else 0
+
+    def _add(self, column):
+        self.columns[column.name] = column
+
+    def _add_dataset(self, name, path, item):
+        unit = as_text(item.attrs.get("unit", ""))
+        parameter = path.startswith("/tasks/parameters/")
+        planned = parameter or name in PLANNED or name.startswith("first_")
+        made = TaskColumn(name, path, (), "" if unit == "1" else unit, as_text(item.attrs.get("meaning", "")),
+                          item.dtype.kind in "iufb" and name != "own_guess", item.dtype.kind in "iu",
+                          bool(item.attrs.get("swept", False)), parameter, not planned)
+        if name == "own_guess" and not parameter:
+            made = replace(made, meaning="the guess that advances the rods; none: the direct solve does", whole=False)
+        guesses, shape = self.file.guesses, item.shape[1:]
+        if not shape:
+            self._add(made)
+        elif parameter and shape == (3,):
+            for k, letter in enumerate("xyz"):
+                self._add(replace(made, name=f"{name}.{letter}", index=(k,)))
+        elif guesses and shape in ((len(guesses),), (len(guesses), len(self.file.tolerances))):
+            by_tolerance = len(shape) == 2
+            for k, label in enumerate(guesses):
+                self._add(replace(made, name=f"{name}.{label}", index=(k, self.headline) if by_tolerance else (k,),
+                                  guess=label, by_tolerance=by_tolerance))
+
+
+class _Known:
+    """The columns as conditions.parse() asks for them: with the words that they hold, and with any tolerance."""
+
+    def __init__(self, table):
+        self.table = table
+        self.words = {"state": ("done", "pending"), "outcome": OUTCOMES, "own_guess": tuple(table.file.guesses)}
+
+    def __iter__(self):
+        return iter(self.table.names)
+
+    def __contains__(self, name):
+        try:
+            self.table[name]
+        except KeyNotFound:
+            return False
+        return True
+
+    def __getitem__(self, name):
+        return conditions.Column(self.table[name].numeric, self.words.get(name, ()))
