@@ -159,7 +159,7 @@ def guesses(schema):
         heads, more = table(schema, own, f"`{name}`") if own["properties"] else (heads, [])
         lines += more
     label = next(iter(kinds.values()))["properties"]["label"]["description"]
-    return section("`guesses`", "A list. Each is an object with one key, as in `{\"pod\": {\"size\": 10}}`, or for "
+    return section("`guesses`", "A list. Each is an object with one key, as in `{\"subspace\": {\"size\": 10}}`, or for "
                    f"{quoted(words)} the word alone. Each may be swept. Each may have a `label`, a text of at most 60 "
                    f"characters ({label}), but for one within another.",
                    written(["guess", "what it is"], [[f"`{name}`", kinds[name]["description"]] for name in kinds]),

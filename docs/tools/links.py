@@ -5,7 +5,7 @@
 
 Every relative link leads to a file that is there, and to a heading of it; every page is in the navigation
 (mkdocs.yml) and every entry of that is a page; rows of tables have as many cells as their head, as GitHub counts them,
-where a | within code or a comment ends a cell too; lists have an empty line before them, which the site's Markdown
+where a | within code ends a cell too; lists have an empty line before them, which the site's Markdown
 wants. What is wrong is printed with its line, and the exit code is 1.
 """
 

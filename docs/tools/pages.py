@@ -1,0 +1,190 @@
+#!/usr/bin/python3
+"""Writes the pages with measured numbers: PAGE.md of the Jinja template PAGE.md.j2 beside it.
+
+    docs/tools/pages.py            write all pages
+    docs/tools/pages.py --check    name the pages that are not current; exit code 1 if there are any
+
+Tables are the .txt files of analysis/results. A template takes a number from one:
+
+    subspace leaves {{ cell("spatial_bending; CG ratio; Bending rod; subspace 10; 1e-2", ".00") }}
+
+The address is the table's name, how its section begins, how its block begins, the row and the column; `; 2` at the end is the
+second number of a cell such as "0.10 [0.09, 0.11]". A section of `*` is any. The second argument is the style: as many digits
+after the point, with commas, an exponent and a zero before the point as it has.
+
+Whole tables pass through a filter. Its address has {row} and {column}, which are the texts of the table's first column and
+line; what follows in @<<...>> is taken instead of the text, and not shown:
+
+    {% filter table("learned_rods; CG ratio, first; {row}; {column}") %}
+    | 1e-2, 1e-3 | subspace 10@<<subspace 10; 1e-2, 1e-3>> |
+    |---|---|
+    | bending rods@<<Bending rod>> | .00 **.00** |
+    {% endfilter %}
+
+The numbers in the cells are styles. A cell has as many numbers as its address names columns, each with or without its
+interval behind it, [.00, .00]. What is in `backticks` is not a number; a column that is called `-` stays as it is. A | in an
+address within a table is written \\|.
+"""
+
+import os
+import re
+import sys
+from decimal import ROUND_HALF_UP, Decimal
+
+import jinja2
+
+ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+TABLES = os.path.join(ROOT, "analysis", "results")
+NUMBER = re.compile(r"[−-]?(?:\d[\d,]*\.?\d*|\.\d+)(?:e[+−-]?\d+)?")
+NAMED = re.compile(r"@<<(.*?)>>")
+BAR = re.compile(r"(?<!\\)\|")
+WITH_INTERVAL = re.compile(rf"({NUMBER.pattern})[*_]*(?:\s*\[({NUMBER.pattern}), ({NUMBER.pattern})\])?")
+
+
+class NotFound(Exception):
+    """The message says what is not in which table."""
+
+
+class Tables:
+    """The tables of a folder, each read once."""
+
+    def __init__(self, folder):
+        self.folder, self.lines = folder, {}
+
+    def cell(self, address, style):
+        """The number at an address, in a style."""
+        name, section, block, row, column, *rest = [part.strip() for part in address.split(";")]
+        if name not in self.lines:
+            path = os.path.join(self.folder, f"{name}.txt")
+            if not os.path.exists(path):
+                raise NotFound(f"there is no table {path}: {address!r}")
+            with open(path, encoding="utf-8") as file:
+                self.lines[name] = file.read().splitlines()
+        try:
+            text = find_cell(self.lines[name], section, block, row, column)
+        except NotFound as missing:
+            raise NotFound(f"{name}.txt has no {missing} of {address!r}") from None
+        numbers, place = NUMBER.findall(text), int(rest[0]) - 1 if rest else 0
+        if place >= len(numbers):
+            raise NotFound(f"{name}.txt has no number {place + 1} in {text!r} of {address!r}")
+        return styled(numbers[place], style)
+
+    def table(self, text, address):
+        """A Markdown table with the numbers of its address."""
+        names, lines = None, []
+        for number, line in enumerate(text.strip("\n").splitlines()):
+            cells = BAR.split(line[1:].rstrip().removesuffix("|"))
+            if number == 0:
+                names = [called(cell) for cell in cells]
+            elif number > 1:
+                row = called(cells[0])
+                cells[1:] = [cell if name == "-" else self._filled(cell, address, row, name)
+                             for name, cell in zip(names[1:], cells[1:])]
+            lines.append("|" + "|".join(NAMED.sub("", cell) for cell in cells) + "|")
+        return "\n".join(lines) + "\n"
+
+    def _filled(self, cell, address, row, column):
+        *where, columns = address.replace("{column}", column).replace("{row}", row).split(";")
+        words = re.sub(r"`[^`]*`", lambda quoted: " " * len(quoted.group()), cell)
+        numbers, parts = list(WITH_INTERVAL.finditer(words)), columns.split(",")
+        if numbers and len(numbers) != len(parts):
+            raise NotFound(f"{len(numbers)} numbers for {len(parts)} columns in {cell.strip()!r} ({row!r}, {column!r})")
+        pieces, done = [], 0
+        for found, part in zip(numbers, parts):
+            for which, end in (group for group in ((1, ""), (2, "; 2"), (3, "; 3")) if found.group(group[0])):
+                pieces += [cell[done:found.start(which)], self.cell(";".join([*where, part]) + end, found.group(which))]
+                done = found.end(which)
+        return "".join([*pieces, cell[done:]])
+
+
+def find_cell(lines, section, block, row, column):
+    """The text of a cell. Columns are to the right: that of a header's cell ends where the row's does."""
+    start = _first(lines, 0, section, f"section {section!r}") if section != "*" else 0
+    start = _first(lines, start, block, f"block {block!r}")
+    above = start    # blocks may share a header above them
+    while above > 0 and lines[above - 1].strip():
+        above -= 1
+    for header in (start, *range(start + 1, min(start + 2, len(lines))), *range(above, start)):
+        ends = [cell.end() for cell in _cells(lines[header]) if cell.group() == column]
+        if ends:
+            break
+    else:
+        raise NotFound(f"column {column!r}")
+    for line in lines[max(start, header) + 1:]:
+        if not line.strip():
+            break
+        first, *others = _cells(line)
+        if first.group() == row:
+            found = [cell.group() for cell in others if cell.end() == ends[0]]
+            if found:
+                return found[0]
+    raise NotFound(f"row {row!r}")
+
+
+def _cells(line):
+    return list(re.finditer(r"\S+(?: \S+)*", line))
+
+
+def _first(lines, start, words, what):
+    for k in range(start, len(lines)):
+        if lines[k].lstrip().startswith(words):
+            return k
+    raise NotFound(what)
+
+
+def called(cell):
+    """The name of a row or column in its address."""
+    named = NAMED.search(cell)
+    return named.group(1).replace("\\|", "|") if named else re.sub(r"[*`_]", "", cell).strip()
+
+
+def styled(number, style):
+    """A table's number with the digits and in the style of another."""
+    mantissa, exponent, _ = style.lower().partition("e")
+    digits, value = len(mantissa.partition(".")[2]), Decimal(number.replace("−", "-").replace(",", ""))
+    if exponent:
+        text = re.sub(r"e([+-])0*(\d)", lambda e: "e" + e.group(1).replace("+", "") + e.group(2), f"{value:.{digits}e}")
+    else:
+        rounded = value.quantize(Decimal(1).scaleb(-digits), ROUND_HALF_UP)
+        text = f"{rounded:,}" if "," in style else f"{rounded}"
+    if mantissa.lstrip("-−").startswith("."):
+        text = re.sub(r"^(-?)0\.", r"\1.", text)
+    return text.replace("-", "−") if "−" in style else text
+
+
+def rendered(template, folder=TABLES):
+    """The text of a page."""
+    tables = Tables(folder)
+    environment = jinja2.Environment(keep_trailing_newline=True, trim_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.filters["table"] = tables.table
+    with open(template, encoding="utf-8") as file:
+        return environment.from_string(file.read()).render(cell=tables.cell)
+
+
+def templates(root=ROOT):
+    return sorted(os.path.join(folder, name) for folder, _, names in os.walk(root) for name in names
+                  if name.endswith(".md.j2") and "build" not in os.path.relpath(folder, root))
+
+
+def main():
+    check, stale = sys.argv[1:] == ["--check"], []
+    if sys.argv[1:] and not check:
+        sys.exit("usage: docs/tools/pages.py [--check]")
+    for template in templates():
+        page = template.removesuffix(".j2")
+        text = rendered(template)
+        current = os.path.exists(page) and open(page, encoding="utf-8").read() == text
+        if check and not current:
+            stale.append(f"{os.path.relpath(page)} is not current: make pages writes it of {os.path.relpath(template)}")
+        elif not current:
+            with open(page, "w", encoding="utf-8") as file:
+                file.write(text)
+            print(os.path.relpath(page))
+    sys.exit("\n".join(stale) or 0)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except NotFound as missing:
+        sys.exit(f"docs/tools/pages.py: {missing}")

@@ -1,0 +1,114 @@
+#!/usr/bin/python3
+"""docs/tools/pages.py: numbers of tables in pages, and that the pages of this repository are current."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOLS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "tools")
+sys.path.insert(0, TOOLS)
+import pages  # noqa: E402
+
+TABLE = """results/x.h5: job x
+
+CG ratio, first Newton iteration
+
+Bending rod, n = 300                 1e-1               1e-2
+  previous              0.25 [0.23, 0.27]  0.46 [0.44, 0.48]
+  last 9                0.07 [0.06, 0.08]  0.10 [0.09, 0.11]
+
+Helix, of a very long title
+                                     1e-1               1e-2
+  last 9                0.19 [0.06, 0.08]  0.34 [0.09, 0.11]
+
+Time per solve
+
+Bending rod, n = 300  guess µs  solve µs
+  last 9                  2.00     1,234
+
+                        n  failed
+Bending rod, one a step
+  last 9               10       2
+Bending rod, six a step
+  last 9               10       3
+"""
+
+
+class Pages(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.write("x.txt", TABLE)
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def page(self, template):
+        return pages.rendered(self.write("page.md.j2", template), self.folder)
+
+    def refused(self, template):
+        with self.assertRaises(pages.NotFound) as refused:
+            self.page(template)
+        return str(refused.exception)
+
+    def test_numbers_have_the_style_that_is_asked_for(self):
+        for address, style, text in (("CG ratio; Bending rod; last 9; 1e-2", ".00", ".10"),
+                                     ("CG ratio; Bending rod; last 9; 1e-2", "0.0", "0.1"),
+                                     ("*; Helix; last 9; 1e-2; 2", ".00", ".09"),
+                                     ("*; Bending rod, six; last 9; failed", "0", "3"),
+                                     ("Time per solve; Bending rod; last 9; solve µs", "0,000", "1,234"),
+                                     ("Time per solve; Bending rod; last 9; solve µs", "0", "1234"),
+                                     ("Time; Bending; last 9; solve µs", "0.0e0", "1.2e3")):
+            with self.subTest(address=address, style=style):
+                self.assertEqual(self.page(f'a **{{{{ cell("x; {address}", "{style}") }}}}**\n'), f"a **{text}**\n")
+
+    def test_halves_are_rounded_up(self):
+        self.assertEqual([pages.styled(number, ".0") for number in ("0.25", "0.35", "0.05")], [".3", ".4", ".1"])
+
+    def test_whole_tables_by_their_rows_and_columns(self):
+        template = """above
+{% filter table("x; CG ratio; {row}; {column}; 1e-1, 1e-2") %}
+| 1e-1, 1e-2 | last 9 | last@<<previous>> | - |
+|---|---|---|---|
+| rods@<<Bending rod>> | .00 **.00** [.00, .00] | .00 .00, `not 3` | 4 |
+| Helix | .00 .00 | | |
+{% endfilter %}
+below
+"""
+        self.assertEqual(self.page(template), """above
+| 1e-1, 1e-2 | last 9 | last | - |
+|---|---|---|---|
+| rods | .07 **.10** [.09, .11] | .25 .46, `not 3` | 4 |
+| Helix | .19 .34 | | |
+below
+""")
+        self.assertIn("1 numbers for 2 columns in '.00'", self.refused(template.replace("| .00 .00 |", "| .00 |")))
+
+    def test_what_no_table_has_is_named(self):
+        for address, words in (("x; CG ratio; Bending rod; last 8; 1e-2", "x.txt has no row 'last 8'"),
+                               ("x; CG ratio; Bending rod; last 9; 1e-3", "no column '1e-3'"),
+                               ("x; CG ratio; Ring; last 9; 1e-2", "no block 'Ring'"),
+                               ("x; Steps; Ring; last 9; 1e-2", "no section 'Steps'"),
+                               ("x; CG ratio; Helix; last 9; 1e-2; 4", "no number 4"),
+                               ("y; CG ratio; Ring; last 9; 1e-2", "there is no table")):
+            self.assertIn(words, self.refused(f'{{{{ cell("{address}", ".00") }}}}'))
+
+    def test_the_pages_of_this_repository_are_current(self):
+        done = subprocess.run([sys.executable, os.path.join(TOOLS, "pages.py"), "--check"], text=True, capture_output=True,
+                              check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_no_page_has_a_comment(self):
+        for template in pages.templates():
+            with open(template.removesuffix(".j2"), encoding="utf-8") as page:
+                self.assertNotIn("<!--", page.read())
+
+
+if __name__ == "__main__":
+    unittest.main()
