@@ -11,8 +11,7 @@ PREFIX   ?= /usr/local
 PYTHON   := /usr/bin/python3
 BUILD_TYPE    ?=
 PORTABLE      ?= 0
-WERROR        ?= 0
-SANITIZE      ?= 0
+CHECKS        ?= 0
 SKIP_PACKAGES ?= 0
 FUZZ_SECONDS  ?= 600
 
@@ -21,7 +20,7 @@ packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt
 # $(call configure,PRESET,FOLDER): CMakePresets.json says how; quiet unless it fails; a folder that exists keeps its generator.
 configure = generator=$$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' $(2)/CMakeCache.txt 2>/dev/null) || true; \
   log=$$(cmake --preset $(1) -B $(2) $${generator:+"-G$$generator"} $(if $(BUILD_TYPE),-DCMAKE_BUILD_TYPE=$(BUILD_TYPE)) \
-  $(if $(call yes,$(PORTABLE)),-DRODSWEEP_NATIVE=OFF) $(if $(call yes,$(WERROR)),-DRODSWEEP_WERROR=ON) 2>&1) \
+  $(if $(call yes,$(PORTABLE)),-DRODSWEEP_NATIVE=OFF) $(if $(call yes,$(CHECKS)),-DRODSWEEP_CHECKS=ON) 2>&1) \
   || { echo "$$log"; exit 1; }
 # $(call study,NAME): a job that is done is not run again, one that was stopped goes on.
 study = [ -e results/$(1).h5 ] && resume=--resume || resume=; \
@@ -36,7 +35,7 @@ studies = spatial_bending spatial_helix newton stiffness step_size long_term ben
   collision_falling collision_coiling collision_bundle collision_ring_chain collision_net knot
 sources = $$(find solver network runner tests -name '*.[ch]pp')
 
-.PHONY: help configure build demo report studies variants ablation pictures test test-packages test-long test-cluster drill test-arm bench sanitize fuzz schema docs format format-check tidy install uninstall clean
+.PHONY: help configure build demo report studies variants ablation pictures test test-long test-cluster test-arm bench sanitize fuzz schema pages docs format format-check tidy install uninstall clean
 
 help:
 	@echo 'make demo          build, run the demo sweep (a few minutes; continued if it was stopped), draw its figures'
@@ -46,22 +45,23 @@ help:
 	@echo 'make ablation      train some forty variants of the network of the paper on each scene, try and draw them (an hour and a half; likewise)'
 	@echo 'make pictures      run the jobs to look at (pictures, lattice_*, net_wind), draw their films (installs ffmpeg, for MP4)'
 	@echo 'make test          build, run the tests'
-	@echo 'make test-long     the slow physics and sweep tests'
+	@echo 'make test-long     the slow tests: physics, faults, the report in a browser; unit tests under the sanitizers'
 	@echo 'make test-cluster  sweeps under a real Slurm and over hosts that die or are cut off, on this machine (as root, some minutes)'
-	@echo 'make drill         of these the one in which all happens to one sweep, with its timeline'
 	@echo 'make test-arm      tests of the solver, but for CG, and the networks for 64-bit ARM, run in qemu, in $(BUILD)-arm/'
 	@echo 'make bench         build and run the benchmarks'
 	@echo 'make install       PREFIX=$(PREFIX): program, jobs, analysis scripts, manual page, completion; make uninstall'
 	@echo 'make build         build only, into $(BUILD)/'
 	@echo 'make sanitize      unit tests under the address and undefined-behaviour sanitizers, in $(BUILD)-sanitize/'
-	@echo 'make fuzz          look for input that a reader of files crashes on, FUZZ_SECONDS=$(FUZZ_SECONDS) (tests/fuzz/README.md)'
+	@echo 'make fuzz          look for jobs that crash their reader, FUZZ_SECONDS=$(FUZZ_SECONDS) (tests/fuzz/README.md)'
 	@echo 'make schema        refresh jobs/schema.json and docs/keys.md after a change of the keys of jobs'
-	@echo 'make docs          the pages as a site, $(BUILD)/site/index.html'
+	@echo 'make pages         write the pages with measured numbers (*.md.j2) anew'
+	@echo 'make docs          the same, and all pages as a site, $(BUILD)/site/index.html'
 	@echo 'make format        clang-format the tree; make format-check only looks'
 	@echo 'make tidy          clang-tidy'
 	@echo 'make clean         remove $(BUILD)/ and those beside it (-sanitize/, -tidy/, ...); results stay'
 	@echo
-	@echo 'PORTABLE=1 builds for any processor of this kind, WERROR=1 makes warnings errors, SKIP_PACKAGES=1 leaves apt-get alone.'
+	@echo 'PORTABLE=1 builds for any processor of this kind, SKIP_PACKAGES=1 leaves apt-get alone; CHECKS=1: warnings are errors,'
+	@echo 'and the standard library checks its preconditions, as in .ci/run.'
 
 configure:
 	@$(call packages,build run)
@@ -127,30 +127,22 @@ pictures: build
 	  done; \
 	done
 
-# Two tests a core, since those under mpirun mostly wait. SANITIZE=1: the unit tests are those of `make sanitize` and no
-# others, so that they are built once, as in .ci/run.
-test: configure test-packages $(if $(call yes,$(SANITIZE)),sanitize)
-	@cmake --build $(BUILD) -j $(CORES) $(if $(call yes,$(SANITIZE)),--target program_tests)
-	@ctest --preset $(if $(call yes,$(SANITIZE)),program,default) --test-dir $(BUILD) -j $$((2 * $(CORES)))
-
-# Beside those of the build, so that nobody needs a browser to see the demo.
-test-packages:
-	@$(call packages,test)
+# Three tests on two cores, since those under mpirun wait for it.
+test: configure
+	@cmake --build $(BUILD) -j $(CORES)
+	@ctest --preset default --test-dir $(BUILD) -j $$((3 * $(CORES) / 2))
 
 test-long: configure
+	@$(call packages,long)
 	@cmake --build $(BUILD) -j $(CORES)
 	@ctest --preset long --test-dir $(BUILD) -j $(CORES)
+	@$(MAKE) sanitize
 
 # A Slurm and hosts of their own, in namespaces that end with the test. One after the other, since their times are told.
 test-cluster: configure
 	@$(call packages,cluster)
 	@cmake --build $(BUILD) -j $(CORES) --target program_tests
 	@ctest --preset cluster --test-dir $(BUILD)
-
-drill: configure
-	@$(call packages,cluster)
-	@cmake --build $(BUILD) -j $(CORES) --target rodsweep
-	@ctest --preset cluster --test-dir $(BUILD) -R cluster/drill
 
 # Two doubles in a register, another rounding and another compiler's code: what `make test` on x86 doesn't see.
 test-arm:
@@ -177,23 +169,27 @@ fuzz: export CXX = clang++
 fuzz:
 	@$(call packages,build run fuzz)
 	@$(call configure,sanitize,$(BUILD)-fuzz)
-	@cmake --build $(BUILD)-fuzz -j $(CORES) --target fuzzers
+	@cmake --build $(BUILD)-fuzz -j $(CORES) --target fuzz_jobs
 	@tests/fuzz/run.sh $(BUILD)-fuzz/tests $(FUZZ_SECONDS)
 
 schema: build
 	@$(BUILD)/rodsweep schema >$(BUILD)/schema.json && mv $(BUILD)/schema.json jobs/schema.json
 	@docs/tools/keys.py --update
 
-docs:
+# README.md, docs/claims.md and others, of the templates beside them and the tables of analysis/results.
+pages:
+	@docs/tools/pages.py
+
+docs: pages
 	@$(call packages,docs)
 	@docs/tools/site.py $(BUILD)/site
 
 format:
-	@$(call packages,develop)
+	@$(call packages,format)
 	@clang-format -i $(sources)
 
 format-check:
-	@$(call packages,develop)
+	@$(call packages,format)
 	@clang-format --dry-run -Werror $(sources) && echo 'format: clean'
 
 # Reads how things are compiled from a folder of its own: clang has no use for the compiler's precompiled headers.

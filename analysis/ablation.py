@@ -53,7 +53,7 @@ def _processor(model):
 
 def _base(model):
     base = model.network["base"]
-    return base + (f" {model.network['base_size']}" if base in ("pod", "regression") else "")
+    return base + (f" {model.network['base_size']}" if base in ("subspace", "regression") else "")
 
 
 def _data(model):

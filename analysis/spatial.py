@@ -21,7 +21,7 @@ from rodsweep.reading.sweepfile import SweepFile
 EXAMPLES = """examples:
   analysis/spatial.py results/demo.h5
   analysis/spatial.py results/demo.h5 --scene helix --tolerance 1e-2,1e-4 --newton all
-  analysis/spatial.py results/demo.h5 --overview --guess "zero,quadratic,pod 10"
+  analysis/spatial.py results/demo.h5 --overview --guess "zero,quadratic,subspace 10"
   analysis/spatial.py results/stiffness.h5 --x scene.youngs_modulus_pa --select scene.segments=20:40 --width 84"""
 
 

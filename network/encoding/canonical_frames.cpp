@@ -6,8 +6,6 @@
 namespace rodsweep {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// The frame of a hand, of c and s.
 struct Hand {
   Lane8 cosine, always, sine;

@@ -24,13 +24,13 @@ enum class Couplings { tree, all };
 
 /// The guess that the network corrects: none (zero), quadratic extrapolation in time, least squares of the last
 /// `base_size` right-hand sides, or projection onto the last `base_size` solutions.
-enum class BaseGuess { none, extrapolation, regression, pod };
+enum class BaseGuess { none, extrapolation, regression, subspace };
 
 struct CopingNetSettings {
   Encoding encoding = Encoding::system;
   Processor processor = Processor::sweeps;
-  BaseGuess base = BaseGuess::pod;
-  int base_size = 10;                         ///< regression, pod
+  BaseGuess base = BaseGuess::subspace;
+  int base_size = 10;                         ///< regression, subspace
   int latent = 32;                            ///< width of hidden layers and states
   Recurrence recurrence = Recurrence::gated;  ///< sweeps
   Couplings couplings = Couplings::tree;      ///< factors

@@ -5,8 +5,6 @@
 namespace rodsweep {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 template <class T>
 using Block = Eigen::Map<const Eigen::Matrix<T, 6, 6>>;
 

@@ -11,7 +11,7 @@ std::unique_ptr<InitialGuess> base_guess(const CopingNetSettings& settings, cons
     case BaseGuess::extrapolation: return std::make_unique<ExtrapolationGuess>(scene, newton_iterations, 3);
     case BaseGuess::regression:
       return std::make_unique<RegressionGuess>(scene, newton_iterations, settings.base_size, 0);
-    case BaseGuess::pod: break;
+    case BaseGuess::subspace: break;
   }
   return std::make_unique<SubspaceGuess>(scene, newton_iterations, settings.base_size, SubspaceGuess::Window::sliding);
 }

@@ -9,8 +9,6 @@ namespace {
 
 constexpr double rigid = 1e15;  // [N m^2], stands for the stiffness of a joint without compliance
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 [[noreturn]] void not_a_chain(const std::string& what) {
   throw SceneError(what + ": nearest neighbours compare rods along one arc length, so a rod must be a single chain");
 }

@@ -39,7 +39,7 @@ ProjectionReport EndToEndProjection::project(Rod& rod, const SolvePosition& at, 
   report.outcome = SolveOutcome::not_a_number;
   if (!std::isfinite(report.newton_residual)) return report;
   if (!source_->predict(rod, of.system, at, dt, of.delta_lambda, of.moves)) return report;
-  move(rod, of.moves, of.delta_lambda);
+  displace(rod, of.moves, of.delta_lambda);
   report.outcome = SolveOutcome::converged;
   return report;
 }

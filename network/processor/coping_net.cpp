@@ -3,11 +3,7 @@
 #include <stdexcept>
 
 namespace rodsweep {
-namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-}  // namespace
+namespace {}  // namespace
 
 template <class T>
 CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) : settings_(settings) {

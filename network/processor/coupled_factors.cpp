@@ -7,7 +7,7 @@
 namespace rodsweep {
 namespace {
 
-using Couplings = std::vector<SystemPattern::Coupling>;
+using CouplingList = std::vector<SystemPattern::Coupling>;
 
 template <class T>
 void apply(const Linear<T>& layer, const Parameters<T>& p, const TensorIn<T>& x, Tensor<T>& before, Tensor<T>& after) {
@@ -25,7 +25,7 @@ void apply_back(const Linear<T>& layer, const Parameters<T>& p, const TensorIn<T
 
 /// [x_k; sums over later places of x, by sides of k].
 template <class T>
-Tensor<T> with_later(const Couplings& couplings, const Tensor<T>& x) {
+Tensor<T> with_later(const CouplingList& couplings, const Tensor<T>& x) {
   const Eigen::Index h = x.rows();
   Tensor<T> out = Tensor<T>::Zero(3 * h, x.cols());
   out.topRows(h) = x;
@@ -35,7 +35,7 @@ Tensor<T> with_later(const Couplings& couplings, const Tensor<T>& x) {
 
 /// From the derivatives by with_later() to those by x.
 template <class T>
-Tensor<T> with_earlier(const Couplings& couplings, const Tensor<T>& d) {
+Tensor<T> with_earlier(const CouplingList& couplings, const Tensor<T>& d) {
   const Eigen::Index h = d.rows() / 3;
   Tensor<T> out = d.topRows(h);
   for (const auto& c : couplings) out.col(c.row) += d.col(c.column).segment(h * (1 + c.column_side), h);
@@ -67,7 +67,7 @@ void square_back(const T* c, const T* dn, T* dc) {
 
 }  // namespace
 
-Tensor<float> coupling_features(const Couplings& couplings, Eigen::Index places) {
+Tensor<float> coupling_features(const CouplingList& couplings, Eigen::Index places) {
   std::vector<int> height(static_cast<std::size_t>(places), 0);
   Tensor<float> out = Tensor<float>::Zero(6, places);
   for (auto c = couplings.rbegin(); c != couplings.rend(); ++c) {

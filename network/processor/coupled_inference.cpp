@@ -12,8 +12,6 @@ using namespace lane16;
 
 constexpr int triangle = CoupledFactors<float>::triangle;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// C C^T from C's lower triangle by columns.
 void square(const float* c, Lane16 (&n)[3]) {
   alignas(64) float column[6][16] = {}, row[6][8] = {};

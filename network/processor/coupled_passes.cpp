@@ -8,7 +8,7 @@ namespace {
 using namespace six;
 
 template <class T>
-bool carried(const Column<T>& state) {
+bool within_bound(const Column<T>& state) {
   return sum<T>(state * state) < CoupledPasses<T>::longest_state * CoupledPasses<T>::longest_state;
 }
 
@@ -71,7 +71,7 @@ void CoupledPasses<T>::forward(const ScaledSystem<T>& a, const TensorIn<T>& fact
   h = r;
   descending(a.couplings, r.cols(), [&](int k, std::size_t begin, std::size_t end) {
     const Column<T> state = column(&h(0, k));
-    if (begin == end || !carried<T>(state)) return;
+    if (begin == end || !within_bound<T>(state)) return;
     const int sides = sides_of(a, begin, end);
     Column<T> w[2] = {};
     for (int side = 0; side < sides; ++side) w[side] = folded_times(t<T>(factors, k, side), state);
@@ -86,7 +86,8 @@ void CoupledPasses<T>::forward(const ScaledSystem<T>& a, const TensorIn<T>& fact
     Column<T> sums[2] = {};
     for (std::size_t i = begin; i < end; ++i) {
       const SystemPattern::Coupling& c = a.couplings[i];
-      if (const Column<T> state = column(&y(0, c.column)); carried<T>(state)) sums[c.side] -= times(b(a, c), state);
+      if (const Column<T> state = column(&y(0, c.column)); within_bound<T>(state))
+        sums[c.side] -= times(b(a, c), state);
     }
     add<T>(times(n<T>(factors, k), column(&h(0, k))), &y(0, k));
     for (int side = 0; side < sides_of(a, begin, end); ++side) {
@@ -113,12 +114,12 @@ void CoupledPasses<T>::backward(const ScaledSystem<T>& a, const TensorIn<T>& fac
     }
     for (std::size_t i = begin; i < end; ++i) {
       const SystemPattern::Coupling& c = a.couplings[i];
-      if (carried<T>(column(&y(0, c.column)))) add<T>(-folded_times(b(a, c), dv[c.side]), &d(0, c.column));
+      if (within_bound<T>(column(&y(0, c.column)))) add<T>(-folded_times(b(a, c), dv[c.side]), &d(0, c.column));
     }
   });
   ascending(a.couplings, dy.cols(), [&](int k, std::size_t begin, std::size_t end) {
     const Column<T> state = column(&h(0, k));
-    if (begin == end || !carried<T>(state)) return;
+    if (begin == end || !within_bound<T>(state)) return;
     Column<T> dw[2] = {};
     for (std::size_t i = begin; i < end; ++i) {
       const SystemPattern::Coupling& c = a.couplings[i];

@@ -10,8 +10,6 @@ namespace {
 
 using namespace lane16;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 }  // namespace
 
 FactorInference::FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights,

@@ -10,8 +10,6 @@ namespace {
 
 using namespace six;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// B_i.
 template <class T>
 Block<T> b(const TensorIn<T>& x, int i) {

@@ -4,13 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <sstream>
 
-#include "runner/command/command_outline.hpp"
-#include "runner/command/completion.hpp"
-#include "runner/command/manual.hpp"
 #include "runner/job/job_schema.hpp"
 #include "runner/job/nearest.hpp"
 #include "runner/terminal/text.hpp"
@@ -26,23 +22,24 @@ constexpr const char* about =
 constexpr const char* exit_codes =
     "Exit codes:\n"
     "  0  all done\n"
-    "  2  the command line, a job or a file is at fault; nothing of yours was changed\n"
+    "  2  an error in the command line, a job or a file; nothing was changed\n"
     "  3  the sweep is complete, some of its tasks failed; or a training diverged\n"
     "  4  stopped early; --resume continues\n"
     "  5  likewise, but what is left needs a longer --time-limit\n"
-    "  6  no worker was left; --resume continues";
+    "  6  no worker was left; --resume continues\n"
+    "  7  standard output could not be written; all else went well";
 
 constexpr const char* main_help =
     "Examples:\n"
     "  rodsweep validate jobs/demo.json         is this job sound?\n"
     "  rodsweep plan jobs/demo.json             how many tasks, bytes, core-hours?\n"
     "  mpirun -n 9 rodsweep run jobs/demo.json  8 workers and a master, which sleeps\n"
-    "  rodsweep keep -- mpirun -n 9 rodsweep run jobs/demo.json\n"
-    "                                           again and again until it is done, whatever dies\n"
     "  rodsweep status results/demo.h5          how far is it? (also while it runs)\n"
     "  rodsweep query results/demo.h5           its tasks as a table, CSV or JSON\n"
-    "  rodsweep compare before.h5 after.h5      what differs between two sweeps\n"
-    "'rodsweep COMMAND --help' tells more.";
+    "'rodsweep COMMAND --help' explains a command.\n\n"
+    "Every script of analysis/ is a command too: rodsweep NAME starts rodsweep-NAME, which needs Python.\n"
+    "  query    tasks as a table            compare  two sweeps            summary  the main numbers\n"
+    "  report   a page of HTML              spatial  figures               export   CSV of all rows";
 
 constexpr const char* schema_help =
     "For completion and checks while you type; `rodsweep validate` has the last word. Put the file beside your jobs "
@@ -51,17 +48,7 @@ constexpr const char* schema_help =
     "Example:\n"
     "  rodsweep schema >schema.json";
 
-constexpr const char* completion_help =
-    "Commands, options, job files and results files after the Tab key. `make install` puts all three where the shells\n"
-    "look for them; without:\n\n"
-    "  source <(rodsweep completion bash)                              in ~/.bashrc\n"
-    "  source <(rodsweep completion zsh)                               in ~/.zshrc, after compinit\n"
-    "  rodsweep completion fish >~/.config/fish/completions/rodsweep.fish";
-
-constexpr const char* manual_help =
-    "In the language of man(7), with all that the commands' own --help says.\n\n"
-    "Example:\n"
-    "  rodsweep manual | man -l -";
+constexpr const char* help_line = "\nRun with --help for more information.\n";
 
 std::string with_exit_codes(const char* help) { return std::string(help) + "\n\n" + exit_codes; }
 
@@ -117,20 +104,16 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->check(above_zero())
       ->type_name("SECONDS");
   command
-      ->add_option("--time-passed", run.time_passed_s, "So much of it is over already (keep says it to later starts)")
-      ->check(not_negative())
-      ->type_name("SECONDS");
-  command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
-                   "Memory of a rank; a task that wants more is an error [an equal share of nine tenths of the host's]")
+                   "Memory of a rank; a task that needs more is an error [90 % of the host's, divided by its ranks]")
       ->check(CLI::Range(0.1, 1e9))  // the program itself has most of that
       ->type_name("GB");
-  command->add_option("--attempts", run.attempts, "Set a task aside as crashed that ended so many workers [3]")
+  command->add_option("--max-crashes", run.max_crashes, "Mark a task as crashed after this many worker deaths [3]")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
   command
       ->add_option("--worker-timeout", run.worker_timeout_s,
-                   "Go on without a worker that was silent for so long; 0: wait for ever [120]")
+                   "Continue without a worker that sends no heartbeat for so long; 0: wait for ever [120]")
       ->check(not_negative())
       ->type_name("SECONDS");
   command
@@ -191,49 +174,6 @@ CLI::App* add(CLI::App& app, InfoOptions& info) {
   return command;
 }
 
-CLI::App* add(CLI::App& app, QueryOptions& query) {
-  CLI::App* command = app.add_subcommand("query", "Lists tasks by parameter or outcome");
-  command->footer(query_help);
-  command->add_option("FILE", query.file, "Results file (HDF5)")->required();
-  command->add_option("CONDITION", query.conditions, "What the tasks must meet");
-  const auto append = [&query](const std::vector<std::string>& more) {  // comes after CONDITION
-    query.conditions.insert(query.conditions.end(), more.begin(), more.end());
-  };
-  command->add_option_function<std::vector<std::string>>("--where", append, "One more condition")
-      ->type_name("CONDITION")
-      ->allow_extra_args(false);
-  command->add_option("--columns", query.columns, "What to show, with commas between; help: all that there is")
-      ->type_name("LIST")
-      ->allow_extra_args(false);
-  command->add_option("--sort", query.sort, "Order by a column, smallest first")->type_name("COLUMN");
-  command->add_flag("--descending", query.descending, "Order by it, largest first")->needs("--sort");
-  command->add_option("--limit", query.limit, "Show so many tasks at most")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N");
-  using Format = QueryOptions::Format;
-  const auto set = [&query](Format format) { return [&query, format] { query.format = format; }; };
-  CLI::Option* csv = command->add_flag_callback("--csv", set(Format::csv), "For spreadsheets and programs");
-  command->add_flag_callback("--json", set(Format::json), "For programs")->excludes(csv);
-  return command;
-}
-
-CLI::App* add(CLI::App& app, CompareOptions& compare) {
-  CLI::App* command = app.add_subcommand("compare", "Says what differs between two sweeps");
-  command->footer(compare_help);
-  command->add_option("FILE", compare.a, "Results file (HDF5)")->required();
-  command->add_option("OTHER", compare.b, "Another")->required();
-  const std::map<std::string, MatchBy> by{{"everything", MatchBy::everything}, {"parameters", MatchBy::parameters}};
-  command->add_option("--by", compare.by, "What makes two tasks the same: everything, or what varies within a job")
-      ->transform(CLI::CheckedTransformer(by).description(""))
-      ->type_name("everything|parameters");
-  command->add_flag("--tasks", compare.tasks, "List every task that differs");
-  using Format = CompareOptions::Format;
-  const auto set = [&compare](Format format) { return [&compare, format] { compare.format = format; }; };
-  CLI::Option* csv = command->add_flag_callback("--csv", set(Format::csv), "For spreadsheets and programs");
-  command->add_flag_callback("--json", set(Format::json), "For programs")->excludes(csv);
-  return command;
-}
-
 CLI::App* add(CLI::App& app, RerunOptions& rerun) {
   CLI::App* command = app.add_subcommand("rerun", "Runs one task of a sweep again, with its trajectory");
   command->footer(rerun_help);
@@ -263,29 +203,15 @@ CLI::App* add(CLI::App& app, MergeOptions& merge) {
   return command;
 }
 
-CLI::App* add(CLI::App& app, KeepOptions& keep) {
-  CLI::App* command = app.add_subcommand("keep", "Starts a run again, whatever ends it, until it is done");
-  command->footer(with_exit_codes(keep_help));
-  command->add_option("COMMAND", keep.command, "After --: the run, as it would be typed, with mpirun")->required();
-  command->add_option("--hosts", keep.hosts, "Start on the hosts of this file that answer: {hosts} in COMMAND")
-      ->type_name("HOSTS");
-  command
-      ->add_option("--silence", keep.silence_s,
-                   "End a start that shows no sign of life for so long, a training's ten times; 0: never [300]")
-      ->check(not_negative())
-      ->type_name("SECONDS");
-  command->add_option("--pause", keep.pause_s, "Before the next start; doubles while nothing gets done [1]")
-      ->check(above_zero())
-      ->type_name("SECONDS");
-  command->add_option("--vain-starts", keep.vain_starts, "Give up after so many in a row that get nothing done [10]")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
-  return command;
+std::string unknown_command_text(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> known{"query", "compare", "summary", "report"};
+  for (const CLI::App* offered : app.get_subcommands({})) known.push_back(offered->get_name());
+  return fmt::format("rodsweep: there is no command \"{}\", and no program rodsweep-{}{}{}", word, word,
+                     did_you_mean(word, known), help_line);
 }
 
-/// What is said of words that are no command and no option: what may have been meant.
+/// The message for a word that is neither a command nor an option: what may have been meant.
 std::string complaint_text(const CLI::App* app, const CLI::Error& error) {
-  const std::string more = "\nRun with --help for more information.\n";
   const auto chosen = app->get_subcommands();
   const CLI::App& command = chosen.empty() ? *app : *chosen.front();
   const std::vector<std::string> words = command.remaining();
@@ -299,29 +225,10 @@ std::string complaint_text(const CLI::App* app, const CLI::Error& error) {
       for (const std::string& name : offered->get_lnames()) known.push_back("--" + name);
     const std::string typed = option->substr(0, option->find('='));
     return fmt::format("rodsweep{}: there is no option {}{}{}", chosen.empty() ? "" : " " + command.get_name(), typed,
-                       did_you_mean(typed, known), more);
+                       did_you_mean(typed, known), help_line);
   }
   if (!chosen.empty()) return CLI::FailureMessage::simple(app, error);
-  for (const CLI::App* offered : app->get_subcommands({})) known.push_back(offered->get_name());
-  return fmt::format("rodsweep: there is no command \"{}\"{}{}", words.front(), did_you_mean(words.front(), known),
-                     more);
-}
-
-/// The run that is kept, understood like one that is typed. Not one: an Answer that says why.
-Command with_its_run(KeepOptions keep) {
-  const std::vector<std::string> words = run_words(keep.command);
-  std::vector<const char*> pointers;
-  for (const std::string& word : words) pointers.push_back(word.c_str());
-  Command inner = words.empty() ? Command(Answer{"there is no 'rodsweep run JOB' in it\n", ExitCode::user_error})
-                                : parse_command_line(static_cast<int>(pointers.size()), pointers.data());
-  if (auto* run = std::get_if<RunOptions>(&inner)) {
-    keep.run = std::move(*run);
-    return keep;
-  }
-  const auto* answer = std::get_if<Answer>(&inner);
-  return Answer{fmt::format("rodsweep keep: the command behind -- is not a run to keep: {}",
-                            answer != nullptr ? answer->text : "\n"),
-                ExitCode::user_error};
+  return unknown_command_text(*app, words.front());
 }
 
 }  // namespace
@@ -344,48 +251,30 @@ Command parse_command_line(int argc, const char* const* argv) {
   ValidateOptions validate;
   StatusOptions status;
   InfoOptions info;
-  QueryOptions query;
-  CompareOptions compare;
   PackOptions pack;
-  KeepOptions keep;
   std::optional<Command> chosen;
   const auto offer = [&](auto&... options) {
     (add(app, options)->callback([&chosen, &options] { chosen = options; }), ...);
   };
-  offer(run, keep, plan, validate, status, info, query, compare, rerun, pack, merge);
+  offer(run, plan, validate, status, info, rerun, pack, merge);
 
   CLI::App* schema = app.add_subcommand("schema", "Prints the JSON Schema of jobs, for editors");
   schema->footer(schema_help);
-  schema->callback([&] { chosen = Answer{job_schema_text()}; });
-  CLI::App* completion = app.add_subcommand("completion", "Prints what a shell needs to complete this command line");
-  completion->footer(completion_help);
-  completion->require_subcommand(1);
-  using Script = std::string(const CommandOutline&);
-  const auto offer_shell = [&](const char* shell, Script* script) {
-    completion->add_subcommand(shell, fmt::format("For {}", shell))->callback([&chosen, &app, script] {
-      chosen = Answer{script(outline_of(app))};
-    });
-  };
-  offer_shell("bash", bash_completion);
-  offer_shell("zsh", zsh_completion);
-  offer_shell("fish", fish_completion);
-  CLI::App* manual = app.add_subcommand("manual", "Prints the manual page");
-  manual->footer(manual_help);
-  manual->callback([&] {
-    const std::string versions = library_versions();
-    chosen = Answer{manual_page(outline_of(app), versions.substr(0, versions.find(';')))};
-  });
-
+  schema->callback([&] { chosen = PrintedText{job_schema_text()}; });
+  const std::vector<CLI::App*> commands = app.get_subcommands({});
+  const std::string first = argc > 1 ? argv[1] : "-";
+  if (first[0] != '-' && std::none_of(commands.begin(), commands.end(),
+                                      [&](const CLI::App* command) { return command->check_name(first); }))
+    return ExternalCommand{first, {argv + 2, argv + argc}, unknown_command_text(app, first)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& stop) {
     std::ostringstream help, complaint;
     const bool mistake = app.exit(stop, help, complaint) != 0;
-    return Answer{mistake ? complaint.str() : help.str(), mistake ? ExitCode::user_error : ExitCode::ok};
+    return PrintedText{mistake ? complaint.str() : help.str(), mistake ? ExitCode::user_error : ExitCode::ok};
   }
-  if (version) return Answer{version_text()};
-  if (chosen && std::holds_alternative<KeepOptions>(*chosen)) return with_its_run(std::get<KeepOptions>(*chosen));
-  return chosen.value_or(Answer{app.help(), ExitCode::user_error});
+  if (version) return PrintedText{version_text()};
+  return chosen.value_or(PrintedText{app.help(), ExitCode::user_error});
 }
 
 }  // namespace rodsweep

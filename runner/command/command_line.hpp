@@ -4,14 +4,12 @@
 #include <string>
 #include <variant>
 
-#include "runner/command/compare_command.hpp"
 #include "runner/command/exit_codes.hpp"
+#include "runner/command/external_command.hpp"
 #include "runner/command/info_command.hpp"
-#include "runner/command/keep_command.hpp"
 #include "runner/command/merge_command.hpp"
 #include "runner/command/pack_command.hpp"
 #include "runner/command/plan_command.hpp"
-#include "runner/command/query_command.hpp"
 #include "runner/command/rerun_command.hpp"
 #include "runner/command/run_command.hpp"
 #include "runner/command/status_command.hpp"
@@ -19,14 +17,14 @@
 
 namespace rodsweep {
 
-/// Nothing to run: what was asked for (help, the version, a script for the shell), or a mistake in the command line.
-struct Answer {
+/// Nothing to run: help, the version or the schema, or the message for a mistake in the command line.
+struct PrintedText {
   std::string text;
   ExitCode code = ExitCode::ok;
 };
 
-using Command = std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, QueryOptions,
-                             CompareOptions, RerunOptions, PackOptions, KeepOptions, MergeOptions, Answer>;
+using Command = std::variant<RunOptions, PlanOptions, ValidateOptions, StatusOptions, InfoOptions, RerunOptions,
+                             PackOptions, MergeOptions, ExternalCommand, PrintedText>;
 
 Command parse_command_line(int argc, const char* const* argv);
 

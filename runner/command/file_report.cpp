@@ -59,8 +59,8 @@ std::string start_text(const FileSummary& file, std::size_t index) {
 Share share_of(const FileSummary& file) {
   Share share{std::nullopt, file.tasks, file.pending};
   if (file.runs.empty()) return share;
-  share.shard = shard_of_command(file.runs.back().provenance.user_command);
-  if (share.shard) {
+  if (const Provenance& last = file.runs.back().provenance; last.shard > 0) {
+    share.shard = Shard{last.shard, last.shards};
     share.tasks = share_of(*share.shard, file.tasks);
     share.left = std::max<std::int64_t>(share.tasks - file.done, 0);
   }

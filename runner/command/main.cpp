@@ -72,22 +72,6 @@ ExitCode start(const Options& options, Console& console) {
   return is_first_rank() ? execute(options, console) : ExitCode::ok;
 }
 
-/// A command that reads a file, and nothing else that matters.
-template <class Options>
-ExitCode execute_as_copy(const Options& options, Console& console) {
-  if (!is_first_rank()) return ExitCode::ok;
-  go_on_as_reader(options.file);
-  return execute(options, console);
-}
-
-ExitCode start(const StatusOptions& options, Console& console) { return execute_as_copy(options, console); }
-
-ExitCode start(const InfoOptions& options, Console& console) { return execute_as_copy(options, console); }
-
-ExitCode start(const QueryOptions& options, Console& console) { return execute_as_copy(options, console); }
-
-ExitCode start(const PackOptions& options, Console& console) { return execute_as_copy(options, console); }
-
 ExitCode start(const RerunOptions& options, Console& console) { return execute_with_petsc(options, console); }
 
 ExitCode start(const MergeOptions& options, Console& console) { return execute_with_petsc(options, console); }
@@ -96,7 +80,7 @@ ExitCode start(const PlanOptions& options, Console& console) {
   return options.probe ? execute_with_petsc(options, console) : start<PlanOptions>(options, console);
 }
 
-ExitCode start(const Answer& answer, Console& console) {
+ExitCode start(const PrintedText& answer, Console& console) {
   if (answer.code == ExitCode::ok)
     console.raw_result(answer.text);
   else
@@ -151,7 +135,7 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);
   }
-  if (failure != 0 && code == ExitCode::ok) code = ExitCode::user_error;
+  if (failure != 0 && code == ExitCode::ok) code = ExitCode::output_lost;
   if (hdf5_is_broken()) std::_Exit(static_cast<int>(code));
   return static_cast<int>(code);
 }

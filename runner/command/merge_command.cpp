@@ -32,7 +32,7 @@ struct Part {
 
   TaskOrigin origin(std::int64_t task) const {
     TaskOrigin origin = reader.origin(task);
-    origin.attempt = std::min(origin.attempt + first_run, run_rows - 1);
+    origin.run = std::min(origin.run + first_run, run_rows - 1);
     return origin;
   }
 };
@@ -60,7 +60,6 @@ std::vector<Part> open_parts(const std::vector<fs::path>& files, const FileSumma
 }  // namespace
 
 ExitCode execute(const MergeOptions& options, Console& console) {
-  for (const fs::path& file : options.files) refuse_crashing(file);
   if (const std::string left = unfinished_text(options.output); !left.empty()) console.warn(left);
   const FileSummary first = inspect(options.files.front());
   const Plan plan = stored_plan(first);

@@ -40,7 +40,7 @@ std::string run_line(const RunOptions& options, int ranks) {
   if (options.task_time_limit_s) line += fmt::format(" --task-time-limit {:g}", *options.task_time_limit_s);
   if (options.time_limit_s) line += fmt::format(" --time-limit {:g}", *options.time_limit_s);
   if (options.memory_limit_gb) line += fmt::format(" --memory-limit-gb {:g}", *options.memory_limit_gb);
-  if (options.attempts != RunOptions().attempts) line += fmt::format(" --attempts {}", options.attempts);
+  if (options.max_crashes != RunOptions().max_crashes) line += fmt::format(" --max-crashes {}", options.max_crashes);
   if (options.worker_timeout_s != RunOptions().worker_timeout_s)
     line += fmt::format(" --worker-timeout {:g}", options.worker_timeout_s);
   return line;

@@ -45,7 +45,6 @@ ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan
 
 ExitCode execute(const RerunOptions& options, Console& console) {
   const StopSignal signal;
-  refuse_crashing(options.file);
   const FileSummary before = inspect(options.file);
   check_task(options, before);
   const fs::path output = options.output.value_or(file_beside(options.file, fmt::format("-task-{}", options.task)));

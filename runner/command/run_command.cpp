@@ -44,6 +44,7 @@ Provenance provenance_of(const RunOptions& options, const MpiSession& mpi, const
   Provenance provenance = provenance_of_this_process(options.command);
   provenance.job = fs::absolute(options.job).lexically_normal().native();
   provenance.ranks = mpi.size();
+  if (options.shard) provenance.shard = options.shard->number, provenance.shards = options.shard->of;
   provenance.oversubscribed = where.oversubscribed;
   return provenance;
 }

@@ -25,7 +25,7 @@ struct RunOptions {
   std::optional<double> memory_limit_gb;        ///< of every rank; default: its share of the host's memory
   std::optional<double> time_limit_s;           ///< of this start
   double time_passed_s = 0;                     ///< of that limit, before this start
-  int attempts = 3;                             ///< to run a task, of those that end its worker
+  int max_crashes = 3;                          ///< a task that loses so many workers is not tried again
   double worker_timeout_s = 120;                ///< a worker that is silent for so long is lost; 0: none ever is
   std::string program = "rodsweep";             ///< as the user typed it
   std::string command;                          ///< the whole line, for /runs

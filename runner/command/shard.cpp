@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <numeric>
-#include <string_view>
 #include <system_error>
 
 namespace rodsweep {
@@ -16,14 +15,6 @@ std::optional<Shard> shard_of(const std::string& text) {
   const auto of = std::from_chars(number.ptr + 1, end, shard.of);
   if (of.ec != std::errc() || of.ptr != end || shard.number < 1 || shard.number > shard.of) return std::nullopt;
   return shard;
-}
-
-std::optional<Shard> shard_of_command(const std::string& command) {
-  constexpr std::string_view option = " --shard";
-  const std::size_t begin = command.find(option);
-  if (begin == std::string::npos || begin + option.size() >= command.size()) return std::nullopt;
-  const std::size_t value = begin + option.size() + 1;  // after a blank or =
-  return shard_of(command.substr(value, command.find(' ', value) - value));
 }
 
 std::int64_t share_of(const Shard& shard, std::int64_t tasks) { return (tasks - shard.number + shard.of) / shard.of; }

@@ -19,9 +19,6 @@ struct Shard {
 /// Of "3/16"; none of anything else.
 std::optional<Shard> shard_of(const std::string& text);
 
-/// That of a command line with --shard, as /runs keeps it.
-std::optional<Shard> shard_of_command(const std::string& command);
-
 /// How many of a sweep's tasks are the shard's.
 std::int64_t share_of(const Shard& shard, std::int64_t tasks);
 

@@ -58,28 +58,28 @@ std::string extension_text(const Extension& extension, std::int64_t total) {
 /// Is there a file to be continued? Else it is to be created.
 bool has_begun(const RunOptions& options, const fs::path& path, const std::optional<Extension>& extension) {
   if (!options.resume || !fs::exists(path)) return false;
-  refuse_crashing(path);
   if (extension) extension->check_started(path);
   return true;
 }
 
-/// Writes down what is known of a task that is tried no more, so that it has an outcome; returns the same. One rank.
-std::string give_up(const Task& task, int lost, const Plan& plan, ResultsFile& file) {
+/// Stores a task that reached the limit of crashes as crashed, and returns its message. One rank.
+std::string store_as_crashed(const Task& task, int crashes, const Plan& plan, ResultsFile& file) {
   TaskRecord record;
   record.prepare(task, axis_sizes(plan));
   record.outcome = TaskOutcome::crashed;
-  record.message =
-      fmt::format("its worker, or the whole sweep, ended or fell silent without a word {}",
-                  lost == 1 ? "when it was begun"
-                            : fmt::format("each of the {} times that it was begun, last with nothing beside it", lost));
+  record.message = crashes == 1 ? "its worker, or the whole sweep, crashed or hung in its only try"
+                                : fmt::format(
+                                      "its worker, or the whole sweep, crashed or hung in each of its {} tries, in "
+                                      "the last with no other task beside it",
+                                      crashes);
   file.write(task, record);
   return record.message;
 }
 
-void give_up_what_was_begun_too_often(const Plan& plan, ResultsFile& file, int attempts) {
+void store_crashed_tasks(const Plan& plan, ResultsFile& file, int max_crashes) {
   for (const Task& task : plan.tasks())
-    if (is_given_up(file, task.index, attempts))
-      give_up(task, file.starts()[static_cast<std::size_t>(task.index)], plan, file);
+    if (has_crashed(file, task.index, max_crashes))
+      store_as_crashed(task, file.tries()[static_cast<std::size_t>(task.index)], plan, file);
   file.commit();
 }
 
@@ -114,20 +114,20 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
                              run_line(options, ranks_for(where.cores))));
 }
 
-/// Keeps account of starts in the file: a task whose count stands though it is not complete had its worker end.
-BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
+/// Counts tries in the file. A non-zero count on an incomplete task means that its worker crashed.
+BatchBody counting_tries(BatchBody body, const Plan& plan, ResultsFile& file) {
   return [body = std::move(body), &plan, &file](const std::vector<std::int64_t>& tasks, const StopRequested& stop) {
     const auto begin = Clock::now();
     for (const std::int64_t task : tasks) file.begin(plan.task(task));
-    const auto give_up = [&](std::int64_t task, double share) {
+    const auto abandon = [&](std::int64_t task, double share) {
       const Seconds ran = (Clock::now() - begin) / static_cast<double>(tasks.size());
-      const Task given_up = plan.task(task);
-      file.abandon(given_up,
-                   {ran.count(), static_cast<std::int32_t>(std::lround(share * static_cast<double>(given_up.steps)))});
+      const Task abandoned = plan.task(task);
+      file.abandon(abandoned,
+                   {ran.count(), static_cast<std::int32_t>(std::lround(share * static_cast<double>(abandoned.steps)))});
     };
-    // What fails while a task looks up (a sync, a message) is not that task's outcome.
+    // A failure within stop() (a sync, a message) is not the task's outcome.
     std::exception_ptr failure;
-    const StopRequested look_up = [&] {
+    const StopRequested checked_stop = [&] {
       try {
         return stop();
       } catch (...) {
@@ -136,12 +136,12 @@ BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
       }
     };
     try {
-      std::vector<TaskResult> results = body(tasks, look_up);
+      std::vector<TaskResult> results = body(tasks, checked_stop);
       if (failure) std::rethrow_exception(failure);
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        if (results[i].outcome == TaskOutcome::pending) give_up(tasks[i], results[i].share);
+        if (results[i].outcome == TaskOutcome::pending) abandon(tasks[i], results[i].share);
       return results;
-    } catch (...) {  // a rank that can say so did not lose its life to the task
+    } catch (...) {  // this rank did not crash: the tries do not count
       for (const std::int64_t task : tasks) file.abandon(plan.task(task));
       throw;
     }
@@ -150,11 +150,11 @@ BatchBody counting_starts(BatchBody body, const Plan& plan, ResultsFile& file) {
 
 /// Master and worker take turns in one process.
 Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, const StopSignal& signal, BatchBody body,
-                        const std::function<void()>& now_and_then, const Patience& patience) {
+                        const std::function<void()>& now_and_then, const Timeouts& timeouts) {
   const auto received = [&] { return signal.received(); };
   MemoryNetwork network(2);
-  Patience alone;  // of itself
-  alone.time = patience.time;
+  Timeouts alone;  // no rank to wait for
+  alone.time = timeouts.time;
   Master master(network[0], std::move(pending), progress, received, alone);
   Worker worker(network[1], std::move(body), received, [&] {
     master.step();
@@ -164,64 +164,63 @@ Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, co
   return master.dispatch();
 }
 
-/// Does Open MPI let ranks leave one by one? Then it is no use asking it to end the others.
-bool ranks_leave_alone() {
+/// With Open MPI's orte_enable_recovery, ranks exit one by one, and MPI_Abort ends the calling rank alone.
+bool ranks_exit_alone() {
   const char* told = std::getenv("OMPI_MCA_orte_enable_recovery");
   return told != nullptr && std::string_view(told) != "0";
 }
 
-/// Ranks are lost, and Open MPI cannot finish without them: a worker's way out.
-[[noreturn]] void leave_master() {
-  if (!ranks_leave_alone()) std::this_thread::sleep_for(std::chrono::minutes(1));  // unless that ends all before
+/// How a worker exits when ranks are lost: MPI_Finalize would wait for them.
+[[noreturn]] void exit_worker() {
+  if (!ranks_exit_alone()) std::this_thread::sleep_for(std::chrono::minutes(1));  // until the master's MPI_Abort
   std::_Exit(static_cast<int>(ExitCode::ok));
 }
 
-/// The master's.
-[[noreturn]] void leave_lost_ranks(const MpiSession& mpi, ExitCode code) {
-  if (!ranks_leave_alone()) MPI_Abort(mpi.world(), static_cast<int>(code));
+/// Likewise the master.
+[[noreturn]] void exit_master(const MpiSession& mpi, ExitCode code) {
+  if (!ranks_exit_alone()) MPI_Abort(mpi.world(), static_cast<int>(code));
   std::_Exit(static_cast<int>(code));
 }
 
 Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pending, Progress& progress,
                              const StopSignal& signal, BatchBody body, const std::function<void()>& now_and_then,
-                             ResultsFile& file, const Patience& patience, const Notices& notices) {
+                             ResultsFile& file, const Timeouts& timeouts, const Callbacks& callbacks) {
   const auto received = [&] { return signal.received(); };
   MpiChannel channel(mpi.world());
   if (mpi.rank() > 0) {
-    Worker worker(channel, std::move(body), received, now_and_then);
-    worker.set_beat(std::min(std::chrono::duration<double>(1), patience.silence / 5), [&] { return file.committed(); });
+    Worker worker(channel, std::move(body), received, now_and_then,
+                  {std::min(Seconds(1), timeouts.silence / 5), [&] { return file.committed(); }});
     if (!worker.run()) return {};
     file.commit();
     channel.send(0, Gone{});
-    leave_master();
+    exit_worker();
   }
-  Master master(channel, std::move(pending), progress, received, patience, notices);
+  Master master(channel, std::move(pending), progress, received, timeouts, callbacks);
   master.run(now_and_then);
-  if (master.dispatch().apart) {
+  if (master.dispatch().ranks_lost) {
     master.wait_until_gone();
     channel.abandon();
   }
   return master.dispatch();
 }
 
-/// Of a start that began then.
-Patience patience_of(const RunOptions& options, Clock::time_point begin) {
+/// Of a run that began then.
+Timeouts timeouts_of(const RunOptions& options, Clock::time_point begin) {
   constexpr std::chrono::minutes drain{1};
-  Patience patience;
-  patience.drain = drain;
-  patience.attempts = options.attempts;
+  Timeouts timeouts;
+  timeouts.drain = drain;
+  timeouts.max_crashes = options.max_crashes;
   if (options.time_limit_s) {
     const Seconds whole(*options.time_limit_s);
-    patience.time = TimeBudget(whole - Seconds(options.time_passed_s) - (Clock::now() - begin), whole);
+    timeouts.time = TimeBudget(whole - (Clock::now() - begin), whole);
   }
-  if (options.worker_timeout_s > 0) patience.silence = std::chrono::duration<double>(options.worker_timeout_s);
-  return patience;
+  if (options.worker_timeout_s > 0) timeouts.silence = Seconds(options.worker_timeout_s);
+  return timeouts;
 }
 
 std::string ended_text(const Dispatch& dispatch, std::int64_t too_large, const RunOptions& options, int ranks) {
   RunOptions again = options;
   again.resume = true;
-  again.time_passed_s = 0;
   if (dispatch.too_long) {
     again.time_limit_s.reset();
     return fmt::format(
@@ -260,7 +259,6 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   limit_memory(options.memory_limit_gb ? 1e9 * *options.memory_limit_gb
                                        : (1 - memory_reserve) * host_memory() / where.host_workers);
   if (const std::string left = unfinished_text(path); !left.empty()) console.warn(left);
-  if (options.extend) by_rank_0(mpi.world(), [&] { refuse_crashing(*options.extend); });
   const auto extension = collectively(mpi.world(), [&] { return open_extension(options, path, plan); });
   const int begun =
       collectively(mpi.world(), [&] { return mpi.rank() == 0 && has_begun(options, path, extension) ? 1 : 0; });
@@ -268,8 +266,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const Provenance provenance = provenance_of(options, mpi, where);
   const auto stop = [&] {
     const Seconds passed = Clock::now() - begin;
-    return signal.received() != 0 ||
-           (options.time_limit_s && options.time_passed_s + passed.count() > *options.time_limit_s);
+    return signal.received() != 0 || (options.time_limit_s && passed.count() > *options.time_limit_s);
   };
   std::optional<ResultsFile> opened = collectively(mpi.world(), [&] {
     return continues ? ResultsFile::resume(path, plan, provenance, mpi.world(),
@@ -285,13 +282,13 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   }
   ResultsFile& file = *opened;
   if (!file.note().empty()) console.warn(file.note());
-  by_rank_0(mpi.world(), [&] { give_up_what_was_begun_too_often(plan, file, options.attempts); });
+  by_rank_0(mpi.world(), [&] { store_crashed_tasks(plan, file, options.max_crashes); });
   const FileSummary before =
       collectively(mpi.world(), [&] { return continues && mpi.rank() == 0 ? inspect(path) : FileSummary(); });
 
   std::vector<PendingTask> pending;
   if (mpi.rank() == 0)  // who alone hands them out
-    pending = pending_tasks(plan, file, extension, options.shard, options.attempts);
+    pending = pending_tasks(plan, file, extension, options.shard, options.max_crashes);
   advise(console, options, where, pending.size());
   const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
   const double memory = least(memory_left(), mpi.world());
@@ -310,32 +307,30 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   };
   const auto warn = [](const std::string& text) { Console(true).warn(text); };  // whichever rank finds the damage
   const auto hosts = everywhere(host_name(), mpi.world());
-  Notices notices;
-  notices.lost = [&](int rank) {
-    console.warn(fmt::format("rank {} on {} was not heard for too long: others get what it had in hand", rank,
-                             hosts[static_cast<std::size_t>(rank)]));
+  Callbacks callbacks;
+  callbacks.lost = [&](int rank) {
+    console.warn(
+        fmt::format("rank {} on {} timed out; its tasks are reassigned", rank, hosts[static_cast<std::size_t>(rank)]));
   };
-  notices.found_again = [&](int rank) {
-    console.note(fmt::format("rank {} on {} is back", rank, hosts[static_cast<std::size_t>(rank)]));
+  callbacks.stopping = [&](int number) {
+    console.note(fmt::format("stopped by {}: finished tasks are kept, and --resume continues", signal_cause(number)));
   };
-  notices.stopping = [&](int number) {
-    console.note(
-        fmt::format("told to stop by {}: what is finished is kept, and --resume goes on", signal_cause(number)));
+  callbacks.crashed = [&](std::int64_t task, int crashes) {
+    return store_as_crashed(plan.task(task), crashes, plan, file);
   };
-  notices.give_up = [&](std::int64_t task, int lost) { return give_up(plan.task(task), lost, plan, file); };
   BatchBody body =
-      counting_starts(extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write), plan, file);
+      counting_tries(extension ? extending_body(plan, *extension, write, warn) : task_body(plan, write), plan, file);
   const auto now_and_then = [&] {
     file.commit_if_due();
     if (mpi.rank() == 0) file.beat();
   };
-  Patience patience = patience_of(options, begin);
+  Timeouts timeouts = timeouts_of(options, begin);
   if (options.time_limit_s && continues && mpi.rank() == 0)
-    learn_from_earlier_starts(path, plan, file, pending, patience.time);
+    learn_from_earlier_runs(path, plan, file, pending, timeouts.time);
   Dispatch dispatch =
-      mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then, patience)
+      mpi.size() == 1 ? dispatch_alone(std::move(pending), progress, signal, std::move(body), now_and_then, timeouts)
                       : dispatch_to_workers(mpi, std::move(pending), progress, signal, std::move(body), now_and_then,
-                                            file, patience, notices);
+                                            file, timeouts, callbacks);
   dispatch.left += too_large.tasks;
   file.commit();
 
@@ -343,16 +338,16 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
                              path,  options.program,        too_large, options.shard};
   const auto end = [&](ExitCode code) {
     if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
-    dispatch.apart ? file.leave() : file.close();
+    dispatch.ranks_lost ? file.leave() : file.close();
     console.result(summary_text(summary));
     if (dispatch.left > 0) console.note(ended_text(dispatch, too_large.tasks, options, mpi.size()));
     return code;
   };
-  if (dispatch.apart) {
+  if (dispatch.ranks_lost) {
     const ExitCode code = end(exit_code(summary));
-    console.note("ranks are lost, and Open MPI has to end them");
+    console.note("some ranks were lost; Open MPI ends the others");
     console.close();
-    leave_lost_ranks(mpi, code);
+    exit_master(mpi, code);
   }
   return end(static_cast<ExitCode>(broadcast(static_cast<int>(exit_code(summary)), mpi.world())));
 }

@@ -3,18 +3,18 @@
 #include <algorithm>
 
 #include "runner/experiment/task_body.hpp"
-#include "runner/file/attempt.hpp"
+#include "runner/file/task_times.hpp"
 
 namespace rodsweep {
 
-bool is_given_up(const ResultsFile& file, std::int64_t task, int attempts) {
+bool has_crashed(const ResultsFile& file, std::int64_t task, int max_crashes) {
   const auto i = static_cast<std::size_t>(task);
-  return file.done()[i] == 0 && file.starts()[i] >= attempts;
+  return file.done()[i] == 0 && file.tries()[i] >= max_crashes;
 }
 
 std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
                                        const std::optional<Extension>& extension, const std::optional<Shard>& shard,
-                                       int attempts) {
+                                       int max_crashes) {
   const std::vector<bool> mine = in_shard(plan, shard);
   // Tasks of an earlier file are looked at one by one.
   const std::vector<std::int64_t> batch =
@@ -23,10 +23,10 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
   std::vector<PendingTask> pending;
   for (const Task& task : plan.tasks())
     if (const auto i = static_cast<std::size_t>(task.index);
-        mine[i] && !file.done()[i] && !is_given_up(file, task.index, attempts)) {
-      const int lost = file.starts()[i];
-      pending.push_back(
-          {task.index, task.cost * (extension ? extension->cost(task.index) : 1), lost > 0 ? -1 : batch[i], lost});
+        mine[i] && !file.done()[i] && !has_crashed(file, task.index, max_crashes)) {
+      const int crashes = file.tries()[i];
+      pending.push_back({task.index, task.cost * (extension ? extension->cost(task.index) : 1),
+                         crashes > 0 ? -1 : batch[i], crashes});
       if (limit_s > 0) pending.back().limit_s = limit_s;
     }
   return pending;
@@ -46,14 +46,14 @@ TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending
   return found;
 }
 
-void learn_from_earlier_starts(const std::filesystem::path& path, const Plan& plan, const ResultsFile& file,
-                               std::vector<PendingTask>& pending, TimeBudget& time) {
+void learn_from_earlier_runs(const std::filesystem::path& path, const Plan& plan, const ResultsFile& file,
+                             std::vector<PendingTask>& pending, TimeBudget& time) {
   const TaskTimes times = read_task_times(path);
   for (const Task& task : plan.tasks())
     if (const auto i = static_cast<std::size_t>(task.index); file.done()[i] != 0)
       time.learn(task.cost, TimeBudget::Seconds(times.elapsed_s.at(i)));
   for (PendingTask& task : pending) {
-    const Attempt& tried = times.tried.at(static_cast<std::size_t>(task.index));
+    const Try& tried = times.tried.at(static_cast<std::size_t>(task.index));
     const auto steps = static_cast<double>(plan.task(task.index).steps);
     task.tried_s = tried.elapsed_s;
     time.learn_part(task.cost, tried.steps / steps, TimeBudget::Seconds(tried.elapsed_s));

@@ -1,4 +1,4 @@
-// Which tasks of a sweep a start has to do, and what is known of them from the starts before.
+// Which tasks of a sweep a run has to do, and what is known of them from earlier runs.
 #pragma once
 
 #include <filesystem>
@@ -14,19 +14,19 @@
 
 namespace rodsweep {
 
-/// A task that was begun often enough, and of whose workers none said what came of it, is tried no more.
-bool is_given_up(const ResultsFile& file, std::int64_t task, int attempts);
+/// Whether a task that is not done has crashed as often as allowed, and is not tried again.
+bool has_crashed(const ResultsFile& file, std::int64_t task, int max_crashes);
 
-/// Those of the shard that are neither done nor given up.
+/// Those of the shard that are neither done nor crashed.
 std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
                                        const std::optional<Extension>& extension, const std::optional<Shard>& shard,
-                                       int attempts);
+                                       int max_crashes);
 
 /// Takes out of `pending` what keeps more than `memory` bytes of results: no rank has room for them.
 TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending, double memory);
 
-/// How long tasks took, and how far those came that were given up.
-void learn_from_earlier_starts(const std::filesystem::path& path, const Plan& plan, const ResultsFile& file,
-                               std::vector<PendingTask>& pending, TimeBudget& time);
+/// How long tasks took, and how far abandoned ones came.
+void learn_from_earlier_runs(const std::filesystem::path& path, const Plan& plan, const ResultsFile& file,
+                             std::vector<PendingTask>& pending, TimeBudget& time);
 
 }  // namespace rodsweep

@@ -41,7 +41,7 @@ class TrainingRun {
         training_job_(training_job(job)),
         mpi_(mpi),
         console_(console),
-        where_(placement(mpi.world(), Share::all_work)),
+        where_(placement(mpi.world(), RankRoles::all_work)),
         threads_(std::min({where_.threads, available_threads(), shards_of_a_rank()})) {}
 
   void prepare(const std::optional<StoredModel>& earlier);
@@ -190,9 +190,6 @@ ExitCode run_training(const RunOptions& options, const Job& job, const MpiSessio
   const StopSignal signal;  // from here on a signal is a request, until the file is closed
   const fs::path path = output_of(options, job.name);
   if (const std::string left = unfinished_text(path); !left.empty()) console.warn(left);
-  collectively(mpi.world(), [&] {
-    if (mpi.rank() == 0 && options.resume && fs::exists(path)) rehearse(path, [&] { read_training(path); });
-  });
   const auto earlier = collectively(mpi.world(), [&] {
     if (options.extend) throw job_error(job.path, "kind", "a training extends nothing: remove --extend");
     if (options.task_time_limit_s || options.time_limit_s || options.memory_limit_gb || options.shard)

@@ -19,9 +19,9 @@
 
 namespace rodsweep {
 
-enum class Tag : int { assign = 1, drop, stop, finish, report, dropped, interrupted, alive, gone };
+enum class Tag : int { assign = 1, stop, finish, report, interrupted, alive, gone };
 
-/// Master to worker: run these tasks, at once where they can be, after what you have in hand.
+/// Master to worker: run these tasks after those that you have, together where they can be.
 struct Assign {
   static constexpr Tag tag = Tag::assign;
   static constexpr std::size_t most = 8;
@@ -32,21 +32,15 @@ struct Assign {
   std::vector<std::int64_t> tasks() const { return {task.begin(), task.begin() + count}; }
 };
 
-/// Master to worker: you were not heard for too long, and others have your tasks. Abandon what runs and what is in
-/// hand, report each, answer Dropped, and wait for more.
-struct Drop {
-  static constexpr Tag tag = Tag::drop;
-};
-
-/// Master to worker: abandon what runs and what is in hand, report each, wait for Finish.
+/// Master to worker: abandon all your tasks, report each, wait for Finish.
 struct Stop {
   static constexpr Tag tag = Tag::stop;
 };
 
-/// Master to worker: nothing more will come; leave.
+/// Master to worker: no more tasks; exit.
 struct Finish {
   static constexpr Tag tag = Tag::finish;
-  bool apart = false;  ///< some ranks are lost: do nothing that takes all, answer Gone when you are done
+  bool ranks_lost = false;  ///< make no collective call; answer Gone when your results are on disk
 };
 
 /// Worker to master: one for every task of every Assign.
@@ -63,23 +57,18 @@ struct Report {
   std::string_view message() const { return text.data(); }
 };
 
-/// Worker to master: all that a Drop took away is reported; I am at hand again.
-struct Dropped {
-  static constexpr Tag tag = Tag::dropped;
-};
-
-/// Worker to master, about every second: I can still look up.
+/// Worker to master, about every second: a heartbeat.
 struct Alive {
   static constexpr Tag tag = Tag::alive;
-  std::int64_t kept = 0;  ///< so many of the tasks that I finished, from the first on, outlive me
+  std::int64_t saved = 0;  ///< of the tasks that it finished, the first so many are on disk
 };
 
-/// Worker to master: what I wrote is on disk; I may be ended.
+/// Worker to master: all that it wrote is on disk; it exits.
 struct Gone {
   static constexpr Tag tag = Tag::gone;
 };
 
-/// Worker to master: this rank was signalled, please stop the sweep.
+/// Worker to master: this rank received a signal; stop the sweep.
 struct Interrupted {
   static constexpr Tag tag = Tag::interrupted;
   int signal = 0;

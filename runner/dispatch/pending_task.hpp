@@ -10,9 +10,9 @@ struct PendingTask {
   std::int64_t index = 0;
   double cost = 0;
   std::int64_t batch = -1;  ///< tasks of equal cost and number here may be evaluated together; -1: this one alone
-  int lost = 0;             ///< workers that ended while they ran it
-  double tried_s = 0;       ///< the longest for which it ran and was given up
-  double limit_s = std::numeric_limits<double>::infinity();  ///< of its own, after which it ends as timed out
+  int crashes = 0;          ///< workers that were lost while they ran it
+  double tried_s = 0;       ///< its longest try that was abandoned
+  double limit_s = std::numeric_limits<double>::infinity();  ///< its own time limit, after which it times out
 };
 
 }  // namespace rodsweep

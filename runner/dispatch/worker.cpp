@@ -8,7 +8,6 @@ namespace rodsweep {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr int master = 0;
 constexpr std::chrono::milliseconds look_pause{5};
 
@@ -22,14 +21,19 @@ BatchBody one_by_one(TaskBody body) {
   };
 }
 
-Worker::Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running)
+Worker::Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running,
+               Heartbeat heartbeat, TimeSource now)
     : channel_(&channel),
       body_(std::move(body)),
       signal_(std::move(signal)),
-      while_running_(std::move(while_running)) {}
+      while_running_(std::move(while_running)),
+      heartbeat_(std::move(heartbeat)),
+      now_(now) {}
 
-Worker::Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running)
-    : Worker(channel, one_by_one(std::move(body)), std::move(signal), std::move(while_running)) {}
+Worker::Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running,
+               Heartbeat heartbeat, TimeSource now)
+    : Worker(channel, one_by_one(std::move(body)), std::move(signal), std::move(while_running), std::move(heartbeat),
+             now) {}
 
 bool Worker::run() {
   Backoff backoff;
@@ -37,7 +41,7 @@ bool Worker::run() {
     switch (step()) {
       case Step::worked: backoff.reset(); break;
       case Step::waited: backoff.wait(); break;
-      case Step::finished: return apart_;
+      case Step::finished: return ranks_lost_;
     }
   }
 }
@@ -46,7 +50,7 @@ Worker::Step Worker::step() {
   const bool traffic = receive();
   heed_signal();
   beat();
-  if (stopping_ || dropping_) give_back();
+  if (stopping_) give_back();
   if (!hand_.empty()) {
     const std::vector<std::int64_t> tasks = std::move(hand_.front());
     hand_.pop_front();
@@ -61,7 +65,6 @@ Worker::Step Worker::step() {
 void Worker::give_back() {
   for (const std::vector<std::int64_t>& tasks : std::exchange(hand_, {}))
     for (const std::int64_t task : tasks) channel_->send(master, Report(task, TaskOutcome::pending, 0, ""));
-  if (std::exchange(dropping_, false)) channel_->send(master, Dropped{});
 }
 
 bool Worker::receive() {
@@ -70,9 +73,11 @@ bool Worker::receive() {
     any = true;
     switch (envelope->tag) {
       case Tag::assign: hand_.push_back(channel_->receive<Assign>(*envelope).tasks()); break;
-      case Tag::drop: channel_->receive<Drop>(*envelope), dropping_ = true; break;
       case Tag::stop: channel_->receive<Stop>(*envelope), stopping_ = true; break;
-      case Tag::finish: apart_ = channel_->receive<Finish>(*envelope).apart, dismissed_ = true; break;
+      case Tag::finish:  // while tasks run: the master lost this rank, and others have them
+        ranks_lost_ = channel_->receive<Finish>(*envelope).ranks_lost;
+        dismissed_ = stopping_ = true;
+        break;
       default: channel_->unexpected(*envelope);
     }
   }
@@ -87,17 +92,17 @@ void Worker::heed_signal() {
 }
 
 void Worker::beat() {
-  const auto now = Clock::now();
-  if (dismissed_ || now - beat_ < beat_pause_) return;
+  const TimePoint now = now_();
+  if (dismissed_ || now - beat_ < heartbeat_.interval) return;
   beat_ = now;
-  channel_->send(master, Alive{kept_ ? kept_() : 0});
+  channel_->send(master, Alive{heartbeat_.saved()});
 }
 
 void Worker::run(const std::vector<std::int64_t>& tasks) {
-  const auto begin = Clock::now();
+  const TimePoint begin = now_();
   looked_ = begin;
   const std::vector<TaskResult> results = body_(tasks, [this] { return stop_requested(); });
-  const std::chrono::duration<double> busy = Clock::now() - begin;
+  const std::chrono::duration<double> busy = now_() - begin;
   const double share_s = busy.count() / static_cast<double>(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const TaskResult& result = results.at(i);
@@ -108,15 +113,15 @@ void Worker::run(const std::vector<std::int64_t>& tasks) {
 }
 
 bool Worker::stop_requested() {
-  if (stopping_ || dropping_) return true;
+  if (stopping_) return true;
   heed_signal();
-  if (const auto now = Clock::now(); now - looked_ >= look_pause) {
+  if (const TimePoint now = now_(); now - looked_ >= look_pause) {
     looked_ = now;
     if (while_running_) while_running_();
     receive();
     beat();
   }
-  return stopping_ || dropping_;
+  return stopping_;
 }
 
 }  // namespace rodsweep

@@ -1,9 +1,9 @@
 // Runs the tasks that the master assigns, one assignment after the other, and reports each task.
 //
-// While they run it asks, between time steps and within them, whether to stop; every few milliseconds that question
-// also looks at the messages, and every second or so it tells the master that this rank can still look up. An exception
-// from the task's body is the end of this rank (say, a results file that cannot be written): what is wrong with a task
-// is an outcome, and the body's affair (runner/experiment/task_body.hpp).
+// A running task calls StopRequested between time steps and within solves. Every few milliseconds that call also reads
+// the messages, and about every second it sends a heartbeat. An exception from the task's body ends this rank (for
+// example a results file that cannot be written). A failure of the task itself is an outcome
+// (runner/experiment/task_body.hpp).
 #pragma once
 
 #include <chrono>
@@ -16,6 +16,7 @@
 
 #include "runner/dispatch/channel.hpp"
 #include "runner/dispatch/stop_requested.hpp"
+#include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 
@@ -34,26 +35,27 @@ using BatchBody =
 
 BatchBody one_by_one(TaskBody body);
 
+/// What a worker tells the master while it runs.
+struct Heartbeat {
+  std::chrono::duration<double> interval{1};
+  std::function<std::int64_t()> saved = [] { return 0; };  ///< how many of its finished tasks are on disk
+};
+
 class Worker {
  public:
-  /// `signal` tells the signal that this rank received, 0 for none. `while_running` is called now and then between two
-  /// time steps, and while there is nothing to do (a lone rank keeps its master alive there).
-  Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running = {});
-  Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running = {});
+  /// `signal` returns the signal that this rank received, 0 for none. `while_running` is called now and then during a
+  /// task and while there is nothing to do (on a single rank it runs the master).
+  Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running = {},
+         Heartbeat heartbeat = {}, TimeSource now = std::chrono::steady_clock::now);
+  Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running = {},
+         Heartbeat heartbeat = {}, TimeSource now = std::chrono::steady_clock::now);
 
-  /// Tells the master so often that this rank looks up, and of how many of its tasks the results are on disk: by
-  /// default every second, and nothing of the latter.
-  void set_beat(std::chrono::duration<double> pause, std::function<std::int64_t()> kept) {
-    beat_pause_ = pause;
-    kept_ = std::move(kept);
-  }
-
-  /// Deals with all messages that have arrived, then runs at most one assignment.
+  /// Handles all messages that have arrived, then runs at most one assignment.
   enum class Step { worked, waited, finished };
   Step step();
 
-  /// Steps until dismissed, asleep while there is nothing to do. True: ranks are lost, and what takes all of them must
-  /// not be tried.
+  /// Steps until dismissed, and sleeps while there is nothing to do. True: ranks were lost, so that no collective call
+  /// may follow.
   bool run();
 
  private:
@@ -68,12 +70,12 @@ class Worker {
   BatchBody body_;
   std::function<int()> signal_;
   std::function<void()> while_running_;
+  Heartbeat heartbeat_;
+  TimeSource now_;
   std::deque<std::vector<std::int64_t>> hand_;  ///< assignments
 
-  bool dropping_ = false, stopping_ = false, dismissed_ = false, apart_ = false, told_ = false;
-  std::chrono::steady_clock::time_point looked_{}, beat_{};
-  std::chrono::duration<double> beat_pause_{1};
-  std::function<std::int64_t()> kept_;
+  bool stopping_ = false, dismissed_ = false, ranks_lost_ = false, told_ = false;
+  TimePoint looked_{}, beat_{};
 };
 
 }  // namespace rodsweep

@@ -50,8 +50,13 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
 }  // namespace
 
 bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop) {
+  return evaluate_by_clock(std::chrono::steady_clock::now, task, spec, record, stop);
+}
+
+bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
+                       const StopRequested& stop) {
   if (steps_in_batches(spec)) return evaluate_batch({{task, spec, &record}}, stop);
-  const Stopwatch watch;
+  const Stopwatch watch(now);
   bool finished = true;
   try {
     finished = simulate(task, spec, record, stop, watch);

@@ -31,7 +31,7 @@ std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task,
     case Kind::linear: return extrapolation(2);
     case Kind::quadratic: return extrapolation(3);
     case Kind::fischer: return subspace(SubspaceGuess::Window::restarted);
-    case Kind::pod: return subspace(SubspaceGuess::Window::sliding);
+    case Kind::subspace: return subspace(SubspaceGuess::Window::sliding);
     case Kind::deflation: return subspace(SubspaceGuess::Window::sliding, Use::guess_and_deflation);
     case Kind::regression:
       return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window, noise);

@@ -24,7 +24,6 @@ void check_inputs(const Job& job) {
   for (const auto& [written, file] : job.files) {
     if (file.hash.empty()) continue;
     try {
-      rehearse(file.path, [&, &input = file] { open(input); });
       open(file);
     } catch (const FileError& error) {
       throw job_error(job.path, file.key_path, error.what());

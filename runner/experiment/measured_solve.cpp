@@ -201,7 +201,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     const CgReport report = tight_solve(*solvers.tight, solvers.reference, solvers.iterations);
     const std::size_t column = guesses_[g].column, entry = row * spec_.guesses.size() + column;
     if (failure != SolveOutcome::not_run) {
-      if (spec_.output.solves) record_.reason[entry] = static_cast<std::int8_t>(failure);
+      if (spec_.output.solves) record_.solve_outcome[entry] = static_cast<std::int8_t>(failure);
       unusable_ = spec_.guesses[column].label;
       return failure;
     }
@@ -215,7 +215,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     if (at.newton == 0) add(record_.counted, column, solvers.iterations, report.iterations, start);
 
     if (!spec_.output.solves) continue;
-    record_.reason[entry] = static_cast<std::int8_t>(report.outcome);
+    record_.solve_outcome[entry] = static_cast<std::int8_t>(report.outcome);
     record_.start_matvecs[entry] = static_cast<std::int16_t>(start);
     record_.renewed[entry] = own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
     std::copy(solvers.iterations.begin(), solvers.iterations.end(),

@@ -1,13 +1,12 @@
 #include "runner/experiment/timed_guess.hpp"
 
 #include "runner/experiment/median.hpp"
-#include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 
 void TimedGuess::prepare(const SolvePosition& at) {
   proposals_s_.clear();
-  const Stopwatch watch;
+  const Stopwatch watch(now_);
   guess_->prepare(at);
   once_s_ = watch.seconds();
 }
@@ -17,13 +16,13 @@ Proposal TimedGuess::propose(const LinearSystem& system, const SolvePosition& at
 }
 
 void TimedGuess::propose_timed(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
-  const Stopwatch watch;
+  const Stopwatch watch(now_);
   guess_->propose(system, at, x0);
   proposals_s_.push_back(watch.seconds());
 }
 
 void TimedGuess::accept(const SolvePosition& at, const VectorX& solution) {
-  const Stopwatch watch;
+  const Stopwatch watch(now_);
   guess_->accept(at, solution);
   once_s_ += watch.seconds();
 }

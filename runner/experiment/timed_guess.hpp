@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "solver/guess/initial_guess.hpp"
+#include "solver/step/stopwatch.hpp"
 
 namespace rodsweep {
 
 class TimedGuess {
  public:
-  explicit TimedGuess(std::unique_ptr<InitialGuess> guess) : guess_(std::move(guess)) {}
+  explicit TimedGuess(std::unique_ptr<InitialGuess> guess, TimeSource now = std::chrono::steady_clock::now)
+      : guess_(std::move(guess)), now_(now) {}
 
   /// Begins a system: earlier times are forgotten.
   void prepare(const SolvePosition& at);
@@ -27,6 +29,7 @@ class TimedGuess {
 
  private:
   std::unique_ptr<InitialGuess> guess_;
+  TimeSource now_;
   double once_s_ = 0;
   std::vector<double> proposals_s_;
 };

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 
 #include "runner/file/layout.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/job/job.hpp"
-#include "runner/terminal/process_copy.hpp"
 
 namespace rodsweep {
 namespace {
@@ -32,19 +30,11 @@ FileError damaged_error(const fs::path& path, const std::string& reason) {
                                path.native(), reason));
 }
 
-FileError crashed_error(const fs::path& path, int signal) {
-  return damaged_error(path, fmt::format("reading it ended the reader by signal {} ({})", signal, strsignal(signal)));
-}
-
 std::string damage_text(const std::exception& failure) {
   const bool told = dynamic_cast<const Hdf5Error*>(&failure) != nullptr ||
                     dynamic_cast<const Damage*>(&failure) != nullptr ||
                     dynamic_cast<const JobError*>(&failure) != nullptr;
   return told ? failure.what() : "what it holds does not fit together";
-}
-
-void rehearse(const fs::path& path, const std::function<void()>& work) {
-  if (const int signal = signal_of_copy(work)) throw crashed_error(path, signal);
 }
 
 hdf5::File open_own(const fs::path& path, const char* what) {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <exception>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,14 +33,8 @@ hdf5::File open_results(const std::filesystem::path& path);
 /// A file that passed open_results() but does not hold what it should; `reason` says what.
 FileError damaged_error(const std::filesystem::path& path, const std::string& reason);
 
-/// The same of a file that ended its reader by a signal.
-FileError crashed_error(const std::filesystem::path& path, int signal);
-
 /// The reason for a damaged_error() in what reading a file threw. What is not said for users is not repeated.
 std::string damage_text(const std::exception& failure);
-
-/// Does work() in a copy of this process, which may crash: then the file is refused. For files that are not only read.
-void rehearse(const std::filesystem::path& path, const std::function<void()>& work);
 
 /// Does work(); what HDF5 or the sizes of a broken file make of it is the file's fault.
 template <class Work>

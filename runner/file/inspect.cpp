@@ -10,7 +10,6 @@
 #include "runner/file/layout.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/task_reader.hpp"
-#include "runner/terminal/process_copy.hpp"
 
 namespace rodsweep {
 namespace {
@@ -19,7 +18,7 @@ namespace fs = std::filesystem;
 
 void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
   const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
-  const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/attempt");
+  const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
   const auto seconds = hdf5::read_all<double>(file.id(), "/timing/tasks/elapsed_s");
   const hdf5::RowDataset messages(file.id(), "/tasks/message");  // kept open: its chunks may be compressed
   summary.tasks = static_cast<std::int64_t>(states.size());
@@ -39,14 +38,14 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
 }
 
 void find_begun(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
-  const char* path = "/timing/tasks/starts";
+  const char* path = "/timing/tasks/tries";
   if (!hdf5::exists(file.id(), path)) return;  // of a program that did not count them
   const auto starts = hdf5::read_all<std::uint8_t>(file.id(), path);
   std::vector<std::size_t> begun;
   for (std::size_t task = 0; task < states.size(); ++task)
     if (states[task] == 0 && starts.at(task) > 0) begun.push_back(task);
   if (begun.empty()) return;
-  const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/attempt");
+  const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
   const auto ranks = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/rank");
   const hdf5::RowDataset hosts(file.id(), "/timing/tasks/host");
   for (const std::size_t task : begun)
@@ -95,19 +94,6 @@ FileSummary inspect(const fs::path& path) {
     find_begun(file, states, summary);
     find_momentum_residual(file, states, summary);
     return summary;
-  });
-}
-
-void go_on_as_reader(const fs::path& path) {
-  if (const int signal = go_on_as_copy()) throw crashed_error(path, signal);
-}
-
-void refuse_crashing(const fs::path& path) {
-  rehearse(path, [&] {
-    inspect(path);
-    const TaskReader reader(path);
-    TaskRecord record;
-    if (!reader.tasks().empty()) reader.read(0, record);
   });
 }
 

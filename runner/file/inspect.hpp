@@ -59,14 +59,6 @@ double silent_seconds(const std::filesystem::path& path);
 
 FileSummary inspect(const std::filesystem::path& path);
 
-/// From here on the program is a copy of this process: for commands that only read a file. Where the copy crashes, the
-/// original throws the FileError that says so; else it ends as the copy ends.
-void go_on_as_reader(const std::filesystem::path& path);
-
-/// Refuses a file that ends its reader, found out in a copy of this process: for those that read a file and write
-/// another or into it. What else is wrong with it, its reading says.
-void refuse_crashing(const std::filesystem::path& path);
-
 struct Verification {
   std::int64_t checked = 0;           ///< finished tasks
   std::vector<std::int64_t> damaged;  ///< those whose data do not have the checksum they were written with

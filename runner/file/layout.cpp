@@ -86,9 +86,8 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
       number_field<double>("/timing/tasks/write_s", {plan.size()}, "s", "wall time of writing its results"));
   fields.push_back(number_field<std::int32_t>("/timing/tasks/rank", {plan.size()}, "1", "MPI rank that ran it"));
   fields.push_back(text_field("/timing/tasks/host", host_bytes, {plan.size()}, "host of that rank"));
-  fields.push_back(
-      number_field<std::int32_t>("/timing/tasks/attempt", {plan.size()}, "1", "row of /runs in which it ran"));
-  fields.push_back(number_field<std::uint8_t>("/timing/tasks/starts", {plan.size()}, "1",
+  fields.push_back(number_field<std::int32_t>("/timing/tasks/run", {plan.size()}, "1", "row of /runs in which it ran"));
+  fields.push_back(number_field<std::uint8_t>("/timing/tasks/tries", {plan.size()}, "1",
                                               "workers that began it and ended without saying what came of it"));
   fields.push_back(number_field<double>("/timing/tasks/tried_s", {plan.size()}, "s",
                                         "the longest that a start ran it and gave it up; 0: never"));

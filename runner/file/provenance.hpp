@@ -11,23 +11,24 @@ struct Provenance {
   std::string begin_utc, host, user_command, revision, versions, petsc_options;
   std::string job;  ///< absolute path of the job file: relative paths in the job begin in its folder
   int ranks = 1;
-  bool oversubscribed = false;  ///< more ranks than cores: timings are worthless
+  int shard = 0, shards = 0;    ///< the part of the sweep that it ran; 0: the whole
+  bool oversubscribed = false;  ///< more ranks than cores: timings mean nothing
 };
 
-/// One start of a sweep: a row of /runs.
+/// One run of the program on a sweep: a row of /runs.
 struct RunRow {
   Provenance provenance;
   std::string end_utc;      ///< empty: still running, or killed
   int exit_code = -1;       ///< -1: still running, or killed
-  std::string source;       ///< the file that this one extends, whose start it was; empty: a start of this sweep
-  std::int64_t tasks = 0;   ///< tasks that this start completed (inspect())
+  std::string source;       ///< the file that this one extends, whose run it was; empty: a run of this sweep
+  std::int64_t tasks = 0;   ///< tasks that this run completed (inspect())
   double task_seconds = 0;  ///< their wall time, summed (inspect())
 };
 
 /// Who ran a task (/timing/tasks).
 struct TaskOrigin {
   std::int32_t rank = 0;
-  std::int32_t attempt = 0;  ///< row of /runs
+  std::int32_t run = 0;  ///< row of /runs
   std::string host;
   double write_s = 0;
 };

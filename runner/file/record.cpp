@@ -27,7 +27,7 @@ void TaskRecord::prepare(const Task& task, const AxisSizes& sizes) {
         },
         column.values(*this));
   }
-  std::fill(reason.begin(), reason.end(), static_cast<std::int8_t>(SolveOutcome::not_run));
+  std::fill(solve_outcome.begin(), solve_outcome.end(), static_cast<std::int8_t>(SolveOutcome::not_run));
 }
 
 PerRows<std::int64_t> row_bytes(const AxisSizes& sizes) {

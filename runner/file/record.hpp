@@ -45,7 +45,7 @@ struct TaskRecord {
   std::vector<std::int16_t> newton, rod;
   std::vector<double> newton_residual, solve_joint_gap, rhs_norm;
   std::vector<double> initial_residual, final_residual;  ///< [row, guess] relative to ||b||, in the job's norm
-  std::vector<std::int8_t> reason;                       ///< [row, guess] SolveOutcome
+  std::vector<std::int8_t> solve_outcome;                ///< [row, guess] SolveOutcome
   std::vector<std::int16_t> start_matvecs;               ///< [row, guess]
   std::vector<std::int8_t> renewed;                      ///< [row, guess]
   std::vector<std::int16_t> iterations;                  ///< [row, guess, tolerance]

@@ -173,7 +173,7 @@ struct ResultsFile::Open {
   }
 
   void set_state(std::int64_t task, std::uint8_t value) { set_byte(state, task, value); }
-  void set_starts(std::int64_t task, std::uint8_t value) { set_byte(starts, task, value); }
+  void set_tries(std::int64_t task, std::uint8_t value) { set_byte(tries, task, value); }
   static void set_byte(const hdf5::RowDataset& rows, std::int64_t task, std::uint8_t value) {
     rows.write(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task), 1, &value);
   }
@@ -181,7 +181,7 @@ struct ResultsFile::Open {
   void say_who(std::int64_t task, const TaskOrigin& by) {
     rank.write(hdf5::type_of<std::int32_t>(), static_cast<hsize_t>(task), 1, &by.rank);
     host.write(host_type.id(), static_cast<hsize_t>(task), 1, hdf5::fixed_text(by.host, host_bytes).data());
-    attempt.write(hdf5::type_of<std::int32_t>(), static_cast<hsize_t>(task), 1, &by.attempt);
+    run_row.write(hdf5::type_of<std::int32_t>(), static_cast<hsize_t>(task), 1, &by.run);
   }
 
   hdf5::File file;
@@ -196,7 +196,7 @@ struct ResultsFile::Open {
   AxisSizes sizes;
   RunRow run;                             // this start's
   std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: the file leaves it out
-  hdf5::RowDataset state, outcome, message, checksum, starts, rank, host, attempt, write_s, tried_s, tried_steps;
+  hdf5::RowDataset state, outcome, message, checksum, tries, rank, host, run_row, write_s, tried_s, tried_steps;
   hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
   hdf5::Datatype host_type = hdf5::text_type(host_bytes);
   std::string own_host = host_name();
@@ -231,7 +231,7 @@ std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan&
     if (!lock.held()) refuse_living(path);
     mend_states(path, point.done);
   });
-  for (std::vector<std::uint8_t>* bytes : {&point.done, &point.starts}) {
+  for (std::vector<std::uint8_t>* bytes : {&point.done, &point.tries}) {
     bytes->resize(static_cast<std::size_t>(plan.size()));
     check_mpi(MPI_Bcast(bytes->data(), static_cast<int>(bytes->size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
   }
@@ -241,20 +241,20 @@ std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan&
   for (std::size_t i = 0; i < again->size(); ++i) {
     const bool is_again = again->at(i) != not_again;
     if (is_again) point.done[i] = 0;
-    if (is_again || retry == Retry::failed) point.starts[i] = 0;
+    if (is_again || retry == Retry::failed) point.tries[i] = 0;
   }
-  ResultsFile file(path, plan, std::move(point.done), point.runs, std::move(point.starts), provenance, comm,
+  ResultsFile file(path, plan, std::move(point.done), point.runs, std::move(point.tries), provenance, comm,
                    std::move(lock));
   file.take_back(*again, comm);
   return file;
 }
 
 ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
-                         std::vector<std::uint8_t> starts, const Provenance& provenance, MPI_Comm comm, FileLock lock)
+                         std::vector<std::uint8_t> tries, const Provenance& provenance, MPI_Comm comm, FileLock lock)
     : open_(std::make_unique<Open>()),
       done_(std::move(done)),
-      starts_(std::move(starts)),
-      attempt_(std::min(runs, run_rows - 1)) {
+      tries_(std::move(tries)),
+      run_index_(std::min(runs, run_rows - 1)) {
   if (runs >= run_rows) {
     note_ = fmt::format(
         "{} was started {} times before and remembers no more: this start takes the place of the last one in /runs",
@@ -274,10 +274,10 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     open_->outcome = open_rows("/tasks/outcome");
     open_->message = open_rows("/tasks/message");
     open_->checksum = open_rows("/tasks/checksum");
-    open_->starts = open_rows("/timing/tasks/starts");
+    open_->tries = open_rows("/timing/tasks/tries");
     open_->rank = open_rows("/timing/tasks/rank");
     open_->host = open_rows("/timing/tasks/host");
-    open_->attempt = open_rows("/timing/tasks/attempt");
+    open_->run_row = open_rows("/timing/tasks/run");
     open_->write_s = open_rows("/timing/tasks/write_s");
     open_->tried_s = open_rows("/timing/tasks/tried_s");
     open_->tried_steps = open_rows("/timing/tasks/tried_steps");
@@ -287,7 +287,7 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     add_note(path.native() + " is on a file system without locks: a second run is only kept away by its time");
   open_->run.provenance = provenance;
   open_->run.provenance.host = host_names(comm);
-  on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(attempt_), open_->run); });
+  on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(run_index_), open_->run); });
 }
 
 /// What is run again is pending, in the file too, before anything is written over it.
@@ -297,7 +297,7 @@ void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm com
     for (std::size_t i = 0; i < again.size(); ++i)
       if (again[i]) {
         open_->set_state(static_cast<std::int64_t>(i), 0);
-        open_->set_starts(static_cast<std::int64_t>(i), 0);
+        open_->set_tries(static_cast<std::int64_t>(i), 0);
       }
     open_->synced.sync();
   });
@@ -321,23 +321,23 @@ void ResultsFile::commit_if_due() {
 
 void ResultsFile::begin(const Task& task) {
   std::uint8_t before = 0;  // more than when the file was opened, if another rank was lost with the task meanwhile
-  open_->starts.read(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task.index), 1, &before);
-  before = std::max(before, starts_.at(static_cast<std::size_t>(task.index)));
-  begun_[task.index] = before;
-  open_->say_who(task.index, {open_->own_rank, attempt_, open_->own_host, 0});
-  open_->set_starts(task.index, before < UINT8_MAX ? before + 1 : before);
+  open_->tries.read(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task.index), 1, &before);
+  before = std::max(before, tries_.at(static_cast<std::size_t>(task.index)));
+  before_[task.index] = before;
+  open_->say_who(task.index, {open_->own_rank, run_index_, open_->own_host, 0});
+  open_->set_tries(task.index, before < UINT8_MAX ? before + 1 : before);
 }
 
-void ResultsFile::abandon(const Task& task, const Attempt& attempt) {
+void ResultsFile::abandon(const Task& task, const Try& tried) {
   const auto row = static_cast<hsize_t>(task.index);
   double longest = 0;
   open_->tried_s.read(hdf5::type_of<double>(), row, 1, &longest);
-  if (!(longest >= attempt.elapsed_s) && attempt.elapsed_s > 0) {
-    open_->tried_s.write(hdf5::type_of<double>(), row, 1, &attempt.elapsed_s);
-    open_->tried_steps.write(hdf5::type_of<std::int32_t>(), row, 1, &attempt.steps);
+  if (!(longest >= tried.elapsed_s) && tried.elapsed_s > 0) {
+    open_->tried_s.write(hdf5::type_of<double>(), row, 1, &tried.elapsed_s);
+    open_->tried_steps.write(hdf5::type_of<std::int32_t>(), row, 1, &tried.steps);
   }
-  open_->set_starts(task.index, begun_.at(task.index));
-  begun_.erase(task.index);
+  open_->set_tries(task.index, before_.at(task.index));
+  before_.erase(task.index);
 }
 
 void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
@@ -367,9 +367,9 @@ void ResultsFile::write(const Task& task, const TaskRecord& record, const TaskOr
   write_text(open.outcome, open.outcome_type, to_string(record.outcome));
   write_text(open.message, open.message_type, record.message);
   write_one(open.checksum, task_checksum(task.index, record));
-  open.set_starts(task.index, 0);
-  begun_.erase(task.index);
-  const TaskOrigin here{open.own_rank, attempt_, open.own_host,
+  open.set_tries(task.index, 0);
+  before_.erase(task.index);
+  const TaskOrigin here{open.own_rank, run_index_, open.own_host,
                         std::chrono::duration<double>(Clock::now() - begin).count()};
   const TaskOrigin& by = origin != nullptr ? *origin : here;
   open.say_who(task.index, by);
@@ -383,7 +383,7 @@ void ResultsFile::beat() { open_->synced.beat(); }
 void ResultsFile::end_run(const std::string& end_utc, int exit_code) {
   open_->run.end_utc = end_utc;
   open_->run.exit_code = exit_code;
-  write_run(open_->file, static_cast<std::size_t>(attempt_), open_->run);
+  write_run(open_->file, static_cast<std::size_t>(run_index_), open_->run);
 }
 
 void ResultsFile::close() {

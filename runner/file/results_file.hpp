@@ -23,12 +23,12 @@
 #include <string>
 #include <vector>
 
-#include "runner/file/attempt.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/file_lock.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
+#include "runner/file/task_times.hpp"
 #include "runner/job/plan.hpp"
 
 namespace rodsweep {
@@ -60,31 +60,31 @@ class ResultsFile {
 
   /// Which tasks are complete, by task index (from the state bytes as they were when the file was opened).
   const std::vector<std::uint8_t>& done() const { return done_; }
-  /// Of every task, how many workers began it before this start and ended without saying what came of it.
-  const std::vector<std::uint8_t>& starts() const { return starts_; }
-  int attempt() const { return attempt_; }  ///< this start's row of /runs
+  /// Of every task, its tries in earlier runs whose workers crashed.
+  const std::vector<std::uint8_t>& tries() const { return tries_; }
+  int run_index() const { return run_index_; }  ///< this run's row of /runs
   /// What the user should hear about this file though it is no error; empty: nothing.
   const std::string& note() const { return note_; }
 
-  /// Independent, before a rank runs a task: counts the start, and says who runs it.
+  /// Independent, before a rank runs a task: counts the try, and stores which rank runs it.
   void begin(const Task& task);
-  /// Independent: takes a start back that this rank was told to give up, and keeps how far it came if it ran longer
-  /// than ever. Another rank may have the task by now, or have finished it: nothing of its results is touched.
-  void abandon(const Task& task, const Attempt& attempt = {});
+  /// Independent: uncounts a try that was abandoned on request, and stores how far it came if it is the longest so far.
+  /// Another rank may have the task by now, or have finished it: its results stay untouched.
+  void abandon(const Task& task, const Try& tried = {});
 
   /// Independent: any rank, any task that is not done() yet, once. It is complete with the next commit(), which this is
-  /// too where one is due. `origin`: who ran it, where that was not this start of this sweep.
+  /// too where one is due. `origin`: who ran it, where that was not this run.
   void write(const Task& task, const TaskRecord& record, const TaskOrigin* origin = nullptr);
 
   /// Independent: brings this rank's tasks to disk, then says that they are complete.
   void commit();
   void commit_if_due();
-  std::int64_t committed() const;  ///< tasks of this rank in this start
+  std::int64_t committed() const;  ///< tasks of this rank in this run
 
-  /// Independent, one rank: shows in the file's modification time, every few seconds, that this start lives.
+  /// Independent, one rank: shows in the file's modification time, every few seconds, that this run lives.
   void beat();
 
-  /// Independent, one rank: how this start ended (row of /runs).
+  /// Independent, one rank: how this run ended (row of /runs).
   void end_run(const std::string& end_utc, int exit_code);
 
   /// Collective: commits, closes the file, brings it to disk and reports failure, which the destructor cannot.
@@ -96,15 +96,15 @@ class ResultsFile {
  private:
   struct Open;
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
-              std::vector<std::uint8_t> starts, const Provenance& provenance, MPI_Comm comm, FileLock lock);
+              std::vector<std::uint8_t> tries, const Provenance& provenance, MPI_Comm comm, FileLock lock);
 
   void add_note(const std::string& text);
   void take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm);
 
   std::unique_ptr<Open> open_;
-  std::vector<std::uint8_t> done_, starts_;
-  std::map<std::int64_t, std::uint8_t> begun_;  ///< by this rank: how often the task was begun before
-  int attempt_ = 0;
+  std::vector<std::uint8_t> done_, tries_;
+  std::map<std::int64_t, std::uint8_t> before_;  ///< tasks that this rank runs: their tries before
+  int run_index_ = 0;
   std::string note_;
 };
 

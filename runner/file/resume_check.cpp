@@ -185,7 +185,7 @@ ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
     check_frame(file, path, other_revision);
     check_plan(file, path, plan, other_revision);
     return ResumePoint{hdf5::read_all<std::uint8_t>(file.id(), "/tasks/state"),
-                       hdf5::read_all<std::uint8_t>(file.id(), "/timing/tasks/starts"),
+                       hdf5::read_all<std::uint8_t>(file.id(), "/timing/tasks/tries"),
                        static_cast<int>(read_runs(file).size())};
   });
 }

@@ -11,9 +11,9 @@
 namespace rodsweep {
 
 struct ResumePoint {
-  std::vector<std::uint8_t> done;    ///< state bytes, by task index, whatever they are
-  std::vector<std::uint8_t> starts;  ///< /timing/tasks/starts, likewise
-  int runs = 0;                      ///< rows of /runs in use
+  std::vector<std::uint8_t> done;   ///< state bytes, by task index, whatever they are
+  std::vector<std::uint8_t> tries;  ///< /timing/tasks/tries, likewise
+  int runs = 0;                     ///< rows of /runs in use
 };
 
 /// Does the job expand to the tasks that the file has?

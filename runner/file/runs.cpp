@@ -15,9 +15,9 @@ struct RunColumn {
   const char* meaning;
 };
 
-constexpr std::array<RunColumn, 12> run_columns{{
+constexpr std::array<RunColumn, 14> run_columns{{
     {"/runs/begin", [](RunRow& run) -> std::string& { return run.provenance.begin_utc; }, 24,
-     "when this start of the sweep began (UTC); empty: an unused row"},
+     "when this run began (UTC); empty: an unused row"},
     {"/runs/end", [](RunRow& run) -> std::string& { return run.end_utc; }, 24,
      "when it ended (UTC); empty: it still runs, or was killed"},
     {"/runs/host", [](RunRow& run) -> std::string& { return run.provenance.host; }, 512, "hosts of its ranks"},
@@ -31,12 +31,15 @@ constexpr std::array<RunColumn, 12> run_columns{{
     {"/runs/petsc_options", [](RunRow& run) -> std::string& { return run.provenance.petsc_options; }, 1024,
      "PETSC_OPTIONS of the environment"},
     {"/runs/source", [](RunRow& run) -> std::string& { return run.source; }, 512,
-     "the file that this sweep extends and that this row was copied from; empty: a start of this sweep"},
+     "the file that this sweep extends and that this row was copied from; empty: a run of this sweep"},
     {"/runs/ranks", [](RunRow& run) -> int& { return run.provenance.ranks; }, 0, "MPI ranks"},
+    {"/runs/shard", [](RunRow& run) -> int& { return run.provenance.shard; }, 0,
+     "number of the part of the sweep that it ran, from 1; 0: the whole sweep"},
+    {"/runs/shards", [](RunRow& run) -> int& { return run.provenance.shards; }, 0, "parts of the sweep; 0: the whole"},
     {"/runs/exit_code", [](RunRow& run) -> int& { return run.exit_code; }, 0,
      "exit code of the program; -1: it still runs, or was killed"},
     {"/runs/oversubscribed", [](RunRow& run) -> bool& { return run.provenance.oversubscribed; }, 0,
-     "1: more ranks than cores, so that its times are worthless"},
+     "1: more ranks than cores, so its times mean nothing"},
 }};
 
 /// How a number of a RunRow is stored.

@@ -1,11 +1,14 @@
 #include "runner/file/task_comparison.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
+#include "runner/file/hdf5.hpp"
 #include "runner/file/task_reader.hpp"
-#include "runner/file/task_table.hpp"
 
 namespace rodsweep {
 namespace {
@@ -53,19 +56,29 @@ void compare_results(const Written& a, const Written& b, TaskComparison& result)
   }
 }
 
-/// Outcome, message and parameters, by the text of their values.
-void compare_values(const TaskTable& sweep, std::size_t task, const TaskTable& rerun, TaskComparison& result) {
-  for (const TaskColumn& column : sweep.columns()) {
-    const bool told = column.path == "/tasks/outcome" || column.path == "/tasks/message";
-    if (!column.parameter && !told) continue;
+bool same_value(hid_t a, std::int64_t row_a, hid_t b, const std::string& path) {
+  if (!hdf5::exists(b, path)) return false;
+  const hdf5::RowDataset here(a, path), there(b, path);
+  const auto of_a = static_cast<std::size_t>(row_a);
+  if (H5Tget_class(here.type().id()) == H5T_STRING)
+    return hdf5::read_text_row(here, of_a) == hdf5::read_text_row(there, 0);
+  std::vector<double> value_a(here.row_values()), value_b(there.row_values());
+  here.read(hdf5::type_of<double>(), of_a, 1, value_a.data());
+  there.read(hdf5::type_of<double>(), 0, 1, value_b.data());
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return std::equal(value_a.begin(), value_a.end(), value_b.begin(), value_b.end(), same);
+}
+
+/// Outcome, message and parameters.
+void compare_values(const fs::path& sweep_path, std::int64_t task, const fs::path& rerun_path, TaskComparison& result) {
+  const hdf5::File sweep = open_results(sweep_path), rerun = open_results(rerun_path);
+  std::vector<std::string> paths{"/tasks/outcome", "/tasks/message"};
+  const std::string group = "/tasks/parameters";
+  const hdf5::Object parameters(hdf5::check(H5Oopen(sweep.id(), group.c_str(), H5P_DEFAULT), "H5Oopen", group));
+  for (const std::string& name : hdf5::members(parameters.id())) paths.push_back(group + "/" + name);
+  for (const std::string& path : paths) {
     ++result.compared;
-    const auto other = rerun.find(column.name);
-    const ColumnValues a = sweep.read(column), b = other ? rerun.read(*other) : ColumnValues{};
-    const bool same =
-        other && (column.is_number() ? a.numbers[task] == b.numbers[0] ||
-                                           (a.numbers[task] != a.numbers[task] && b.numbers[0] != b.numbers[0])
-                                     : a.texts[task] == b.texts[0]);
-    if (!same) result.differing.push_back(column.path);
+    if (!same_value(sweep.id(), task, rerun.id(), path)) result.differing.push_back(path);
   }
 }
 
@@ -74,7 +87,7 @@ void compare_values(const TaskTable& sweep, std::size_t task, const TaskTable& r
 TaskComparison compare_task(const fs::path& sweep_path, std::int64_t task, std::int64_t sweep_every,
                             const fs::path& rerun_path, std::int64_t rerun_every) {
   TaskComparison result;
-  compare_values(TaskTable(sweep_path), static_cast<std::size_t>(task), TaskTable(rerun_path), result);
+  reading(sweep_path, [&] { compare_values(sweep_path, task, rerun_path, result); });
   compare_results(read(sweep_path, task, sweep_every), read(rerun_path, 0, rerun_every), result);
   return result;
 }

@@ -72,7 +72,7 @@ TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(o
     checksum_ = rows("/tasks/checksum");
     rank_ = rows("/timing/tasks/rank");
     host_ = rows("/timing/tasks/host");
-    attempt_ = rows("/timing/tasks/attempt");
+    run_ = rows("/timing/tasks/run");
     write_s_ = rows("/timing/tasks/write_s");
   });
 }
@@ -114,7 +114,7 @@ bool TaskReader::read_intact(std::int64_t task, TaskRecord& record) const try {
 }
 
 TaskOrigin TaskReader::origin(std::int64_t task) const {
-  return {hdf5::read_row<std::int32_t>(rank_, task), hdf5::read_row<std::int32_t>(attempt_, task),
+  return {hdf5::read_row<std::int32_t>(rank_, task), hdf5::read_row<std::int32_t>(run_, task),
           hdf5::read_text_row(host_, static_cast<hsize_t>(task)), hdf5::read_row<double>(write_s_, task)};
 }
 

@@ -42,7 +42,7 @@ class TaskReader {
   std::vector<std::uint8_t> states_;
   std::vector<std::string> outcomes_;
   std::vector<hdf5::RowDataset> columns_;  ///< in the order of columns(); empty: the file leaves it out
-  hdf5::RowDataset message_, checksum_, rank_, host_, attempt_, write_s_;
+  hdf5::RowDataset message_, checksum_, rank_, host_, run_, write_s_;
 };
 
 }  // namespace rodsweep

@@ -65,7 +65,7 @@ std::optional<Difference> difference(const Json& now, const Json& before, const 
   return Difference{path, now, before};
 }
 
-std::string written(const Json& value) {
+std::string shown(const Json& value) {
   if (value.is_null()) return "nothing";
   constexpr std::size_t longest = 80;
   const std::string text = value.dump();
@@ -108,13 +108,13 @@ void check_extends(const Job& job, const Job& before) {
     for (std::size_t i = 0; i < guesses.size(); ++i)
       if (guess_label(guesses[i]) == guess_label(guess))
         if (const auto found = difference(guesses[i], guess, element("guesses", i)))
-          refuse(found->path, fmt::format("{} here, {} in {}", written(found->now), written(found->before), file));
+          refuse(found->path, fmt::format("{} here, {} in {}", shown(found->now), shown(found->before), file));
     refuse("guesses", fmt::format("\"{}\" of {} is not among them", guess_label(guess), file));
   }
   for (const char* free : {"$schema", "name", "description", "samples", "guesses", "task_time_limit_s"})
     now.erase(free), then.erase(free);
   if (const auto found = difference(now, then, "")) {
-    refuse(found->path, fmt::format("{} here, {} in {}", written(found->now), written(found->before), file));
+    refuse(found->path, fmt::format("{} here, {} in {}", shown(found->now), shown(found->before), file));
   }
 }
 

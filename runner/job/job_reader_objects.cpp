@@ -85,7 +85,7 @@ Json guess_example(const Key& guess, const Json& given) {
   return Json{{guess.name, parameters}};
 }
 
-/// {"pod": {"size": 10}}, with spaces.
+/// {"subspace": {"size": 10}}, with spaces.
 std::string spaced(const Json& object) {
   std::string text;
   for (const auto& [name, value] : object.items())

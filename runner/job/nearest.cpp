@@ -49,7 +49,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
-  const std::string near = nearest(word, known);
+  const bool renamed = word == "pod" && std::find(known.begin(), known.end(), "subspace") != known.end();
+  const std::string near = renamed ? "subspace" : nearest(word, known);
   return near.empty() ? "" : "; did you mean \"" + near + "\"?";
 }
 

@@ -86,7 +86,7 @@ struct GuessSpec {
     linear,
     quadratic,
     fischer,
-    pod,
+    subspace,
     deflation,
     regression,
     copingnet,
@@ -98,7 +98,7 @@ struct GuessSpec {
   };
   Kind kind = Kind::zero;
   std::string label;
-  int size = 10;                ///< fischer, pod: how many solutions span the subspace
+  int size = 10;                ///< fischer, subspace: how many solutions span the subspace
   int window = 6;               ///< regression: on how many of the last systems
   std::filesystem::path model;  ///< copingnet
   int corrections = 1;          ///< copingnet

@@ -209,7 +209,7 @@ static void check_condensed(const Point& point, const Job& job) {
   for (std::size_t i = 0; i < guesses.size(); ++i)
     if (guesses[i].kind == GuessSpec::Kind::deflation)
       throw job_error(job.path, element("guesses", i),
-                      fmt::format("\"deflation\" is {}; must be another guess, such as \"pod\"", not_allowed));
+                      fmt::format("\"deflation\" is {}; must be another guess, such as \"subspace\"", not_allowed));
 }
 
 void check_method(const Point& point, const Job& job) {

@@ -20,7 +20,7 @@ const Words<Couplings> all_couplings{{"tree", Couplings::tree}, {"all", Coupling
 const Words<BaseGuess> bases{{"none", BaseGuess::none},
                              {"extrapolation", BaseGuess::extrapolation},
                              {"regression", BaseGuess::regression},
-                             {"pod", BaseGuess::pod}};
+                             {"subspace", BaseGuess::subspace}};
 const Words<LossKind> losses{
     {"mse", LossKind::mse}, {"energy", LossKind::energy}, {"in_the_loop", LossKind::in_the_loop}};
 

@@ -103,9 +103,9 @@ Key network_key() {
                      "solve with them; message_passing: over the graph",
                      {"sweeps", "factors", "message_passing"})
                      .defaults_to("sweeps"),
-                 choice_key("base", "the guess that it corrects", {"none", "extrapolation", "regression", "pod"})
-                     .defaults_to("pod"),
-                 integer_key("base_size", "regression, pod: most solutions that span the subspace")
+                 choice_key("base", "the guess that it corrects", {"none", "extrapolation", "regression", "subspace"})
+                     .defaults_to("subspace"),
+                 integer_key("base_size", "regression, subspace: most solutions that span the subspace")
                      .from(1, 200)
                      .defaults_to(10),
                  integer_key("latent", "width of hidden layers and states").from(1, 1024).defaults_to(32),

@@ -100,7 +100,7 @@ void by_rank_0(const std::optional<MPI_Comm>& ranks, const std::function<void()>
   });
 }
 
-Placement placement(MPI_Comm comm, Share share) {
+Placement placement(MPI_Comm comm, RankRoles roles) {
   int rank = 0, size = 1;
   check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
   check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
@@ -114,7 +114,7 @@ Placement placement(MPI_Comm comm, Share share) {
       CPU_SET(core, &mine);
   check_mpi(MPI_Allreduce(&mine, &ours, sizeof mine, MPI_BYTE, MPI_BOR, host), "MPI_Allreduce");
 
-  const int works = size == 1 || rank > 0 || share == Share::all_work;
+  const int works = size == 1 || rank > 0 || roles == RankRoles::all_work;
   int host_rank = 0, host_workers = 0;
   check_mpi(MPI_Comm_rank(host, &host_rank), "MPI_Comm_rank");
   check_mpi(MPI_Allreduce(&works, &host_workers, 1, MPI_INT, MPI_SUM, host), "MPI_Allreduce");

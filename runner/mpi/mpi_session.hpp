@@ -91,7 +91,7 @@ struct Placement {
   int host_workers = 1;         ///< of this rank's host
   bool oversubscribed = false;  ///< on some host more workers than cores; the master sleeps and is not counted
 };
-enum class Share { all_work, one_is_master };
-Placement placement(MPI_Comm comm, Share share = Share::one_is_master);
+enum class RankRoles { all_work, one_is_master };
+Placement placement(MPI_Comm comm, RankRoles roles = RankRoles::one_is_master);
 
 }  // namespace rodsweep

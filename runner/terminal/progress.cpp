@@ -24,7 +24,7 @@ void Progress::finished(TaskOutcome outcome, double cost, double busy_s) {
   busy_s_ += busy_s;
 }
 
-void Progress::taken_back(TaskOutcome outcome, double cost, double busy_s) {
+void Progress::uncount(TaskOutcome outcome, double cost, double busy_s) {
   --done_;
   if (outcome != TaskOutcome::ok) --failed_;
   done_cost_ -= cost;

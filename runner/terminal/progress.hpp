@@ -20,7 +20,7 @@ class Progress {
 
   struct Work {
     std::int64_t total = 0;        ///< tasks of the plan
-    std::int64_t done_before = 0;  ///< of these, in earlier starts
+    std::int64_t done_before = 0;  ///< of these, in earlier runs
     std::int64_t failed_before = 0;
     double cost = 0;  ///< of the tasks still to do
     int workers = 1;
@@ -29,9 +29,9 @@ class Progress {
   Progress(Console& console, const Work& work, Clock::time_point now);
 
   void finished(TaskOutcome outcome, double cost, double busy_s);
-  void taken_back(TaskOutcome outcome, double cost, double busy_s);  ///< it was lost after all
-  void show(Clock::time_point now);                                  ///< speaks if it is time to; cheap
-  void clear() { line_.clear(); }                                    ///< takes the bar away
+  void uncount(TaskOutcome outcome, double cost, double busy_s);  ///< a finished task whose results were lost
+  void show(Clock::time_point now);                               ///< prints if it is time to; cheap
+  void clear() { line_.clear(); }                                 ///< removes the bar
 
   /// "120 of 400 tasks (30 %), 2 failed, 31.0/s, 1 min 20 s left"
   std::string text(Clock::time_point now) const;
@@ -41,7 +41,7 @@ class Progress {
  private:
   ProgressLine line_;
   Work work_;
-  std::int64_t done_ = 0, failed_ = 0;  ///< in this start
+  std::int64_t done_ = 0, failed_ = 0;  ///< in this run
   double done_cost_ = 0, busy_s_ = 0;
   Clock::time_point begin_;
 };

@@ -23,7 +23,7 @@ class SubspaceGuess : public InitialGuess, private Deflation {
  public:
   enum class Window {
     restarted,  ///< `fischer`: solutions are collected until there are `size`, then the newest starts a new set
-    sliding     ///< `pod`: the newest `size` solutions, the space of a proper orthogonal decomposition with all modes
+    sliding  ///< `subspace`: the newest `size` solutions, the space of a proper orthogonal decomposition with all modes
   };
   enum class Use { guess, guess_and_deflation };
   /// `size` of at least 1. As with extrapolation, a time step without a solution starts the history again.

@@ -6,8 +6,6 @@
 namespace rodsweep {
 namespace {
 
-auto at(int i) { return static_cast<std::size_t>(i); }
-
 /// A front while supernodes are still merged.
 struct Front {
   std::vector<int> columns{};  ///< of the elimination tree

@@ -9,8 +9,6 @@
 namespace rodsweep {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// A side of a joint in each lane: dC_s/du and dC/dphi by columns.
 struct LaneSide {
   Lane shift[3][3], rotation[3][6];

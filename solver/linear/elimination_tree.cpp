@@ -6,8 +6,6 @@
 namespace rodsweep {
 namespace {
 
-auto at(int i) { return static_cast<std::size_t>(i); }
-
 std::vector<int> inverse(const std::vector<int>& order) {
   std::vector<int> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) place[at(order[i])] = static_cast<int>(i);

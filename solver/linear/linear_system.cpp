@@ -128,7 +128,7 @@ void LinearSystem::apply(Rod& rod, const VectorX& delta_lambda) {
   displacements(rod, delta_lambda, displacements_);
   if (balanced_)
     for (std::size_t s = 0; s < rod.segments.size(); ++s) displacements_[s] -= balancing_[s];
-  move(rod, displacements_, delta_lambda);
+  displace(rod, displacements_, delta_lambda);
   if (balanced_) hold_forces(rod);
 }
 
@@ -145,12 +145,12 @@ void LinearSystem::hold_forces(Rod& rod) const {
   }
 }
 
-void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda) {
+void displace(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda) {
   rod.lambda += delta_lambda;
-  for (std::size_t s = 0; s < rod.segments.size(); ++s) move(rod, s, displacements[s]);
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) displace(rod, s, displacements[s]);
 }
 
-void move(Rod& rod, std::size_t segment, const Lane8& displacement) {
+void displace(Rod& rod, std::size_t segment, const Lane8& displacement) {
   if (rod.segments[segment].is_static) return;
   const Lane4 shift = __builtin_shufflevector(displacement, displacement, 0, 1, 2, 6);
   const Lane4 phi = __builtin_shufflevector(displacement, displacement, 3, 4, 5, 6);

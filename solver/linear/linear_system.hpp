@@ -82,9 +82,9 @@ class LinearSystem {
 };
 
 /// Moves a free segment by u (lanes 0..2) and phi (lanes 3..5) in its own frame; a static one stays.
-void move(Rod& rod, std::size_t segment, const Lane8& displacement);
+void displace(Rod& rod, std::size_t segment, const Lane8& displacement);
 
 /// The update: lambda += dlambda, and every free segment by its displacement.
-void move(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda);
+void displace(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda);
 
 }  // namespace rodsweep

@@ -8,8 +8,6 @@
 namespace rodsweep {
 namespace {
 
-auto at(int i) { return static_cast<std::size_t>(i); }
-
 std::size_t lanes_for(std::size_t doubles) { return (doubles + 7) / 8; }
 
 inline const Lane8& lane8_at(const double* from) { return *reinterpret_cast<const Lane8*>(from); }

@@ -5,7 +5,7 @@
 
 namespace rodsweep {
 
-/// The numbers are stored in files (/solves/reason); never renumber.
+/// The numbers are stored in files (/solves/outcome); never renumber.
 enum class SolveOutcome : std::int8_t {
   not_run = 0,          ///< the row was never solved (Newton had converged, or the task ended early)
   converged = 1,        ///< the tolerance was met

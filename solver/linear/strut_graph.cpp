@@ -6,8 +6,6 @@
 namespace rodsweep {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// Walks over the rod from crossing to crossing.
 class Walk {
  public:

@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 
 namespace rodsweep {
 
@@ -26,5 +27,8 @@ using VectorX = Eigen::VectorXd;
 using Quaternion = Eigen::Quaterniond;
 
 inline constexpr double pi = 3.14159265358979323846;
+
+/// An index of a standard container; segments, joints and steps are counted by int.
+constexpr std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 }  // namespace rodsweep

@@ -68,6 +68,13 @@ Joint make_joint(const JointSpec& j, const std::vector<SegmentSpec>& segments, i
 
 }  // namespace
 
+void require(bool holds, const char* quantity, double value, const char* bound) {
+  if (holds) return;
+  std::ostringstream text;
+  text << quantity << " is " << value << "; must be " << bound;
+  throw SceneError(text.str());
+}
+
 Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointSpec>& joint_specs) {
   if (segment_specs.empty()) throw SceneError("a rod needs at least one segment");
   int index = 0;

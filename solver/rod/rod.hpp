@@ -23,6 +23,9 @@ class SceneError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Throws SceneError "QUANTITY is VALUE; must be BOUND" unless `holds`.
+void require(bool holds, const char* quantity, double value, const char* bound);
+
 struct SegmentSpec {
   Vector3 position_m{0, 0, 0};
   Quaternion orientation = Quaternion::Identity();

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double open_ring_radii = 40;  // around the smallest ring through which the next one fits
 
-void move(Rod& rod, const Quaternion& turn, const Vector3& shift) {
+void displace(Rod& rod, const Quaternion& turn, const Vector3& shift) {
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     rod.position[s] = turn * rod.position[s] + shift;
     rod.orientation[s] = (turn * rod.orientation[s]).normalized();
@@ -42,7 +42,7 @@ void RingChain::build(Scene& scene) const {
     ring.clamp = k == 0 ? Clamp::segment : Clamp::free;
     ring.build(scene);
     const Quaternion turn(Eigen::AngleAxisd(k % 2 * pi / 2, Vector3::UnitY()));
-    move(scene.rods.back(), turn, Vector3(0, -k * drop, 0));
+    displace(scene.rods.back(), turn, Vector3(0, -k * drop, 0));
   }
 }
 

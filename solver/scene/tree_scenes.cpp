@@ -9,8 +9,6 @@
 namespace rodsweep {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// Moduli that grow with the edge's radius as stated in scenes.hpp, from those of the widest edge at the ground.
 class Wood {
  public:

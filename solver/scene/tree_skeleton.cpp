@@ -16,13 +16,6 @@ constexpr double golden_angle = pi * (3 - 2.23606797749978969641);
 constexpr double most_edges = 1e7;
 constexpr double widest_turn = 160 * degree;
 
-void require(bool holds, const char* quantity, double value, const char* bound) {
-  if (holds) return;
-  std::ostringstream text;
-  text << quantity << " is " << value << "; must be " << bound;
-  throw SceneError(text.str());
-}
-
 double edges_of(const TreeShape& p) {
   double at_depth = 1, branches = 1;
   for (int level = 0; level < p.depth; ++level) branches += at_depth *= p.branches;

@@ -2,31 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "solver/numbers/lane_math.hpp"
 #include "solver/numbers/split_mix.hpp"
 
 namespace rodsweep {
-namespace {
-
-void require(bool holds, const char* quantity, double value, const char* bound) {
-  if (holds) return;
-  std::ostringstream text;
-  text << "wind: " << quantity << " is " << value << "; must be " << bound;
-  throw SceneError(text.str());
-}
-
-}  // namespace
 
 Wind::Wind(const WindParameters& parameters) : p_(parameters) {
-  require(p_.mean_m_s.allFinite(), "size of mean_m_s", p_.mean_m_s.norm(), "finite");
-  require(p_.gust_period_s > 0, "gust_period_s", p_.gust_period_s, "positive");
-  require(p_.turbulence_m_s >= 0, "turbulence_m_s", p_.turbulence_m_s, "at least 0");
-  require(p_.turbulence_length_m > 0, "turbulence_length_m", p_.turbulence_length_m, "positive");
-  require(p_.turbulence_modes >= 1, "turbulence_modes", p_.turbulence_modes, "at least 1");
-  require(p_.reference_height_m > 0, "reference_height_m", p_.reference_height_m, "positive");
-  require(p_.air_density_kg_m3 >= 0, "air_density_kg_m3", p_.air_density_kg_m3, "at least 0");
+  require(p_.mean_m_s.allFinite(), "wind: size of mean_m_s", p_.mean_m_s.norm(), "finite");
+  require(p_.gust_period_s > 0, "wind: gust_period_s", p_.gust_period_s, "positive");
+  require(p_.turbulence_m_s >= 0, "wind: turbulence_m_s", p_.turbulence_m_s, "at least 0");
+  require(p_.turbulence_length_m > 0, "wind: turbulence_length_m", p_.turbulence_length_m, "positive");
+  require(p_.turbulence_modes >= 1, "wind: turbulence_modes", p_.turbulence_modes, "at least 1");
+  require(p_.reference_height_m > 0, "wind: reference_height_m", p_.reference_height_m, "positive");
+  require(p_.air_density_kg_m3 >= 0, "wind: air_density_kg_m3", p_.air_density_kg_m3, "at least 0");
   if (p_.turbulence_m_s == 0) return;
   SplitMix random(p_.seed);
   const double size = p_.turbulence_m_s * std::sqrt(6.0 / p_.turbulence_modes);

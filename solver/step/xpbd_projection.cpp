@@ -30,8 +30,8 @@ GaussSeidelProjection::Iteration XpbdProjection::iterate(Rod& rod, const std::ve
     for (int r = 0; r < 6; ++r) lambda[r] += delta_lambda[r];
     Lane8 on_a, on_b;
     impulses(jacobian, delta_lambda, on_a, on_b);
-    move(rod, a, motion(rod.segments[a], on_a));
-    move(rod, b, motion(rod.segments[b], on_b));
+    displace(rod, a, motion(rod.segments[a], on_a));
+    displace(rod, b, motion(rod.segments[b], on_b));
   }
   return iteration;
 }

@@ -204,7 +204,7 @@ class Sweep:
                     times[:, g] = [getattr(plant, name)(guesses[g], i, n, draw) for i in range(newton)]
                 found[f"timing/solves/{name}"][block] = times[j]
         found["tasks/steps_done"] = np.where(done, steps, 0).astype(np.int32)
-        found["timing/tasks/attempt"] = np.zeros(count, dtype=np.int32)
+        found["timing/tasks/run"] = np.zeros(count, dtype=np.int32)
         return found
 
     def _task_steps(self, found, span, plant, step, draw, guess):

@@ -279,7 +279,7 @@ class Commands(Report):
     def test_unknown_names_are_refused_with_the_nearest(self):
         self.write()
         self.refused("report.py", "sweep.h5", "--x", "scene.segmnts", words="did you mean scene.segments?")
-        self.refused("report.py", "sweep.h5", "--guess", "pod", words="guess 'pod'")
+        self.refused("report.py", "sweep.h5", "--guess", "subspace", words="guess 'subspace'")
 
 
 if __name__ == "__main__":

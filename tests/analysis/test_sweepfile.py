@@ -203,7 +203,7 @@ class Provenance(Folder):
         file.h5.close()
         with h5py.File(self.path, "r+") as h5:
             h5["runs/begin"][1] = b"2025-11-21T11:00:00Z"
-            h5["timing/tasks/attempt"][2:] = 1
+            h5["timing/tasks/run"][2:] = 1
         with SweepFile(self.path) as file:
             self.assertTrue(file.oversubscribed(np.array([0, 5])))
             self.assertFalse(file.oversubscribed(np.array([2, 5])))

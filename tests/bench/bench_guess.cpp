@@ -32,7 +32,7 @@ struct Kind {
   Recurrence recurrence;
 };
 constexpr std::array<Kind, 3> kinds{{
-    {"gated", "base pod 10, gated sweeps", BaseGuess::pod, 10, Processor::sweeps, Recurrence::gated},
+    {"gated", "base subspace 10, gated sweeps", BaseGuess::subspace, 10, Processor::sweeps, Recurrence::gated},
     {"linear", "base regression 6, linear sweeps", BaseGuess::regression, 6, Processor::sweeps, Recurrence::linear},
     {"factors", "base regression 6, factors", BaseGuess::regression, 6, Processor::factors, Recurrence::gated},
 }};
@@ -61,7 +61,7 @@ constexpr std::array<std::pair<const char*, MakeGuess>, 7> classical_guesses{{
      [](const Scene& s) -> std::unique_ptr<InitialGuess> {
        return std::make_unique<TotalsGuess>(s, std::make_unique<RegressionGuess>(s, 1, 6, 0));
      }},
-    {"pod 8",
+    {"subspace 8",
      [](const Scene& s) -> std::unique_ptr<InitialGuess> {
        return std::make_unique<SubspaceGuess>(s, 1, 8, SubspaceGuess::Window::sliding);
      }},
@@ -70,7 +70,7 @@ constexpr std::array<std::pair<const char*, MakeGuess>, 7> classical_guesses{{
        return std::make_unique<SubspaceGuess>(s, 1, 10, SubspaceGuess::Window::sliding,
                                               SubspaceGuess::Use::guess_and_deflation);
      }},
-    {"pod 10",
+    {"subspace 10",
      [](const Scene& s) -> std::unique_ptr<InitialGuess> {
        return std::make_unique<SubspaceGuess>(s, 1, 10, SubspaceGuess::Window::sliding);
      }},

@@ -52,7 +52,7 @@ class PairProjection : public Projection {
     if (asks && !network_.predict(rod, system_, at, dt_c, x_, moves_)) return {SolveOutcome::not_a_number};
     if (asks && first_ != First::multipliers) {
       if (first_ == First::consistent_moves) system_.displacements(rod, x_, moves_);
-      move(rod, moves_, x_);
+      displace(rod, moves_, x_);
       return report;
     }
     cg_.matrix_changed();

@@ -85,7 +85,7 @@ class Hosts(list):
         os.environ.update(self.environment())
 
     def environment(self):
-        """Of mpirun and of `rodsweep keep`."""
+        """Of mpirun."""
         settings = {"plm": "rsh", "plm_rsh_agent": AGENT, "oob_tcp_if_include": NETWORK, "btl_tcp_if_include": NETWORK,
                     "btl": "tcp,self,vader"}
         return {"HOSTS": self.folder, **{"OMPI_MCA_" + name: value for name, value in settings.items()}}

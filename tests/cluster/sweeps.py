@@ -1,9 +1,8 @@
-"""Sweeps over the hosts of hosts.py, kept by `rodsweep keep`, as seen from outside: who runs where, what was said when, and how
-far they are. Times are seconds since the sweep was started."""
+"""Sweeps over the hosts of hosts.py, as seen from outside: who runs where, what was printed when, and how far they are.
+Times are seconds since the sweep was started."""
 
 import os
 import re
-import signal
 import subprocess
 import sys
 import threading
@@ -13,7 +12,6 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "mpi"))
 
 import h5py  # noqa: E402
-from hosts import children_of  # noqa: E402
 from test_sweeps import ALL_DONE, MPIRUN, RODSWEEP, command  # noqa: E402
 
 
@@ -59,14 +57,14 @@ def states(path):
         return None
 
 
-class KeptSweep:
-    """`rodsweep keep` over all hosts, the master on the first one, and two workers on each."""
+class HostSweep:
+    """A sweep over all hosts, the master on the first one, and two workers on each; ranks may die alone."""
 
-    def __init__(self, hosts, job, path, run=(), keep=(), slots=2):
+    def __init__(self, hosts, job, path, run=(), slots=2):
         self.path, self.begin, self.lines = path, time.monotonic(), []
         ranks = slots * len(hosts) + 1
-        words = [RODSWEEP, "keep", "--hosts", hosts.file, *keep, "--", MPIRUN, "--hostfile", "{hosts}", "--map-by", "node",
-                 "--oversubscribe", "-n", str(ranks), RODSWEEP, "run", job, "-o", path, *run]
+        words = [MPIRUN, "--mca", "orte_enable_recovery", "1", "--hostfile", hosts.file, "--map-by", "node", "--oversubscribe",
+                 "-n", str(ranks), RODSWEEP, "run", job, "-o", path, *run]
         self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                         text=True, errors="replace")
         self.reader = threading.Thread(target=self.read, daemon=True)
@@ -108,12 +106,8 @@ class KeptSweep:
         self.wait_until(f"{count} tasks", lambda: self.done() >= count, seconds)
 
     def kill(self):
-        """With its mpirun, where it has one, and without any other start."""
         if self.runs():
-            mpiruns = children_of(self.process.pid)
             self.process.kill()
-            for mpirun in mpiruns:
-                os.killpg(mpirun, signal.SIGKILL)
         self.process.wait()
 
     def end(self, seconds=600):

@@ -28,8 +28,8 @@ class Case(unittest.TestCase):
 class Mistyped(Case):
     def test_a_command_or_option_that_is_none_is_answered_with_the_nearest(self):
         more = "\nRun with --help for more information.\n"
-        for words, said in ((["valdate", "a.json"], 'rodsweep: there is no command "valdate"; did you mean "validate"?'),
-                            (["frobnicate"], 'rodsweep: there is no command "frobnicate"'),
+        for words, said in ((["valdate", "a.json"], 'rodsweep: there is no command "valdate", and no program rodsweep-valdate; did you mean "validate"?'),
+                            (["frobnicate"], 'rodsweep: there is no command "frobnicate", and no program rodsweep-frobnicate'),
                             (["run", "a.json", "--resme"],
                              'rodsweep run: there is no option --resme; did you mean "--resume"?'),
                             (["run", "a.json", "--otput=x.h5"],

@@ -27,7 +27,8 @@ class SlurmScript(unittest.TestCase):
             file.write('{"kind": "sweep"}')
         stand_in("squeue", "date -d '+1 hour' +%FT%T")
         stand_in("scontrol", 'echo "scontrol $*"')
-        self.program = stand_in("program", 'echo "$*"; exit ${CODE:-0}')
+        stand_in("mpirun", 'echo "mpirun $*"; exit ${CODE:-0}')
+        self.program = os.path.abspath("rodsweep")
 
     def run_script(self, *words, code=0, **slurm):
         slurm = {"SLURM_JOB_ID": 7, "SLURM_NTASKS": 4, "SLURM_JOB_NUM_NODES": 2, "CODE": code, "RODSWEEP": self.program,
@@ -43,10 +44,16 @@ class SlurmScript(unittest.TestCase):
 
     def test_a_sweep_has_a_master_beside_its_workers_and_what_is_left_of_the_time(self):
         said = self.run_script("out.h5", "--worker-timeout", "9")
-        self.assertRegex(said, r"keep -- mpirun -n 5 --oversubscribe .* run job.json -o out.h5 --time-limit 3[34]\d\d --resume "
+        self.assertRegex(said, r"mpirun -n 5 --oversubscribe .* run job.json -o out.h5 --time-limit 3[34]\d\d --resume "
                                r"--worker-timeout 9\n")
         self.assertNotIn("scontrol", said)
         self.assertIn("scontrol requeue 7", self.run_script(code=4))
+
+    def test_a_run_that_dies_is_repeated_and_one_that_ends_is_not(self):
+        said = self.run_script("--retry-failed", code=137)
+        self.assertEqual((said.count("mpirun "), said.count("--retry-failed")), (10, 1))
+        for code in (0, 2, 3, 4, 5):
+            self.assertEqual(self.run_script(code=code).count("mpirun "), 1)
 
     def test_an_array_is_shards(self):
         self.assertIn("-o out-3of16.h5 --shard 3/16", self.array(3, 1, 16))
@@ -58,7 +65,7 @@ class SlurmScript(unittest.TestCase):
             self.assertIn("shards are counted from 1, so --array=1-N", said)
             self.assertNotIn("--shard ", said)
 
-    def test_what_failed_is_tried_again_by_the_first_start_alone(self):
+    def test_failed_tasks_are_repeated_by_the_first_run_alone(self):
         words = ("--retry-failed", "--task-time-limit", "60")
         self.assertIn("--resume --retry-failed --task-time-limit 60", self.run_script(*words))
         self.assertIn("--resume --task-time-limit 60", self.run_script(*words, SLURM_RESTART_COUNT=1))

@@ -18,7 +18,7 @@ from test_sweeps import ALL_DONE, SweepCase, TASKS_FAILED, USER_ERROR, checksum,
 ROD = {"type": "bending_rod", "length_m": {"uniform": [1, 5]}, "radius_m": 0.05, "density_kg_m3": 1000,
        "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}
 OLD_GUESSES = ["zero", "previous", {"oracle": {"error": 0.1}}]
-NEW_GUESSES = ["linear", {"previous": {"label": "last"}}, {"oracle": {"error": 0.1}}, {"pod": {"size": 3}}, "zero"]
+NEW_GUESSES = ["linear", {"previous": {"label": "last"}}, {"oracle": {"error": 0.1}}, {"subspace": {"size": 3}}, "zero"]
 
 
 class ExtendCase(SweepCase):
@@ -73,7 +73,7 @@ class Extending(ExtendCase):
         with h5py.File(file) as h5:
             self.assertEqual(h5["timing/tasks/copied_guess"][:].tolist(), 4 * [[-1, 1, 1, -1, 1]])
             self.assertEqual(h5["timing/tasks/source_task"][:].tolist(), [0, 1, 2, 3])
-            self.assertEqual(h5["timing/tasks/attempt"][:].tolist(), [1, 1, 1, 1])
+            self.assertEqual(h5["timing/tasks/run"][:].tolist(), [1, 1, 1, 1])
             with h5py.File("old.h5") as old:
                 np.testing.assert_array_equal(h5["timing/solves/cg_s"][:, 2], old["timing/solves/cg_s"][:, 2])
                 np.testing.assert_array_equal(h5["timing/solves/cg_s"][:, 4], old["timing/solves/cg_s"][:, 0])
@@ -91,7 +91,7 @@ class Extending(ExtendCase):
         self.assertEqual([s["tasks"] for s in starts], [0, 9, 3])
         with h5py.File(last) as h5:
             self.assertEqual(h5["timing/tasks/source_task"][:].tolist(), [0, 1, 2, -1, 3, 4, 5, -1, 6, 7, 8, -1])
-            self.assertEqual(h5["timing/tasks/attempt"][:].tolist(), [1, 1, 1, 2] * 3)
+            self.assertEqual(h5["timing/tasks/run"][:].tolist(), [1, 1, 1, 2] * 3)
 
     def test_guesses_that_vary(self):
         varying = {"grid": ["previous", {"oracle": {"error": 0.1}}]}

@@ -10,7 +10,7 @@
 using namespace rodsweep;
 using Catch::Matchers::Contains;
 
-namespace {
+namespace test_mpi_dataset {
 
 Json ragged_job() {
   Json job = data_job();
@@ -35,8 +35,6 @@ std::string fingerprint(const StoredSimulation& simulation) {
   sum.add(&simulation.constraint_dt_s, sizeof simulation.constraint_dt_s);
   return std::to_string(sum.value());
 }
-
-}  // namespace
 
 TEST_CASE("ranks that read a data set together have what a process alone reads, though one of them sees the file") {
   if (own_rank() == 0) make_data_set("data.h5", ragged_job());
@@ -65,3 +63,5 @@ TEST_CASE("what goes wrong with a data set is said by all ranks") {
   CHECK_THAT(message_of<CollectiveError>([&] { data.read(1); }),
              Contains("is damaged: the data of task 1 are not what was written"));
 }
+
+}  // namespace test_mpi_dataset

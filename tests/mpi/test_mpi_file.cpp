@@ -40,7 +40,7 @@ TEST_CASE("ranks resume a file together and agree on what is done") {
   MPI_Barrier(MPI_COMM_WORLD);
   ResultsFile file = ResultsFile::resume("parts.h5", plan, test_provenance(), MPI_COMM_WORLD).value();
   CHECK(file.done() == std::vector<std::uint8_t>{1, 1, 0, 0, 0, 0});
-  CHECK(file.attempt() == 1);
+  CHECK(file.run_index() == 1);
   if (own_rank() == rank_count() - 1) {
     for (std::int64_t i = 2; i < plan.size(); ++i) file.write(plan.task(i), synthetic_record(plan, i));
     file.end_run(utc_now(), 0);

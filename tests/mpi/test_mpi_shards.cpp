@@ -4,7 +4,7 @@
 #include "runner/training/shard_exchange.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_mpi_shards {
 
 TEST_CASE("every rank has all shards, in order, each computed by one rank") {
   constexpr std::size_t size = 3;
@@ -56,5 +56,5 @@ TEST_CASE("values that one rank has are shared bit for bit") {
   for (std::size_t i = 0; i < values.size(); ++i) CHECK(values[i] == 1.0 / (3.0 + static_cast<double>(i)));
 }
 
-}  // namespace
+}  // namespace test_mpi_shards
 }  // namespace rodsweep

@@ -17,7 +17,7 @@ import numpy as np
 
 RODSWEEP = os.environ["RODSWEEP"]
 MPIRUN = os.environ.get("MPIRUN", "mpirun")
-ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, TOO_LONG = 0, 2, 3, 4, 5
+ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, TOO_LONG, LOST = 0, 2, 3, 4, 5, 6
 
 
 def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):
@@ -280,7 +280,7 @@ class Killers(SweepCase):
             self.kill_who_runs(process, "killer.h5", killer)
             process.communicate(timeout=30)
             with h5py.File("killer.h5") as file:
-                starts = file["/timing/tasks/starts"][:]
+                starts = file["/timing/tasks/tries"][:]
                 self.assertEqual(starts[killer], attempt + 1)
                 accused.append(np.flatnonzero(starts))
                 done.append(int(file["/tasks/state"][:].sum()))
@@ -293,7 +293,7 @@ class Killers(SweepCase):
         after = status("killer.h5")
         self.assertEqual(after["outcomes"], {"ok": killer, "crashed": 1})
         self.assertEqual([(f["task"], f["outcome"]) for f in after["failures"]], [(killer, "crashed")])
-        self.assertIn("each of the 3 times", after["failures"][0]["message"])
+        self.assertIn("each of its 3 tries", after["failures"][0]["message"])
         self.assertIn("--retry-failed", last.stdout)
         self.assert_whole("killer.h5")
 
@@ -308,7 +308,7 @@ class Killers(SweepCase):
         while time.monotonic() < deadline and process.poll() is None:
             try:
                 with h5py.File(path, "r", locking=False) as file:
-                    starts, rank = int(file["/timing/tasks/starts"][task]), int(file["/timing/tasks/rank"][task])
+                    starts, rank = int(file["/timing/tasks/tries"][task]), int(file["/timing/tasks/rank"][task])
             except OSError:
                 starts, rank = 0, 0
             if before is None:

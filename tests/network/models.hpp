@@ -35,7 +35,8 @@ inline std::vector<CopingNetSettings> kinds_of_networks() {
   std::vector<CopingNetSettings> out;
   for (const Encoding encoding : {Encoding::deck, Encoding::physics, Encoding::system, Encoding::canonical})
     for (const Processor processor : {Processor::sweeps, Processor::factors, Processor::message_passing})
-      for (const BaseGuess base : {BaseGuess::none, BaseGuess::extrapolation, BaseGuess::regression, BaseGuess::pod}) {
+      for (const BaseGuess base :
+           {BaseGuess::none, BaseGuess::extrapolation, BaseGuess::regression, BaseGuess::subspace}) {
         if (processor == Processor::factors && encoding != Encoding::canonical) continue;
         CopingNetSettings settings;
         settings.encoding = encoding;

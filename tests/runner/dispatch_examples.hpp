@@ -5,17 +5,19 @@
 
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/worker.hpp"
+#include "tests/hand_clock.hpp"
 
 namespace rodsweep::examples {
 
 /// Master over `workers` workers (ranks 1 ...), silent.
 struct Sweep {
-  Sweep(int workers, std::vector<PendingTask> tasks, const Patience& patience = {}, Notices notices = {})
+  Sweep(int workers, std::vector<PendingTask> tasks, const Timeouts& timeouts = {}, Callbacks callbacks = {})
       : network(workers + 1),
         console(false),
-        progress(console, {static_cast<std::int64_t>(tasks.size()), 0, 0, 1, workers}, Progress::Clock::now()),
+        progress(console, {static_cast<std::int64_t>(tasks.size()), 0, 0, 1, workers}, test::HandClock::now()),
         master(
-            network[0], std::move(tasks), progress, [this] { return signal; }, patience, std::move(notices)) {}
+            network[0], std::move(tasks), progress, [this] { return signal; }, timeouts, std::move(callbacks),
+            test::HandClock::now) {}
 
   MemoryNetwork network;
   Console console;
@@ -39,9 +41,8 @@ struct Inbox {
     while (const auto envelope = channel->probe()) {
       if (envelope->tag == Tag::assign)
         for (const std::int64_t task : channel->receive<Assign>(*envelope).tasks()) tasks.push_back(task);
-      if (envelope->tag == Tag::drop) channel->receive<Drop>(*envelope), ++drops;
       if (envelope->tag == Tag::stop) channel->receive<Stop>(*envelope), ++stops;
-      if (envelope->tag == Tag::finish) apart = channel->receive<Finish>(*envelope).apart, ++finishes;
+      if (envelope->tag == Tag::finish) ranks_lost = channel->receive<Finish>(*envelope).ranks_lost, ++finishes;
     }
     return tasks;
   }
@@ -51,8 +52,8 @@ struct Inbox {
   }
 
   Channel* channel;
-  int drops = 0, stops = 0, finishes = 0;
-  bool apart = false;
+  int stops = 0, finishes = 0;
+  bool ranks_lost = false;
 };
 
 }  // namespace rodsweep::examples

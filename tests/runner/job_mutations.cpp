@@ -52,7 +52,7 @@ const std::vector<Json>& odd_values() {
                              R"({"integer": [1, 3]})",
                              R"({"gird": [5, 10]})",
                              R"({"label": "x"})",
-                             R"({"pod": {"size": {"grid": [1, 2]}}})",
+                             R"({"subspace": {"size": {"grid": [1, 2]}}})",
                              R"({"copingnet": {"model": "x.h5"}})",
                              R"({"copingnet": {"model": 5}})",
                              R"({"guarded": {"guess": "zero", "threshold": 1}})",

@@ -180,7 +180,7 @@ class SweepFile:
         """Whether any of these tasks was timed in a run with more ranks than cores."""
         runs = self.runs()
         marked = [bool(run.get("oversubscribed", 0)) for run in runs]
-        attempts = self.h5["/timing/tasks/attempt"][:][tasks] if self.has("/timing/tasks/attempt") else None
+        attempts = self.h5["/timing/tasks/run"][:][tasks] if self.has("/timing/tasks/run") else None
         if attempts is None:
             return any(marked)
         return any(0 <= a < len(marked) and marked[a] for a in set(attempts.tolist()))

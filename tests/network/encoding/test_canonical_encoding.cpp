@@ -8,7 +8,7 @@
 #include "tests/solver/turned.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_canonical_encoding {
 
 /// The same scene, in which all segments' frames are rolled about their axes by one angle. (By angles of their own,
 /// joints would be twisted at rest, and a finite twist is not measured as a small one.)
@@ -104,5 +104,5 @@ TEST_CASE("frames are orthogonal, and units come back") {
   });
 }
 
-}  // namespace
+}  // namespace test_canonical_encoding
 }  // namespace rodsweep

@@ -7,7 +7,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_graph_encoding {
 
 constexpr double dt = 0.02;
 
@@ -200,5 +200,5 @@ TEST_CASE("the system's encoding is not one of graphs") {
   CHECK_THROWS_AS(GraphEncoding(Encoding::system, bent_rod()), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace test_graph_encoding
 }  // namespace rodsweep

@@ -7,7 +7,7 @@
 #include "tests/network/gradient_check.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_normalisation {
 
 using namespace test;
 
@@ -81,5 +81,5 @@ TEST_CASE("the mean squared error and its gradient, whole and in parts") {
   CHECK((dy.rightCols(3) - d_right).norm() == 0);
 }
 
-}  // namespace
+}  // namespace test_normalisation
 }  // namespace rodsweep

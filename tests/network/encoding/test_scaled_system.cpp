@@ -6,7 +6,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_scaled_system {
 
 using Matrix = Tensor<double>;
 
@@ -199,5 +199,5 @@ TEST_CASE("the exact solution leaves nothing") {
   CHECK(gradient.allFinite());
 }
 
-}  // namespace
+}  // namespace test_scaled_system
 }  // namespace rodsweep

@@ -6,7 +6,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_joint_forest {
 
 TEST_CASE("a chain held at its first segment has one joint a level, each hanging from the one before") {
   const JointForest forest = joint_forest(test::random_rod(test::chain(5), {0}, 1));
@@ -54,9 +54,9 @@ TEST_CASE("what stands beside a joint are its siblings and the joint across a cu
   CHECK(joint_forest(test::random_rod(test::tree(2, 2), {0}, 1)).beside == std::vector<int>{0, 0, 1, 1, 1, 1});
   const JointForest ring = joint_forest(test::random_rod(test::ring(6), {}, 1));
   CHECK(ring.beside == std::vector<int>{0, 0, 0, 1, 0, 1});
-  CHECK(side_by_side({&ring}).beside == ring.beside);
+  CHECK(side_by_side(std::vector<const JointForest*>{&ring}).beside == ring.beside);
   CHECK(ring.cut);
-  CHECK(side_by_side({&ring}).cut);
+  CHECK(side_by_side(std::vector<const JointForest*>{&ring}).cut);
   CHECK_FALSE(joint_forest(test::random_rod(test::ring(6), {0}, 1)).cut);
 }
 
@@ -83,7 +83,7 @@ TEST_CASE("however many loops, every joint has one place, below a joint that sha
 TEST_CASE("side by side, forests keep their parents and share levels") {
   const JointForest tree = joint_forest(test::random_rod(test::tree(2, 2), {0}, 1));
   const JointForest chain = joint_forest(test::random_rod(test::chain(4), {0}, 2));
-  const JointForest both = side_by_side({&chain, &tree});
+  const JointForest both = side_by_side(std::vector<const JointForest*>{&chain, &tree});
   CHECK(both.size() == 9);
   CHECK(both.level_begin == std::vector<int>{0, 3, 8, 9});
   for (int i = 0; i < both.size(); ++i) {
@@ -94,5 +94,5 @@ TEST_CASE("side by side, forests keep their parents and share levels") {
   }
 }
 
-}  // namespace
+}  // namespace test_joint_forest
 }  // namespace rodsweep

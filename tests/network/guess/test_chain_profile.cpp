@@ -6,7 +6,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_chain_profile {
 
 const Vector3 gravity(0, -9.81, 0);
 
@@ -146,5 +146,5 @@ TEST_CASE("rods that are no single chain are refused") {
   CHECK_THROWS_WITH(profile({{0, 1}, {2, 3}}), Catch::Contains("not connected"));
 }
 
-}  // namespace
+}  // namespace test_chain_profile
 }  // namespace rodsweep

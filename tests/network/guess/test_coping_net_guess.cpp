@@ -11,7 +11,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_coping_net_guess {
 
 /// Direct solves, with a look at every system before the guesses hear of its solution.
 class Watched : public LinearSolve {
@@ -250,5 +250,5 @@ TEST_CASE("the joints' order does not matter") {
   }
 }
 
-}  // namespace
+}  // namespace test_coping_net_guess
 }  // namespace rodsweep

@@ -10,7 +10,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_end_to_end {
 
 /// A network that always knows the answer.
 class ExactIncrements : public IncrementSource {
@@ -154,5 +154,5 @@ TEST_CASE("a rod whose residual is below the tolerance is left alone") {
   for (std::size_t s = 0; s < 5; ++s) CHECK(scene.rods[0].position[s] == before.position[s]);
 }
 
-}  // namespace
+}  // namespace test_end_to_end
 }  // namespace rodsweep

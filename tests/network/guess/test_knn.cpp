@@ -6,7 +6,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_knn {
 
 std::shared_ptr<const KnnSet> set_of(const std::vector<StoredSimulation>& simulations) {
   auto set = std::make_shared<KnnSet>();
@@ -174,5 +174,5 @@ TEST_CASE("no neighbours is not a number of neighbours") {
   CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0.02, 0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace test_knn
 }  // namespace rodsweep

@@ -11,7 +11,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_network_allocations {
 
 TEST_CASE("a guess allocates nothing on a rod seen before, whatever the network") {
   const int segments = GENERATE(20, 400);
@@ -89,5 +89,5 @@ TEST_CASE("nearest neighbours allocate nothing") {
   CHECK(test::allocations() == before);
 }
 
-}  // namespace
+}  // namespace test_network_allocations
 }  // namespace rodsweep

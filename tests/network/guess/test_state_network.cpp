@@ -9,7 +9,7 @@
 #include "tests/network/stored.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_state_network {
 
 using namespace test;
 
@@ -218,5 +218,5 @@ TEST_CASE("training makes a simulator that errs less than one that says nothing"
   CHECK(last < 0.3 * first);
 }
 
-}  // namespace
+}  // namespace test_state_network
 }  // namespace rodsweep

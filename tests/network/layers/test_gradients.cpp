@@ -5,7 +5,7 @@
 #include "tests/network/gradient_check.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_gradients {
 
 using namespace test;
 
@@ -40,7 +40,7 @@ JointForest some_forest() {
   const JointForest a = joint_forest(test::random_rod(test::tree(2, 3), {0}, 1));
   const JointForest b = joint_forest(test::random_rod(test::chain(6), {0}, 2));
   const JointForest c = joint_forest(test::random_rod(test::tree(3, 2), {}, 3));
-  return side_by_side({&a, &b, &c});
+  return side_by_side(std::vector<const JointForest*>{&a, &b, &c});
 }
 
 TEST_CASE("the gradients of sweeps are those of central differences") {
@@ -111,7 +111,7 @@ TEST_CASE("every output sees every input of its own tree, and none of another") 
 TEST_CASE("a rod's outputs are the same alone and beside others") {
   const JointForest tree = joint_forest(test::random_rod(test::tree(2, 3), {0}, 1));
   const JointForest chain = joint_forest(test::random_rod(test::chain(6), {0}, 2));
-  const JointForest both = side_by_side({&tree, &chain});
+  const JointForest both = side_by_side(std::vector<const JointForest*>{&tree, &chain});
   Parameters<double> p;
   WeightSource source(9);
   const Sweeps<double> sweeps(p, 3, 6, 2, Recurrence::gated, source);
@@ -127,5 +127,5 @@ TEST_CASE("a rod's outputs are the same alone and beside others") {
   }
 }
 
-}  // namespace
+}  // namespace test_gradients
 }  // namespace rodsweep

@@ -4,7 +4,7 @@
 #include "tests/network/gradient_check.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_product {
 
 using namespace test;
 
@@ -60,5 +60,5 @@ TEST_CASE("a product of narrow operands is that of the rounded ones, however man
   CHECK_THROWS_WITH(NarrowMatrix(Tensor<float>::Zero(6, 4)), Catch::Contains("6 rows"));
 }
 
-}  // namespace
+}  // namespace test_product
 }  // namespace rodsweep

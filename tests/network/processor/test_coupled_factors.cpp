@@ -14,7 +14,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_coupled_factors {
 
 using namespace test;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -272,5 +272,5 @@ TEST_CASE("a latent size without a kernel for factors of all couplings is refuse
   CHECK_THROWS_WITH(CoupledInference(net.factors, net.weights, pattern), Catch::Contains("24"));
 }
 
-}  // namespace
+}  // namespace test_coupled_factors
 }  // namespace rodsweep

@@ -7,7 +7,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_factor_sweeps {
 
 using namespace test;
 
@@ -15,7 +15,7 @@ using namespace test;
 JointForest some_forest() {
   const JointForest a = joint_forest(random_rod(tree(2, 3), {0}, 1)), b = joint_forest(random_rod(chain(6), {0}, 2)),
                     c = joint_forest(random_rod(tree(3, 2), {}, 3)), d = joint_forest(random_rod(ring(5), {}, 4));
-  return side_by_side({&a, &b, &c, &d});
+  return side_by_side(std::vector<const JointForest*>{&a, &b, &c, &d});
 }
 
 template <class T>
@@ -142,5 +142,5 @@ TEST_CASE("a latent size without a kernel for factors is refused") {
   CHECK_THROWS_WITH(FactorInference(net.sweeps, net.weights, forest, pattern), Catch::Contains("24"));
 }
 
-}  // namespace
+}  // namespace test_factor_sweeps
 }  // namespace rodsweep

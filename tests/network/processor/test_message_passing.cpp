@@ -7,7 +7,7 @@
 #include "tests/network/gradient_check.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_message_passing {
 
 using namespace test;
 using Net = MessagePassing<double>;
@@ -19,7 +19,7 @@ RodGraph graph_of(const Edges& edges, const std::vector<int>& held = {0}) {
 /// A tree, a chain, a graph with loops, and a rod of one segment, side by side.
 RodGraph some_graphs() {
   const RodGraph a = graph_of(tree(2, 3)), b = graph_of(chain(4)), c = graph_of(net(2, 3)), d = graph_of(chain(1));
-  return side_by_side({&a, &b, &c, &d});
+  return side_by_side(std::vector<const RodGraph*>{&a, &b, &c, &d});
 }
 
 /// A network with biases that are not zero, its inputs and outputs.
@@ -132,7 +132,7 @@ TEST_CASE("senders and receivers are told apart") {
 
 TEST_CASE("a rod's outputs are the same alone and beside others, with a global state too") {
   const RodGraph a = graph_of(tree(2, 3)), b = graph_of(net(2, 3));
-  Case both(side_by_side({&a, &b}), 3, 2, true), alone(b, 3, 2, true);
+  Case both(side_by_side(std::vector<const RodGraph*>{&a, &b}), 3, 2, true), alone(b, 3, 2, true);
   alone.x_nodes = both.x_nodes.rightCols(b.nodes);
   alone.x_edges = both.x_edges.rightCols(b.edges());
   both.run();
@@ -183,5 +183,5 @@ TEST_CASE("one sample can be overfitted") {
   CHECK(error < 1e-3 * (edges.squaredNorm() + nodes.squaredNorm()));
 }
 
-}  // namespace
+}  // namespace test_message_passing
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_sweeps_inference {
 
 Tensor<float> random_features(int rows, int columns, unsigned seed) {
   test::Random random(seed);
@@ -29,7 +29,7 @@ TEST_CASE("inference gives the training code's outputs, for chains and trees and
   for (const int latent : {16, 32, 48, 64}) {
     for (const test::Edges& edges : {test::chain(2), test::chain(20), test::tree(3, 2)}) {
       const JointForest one = joint_forest(test::random_rod(edges, {0}, 3));
-      const JointForest forest = side_by_side({&one});
+      const JointForest forest = side_by_side(std::vector<const JointForest*>{&one});
       Parameters<float> weights;
       WeightSource source(5);
       const Sweeps<float> sweeps(weights, 57, latent, 6, recurrence, source);
@@ -52,5 +52,5 @@ TEST_CASE("a latent size without a kernel is refused") {
   CHECK_THROWS_WITH(SweepsInference(sweeps, weights, 4), Catch::Contains("24"));
 }
 
-}  // namespace
+}  // namespace test_sweeps_inference
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/network/stored.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_trainer {
 
 using namespace test;
 
@@ -249,5 +249,5 @@ TEST_CASE("settings that make no sense are refused") {
   CHECK_THROWS_WITH(Trainer(net, data.examples, settings), "Trainer: 8 examples are less than one batch of 12");
 }
 
-}  // namespace
+}  // namespace test_trainer
 }  // namespace rodsweep

@@ -5,7 +5,7 @@
 #include "tests/network/stored.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_turned_copies {
 
 using namespace test;
 
@@ -62,7 +62,7 @@ TEST_CASE("copies have features and moves of the turned rod, and the same edges,
 
 TEST_CASE("examples may be those of first Newton iterations alone") {
   CopingNetSettings settings;
-  settings.base = BaseGuess::pod;
+  settings.base = BaseGuess::subspace;
   const StoredSimulation simulation = stored_simulation(sample_scene(1), 4, 3);
   std::vector<Example> all, first;
   add_examples(settings, simulation, all);
@@ -73,5 +73,5 @@ TEST_CASE("examples may be those of first Newton iterations alone") {
     CHECK(first[i].edge_target == all[3 * i].edge_target);
 }
 
-}  // namespace
+}  // namespace test_turned_copies
 }  // namespace rodsweep

@@ -3,25 +3,25 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 
 #include "runner/command/command_line.hpp"
-#include "runner/command/manual.hpp"
 #include "runner/command/next_line.hpp"
+#include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
 using Catch::Matchers::Contains;
 using Catch::Matchers::Matches;
 
-namespace {
+namespace test_command_line {
 
 Command parse(std::vector<const char*> words) {
   words.insert(words.begin(), "build/rodsweep");
   return parse_command_line(static_cast<int>(words.size()), words.data());
 }
 
-Answer answer(const std::vector<const char*>& words) { return std::get<Answer>(parse(words)); }
-
-}  // namespace
+PrintedText answer(const std::vector<const char*>& words) { return std::get<PrintedText>(parse(words)); }
 
 TEST_CASE("run takes a job, a file and --resume, and remembers the line for the file") {
   const auto run = std::get<RunOptions>(parse({"run", "my job.json", "-o", "out.h5", "--resume"}));
@@ -39,17 +39,10 @@ TEST_CASE("without -o a job named demo is written to results/demo.h5") {
   CHECK(output_of(std::get<RunOptions>(parse({"run", "job.json", "-o", "out.h5"})), "demo") == "out.h5");
 }
 
-TEST_CASE("a shard is told by its number, and known again by the line that the file remembers") {
-  const auto shard = [](const std::string& text) {
-    const auto run = std::get<RunOptions>(parse({"run", "job.json", text.c_str()}));
-    return std::pair(run.shard.value().number, shard_of_command(run.command).value().number);
-  };
-  CHECK(shard("--shard=3/16") == std::pair(3, 3));
-  CHECK(output_of(std::get<RunOptions>(parse({"run", "job.json", "--shard", "3/16"})), "demo") ==
-        "results/demo-3of16.h5");
-  CHECK(shard_of_command("rodsweep run a.json --shard 2/4 --resume").value().of == 4);
-  for (const char* none : {"rodsweep run a.json", "rodsweep run a.json --shard", "rodsweep run a.json --shards 1/2"})
-    CHECK_FALSE(shard_of_command(none));
+TEST_CASE("a shard is given by its number, and has a file of its own") {
+  const auto run = std::get<RunOptions>(parse({"run", "job.json", "--shard", "3/16"}));
+  CHECK((run.shard.value().number == 3 && run.shard.value().of == 16));
+  CHECK(output_of(run, "demo") == "results/demo-3of16.h5");
   for (const char* wrong : {"0/4", "5/4", "1/0", "-1/4", "1/4x", "1", "a/b", "", "4294967297/4", "1/4294967297"})
     CHECK_FALSE(shard_of(wrong));
 }
@@ -90,62 +83,45 @@ TEST_CASE("the other commands take their options") {
 }
 
 TEST_CASE("the commands on results files take their options") {
-  const auto query = std::get<QueryOptions>(parse({"query", "a.h5", "x>1", "y=2", "--where", "z=3", "--columns", "x,y",
-                                                   "--sort", "x", "--descending", "--limit", "5", "--csv"}));
-  CHECK(query.file == "a.h5");
-  CHECK(query.conditions == std::vector<std::string>{"x>1", "y=2", "z=3"});
-  CHECK(query.columns == std::vector<std::string>{"x,y"});
-  CHECK((query.sort == "x" && query.descending && query.limit == 5));
-  CHECK(query.format == QueryOptions::Format::csv);
-  const auto late = std::get<QueryOptions>(parse({"query", "--where", "z=3", "--columns", "x", "a.h5", "y=2"}));
-  CHECK(late.file == "a.h5");
-  CHECK(late.conditions == std::vector<std::string>{"y=2", "z=3"});
-  CHECK(late.format == QueryOptions::Format::table);
   const auto rerun = std::get<RerunOptions>(parse({"rerun", "a.h5", "12", "--trajectory-every", "4"}));
   CHECK((rerun.file == "a.h5" && rerun.task == 12 && rerun.trajectory_every == 4 && !rerun.output));
   CHECK(rerun.command == "build/rodsweep rerun a.h5 12 --trajectory-every 4");
   CHECK(std::get<PackOptions>(parse({"pack", "a.h5", "-o", "b.h5"})).output == "b.h5");
-  const auto compare = std::get<CompareOptions>(parse({"compare", "a.h5", "b.h5", "--by", "parameters", "--tasks"}));
-  CHECK((compare.a == "a.h5" && compare.b == "b.h5" && compare.by == MatchBy::parameters && compare.tasks));
-  CHECK(std::get<CompareOptions>(parse({"compare", "a.h5", "b.h5"})).by == MatchBy::everything);
-  CHECK(answer({"compare", "a.h5"}).code == ExitCode::user_error);
 }
 
 TEST_CASE("mistakes on the command line of results files are answered with exit code 2") {
-  CHECK(answer({"query"}).code == ExitCode::user_error);
-  CHECK(answer({"query", "a.h5", "--csv", "--json"}).code == ExitCode::user_error);
-  CHECK(answer({"query", "a.h5", "--descending"}).code == ExitCode::user_error);
-  CHECK(answer({"query", "a.h5", "--limit", "-1"}).code == ExitCode::user_error);
   CHECK_THAT(answer({"rerun", "a.h5"}).text, Contains("TASK is required"));
   CHECK(answer({"rerun", "a.h5", "first"}).code == ExitCode::user_error);
   CHECK(answer({"rerun", "a.h5", "1", "--trajectory-every", "0"}).code == ExitCode::user_error);
-  CHECK(answer({"completion", "tcsh"}).code == ExitCode::user_error);
 }
 
-TEST_CASE("completion and the manual know every command and its options") {
-  for (const char* shell : {"bash", "zsh", "fish"}) {
-    const Answer script = answer({"completion", shell});
-    CHECK(script.code == ExitCode::ok);
-    for (const char* command :
-         {"run", "keep", "plan", "validate", "status", "info", "query", "compare", "rerun", "pack", "merge"}) {
-      CAPTURE(shell, command);
-      CHECK_THAT(script.text, Contains(std::string(command) + ") ") || Contains(std::string("-a ") + command + " -d "));
-    }
-    CHECK_THAT(script.text, Contains("retry-failed"));
-  }
-  const std::string manual = answer({"manual"}).text;
-  CHECK_THAT(manual, Matches("\\.TH RODSWEEP 1 \"\" \"rodsweep [0-9.]+\" [^]*"));
-  CHECK_THAT(manual, Contains(".SS merge\n\\fBrodsweep merge\\fR [\\fIOPTION\\fR]... \\fIFILE\\fR...\n"));
-  CHECK_THAT(manual, Contains(".TP\n\\fB\\-\\-watch\\fR [\\fISECONDS\\fR]\nSay it again"));
-  CHECK_THAT(manual, Contains(".SH EXIT STATUS\n.EX\n  0  all done\n"));
+TEST_CASE("a word that is not a command names a program of its own, or what may have been meant") {
+  const auto query = std::get<ExternalCommand>(parse({"query", "a.h5", "--csv"}));
+  CHECK(query.name == "query");
+  CHECK(query.words == std::vector<std::string>{"a.h5", "--csv"});
+  CHECK_THAT(std::get<ExternalCommand>(parse({"statsu", "a.h5"})).unknown,
+             Contains("statsu") && Contains("\"status\""));
+  CHECK_THAT(std::get<ExternalCommand>(parse({"qurey"})).unknown, Contains("\"query\""));
 }
 
-TEST_CASE("what troff would take for its own is escaped in the manual") {
-  const CommandOutline program{"p", "p: what\n.so /etc/passwd\n  'quoted' \\n ~^`-\n\nmore", "", {}, {}, {}};
-  CHECK_THAT(
-      manual_page(program, "p 1"),
-      Contains("\n.SH DESCRIPTION\n\\&.so /etc/passwd\n.PP\n.EX\n  \\(aqquoted\\(aq \\en \\(ti\\(ha\\(ga\\-\n.EE\n"
-               ".PP\nmore\n"));
+TEST_CASE("a program is looked for beside this one, in the source tree, and on the path") {
+  const TemporaryFolder folder;
+  const auto make = [&](const std::string& name) {
+    const std::filesystem::path path = folder / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << "#!/bin/sh\n";
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    return path;
+  };
+  const std::filesystem::path program = folder / "tree/build/rodsweep";
+  const std::string path = (folder / "empty").native() + ":" + (folder / "bin").native();
+  CHECK(find_command("long-term", program, path).empty());
+  const auto on_path = make("bin/rodsweep-long-term");
+  CHECK(find_command("long-term", program, path) == on_path);
+  const auto script = make("tree/analysis/long_term.py");
+  CHECK(find_command("long-term", program, path) == script);
+  const auto beside = make("tree/build/rodsweep-long-term");
+  CHECK(find_command("long-term", program, path) == beside);
 }
 
 TEST_CASE("mistakes on the command line are answered with exit code 2 and what is wrong") {
@@ -155,15 +131,14 @@ TEST_CASE("mistakes on the command line are answered with exit code 2 and what i
   CHECK_THAT(answer({"run"}).text, Contains("JOB is required"));
   CHECK(answer({"run", "a.json", "--resumee"}).code == ExitCode::user_error);
   CHECK_THAT(answer({"run", "a.json", "--resumee"}).text, Contains("--resumee"));
-  CHECK(answer({"walk", "a.json"}).code == ExitCode::user_error);
   CHECK_THAT(answer({"run", "a.json", "--retry-failed"}).text, Contains("--retry-failed requires --resume"));
   CHECK(answer({"info", "a.h5", "--job", "--json"}).code == ExitCode::user_error);
 }
 
 TEST_CASE("every command's help shows an example and the exit codes") {
-  for (const char* command : {"run", "plan", "validate", "status", "info", "query", "compare", "rerun", "pack"}) {
+  for (const char* command : {"run", "plan", "validate", "status", "info", "rerun", "pack"}) {
     CAPTURE(command);
-    const Answer help = answer({command, "--help"});
+    const PrintedText help = answer({command, "--help"});
     CHECK(help.code == ExitCode::ok);
     CHECK_THAT(help.text, Contains(std::string("rodsweep ") + command));
     CHECK_THAT(help.text, Contains("Exit codes:\n  0  "));
@@ -171,3 +146,5 @@ TEST_CASE("every command's help shows an example and the exit codes") {
   CHECK_THAT(answer({"run", "--help"}).text, Contains("4  stopped early; --resume continues"));
   CHECK_THAT(answer({"--help"}).text, Contains("mpirun"));
 }
+
+}  // namespace test_command_line

@@ -6,7 +6,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_plan_estimate {
 
 /// Pretends to take `seconds_per_cost` for every unit of Task::cost of the steps asked for.
 Evaluate taking(double seconds_per_cost) {
@@ -23,8 +23,6 @@ double all_cost(const Plan& plan) {
   for (const Task& task : plan.tasks()) cost += task.cost;
   return cost;
 }
-
-}  // namespace
 
 TEST_CASE("the cheapest, the median and the dearest task are tried") {
   const Plan plan = plan_of(with("/scene/segments", R"({"grid": [50, 10, 20, 30, 40]})"));
@@ -77,3 +75,5 @@ TEST_CASE("a probe that fails says so and is extrapolated from the steps that it
   CHECK(probes.at(0).message == "joint gap 12");
   CHECK(probes.at(0).seconds == Approx(25));
 }
+
+}  // namespace test_plan_estimate

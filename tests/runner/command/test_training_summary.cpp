@@ -6,7 +6,7 @@
 #include "tests/runner/file_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_training_summary {
 
 ModelCard card_of_two_epochs() {
   ModelCard card;
@@ -50,5 +50,5 @@ TEST_CASE("the summary tells how a training ended, and the model's CG ratio besi
                                             file);
 }
 
-}  // namespace
+}  // namespace test_training_summary
 }  // namespace rodsweep

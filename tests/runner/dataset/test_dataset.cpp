@@ -9,7 +9,7 @@
 #include "tests/runner/stored_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_dataset {
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::EndsWith;
@@ -200,5 +200,5 @@ TEST_CASE("a damaged simulation is refused, the others are read") {
              Contains("is damaged: the data of task 1 are not what was written"));
 }
 
-}  // namespace
+}  // namespace test_dataset
 }  // namespace rodsweep

@@ -9,7 +9,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_stored_systems {
 
 TaskRecord evaluated(const Plan& plan) {
   TaskRecord record;
@@ -80,5 +80,5 @@ TEST_CASE("Newton iterations that were not needed stay marked and are not read")
   CHECK(stored_systems(record, build_scene(plan.spec(0).scene), 3).empty());
 }
 
-}  // namespace
+}  // namespace test_stored_systems
 }  // namespace rodsweep

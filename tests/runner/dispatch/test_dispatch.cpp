@@ -11,7 +11,7 @@
 using namespace rodsweep;
 using namespace rodsweep::examples;
 
-namespace {
+namespace test_dispatch {
 
 int no_signal() { return 0; }
 
@@ -30,8 +30,6 @@ void play(Sweep& sweep, std::vector<std::unique_ptr<Worker>>& workers, unsigned 
   for (auto& worker : workers) REQUIRE(worker->step() == Worker::Step::finished);
 }
 
-}  // namespace
-
 TEST_CASE("tasks are handed out longest first, ties by number") {
   Sweep sweep(1, tasks_of_cost({1, 5, 3, 5, 2}));
   std::vector<std::int64_t> order;
@@ -48,9 +46,9 @@ TEST_CASE("tasks are handed out longest first, ties by number") {
 
 TEST_CASE("tasks that lost their workers come last, and again lost ones with nothing beside them") {
   std::vector<PendingTask> tasks = tasks_of_cost({9, 1, 8, 1, 1, 7});
-  tasks[0].lost = 2;
-  tasks[2].lost = 1;
-  tasks[5].lost = 3;
+  tasks[0].crashes = 2;
+  tasks[2].crashes = 1;
+  tasks[5].crashes = 3;
   Sweep sweep(2, tasks);
   std::vector<Inbox> inboxes{Inbox(sweep.network[1]), Inbox(sweep.network[2])};
   std::vector<std::int64_t> order;
@@ -224,3 +222,5 @@ TEST_CASE("a worker runs an assignment at once and reports each of its tasks") {
   CHECK(dispatch.failures.front().task == 1);
   CHECK(dispatch.failures.front().message == "joint gap 12");
 }
+
+}  // namespace test_dispatch

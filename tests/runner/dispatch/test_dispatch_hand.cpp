@@ -9,7 +9,7 @@
 using namespace rodsweep;
 using namespace rodsweep::examples;
 
-namespace {
+namespace test_dispatch_hand {
 
 struct Played {
   double end = 0;  ///< when the last task was finished
@@ -60,8 +60,6 @@ Played play(int workers, const std::vector<PendingTask>& tasks, const std::vecto
   }
 }
 
-}  // namespace
-
 TEST_CASE("equal tasks: a worker finds its next task in its hand, except in the first and the last round") {
   const std::vector<double> costs(1000, 1.0);
   const Played played = play(4, tasks_of_cost(costs), costs);
@@ -98,3 +96,5 @@ TEST_CASE("no worker idles beside a task in another's hand, though costs are wro
   const double longest = *std::max_element(seconds.begin(), seconds.end());
   CHECK(played.end <= played.work / workers + longest);
 }
+
+}  // namespace test_dispatch_hand

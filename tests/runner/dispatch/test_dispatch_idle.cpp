@@ -12,7 +12,7 @@
 using namespace rodsweep;
 using namespace rodsweep::examples;
 
-namespace {
+namespace test_dispatch_idle {
 
 /// A worker that runs what it has in hand, one task after the other.
 struct Clerk {
@@ -49,8 +49,6 @@ double idle_share(int workers, const std::vector<double>& costs, const std::vect
   return 1 - first->end / last->end;
 }
 
-}  // namespace
-
 TEST_CASE("with twenty tasks a worker, of lengths of ten to one and costs a third off, no worker idles for 5 percent") {
   const unsigned seed = GENERATE(1u, 2u, 3u);
   const int workers = GENERATE(2, 16, 128);
@@ -69,3 +67,5 @@ TEST_CASE("a single task that takes a tenth of all the time is begun first, and 
   costs.push_back(10);
   CHECK(idle_share(10, costs, costs) < 1e-12);
 }
+
+}  // namespace test_dispatch_idle

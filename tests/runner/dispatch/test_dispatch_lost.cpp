@@ -1,45 +1,43 @@
-// Workers that fall silent: their tasks go to others, they may come back, and nobody waits for ever.
+// Workers that time out: their tasks are reassigned, and the master never waits for them.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <string>
-#include <thread>
+#include <utility>
 
 #include "tests/runner/dispatch_examples.hpp"
 
 using namespace rodsweep;
 using namespace rodsweep::examples;
 
-namespace {
+namespace test_dispatch_lost {
 
 using Seconds = std::chrono::duration<double>;
-constexpr Seconds patience{0.04};
+constexpr Seconds timeout{4};
 
 void alive(Inbox& worker) { worker.channel->send(0, Alive{}); }
 
-/// Lets so much time pass that whoever says nothing is lost, with one word of the others in between.
+/// Lets time pass until workers that send nothing are lost; the others send heartbeats.
 template <class... Workers>
-void wait_in_vain(Sweep& sweep, Workers&... others) {
-  for (int quarter = 0; quarter < 5; ++quarter) {
-    std::this_thread::sleep_for(patience / 4);
+void time_out(Sweep& sweep, Workers&... others) {
+  for (int quarter = 0; quarter < 6; ++quarter) {
+    test::HandClock::pass(timeout / 4);
     (alive(others), ...);
     sweep.master.step();
   }
 }
 
-}  // namespace
-
 TEST_CASE("a silent worker's task goes to another, the one in its hand as if nothing had been") {
   std::vector<int> lost;
-  Notices notices;
-  notices.lost = [&](int rank) { lost.push_back(rank); };
-  Sweep sweep(2, tasks_of_cost(std::vector<double>(12, 1.0)), {patience, patience}, notices);
+  Callbacks callbacks;
+  callbacks.lost = [&](int rank) { lost.push_back(rank); };
+  Sweep sweep(2, tasks_of_cost(std::vector<double>(12, 1.0)), {timeout, timeout}, callbacks);
   Inbox silent(sweep.network[1]), other(sweep.network[2]);
   sweep.master.step();
   const auto held = silent.assigned();
   REQUIRE(held.size() == 2);
-  wait_in_vain(sweep, other);
+  time_out(sweep, other);
   CHECK(lost == std::vector<int>{1});
 
   std::vector<std::int64_t> order;
@@ -52,68 +50,58 @@ TEST_CASE("a silent worker's task goes to another, the one in its hand as if not
   CHECK(order[1] != held[1]);
   CHECK(std::count(order.begin(), order.end(), held[1]) == 1);
   CHECK(silent.assigned().empty());
-  CHECK((silent.drops == 0 && silent.finishes == 0));  // nothing is sent to who may be dead
+  CHECK(silent.finishes == 0);  // nothing is sent to a rank that may be dead
   CHECK(other.assigned().empty());
-  CHECK((other.finishes == 1 && other.apart));
-  CHECK(sweep.master.dispatch().apart);
+  CHECK((other.finishes == 1 && other.ranks_lost));
+  CHECK(sweep.master.dispatch().ranks_lost);
   CHECK(sweep.master.dispatch().left == 0);
 }
 
-TEST_CASE("a worker that comes back gives up what it had and gets more") {
-  int found = 0;
-  Notices notices;
-  notices.found_again = [&](int rank) { found = rank; };
-  Sweep sweep(1, tasks_of_cost({3, 2, 1}), {patience, patience}, notices);
-  std::vector<std::int64_t> begun;
-  bool hangs = true;
-  Worker worker(
-      sweep.network[1],
-      [&](std::int64_t task, const StopRequested& stop) -> TaskResult {
-        begun.push_back(task);
-        if (std::exchange(hangs, false)) {
-          const auto until = std::chrono::steady_clock::now() + 2 * patience;
-          while (std::chrono::steady_clock::now() < until) {
-            std::this_thread::sleep_for(patience / 8);
-            sweep.master.step();
-          }
-          for (int looks = 0; looks < 1000 && !stop(); ++looks) {  // it is heard, and told
-            std::this_thread::sleep_for(patience / 8);
-            sweep.master.step();
-          }
-          return {};
-        }
-        return {TaskOutcome::ok, ""};
-      },
-      [] { return 0; });
-  worker.set_beat(patience / 4, [] { return 0; });
-  while (sweep.master.step() != Master::Step::finished) worker.step();
-  CHECK(found == 1);
-  CHECK(begun == std::vector<std::int64_t>{0, 1, 2, 0});
-  CHECK_FALSE(sweep.master.dispatch().apart);
-  CHECK(sweep.master.dispatch().left == 0);
-  CHECK(worker.run() == false);
-}
-
-TEST_CASE("what a lost worker finished after all is not done again") {
-  Sweep sweep(2, tasks_of_cost({5, 4, 3}), {patience, patience});
+TEST_CASE("a lost worker that is heard again is ignored, and dismissed with the others") {
+  Sweep sweep(2, tasks_of_cost({5, 4, 3}), {timeout, timeout});
   Inbox slow(sweep.network[1]), other(sweep.network[2]);
   sweep.master.step();
   CHECK(slow.assigned() == std::vector<std::int64_t>{0});
   CHECK(other.assigned() == std::vector<std::int64_t>{1});
-  wait_in_vain(sweep, other);
-  slow.report(0);
+  time_out(sweep, other);
+  slow.report(0);  // its results have the same bits as those that others will write
   other.report(1);
   sweep.master.step();
-  CHECK(other.assigned() == std::vector<std::int64_t>{2});
-  slow.report(2);  // nonsense, but of a lost rank: others have it
-  other.report(2);
-  CHECK(sweep.master.step() == Master::Step::finished);
+  CHECK(slow.assigned().empty());
+  std::vector<std::int64_t> order;
+  for (bool finished = false; !finished;) {
+    for (const std::int64_t task : other.assigned()) order.push_back(task), other.report(task);
+    finished = sweep.master.step() == Master::Step::finished;
+  }
+  CHECK(order == std::vector<std::int64_t>{2, 0});
+  CHECK(slow.assigned().empty());
+  CHECK((slow.finishes == 1 && slow.ranks_lost));
   CHECK(sweep.master.dispatch().finished[static_cast<std::size_t>(TaskOutcome::ok)] == 3);
   CHECK(sweep.master.dispatch().left == 0);
 }
 
+TEST_CASE("a worker that is dismissed while it works abandons its tasks") {
+  MemoryNetwork network(2);
+  int runs = 0;
+  Worker worker(
+      network[1],
+      [&](std::int64_t, const StopRequested& stop) -> TaskResult {
+        ++runs;
+        network[0].send(1, Finish{true});
+        test::HandClock::pass(Seconds(1));  // so that it reads its messages
+        return stop() ? TaskResult{} : TaskResult{TaskOutcome::ok, ""};
+      },
+      [] { return 0; }, {}, {}, test::HandClock::now);
+  Assign assign;
+  assign.add(0);
+  network[0].send(1, assign);
+  network[0].send(1, assign);
+  CHECK(worker.run());
+  CHECK(runs == 1);
+}
+
 TEST_CASE("what a lost worker finished and had not brought to disk is done again") {
-  Sweep sweep(2, tasks_of_cost({5, 4, 3, 2}), {patience, patience});
+  Sweep sweep(2, tasks_of_cost({5, 4, 3, 2}), {timeout, timeout});
   Inbox lost(sweep.network[1]), other(sweep.network[2]);
   sweep.master.step();
   lost.report(lost.assigned().at(0));
@@ -122,10 +110,10 @@ TEST_CASE("what a lost worker finished and had not brought to disk is done again
   lost.report(2, TaskOutcome::torn);
   sweep.master.step();
   CHECK(lost.assigned() == std::vector<std::int64_t>{3});
-  lost.channel->send(0, Alive{1});  // task 0 is safe, and 2 is not
+  lost.channel->send(0, Alive{1});  // task 0 is on disk, and 2 is not
   CHECK(other.assigned() == std::vector<std::int64_t>{1});
   other.report(1);
-  wait_in_vain(sweep, other);
+  time_out(sweep, other);
   std::vector<std::int64_t> again;
   for (bool finished = false; !finished;) {
     for (const std::int64_t task : other.assigned()) again.push_back(task), other.report(task);
@@ -138,36 +126,36 @@ TEST_CASE("what a lost worker finished and had not brought to disk is done again
   CHECK(sweep.master.dispatch().left == 0);
 }
 
-TEST_CASE("a task may be given up with the first worker that it loses") {
-  std::vector<std::int64_t> given_up;
-  Notices notices;
-  notices.give_up = [&](std::int64_t task, int) {
-    given_up.push_back(task);
+TEST_CASE("a task may be marked as crashed with the first worker that it loses") {
+  std::vector<std::int64_t> crashed;
+  Callbacks callbacks;
+  callbacks.crashed = [&](std::int64_t task, int) {
+    crashed.push_back(task);
     return "gone";
   };
-  Patience once{patience, patience};
-  once.attempts = 1;
-  Sweep sweep(2, tasks_of_cost({9, 2}), once, notices);
+  Timeouts once{timeout, timeout};
+  once.max_crashes = 1;
+  Sweep sweep(2, tasks_of_cost({9, 2}), once, callbacks);
   Inbox dead(sweep.network[1]), good(sweep.network[2]);
   for (bool finished = false; !finished;) {
     dead.assigned();
     for (const std::int64_t task : good.assigned()) good.report(task);
     alive(good);
-    std::this_thread::sleep_for(patience / 8);
+    test::HandClock::pass(timeout / 8);
     finished = sweep.master.step() == Master::Step::finished;
   }
-  CHECK(given_up == std::vector<std::int64_t>{0});
+  CHECK(crashed == std::vector<std::int64_t>{0});
   CHECK(sweep.master.dispatch().left == 0);
 }
 
-TEST_CASE("a task that loses three workers is given up, the last of them with nothing beside it") {
-  std::vector<std::int64_t> given_up;
-  Notices notices;
-  notices.give_up = [&](std::int64_t task, int lost) {
-    given_up.push_back(task);
-    return "begun " + std::to_string(lost) + " times";
+TEST_CASE("a task that loses three workers is marked as crashed, and its last try runs alone") {
+  std::vector<std::int64_t> crashed;
+  Callbacks callbacks;
+  callbacks.crashed = [&](std::int64_t task, int crashes) {
+    crashed.push_back(task);
+    return "begun " + std::to_string(crashes) + " times";
   };
-  Sweep sweep(4, tasks_of_cost({9, 2, 2, 2, 2, 2, 2}), {patience, patience}, notices);
+  Sweep sweep(4, tasks_of_cost({9, 2, 2, 2, 2, 2, 2}), {timeout, timeout}, callbacks);
   std::vector<Inbox> inboxes;
   for (int rank = 1; rank <= 4; ++rank) inboxes.emplace_back(sweep.network[rank]);
   std::vector<bool> dead(4, false);
@@ -182,10 +170,10 @@ TEST_CASE("a task that loses three workers is given up, the last of them with no
       if (!dead[i]) inboxes[i].report(task);
     for (std::size_t i = 0; i < 4; ++i)
       if (!dead[i]) alive(inboxes[i]);
-    std::this_thread::sleep_for(patience / 8);
+    test::HandClock::pass(timeout / 8);
     finished = sweep.master.step() == Master::Step::finished;
   }
-  CHECK(given_up == std::vector<std::int64_t>{0});
+  CHECK(crashed == std::vector<std::int64_t>{0});
   CHECK(std::count(dead.begin(), dead.end(), true) == 3);
   CHECK(in_flight_beside_last == 0);
   const Dispatch& dispatch = sweep.master.dispatch();
@@ -195,48 +183,48 @@ TEST_CASE("a task that loses three workers is given up, the last of them with no
   CHECK(dispatch.failures[0].message == "begun 3 times");
 }
 
-TEST_CASE("when nobody is left for as long again, the sweep ends with what is done") {
-  Sweep sweep(2, tasks_of_cost({3, 2, 1, 1}), {patience, patience});
+TEST_CASE("when no worker is left, the sweep ends with what is done") {
+  Sweep sweep(2, tasks_of_cost({3, 2, 1, 1}), {timeout, timeout});
   sweep.master.step();
   Inbox(sweep.network[1]).report(0);
   sweep.network[1].send(0, Alive{1});
-  const auto begin = std::chrono::steady_clock::now();
-  while (sweep.master.step() != Master::Step::finished) std::this_thread::sleep_for(patience / 8);
-  CHECK(std::chrono::steady_clock::now() - begin > patience);
+  int steps = 0;
+  for (; sweep.master.step() != Master::Step::finished; ++steps) test::HandClock::pass(timeout / 4);
+  CHECK(steps == 5);
   CHECK(sweep.master.dispatch().left == 3);
   CHECK(sweep.master.dispatch().signal == 0);
-  CHECK(sweep.master.dispatch().apart);
+  CHECK(sweep.master.dispatch().ranks_lost);
 }
 
 TEST_CASE("a worker that does not give its task up in good time does not hold up a stop") {
-  Sweep sweep(2, tasks_of_cost({3, 2}), {Seconds(1e9), patience});
+  Sweep sweep(2, tasks_of_cost({3, 2}), {Seconds(1e9), timeout});
   Inbox deaf(sweep.network[1]), good(sweep.network[2]);
   sweep.master.step();
   deaf.assigned();
   for (const std::int64_t task : good.assigned()) good.report(task, TaskOutcome::pending);
   sweep.signal = SIGTERM;
   CHECK(sweep.master.step() != Master::Step::finished);
-  std::this_thread::sleep_for(1.5 * patience);
+  test::HandClock::pass(1.5 * timeout);
   CHECK(sweep.master.step() == Master::Step::finished);
   good.assigned();
-  CHECK((good.stops == 1 && good.apart));
+  CHECK((good.stops == 1 && good.ranks_lost));
   CHECK(sweep.master.dispatch().signal == SIGTERM);
   CHECK(sweep.master.dispatch().left == 2);
 }
 
 TEST_CASE("a master that was away itself loses nobody") {
-  Sweep sweep(1, tasks_of_cost({1}), {patience, patience});
+  Sweep sweep(1, tasks_of_cost({1}), {timeout, timeout});
   sweep.master.step();
-  std::this_thread::sleep_for(3 * patience);
+  test::HandClock::pass(3 * timeout);
   CHECK(sweep.master.step() == Master::Step::waited);
   Inbox worker(sweep.network[1]);
   for (const std::int64_t task : worker.assigned()) worker.report(task);
   CHECK(sweep.master.step() == Master::Step::finished);
-  CHECK_FALSE(sweep.master.dispatch().apart);
+  CHECK_FALSE(sweep.master.dispatch().ranks_lost);
 }
 
 TEST_CASE("with a time limit no task is begun that would not end before it, and what runs then is abandoned") {
-  Patience limited;
+  Timeouts limited;
   limited.time = TimeBudget(Seconds(0.3), Seconds(0.3));
   // A unit of cost turns out to take a second: the long tasks cannot be done, the short ones can.
   Sweep sweep(1, {{0, 0.02}, {1, 50}, {2, 0.001}, {3, 40}, {4, 0.001}}, limited);
@@ -246,10 +234,10 @@ TEST_CASE("with a time limit no task is begun that would not end before it, and 
       [&](std::int64_t task, const StopRequested& stop) -> TaskResult {
         begun.push_back(task);
         if (task == 1) return {TaskOutcome::error, "at once"};  // nothing is known of costs before
-        std::this_thread::sleep_for(Seconds(0.02));
+        test::HandClock::pass(Seconds(0.02));
         return stop() ? TaskResult{} : TaskResult{TaskOutcome::ok, ""};
       },
-      [] { return 0; });
+      [] { return 0; }, {}, {}, test::HandClock::now);
   while (sweep.master.step() != Master::Step::finished) worker.step();
   CHECK(sweep.master.dispatch().left == 0);  // the first task told that costs mean nothing
   CHECK(begun == std::vector<std::int64_t>{1, 3, 0, 2, 4});
@@ -266,7 +254,7 @@ TEST_CASE("with a time limit no task is begun that would not end before it, and 
   CHECK(order == std::vector<std::int64_t>{0, 2, 4});
   CHECK(slow.master.dispatch().left == 1);
   CHECK(slow.master.dispatch().late);
-  CHECK_FALSE(slow.master.dispatch().apart);
+  CHECK_FALSE(slow.master.dispatch().ranks_lost);
   REQUIRE(slow.master.dispatch().too_long);  // at forty seconds of three tenths
   CHECK(slow.master.dispatch().too_long->index == 3);
   CHECK(slow.master.dispatch().too_long_s > 30);
@@ -275,7 +263,7 @@ TEST_CASE("with a time limit no task is begun that would not end before it, and 
   Inbox runs(endless.network[1]);
   endless.master.step();
   REQUIRE(runs.assigned().size() == 1);
-  std::this_thread::sleep_for(1.2 * limited.time.whole());
+  test::HandClock::pass(1.2 * limited.time.whole());
   endless.master.step();
   CHECK(runs.assigned().empty());
   CHECK(runs.stops == 1);
@@ -286,3 +274,5 @@ TEST_CASE("with a time limit no task is begun that would not end before it, and 
   CHECK(endless.master.dispatch().left == 1);
   CHECK_FALSE(endless.master.dispatch().too_long);  // it may be done by the next start: nothing is known
 }
+
+}  // namespace test_dispatch_lost

@@ -14,9 +14,9 @@ using namespace rodsweep::examples;
 
 TEST_CASE("a signal to the master stops the sweep, and every task is accounted for") {
   std::vector<int> told;
-  Notices notices;
-  notices.stopping = [&](int signal) { told.push_back(signal); };
-  Sweep sweep(2, tasks_of_cost(std::vector<double>(100, 1.0)), {}, notices);
+  Callbacks callbacks;
+  callbacks.stopping = [&](int signal) { told.push_back(signal); };
+  Sweep sweep(2, tasks_of_cost(std::vector<double>(100, 1.0)), {}, callbacks);
   Inbox one(sweep.network[1]), two(sweep.network[2]);
   sweep.master.step();
   const auto ones = one.assigned(), twos = two.assigned();
@@ -68,7 +68,7 @@ TEST_CASE("a signal to a worker stops the whole sweep") {
   CHECK(completed < 10);
 }
 
-TEST_CASE("a running task hears between two time steps that the sweep stops") {
+TEST_CASE("a running task is told between two time steps that the sweep stops") {
   Sweep sweep(1, tasks_of_cost({1, 1, 1}));
   int steps = 0;
   Worker worker(

@@ -1,6 +1,5 @@
 // What fits into a start's time limit: by the pace of what is known, and by what was tried in vain.
 #include <catch2/catch.hpp>
-#include <thread>
 
 #include "runner/dispatch/time_budget.hpp"
 #include "tests/runner/dispatch_examples.hpp"
@@ -8,7 +7,7 @@
 using namespace rodsweep;
 using namespace rodsweep::examples;
 
-namespace {
+namespace test_time_budget {
 
 using Seconds = TimeBudget::Seconds;
 
@@ -17,8 +16,6 @@ PendingTask of_cost(double cost, double tried_s = 0) {
   task.tried_s = tried_s;
   return task;
 }
-
-}  // namespace
 
 TEST_CASE("without a limit everything fits") {
   TimeBudget time;
@@ -82,13 +79,13 @@ TEST_CASE("a task's own limit bounds what it is expected to take") {
 }
 
 TEST_CASE("a sweep whose tasks ran for a whole limit in vain says which is the longest") {
-  Patience limited;
+  Timeouts limited;
   limited.time = TimeBudget(Seconds(0.1), Seconds(0.1));
   Sweep sweep(1, tasks_of_cost({3, 3}), limited);
   Inbox worker(sweep.network[1]);
   sweep.master.step();
   REQUIRE(worker.assigned() == std::vector<std::int64_t>{0});
-  std::this_thread::sleep_for(Seconds(0.12));
+  test::HandClock::pass(Seconds(0.12));
   sweep.master.step();
   worker.assigned();
   REQUIRE(worker.stops == 1);
@@ -103,3 +100,5 @@ TEST_CASE("a sweep whose tasks ran for a whole limit in vain says which is the l
   CHECK(end.too_long->index == 1);
   CHECK(end.too_long_s == Approx(1));
 }
+
+}  // namespace test_time_budget

@@ -10,7 +10,7 @@
 #include "tests/runner/file_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_baselines {
 
 namespace fs = std::filesystem;
 
@@ -193,5 +193,5 @@ TEST_CASE("a network that blows up tears its rod, or more") {
   CHECK(record.steps_done.front() < 200);
 }
 
-}  // namespace
+}  // namespace test_baselines
 }  // namespace rodsweep

@@ -14,7 +14,7 @@
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_batched_evaluation {
 
 bool never() { return false; }
 
@@ -207,5 +207,5 @@ TEST_CASE("an assignment's records are written one by one, those of a request to
   CHECK(written.size() == 3);
 }
 
-}  // namespace
+}  // namespace test_batched_evaluation
 }  // namespace rodsweep

@@ -7,7 +7,7 @@
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_evaluation_records {
 
 constexpr int steps = 5;
 constexpr std::size_t tolerances = 8;
@@ -51,7 +51,7 @@ TEST_CASE("a solve that misses a tolerance counts the iterations that it spent, 
   for (std::size_t row = 0; row < r.newton.size(); ++row) {
     if (r.newton[row] < 0) continue;
     ++solves;
-    CHECK(r.reason[row] == static_cast<std::int8_t>(SolveOutcome::iteration_limit));
+    CHECK(r.solve_outcome[row] == static_cast<std::int8_t>(SolveOutcome::iteration_limit));
     CHECK(r.iterations[row * tolerances + tolerances - 1] == -1);
   }
   CHECK(r.counted_all.iterations.back() == 2 * solves);
@@ -68,7 +68,7 @@ TEST_CASE("a system that is solved to rounding already takes no iteration, and i
   const TaskRecord r = evaluated(job);
   CHECK(r.newton[0] == 0);
   for (std::size_t guess = 0; guess < 2; ++guess) {
-    CHECK(r.reason[guess] == static_cast<std::int8_t>(SolveOutcome::zero_rhs));
+    CHECK(r.solve_outcome[guess] == static_cast<std::int8_t>(SolveOutcome::zero_rhs));
     CHECK(r.iterations[guess * tolerances + tolerances - 1] == 0);
     CHECK(std::isnan(r.counted_all.cg_ratio[guess * tolerances]));
   }
@@ -177,5 +177,5 @@ TEST_CASE("a rod that blows up or is torn and a task out of time end with what w
   CHECK(late.steps_done[0] == 0);
 }
 
-}  // namespace
+}  // namespace test_evaluation_records
 }  // namespace rodsweep

@@ -6,7 +6,7 @@
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_gauss_seidel_tasks {
 
 TaskRecord evaluated(const std::string& solve, Json job = small_job()) {
   job.erase("guesses");
@@ -80,5 +80,5 @@ TEST_CASE("summaries of Gauss-Seidel have steps and no rows of iterations") {
   CHECK(record.step_newton_residual.back() > 0);
 }
 
-}  // namespace
+}  // namespace test_gauss_seidel_tasks
 }  // namespace rodsweep

@@ -9,14 +9,12 @@
 using namespace rodsweep;
 namespace fs = std::filesystem;
 
-namespace {
+namespace test_host_memory {
 
 void write(const fs::path& path, const std::string& text) {
   fs::create_directories(path.parent_path());
   std::ofstream(path) << text;
 }
-
-}  // namespace
 
 TEST_CASE("a host's memory is the machine's or the least that a control group allows") {
   const TemporaryFolder folder;
@@ -50,3 +48,5 @@ TEST_CASE("the peak of memory stays when it is given back") {
   { const std::vector<char> held(100'000'000, 1); }
   CHECK(peak_memory() > before + 9e7);
 }
+
+}  // namespace test_host_memory

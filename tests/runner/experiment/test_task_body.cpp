@@ -7,7 +7,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_task_body {
 
 bool never() { return false; }
 
@@ -27,8 +27,6 @@ struct Writer {
     };
   }
 };
-
-}  // namespace
 
 TEST_CASE("a record that was filled is written and its outcome returned") {
   const Plan plan = plan_of(small_job());
@@ -87,3 +85,5 @@ TEST_CASE("outcomes of tasks keep the numbers and names that files hold") {
                                             "iteration_limit", "timed_out", "error",    "torn",         "crashed"};
   for (int i = 0; i < task_outcomes; ++i) CHECK(to_string(static_cast<TaskOutcome>(i)) == std::string(names[i]));
 }
+
+}  // namespace test_task_body

@@ -1,14 +1,13 @@
 // What a guess is charged for, with one that takes its time.
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <memory>
-#include <thread>
 
 #include "runner/experiment/timed_guess.hpp"
 #include "solver/scene/scenes.hpp"
+#include "tests/hand_clock.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_timed_guess {
 
 /// Takes as long as it is told to.
 class Slow : public InitialGuess {
@@ -23,14 +22,14 @@ class Slow : public InitialGuess {
   void accept(const SolvePosition&, const VectorX&) override { sleep(accept_ms_); }
 
  private:
-  static void sleep(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
+  static void sleep(int ms) { test::HandClock::pass(std::chrono::milliseconds(ms)); }
   int prepare_ms_, propose_ms_, accept_ms_;
 };
 
 double seconds_of(int prepare_ms, int propose_ms, int accept_ms) {
   const Scene scene = build_scene(BendingRod{});
   const LinearSystem system(scene.rods.front());
-  TimedGuess guess(std::make_unique<Slow>(prepare_ms, propose_ms, accept_ms));
+  TimedGuess guess(std::make_unique<Slow>(prepare_ms, propose_ms, accept_ms), test::HandClock::now);
   VectorX x0 = VectorX::Zero(system.matrix().unknowns());
   guess.prepare({});
   guess.propose(system, {}, x0);
@@ -39,23 +38,17 @@ double seconds_of(int prepare_ms, int propose_ms, int accept_ms) {
   return guess.seconds();
 }
 
-// A busy machine lengthens sleep: the upper bounds have room for that, and none for five times.
 TEST_CASE("what a guess does before its proposals and after the solve is charged once") {
-  CHECK(seconds_of(40, 0, 0) >= 0.04);
-  CHECK(seconds_of(40, 0, 0) < 0.15);
-  CHECK(seconds_of(0, 0, 40) >= 0.04);
-  CHECK(seconds_of(0, 0, 40) < 0.15);
+  CHECK(seconds_of(40, 0, 0) == Approx(0.04));
+  CHECK(seconds_of(0, 0, 40) == Approx(0.04));
 }
 
-TEST_CASE("repeated proposals are charged as one") {
-  CHECK(seconds_of(0, 20, 0) >= 0.02);
-  CHECK(seconds_of(0, 20, 0) < 0.08);
-}
+TEST_CASE("repeated proposals are charged as one") { CHECK(seconds_of(0, 20, 0) == Approx(0.02)); }
 
 TEST_CASE("every system is charged anew") {
   const Scene scene = build_scene(BendingRod{});
   const LinearSystem system(scene.rods.front());
-  TimedGuess guess(std::make_unique<Slow>(5, 5, 5));
+  TimedGuess guess(std::make_unique<Slow>(5, 5, 5), test::HandClock::now);
   VectorX x0 = VectorX::Zero(system.matrix().unknowns());
   double last = 0;
   for (int step = 0; step < 20; ++step) {
@@ -64,9 +57,8 @@ TEST_CASE("every system is charged anew") {
     guess.accept({step, 0, 0}, x0);
     last = guess.seconds();
   }
-  CHECK(last >= 0.015);
-  CHECK(last < 0.15);  // 20 of them are 0.3
+  CHECK(last == Approx(0.015));
 }
 
-}  // namespace
+}  // namespace test_timed_guess
 }  // namespace rodsweep

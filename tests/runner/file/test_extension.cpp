@@ -8,7 +8,7 @@
 using namespace rodsweep;
 using Catch::Matchers::StartsWith;
 
-namespace {
+namespace test_extension {
 
 /// What is said against `job` as an extension of `before`, as far as the advice; "" if nothing is.
 std::string objection(const Json& job, const Json& before) {
@@ -25,8 +25,6 @@ Json two_grids() {
   job["guesses"] = Json::parse(R"(["zero", {"oracle": {"error": {"grid": [0.1, 0.2]}}}])");
   return job;
 }
-
-}  // namespace
 
 TEST_CASE("more samples, more values and more guesses extend a job, in any order and under other names") {
   const Json before = two_grids();
@@ -187,3 +185,5 @@ TEST_CASE(
   CHECK_THAT(text, Catch::Matchers::EndsWith("--resume without --extend runs what is left in full"));
   CHECK(written == 1);
 }
+
+}  // namespace test_extension

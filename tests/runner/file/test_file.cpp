@@ -16,7 +16,7 @@
 using namespace rodsweep;
 using Catch::Matchers::StartsWith;
 
-namespace {
+namespace test_file {
 
 template <class T>
 std::vector<T> stored(const std::filesystem::path& path, const std::string& dataset) {
@@ -40,8 +40,6 @@ std::vector<T> task_rows(const hdf5::File& file, const Column& column, const Tas
   const std::int64_t width = row_width(column, sizes);
   return {all.begin() + rows.first * width, all.begin() + (rows.first + rows.count) * width};
 }
-
-}  // namespace
 
 TEST_CASE("a record comes back from the file value by value, whatever the order of writing") {
   const TemporaryFolder folder;
@@ -91,7 +89,7 @@ TEST_CASE("rows that a task did not reach hold sentinels, not zeros") {
             if constexpr (std::is_floating_point_v<T>) {
               CHECK(std::isnan(value));
             } else {
-              CHECK(value == (column.path == std::string("/solves/reason") ? 0 : -1));
+              CHECK(value == (column.path == std::string("/solves/outcome") ? 0 : -1));
             }
           }
         },
@@ -256,3 +254,5 @@ TEST_CASE("the bytes of a file are reserved when it is created, where the file s
   REQUIRE(stat((folder / "a.h5").c_str(), &status) == 0);
   CHECK(status.st_blocks * 512 >= status.st_size);
 }
+
+}  // namespace test_file

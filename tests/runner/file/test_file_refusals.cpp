@@ -15,7 +15,7 @@ using Catch::Matchers::Contains;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 
-namespace {
+namespace test_file_refusals {
 
 namespace fs = std::filesystem;
 
@@ -39,8 +39,6 @@ std::string inspect_refusal(const fs::path& path) {
 std::size_t entries(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
-
-}  // namespace
 
 TEST_CASE("a file that exists is refused, untouched, with the two ways on") {
   const TemporaryFolder folder;
@@ -251,3 +249,5 @@ TEST_CASE("a sweep does not go on with another file under a name in its job") {
   std::ofstream(folder / "data.h5") << "other systems";
   CHECK_THAT(resume_refusal(folder / "a.h5", plan()), Contains("the files that the job names have changed"));
 }
+
+}  // namespace test_file_refusals

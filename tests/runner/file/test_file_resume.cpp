@@ -10,7 +10,7 @@
 using namespace rodsweep;
 using Catch::Matchers::Contains;
 
-namespace {
+namespace test_file_resume {
 
 namespace fs = std::filesystem;
 
@@ -28,8 +28,6 @@ void flip_bit(const fs::path& path, const std::string& dataset, std::size_t byte
   file.put(changed);
 }
 
-}  // namespace
-
 TEST_CASE("a resumed file knows what is done and is the same in the end as one written at once") {
   const TemporaryFolder folder;
   const Plan plan = plan_of(full_job());
@@ -38,7 +36,7 @@ TEST_CASE("a resumed file knows what is done and is the same in the end as one w
   {
     ResultsFile file = resume(folder / "parts.h5", plan);
     CHECK(file.done() == std::vector<std::uint8_t>{1, 1, 0, 0, 0, 0});
-    CHECK(file.attempt() == 1);
+    CHECK(file.run_index() == 1);
     CHECK(file.note() == "");
     file.write(plan.task(5), synthetic_record(plan, 5));
   }  // without close(): as good
@@ -62,13 +60,13 @@ TEST_CASE("a file counts the workers that began a task and said nothing of it si
   make_file(folder / "file.h5", plan, 1);
   for (int start = 0; start < 2; ++start) {
     ResultsFile file = resume(folder / "file.h5", plan);
-    CHECK(file.starts()[3] == start);
+    CHECK(file.tries()[3] == start);
     for (const std::int64_t i : {2, 3, 4, 5}) file.begin(plan.task(i));
     file.abandon(plan.task(2));
     if (start == 0) continue;
     file.write(plan.task(4), synthetic_record(plan, 4));
   }
-  CHECK(resume(folder / "file.h5", plan).starts() == std::vector<std::uint8_t>{0, 0, 0, 2, 0, 2});
+  CHECK(resume(folder / "file.h5", plan).tries() == std::vector<std::uint8_t>{0, 0, 0, 2, 0, 2});
 }
 
 TEST_CASE("a file that a run writes is refused to another, until that ends") {
@@ -83,7 +81,7 @@ TEST_CASE("a file that a run writes is refused to another, until that ends") {
   ResultsFile second = resume(folder / "a.h5", plan);
   CHECK_THROWS_AS(resume(folder / "a.h5", plan), FileError);
   second.close();
-  CHECK(resume(folder / "a.h5", plan).attempt() == 2);
+  CHECK(resume(folder / "a.h5", plan).run_index() == 2);
 }
 
 TEST_CASE("a complete task is never written again") {
@@ -105,7 +103,7 @@ TEST_CASE("a sweep can be resumed more often than /runs has rows, and says so") 
   hdf5::write_texts(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/runs/begin",
                     std::vector<std::string>(run_rows, "2025-01-01T00:00:00Z"));
   ResultsFile file = resume(folder / "a.h5", plan);
-  CHECK(file.attempt() == run_rows - 1);
+  CHECK(file.run_index() == run_rows - 1);
   CHECK_THAT(file.note(), Contains("was started 64 times before") && Contains("/runs"));
   const FileSummary summary = inspect(folder / "a.h5");
   CHECK(summary.runs.size() == run_rows);
@@ -285,3 +283,5 @@ TEST_CASE("provenance tells when, where and with what") {
     CHECK_THAT(here.versions, Contains(part));
   }
 }
+
+}  // namespace test_file_resume

@@ -6,7 +6,7 @@
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_input_files {
 
 namespace fs = std::filesystem;
 
@@ -95,5 +95,5 @@ TEST_CASE("models can be swept") {
   CHECK(plan.spec(1).guesses[1].model.filename() == "b.h5");
 }
 
-}  // namespace
+}  // namespace test_input_files
 }  // namespace rodsweep

@@ -5,7 +5,7 @@
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_job_balance {
 
 using Catch::Contains;
 
@@ -50,5 +50,5 @@ TEST_CASE("data sets have what the balance is kept against, where any task keeps
   }
 }
 
-}  // namespace
+}  // namespace test_job_balance
 }  // namespace rodsweep

@@ -4,7 +4,7 @@
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_job_baselines {
 
 Json neighbours(const std::string& parameters) { return with("/guesses", R"(["zero", {"knn": )" + parameters + "}]"); }
 
@@ -100,5 +100,5 @@ TEST_CASE("a network instead of the solve is refused without a model, among gues
                  Catch::Contains("\"closed_loop\""));
 }
 
-}  // namespace
+}  // namespace test_job_baselines
 }  // namespace rodsweep

@@ -4,7 +4,7 @@
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_job_gauss_seidel {
 
 using Catch::Contains;
 
@@ -79,5 +79,5 @@ TEST_CASE("Gauss-Seidel is refused where the direct solve advances the rod, and 
   }
 }
 
-}  // namespace
+}  // namespace test_job_gauss_seidel
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 using namespace rodsweep;
 using Catch::Matchers::Contains;
 
-namespace {
+namespace test_job_mutations {
 
 namespace fs = std::filesystem;
 
@@ -19,8 +19,6 @@ std::vector<fs::path> shipped_jobs() {
   std::sort(jobs.begin(), jobs.end());
   return jobs;
 }
-
-}  // namespace
 
 TEST_CASE("what is wrong with a job is said in plain words with its file and key, and ends nothing") {
   std::mt19937_64 random(19);
@@ -43,8 +41,8 @@ TEST_CASE("what is wrong with a job is said in plain words with its file and key
 }
 
 TEST_CASE("a key that is misspelt within the parameter of a guess is named") {
-  CHECK_THAT(refusal(with("/guesses", R"(["zero", {"pod": {"size": {"gird": [5, 10]}}}])")),
-             Contains("job.json: guesses[1].pod.size: ") && Contains("did you mean \"grid\"?"));
+  CHECK_THAT(refusal(with("/guesses", R"(["zero", {"subspace": {"size": {"gird": [5, 10]}}}])")),
+             Contains("job.json: guesses[1].subspace.size: ") && Contains("did you mean \"grid\"?"));
   CHECK_THAT(
       refusal(with("/guesses", R"(["zero", {"guarded": {"threshold": 1, "guess": {"oracle": {"error": {}}}}}])")),
       Contains("guesses[1].guarded.guess.oracle.error: {} is not allowed"));
@@ -90,3 +88,5 @@ TEST_CASE("a job with more than anyone writes is refused before it takes the mem
   CHECK(std::count(refusal.begin(), refusal.end(), '\n') == 20);
   CHECK_THAT(refusal, Contains("and 99980 more"));
 }
+
+}  // namespace test_job_mutations

@@ -5,7 +5,7 @@
 #include "tests/runner/job_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_job_obstacles {
 
 using Catch::StartsWith;
 
@@ -109,5 +109,5 @@ TEST_CASE("obstacles that are none are refused with what is wrong") {
         "job.json: scene.obstacles[0].half_space.normal: [0, 0, 0] is not allowed; must have a direction");
 }
 
-}  // namespace
+}  // namespace test_job_obstacles
 }  // namespace rodsweep

@@ -45,7 +45,7 @@ TEST_CASE("random numbers of neighbouring counters, seeds and streams are uncorr
   CHECK(std::abs(streams) < 0.035);
 }
 
-namespace {
+namespace test_job_parts {
 
 /// Calls check(key) for a key and all that is within it.
 template <class Check>
@@ -53,8 +53,6 @@ void for_every_key(const Key& key, const Check& check) {
   check(key);
   for (const Key& child : key.keys) for_every_key(child, check);
 }
-
-}  // namespace
 
 TEST_CASE("every key is described") {
   const auto check = [](const Key& key) {
@@ -72,3 +70,5 @@ TEST_CASE("every key is described") {
   for (const Key& guess : guess_keys()) for_every_key(guess, check);
   check(guess_label_key());
 }
+
+}  // namespace test_job_parts

@@ -7,11 +7,12 @@ using namespace rodsweep;
 using Catch::Matchers::StartsWith;
 
 TEST_CASE("values of guesses that are of another kind are refused, whatever stands in them") {
-  for (const char* guess : {R"({"pod": {"size": {"gird": [5, 10]}}})", R"({"oracle": {"error": {"gird": [5, 10]}}})",
-                            R"({"copingnet": {"model": 5}})", R"({"copingnet": {"model": {"a": {}}}})",
-                            R"({"knn": {"data": "x.h5", "inputs": {"b": [1]}}})",
-                            R"({"guarded": {"guess": {"pod": {"size": {"gird": [5]}}}, "threshold": 1}})",
-                            R"({"first": {"guess": {"oracle": {"error": [1]}}}})"}) {
+  for (const char* guess :
+       {R"({"subspace": {"size": {"gird": [5, 10]}}})", R"({"oracle": {"error": {"gird": [5, 10]}}})",
+        R"({"copingnet": {"model": 5}})", R"({"copingnet": {"model": {"a": {}}}})",
+        R"({"knn": {"data": "x.h5", "inputs": {"b": [1]}}})",
+        R"({"guarded": {"guess": {"subspace": {"size": {"gird": [5]}}}, "threshold": 1}})",
+        R"({"first": {"guess": {"oracle": {"error": [1]}}}})"}) {
     CAPTURE(guess);
     CHECK_THAT(refusal(with("/guesses", std::string(R"(["zero", )") + guess + "]")),
                Catch::StartsWith("job.json: guesses[1].") && Catch::Contains("is not allowed"));
@@ -69,7 +70,7 @@ TEST_CASE("a condensed system has no other norm and no multipliers to project") 
   job["guesses"] = Json::parse(R"(["zero", "deflation"])");
   CHECK(refusal(job) ==
         "job.json: guesses[1]: \"deflation\" is not allowed with the preconditioner \"condensed\", whose unknowns are "
-        "motions; must be another guess, such as \"pod\"");
+        "motions; must be another guess, such as \"subspace\"");
 }
 
 TEST_CASE("an unknown key is refused with the nearest known one, or with all of them") {
@@ -192,12 +193,12 @@ TEST_CASE("a list where one value is wanted is answered with the sweep that was 
 TEST_CASE("a guess with a bare value is answered with an example that is accepted") {
   const auto with_guess = [](const std::string& guess) { return with("/guesses", "[\"zero\", " + guess + "]"); };
   const std::string begin = " is not allowed; must be an object {...} with its parameters; for example ";
-  for (const auto& [guess, place, example] :
-       std::vector<std::array<const char*, 3>>{{R"({"pod": 10})", "pod: 10", R"({"pod": {"size": 10}})"},
-                                               {R"({"pod": 2.5})", "pod: 2.5", R"({"pod": {"size": 10}})"},
-                                               {R"({"oracle": 0.2})", "oracle: 0.2", R"({"oracle": {"error": 0.2}})"},
-                                               {R"({"guarded": "linear"})", "guarded: \"linear\"",
-                                                R"({"guarded": {"guess": "linear", "threshold": 1}})"}}) {
+  for (const auto& [guess, place, example] : std::vector<std::array<const char*, 3>>{
+           {R"({"subspace": 10})", "subspace: 10", R"({"subspace": {"size": 10}})"},
+           {R"({"subspace": 2.5})", "subspace: 2.5", R"({"subspace": {"size": 10}})"},
+           {R"({"oracle": 0.2})", "oracle: 0.2", R"({"oracle": {"error": 0.2}})"},
+           {R"({"guarded": "linear"})", "guarded: \"linear\"",
+            R"({"guarded": {"guess": "linear", "threshold": 1}})"}}) {
     CAPTURE(guess);
     CHECK(refusal(with_guess(guess)) == "job.json: guesses[1]." + std::string(place) + begin + example);
     CHECK(refusal(with_guess(example)) == "");
@@ -320,7 +321,7 @@ TEST_CASE("guesses that make no guess axis are refused") {
         "job.json: guesses[1]: {\"grid\":[\"linear\"],\"error\":3} is not allowed; a sweep has no other key beside "
         "\"grid\"");
   const std::string names =
-      " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"pod\", "
+      " is not allowed; must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"subspace\", "
       "\"deflation\", "
       "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", \"first\", or an object such as "
       "{\"oracle\": "

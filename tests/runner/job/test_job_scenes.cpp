@@ -8,7 +8,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_job_scenes {
 
 Json job_with_scene(const std::string& scene) {
   Json job = small_job();
@@ -45,8 +45,6 @@ Json guess_of_model(Json job) {
   job["guesses"].push_back({{"copingnet", {{"model", RODSWEEP_JOBS "/../network/pretrained/bending-paper.h5"}}}});
   return job;
 }
-
-}  // namespace
 
 TEST_CASE("a ring's keys and their defaults become a ring") {
   const Plan plan = plan_of(with("/scene/twist_deg", R"({"grid": [0, 720]})", ring_job()));
@@ -227,3 +225,5 @@ TEST_CASE("a scene whose factor needs too much memory is refused before it runs,
   // Chains and trees need in proportion to their size, and are not looked at.
   CHECK(refusal_of_factors(with("/scene/segments", "100000")) == "");
 }
+
+}  // namespace test_job_scenes

@@ -6,7 +6,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_job_training {
 
 using Paths = std::vector<std::filesystem::path>;
 
@@ -20,15 +20,13 @@ std::string refused(const std::string& pointer, const std::string& value) {
   return refusal(with(pointer, value, job));
 }
 
-}  // namespace
-
 TEST_CASE("the least that a training says is where its data are") {
   const TrainingJob job = training_of(train_job());
   CHECK(job.data == Paths{"data.h5"});
   CHECK(job.validation_simulations == 100);
   CHECK(job.network.encoding == Encoding::system);
   CHECK(job.network.processor == Processor::sweeps);
-  CHECK(job.network.base == BaseGuess::pod);
+  CHECK(job.network.base == BaseGuess::subspace);
   CHECK(job.network.recurrence == Recurrence::gated);
   CHECK(job.network.best_length);
   CHECK(job.training.loss == LossKind::energy);
@@ -157,8 +155,8 @@ TEST_CASE("a simulator of states is a network of message passing that learns mov
   CHECK(job.copies().count == 3);
   CHECK(job.copies().noise == 0.2);
   const auto refused_with = [&](const char* path, const char* value) { return refusal(with(path, value, values)); };
-  CHECK(refused_with("/network/base", "\"pod\"") ==
-        "job.json: network.base: \"pod\" is not allowed with network.encoding \"state\", a simulator's; must be "
+  CHECK(refused_with("/network/base", "\"subspace\"") ==
+        "job.json: network.base: \"subspace\" is not allowed with network.encoding \"state\", a simulator's; must be "
         "\"none\"");
   CHECK_THAT(refused_with("/network/moves", "false"), Catch::StartsWith("job.json: network.moves: false"));
   CHECK_THAT(refused_with("/training/loss", "\"energy\""), Catch::StartsWith("job.json: training.loss: \"energy\""));
@@ -186,3 +184,5 @@ TEST_CASE("the settings of every kind of network are the same after a round trip
     for (const auto& [key, value] : written.items()) CHECK(values[key] == value);
   }
 }
+
+}  // namespace test_job_training

@@ -7,7 +7,7 @@
 #include "tests/runner/job_folder.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_job_trees {
 
 Json job_with_scene(const std::string& scene) {
   Json job = small_job();
@@ -198,5 +198,5 @@ TEST_CASE("nearest neighbours are refused on a tree, but not on a trunk") {
   CHECK(refusal_of_neighbours(with("/scene/depth", "0", tree_job())).empty());
 }
 
-}  // namespace
+}  // namespace test_job_trees
 }  // namespace rodsweep

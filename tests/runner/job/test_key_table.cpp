@@ -4,7 +4,7 @@
 #include "runner/job/key_table.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_key_table {
 
 struct Circle {
   static constexpr const char* name = "circle";
@@ -43,5 +43,5 @@ TEST_CASE("a thing whose member is another without the key has a default of its 
   CHECK(preset_of(key, "crowd")->dump() == "3");
 }
 
-}  // namespace
+}  // namespace test_key_table
 }  // namespace rodsweep

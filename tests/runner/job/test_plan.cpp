@@ -7,7 +7,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_plan {
 
 ParameterColumn column(const Plan& plan, const std::string& path) {
   for (const ParameterColumn& c : plan.parameters()) {
@@ -31,8 +31,6 @@ std::vector<std::int64_t> integers(const Plan& plan, const std::string& path) {
 std::vector<std::string> texts(const Plan& plan, const std::string& path) {
   return std::get<std::vector<std::string>>(column(plan, path).values);
 }
-
-}  // namespace
 
 TEST_CASE("grid axes are crossed in the order of the job, the last varying fastest") {
   const Plan plan =
@@ -399,3 +397,5 @@ TEST_CASE("a task alone has the columns of the whole plan, also of guesses that 
   };
   CHECK(paths(whole.alone(1, 1)) == paths(whole));
 }
+
+}  // namespace test_plan

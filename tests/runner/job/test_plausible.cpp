@@ -7,13 +7,11 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_plausible {
 
 std::vector<std::string> warnings(const Json& job) { return implausible_values(job_of(job)); }
 
 using Texts = std::vector<std::string>;
-
-}  // namespace
 
 TEST_CASE("a value outside of what real rods have is named with the unit that it may have been meant in") {
   CHECK(warnings(small_job()).empty());
@@ -62,3 +60,5 @@ TEST_CASE("no job of the project has a value that is not plausible") {
     CHECK(implausible_values(read_job(entry.path(), MissingFiles::accepted)) == Texts());
   }
 }
+
+}  // namespace test_plausible

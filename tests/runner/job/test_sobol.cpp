@@ -8,7 +8,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_sobol {
 
 std::vector<double> drawn(const Plan& plan, const std::string& path) {
   for (const ParameterColumn& column : plan.parameters()) {
@@ -39,8 +39,6 @@ double discrepancy(const std::vector<double>& a, const std::vector<double>& b) {
     }
   return largest;
 }
-
-}  // namespace
 
 TEST_CASE("without a shift the points are Sobol's, with the direction numbers of Joe and Kuo") {
   // new-joe-kuo-6.21201, points 0 to 7 of the first four dimensions
@@ -133,3 +131,5 @@ TEST_CASE("more random values than Sobol's sequence has dimensions are refused")
   CHECK(refusal(with("/sampling", "\"sobel\"")) ==
         "job.json: sampling: \"sobel\" is not allowed; must be one of \"random\", \"sobol\"; did you mean \"sobol\"?");
 }
+
+}  // namespace test_sobol

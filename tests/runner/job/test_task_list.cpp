@@ -7,7 +7,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_task_list {
 
 /// Of a few shapes, in no order; what a list gives for them is `index` and the first rows.
 std::vector<Task> some_tasks(int count) {
@@ -55,8 +55,6 @@ void check_equal(const Task& a, const Task& b) {
   }
 }
 
-}  // namespace
-
 TEST_CASE("a list of tasks gives back what it was given, one by one and in order") {
   const std::vector<Task> tasks = some_tasks(150);
   const TaskList list = listed(tasks);
@@ -89,3 +87,5 @@ TEST_CASE("rows of a kind that is dropped are nowhere, and the others stay") {
   list.add(added);
   check_equal(list.at(100), added);
 }
+
+}  // namespace test_task_list

@@ -8,7 +8,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_progress {
 
 using Catch::Matchers::EndsWith;
 using std::chrono::seconds;
@@ -23,8 +23,6 @@ Dispatch dispatch_of(std::int64_t ok, std::int64_t diverged, std::int64_t left) 
   dispatch.busy_s = 15;
   return dispatch;
 }
-
-}  // namespace
 
 TEST_CASE("the time left is weighted by the cost of tasks") {
   Console silent(false);
@@ -110,3 +108,5 @@ TEST_CASE("words are quoted for the shell only where they must be") {
   CHECK(shell_quoted("it's") == "'it'\\''s'");
   CHECK(shell_quoted("") == "''");
 }
+
+}  // namespace test_progress

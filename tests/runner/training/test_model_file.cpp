@@ -13,7 +13,7 @@
 #include "tests/runner/file_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_model_file {
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::EndsWith;
@@ -303,5 +303,5 @@ TEST_CASE("a training of which no epoch has ended has no model to use, but can b
   CHECK(read_training(path).card.epochs.empty());
 }
 
-}  // namespace
+}  // namespace test_model_file
 }  // namespace rodsweep

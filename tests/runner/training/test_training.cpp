@@ -7,7 +7,7 @@
 #include "tests/runner/training_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_training {
 
 using Catch::Matchers::Contains;
 
@@ -59,7 +59,7 @@ TEST_CASE("a model of several kinds of scene is judged on each, one of a single 
   rods["samples"] = 4;
   rods["scene"] = {{"zip", {toy_data_job()["scene"], toy_tree_data_job()["scene"]}}};
   Json job = toy_train_job();
-  job["network"]["base"] = "pod";
+  job["network"]["base"] = "subspace";
   job["training"]["ratio_simulations"] = 4;
   const Toy toy(job, rods);
   Training training = toy.run();
@@ -219,5 +219,5 @@ TEST_CASE("a loss that is not finite ends the training; the best model so far is
   CHECK(training.kept().net.parameters().values() == kept);
 }
 
-}  // namespace
+}  // namespace test_training
 }  // namespace rodsweep

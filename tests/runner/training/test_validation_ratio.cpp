@@ -9,13 +9,13 @@
 #include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_validation_ratio {
 
 Json rods(const char* kind) {
   Json job = with("/kind", kind);
   job["samples"] = 3;
   job["scene"]["length_m"] = uniform(1, 4);
-  job["guesses"] = {"zero", "quadratic", {{"pod", {{"size", 3}}}}};
+  job["guesses"] = {"zero", "quadratic", {{"subspace", {{"size", 3}}}}};
   return job;
 }
 
@@ -75,5 +75,5 @@ TEST_CASE("a rod at rest has no ratio") {
   for (const double ratio : none) CHECK(std::isnan(ratio));
 }
 
-}  // namespace
+}  // namespace test_validation_ratio
 }  // namespace rodsweep

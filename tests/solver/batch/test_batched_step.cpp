@@ -14,7 +14,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_batched_step {
 
 const StepSettings settings{0.02, 6, 1e-9};
 constexpr int lanes = BatchedRods::lanes;
@@ -375,5 +375,5 @@ TEST_CASE("what a batch cannot hold is refused") {
   CHECK_THROWS_AS(BatchedStepper(scenes, settings), SceneError);
 }
 
-}  // namespace
+}  // namespace test_batched_step
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_broad_phase {
 
 std::vector<Box> random_boxes(int count, unsigned seed) {
   test::Random random(seed);
@@ -197,5 +197,5 @@ TEST_CASE("obstacles that are none are refused") {
   CHECK_THROWS_WITH(ContactBodies(scene), "an obstacle's place is not finite");
 }
 
-}  // namespace
+}  // namespace test_broad_phase
 }  // namespace rodsweep

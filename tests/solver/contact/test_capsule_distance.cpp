@@ -7,7 +7,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_capsule_distance {
 
 /// The least distance over a fine grid of one axis, exact along the other.
 double searched_distance(const CapsuleAxis& a, const CapsuleAxis& b) {
@@ -92,5 +92,5 @@ TEST_CASE("a first touch is never later than a finely sampled one") {
   CHECK(touches > 20);
 }
 
-}  // namespace
+}  // namespace test_capsule_distance
 }  // namespace rodsweep

@@ -7,7 +7,7 @@
 #include "tests/solver/touching.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_contact {
 
 using test::capsule;
 using test::contact_scene;
@@ -229,5 +229,5 @@ TEST_CASE("contact settings and half-spaces that are none are refused") {
   CHECK_THROWS_WITH(TimeStepper(scene, {}), Catch::Contains("the normal must not be zero"));
 }
 
-}  // namespace
+}  // namespace test_contact
 }  // namespace rodsweep

@@ -5,7 +5,7 @@
 #include "tests/solver/touching.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_contact_friction {
 
 using test::capsule;
 using test::contact_scene;
@@ -112,5 +112,5 @@ TEST_CASE("a rope over half a drum holds a load of up to exp(mu pi) times the ot
   }
 }
 
-}  // namespace
+}  // namespace test_contact_friction
 }  // namespace rodsweep

@@ -5,7 +5,7 @@
 #include "tests/solver/touching.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_contact_steps {
 
 using test::capsule;
 using test::contact_scene;
@@ -71,5 +71,5 @@ TEST_CASE("what is not finite ends the step before it can touch anything") {
   }
 }
 
-}  // namespace
+}  // namespace test_contact_steps
 }  // namespace rodsweep

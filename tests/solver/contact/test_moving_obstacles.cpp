@@ -6,7 +6,7 @@
 #include "tests/solver/touching.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_moving_obstacles {
 
 using test::capsule;
 using test::contact_scene;
@@ -137,5 +137,5 @@ TEST_CASE("obstacles of no finite velocity are refused") {
   }
 }
 
-}  // namespace
+}  // namespace test_moving_obstacles
 }  // namespace rodsweep

@@ -5,7 +5,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_rod_response {
 
 using test::MatrixX;
 
@@ -72,5 +72,5 @@ TEST_CASE("a stiff rod gives way to an impulse like a rigid body, a limp one lik
   }
 }
 
-}  // namespace
+}  // namespace test_rod_response
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_deflation {
 
 using test::MatrixX;
 
@@ -46,21 +46,22 @@ TEST_CASE("without history there is nothing to project out") {
   CHECK(x0.isZero(0));
 }
 
-TEST_CASE("a deflating guess starts where pod does, and projects to what is A-orthogonal to the stored solutions") {
+TEST_CASE(
+    "a deflating guess starts where subspace does, and projects to what is A-orthogonal to the stored solutions") {
   OneRod one;
   test::Random random(3);
   SubspaceGuess guess = deflating(one.scene, 4);
-  SubspaceGuess pod(one.scene, 1, 4, SubspaceGuess::Window::sliding);
+  SubspaceGuess subspace(one.scene, 1, 4, SubspaceGuess::Window::sliding);
   std::vector<VectorX> stored;
   for (int step = 0; step < 6; ++step) {  // the first two are forgotten
     stored.push_back(one.exact() + 2 * random.entries(one.size()).cwiseProduct(one.exact()));
     guess.accept({step, 0, 0}, stored.back());
-    pod.accept({step, 0, 0}, stored.back());
+    subspace.accept({step, 0, 0}, stored.back());
   }
   VectorX x0(one.size()), expected(one.size());
   const Proposal proposal = guess.propose(one.system, {6, 0, 0}, x0);
   CHECK(proposal.products == 4);
-  pod.propose(one.system, {6, 0, 0}, expected);
+  subspace.propose(one.system, {6, 0, 0}, expected);
   CHECK((x0 - expected).norm() < 1e-12 * expected.norm());
   VectorX z = random.entries(one.size());
   const VectorX before = z;
@@ -141,5 +142,5 @@ TEST_CASE("the same CG deflates one system and not the next") {
   CHECK(last == first);
 }
 
-}  // namespace
+}  // namespace test_deflation
 }  // namespace rodsweep

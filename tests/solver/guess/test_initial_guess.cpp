@@ -9,7 +9,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_initial_guess {
 
 using test::MatrixX;
 
@@ -281,5 +281,5 @@ TEST_CASE("guarded tells its inner guess the solution, whether or not it was use
   CHECK(told == rods.exact(0));
 }
 
-}  // namespace
+}  // namespace test_initial_guess
 }  // namespace rodsweep

@@ -6,7 +6,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_normal_equations {
 
 using test::MatrixX;
 
@@ -95,5 +95,5 @@ TEST_CASE("a vector whose products are not numbers is dropped alone") {
   CHECK((c - expected).norm() < 1e-9);
 }
 
-}  // namespace
+}  // namespace test_normal_equations
 }  // namespace rodsweep

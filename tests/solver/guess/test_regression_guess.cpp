@@ -7,7 +7,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_regression_guess {
 
 using test::MatrixX;
 
@@ -128,5 +128,5 @@ TEST_CASE("a step without a solution starts a regression's history again") {
   CHECK((x0 - one.solution()).norm() < 1e-9 * x0.norm());
 }
 
-}  // namespace
+}  // namespace test_regression_guess
 }  // namespace rodsweep

@@ -7,7 +7,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_subspace_guess {
 
 using Window = SubspaceGuess::Window;
 using test::MatrixX;
@@ -82,21 +82,21 @@ TEST_CASE("a solution within the span is found, also where stored solutions are 
   CHECK(test::energy_error(one.system.matrix().dense(), x0, one.exact()) < 1e-6);
 }
 
-TEST_CASE("fischer starts again with the newest solution when full, pod forgets the oldest") {
+TEST_CASE("fischer starts again with the newest solution when full, subspace forgets the oldest") {
   OneRod one;
   test::Random random(7);
   std::vector<VectorX> stored;
-  SubspaceGuess fischer(one.scene, 1, 3, Window::restarted), pod(one.scene, 1, 3, Window::sliding);
+  SubspaceGuess fischer(one.scene, 1, 3, Window::restarted), subspace(one.scene, 1, 3, Window::sliding);
   for (int step = 0; step < 4; ++step) {
     stored.push_back(random.entries(one.size()));
     fischer.accept({step, 0, 0}, stored.back());
-    pod.accept({step, 0, 0}, stored.back());
+    subspace.accept({step, 0, 0}, stored.back());
   }
   VectorX x0 = VectorX::Zero(one.size());
   CHECK(fischer.propose(one.system, {4, 0, 0}, x0).products == 1);
   CHECK(std::abs(one.error_along(x0, stored[3])) < 1e-10);
   CHECK(std::abs(one.error_along(x0, stored[2])) > 1e-6);
-  CHECK(pod.propose(one.system, {4, 0, 0}, x0).products == 3);
+  CHECK(subspace.propose(one.system, {4, 0, 0}, x0).products == 3);
   for (const int kept : {1, 2, 3}) CHECK(std::abs(one.error_along(x0, stored[kept])) < 1e-10);
   CHECK(std::abs(one.error_along(x0, stored[0])) > 1e-6);
 }
@@ -119,12 +119,12 @@ class Compare : public LinearSolve {
   explicit Compare(const Scene& scene)
       : direct_(scene),
         fischer(scene, 6, 8, Window::restarted),
-        pod(scene, 6, 8, Window::sliding),
+        subspace(scene, 6, 8, Window::sliding),
         previous(scene, 6, 1) {}
   SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& x) override {
     const SolveOutcome outcome = direct_.solve(system, at, 0, x);
     VectorX x0 = x;
-    InitialGuess* const guesses[] = {&fischer, &pod, &previous};
+    InitialGuess* const guesses[] = {&fischer, &subspace, &previous};
     for (int g = 0; g < 3; ++g) {
       guesses[g]->propose(system, at, x0);
       if (at.newton == 0) error[g].push_back(test::energy_error(system.matrix().dense(), x0, x));
@@ -136,11 +136,11 @@ class Compare : public LinearSolve {
 
  private:
   DirectSolve direct_;
-  SubspaceGuess fischer, pod;
+  SubspaceGuess fischer, subspace;
   ExtrapolationGuess previous;
 };
 
-TEST_CASE("fischer and pod beat zero on a slowly changing rod, and pod never loses to previous") {
+TEST_CASE("fischer and subspace beat zero on a slowly changing rod, and subspace never loses to previous") {
   BendingRod rod;
   rod.segments = 12;
   rod.length_m = 2;
@@ -152,16 +152,16 @@ TEST_CASE("fischer and pod beat zero on a slowly changing rod, and pod never los
   LinearProjection projection(scene, compare);
   TimeStepper stepper(scene, {0.002, 6, 1e-9});
   for (int step = 0; step < 40; ++step) stepper.step(projection);
-  double fischer = 0, pod = 0;
+  double fischer = 0, subspace = 0;
   for (std::size_t k = 20; k < 40; ++k) {
     fischer += compare.error[0][k] / 20;
-    pod += compare.error[1][k] / 20;
+    subspace += compare.error[1][k] / 20;
     CHECK(compare.error[1][k] <= compare.error[2][k] * (1 + 1e-9));
   }
   CHECK(fischer < 0.1);  // zero's is 1
-  CHECK(pod < 0.02);
-  CHECK(pod < fischer);
+  CHECK(subspace < 0.02);
+  CHECK(subspace < fischer);
 }
 
-}  // namespace
+}  // namespace test_subspace_guess
 }  // namespace rodsweep

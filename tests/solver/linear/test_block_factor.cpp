@@ -9,7 +9,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_block_factor {
 
 using test::Edges;
 using test::MatrixX;
@@ -238,5 +238,5 @@ TEST_CASE("a rod without joints has an empty solution") {
   CHECK(solve(factor, a, VectorX(0)).outcome == SolveOutcome::converged);
 }
 
-}  // namespace
+}  // namespace test_block_factor
 }  // namespace rodsweep

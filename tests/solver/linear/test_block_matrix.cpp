@@ -6,7 +6,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_block_matrix {
 
 using test::Random;
 
@@ -99,5 +99,5 @@ TEST_CASE("what Jacobi makes of a matrix follows from its diagonal") {
   CHECK(jacobi_norm_squared(a, r) == Approx(r.cwiseProduct(s).squaredNorm()).epsilon(1e-13));
 }
 
-}  // namespace
+}  // namespace test_block_matrix
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_condensation {
 
 using test::random_rod;
 
@@ -162,5 +162,5 @@ TEST_CASE("a condensed system follows the masses of an iteration that keeps the 
   CHECK((d - exact).norm() < 1e-8 * exact.norm());
 }
 
-}  // namespace
+}  // namespace test_condensation
 }  // namespace rodsweep

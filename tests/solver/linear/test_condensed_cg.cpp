@@ -6,7 +6,7 @@
 #include "tests/solver/cg_runs.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_condensed_cg {
 
 using test::Case;
 
@@ -132,5 +132,5 @@ TEST_CASE("condensed CG reports what is not a number and what takes too long") {
   CHECK(cg.solve(b, x, false, 1e-2, 1).outcome == SolveOutcome::not_a_number);
 }
 
-}  // namespace
+}  // namespace test_condensed_cg
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/solver/cg_runs.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_conjugate_gradient {
 
 using namespace test;
 
@@ -181,5 +181,5 @@ TEST_CASE("the test stays relative to b with a guess, even one whose residual st
   }
 }
 
-}  // namespace
+}  // namespace test_conjugate_gradient
 }  // namespace rodsweep

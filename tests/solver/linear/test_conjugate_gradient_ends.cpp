@@ -8,7 +8,7 @@
 #include "tests/solver/cg_runs.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_conjugate_gradient_ends {
 
 using namespace test;
 
@@ -306,5 +306,5 @@ TEST_CASE("b is not written to") {
   CHECK(b == c.b());
 }
 
-}  // namespace
+}  // namespace test_conjugate_gradient_ends
 }  // namespace rodsweep

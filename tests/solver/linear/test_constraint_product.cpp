@@ -6,7 +6,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_constraint_product {
 
 using namespace test;
 
@@ -61,5 +61,5 @@ TEST_CASE("with the balance of momentum kept, the product knows the mobilities t
   CHECK(difference(system, *system.product()) < 1e-14);
 }
 
-}  // namespace
+}  // namespace test_constraint_product
 }  // namespace rodsweep

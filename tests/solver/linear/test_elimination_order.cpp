@@ -10,7 +10,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_elimination_order {
 
 using test::Edges;
 
@@ -123,5 +123,5 @@ TEST_CASE("breadth first: every row once, neighbours near each other, from an en
       CHECK(std::abs(place[row] - place[pattern.column(k)]) < pattern.block_rows() / 3);
 }
 
-}  // namespace
+}  // namespace test_elimination_order
 }  // namespace rodsweep

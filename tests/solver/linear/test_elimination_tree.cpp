@@ -12,7 +12,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_elimination_tree {
 
 using test::Edges;
 
@@ -161,5 +161,5 @@ TEST_CASE("a factor that would need too much memory is refused with its size, be
   CHECK(AssemblyTree(dense).bytes() > most_factor_bytes);
 }
 
-}  // namespace
+}  // namespace test_elimination_tree
 }  // namespace rodsweep

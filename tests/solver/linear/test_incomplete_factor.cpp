@@ -13,7 +13,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_incomplete_factor {
 
 using namespace test;
 
@@ -134,5 +134,5 @@ TEST_CASE("the units of a matrix do not matter, far beyond the range of single p
   }
 }
 
-}  // namespace
+}  // namespace test_incomplete_factor
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_linear_system {
 
 using test::DenseSystem;
 using test::Edges;
@@ -153,5 +153,5 @@ TEST_CASE("a joint between two static segments is refused by number") {
   CHECK_THROWS_AS(LinearSystem(rod), SceneError);
 }
 
-}  // namespace
+}  // namespace test_linear_system
 }  // namespace rodsweep

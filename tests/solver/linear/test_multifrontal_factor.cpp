@@ -11,7 +11,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_multifrontal_factor {
 
 using test::Edges;
 
@@ -161,5 +161,5 @@ TEST_CASE("a factor with fronts keeps what a factor promises") {
   CHECK(kept == x);
 }
 
-}  // namespace
+}  // namespace test_multifrontal_factor
 }  // namespace rodsweep

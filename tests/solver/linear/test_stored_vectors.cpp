@@ -5,7 +5,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_stored_vectors {
 
 using test::MatrixX;
 
@@ -42,5 +42,5 @@ TEST_CASE("vectors side by side project and combine as dense algebra does, also 
   }
 }
 
-}  // namespace
+}  // namespace test_stored_vectors
 }  // namespace rodsweep

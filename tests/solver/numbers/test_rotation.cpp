@@ -6,7 +6,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_rotation {
 
 using test::Random;
 
@@ -70,5 +70,5 @@ TEST_CASE("turn_between() takes one direction to the other by the shortest way, 
   }
 }
 
-}  // namespace
+}  // namespace test_rotation
 }  // namespace rodsweep

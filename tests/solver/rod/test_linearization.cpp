@@ -9,7 +9,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_linearization {
 
 using test::MatrixX;
 using test::Random;
@@ -182,5 +182,5 @@ TEST_CASE("a single segment has nothing to satisfy") {
   CHECK(newton_residual(rod, 0.01) == 0);
 }
 
-}  // namespace
+}  // namespace test_linearization
 }  // namespace rodsweep

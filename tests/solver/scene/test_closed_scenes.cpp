@@ -9,7 +9,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_closed_scenes {
 
 Ring ring(int segments, double twist_deg = 0, Ring::RestShape shape = Ring::RestShape::straight) {
   Ring p;
@@ -184,5 +184,5 @@ TEST_CASE("rings and nets that cannot be are refused by what is wrong with them"
                     "stretch is physical, but stretch_compliance_per_j is given too; must be one of them");
 }
 
-}  // namespace
+}  // namespace test_closed_scenes
 }  // namespace rodsweep

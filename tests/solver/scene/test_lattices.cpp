@@ -14,7 +14,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_lattices {
 
 using Cell = Lattice::Cell;
 
@@ -293,5 +293,5 @@ TEST_CASE("lattices that cannot be are refused by what is wrong with them") {
                     "a lattice of so many segments is too large; the most is 10000000");
 }
 
-}  // namespace
+}  // namespace test_lattices
 }  // namespace rodsweep

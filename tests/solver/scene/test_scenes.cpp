@@ -11,7 +11,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_scenes {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -298,5 +298,5 @@ TEST_CASE("a number that does not fit into its bits is a bug, not another number
   CHECK_THROWS_WITH(narrow<std::int16_t>(-32769), "-32769 does not fit into 16 bits");
 }
 
-}  // namespace
+}  // namespace test_scenes
 }  // namespace rodsweep

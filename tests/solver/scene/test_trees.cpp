@@ -8,7 +8,7 @@
 #include "tests/solver/simulation.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_trees {
 
 constexpr double golden_angle_deg = 137.50776405003785;
 
@@ -258,5 +258,5 @@ TEST_CASE("trees that cannot grow are refused with quantity, value and bound") {
   CHECK(refusal(folded) == "node 1 of a skeleton: stands where its parent does; must be elsewhere");
 }
 
-}  // namespace
+}  // namespace test_trees
 }  // namespace rodsweep

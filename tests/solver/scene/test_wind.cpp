@@ -9,7 +9,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_wind {
 
 WindParameters turbulence(int modes, std::uint64_t seed = 0) {
   WindParameters p;
@@ -222,5 +222,5 @@ TEST_CASE("winds that cannot blow are refused, and a batched step knows none") {
   CHECK_THROWS_WITH(BatchedStepper({build_scene(rod)}, {}), "scene 0 of a batch has wind; a batched step knows none");
 }
 
-}  // namespace
+}  // namespace test_wind
 }  // namespace rodsweep

@@ -19,7 +19,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_allocations {
 
 /// CG from a guess, with its history recorded, as the paired evaluation and closed loops use it.
 class CgSolve : public LinearSolve {
@@ -187,7 +187,7 @@ TEST_CASE("a step with CG allocates nothing, whatever the guess") {
     if (name == "oracle") return std::make_unique<OracleGuess>(scene, 0.1, OracleGuess::Error::smooth, 7);
     if (name == "fischer") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::restarted);
     if (name == "regression") return std::make_unique<RegressionGuess>(scene, 4, 5, 1e-2);
-    if (name == "pod") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding);
+    if (name == "subspace") return std::make_unique<SubspaceGuess>(scene, 4, 5, SubspaceGuess::Window::sliding);
     if (name == "guarded")
       return std::make_unique<GuardedGuess>(scene, std::make_unique<ExtrapolationGuess>(scene, 4, 3), 0.5);
     if (name == "deflation")
@@ -197,7 +197,7 @@ TEST_CASE("a step with CG allocates nothing, whatever the guess") {
       return std::make_unique<TotalsGuess>(scene, std::make_unique<RegressionGuess>(scene, 4, 5, 1e-2));
     return std::make_unique<ZeroGuess>();
   };
-  for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "pod",
+  for (const char* guess : {"zero", "previous", "linear", "quadratic", "oracle", "guarded", "fischer", "subspace",
                             "deflation", "regression", "totals"}) {
     INFO(guess);
     Scene scene = loaded_scene();
@@ -230,5 +230,5 @@ TEST_CASE("icc costs PETSc's three work arrays per factorisation, and nothing of
   CHECK(test::allocations() - before <= 3 * solve.calls);
 }
 
-}  // namespace
+}  // namespace test_allocations
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_forcing_terms {
 
 TEST_CASE("forcing terms follow the square of what the last iteration achieved, from the first one given") {
   ForcingTerms forcing(2, 0.5, 0);
@@ -68,5 +68,5 @@ TEST_CASE(
   CHECK(forced.iterations < 0.95 * tight.iterations);
 }
 
-}  // namespace
+}  // namespace test_forcing_terms
 }  // namespace rodsweep

@@ -12,7 +12,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_gauss_seidel {
 
 std::unique_ptr<Projection> make(const std::string& name, const Scene& scene) {
   if (name == "xpbd") return std::make_unique<XpbdProjection>(scene);
@@ -141,5 +141,5 @@ TEST_CASE("Gauss-Seidel refuses a joint that nothing can move") {
     CHECK_THROWS_WITH(make(method, scene), "joint 1 joins two static segments; remove it or free one of them");
 }
 
-}  // namespace
+}  // namespace test_gauss_seidel
 }  // namespace rodsweep

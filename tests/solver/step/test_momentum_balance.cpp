@@ -9,7 +9,7 @@
 #include "tests/solver/touching.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_momentum_balance {
 
 constexpr double tolerance = 1e-5;
 
@@ -321,5 +321,5 @@ TEST_CASE("with too few iterations to share, a step that is not in balance yet i
   }
 }
 
-}  // namespace
+}  // namespace test_momentum_balance
 }  // namespace rodsweep

@@ -8,7 +8,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_observables {
 
 using test::Random;
 
@@ -155,5 +155,5 @@ TEST_CASE("a state with a NaN or infinity anywhere is not finite") {
     }
 }
 
-}  // namespace
+}  // namespace test_observables
 }  // namespace rodsweep

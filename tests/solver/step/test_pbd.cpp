@@ -11,7 +11,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_pbd {
 
 /// Two free coaxial segments of 0.2 m and radius 0.05 m, joined end to end, at rest.
 Scene pair() {
@@ -119,5 +119,5 @@ TEST_CASE("more iterations make a PBD rod stiffer") {
   }
 }
 
-}  // namespace
+}  // namespace test_pbd
 }  // namespace rodsweep

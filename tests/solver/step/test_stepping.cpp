@@ -10,7 +10,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_stepping {
 
 /// Solves directly, but reports something else at one position.
 class Failing : public LinearSolve {
@@ -243,5 +243,5 @@ TEST_CASE("loads and clamps on segments that do not exist, and clamps on free on
   CHECK_THROWS_AS(TimeStepper(scene, {}), SceneError);
 }
 
-}  // namespace
+}  // namespace test_stepping
 }  // namespace rodsweep

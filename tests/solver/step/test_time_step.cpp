@@ -9,7 +9,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_time_step {
 
 using test::Random;
 
@@ -320,5 +320,5 @@ TEST_CASE("rods of one or two segments move under every clamp") {
     }
 }
 
-}  // namespace
+}  // namespace test_time_step
 }  // namespace rodsweep

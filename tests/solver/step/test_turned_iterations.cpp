@@ -6,7 +6,7 @@
 #include "tests/solver/turned.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_turned_iterations {
 
 struct Solves {
   double rhs_norm;
@@ -44,5 +44,5 @@ TEST_CASE("CG takes as many iterations on a turned scene, give or take one that 
   }
 }
 
-}  // namespace
+}  // namespace test_turned_iterations
 }  // namespace rodsweep

@@ -9,7 +9,7 @@
 #include "tests/solver/turned.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_turned_scenes {
 
 using test::RigidMotion, test::TurnedCase;
 
@@ -142,5 +142,5 @@ TEST_CASE("turned heaps of falling rods fall alike, contacts and friction includ
           }) < 1e-6);
 }
 
-}  // namespace
+}  // namespace test_turned_scenes
 }  // namespace rodsweep

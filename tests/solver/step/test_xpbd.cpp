@@ -9,7 +9,7 @@
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
-namespace {
+namespace test_xpbd {
 
 /// A rod of six segments that has fallen smoothly for 0.1 s.
 Scene falling(double modulus_pa, std::optional<double> stretch_compliance_per_j = std::nullopt) {
@@ -86,5 +86,5 @@ TEST_CASE("where steps do not resolve the stiffness, few XPBD iterations leave a
   for (const double order : orders(start, &Rod::position, 0.02, 4)) CHECK(order == Approx(2).margin(0.4));
 }
 
-}  // namespace
+}  // namespace test_xpbd
 }  // namespace rodsweep

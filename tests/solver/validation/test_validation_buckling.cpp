@@ -13,7 +13,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_buckling {
 
 constexpr double length = 4, radius = 0.01, youngs_modulus = 1e9, torsion_modulus = 5e9;  // GJ = 10 EI
 constexpr double shortening = 0.2, end_turn = 9.02;  // of phi0 near 60 degrees, s* = L / 20
@@ -96,8 +96,6 @@ Buckled buckled(int n) {
   return out;
 }
 
-}  // namespace
-
 TEST_CASE("A long twisted rod buckles into a localised helix, with an error of second order in 1/N", "[.long]") {
   const Buckled coarse = buckled(100), fine = buckled(200);
   CAPTURE(coarse.envelope_error, fine.envelope_error, fine.largest_angle, fine.tension_error);
@@ -106,3 +104,5 @@ TEST_CASE("A long twisted rod buckles into a localised helix, with an error of s
   CHECK(std::log2(coarse.envelope_error / fine.envelope_error) == Approx(2).margin(0.2));
   CHECK(std::abs(fine.tension_error) < 2e-3);
 }
+
+}  // namespace test_validation_buckling

@@ -11,7 +11,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_budgets {
 
 double energy(const Scene& scene) {
   const Rod& rod = scene.rods.front();
@@ -70,8 +70,6 @@ Scene tumbling_ring() {
   return tumbling(build_scene(p));
 }
 
-}  // namespace
-
 TEST_CASE("A swinging rod loses energy in proportion to the step") {
   for (const Balance balance : kinds) {
     const double coarse = dissipation(1e-3, balance), middle = dissipation(5e-4, balance);
@@ -123,3 +121,5 @@ TEST_CASE("Over ten seconds a free rod's angular momentum drifts in proportion t
   CHECK(fine < 0.02);
   CHECK(std::log2(coarse / fine) == Approx(1).margin(0.25));
 }
+
+}  // namespace test_validation_budgets

@@ -9,7 +9,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_clamps {
 
 constexpr int count = 20;
 constexpr double segment_length = 0.1, radius = 0.05, youngs_modulus = 1e7, torsion_modulus = 4e6;
@@ -62,8 +62,6 @@ Vector3 joint_turn(const Rod& rod, const Joint& j) {
   return turn.angle() * turn.axis();
 }
 
-}  // namespace
-
 TEST_CASE("A rod bent by its end turns by the same angle in every joint") {
   const double angle = GENERATE(0.3, pi / 2, pi);
   const Quaternion along_x = turn_between(Vector3::UnitZ(), Vector3::UnitX());
@@ -109,3 +107,5 @@ TEST_CASE("A rod twisted by its end has uniform twist and the torque of its join
           Approx(torsion_modulus * second_moment * angle / free_length).epsilon(joint_angle * joint_angle));
   }
 }
+
+}  // namespace test_validation_clamps

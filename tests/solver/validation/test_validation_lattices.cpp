@@ -17,7 +17,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_lattices {
 
 using Cell = Lattice::Cell;
 using test::TimoshenkoFrame;
@@ -247,8 +247,6 @@ Scene thrown(const Lattice& p) {
   return scene;
 }
 
-}  // namespace
-
 TEST_CASE("A single beam of a frame bends, stretches and twists as Timoshenko's, whatever it is divided into") {
   const double length = 0.7, e = 1e7, g = 4e6, radius = 0.02;
   const Section s = circular_section(radius, e, g);
@@ -472,3 +470,5 @@ TEST_CASE("A lattice held at its corners sags symmetrically") {
     }
   }
 }
+
+}  // namespace test_validation_lattices

@@ -9,7 +9,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_loops {
 
 constexpr double michell_deg = 360 * 1.7320508075688772;  // 2 pi sqrt(3) of a total twist, where EI = GJ
 
@@ -120,8 +120,6 @@ Vector3 free_weight(const Scene& scene) {
   return mass * scene.gravity_m_s2;
 }
 
-}  // namespace
-
 TEST_CASE("A twisted ring stays planar below Michell's twist of 2 pi sqrt 3 and writhes above it") {
   Simulation below(disturbed_ring(40, 0.9 * michell_deg, 1e-3), overdamped_step);
   for (int i = 0; i < 600; ++i) below.relax_once();
@@ -202,3 +200,5 @@ TEST_CASE("A net held at its corners sags symmetrically") {
       CHECK(height(r, c) == Approx(height(r, 4 - c)).epsilon(1e-3).margin(1e-9));
     }
 }
+
+}  // namespace test_validation_loops

@@ -11,7 +11,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_modes {
 
 /// Gives a straight wall-clamped rod the transverse velocities `at_vertices` (in `direction`), segments moving rigidly.
 void set_transverse_velocity(Rod& rod, const VectorX& at_vertices, const Vector3& direction) {
@@ -99,8 +99,6 @@ Modes chain_modes(const BendingRod& p) {
   return {modes.values.cwiseSqrt(), test::product(vertices, modes.vectors)};
 }
 
-}  // namespace
-
 TEST_CASE("A clamped-free beam vibrates at Euler and Bernoulli's first frequency") {
   const int n = GENERATE(50, 100);
   const double dt = 5e-4;
@@ -155,3 +153,5 @@ TEST_CASE("A rod without bending stiffness swings as a hanging rope") {
   const std::complex<double> z = mode_factor(build_scene(p), shape, Vector3::UnitX(), w, dt, 1);
   CHECK(std::arg(z) / dt == Approx(w).epsilon(5e-3));
 }
+
+}  // namespace test_validation_modes

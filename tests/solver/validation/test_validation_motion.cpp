@@ -10,7 +10,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_motion {
 
 /// As the bending rods of Shao et al. 2021: N = 20, 2 m, r = 0.05 m, held by its first segment, at 20 degrees at first.
 BendingRod deck_rod() {
@@ -77,8 +77,6 @@ class Listening : public Projection {
   Projection& inner_;
 };
 
-}  // namespace
-
 TEST_CASE("A free rod falls by the sum that the steps make of gravity") {
   BendingRod p = deck_rod();
   p.clamp = Clamp::free;
@@ -143,3 +141,5 @@ TEST_CASE("Newton's residual falls quadratically to the floor of rounding") {
   }
   CHECK(quadratic > 30);  // iterations that showed it, above the floor
 }
+
+}  // namespace test_validation_motion

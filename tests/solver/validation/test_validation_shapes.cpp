@@ -7,7 +7,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_shapes {
 
 /// A wall-clamped straight rod of n segments along +x whose joints have this section and this rest turn for each length
 /// of a joint (radians per metre, local frame). Local x lies along `local_x`.
@@ -48,8 +48,6 @@ Scene scene_of(const Rod& rod, const Vector3& gravity) {
   scene.gravity_m_s2 = gravity;
   return scene;
 }
-
-}  // namespace
 
 TEST_CASE("A straight rod with a curved rest shape curls into an arc of that curvature, and stays there") {
   const double curvature = 0.9, l = 2.0 / 20;
@@ -103,3 +101,5 @@ TEST_CASE("A cantilever whose axes are askew to its weight sags sideways too, as
   CHECK(tip(simulation.rod()).y() == Approx(expected.y()).epsilon(1e-3));
   CHECK(tip(simulation.rod()).z() == Approx(expected.z()).epsilon(1e-3));
 }
+
+}  // namespace test_validation_shapes

@@ -7,7 +7,7 @@
 
 using namespace rodsweep;
 
-namespace {
+namespace test_validation_statics {
 
 constexpr double gravity = 9.81;
 
@@ -70,8 +70,6 @@ double helix_drop(int segments, double g) {
   simulation.relax();
   return (before - tip(simulation.rod()).y()) / (0.00629735 * g / gravity);
 }
-
-}  // namespace
 
 TEST_CASE("A stiff cantilever sags as the discrete law of its clamp says") {
   const Clamp clamp = GENERATE(Clamp::wall, Clamp::segment);
@@ -156,3 +154,5 @@ TEST_CASE("A hanging helix drops by Castigliano's value, with an error of second
 TEST_CASE("A finely divided hanging helix drops by Castigliano's value", "[.long]") {
   CHECK(helix_drop(480, 0.01 * gravity) == Approx(1).epsilon(3e-5));
 }
+
+}  // namespace test_validation_statics

@@ -1,4 +1,4 @@
-#include "runner/file/attempt.hpp"
+#include "runner/file/task_times.hpp"
 
 #include "runner/file/file_reading.hpp"
 

@@ -1,4 +1,4 @@
-// How long tasks took, and how far those came that a start gave up, as their file says: what is left is judged by that.
+// How long tasks took, and how far abandoned tries came: the time of what is left is estimated from these.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace rodsweep {
 
-/// The longest that a start ran a task which it gave up.
-struct Attempt {
+/// The longest abandoned try of a task.
+struct Try {
   double elapsed_s = 0;  ///< 0: none
   std::int32_t steps = 0;
 };
@@ -16,7 +16,7 @@ struct Attempt {
 /// By task.
 struct TaskTimes {
   std::vector<double> elapsed_s;  ///< of those that are done
-  std::vector<Attempt> tried;
+  std::vector<Try> tried;
 };
 
 /// Throws FileError.
