@@ -77,15 +77,14 @@ class Slurmed(SlurmCase):
         self.assertEqual([s["exit_code"] for s in status(self.path)["starts"]], [ALL_DONE])
         self.assertIn("--time-limit", status(self.path)["starts"][0]["command"])
 
-    def test_a_killed_worker_is_done_without(self):
-        number = self.submit(self.path, "--worker-timeout", "2")
+    def test_a_killed_worker_has_the_run_repeated(self):
+        number = self.submit()
         self.wait_for_tasks(20)
-        rank, pid = max(ranks_on(self.host_of(number)).items())
-        os.kill(pid, signal.SIGKILL)
+        os.kill(max(ranks_on(self.host_of(number)).items())[1], signal.SIGKILL)
         self.wait_for_end(number)
-        self.assertIn(f"rank {rank} on", self.log())
+        self.assertIn("sweep.sbatch: the run ended with code 137", self.log())
         self.assert_as_undisturbed()
-        self.assertEqual([s["exit_code"] for s in status(self.path)["starts"]], [ALL_DONE])
+        self.assertEqual([s["exit_code"] for s in status(self.path)["starts"]], [None, ALL_DONE])
 
     def test_a_cancelled_job_goes_on_when_it_is_submitted_again(self):
         number = self.submit()
@@ -176,7 +175,8 @@ class Nodes(SlurmCase):
             self.addCleanup(os.kill, pid, signal.SIGCONT)
         subprocess.run(["scontrol", "update", "NodeName=" + host.name, "State=DOWN", "Reason=test"], check=True)
         self.wait_for_end(number)
-        self.assertIn("is being written by another run: its end is waited for", self.log())
+        self.assertIn("is being written by another run", self.log())
+        self.assertIn("sweep.sbatch: the run ended with code 2", self.log())
         self.assert_whole(self.path)
         self.assert_same_results("longer.h5", self.path)
 

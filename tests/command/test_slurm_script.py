@@ -27,6 +27,7 @@ class SlurmScript(unittest.TestCase):
             file.write('{"kind": "sweep"}')
         stand_in("squeue", "date -d '+1 hour' +%FT%T")
         stand_in("scontrol", 'echo "scontrol $*"')
+        stand_in("sleep", 'echo "sleep $*"')
         stand_in("mpirun", 'echo "mpirun $*"; exit ${CODE:-0}')
         self.program = os.path.abspath("rodsweep")
 
@@ -54,6 +55,14 @@ class SlurmScript(unittest.TestCase):
         self.assertEqual((said.count("mpirun "), said.count("--retry-failed")), (10, 1))
         for code in (0, 2, 3, 4, 5):
             self.assertEqual(self.run_script(code=code).count("mpirun "), 1)
+
+    def test_a_requeued_job_waits_for_a_node_that_still_writes(self):
+        said = self.run_script(code=2, SLURM_RESTART_COUNT=1)
+        self.assertEqual((said.count("mpirun "), said.count("sleep 30")), (10, 10))
+        self.assertNotIn("sleep", self.run_script(code=2))
+
+    def test_exit_codes_are_those_of_the_program_whatever_the_user_has_set(self):
+        self.assertIn("--mca orte_enable_recovery 0", self.run_script(OMPI_MCA_orte_enable_recovery=1))
 
     def test_an_array_is_shards(self):
         self.assertIn("-o out-3of16.h5 --shard 3/16", self.array(3, 1, 16))
