@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
   const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
-  const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
+  const auto run_of_task = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
   const auto seconds = hdf5::read_all<double>(file.id(), "/timing/tasks/elapsed_s");
   const hdf5::RowDataset messages(file.id(), "/tasks/message");  // kept open: its chunks may be compressed
   summary.tasks = static_cast<std::int64_t>(states.size());
@@ -26,7 +26,7 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
     if (states[task] == 0) continue;
     ++summary.done;
     ++summary.done_by_outcome[outcomes.at(task)];
-    if (const auto run = static_cast<std::size_t>(attempts.at(task)); run < summary.runs.size()) {
+    if (const auto run = static_cast<std::size_t>(run_of_task.at(task)); run < summary.runs.size()) {
       ++summary.runs[run].tasks;
       if (seconds.at(task) > 0) summary.runs[run].task_seconds += seconds[task];  // NaN: not measured
     }
@@ -40,17 +40,17 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
 void find_begun(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
   const char* path = "/timing/tasks/tries";
   if (!hdf5::exists(file.id(), path)) return;  // of a program that did not count them
-  const auto starts = hdf5::read_all<std::uint8_t>(file.id(), path);
+  const auto tries = hdf5::read_all<std::uint8_t>(file.id(), path);
   std::vector<std::size_t> begun;
   for (std::size_t task = 0; task < states.size(); ++task)
-    if (states[task] == 0 && starts.at(task) > 0) begun.push_back(task);
+    if (states[task] == 0 && tries.at(task) > 0) begun.push_back(task);
   if (begun.empty()) return;
-  const auto attempts = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
+  const auto run_of_task = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
   const auto ranks = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/rank");
   const hdf5::RowDataset hosts(file.id(), "/timing/tasks/host");
   for (const std::size_t task : begun)
     summary.begun.push_back(
-        {static_cast<std::int64_t>(task), attempts.at(task), ranks.at(task), hdf5::read_text_row(hosts, task)});
+        {static_cast<std::int64_t>(task), run_of_task.at(task), ranks.at(task), hdf5::read_text_row(hosts, task)});
 }
 
 void find_momentum_residual(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {

@@ -27,7 +27,7 @@ const char* to_string(TaskOutcome outcome);
 /// The outcome of that name; nothing of another.
 std::optional<TaskOutcome> outcome_called(const std::string& name);
 
-/// Whether another attempt, elsewhere or with more time or memory, may end otherwise.
+/// Whether another try, elsewhere or with more time or memory, may end otherwise.
 bool may_change(TaskOutcome outcome);
 
 }  // namespace rodsweep

@@ -180,10 +180,10 @@ class SweepFile:
         """Whether any of these tasks was timed in a run with more ranks than cores."""
         runs = self.runs()
         marked = [bool(run.get("oversubscribed", 0)) for run in runs]
-        attempts = self.h5["/timing/tasks/run"][:][tasks] if self.has("/timing/tasks/run") else None
-        if attempts is None:
+        numbers = self.h5["/timing/tasks/run"][:][tasks] if self.has("/timing/tasks/run") else None
+        if numbers is None:
             return any(marked)
-        return any(0 <= a < len(marked) and marked[a] for a in set(attempts.tolist()))
+        return any(0 <= n < len(marked) and marked[n] for n in set(numbers.tolist()))
 
     def timed_apart(self, tasks):
         """Mask of the tasks of which some guesses were timed in another run than the others (run --extend)."""
