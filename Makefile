@@ -49,7 +49,7 @@ help:
 	@echo 'make test-cluster  sweeps under a real Slurm and over hosts that die or are cut off, on this machine (as root, some minutes)'
 	@echo 'make test-arm      tests of the solver, but for CG, and the networks for 64-bit ARM, run in qemu, in $(BUILD)-arm/'
 	@echo 'make bench         build and run the benchmarks'
-	@echo 'make install       PREFIX=$(PREFIX): program, jobs, analysis scripts, manual page, completion; make uninstall'
+	@echo 'make install       PREFIX=$(PREFIX): program, jobs, analysis scripts, completion in bash; make uninstall'
 	@echo 'make build         build only, into $(BUILD)/'
 	@echo 'make sanitize      unit tests under the address and undefined-behaviour sanitizers, in $(BUILD)-sanitize/'
 	@echo 'make fuzz          look for jobs that crash their reader, FUZZ_SECONDS=$(FUZZ_SECONDS) (tests/fuzz/README.md)'

@@ -1,11 +1,10 @@
 // The program. Parses, starts MPI and PETSc where a command needs them, reports what went wrong, and exits.
 //
-// An error that all ranks share (a bad job, an existing file) is said once and ends all of them with exit code 2. An
-// error of one rank alone (a full disk) is said by that rank, which then aborts the others: they would wait for it for
-// ever; the file keeps what was finished, so this is exit code 4. Commands that only read a file do so in a copy of
-// this process, since HDF5 crashes on some damaged ones. What is printed on stdout and does not arrive is an error too
-// (a full disk, a closed descriptor), but it ends nothing: a sweep goes on, and its results are in their file. Only a
-// reader that has left (`| head`) is none: then the program ends as if the signal SIGPIPE had ended it, without a word.
+// An error that all ranks share (a bad job, an existing file) is printed once and ends all of them. An error of one rank
+// alone (a full disk) is printed by that rank, which then aborts the others, since they would wait for it for ever; the
+// file keeps every finished task. Output on stdout that is lost (a full disk, a closed descriptor) is an error, but it
+// stops nothing: a sweep goes on, and its results are in their file. If the reader of stdout has left (`| head`), the
+// program ends as if by SIGPIPE, without a message. exit_codes.hpp lists the exit codes.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>

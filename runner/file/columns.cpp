@@ -88,8 +88,8 @@ std::vector<Column> all_columns() {
       column<&R::final_residual>("/solves/final_residual", Rows::solve, guess, "1",
                                  "||b - A x||_2 / ||b||_2 recomputed after the tight solve"),
       column<&R::solve_outcome>("/solves/outcome", Rows::solve, guess, "1",
-                         "outcome of the tight solve: 0 not run, 1 converged, 2 zero right-hand side, 3 "
-                         "iteration limit, 4 diverged, 5 indefinite, 6 not a number"),
+                                "outcome of the tight solve: 0 not run, 1 converged, 2 zero right-hand side, 3 "
+                                "iteration limit, 4 diverged, 5 indefinite, 6 not a number"),
       column<&R::start_matvecs>("/solves/start_matvecs", Rows::solve, guess, "1",
                                 "products with A before the first iteration: those of the guess itself, and "
                                 "one for the residual if it is nonzero and its residual not known; -1 not run"),

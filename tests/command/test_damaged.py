@@ -10,7 +10,7 @@ import subprocess
 import unittest
 
 import h5py
-from program import ALL_DONE, RODSWEEP, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, rodsweep, sweep
+from program import ALL_DONE, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, rodsweep, sweep
 
 JOB = os.path.join("jobs", "small.json")
 
@@ -144,25 +144,6 @@ class Left(Case):
         self.assertNotIn("unfinished", rodsweep("status", "made.h5").stderr)
         write("made.h5.unfinished-elsewhere-1-0123abcd", b"half")
         self.assertIn("unless that program still runs on the host in its name", rodsweep("status", "made.h5").stderr)
-
-
-class Copies(Case):
-    """Commands that read do so in a copy of the process, which is not to be seen."""
-
-    def test_a_signal_to_the_program_ends_both(self):
-        path = sweep("watched", samples=1)
-        with h5py.File(path, "r+") as file:  # as if it ran
-            file["tasks/state"][:] = 0
-        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
-            reader, writer = os.pipe()
-            process = subprocess.Popen([RODSWEEP, "query", path, "--csv"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                       stderr=subprocess.DEVNULL, pass_fds=[writer])
-            os.close(writer)
-            process.send_signal(number)
-            process.communicate(timeout=30)
-            with os.fdopen(reader) as both:
-                self.assertEqual(both.read(), "")  # ends when neither has it open
-            self.assertIn(process.returncode, (ALL_DONE, -number))
 
 
 if __name__ == "__main__":

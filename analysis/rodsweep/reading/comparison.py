@@ -7,6 +7,7 @@ are known by the path in the job.
 """
 
 import json
+import re
 from dataclasses import dataclass
 
 import h5py
@@ -105,15 +106,23 @@ def _identities(file, by, one, other):
         head = f"{file.job().get('seed')} "
     texts = [f"{head}{sample}" for sample in file.sample]
     for task, own in enumerate(file.own_guess):
-        texts[task] += f" {file.guesses[own]}" if own >= 0 else ""
+        if own >= 0:
+            texts[task] += f" {_label_key(file, own) if by == 'everything' else file.guesses[own]}"
     for name in names:
         parameter = file.parameters.get(name)
-        if parameter is None or name.startswith("guesses["):
+        if parameter is None:
             continue
+        guess, key = _of_guess(name)
         for task, (value, applies) in enumerate(zip(parameter.values.tolist(), parameter.applies())):
-            if applies:
-                texts[task] += f"\n{name}={value!r}"
+            if applies and (guess is None or guess == file.own_guess[task]):
+                texts[task] += f"\n{key}={value!r}"
     return texts
+
+
+def _of_guess(name):
+    """(place of the guess that a parameter is of, None for none; its name without that place)."""
+    found = re.fullmatch(r"guesses\[(\d+)\](.*)", name)
+    return (int(found.group(1)), found.group(2)) if found else (None, name)
 
 
 def _guess_places(one, other, by):
@@ -214,8 +223,9 @@ class Comparison:
                 self.left_out.append(path)
             return
         one, other = self.one.h5[path], self.other.h5[path]
-        by_guess = path.startswith(("/tasks/", "/solves/")) and len(self.one.guesses) and len(one.shape) > 1 and one.shape[1] == len(self.one.guesses) and \
-            other.shape[1] == len(self.other.guesses)
+        by_guess = path.startswith(("/tasks/", "/solves/")) and all(
+            len(file.guesses) and column.ndim > 1 and column.shape[1] == len(file.guesses)
+            for file, column in ((self.one, one), (self.other, other)))
         if one.dtype.kind != other.dtype.kind or one.shape[2 if by_guess else 1:] != other.shape[2 if by_guess else 1:]:
             self.left_out.append(path)
             return
