@@ -4,8 +4,12 @@
 films; the scripts of analysis/, installed as `rodsweep-summary` and so on, are made of these.
 """
 
-from rodsweep.reading.errors import UserError
-from rodsweep.results import Results
+try:
+    from rodsweep.reading.errors import UserError
+    from rodsweep.results import Results
+except ImportError as error:
+    raise ImportError(f"rodsweep needs {error.name}: apt-get install python3-h5py python3-scipy, or pip install h5py scipy",
+                      name=error.name) from None
 
 __version__ = "1.0.0"    # that of CMakeLists.txt (tested)
 __all__ = ["Results", "UserError", "open"]

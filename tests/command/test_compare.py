@@ -83,6 +83,14 @@ class Compare(Case):
         said = self.compare(a, b, "--by", "parameters", code=TASKS_FAILED).stdout
         self.assertIn("outcomes: 8 changed\n  task 0 (of B 0): ok in A, iteration_limit in B\n", said)
 
+    def test_a_loop_is_known_by_its_guess_wherever_the_job_lists_it(self):
+        def loops(name, *before, sizes):
+            return sweep(name, evaluation="closed_loop", samples=2,
+                         guesses=[*before, {"subspace": {"size": {"grid": sizes}, "label": "subspace"}}])
+        found = self.found(loops("loops", "zero", sizes=[2, 3]), loops("turned", "linear", "zero", sizes=[3, 2, 4]),
+                           "--by", "parameters")["tasks"]
+        self.assertEqual((found["both"], found["only_a"], found["differing"]), (16, 0, 0))
+
     def test_intervals_are_those_of_the_analysis(self):
         a = sweep("none", **MANY, solve={"preconditioner": "none"})
         b = sweep("jacobi", **MANY, solve={"preconditioner": "jacobi"})
