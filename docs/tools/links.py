@@ -6,7 +6,7 @@
 Every relative link leads to a file that is there, and to a heading of it; every page is in the navigation
 (mkdocs.yml) and every entry of that is a page; rows of tables have as many cells as their head, as GitHub counts them,
 where a | within code ends a cell too; lists have an empty line before them, which the site's Markdown
-wants. What is wrong is printed with its line, and the exit code is 1.
+wants; no sentence has more than 60 words and no paragraph more than 900 characters. What is wrong is printed with its line, and the exit code is 1.
 """
 
 import os
@@ -19,6 +19,9 @@ LINK = re.compile(r"(?<!\\)\[(?:[^][]|\[[^][]*\])*\]\(([^)\s]+)(?:\s+\"[^\"]*\")
 FENCE = re.compile(r"^(```|~~~)")
 ITEM = re.compile(r"^(?:[-*] |\d+\. )")
 HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*#*$")
+SENTENCE_END = re.compile(r"(?<=[.!?])[)*”]*\s+")
+LINK_TARGET = re.compile(r"(!?)\[([^]]*)\]\([^)]*\)")
+MOST_WORDS, MOST_CHARACTERS = 60, 900
 BAR = re.compile(r"(?<!\\)\|")
 
 
@@ -116,6 +119,28 @@ def wrong_lists(root, page):
             words = True
 
 
+def paragraphs(root, page):
+    """(number of its first line, text without links' targets and pictures) of every paragraph and item."""
+    first, words = 0, []
+    for number, line in [*lines_of(root, page), (0, "")]:
+        apart = not line.strip() or line.startswith(("#", "|"))
+        if words and (apart or ITEM.match(line.lstrip())):
+            yield first, " ".join(words)
+            words = []
+        if not apart:
+            first = first if words else number
+            words += LINK_TARGET.sub(lambda link: "" if link.group(1) else link.group(2), line).split()
+
+
+def wrong_lengths(root, page):
+    for number, text in paragraphs(root, page):
+        longest = max(len(sentence.split()) for sentence in SENTENCE_END.split(text))
+        if longest > MOST_WORDS:
+            yield f"{page}:{number}: a sentence of {longest} words; at most {MOST_WORDS}"
+        if len(text) > MOST_CHARACTERS:
+            yield f"{page}:{number}: a paragraph of {len(text)} characters; at most {MOST_CHARACTERS}"
+
+
 def navigation(root):
     with open(os.path.join(root, "mkdocs.yml"), encoding="utf-8") as file:
         nav = file.read().partition("\nnav:\n")[2]
@@ -135,7 +160,8 @@ def wrong_navigation(root):
 def check(root):
     known, wrong = {}, []
     for page in pages(root):
-        wrong += [*wrong_links(root, page, known), *wrong_tables(root, page), *wrong_lists(root, page)]
+        wrong += [*wrong_links(root, page, known), *wrong_tables(root, page), *wrong_lists(root, page),
+                  *wrong_lengths(root, page)]
     return wrong + list(wrong_navigation(root))
 
 

@@ -64,6 +64,12 @@ class Links(unittest.TestCase):
         self.assertIn("docs/page.md:10: a list begins", self.check(PAGE + "Words:\n- one\n- two\n")[0])
         self.assertEqual(self.check(PAGE + "Words:\n\n- one\n  more\n- two\n"), [])
 
+    def test_sentences_and_paragraphs_have_a_longest_length(self):
+        self.assertEqual(self.check(PAGE + "\n" + "word " * 60 + "end. " + "[page](page.md) " * 60 + "\n"),
+                         ["docs/page.md:10: a sentence of 61 words; at most 60"])
+        self.assertEqual(self.check(PAGE + "\n" + "A sentence. " * 75 + "\n\n- " + "Another. " * 99 + "\n"), [])
+        self.assertIn("docs/page.md:10: a paragraph of 911 characters", self.check(PAGE + "\n" + "A sentence. " * 76 + "\n")[0])
+
     def test_this_repository(self):
         self.assertEqual(links.check(ROOT), [])
 
