@@ -105,9 +105,10 @@ def _identities(file, by, one, other):
         names = sorted({*one.parameters, *other.parameters})
         head = f"{file.job().get('seed')} "
     texts = [f"{head}{sample}" for sample in file.sample]
+    guesses = _guess_keys(file, by)
     for task, own in enumerate(file.own_guess):
         if own >= 0:
-            texts[task] += f" {_label_key(file, own) if by == 'everything' else file.guesses[own]}"
+            texts[task] += f" {guesses[own]}"
     for name in names:
         parameter = file.parameters.get(name)
         if parameter is None:
@@ -126,17 +127,17 @@ def _of_guess(name):
 
 
 def _guess_places(one, other, by):
-    entries = [{_label_key(file, k): k for k in range(len(file.guesses))} for file in (one, other)]
-    if by == "parameters":
-        return [other.guesses.index(label) if label in other.guesses else -1 for label in one.guesses]
-    return [entries[1].get(_label_key(one, k), -1) for k in range(len(one.guesses))]
+    places = {key: place for place, key in enumerate(_guess_keys(other, by))}
+    return [places.get(key, -1) for key in _guess_keys(one, by)]
 
 
-def _label_key(file, place):
-    """A guess's label with its entry in the job, where the job lists its guesses one by one."""
+def _guess_keys(file, by):
+    """What a guess is known by: its label, and unless by parameters its entry in the job, where the job lists its
+    guesses one by one."""
     listed = file.job().get("guesses")
-    entry = listed[place] if isinstance(listed, list) and len(listed) == len(file.guesses) else None
-    return file.guesses[place], json.dumps(entry, sort_keys=True)
+    if by == "parameters" or not isinstance(listed, list) or len(listed) != len(file.guesses):
+        return file.guesses
+    return [f"{label} {json.dumps(entry, sort_keys=True)}" for label, entry in zip(file.guesses, listed)]
 
 
 class Comparison:
