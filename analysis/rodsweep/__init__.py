@@ -7,7 +7,9 @@ films; the scripts of analysis/, installed as `rodsweep-summary` and so on, are 
 try:
     from rodsweep.reading.errors import UserError
     from rodsweep.results import Results
-except ImportError as error:
+except ModuleNotFoundError as error:
+    if error.name.startswith("rodsweep"):
+        raise
     raise ImportError(f"rodsweep needs {error.name}: apt-get install python3-h5py python3-scipy, or pip install h5py scipy",
                       name=error.name) from None
 

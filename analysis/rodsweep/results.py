@@ -6,12 +6,10 @@ in the `attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "mi
 dataset ("units", "long_name").
 """
 
-import importlib
-
 import numpy as np
 
 from rodsweep.reading import blocks, conditions, groups, measures, tidy
-from rodsweep.reading.errors import SweepFileError, UserError, not_found
+from rodsweep.reading.errors import SweepFileError, UserError, library, not_found
 from rodsweep.reading.hdf5 import as_text
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -73,7 +71,7 @@ class Results:
     def columns(self, level="tasks"):
         """Names, units and meanings of all columns of a level: "tasks", "solves" or "steps"."""
         table = self._table(level)
-        return _pandas().DataFrame([(name, *table.about(name)) for name in table.names],
+        return library("pandas").DataFrame([(name, *table.about(name)) for name in table.names],
                                    columns=["column", "unit", "meaning"]).set_index("column")
 
     def tasks(self, columns=None, where=()):
@@ -122,9 +120,9 @@ class Results:
         for block in blocks.blocks(self.file, sims, by, newton):
             settings = {name: block.settings[name] for name in own}
             records += [settings | record for record in blocks.records(self.file, block, guesses, tolerances, newton)]
-        frame = _pandas().DataFrame(records, columns=[*own, *blocks.COLUMNS]).replace("", np.nan)
+        frame = library("pandas").DataFrame(records, columns=[*own, *blocks.COLUMNS]).replace("", np.nan)
         if by is not None and self.file.parameter(by).numeric:
-            frame[by] = _pandas().to_numeric(frame[by])
+            frame[by] = library("pandas").to_numeric(frame[by])
         frame.attrs["missing"] = self.missing
         return frame
 
@@ -160,7 +158,7 @@ class Results:
             yield self._part(table, names, gathered)
 
     def _part(self, table, names, gathered):
-        frame = _pandas().DataFrame({name: _column(table, name, [block[name] for block in gathered]) for name in names})
+        frame = library("pandas").DataFrame({name: _column(table, name, [block[name] for block in gathered]) for name in names})
         about = {name: table.about(name) for name in names}
         frame.attrs = {"unit": {name: unit for name, (unit, _) in about.items() if unit},
                        "meaning": {name: meaning for name, (_, meaning) in about.items() if meaning},
@@ -189,7 +187,7 @@ class Results:
                 coordinates.update({"xyz": list("xyz")} if axes == ("xyz",) else {})
             variables[name] = variable(name, (row, *axes), _measured(values, name))
         attributes = {"missing": self.missing, "job": self.job.get("name", ""), "file": self.file.path}
-        return _library("xarray").Dataset(variables, coordinates, attributes)
+        return library("xarray").Dataset(variables, coordinates, attributes)
 
 
 def _column(table, name, columns):
@@ -205,7 +203,7 @@ def _column(table, name, columns):
     codes[conditions.absent(shared)] = -1
     if len(categories) and categories[0] == "":
         categories, codes = categories[1:], np.maximum(codes - 1, -1)
-    return _pandas().Categorical.from_codes(codes[index], categories)
+    return library("pandas").Categorical.from_codes(codes[index], categories)
 
 
 def _measured(values, name):
@@ -222,14 +220,3 @@ def _present(values):
 
 def _listed(texts):
     return [texts] if isinstance(texts, str) else list(texts)
-
-
-def _pandas():
-    return _library("pandas")
-
-
-def _library(name):
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        raise UserError(f"{name} is not installed: apt-get install python3-{name}, or pip install {name}") from None

@@ -176,6 +176,12 @@ class Refusals(Opened):
                               env={**os.environ, "PYTHONPATH": synthetic.ANALYSIS}).stdout
         self.assertIn("pandas is not installed: apt-get install python3-pandas", said)
 
+    def test_without_h5py_importing_says_what_to_install(self):
+        code = "import sys; sys.modules['h5py'] = None; import rodsweep"
+        said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False,
+                              env={**os.environ, "PYTHONPATH": synthetic.ANALYSIS}).stderr
+        self.assertIn("rodsweep needs h5py: apt-get install python3-h5py", said.splitlines()[-1])
+
 
 if __name__ == "__main__":
     unittest.main()

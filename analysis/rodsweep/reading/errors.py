@@ -1,6 +1,7 @@
 """What the user can put right: a message for him, which commandline.run() prints."""
 
 import difflib
+import importlib
 import re
 
 LISTED = 12       # names that a message lists
@@ -19,6 +20,14 @@ class SweepFileError(UserError):
 
 class KeyNotFound(UserError):
     """A name or value that the user asked for and that the file does not have."""
+
+
+def library(name):
+    """The module of a library that only some of the package needs; a UserError that says how to install it."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise UserError(f"{name} is not installed: apt-get install python3-{name}, or pip install {name}") from None
 
 
 def not_found(what, name, known, all_by=""):

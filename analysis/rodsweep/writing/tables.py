@@ -1,9 +1,7 @@
 """Blocks of columns as CSV or Parquet, written by pandas. Missing values (-1 of whole numbers, NaN, empty texts) are
 empty fields in CSV and null in Parquet."""
 
-import importlib
-
-from rodsweep.reading.errors import UserError
+from rodsweep.reading.errors import UserError, library
 
 
 def write_csv(out, names, blocks):
@@ -20,7 +18,7 @@ def write_csv(out, names, blocks):
 def write_parquet(out, names, blocks):
     """Writes all blocks to a binary file at once, so they must fit in memory; returns the number of rows. UserError
     without pyarrow, which pandas needs for this."""
-    pandas = _pandas()
+    pandas = library("pandas")
     frame = pandas.concat([_frame(names, None), *(_frame(names, block) for block in blocks)], ignore_index=True)
     try:
         frame.to_parquet(out, index=False)
@@ -31,20 +29,13 @@ def write_parquet(out, names, blocks):
 
 def _frame(names, block):
     """A block as a frame; None: no rows."""
-    return _pandas().DataFrame({name: [] if block is None else _column(block[name].array()) for name in names})
+    return library("pandas").DataFrame({name: [] if block is None else _column(block[name].array()) for name in names})
 
 
 def _column(values):
     if values.dtype.kind == "i":
-        return _pandas().arrays.IntegerArray(values, values == -1)
+        return library("pandas").arrays.IntegerArray(values, values == -1)
     if values.dtype.kind == "U":
         values = values.astype(object)
         values[values == ""] = None
     return values
-
-
-def _pandas():
-    try:
-        return importlib.import_module("pandas")
-    except ImportError:
-        raise UserError("pandas is not installed: apt-get install python3-pandas, or pip install pandas") from None
