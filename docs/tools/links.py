@@ -5,8 +5,9 @@
 
 Every relative link leads to a file that is there, and to a heading of it; every page is in the navigation
 (mkdocs.yml) and every entry of that is a page; rows of tables have as many cells as their head, as GitHub counts them,
-where a | within code ends a cell too; lists have an empty line before them, which the site's Markdown
-wants; no sentence has more than 60 words and no paragraph more than 900 characters. What is wrong is printed with its line, and the exit code is 1.
+where a | within code ends a cell too; lists have an empty line before them, which the site's Markdown wants; no
+sentence has more than 60 words and no paragraph more than 900 characters. What is wrong is printed with its line, and
+the exit code is 1.
 """
 
 import os
@@ -20,7 +21,7 @@ FENCE = re.compile(r"^(```|~~~)")
 ITEM = re.compile(r"^(?:[-*] |\d+\. )")
 HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*#*$")
 SENTENCE_END = re.compile(r"(?<=[.!?])[)*”]*\s+")
-LINK_TARGET = re.compile(r"(!?)\[([^]]*)\]\([^)]*\)")
+LINK_TEXT = re.compile(r"(!?)\[([^]]*)\]\([^)]*\)")
 MOST_WORDS, MOST_CHARACTERS = 60, 900
 BAR = re.compile(r"(?<!\\)\|")
 
@@ -44,7 +45,7 @@ def lines_of(root, page):
 
 def anchor(heading):
     """As GitHub makes it of a heading's text."""
-    text = re.sub(r"!?\[([^]]*)\]\([^)]*\)", r"\1", heading)
+    text = LINK_TEXT.sub(r"\2", heading)
     text = re.sub(r"[^\w\- ]", "", re.sub(r"<!--.*?-->|<[^>]+>", "", text).lower())
     return text.strip().replace(" ", "-")
 
@@ -129,7 +130,7 @@ def paragraphs(root, page):
             words = []
         if not apart:
             first = first if words else number
-            words += LINK_TARGET.sub(lambda link: "" if link.group(1) else link.group(2), line).split()
+            words += LINK_TEXT.sub(lambda link: "" if link.group(1) else link.group(2), line).split()
 
 
 def wrong_lengths(root, page):
