@@ -44,13 +44,6 @@ def _loss(model):
     return ("mse of both" if model.network.get("moves") else "mse of Δλ") if loss == "mse" else loss.replace("_", " ")
 
 
-def _processor(model):
-    processor = model.network["processor"].replace("_", " ")
-    if processor != "sweeps":
-        return processor
-    return "gated sweeps" if model.network.get("recurrence", "gated") == "gated" else "linear sweeps"
-
-
 def _base(model):
     base = model.network["base"]
     return base + (f" {model.network['base_size']}" if base in ("subspace", "regression") else "")
@@ -72,7 +65,7 @@ SETTINGS = {    # what a panel is about, and how a model's value of it is read; 
     "loss": _loss,
     "best length": lambda model: "on" if model.network["best_length"] else "off",
     "global state": lambda model: "on" if model.network.get("globals") else "off",
-    "processor": _processor,
+    "processor": lambda model: model.network["processor"].replace("_", " "),
     "guess beneath": _base,
     "encoding": lambda model: model.network["encoding"],
     "Newton iterations learned": _key("training", "systems", default=None),
@@ -237,7 +230,7 @@ ORDERED = ("training simulations", "message-passing steps", "latent size", "hidd
 
 def described(model):
     network = model.network
-    return (f"encoding {network['encoding']}, {_processor(model)} of {network.get('steps', '?')} steps, latent size "
+    return (f"encoding {network['encoding']}, {SETTINGS['processor'](model)} of {network.get('steps', '?')} steps, latent size "
             f"{network['latent']}, {_loss(model)}, {model.learned_from} simulations")
 
 

@@ -22,8 +22,6 @@ from typing import NamedTuple
 JOBS = os.path.join(os.path.dirname(__file__), "../../jobs")
 ITS_OWN = None    # the value of the training job itself
 
-SWEEPS = {"network.processor": "sweeps", "network.recurrence": "gated"}
-LINEAR = {"network.processor": "sweeps", "network.recurrence": "linear"}
 RODS = {
     "factors_16": {},
     "factors_32": {"network.latent": 32},
@@ -31,10 +29,6 @@ RODS = {
     "factors_16_none": {"network.base": "none"},
     "factors_16_subspace": {"network.base": "subspace", "network.base_size": 10},
     "factors_16_as_it_is": {"network.best_length": False},
-    "linear_16": LINEAR,
-    "linear_32": {**LINEAR, "network.latent": 32},
-    "gated_16": SWEEPS,
-    "gated_32": {**SWEEPS, "network.latent": 32},
     "factors_16_in_the_loop": {"training.loss": "in_the_loop"},
     "factors_16_rate_2e-3": {"training.rate": 2e-3},
     "factors_16_rate_8e-3": {"training.rate": 8e-3},
@@ -60,7 +54,6 @@ LATTICES = {
 def of_the_paper(epochs):
     """Variants of its network: so many passes over 256 simulations of 50 steps, or as many steps on other data."""
     every = {"training.systems": "all", "training.epochs": epochs // 4}
-    scaled = {"network.moves": False, "training.loss": "energy"}    # systems say nothing of moves, and have this loss
     return {
         "base": {},
         **{f"size_{n}": {"training_simulations": n, "training.epochs": epochs * 256 // n} for n in (8, 16, 32, 64, 128)},
@@ -78,18 +71,13 @@ def of_the_paper(epochs):
         "globals": {"network.globals": True},
         "globals_energy": {"network.globals": True, "network.moves": False, "training.loss": "energy"},
         "globals_in_the_loop": {"network.globals": True, "network.moves": False, "training.loss": "in_the_loop"},
-        "sweeps_gated": {**SWEEPS, "network.moves": False},
-        "sweeps_linear": {**LINEAR, "network.moves": False},
         "base_extrapolation": {"network.base": "extrapolation"},
         "base_regression": {"network.base": "regression", "network.base_size": 6},
         "base_subspace": {"network.base": "subspace", "network.base_size": 10},
-        "encoding_physics": {"network.encoding": "physics"},
-        "encoding_system": {**scaled, "network.encoding": "system"},
-        "encoding_canonical": {**scaled, "network.encoding": "canonical"},
+        "encoding_linear_system": {"network.moves": False, "training.loss": "energy",    # it has no moves, and this loss
+                                   "network.encoding": "linear_system"},
         "all_paper": every,
-        "all_deck": {**every, "network.encoding": "deck"},
-        "all_physics": {**every, "network.encoding": "physics"},
-        "all_system": {**every, **scaled, "network.encoding": "system"},
+        "all_paper_residual": {**every, "network.encoding": "paper_residual"},
         "data_100_steps": {"data": "100", "training.epochs": epochs // 2},
         "data_0.01_s": {"data": "0.01_s"},
         "data_0.005_s": {"data": "0.005_s"},
@@ -125,7 +113,7 @@ def ablation(scene, epochs, without=()):
 
 # On bending rods they say the same as their neighbours; helices have twice as many segments, and take twice as long.
 NOT_ON_HELICES = {"size_16", "size_64", "steps_2", "steps_8", "hidden_layers_3", "rate_5e-4", "turned_3", "best_length",
-                  "globals_in_the_loop", "sweeps_linear", "base_extrapolation", "encoding_canonical", "all_paper"}
+                  "globals_in_the_loop", "base_extrapolation", "encoding_linear_system", "all_paper"}
 
 
 FAMILIES = {

@@ -1,7 +1,7 @@
-// Frames in which a linear system looks the same however the scene is turned, mirrored, or its segments' frames are
-// rolled about their own axes (which nobody can tell of a circular section).
+// Frames in which a linear system does not depend on how the scene is turned or mirrored, or how its segments' frames are
+// rolled about their axes (which has no meaning for a circular section).
 //
-// A joint's rows are in its own frame, whose z is along the rod; what is arbitrary is the roll about z, and the hand.
+// A joint's rows are in its own frame, whose z is along the rod; the roll about z and the handedness are arbitrary.
 // With transverse pairs (x, y) as complex numbers, the frame of joint k is rolled by the unit number t_k:
 //   along a tree  t_k = t_parent conj(u),  u = -(B_00 + B_11 + i (B_10 - B_01)) / |.|,  B the transverse bend block of
 //                 the coupling of k with its parent: frames are carried along the rod without roll
@@ -9,12 +9,12 @@
 //                 sqrt(sum (t v_k)^2), towards sum t v_k
 //   mirrored      across the xz plane, where the tree's hand is negative; rows of bend and twist are those of an axis,
 //                 which a mirror turns the other way
-// Where from, is an Alignment:
+// An Alignment says what v_k and the hand are taken from:
 //   residual      v_k of stretch-shear, and of bending a quarter turn on (in planar motion in and across its plane);
 //                 the hand is the sum of twists, or where there are none, that sum t v_k is on the left of x
 //   matrix        v_k = (B_35, B_45) of the coupling, by which the joint is bent against its parent, and the hand is
 //                 that in which they turn along the tree, sum Im conj(t v_parent) t v_k: the frames of a matrix
-//                 whatever its residual. A tree that is straight, or flat, takes its axis, or its hand, from the
+//                 for any residual. The axis of a straight tree, and the hand of a flat one, are taken from the
 //                 residual.
 #pragma once
 
@@ -57,7 +57,7 @@ class CanonicalFrames {
   struct Pair {
     double x = 0, y = 0;  ///< of a complex number
   };
-  /// Sums over a tree: of a vector, of its square, of its absolute square, and what tells the hand.
+  /// Sums over a tree: of a vector, of its square, of its absolute square, and of the terms that give the hand.
   struct Moments {
     Pair first, second;
     double size = 0, hand = 0;

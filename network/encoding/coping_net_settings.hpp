@@ -1,4 +1,4 @@
-// What a COPINGNet is made of, apart from its weights.
+// The structure of a COPINGNet: all but its weights.
 #pragma once
 
 #include "network/encoding/graph_encoding.hpp"
@@ -7,15 +7,8 @@ namespace rodsweep {
 
 /// The part between the features and the corrections.
 enum class Processor {
-  sweeps,          ///< two recurrent passes over the tree (network/processor/sweeps.hpp)
   factors,         ///< factors of the matrix, and a solve with them (network/processor/factor_sweeps.hpp)
   message_passing  ///< hops over the graph (network/processor/message_passing.hpp)
-};
-
-/// What carries the sweeps' states from joint to joint.
-enum class Recurrence {
-  gated,  ///< gated recurrent units (network/layers/gru.hpp)
-  linear  ///< in the state (network/layers/linear_recurrence.hpp): cheaper
 };
 
 /// Which couplings of the matrix factors have: those of the forest of joints (network/processor/factor_sweeps.hpp), or
@@ -27,22 +20,22 @@ enum class Couplings { tree, all };
 enum class BaseGuess { none, extrapolation, regression, subspace };
 
 struct CopingNetSettings {
-  Encoding encoding = Encoding::system;
-  Processor processor = Processor::sweeps;
-  BaseGuess base = BaseGuess::subspace;
-  int base_size = 10;                         ///< regression, subspace
-  int latent = 32;                            ///< width of hidden layers and states
-  Recurrence recurrence = Recurrence::gated;  ///< sweeps
-  Couplings couplings = Couplings::tree;      ///< factors
-  int steps = 6;                              ///< message_passing: hops
-  int hidden_layers = 1;                      ///< message_passing: of every MLP
-  bool globals = false;                       ///< message_passing: with a state of the whole graph
+  Encoding encoding = Encoding::linear_system;
+  Processor processor = Processor::factors;
+  BaseGuess base = BaseGuess::regression;
+  int base_size = 6;                      ///< regression, subspace
+  int latent = 16;                        ///< width of hidden layers and states
+  Couplings couplings = Couplings::tree;  ///< factors
+  int steps = 6;                          ///< message_passing: hops
+  int hidden_layers = 1;                  ///< message_passing: of every MLP
+  bool globals = false;                   ///< message_passing: with a state of the whole graph
   bool best_length =
-      true;            ///< the correction is scaled to what lowers the error most (network/training/energy_loss.hpp)
-  bool moves = false;  ///< message_passing: also predicts the segments' moves, for `end_to_end`; of `state` alone
+      true;  ///< the correction is scaled to what lowers the error most (network/training/energy_loss.hpp)
+  bool moves =
+      false;  ///< message_passing: also predicts the segments' moves, for `end_to_end`; `state` predicts only these
 };
 
-/// Whether there are corrections of multipliers, and so a guess; a simulator's network answers for segments alone.
+/// Whether the network corrects multipliers, and so makes a guess; `state` predicts moves of segments only.
 inline bool is_guess(const CopingNetSettings& settings) { return settings.encoding != Encoding::state; }
 
 /// Whether features have means and deviations of a training set.

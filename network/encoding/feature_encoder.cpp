@@ -41,28 +41,21 @@ FeatureEncoder::FeatureEncoder(const CopingNetSettings& settings, const Rod& rod
     : settings_(settings),
       topology_(std::make_shared<const Topology>(rodsweep::topology(rod))),
       pattern_(pattern_of(*topology_, a)) {
-  if (!is_guess(settings)) throw std::invalid_argument("FeatureEncoder: states are encoded without a linear system");
+  if (!is_guess(settings)) throw std::invalid_argument("FeatureEncoder: the encoding state uses no linear system");
   if (of_graphs(settings)) {
     graph_ = std::make_unique<GraphEncoding>(settings.encoding, rod);
     by_joint_.resize(GraphEncoding::edge_features(settings.encoding), rod.joint_count());
-  } else if (settings.encoding == Encoding::canonical) {
-    canonical_ = std::make_unique<CanonicalEncoding>(
-        pattern_, settings.processor == Processor::factors ? Alignment::matrix : Alignment::residual);
   } else {
-    system_ = std::make_unique<SystemEncoding>(pattern_);
-    system_unit_.resize(a.unknowns());
+    system_ = std::make_unique<SystemEncoding>(
+        pattern_, settings.processor == Processor::factors ? Alignment::matrix : Alignment::residual);
   }
 }
 
-void FeatureEncoder::encode(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& base,
+void FeatureEncoder::encode(const Rod& rod, const LinearSystem& system, int newton, const VectorX& base,
                             const VectorX& residual, Eigen::Ref<Tensor<float>> nodes, Eigen::Ref<Tensor<float>> edges) {
-  if (system_) {
-    system_->encode(system.matrix(), residual, edges, system_unit_);
-    return;
-  }
-  if (has_all_couplings(settings_)) return canonical_->find(pattern_, system.matrix(), residual);
-  if (canonical_) return canonical_->encode(pattern_, system.matrix(), residual, edges);
-  graph_->encode(rod, system, newton, dt_c, nodes, by_joint_);
+  if (has_all_couplings(settings_)) return system_->find(pattern_, system.matrix(), residual);
+  if (system_) return system_->encode(pattern_, system.matrix(), residual, edges);
+  graph_->encode(rod, system, newton, nodes, by_joint_);
   const Eigen::Index own = by_joint_.rows();
   for (Eigen::Index place = 0; place < edges.cols(); ++place) {
     const int joint = topology_->joint[static_cast<std::size_t>(place)];

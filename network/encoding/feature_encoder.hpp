@@ -1,20 +1,19 @@
-// What a COPINGNet is given of a linear system and its base guess, and in which units it answers: one interface for all
+// The inputs of a COPINGNet from a linear system and its base guess, and the units of its outputs: one interface for all
 // encodings.
 //
 // The network corrects x_base: x = x_base + unit * y, entry by entry.
-//   deck, physics   features of segments and joints (graph_encoding.hpp), with a base guess also x_base on the joints,
-//                   all normalised; unit: how much each component of x - x_base deviates in the training set
-//   system          features of the scaled system A^ d^ = r^ alone (system_encoding.hpp), which need no normalisation;
-//                   unit: the scale of d^
-//   canonical       the same in canonical frames (canonical_encoding.hpp); for factors of all couplings, which look at
-//                   the matrix themselves, these frames alone and no features
-// `state`, which looks at no linear system, has an encoder of its own (state_encoding.hpp); only its sizes are here.
+//   paper, paper_residual   features of segments and joints (graph_encoding.hpp), with a base guess also x_base of the
+//                           joints, all normalised; unit: the deviation of each component of x - x_base in the training
+//                           set
+//   linear_system           features of the scaled system A^ d^ = r^ (system_encoding.hpp), not normalised; unit: the
+//                           scale of d^. Factors of all couplings read the matrix themselves: for them only the frames
+//                           are found.
+// `state` uses no linear system: it has its own encoder (state_encoding.hpp), and only its sizes are here.
 // Edge features are in the places of the rod's topology.
 #pragma once
 
 #include <memory>
 
-#include "network/encoding/canonical_encoding.hpp"
 #include "network/encoding/coping_net_settings.hpp"
 #include "network/encoding/normalisation.hpp"
 #include "network/encoding/system_encoding.hpp"
@@ -22,7 +21,7 @@
 
 namespace rodsweep {
 
-/// What encodings of graphs and states take from a training set; empty for others.
+/// The scales of a training set, for encodings of graphs and states; empty for others.
 struct FeatureScales {
   Normalisation nodes, edges;
   Normalisation multipliers;  ///< of x - x_base, six; of guesses
@@ -46,24 +45,20 @@ class FeatureEncoder {
   const SystemPattern& pattern() const { return pattern_; }
 
   /// Sets the features without normalisation, [node features, segments] and [edge features, places], from the system
-  /// assembled at the rod's state with dt_c, x_base and b - A x_base. Allocates nothing.
-  void encode(const Rod& rod, const LinearSystem& system, int newton, double dt_c, const VectorX& base,
-              const VectorX& residual, Eigen::Ref<Tensor<float>> nodes, Eigen::Ref<Tensor<float>> edges);
+  /// assembled at the rod's state, x_base and b - A x_base. Allocates nothing.
+  void encode(const Rod& rod, const LinearSystem& system, int newton, const VectorX& base, const VectorX& residual,
+              Eigen::Ref<Tensor<float>> nodes, Eigen::Ref<Tensor<float>> edges);
 
-  /// Of the system last encoded by `system`: the unit, in the order of unknowns.
-  const VectorX& system_unit() const { return system_unit_; }
-  /// Of `canonical`; else null.
-  const CanonicalEncoding* canonical() const { return canonical_.get(); }
+  /// Of `linear_system`; else null.
+  const SystemEncoding* system() const { return system_.get(); }
 
  private:
   CopingNetSettings settings_;
   std::shared_ptr<const Topology> topology_;
   SystemPattern pattern_;
-  std::unique_ptr<GraphEncoding> graph_;          // deck, physics
-  std::unique_ptr<SystemEncoding> system_;        // system
-  std::unique_ptr<CanonicalEncoding> canonical_;  // canonical
+  std::unique_ptr<GraphEncoding> graph_;    // paper, paper_residual
+  std::unique_ptr<SystemEncoding> system_;  // linear_system
   Tensor<float> by_joint_;
-  VectorX system_unit_;
 };
 
 }  // namespace rodsweep

@@ -45,10 +45,9 @@ struct ArcLength {
 
 const GraphEncoding::Groups& GraphEncoding::groups(Encoding encoding) {
   static const Groups paper{{3, 4, 1, 1, 1, 1, 1, 1, 1}, {3, 1, 1}};
-  static const Groups deck{{3, 4, 1, 1, 1, 1, 1, 1, 1}, {3, 1, 1, 3, 3}};
-  static const Groups physics{{3, 4, 1, 1, 1, 1, 1, 1, 1, 3, 3}, {3, 1, 1, 3, 3, 3}};
-  if (!is_of_graphs(encoding)) throw std::invalid_argument("an encoding of linear systems is not one of graphs");
-  return encoding == Encoding::paper ? paper : encoding == Encoding::deck ? deck : physics;
+  static const Groups paper_residual{paper.nodes, {3, 1, 1, 3, 3}};
+  if (!is_of_graphs(encoding)) throw std::invalid_argument("GraphEncoding: an encoding without features of graphs");
+  return encoding == Encoding::paper ? paper : paper_residual;
 }
 
 int GraphEncoding::node_features(Encoding encoding) {
@@ -65,16 +64,13 @@ GraphEncoding::GraphEncoding(Encoding encoding, const Rod& rod)
     : encoding_(encoding), constants_(7, rod.segment_count()), moduli_(2, rod.joint_count()) {
   groups(encoding);  // refuses the others
   const ArcLength arc(rod);
-  root_ = arc.roots.front();
   const double farthest = *std::max_element(arc.distance.begin(), arc.distance.end());
   std::vector<int> joints_at(rod.segments.size(), 0);
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
     ++joints_at[static_cast<std::size_t>(joint.a)];
     ++joints_at[static_cast<std::size_t>(joint.b)];
-    mean_joint_length_ += joint.length / rod.joint_count();
-    const Eigen::Array2d moduli = joint_moduli(rod, joint);
-    moduli_.col(k) = (encoding == Encoding::physics ? moduli.log10() : moduli).cast<float>();
+    moduli_.col(k) = joint_moduli(rod, joint).cast<float>();
   }
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     const Segment& segment = rod.segments[s];
@@ -84,25 +80,18 @@ GraphEncoding::GraphEncoding(Encoding encoding, const Rod& rod)
     Eigen::Matrix<double, 7, 1> column;
     column << segment.radius_m, segment.density_kg_m3, segment.length_m, alpha, segment.is_static, first, last;
     constants_.col(static_cast<Eigen::Index>(s)) = column.cast<float>();
-    total_length_ += segment.length_m;
   }
 }
 
-void GraphEncoding::encode(const Rod& rod, const LinearSystem& system, int newton, double dt_c,
-                           Eigen::Ref<Tensor<float>> nodes, Eigen::Ref<Tensor<float>> edges) const {
-  const bool physics = encoding_ == Encoding::physics;
-  const Vector3 origin = physics ? rod.position[root_] : Vector3::Zero();
-  const double position_scale = physics ? 1 / total_length_ : 1, velocity_scale = dt_c / mean_joint_length_;
+void GraphEncoding::encode(const Rod& rod, const LinearSystem& system, int newton, Eigen::Ref<Tensor<float>> nodes,
+                           Eigen::Ref<Tensor<float>> edges) const {
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     auto out = nodes.col(static_cast<Eigen::Index>(s));
     const Quaternion& q = rod.orientation[s];
     const double sign = q.w() < 0 ? -1 : 1;
-    out.segment<3>(0) = (position_scale * (rod.position[s] - origin)).cast<float>();
+    out.segment<3>(0) = rod.position[s].cast<float>();
     out.segment<4>(3) = (sign * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())).cast<float>();
     out.segment<7>(7) = constants_.col(static_cast<Eigen::Index>(s));
-    if (!physics) continue;
-    out.segment<3>(14) = (velocity_scale * rod.velocity[s]).cast<float>();
-    out.segment<3>(17) = (dt_c * rod.angular_velocity[s]).cast<float>();
   }
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
@@ -110,12 +99,11 @@ void GraphEncoding::encode(const Rod& rod, const LinearSystem& system, int newto
     const Joint& joint = rod.joints[k];
     const Vector3 rest = 2 * joint.rest.vec();                                                 // l Omega0
     const Vector3 bend = system.linearization().constraint.segment<3>(6 * column + 3) + rest;  // l Omega
-    out.segment<3>(0) = (physics ? bend : bend / joint.length).cast<float>();
+    out.segment<3>(0) = (bend / joint.length).cast<float>();
     out.segment<2>(3) = moduli_.col(column);
     if (encoding_ == Encoding::paper) continue;
     const Vector6 residual = system.rhs().segment<6>(6 * column);
-    out.segment<6>(5) = (physics || newton > 0 ? residual : Vector6::Zero()).cast<float>();
-    if (physics) out.segment<3>(11) = rest.cast<float>();
+    out.segment<6>(5) = (newton > 0 ? residual : Vector6::Zero()).cast<float>();
   }
 }
 

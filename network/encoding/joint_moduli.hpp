@@ -1,4 +1,4 @@
-// The moduli that a joint's compliance stands for, as features say how stiff it is.
+// The elastic moduli of a joint from its compliance, for features.
 #pragma once
 
 #include "solver/rod/rod.hpp"

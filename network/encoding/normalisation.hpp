@@ -1,8 +1,8 @@
 // Features shifted and scaled to mean 0 and standard deviation 1 over a training set.
 //
 // Features come in groups, the components of one quantity: a component that hardly varies (z of a planar motion) is
-// divided by a tenth of the group's root mean square deviation rather than blown up. A group that doesn't vary at all,
-// as far as single precision can tell, is divided by its own size, so that other values of it stay of order one.
+// divided by a tenth of the group's root mean square deviation. A group that is constant in single precision is divided by
+// its own size, so that other values of it stay of order one.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace rodsweep {
 
-/// The numbers that a model keeps, one per feature: x is (x - mean) / deviation to the network.
+/// The scales of a model, one per feature: the network's input is (x - mean) / deviation.
 struct Normalisation {
   Eigen::ArrayXf mean, deviation;
 
@@ -24,7 +24,7 @@ class FeatureStatistics {
   /// Sizes of the groups, in the order of the features.
   explicit FeatureStatistics(std::vector<int> groups);
 
-  /// Takes in every column, in order: the same columns in the same order give the same bits.
+  /// Adds every column, in order: the same columns in the same order give the same bits.
   void accumulate(const TensorIn<float>& x);
   /// Throws std::logic_error before the first column.
   Normalisation normalisation() const;

@@ -1,7 +1,7 @@
 // The system of a correction without units, as single-precision training data.
 //
-// What is missing from a base guess x_base solves A d = r, r = b - A x_base. With S = diag(A)^-1/2 and rho the root
-// mean square of S r it becomes
+// The correction d of a base guess x_base solves A d = r, r = b - A x_base. With S = diag(A)^-1/2 and rho the root mean
+// square of S r the system is
 //   A^ d^ = r^,   A^ = S A S,   r^ = S r / rho,   d = rho S d^
 // where A^ has a unit diagonal, entries below one, and no unit; r^ has a root mean square of one. CG with Jacobi on A
 // is plain CG on A^. Blocks are in the places of a JointForest, a row of blocks per joint; of two coupled joints only
@@ -16,7 +16,7 @@
 
 namespace rodsweep {
 
-/// Which blocks of a rod's A are where; the same for all systems of the rod.
+/// The places of the blocks of a rod's A; the same for all systems of the rod.
 struct SystemPattern {
   struct Coupling {
     int row, column;                ///< places, row > column

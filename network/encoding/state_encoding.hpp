@@ -1,15 +1,15 @@
-// `state`: rods as a simulator sees them that updates their state without any constraints (Sanchez-Gonzalez et al.
-// 2020, Learning to simulate complex physics with graph networks): from the last five velocities to accelerations.
+// The encoding `state`, for a simulator that updates the state of rods without constraints (Sanchez-Gonzalez et al. 2020,
+// Learning to simulate complex physics with graph networks): from the last five velocities to accelerations.
 //
 //   node 37: the last five velocities [m/s] and angular velocities [rad/s], the last first, v then w of each; gravity;
 //            radius [m], density [kg/m^3], length [m], and whether fixed
-//   edge 15: what the joint lacks, (x_a + R_a arm_a - x_b - R_b arm_b) / l; (x_b - x_a) / l; l (Omega - Omega0);
+//   edge 15: the joint's gap, (x_a + R_a arm_a - x_b - R_b arm_b) / l; (x_b - x_a) / l; l (Omega - Omega0);
 //            l Omega0; log10 of Young's and torsion modulus; l [m]
-//   answer:  v_{n+1} - v_n [m/s] and w_{n+1} - w_n [rad/s], a step's accelerations times dt
-// All vectors are in the segment's own frame, of an edge in that of its segment a, so that a turn of the whole scene
-// changes nothing; theirs were in the world's. What a joint lacks and the strain are ours: small differences of large
-// numbers that a network is slow to find. Roll of all frames together about the segments' own axes, which physics
-// knows nothing of either, changes them (rolled); copies to learn from have any.
+//   output:  v_{n+1} - v_n [m/s] and w_{n+1} - w_n [rad/s], a step's accelerations times dt
+// All vectors are in the segment's own frame, those of an edge in the frame of its segment a, so that turning the scene
+// does not change them; in the paper they are in the world. The gap and the strain are not in the paper: they are small
+// differences of large numbers, which a network learns slowly. Rolling all frames about the segments' axes changes the
+// features (rolled) but not the physics; copies for training have random rolls.
 #pragma once
 
 #include <memory>

@@ -1,9 +1,9 @@
-// What a simulator that knows states alone remembers of a rod: where it is, and its last five velocities.
+// The history of a rod for a simulator of states: its position and its last five velocities.
 //
-//   x_n = x_{n-1} + dt v_n,   q_n = rotated(q_{n-1}, dt w_n)     exactly how the time step finds v and w
-//   (free_flight.hpp)
-// so that velocities are all that a recorded simulation must have kept. Before its first step a rod has been moving as
-// it does then: at rest, most are.
+//   x_n = x_{n-1} + dt v_n,   q_n = rotated(q_{n-1}, dt w_n)     exactly the v and w of the time step (free_flight.hpp)
+//
+// so that a recorded simulation needs to store velocities only. Before the first step the velocities are taken to be
+// those of its start.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@ class StateHistory {
   /// The last, `ago` steps ago.
   const Motion& motion(std::size_t segment, std::size_t ago = 0) const { return motion_[segment][ago]; }
 
-  /// With noise that the free segments' velocities gather in equal parts over the history, a random walk of standard
-  /// deviations that are `noise` at its end, and with where that would have taken them.
+  /// Adds noise to the free segments' velocities, a random walk over the history with the standard deviation `noise` at its
+  /// end, and to the positions that follow from them.
   StateHistory disturbed(const Rod& rod, double velocity_noise, double spin_noise, SplitMix& random) const;
 
  private:

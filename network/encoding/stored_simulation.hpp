@@ -1,5 +1,5 @@
-// What a simulation leaves behind for learning: of every stored linear system the state that it was assembled from
-// and its exact solution, so that A, b and every feature can be formed again, bit for bit.
+// A recorded simulation for training: for every stored linear system the state from which it was assembled and its exact
+// solution, so that A, b and every feature can be formed again, bit for bit.
 //
 //   assemble_again(system, constraint_dt_s, rod, linear_system)   gives A and b, and A solution = b
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace rodsweep {
 
-/// What the balance of momentum is kept against, an entry per segment.
+/// The data of the balance of momentum, an entry per segment.
 struct StoredBalance {
   std::vector<Vector3> free_position;
   std::vector<Quaternion> free_orientation;
@@ -44,7 +44,7 @@ struct StoredSimulation {
 /// std::invalid_argument where the rod has another number of segments or joints.
 void restore(const StoredSystem& system, Rod& rod);
 
-/// Puts it there and assembles the system that was solved, with or without the balance of momentum.
+/// The same, and assembles the system that was solved, with or without the balance of momentum.
 void assemble_again(const StoredSystem& stored, double constraint_dt_s, Rod& rod, LinearSystem& system);
 
 /// Goes through a simulation once more: one rod after the other is put into the state that a system was assembled from,

@@ -1,33 +1,43 @@
-// The linear system of a correction as features without units: the encoding `system`.
+// The linear system of a correction as features without units: the encoding `linear_system`.
 //
-// Per joint, in the places of a JointForest, from A^ d^ = r^ (network/encoding/scaled_system.hpp):
-//   r^ (6), the off-diagonal entries of its diagonal block of A^ (15), its block with its parent joint (36; 0 at
-//   roots).
-// They determine a chain's d^ completely, and are the same for a rod scaled in length, mass or time. Couplings between
-// siblings at a branching are left out, and those across the cut of a loop.
+// Per joint, in the places of a JointForest, of A^ d^ = r^ (network/encoding/scaled_system.hpp) in canonical frames
+// (network/encoding/canonical_frames.hpp):
+//   r^ (6), the upper triangle of its diagonal block of A^ without the diagonal (15), its block with its parent joint
+//   (36; 0 at roots)
+// They determine d^ of a chain completely. They are the same for a rod that is scaled in length, mass or time, turned or
+// mirrored, and for segments' frames rolled about their axes. They leave out couplings between siblings at a branching
+// and across the cut of a loop.
 #pragma once
 
-#include <utility>
-
-#include "network/encoding/scaled_system.hpp"
+#include "network/encoding/canonical_frames.hpp"
 
 namespace rodsweep {
 
 class SystemEncoding {
  public:
-  static constexpr int size = 57, coupling = 21;  ///< features, and the one that the block with the parent begins at
+  static constexpr int size = 57, coupling = 21;  ///< features, and the first feature of the block with the parent
 
-  explicit SystemEncoding(SystemPattern pattern) : pattern_(std::move(pattern)) {}
+  SystemEncoding(const SystemPattern& pattern, Alignment alignment) : frames_(pattern, alignment) {}
 
-  /// Writes the features [57, places] and the scale of correction_scale(). Allocates nothing.
-  void encode(const BlockMatrix& a, const VectorX& residual, Eigen::Ref<Tensor<float>> features, VectorX& scale) const;
+  /// Writes the features [57, places]. Allocates nothing.
+  void encode(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
+              Eigen::Ref<Tensor<float>> features);
+
+  /// Finds the frames alone.
+  void find(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual) {
+    frames_.find(pattern, a, residual);
+  }
+  const CanonicalFrames& frames() const { return frames_; }
+
+  /// d in the joint's frame from the network's output d^ for a place, and the inverse, of the system last encoded.
+  Lane8 from_unit(int place, const Lane8& answer) const;
+  Lane8 to_unit(int place, const Lane8& correction) const;
 
  private:
-  SystemPattern pattern_;
+  CanonicalFrames frames_;
 };
 
-/// The same features of scaled systems side by side, of one encoding or another, whose places hang together as `forest`
-/// says: [57, places].
+/// The same features of scaled systems side by side, with the parents of `forest`: [57, places].
 template <class T>
 Tensor<T> system_features(const ScaledSystem<T>& systems, const JointForest& forest);
 

@@ -1,8 +1,8 @@
-// The joints of rods as a forest, for recurrences that run from the tips to the roots and back.
+// The joints of rods as a forest, for passes from the tips to the roots and back.
 //
-// A joint's parent is the joint through which it hangs from a static segment (or, where nothing is static, from the
-// first joint of the first segment). Loops are cut: the joint that closes one is a tip. Joints are renumbered so that
-// those of one depth are neighbours: one matrix product a level.
+// A joint's parent is the next joint on the way to a static segment (or, if no segment is static, to the first joint of
+// the first segment). Loops are cut: the joint that closes one is a tip. Joints are renumbered so that those of one
+// depth are contiguous: one matrix product a level.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ struct JointForest {
   std::vector<int> beside;       ///< at each place, how many joints beside parent and children share a free segment
                                  ///< with its joint: siblings, and those that close a loop
   std::vector<int> level_begin;  ///< first place of each depth, and the end
-  bool cut = false;              ///< are there loops that were cut?
+  bool cut = false;              ///< whether loops were cut
 
   int size() const { return static_cast<int>(order.size()); }
   int levels() const { return static_cast<int>(level_begin.size()) - 1; }

@@ -1,4 +1,4 @@
-// How the joints of a rod, or of several side by side, hang together, for every kind of processor.
+// The topology of a rod's joints, or of several rods side by side, for every kind of processor.
 //
 // Edges (joints) are numbered by places: of one rod, the places of its JointForest; of several, those of one rod after
 // those of the other.

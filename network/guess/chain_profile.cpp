@@ -10,7 +10,7 @@ namespace {
 constexpr double rigid = 1e15;  // [N m^2], stands for the stiffness of a joint without compliance
 
 [[noreturn]] void not_a_chain(const std::string& what) {
-  throw SceneError(what + ": nearest neighbours compare rods along one arc length, so a rod must be a single chain");
+  throw SceneError(what + "; must be a single chain: nearest neighbours compare rods along their arc length");
 }
 
 /// The joints of a chain and the segments between and around them, from one end to the other.

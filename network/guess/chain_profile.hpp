@@ -1,4 +1,4 @@
-// An unbranched rod as functions of its arc length, without units: what rods of any size and division have in common.
+// An unbranched rod as functions of its arc length, without units, so that rods of any size and division are comparable.
 //
 // sigma in [0, 1] runs over the free segments from the held end (without one, or with two: from the lower-numbered
 // one); static segments are points. Units: the free length L, the free mass m, the size a of the scene's gravity (1

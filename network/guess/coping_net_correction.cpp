@@ -21,9 +21,6 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
   const CopingNetSettings& settings = model_->net.settings();
   if ((use.corrections > 1 || use.lag_steps > 0 || use.stop_at > 0) && settings.processor != Processor::factors)
     throw std::invalid_argument("CopingNetCorrection: corrections, lag_steps or stop_at without factors");
-  if (settings.processor == Processor::sweeps && !is_of_graphs(settings.encoding) &&
-      SweepsInference::supports(settings.latent))
-    sweeps_ = std::make_unique<SweepsInference>(model_->net.sweeps(), model_->net.parameters(), rod.joint_count());
   if (has_all_couplings(settings))
     coupled_ = std::make_unique<CoupledInference>(model_->net.coupled(), model_->net.parameters(), encoder_.pattern());
   else if (settings.processor == Processor::factors)
@@ -33,7 +30,7 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
   if (may_harm_) base_.resize(a.unknowns());
 }
 
-bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c,
+bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, const SolvePosition& at,
                                   Proposal& proposal, VectorX& x, std::vector<Lane8>* moves) {
   const BlockMatrix& a = system.matrix();
   if (proposal.nonzero) {
@@ -56,7 +53,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
   if (factors_serve(at)) {
     solve_with_factors();
   } else {
-    run(rod, system, at, dt_c, x, moves != nullptr);
+    run(rod, system, at, x, moves != nullptr);
     proposal.renewed = use_.lag_steps > 0;
   }
   double length = 1, energy = 0;
@@ -112,17 +109,17 @@ double CopingNetCorrection::correct_again(const LinearSystem& system, double ene
 }
 
 /// Sets d_ and, on request, y_nodes_.
-void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c,
-                              const VectorX& x, bool with_moves) {
-  encoder_.encode(rod, system, at.newton, dt_c, x, residual_, nodes_, edges_);
+void CopingNetCorrection::run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, const VectorX& x,
+                              bool with_moves) {
+  encoder_.encode(rod, system, at.newton, x, residual_, nodes_, edges_);
   if (is_of_graphs(model_->net.settings().encoding)) {
     model_->scales.nodes.apply(nodes_);
     model_->scales.edges.apply(edges_);
   }
   if (coupled_)
-    coupled_->factorise(encoder_.canonical()->frames(), system.matrix());
+    coupled_->factorise(encoder_.system()->frames(), system.matrix());
   else if (factors_)
-    factors_->factorise(edges_, encoder_.canonical()->frames(), system.matrix());
+    factors_->factorise(edges_, encoder_.system()->frames(), system.matrix());
   else
     return answer(with_moves);
   factorised_at_ = at;
@@ -139,22 +136,16 @@ void CopingNetCorrection::solve_with_factors() {
 /// Sets d_ and, on request, y_nodes_ from the features.
 void CopingNetCorrection::answer(bool with_moves) {
   const Topology& topology = encoder_.topology();
-  const bool graphs = is_of_graphs(model_->net.settings().encoding);
-  if (sweeps_)
-    sweeps_->run(topology.forest, edges_, y_edges_);
-  else
-    model_->net.forward(topology, nodes_, edges_, tape_, y_edges_, with_moves ? &y_nodes_ : nullptr);
-  if (graphs) y_edges_.array().colwise() *= model_->scales.multipliers.deviation;
+  model_->net.forward(topology, nodes_, edges_, tape_, y_edges_, with_moves ? &y_nodes_ : nullptr);
+  if (is_of_graphs(model_->net.settings().encoding)) y_edges_.array().colwise() *= model_->scales.multipliers.deviation;
   for (Eigen::Index place = 0; place < y_edges_.cols(); ++place) {
     const Eigen::Index first = 6 * topology.joint[static_cast<std::size_t>(place)];
-    if (const CanonicalEncoding* canonical = encoder_.canonical()) {
-      const float* y = y_edges_.col(place).data();
+    const float* y = y_edges_.col(place).data();
+    if (const SystemEncoding* scaled = encoder_.system())
       store6(d_.data() + first,
-             canonical->from_unit(static_cast<int>(place), Lane8{y[0], y[1], y[2], y[3], y[4], y[5], 0, 0}));
-      continue;
-    }
-    d_.segment<6>(first) = y_edges_.col(place).cast<double>();
-    if (!graphs) d_.segment<6>(first).array() *= encoder_.system_unit().segment<6>(first).array();
+             scaled->from_unit(static_cast<int>(place), Lane8{y[0], y[1], y[2], y[3], y[4], y[5], 0, 0}));
+    else
+      d_.segment<6>(first) = y_edges_.col(place).cast<double>();
   }
 }
 

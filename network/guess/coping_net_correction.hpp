@@ -1,16 +1,16 @@
-// What a COPINGNet adds to a base guess of one rod's linear system:
+// The correction of a COPINGNet to a base guess of one rod's linear system:
 //
 //   x = x_base + c d,   d = unit * y(features of the rod, A, r),   r = b - A x_base,
 //   c = d.r / d.A d with `best_length` or several corrections, else 1
 //
 // and, where the network predicts them, the segments' moves Delta p in their own frames, in metres and radians.
 //
-// Sweeps and factors of a tree know nothing of what lies across the cut of a loop: there x_base stays unless the
-// residual falls as well, in the natural norm sqrt(r^T D^-1 r).
+// Factors of a tree leave out couplings across the cut of a loop: there x_base is kept unless the residual decreases as
+// well, in the natural norm sqrt(r^T D^-1 r).
 //
-// Factors (network/processor/factor_sweeps.hpp), once predicted, answer to any residual: `corrections` of them are as
-// many steps of conjugate gradients with the factors as preconditioner, of which this is the first. In the frames of
-// the joints a matrix changes slowly, so that they may also serve the solves of some later time steps: they lag.
+// Factors (network/processor/factor_sweeps.hpp) apply to any residual once they are predicted: `corrections` are steps
+// of conjugate gradients with the factors as preconditioner, the first of them the one above. In the frames of the
+// joints a matrix changes slowly, so factors may be reused for the solves of later time steps (`lag_steps`).
 #pragma once
 
 #include <memory>
@@ -20,33 +20,31 @@
 #include "network/processor/coupled_inference.hpp"
 #include "network/processor/factor_inference.hpp"
 #include "network/processor/model.hpp"
-#include "network/processor/sweeps_inference.hpp"
 #include "solver/guess/initial_guess.hpp"
 
 namespace rodsweep {
 
-/// How a model with factors is used; others know the first of each alone.
+/// How a model with factors is used; the defaults for all other models.
 struct FactorUse {
   int corrections = 1;
-  int lag_steps = 0;   ///< so many time steps factors serve; 0: the solve that they were made for
+  int lag_steps = 0;   ///< time steps for which factors are reused; 0: one solve
   double stop_at = 0;  ///< no correction once ||r||_2 is at most this times ||b||_2
 };
 
 class CopingNetCorrection {
  public:
-  /// `a`: the matrix of the rod's systems. std::invalid_argument where a use is for factors and the model has none, or
-  /// factors of a latent size without kernels.
+  /// `a`: the matrix of the rod's systems. Throws std::invalid_argument if `use` is for factors and the model has none, or
+  /// if its factors have a latent size without kernels.
   CopingNetCorrection(std::shared_ptr<const Model> model, const Rod& rod, const BlockMatrix& a, FactorUse use = {});
 
-  /// Corrects x, which holds x_base, of the system assembled at the rod's state with dt_c; sets `moves`, per segment,
-  /// if given (models with settings.moves only). False, and x as it was, where the network's answer is not finite.
+  /// Corrects x, which holds x_base, for the system assembled at the rod's state. Sets `moves`, per segment, if given
+  /// (models with settings.moves only). Returns false and leaves x unchanged if the network's output is not finite.
   /// Adds its products with A to `proposal`, which is of x_base. Allocates nothing after a first call.
-  bool correct(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, Proposal& proposal,
-               VectorX& x, std::vector<Lane8>* moves);
+  bool correct(const Rod& rod, const LinearSystem& system, const SolvePosition& at, Proposal& proposal, VectorX& x,
+               std::vector<Lane8>* moves);
 
  private:
-  void run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, const VectorX& x,
-           bool with_moves);
+  void run(const Rod& rod, const LinearSystem& system, const SolvePosition& at, const VectorX& x, bool with_moves);
   void answer(bool with_moves);
   void solve_with_factors();
   bool factors_serve(const SolvePosition& at) const;
@@ -58,7 +56,6 @@ class CopingNetCorrection {
   bool may_harm_ = false;  ///< loops were cut
   std::optional<SolvePosition> factorised_at_;
   FeatureEncoder encoder_;
-  std::unique_ptr<SweepsInference> sweeps_;
   std::unique_ptr<FactorInference> factors_;
   std::unique_ptr<CoupledInference> coupled_;  ///< of all couplings
   CopingNet<float>::Tape tape_;

@@ -4,11 +4,10 @@
 
 namespace rodsweep {
 
-CopingNetGuess::CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, double dt_c,
-                               int newton_iterations, FactorUse use)
+CopingNetGuess::CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, int newton_iterations,
+                               FactorUse use)
     : model_(std::move(model)),
       scene_(scene),
-      dt_c_(dt_c),
       use_(use),
       base_(base_guess(model_->net.settings(), scene, newton_iterations)),
       corrections_(scene.rods.size()) {}
@@ -18,7 +17,7 @@ Proposal CopingNetGuess::propose(const LinearSystem& system, const SolvePosition
   const Rod& rod = scene_.rods[r];
   if (!corrections_[r]) corrections_[r] = std::make_unique<CopingNetCorrection>(model_, rod, system.matrix(), use_);
   Proposal proposal = base_->propose(system, at, x0);
-  corrections_[r]->correct(rod, system, at, dt_c_, proposal, x0, nullptr);
+  corrections_[r]->correct(rod, system, at, proposal, x0, nullptr);
   return proposal;
 }
 

@@ -1,8 +1,8 @@
 // COPINGNet as an initial guess: a base guess, and the network's correction of it
 // (network/guess/coping_net_correction.hpp).
 //
-// With `best_length` x0 is no worse than x_base in the energy norm, whatever the network says. A network that answers
-// with something that is not a number, or has nothing to correct, leaves x_base.
+// With `best_length` x0 is no worse than x_base in the energy norm, whatever the network's output. x0 is x_base if the
+// output is not finite or the residual is zero.
 #pragma once
 
 #include <memory>
@@ -14,9 +14,8 @@ namespace rodsweep {
 
 class CopingNetGuess : public InitialGuess {
  public:
-  /// Of the rods of the scene that the solves move: `deck` and `physics` read their state there.
-  CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, double dt_c, int newton_iterations,
-                 FactorUse use = {});
+  /// Of the rods of the scene that the solves move: features of graphs read the rods' state there.
+  CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, int newton_iterations, FactorUse use = {});
 
   void prepare(const SolvePosition& at) override { base_->prepare(at); }
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
@@ -25,7 +24,6 @@ class CopingNetGuess : public InitialGuess {
  private:
   std::shared_ptr<const Model> model_;
   const Scene& scene_;
-  double dt_c_;
   FactorUse use_;
   std::unique_ptr<InitialGuess> base_;
   std::vector<std::unique_ptr<CopingNetCorrection>> corrections_;  ///< made at a rod's first solve

@@ -11,14 +11,14 @@ CopingNetIncrements::CopingNetIncrements(std::shared_ptr<const Model> model, con
       base_(base_guess(model_->net.settings(), scene, newton_iterations)),
       corrections_(scene.rods.size()) {}
 
-bool CopingNetIncrements::predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c,
+bool CopingNetIncrements::predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at,
                                   VectorX& delta_lambda, std::vector<Lane8>& moves) {
   std::unique_ptr<CopingNetCorrection>& correction = corrections_[static_cast<std::size_t>(at.rod)];
   if (!correction) correction = std::make_unique<CopingNetCorrection>(model_, rod, system.matrix());
   const bool own_moves = model_->net.settings().moves;
   base_->prepare(at);
   Proposal proposal = base_->propose(system, at, delta_lambda);
-  if (!correction->correct(rod, system, at, dt_c, proposal, delta_lambda, own_moves ? &moves : nullptr)) return false;
+  if (!correction->correct(rod, system, at, proposal, delta_lambda, own_moves ? &moves : nullptr)) return false;
   if (!own_moves) system.displacements(rod, delta_lambda, moves);
   base_->accept(at, delta_lambda);
   return delta_lambda.allFinite();
@@ -38,7 +38,7 @@ ProjectionReport EndToEndProjection::project(Rod& rod, const SolvePosition& at, 
   if (report.newton_residual < newton_tolerance) return report;
   report.outcome = SolveOutcome::not_a_number;
   if (!std::isfinite(report.newton_residual)) return report;
-  if (!source_->predict(rod, of.system, at, dt, of.delta_lambda, of.moves)) return report;
+  if (!source_->predict(rod, of.system, at, of.delta_lambda, of.moves)) return report;
   displace(rod, of.moves, of.delta_lambda);
   report.outcome = SolveOutcome::converged;
   return report;

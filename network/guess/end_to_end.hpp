@@ -1,5 +1,4 @@
-// A network instead of the solve ("end to end" in Shao et al. 2021): its increments move the rod, and nobody checks
-// them.
+// A network instead of the solve ("end to end" in Shao et al. 2021): its increments move the rod, unchecked.
 //
 // In every Newton iteration   lambda += Delta lambda,   x += R u,   q <- normalise(q + q [0, phi] / 2)
 // on free segments; static ones stay. The system is assembled for the network's features and for Newton's test.
@@ -17,17 +16,17 @@ class IncrementSource {
  public:
   virtual ~IncrementSource() = default;
   /// Sets Delta lambda and the segments' moves (u in lanes 0..2, phi in lanes 3..5, in their own frames) for the system
-  /// assembled at the rod's state with dt_c. False where they are not finite.
-  virtual bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c,
-                       VectorX& delta_lambda, std::vector<Lane8>& moves) = 0;
+  /// assembled at the rod's state. False where they are not finite.
+  virtual bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, VectorX& delta_lambda,
+                       std::vector<Lane8>& moves) = 0;
 };
 
-/// Those of a COPINGNet: its base guess, which here hears of its own increments, and its correction of it. The moves
-/// are the network's where it predicts them (CopingNetSettings::moves), else M^-1 J^T Delta lambda.
+/// The increments of a COPINGNet: its base guess, whose history here is that of the increments, plus its correction. The
+/// moves are the network's where it predicts them (CopingNetSettings::moves), else M^-1 J^T Delta lambda.
 class CopingNetIncrements : public IncrementSource {
  public:
   CopingNetIncrements(std::shared_ptr<const Model> model, const Scene& scene, int newton_iterations);
-  bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, VectorX& delta_lambda,
+  bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, VectorX& delta_lambda,
                std::vector<Lane8>& moves) override;
 
  private:

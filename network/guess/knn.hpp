@@ -1,11 +1,11 @@
-// What the nearest-neighbour guess learned: stored systems of unbranched rods, found again by their likeness.
+// The training set of the nearest-neighbour guess: stored systems of unbranched rods, searched by similarity.
 //
 // A system is known by a query: the state of its rod (network/guess/chain_profile.hpp) at `points` values of the arc
 // length, and the rod's constants. Each quantity is shifted and divided by its deviation over the training set; the
 // distance of two queries is the root of the sum, over the quantities, of the mean square difference of their
-// components. The five of the state weigh the same (without velocities, or without the gaps, the neighbours are worse),
-// the constants a tenth: the state shows already what they do. With `shape` alone, places and curvature, neighbours
-// know no more than the paper's network. Systems are compared with those of the same Newton iteration only.
+// components. The five quantities of the state have equal weights (without velocities or gaps the neighbours are worse),
+// the constants a tenth: their effect shows in the state already. With `shape`, positions and curvature only, neighbours
+// use the inputs of the paper's network. Systems are compared with those of the same Newton iteration only.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace rodsweep {
 
-/// What neighbours are alike in.
+/// The quantities that are compared.
 enum class KnnInputs {
   all,   ///< of the state
   shape  ///< the places of the joints and the curvature: no gaps, no velocities
@@ -45,9 +45,9 @@ class KnnSet {
   explicit KnnSet(KnnInputs inputs = KnnInputs::all);
   ~KnnSet();
 
-  /// Takes in a simulation, which is not needed afterwards. Throws SceneError where a rod branches.
+  /// Adds a simulation, which is not needed afterwards. Throws SceneError if a rod branches.
   void add(const StoredSimulation& simulation);
-  /// Normalises and indexes. To be called once, after the last simulation.
+  /// Normalises and indexes. Call once, after the last simulation.
   void finish();
 
   /// Systems of a Newton iteration.

@@ -1,8 +1,8 @@
 // k nearest neighbours as an initial guess, what Shao et al. 2021 compare their network with (k = 3): the solutions of
 // the most similar systems of a training set, resampled to the rod's joints by arc length, averaged with the inverse of
-// their distances as weights, and brought from loads without units (network/guess/chain_profile.hpp) to this rod's
-// sizes and time step. Not scaled to what lowers the error most in the energy norm, as a COPINGNet's correction is:
-// stiff components decide that length, and more iterations to loose tolerances were measured with it than without.
+// their distances as weights, and scaled from loads without units (network/guess/chain_profile.hpp) to this rod's sizes
+// and time step. Its length is not optimised in the energy norm as that of a COPINGNet's correction: stiff components
+// determine that length, and it was measured to need more iterations to loose tolerances.
 #pragma once
 
 #include <memory>

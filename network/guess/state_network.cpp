@@ -10,7 +10,8 @@ namespace rodsweep {
 StateNetworkProjection::StateNetworkProjection(const Scene& scene, std::shared_ptr<const Model> model, double dt)
     : model_(std::move(model)), dt_(dt) {
   const CopingNetSettings& settings = model_->net.settings();
-  if (is_guess(settings)) throw std::invalid_argument("StateNetworkProjection: the model is one of linear systems");
+  if (is_guess(settings))
+    throw std::invalid_argument("StateNetworkProjection: the model does not have the encoding state");
   for (const Rod& rod : scene.rods)
     rods_.push_back({StateEncoding(rod, scene.gravity_m_s2),
                      StateHistory(rod, dt),

@@ -1,9 +1,9 @@
 // A simulator that updates the state of rods directly, without constraints (Sanchez-Gonzalez et al. 2020):
 //
 //   v_{n+1} = v_n + dt a,   w likewise,   x_{n+1} = x_n + dt v_{n+1},   q_{n+1} = rotated(q_n, dt w_{n+1})
-// a graph network's accelerations from the last five velocities (network/encoding/state_encoding.hpp), semi-implicit,
-// once a step; static segments stay where they are held. Contacts, if the scene has any, act after it. Nothing checks
-// the joints.
+// with a graph network's accelerations a from the last five velocities (network/encoding/state_encoding.hpp),
+// semi-implicit, once a step; static segments do not move. Contacts, if the scene has any, act after it. Joints are not
+// enforced.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ namespace rodsweep {
 
 class StateNetworkProjection : public Projection {
  public:
-  /// Of a scene before its first step of dt. Throws std::invalid_argument for a model that is not of `state`.
+  /// Of a scene before its first step of dt. Throws std::invalid_argument for a model of another encoding.
   StateNetworkProjection(const Scene& scene, std::shared_ptr<const Model> model, double dt);
 
   /// In the first iteration of a step; not_run in others. `converged` stands for "applied"; `not_a_number`, and the rod

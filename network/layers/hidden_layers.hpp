@@ -1,5 +1,4 @@
-// Hidden layers between layers of the same width: h' = silu(W h + b), one after the other. None of them is the
-// identity.
+// Hidden layers between layers of the same width: h' = silu(W h + b), one after the other; without any, the identity.
 #pragma once
 
 #include "network/layers/linear.hpp"
@@ -17,12 +16,12 @@ class HiddenLayers {
   HiddenLayers() = default;
   HiddenLayers(Parameters<T>& parameters, const std::string& name, int width, int count, WeightSource& source);
 
-  /// What comes out: of the tape, or x itself.
+  /// The output: from the tape, or x itself.
   const Tensor<T>& forward(const Parameters<T>& p, const Tensor<T>& x, Tape& tape) const;
   const Tensor<T>& output(const Tensor<T>& x, const Tape& tape) const {
     return layers_.empty() ? x : tape.after.back();
   }
-  /// `d` comes as the gradient with respect to the output, and leaves as that with respect to x.
+  /// `d`: on entry the gradient with respect to the output, on return that with respect to x.
   void backward(const Parameters<T>& p, const Tensor<T>& x, const Tape& tape, Tensor<T>& d,
                 Parameters<T>& gradient) const;
 

@@ -20,9 +20,6 @@ class Mlp {
       double last_gain = 1, int hidden_layers = 1);
 
   int in() const { return first_.in(); }
-  int out() const { return second_.out(); }
-  const Linear<T>& first() const { return first_; }
-  const Linear<T>& second() const { return second_; }
 
   void forward(const Parameters<T>& p, const TensorIn<T>& x, Tape& tape, Tensor<T>& y) const;
   void backward(const Parameters<T>& p, const TensorIn<T>& x, const Tape& tape, const TensorIn<T>& dy,

@@ -1,5 +1,5 @@
-// y = W x + b of inference with operands of 16 bits where the processor multiplies them (bfloat16, AVX512_BF16), half
-// the loads and multiplications of product.hpp; elsewhere in single precision. Sums are in single precision.
+// y = W x + b of inference with operands of 16 bits if the processor supports them (bfloat16, AVX512_BF16), with half the
+// loads and multiplications of product.hpp; else in single precision. Sums are in single precision.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +22,14 @@ void store_narrow(Narrow* to, const FloatLane& values);
 /// Any number of them.
 void narrow(const float* from, Eigen::Index count, Narrow* to);
 
-/// Columns of operands, whose length is even: an odd one has a zero more.
+/// Columns of operands of even length: an odd column is padded with a zero.
 using NarrowColumns = Eigen::Matrix<Narrow, Eigen::Dynamic, Eigen::Dynamic>;
 constexpr Eigen::Index narrow_length(Eigen::Index depth) { return depth + depth % 2; }
 
 class NarrowMatrix {
  public:
   NarrowMatrix() = default;
-  /// The number of rows is a multiple of a lane (float_lanes.hpp), std::invalid_argument else.
+  /// Throws std::invalid_argument unless the number of rows is a multiple of a lane (float_lanes.hpp).
   explicit NarrowMatrix(const TensorIn<float>& weight);
 
   /// Sets y [rows, items] to W x + bias [rows] (null: 0), x [narrow_length(depth), items].

@@ -1,7 +1,7 @@
 // The width of one vector register of the processor that the program is built for.
 //
-// The solver's six rows fit one 64-byte vector that the compiler may halve (solver/numbers/lanes.hpp); the network's
-// long loops would drown in the halves.
+// The solver's six rows fit one 64-byte vector, which the compiler may split (solver/numbers/lanes.hpp); in the network's
+// long loops splitting would cost too much.
 #pragma once
 
 namespace rodsweep {

@@ -1,4 +1,4 @@
-// All weights of a network in one flat array of named matrices: what Adam updates, ranks sum, and files hold.
+// All weights of a network in one flat array of named matrices, which Adam updates, ranks sum, and files store.
 //
 // Layers keep the index of their matrices, so a gradient is just another Parameters of the same shapes. Each matrix
 // begins at a multiple of 16 entries; the gaps stay zero.

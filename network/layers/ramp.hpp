@@ -1,6 +1,6 @@
 // The activation ramp(a), zero below -1, a above 1 and a parabola between, and its derivative, as array expressions:
 //   t = clamp(a, -1, 1),   ramp = (t + 1)^2 / 4 + max(a - 1, 0),   ramp' = (t + 1) / 2
-// As smooth as a network needs and learns as well with as with silu.hpp, without an exponential and a division.
+// It trains as well as silu.hpp, without an exponential and a division.
 #pragma once
 
 #include <Eigen/Core>

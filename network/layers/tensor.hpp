@@ -14,7 +14,7 @@ using Tensor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;  ///< [features
 template <class T>
 using TensorIn = Eigen::Ref<const Tensor<T>>;
 
-/// At an address that vector registers like, and the same remainder of it in every process: sums come out the same.
+/// Aligned for vector registers, equally in every process, so that sums have the same bits.
 template <class T>
 using AlignedVector = std::vector<T, Eigen::aligned_allocator<T>>;
 

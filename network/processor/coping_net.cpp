@@ -3,22 +3,18 @@
 #include <stdexcept>
 
 namespace rodsweep {
-namespace {}  // namespace
 
 template <class T>
 CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) : settings_(settings) {
   WeightSource source(seed);
   const int nodes = node_features(settings), edges = edge_features(settings);
   if (settings.moves && settings.processor != Processor::message_passing)
-    throw std::invalid_argument("CopingNet: sweeps and factors predict no moves of segments");
+    throw std::invalid_argument("CopingNet: factors predict no moves of segments");
   if (!is_guess(settings) && !settings.moves) throw std::invalid_argument("CopingNet: states without moves");
   switch (settings.processor) {
-    case Processor::sweeps:
-      sweeps_ = Sweeps<T>(parameters_, edges + 2 * nodes, settings.latent, 6, settings.recurrence, source);
-      break;
     case Processor::factors:
-      if (settings.encoding != Encoding::canonical)
-        throw std::invalid_argument("CopingNet: factors need the encoding canonical");
+      if (settings.encoding != Encoding::linear_system)
+        throw std::invalid_argument("CopingNet: factors need the encoding linear_system");
       if (settings.couplings == Couplings::all)
         coupled_ = CoupledFactors<T>(parameters_, settings.latent, source);
       else
@@ -46,18 +42,10 @@ void CopingNet<T>::forward(const Topology& topology, const TensorIn<T>& nodes, c
     return;
   }
   if (has_all_couplings(settings_)) return coupled_.forward(parameters_, *systems, tape.coupled, y_edges);
-  const Eigen::Index of_node = nodes.rows(), of_edge = edges.rows();
-  tape.ordered.resize(of_edge + 2 * of_node, edges.cols());
-  for (Eigen::Index i = 0; i < edges.cols(); ++i) {
-    const int place = topology.forest.order[static_cast<std::size_t>(i)];
-    tape.ordered.col(i).head(of_edge) = edges.col(place);
-    tape.ordered.col(i).segment(of_edge, of_node) = nodes.col(topology.graph.sender[at(place)]);
-    tape.ordered.col(i).tail(of_node) = nodes.col(topology.graph.receiver[at(place)]);
-  }
-  if (settings_.processor == Processor::factors)
-    factors_.forward(parameters_, topology.forest, tape.ordered, tape.factors, tape.y_ordered);
-  else
-    sweeps_.forward(parameters_, topology.forest, tape.ordered, tape.sweeps, tape.y_ordered);
+  tape.ordered.resize(edges.rows(), edges.cols());
+  for (Eigen::Index i = 0; i < edges.cols(); ++i)
+    tape.ordered.col(i) = edges.col(topology.forest.order[static_cast<std::size_t>(i)]);
+  factors_.forward(parameters_, topology.forest, tape.ordered, tape.factors, tape.y_ordered);
   y_edges.resize(6, edges.cols());
   for (Eigen::Index i = 0; i < edges.cols(); ++i)
     y_edges.col(topology.forest.order[static_cast<std::size_t>(i)]) = tape.y_ordered.col(i);
@@ -75,10 +63,7 @@ void CopingNet<T>::backward(const Topology& topology, const TensorIn<T>& nodes, 
   tape.dy_ordered.resize(6, edges.cols());
   for (Eigen::Index i = 0; i < edges.cols(); ++i)
     tape.dy_ordered.col(i) = dy_edges.col(topology.forest.order[static_cast<std::size_t>(i)]);
-  if (settings_.processor == Processor::factors)
-    factors_.backward(parameters_, topology.forest, tape.ordered, tape.factors, tape.dy_ordered, gradient);
-  else
-    sweeps_.backward(parameters_, topology.forest, tape.ordered, tape.sweeps, tape.dy_ordered, gradient);
+  factors_.backward(parameters_, topology.forest, tape.ordered, tape.factors, tape.dy_ordered, gradient);
 }
 
 template class CopingNet<float>;

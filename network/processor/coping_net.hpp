@@ -1,9 +1,8 @@
 // COPINGNet: from the features of segments and joints to corrections of the Lagrange multipliers, and moves of the
-// segments where they are asked for, or of states to these alone, by one of three processors
+// segments where they are asked for, or of states to these alone, by one of two processors
 // (network/encoding/coping_net_settings.hpp).
 //
-// `sweeps` and `factors` work on joints: the features of a joint's two segments are appended to its own. Factors of all
-// couplings take blocks from the scaled system itself.
+// Factors of a tree read the features of joints, factors of all couplings the blocks of the scaled system itself.
 #pragma once
 
 #include "network/encoding/feature_encoder.hpp"
@@ -11,7 +10,6 @@
 #include "network/processor/coupled_factors.hpp"
 #include "network/processor/factor_sweeps.hpp"
 #include "network/processor/message_passing.hpp"
-#include "network/processor/sweeps.hpp"
 
 namespace rodsweep {
 
@@ -20,7 +18,6 @@ class CopingNet {
  public:
   struct Tape {
     Tensor<T> ordered, y_ordered, dy_ordered;  ///< by level
-    typename Sweeps<T>::Tape sweeps;
     typename FactorSweeps<T>::Tape factors;
     typename CoupledFactors<T>::Tape coupled;
     typename MessagePassing<T>::Tape messages;
@@ -33,8 +30,7 @@ class CopingNet {
   const Parameters<T>& parameters() const { return parameters_; }
 
   /// nodes [node features, segments], edges [edge features, places] -> y_edges [6, places], of states [0, places],
-  /// and, if given, y_nodes [6, segments]. Factors of all couplings see `systems` in the places of edges, and are the
-  /// only ones to.
+  /// and, if given, y_nodes [6, segments]. Only factors of all couplings use `systems`, in the places of edges.
   void forward(const Topology& topology, const TensorIn<T>& nodes, const TensorIn<T>& edges, Tape& tape,
                Tensor<T>& y_edges, Tensor<T>* y_nodes, const ScaledSystem<T>* systems = nullptr) const;
   /// Adds to `gradient`.
@@ -42,14 +38,12 @@ class CopingNet {
                 const TensorIn<T>& dy_edges, const Tensor<T>* dy_nodes, Parameters<T>& gradient,
                 const ScaledSystem<T>* systems = nullptr) const;
 
-  const Sweeps<T>& sweeps() const { return sweeps_; }
   const FactorSweeps<T>& factors() const { return factors_; }
   const CoupledFactors<T>& coupled() const { return coupled_; }
 
  private:
   CopingNetSettings settings_;
   Parameters<T> parameters_;
-  Sweeps<T> sweeps_;
   FactorSweeps<T> factors_;
   CoupledFactors<T> coupled_;
   MessagePassing<T> messages_;

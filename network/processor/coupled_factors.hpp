@@ -1,12 +1,12 @@
-// Learned factors over all couplings of a matrix (coupled_passes.hpp), of every joint at one go.
+// Learned factors over all couplings of a matrix (coupled_passes.hpp), predicted for all joints at once.
 //
 //   m_kj = ramp(U vec(B_kj) + u)                                  a message to the row, and one to the column
-//   e_k = ramp(W [a_k; t_k; sums of messages to k] + b)           by sides of k, from earlier places and from later
-//   ones f_k = ramp(W' [e_k; sums over later places i of e_i] + b'),   by sides of k; g_k of f in the same way (C_k,
-//   T_k0, T_k1) = W* g_k + b*,   N_k = C_k C_k^T
+//   e_k = ramp(W [a_k; t_k; sums of messages to k] + b)           by sides of k, from earlier and from later places
+//   f_k = ramp(W' [e_k; sums over later places i of e_i] + b')    by sides of k; g_k of f in the same way
+//   (C_k, T_k0, T_k1) = W* g_k + b*,   N_k = C_k C_k^T
 // a_k are the entries of A's diagonal block less one on its diagonal, t_k those of coupling_features(). All blocks are
 // those of a scaled system in canonical frames (network/encoding/canonical_frames.hpp). N is positive definite, and so
-// is the answer's matrix. At first C = 1 and T = 0, which is Jacobi's answer, but for small random weights.
+// is the operator. The initial C = 1 and T = 0, apart from small random weights, are Jacobi's.
 #pragma once
 
 #include "network/layers/linear.hpp"
@@ -37,14 +37,14 @@ class CoupledFactors {
   void learn(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& tape, const TensorIn<T>& d_factors,
              Parameters<T>& gradient) const;
 
-  /// The answer [6, places] to the systems' residuals.
+  /// The output [6, places] for the systems' residuals.
   void forward(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& tape, Tensor<T>& y) const;
   /// Adds to `gradient`; inputs are data, so nothing flows to the systems.
   void backward(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& tape, const TensorIn<T>& dy,
                 Parameters<T>& gradient) const;
 
   int latent() const { return latent_; }
-  /// What network/processor/coupled_inference.cpp works with.
+  /// The layers, for network/processor/coupled_inference.cpp.
   struct Layers {
     const Linear<T>&message, &encode, &join, &join_again, &factors;
   };

@@ -1,11 +1,11 @@
 // The learned factors of network/processor/coupled_factors.hpp for one rod at a time: no allocation, no tape.
 //
-// Factors are predicted for all joints at once, in canonical frames, and brought to the joints' own: with P_k = T_k
-// S_k, the turn to a canonical frame and the scale in it (network/encoding/canonical_frames.hpp),
+// Factors are predicted for all joints at once, in canonical frames, and transformed to the joints' frames: with
+// P_k = T_k S_k, the turn to a canonical frame and the scale in it (network/encoding/canonical_frames.hpp),
 //   N_k <- P_k^T N_k P_k,   T_ks <- P_k^T T_ks P_k
-// so that a solve is of residuals as they are, with A's own blocks in single precision, in the two passes of
-// network/processor/coupled_passes.hpp. Layers have operands of 16 bits (network/layers/narrow_product.hpp). The
-// results differ from the training code's in that, and where a state is too long for it (CoupledPasses::longest_state).
+// so that a solve uses residuals without scaling and A's own blocks in single precision, in the two passes of
+// network/processor/coupled_passes.hpp. Layers have operands of 16 bits (network/layers/narrow_product.hpp). The results
+// differ from the training code's in rounding, and where that code drops a state (CoupledPasses::longest_state).
 #pragma once
 
 #include "network/encoding/canonical_frames.hpp"
@@ -26,7 +26,7 @@ class CoupledInference {
   /// Sets the factors of a matrix from its blocks and frames.
   void factorise(const CanonicalFrames& frames, const BlockMatrix& a);
 
-  /// d, which the factors answer to a residual r of the matrix.
+  /// Sets d to the factors' solution for a residual r of the matrix.
   void solve(const VectorX& r, VectorX& d);
 
  private:

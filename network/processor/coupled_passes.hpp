@@ -4,16 +4,16 @@
 // segments by which they are coupled,
 //   h_j = r_j - sum over rows k > j of B_kj^T T_ks^T h_k                      last place to first
 //   v_ks = -sum over columns j < k on s of B_kj y_j,  y_k = N_k h_k + sum over s of T_ks v_ks     first to last
-// so that y = (1 + M)^-1 N (1 + M^T)^-1 r, M_kj = T_ks B_kj: linear in r, symmetric as N is, and positive definite as N
-// is, whatever T.
+// so that y = (1 + M)^-1 N (1 + M^T)^-1 r, M_kj = T_ks B_kj: linear in r, and symmetric and positive definite if N is, for
+// any T.
 //
-// Block IC(0) of this order is among these. Where joints share a segment all of them are coupled, B_kj = J_k W J_j^T
-// with the segment's inverse mass W, and eliminating another joint of it takes something from W alone: what IC(0) has
-// in the place of B_kj is J_k W' J_j^T, a matrix of k and s times B_kj. Without that, T_ks = N_k = S_k^-1 (D-ILU:
-// Barrett et al. 1994, section 3.4.3), pivots of lattices are indefinite.
+// Block IC(0) of this order is a special case. All joints that share a segment are coupled, B_kj = J_k W J_j^T with the
+// segment's inverse mass W, and eliminating another of its joints changes W only: IC(0) has J_k W' J_j^T in the place of
+// B_kj, a matrix of k and s times B_kj. With T_ks = N_k = S_k^-1 instead (D-ILU: Barrett et al. 1994, section 3.4.3),
+// pivots of lattices are indefinite.
 //
 // Factors are N_k's lower triangle by columns (21 entries), T_k0 and T_k1 by columns (36 each). A state longer than
-// `longest_state` is not carried on, since a product of many T may grow without bound while they are learned.
+// `longest_state` is dropped, since a product of many T may grow without bound during training.
 #pragma once
 
 #include "network/encoding/scaled_system.hpp"

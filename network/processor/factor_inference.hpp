@@ -1,12 +1,12 @@
 // The learned factors of network/processor/factor_sweeps.hpp for one rod at a time: no allocation, no tape.
 //
-// Factors are predicted for all joints at once, in canonical frames, and brought to the joints' own with M_k = T_k B_k
-// formed: with P_k = T_k S_k, the turn to a canonical frame and the scale in it
+// Factors are predicted for all joints at once, in canonical frames, and transformed to the joints' frames, with
+// M_k = T_k B_k formed: with P_k = T_k S_k, the turn to a canonical frame and the scale in it
 // (network/encoding/canonical_frames.hpp),
 //   N_k <- P_k^T N_k P_k,   M_k <- P_k^T T_k P_k B_k
-// so that a solve is of residuals as they are, in two passes that wait for the joint before and multiply by one matrix
-// each. Layers have operands of 16 bits (network/layers/narrow_product.hpp), passes single precision. The results
-// differ from the training code's in that, and where a state is too long for it (FactorSweeps::longest_state).
+// so that a solve uses residuals without scaling, in two sequential passes with one matrix product a joint each. Layers
+// have operands of 16 bits (network/layers/narrow_product.hpp), passes single precision. The results differ from the
+// training code's in rounding, and where that code drops a state (FactorSweeps::longest_state).
 #pragma once
 
 #include "network/encoding/canonical_frames.hpp"
@@ -24,10 +24,10 @@ class FactorInference {
   FactorInference(const FactorSweeps<float>& sweeps, const Parameters<float>& weights, const JointForest& forest,
                   const SystemPattern& pattern);
 
-  /// Sets the factors of a matrix from its features [57, places], whatever the residual among them, and its frames.
+  /// Sets the factors of a matrix from its features [57, places], of which the residual is not used, and its frames.
   void factorise(const TensorIn<float>& x, const CanonicalFrames& frames, const BlockMatrix& a);
 
-  /// d, which the factors answer to a residual r of the matrix.
+  /// Sets d to the factors' solution for a residual r of the matrix.
   void solve(const VectorX& r, VectorX& d);
 
  private:

@@ -1,22 +1,20 @@
-// A learned block factorisation: an answer that is linear in the residual and symmetric, as A^-1 is.
+// A learned block factorisation: an operator that is linear and symmetric, as A^-1 is.
 //
 // Block elimination of a tree's joints from the tips to the root (solver/linear/block_factor.hpp) needs the inverses of
 // the Schur complements S_k = A_kk - sum over children c of B_c^T S_c^-1 B_c, where B_c is A's block of a child's row
-// and its parent's column, and then solves A y = r by two passes. Here a network puts symmetric matrices in the place
-// of S_k^-1, N_k on the diagonal and T_k beside B_k, at one go for all joints, since it looks at three generations
-// alone:
+// and its parent's column, and then solves A y = r by two passes. Here a network predicts symmetric matrices in the place
+// of S_k^-1, N_k on the diagonal and T_k beside B_k, for all joints at once, from three generations of the tree:
 //   e_k = ramp(W a_k + V t_k + b),   t_k = exp(-height_k / 1, 4, 16, 64), beside_k / 4
 //   f_k = ramp(W' [e_k; sum_c e_c] + b'),   g_k = ramp(W'' [f_k; sum_c f_c] + b'')
 //   (N_k, T_k) = W* g_k + b*,  lower triangles by columns
 //   h_k = r_k - sum_c B_c^T T_c h_c                    tips to roots
 //   y_k = N_k h_k - T_k B_k y_parent                   roots to tips
-// a_k are the features of A's blocks and r_k those of the residual (network/encoding/system_encoding.hpp), height_k is
-// how many joints lie between k and the farthest tip, beside_k with how many A couples k besides parent and children:
-// those blocks are left out. With N = T = S^-1 a chain is solved exactly; at first N = I and T = 0, which is Jacobi's
-// answer, but for small random weights.
+// a_k are the features of A's blocks and r_k those of the residual (network/encoding/system_encoding.hpp). height_k is the
+// number of joints between k and the farthest tip, beside_k the number of couplings of k besides parent and children,
+// whose blocks are left out. With N = T = S^-1 a chain is solved exactly. The initial N = I and T = 0, apart from small
+// random weights, are Jacobi's.
 //
-// A product of many T_k may grow without bound while they are learned: a state longer than `longest_state` is not
-// carried on.
+// A product of many T_k may grow without bound during training: a state longer than `longest_state` is dropped.
 #pragma once
 
 #include "network/encoding/system_encoding.hpp"
@@ -50,7 +48,7 @@ class FactorSweeps {
                 const TensorIn<T>& dy, Parameters<T>& gradient) const;
 
   int latent() const { return latent_; }
-  /// What network/processor/factor_inference.cpp works with.
+  /// The layers, for network/processor/factor_inference.cpp.
   struct Layers {
     const Linear<T>&encode, &join, &join_again, &factors;
   };

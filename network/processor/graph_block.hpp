@@ -12,13 +12,13 @@
 
 namespace rodsweep {
 
-/// What flows from step to step.
+/// The state between steps.
 template <class T>
 struct GraphState {
   Tensor<T> nodes, edges, globals;  ///< [H, nodes], [H, edges], [H, rods]
 };
 
-/// What a step changes: each includes those before it.
+/// The parts that a step updates: each includes those before it.
 enum class Updates { edges, nodes, globals };
 
 template <class T>
@@ -37,11 +37,11 @@ class GraphBlock {
   };
 
   GraphBlock() = default;
-  /// `updates`: all that the block can change; `reads_globals`: there is a u before it.
+  /// `updates`: the parts that the block can change; `reads_globals`: there is a u before it.
   GraphBlock(Parameters<T>& parameters, const std::string& name, int latent, int hidden_layers, Updates updates,
              bool reads_globals, WeightSource& source);
 
-  /// Makes `out`; parts that `updates` leaves out are left alone.
+  /// Sets `out`, except for the parts that `updates` leaves out.
   void forward(const Parameters<T>& p, const RodGraph& graph, const GraphState<T>& in, Updates updates, Tape& tape,
                GraphState<T>& out) const;
   /// `d` comes as the gradient with respect to the state after the step, and leaves as that before it.

@@ -3,8 +3,8 @@
 //   encode    v = MLP(x_node), e = MLP(x_edge), u = 0      (a learned u would be one more bias)
 //   process   K steps of GraphBlock, each with weights of its own
 //   decode    y_edge = MLP(e), y_node = MLP(v)
-// An edge's output has seen the nodes up to K hops away, its own ends being one hop away; a node's too. With a global
-// state all of a rod is seen from the second step on.
+// The output of an edge depends on the nodes up to K hops away, its own ends being one hop away; likewise that of a node.
+// With a global state it depends on the whole rod from the second step on.
 #pragma once
 
 #include "network/processor/graph_block.hpp"

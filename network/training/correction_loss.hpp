@@ -1,10 +1,11 @@
-// What several corrections with factors of all couplings leave: conjugate gradients with the factors as preconditioner.
+// The error after several corrections with factors of all couplings: conjugate gradients with the factors as
+// preconditioner.
 //
 // With F the matrix of network/processor/coupled_passes.hpp and r_0 = r^, E_0 = (x - x_base)^T A^ (x - x_base),
 //   z_i = F r_i,  p_i = z_i + (r_i.z_i / r_i-1.z_i-1) p_i-1,  a_i = r_i.z_i / p_i.A^ p_i,  r_i+1 = r_i - a_i A^ p_i
 //   E_i+1 = E_i - a_i r_i.z_i,   L = sqrt(E_k / x^T A x)
-// What one correction leaves says little of the next: it can be small where F is no preconditioner at all. E_k is the
-// least over all polynomials in F A^, so that, as in energy_loss.hpp, the gradient is exact with both kinds of
+// The error after one correction predicts little about the next: it can be small although F is a bad preconditioner. E_k
+// is the minimum over all polynomials in F A^, so that, as in energy_loss.hpp, the gradient is exact with both kinds of
 // coefficients held fixed.
 #pragma once
 

@@ -1,12 +1,12 @@
-// What a guess leaves for CG, measured in the norm that CG minimises.
+// The error of a guess in the norm that CG minimises.
 //
 // The network's d^ gives the direction of a correction; its length is the best one, c = d^.r^ / d^.A^ d^, or, without
-// `best_length`, as it is, c = 1. The loss of a system is the energy norm of the error that is left, relative to the
-// solution's (the error of the zero guess); with the best length
+// `best_length`, c = 1. The loss of a system is the energy norm of the remaining error, relative to that of the solution
+// (the error of the zero guess); with the best length
 //   L = sqrt(E / x^T A x),   E = min over c of |x - x_base - c d|_A^2 = E_base - (d^.r^)^2 / d^.A^ d^
-// or, in the loop, what is left after k further steps of Jacobi-preconditioned CG. Each step multiplies the error by a
-// polynomial in A that CG chooses so that E is least; by the envelope theorem the gradient is exact with the
-// polynomial held fixed: with e_k = P_k(A^) e_0,  dE_k/de_0 = 2 P_k(A^) A^ e_k.
+// or, in the loop, E after k further steps of Jacobi-preconditioned CG. The error is then multiplied by the polynomial in
+// A^ that minimises E; by the envelope theorem the gradient is exact with the polynomial held fixed: with
+// e_k = P_k(A^) e_0,  dE_k/de_0 = 2 P_k(A^) A^ e_k.
 #pragma once
 
 #include "network/encoding/scaled_system.hpp"

@@ -1,4 +1,4 @@
-// One linear system as a network sees it while it learns, and mini-batches of them.
+// One linear system as a training example, and mini-batches of examples.
 //
 // The network's output y, [6, places], stands for the correction d^ = unit * y of the scaled system (entry by entry;
 // network/encoding/scaled_system.hpp). Everything per joint is in the places of the topology.

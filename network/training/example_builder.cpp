@@ -40,41 +40,36 @@ Tensor<float> by_place(const Topology& topology, const VectorX& values) {
 }
 
 /// The system to learn from, and how outputs and their targets stand to it.
-void put_system(const CopingNetSettings& settings, const LinearSystem& system, const StoredSystem& stored,
-                RodExamples& of, Example& out) {
+void put_system(const LinearSystem& system, const StoredSystem& stored, RodExamples& of, Example& out) {
   const SystemPattern& pattern = of.encoder.pattern();
   const VectorX error = stored.solution - of.base;
   const double solution_energy = stored.solution.dot(system.rhs());
-  if (const CanonicalEncoding* canonical = of.encoder.canonical()) {
-    out.system = canonical_system(pattern, canonical->frames(), system.matrix(), of.residual, error, solution_energy);
+  if (const SystemEncoding* scaled = of.encoder.system()) {
+    out.system = canonical_system(pattern, scaled->frames(), system.matrix(), of.residual, error, solution_energy);
     out.edge_target.resize(6, out.system.residual.cols());
     for (int place = 0; place < static_cast<int>(out.edge_target.cols()); ++place) {
       const int joint = pattern.joint[static_cast<std::size_t>(place)];
-      const Lane8 target = canonical->to_unit(place, load6(error.data() + 6 * joint));
+      const Lane8 target = scaled->to_unit(place, load6(error.data() + 6 * joint));
       for (int row = 0; row < 6; ++row) out.edge_target(row, place) = static_cast<float>(target[row]);
     }
     return;
   }
   out.system = scaled_system(pattern, system.matrix(), of.residual, error, solution_energy);
   correction_scale(system.matrix(), of.residual, of.scale);
-  if (settings.encoding == Encoding::system) {
-    out.edge_target = by_place(*out.topology, error.cwiseQuotient(of.scale));
-  } else {
-    out.unit = by_place(*out.topology, of.scale.cwiseInverse());
-    out.edge_target = by_place(*out.topology, error);
-  }
+  out.unit = by_place(*out.topology, of.scale.cwiseInverse());
+  out.edge_target = by_place(*out.topology, error);
 }
 
 /// `seen` is the system's rod as `turn` has it.
 Example example_of(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system,
-                   const StoredSystem& stored, double dt_c, RodExamples& of, const Rod& seen, const Turn& turn) {
+                   const StoredSystem& stored, RodExamples& of, const Rod& seen, const Turn& turn) {
   Example out;
   out.topology = of.encoder.shared_topology();
   out.nodes.resize(node_features(settings), rod.segment_count());
   of.edges.resize(edge_features(settings), rod.joint_count());
-  of.encoder.encode(seen, system, stored.at.newton, dt_c, of.base, of.residual, out.nodes, of.edges);
+  of.encoder.encode(seen, system, stored.at.newton, of.base, of.residual, out.nodes, of.edges);
   if (is_of_graphs(settings.encoding)) out.edges = of.edges;
-  put_system(settings, system, stored, of, out);
+  put_system(system, stored, of, out);
   if (settings.moves) {
     out.node_target.resize(6, rod.segment_count());
     system.displacements(rod, stored.solution, of.moves);
@@ -109,11 +104,10 @@ void add_examples(const CopingNetSettings& settings, const StoredSimulation& sim
     of.residual = system.rhs() - of.residual;
     const bool wanted = stored.at.newton == 0 || !first_iterations_only;
     if (wanted && of.residual.lpNorm<Eigen::Infinity>() > rounding_level) {
-      out.push_back(example_of(settings, rod, system, stored, simulation.constraint_dt_s, of, rod, {}));
+      out.push_back(example_of(settings, rod, system, stored, of, rod, {}));
       for (int copy = 0; copy < copies.count; ++copy) {
         const Turn turn = random_turn(scene.gravity_m_s2, length_of(rod), random);
-        out.push_back(
-            example_of(settings, rod, system, stored, simulation.constraint_dt_s, of, turned(rod, turn), turn));
+        out.push_back(example_of(settings, rod, system, stored, of, turned(rod, turn), turn));
       }
     }
     base->accept(stored.at, stored.solution);

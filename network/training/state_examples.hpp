@@ -1,9 +1,9 @@
-// Examples for a simulator that updates states (network/encoding/state_encoding.hpp), from recorded velocities alone:
-// what five of them say of the next.
+// Examples for a simulator that updates states (network/encoding/state_encoding.hpp), from recorded velocities only: the
+// next velocity after five of them.
 //
-// Copies of an example are rolled about the segments' axes by any angle, the same for all segments, and have a history
-// with noise, whose exact answer still leads to the velocities that were recorded: so a simulator learns to take back
-// what it erred before. Noise is relative to the root mean square of what a step adds to the simulation's velocities.
+// Copies of an example are rolled about the segments' axes by a random angle, the same for all segments, and have a
+// history with noise. Their target still leads to the recorded velocities: so a simulator learns to correct its earlier
+// errors. Noise is relative to the root mean square of a step's changes of velocities in the simulation.
 #pragma once
 
 #include "network/training/example_builder.hpp"

@@ -21,7 +21,7 @@ namespace rodsweep {
 
 enum class LossKind {
   mse,         ///< mean square of the outputs' errors
-  energy,      ///< energy norm of what the guess leaves
+  energy,      ///< energy norm of the guess's error
   in_the_loop  ///< the same after `cg_steps` steps of CG; of factors of all couplings, after so many corrections
 };
 
@@ -40,7 +40,7 @@ struct TrainingSettings {
 
 class Trainer {
  public:
-  /// `net` and `examples` must outlive the trainer. Throws std::invalid_argument for settings that make no sense.
+  /// `net` and `examples` must outlive the trainer. Throws std::invalid_argument for inconsistent settings.
   Trainer(CopingNet<float>& net, const std::vector<Example>& examples, const TrainingSettings& settings,
           int threads = 1);
 
@@ -48,7 +48,7 @@ class Trainer {
   std::int64_t steps() const { return steps_per_epoch_ * settings_.epochs; }
   std::int64_t step() const { return step_; }  ///< steps taken
 
-  /// What shards contribute to the next step: a loss, then its gradient. `out` has shard_size() entries.
+  /// The contributions of shards to the next step: a loss, then its gradient. `out` has shard_size() entries.
   struct Shard {
     int number;
     float* out;
@@ -63,7 +63,7 @@ class Trainer {
   /// Sums of the losses of consecutive batches of examples, without gradients; of those for which wanted(batch).
   std::vector<double> losses(const std::vector<Example>& examples, const std::function<bool(int batch)>& wanted);
 
-  /// All that must be kept to go on exactly from here, beside the parameters.
+  /// The state of the trainer, with which, beside the parameters, training continues exactly.
   struct State {
     std::int64_t step = 0;
     AlignedVector<float> mean, square;
@@ -72,7 +72,7 @@ class Trainer {
   void restore(const State& state);
 
  private:
-  /// What a thread works with.
+  /// The buffers of a thread.
   struct Workspace {
     EnergyLoss<float> energy;
     CorrectionLoss<float> corrections;

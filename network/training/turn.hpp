@@ -1,4 +1,4 @@
-// A turn about gravity and a shift: what a rod's motion knows nothing of, and encodings that say where a rod is do.
+// A turn about gravity and a shift, which do not affect the motion of a rod but some encodings.
 #pragma once
 
 #include "solver/numbers/split_mix.hpp"
@@ -11,7 +11,7 @@ struct Turn {
   Vector3 shift = Vector3::Zero();
 };
 
-/// By any angle about gravity, about anything where there is none; as far as `reach` [m] along every axis.
+/// A random angle about gravity, or about a random axis without gravity; a shift of at most `reach` [m] along every axis.
 Turn random_turn(const Vector3& gravity_m_s2, double reach_m, SplitMix& random);
 
 /// The rod turned about the origin, then shifted; with its velocities.

@@ -67,7 +67,7 @@ double seconds_of_ratio(const TrainingJob& job, const Model& model, StoredSimula
   const auto shared = std::make_shared<const Model>(model);
   const Stopwatch watch;
   ratio.measure(0, [&](const Scene& scene, const StoredSimulation& of) {
-    return std::make_unique<CopingNetGuess>(shared, scene, of.constraint_dt_s, of.newton_iterations);
+    return std::make_unique<CopingNetGuess>(shared, scene, of.newton_iterations);
   });
   const int times = 1 + (job.ratio_every_epochs > 0 ? job.training.epochs / job.ratio_every_epochs : 0);
   return watch.seconds() * times * static_cast<double>(std::min(job.ratio_simulations, simulations));

@@ -36,8 +36,7 @@ std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task,
     case Kind::regression:
       return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window, noise);
     case Kind::copingnet:
-      return std::make_unique<CopingNetGuess>(shared_model(guess.model), scene, constraint_dt(scene, task.time.step_s),
-                                              task.time.newton_iterations,
+      return std::make_unique<CopingNetGuess>(shared_model(guess.model), scene, task.time.newton_iterations,
                                               FactorUse{guess.corrections, guess.factor_lag_steps, guess.stop_at});
     case Kind::knn:
       return std::make_unique<KnnGuess>(shared_knn_set(guess.data, guess.simulations, guess.knn_inputs), scene,

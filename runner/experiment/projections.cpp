@@ -21,10 +21,10 @@ class LoggedIncrements : public IncrementSource {
         rods_(scene.rods.size()),
         network_(shared_model(spec.solve.model), scene, spec.time.newton_iterations) {}
 
-  bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double dt_c, VectorX& delta_lambda,
+  bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, VectorX& delta_lambda,
                std::vector<Lane8>& moves) override {
     if (spec_.output.solves) log_system(system, rod, at, solve_row(spec_, rods_, at), record_);
-    return network_.predict(rod, system, at, dt_c, delta_lambda, moves);
+    return network_.predict(rod, system, at, delta_lambda, moves);
   }
 
  private:

@@ -9,8 +9,8 @@
 
 #include "network/guess/knn.hpp"
 #include "runner/job/rows.hpp"
-#include "solver/guess/initial_guess.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
+#include "solver/guess/initial_guess.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/pbd_projection.hpp"
 

@@ -10,12 +10,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const Words<Encoding> encodings{{"paper", Encoding::paper},         {"deck", Encoding::deck},
-                                {"physics", Encoding::physics},     {"system", Encoding::system},
-                                {"canonical", Encoding::canonical}, {"state", Encoding::state}};
-const Words<Processor> processors{
-    {"sweeps", Processor::sweeps}, {"factors", Processor::factors}, {"message_passing", Processor::message_passing}};
-const Words<Recurrence> recurrences{{"gated", Recurrence::gated}, {"linear", Recurrence::linear}};
+const Words<Encoding> encodings{{"paper", Encoding::paper},
+                                {"paper_residual", Encoding::paper_residual},
+                                {"linear_system", Encoding::linear_system},
+                                {"state", Encoding::state}};
+const Words<Processor> processors{{"factors", Processor::factors}, {"message_passing", Processor::message_passing}};
 const Words<Couplings> all_couplings{{"tree", Couplings::tree}, {"all", Couplings::all}};
 const Words<BaseGuess> bases{{"none", BaseGuess::none},
                              {"extrapolation", BaseGuess::extrapolation},
@@ -43,20 +42,19 @@ TrainingSettings training_settings(const Json& values, std::uint64_t seed) {
 void check_state(const TrainingJob& training, const std::filesystem::path& file) {
   const auto want = [&](bool holds, const char* key, const std::string& value, const char* must) {
     if (!holds)
-      throw job_error(
-          file, key,
-          fmt::format("{} is not allowed with network.encoding \"state\", a simulator's; must be {}", value, must));
+      throw job_error(file, key,
+                      fmt::format("{} is not allowed with network.encoding \"state\"; must be {}", value, must));
   };
   const auto quoted = [](const std::string& word) { return '"' + word + '"'; };
   const CopingNetSettings& network = training.network;
   want(network.processor == Processor::message_passing, "network.processor",
        quoted(word_of(processors, network.processor)), "\"message_passing\"");
   want(network.base == BaseGuess::none, "network.base", quoted(word_of(bases, network.base)), "\"none\"");
-  want(network.moves, "network.moves", "false", "true: it predicts nothing else");
+  want(network.moves, "network.moves", "false", "true");
   want(training.training.loss == LossKind::mse, "training.loss", quoted(word_of(losses, training.training.loss)),
        "\"mse\"");
   want(training.turned_copies == 0, "training.turned_copies", std::to_string(training.turned_copies),
-       "0: no turn changes it");
+       "0: turning does not change it");
 }
 
 void check(const TrainingJob& training, const std::filesystem::path& file) {
@@ -66,10 +64,11 @@ void check(const TrainingJob& training, const std::filesystem::path& file) {
         file, "training.shards",
         fmt::format("{} is not allowed; must be a divisor of training.batch, {}", settings.shards, settings.batch));
   }
-  if (training.network.processor == Processor::factors && training.network.encoding != Encoding::canonical) {
+  if (!is_guess(training.network)) return check_state(training, file);
+  if (training.network.processor == Processor::factors && training.network.encoding != Encoding::linear_system) {
     throw job_error(file, "network.encoding",
-                    fmt::format("\"{}\" is not allowed with network.processor \"factors\", which are those of a matrix "
-                                "in the rod's own frames; must be \"canonical\"",
+                    fmt::format("\"{}\" is not allowed with network.processor \"factors\"; must be \"linear_system\", "
+                                "or use network.processor \"message_passing\"",
                                 word_of(encodings, training.network.encoding)));
   }
   if (training.network.processor == Processor::factors && !FactorInference::supports(training.network.latent)) {
@@ -77,7 +76,6 @@ void check(const TrainingJob& training, const std::filesystem::path& file) {
                     fmt::format("{} is not allowed with network.processor \"factors\"; must be a multiple of 16",
                                 training.network.latent));
   }
-  if (!is_guess(training.network)) return check_state(training, file);
   if (training.noisy_copies > 0) {
     throw job_error(file, "training.noisy_copies",
                     fmt::format("{} is not allowed with network.encoding \"{}\"; must be with \"state\"",
@@ -86,12 +84,12 @@ void check(const TrainingJob& training, const std::filesystem::path& file) {
   if (training.turned_copies > 0 && !is_of_graphs(training.network.encoding)) {
     throw job_error(
         file, "training.turned_copies",
-        fmt::format("{} is not allowed with network.encoding \"{}\", which no turn changes; remove this key",
+        fmt::format("{} is not allowed with network.encoding \"{}\", which turning does not change; remove this key",
                     training.turned_copies, word_of(encodings, training.network.encoding)));
   }
   if (training.network.moves && settings.loss != LossKind::mse) {
     throw job_error(file, "network.moves",
-                    fmt::format("true is not allowed with training.loss \"{}\", which teaches the network nothing of "
+                    fmt::format("true is not allowed with training.loss \"{}\", which does not train "
                                 "moves; use \"mse\" or remove this key",
                                 word_of(losses, settings.loss)));
   }
@@ -106,7 +104,6 @@ CopingNetSettings network_settings(const Json& values) {
   settings.base = value_of(bases, values["base"]);
   settings.base_size = values["base_size"];
   settings.latent = values["latent"];
-  settings.recurrence = value_of(recurrences, values.value("recurrence", "gated"));
   settings.couplings = value_of(all_couplings, values.value("couplings", "tree"));
   settings.steps = values.value("steps", settings.steps);
   settings.hidden_layers = values.value("hidden_layers", settings.hidden_layers);
@@ -123,13 +120,11 @@ Json network_json(const CopingNetSettings& settings) {
               {"base_size", settings.base_size},
               {"latent", settings.latent},
               {"best_length", settings.best_length}};
-  if (settings.processor == Processor::sweeps && settings.recurrence != Recurrence::gated)
-    values["recurrence"] = word_of(recurrences, settings.recurrence);  // absent in models from before it
-  if (has_all_couplings(settings)) values["couplings"] = word_of(all_couplings, settings.couplings);  // likewise
+  if (has_all_couplings(settings)) values["couplings"] = word_of(all_couplings, settings.couplings);
   if (settings.processor == Processor::message_passing)
     values.update({{"steps", settings.steps}, {"globals", settings.globals}, {"moves", settings.moves}});
   if (settings.processor == Processor::message_passing && settings.hidden_layers > 1)
-    values["hidden_layers"] = settings.hidden_layers;  // likewise
+    values["hidden_layers"] = settings.hidden_layers;
   return values;
 }
 

@@ -52,8 +52,8 @@ Key training() {
                             {"first", "all"})
                      .defaults_to("all"),
                  integer_key("turned_copies",
-                             "of every example, turned about gravity at random and shifted; for encodings that know "
-                             "where a rod is: paper, deck and physics")
+                             "of every example, turned about gravity at random and shifted; for encodings that depend "
+                             "on where a rod is: paper and paper_residual")
                      .from(0, 100)
                      .defaults_to(0),
                  integer_key("noisy_copies",
@@ -89,36 +89,28 @@ Key network_key() {
              {
                  choice_key(
                      "encoding",
-                     "what it is given of a linear system. paper: the features of Shao et al., 14 of a segment and 5 "
-                     "of a joint; deck: the same, and from the second Newton iteration on what constraints lack; "
-                     "physics: more of them, scaled; system: the scaled system itself; canonical: that in frames "
-                     "that no turn, roll or mirror changes; state: of no system but the last velocities, for "
-                     "solve.method "
-                     "state_network",
-                     {"paper", "deck", "physics", "system", "canonical", "state"})
-                     .defaults_to("system"),
+                     "the network's inputs. paper: the features of Shao et al., 14 of a segment and 5 of a joint; "
+                     "paper_residual: the same, and the constraint residual from the second Newton iteration on; "
+                     "linear_system: the scaled linear system in frames that turning, rolling and mirroring do not "
+                     "change; state: the last five velocities, for solve.method state_network",
+                     {"paper", "paper_residual", "linear_system", "state"})
+                     .defaults_to("linear_system"),
                  choice_key(
                      "processor",
-                     "sweeps: over the tree of joints, up and down; factors: of the matrix, block by block, and a "
-                     "solve with them; message_passing: over the graph",
-                     {"sweeps", "factors", "message_passing"})
-                     .defaults_to("sweeps"),
+                     "factors: of the matrix, block by block, and a solve with them; message_passing: over the graph",
+                     {"factors", "message_passing"})
+                     .defaults_to("factors"),
                  choice_key("base", "the guess that it corrects", {"none", "extrapolation", "regression", "subspace"})
-                     .defaults_to("subspace"),
+                     .defaults_to("regression"),
                  integer_key("base_size", "regression, subspace: most solutions that span the subspace")
                      .from(1, 200)
-                     .defaults_to(10),
-                 integer_key("latent", "width of hidden layers and states").from(1, 1024).defaults_to(32),
-                 choice_key("recurrence",
-                            "sweeps: how states go from joint to joint, by gated recurrent units, or linear in the "
-                            "state, which is cheaper",
-                            {"gated", "linear"})
-                     .defaults_to("gated")
-                     .only({"sweeps"}),
-                 choice_key("couplings",
-                            "factors: of which couplings of joints they are, those along the tree, or all, as loops of "
-                            "nets and lattices want it",
-                            {"tree", "all"})
+                     .defaults_to(6),
+                 integer_key("latent", "width of hidden layers and states").from(1, 1024).defaults_to(16),
+                 choice_key(
+                     "couplings",
+                     "factors: the couplings of joints that they contain, those along the tree, or all, for nets "
+                     "and lattices",
+                     {"tree", "all"})
                      .defaults_to("tree")
                      .only({"factors"}),
                  integer_key("steps", "message_passing: hops over the graph")
@@ -136,7 +128,7 @@ Key network_key() {
                      .defaults_to(true),
                  boolean_key("moves", "message_passing: also predict the moves of segments")
                      .defaults_to(false)
-                     .only({"message_passing"}, "sweeps and factors work on joints alone"),
+                     .only({"message_passing"}, "factors work on joints alone"),
              },
              "processor")
       .defaults_to(Json::object());

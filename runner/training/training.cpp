@@ -132,7 +132,7 @@ Training::SimulationRatios Training::ratios(const ValidationRatio::MakeGuess& ma
 
 Training::SimulationRatios Training::ratios(const std::shared_ptr<const Model>& model) const {
   return ratios([&](const Scene& scene, const StoredSimulation& simulation) {
-    return std::make_unique<CopingNetGuess>(model, scene, simulation.constraint_dt_s, simulation.newton_iterations);
+    return std::make_unique<CopingNetGuess>(model, scene, simulation.newton_iterations);
   });
 }
 

@@ -12,10 +12,10 @@ namespace {
 void check_alone(const Scene& scene, const std::string& name) {
   if (scene.rods.size() != 1)
     throw SceneError(name + " has " + std::to_string(scene.rods.size()) + " rods; must have one");
-  if (!scene.clamps.empty()) throw SceneError(name + " has a moving clamp; a batched step knows none");
-  if (!scene.loads.empty()) throw SceneError(name + " has a point load; a batched step knows none");
-  if (scene.contact) throw SceneError(name + " has contact; a batched step knows none");
-  if (scene.wind) throw SceneError(name + " has wind; a batched step knows none");
+  if (!scene.clamps.empty()) throw SceneError(name + " has a moving clamp; a batched step has no moving clamps");
+  if (!scene.loads.empty()) throw SceneError(name + " has a point load; a batched step has no point loads");
+  if (scene.contact) throw SceneError(name + " has contact; a batched step has no contact");
+  if (scene.wind) throw SceneError(name + " has wind; a batched step has no wind");
   const Rod& rod = scene.rods.front();
   if (rod.joint_count() != rod.segment_count() - 1)
     throw SceneError(name + " has " + std::to_string(rod.joint_count()) + " joints for " +

@@ -1,7 +1,7 @@
 // The time step of time_step.hpp with the direct solve, for as many equal chains at once as a register has lanes, one
-// in each: what makes data generation fast. Each rod goes as it would alone, to rounding, and to the bit as it would in
-// any other batch: a lane that has converged is left as it is while the others iterate, and one whose solve fails is
-// left as it is for good. Nothing allocates after construction.
+// in each: this makes data generation fast. The result of a rod is that of a single rod up to rounding, and has the same
+// bits in every batch: a converged lane does not change while the others iterate, and a lane whose solve failed does not
+// change any more. Nothing allocates after construction.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ class BatchedStepper {
   BatchedStepper(const std::vector<Scene>& scenes, const StepSettings& settings,
                  std::optional<double> momentum_tolerance = {});
 
-  /// Advances by dt all rods whose steps have not failed. One report per rod; a failed one repeats its outcome.
+  /// Advances all rods whose steps have not failed by dt. One report per rod; a failed one repeats its outcome.
   const std::vector<StepReport>& step();
 
   // The same in parts, for those who look at the systems: begin(); solve() for as long as linearize() is true; end().

@@ -1,8 +1,8 @@
-// Which bodies may touch in a step: all pairs whose boxes meet, from an R-tree (Boost.Geometry) that is packed at once
-// (Leutenegger et al. 1997; Garcia et al. 1998) and asked for every box: O(n log n) in all.
+// The pairs of bodies that may touch in a step: all pairs with overlapping boxes, from a packed R-tree (Boost.Geometry;
+// Leutenegger et al. 1997; Garcia et al. 1998) with a query for every box: O(n log n) in total.
 //
-// Boxes are kept larger than asked for by a margin, and the pairs with them, until a box leaves its own (a Verlet
-// list): bodies that move slowly cost a comparison each. Pairs come sorted. Only finding them anew allocates.
+// Boxes are enlarged by a margin. They and their pairs are kept until a box leaves its enlarged one (a Verlet list):
+// slow bodies cost one comparison each. Pairs are sorted. Only a new search allocates.
 #pragma once
 
 #include <functional>
@@ -34,13 +34,13 @@ struct Pair {
 
 class BroadPhase {
  public:
-  /// `matters(a, b)`, a < b: whether the pair is wanted. `margins`: of every body [m].
+  /// `matters(a, b)`, a < b: whether the pair is searched for. `margins`: of every body [m].
   BroadPhase(std::vector<double> margins, std::function<bool(int, int)> matters);
 
-  /// At least all pairs that matter and whose boxes meet, at most those whose boxes grown by twice the margins do.
+  /// All pairs that matter with overlapping boxes, and some whose boxes overlap when enlarged by twice the margins.
   const std::vector<Pair>& pairs(const std::vector<Box>& boxes);
 
-  int searches() const { return searches_; }  ///< how often pairs were found anew
+  int searches() const { return searches_; }  ///< searches so far
 
  private:
   void search();

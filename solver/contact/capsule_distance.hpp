@@ -39,8 +39,8 @@ Overlap overlap(const CapsuleAxis& a, const CapsuleAxis& b);
 double relative_motion(const CapsuleAxis& a_from, const CapsuleAxis& a_to, const CapsuleAxis& b_from,
                        const CapsuleAxis& b_to);
 
-/// When, from 0 to 1, two axes that move so first come as near as `distance`; by conservative advancement (Mirtich
-/// 1996), to a thousandth of the distance. A graze that it cannot decide in 64 advances counts.
+/// The first time, from 0 to 1, at which two axes with this motion are `distance` apart, by conservative advancement
+/// (Mirtich 1996), to a thousandth of the distance. A graze that is undecided after 64 advances counts as a contact.
 std::optional<double> first_touch(const CapsuleAxis& a_from, const CapsuleAxis& a_to, const CapsuleAxis& b_from,
                                   const CapsuleAxis& b_to, double distance);
 

@@ -1,20 +1,19 @@
-// The contacts of a step, found once from where everything is at its start, p, and where it would go freely, p* (Shao
-// et al. 2021), so that nothing passes through anything else however fast it is.
+// The contacts of a step, found once from the positions p at its start and p* after free flight (Shao et al. 2021), so
+// that fast bodies do not pass through each other.
 //
-// A contact keeps two capsules at least R = r_a + r_b apart, axis from axis, measured along a normal n from b to a. It
-// is on the right side from the start: n is taken where the axes first come as near as R on their straight way from p
-// to p*, wherever they could have crossed on it, else at p*. Later n follows the closest points as long as it turns by
-// less than a right angle at once; otherwise the axes have crossed, and n stays (see follow()). Contacts of the last
-// step pass their side on, so that axes which ended a step crossed are still pushed back.
+// A contact keeps the axes of two capsules at least R = r_a + r_b apart, measured along a normal n from b to a. n must
+// point to the side on which a was at the start. If the axes could have crossed between p and p*, n is taken at the
+// first time when they are R apart on their straight paths, else at p*. Later n follows the closest points, as long as it
+// turns by less than a right angle at once; otherwise the axes have crossed, and n is kept (see follow()). A contact that
+// lasts keeps its side, so that axes that are crossed at the end of a step are still pushed back.
 //
-// Where one of the closest points is the end of a segment and the rod goes on there towards the other, its next segment
-// is nearer: that has the contact. Otherwise rods would catch on each other's joints.
+// If a closest point is the end of a segment and the rod continues there towards the other body, the contact belongs to
+// the next segment, which is nearer. Otherwise rods would catch on each other's joints.
 //
-// There is a contact where the axes can have come as near as 1.2 R; the rods' projection may move them into it.
-// Capsules that lie side by side have two, at the ends of their overlap, and so has a capsule on a half-space, at both
-// its ends. All others have one, at their closest points. What they penetrate at p is allowed for, but for a share that
-// is taken back (ContactSettings::recovery), at most a hundredth of a radius in a step: what a step corrects by a
-// distance is a velocity that stays.
+// A contact is made if the axes can have come within 1.2 R: the rods' projection may move them into it. Capsules side by
+// side have two contacts, at the ends of their overlap; a capsule on a half-space has two, at its ends; all others have
+// one, at their closest points. A penetration at p is allowed, except for a share that is corrected
+// (ContactSettings::recovery), at most a hundredth of a radius in a step: a correction of positions adds a velocity.
 #pragma once
 
 #include <vector>
@@ -49,16 +48,15 @@ class ContactFinder {
 
   const ContactBodies& bodies() const { return bodies_; }
 
-  /// To be called at the start of a step, with the time at its end.
+  /// Call at the start of a step, with the time at its end.
   void remember(const Scene& scene, double end_s) {
     start_s_ = scene.time_s;
     end_s_ = end_s;
     bodies_.place(scene, start_);
   }
 
-  /// To be called when the scene has moved on to p*. Replaces the contacts of the last step by those of this one,
-  /// sorted by bodies and place; those that last keep their impulses. Returns false, and finds none, where p* is not
-  /// finite.
+  /// Call at p*. Replaces the contacts of the last step by those of this one, sorted by bodies and place; contacts that
+  /// last keep their impulses. Returns false, and finds none, where p* is not finite.
   bool find(const Scene& scene, std::vector<Contact>& contacts);
 
   /// The bodies' axes as they are now, those of obstacles at the end of the step.

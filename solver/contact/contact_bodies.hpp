@@ -1,13 +1,13 @@
-// Everything in a scene that may touch, one list: the segments of all rods, then the balls and capsules that stand in
-// their way. A segment is a capsule: its axis is as long as the segment, with a half sphere of its radius beyond either
-// end. A segment without radius (an exact wall) touches nothing.
+// All bodies of a scene that may touch, in one list: the segments of all rods, then balls and capsules among the
+// obstacles. A segment is a capsule: its axis is as long as the segment, with a half sphere of its radius at either end.
+// A segment without radius (an exact wall) has no contacts.
 //
-// Two segments of a rod matter to each other only if the way between them along the axes of the rod, from joint to
-// joint, is at least (pi / 2) (r_a + r_b): nearer ones could touch only where the rod is bent more tightly than its own
-// radius. That excludes those that a joint joins and all that meet in one point, and where segments are shorter than
-// they are wide also the next but one and so on, whose capsules overlap in a straight rod. Farther ones do not matter
-// either while their capsules overlap where no joint is strained, as beside a node where rods meet at a sharp angle.
-// Two static bodies never matter to each other. Throws SceneError where an obstacle is none.
+// Two segments of a rod can be in contact only if the path between them along the rod, from joint to joint, is at least
+// (pi / 2) (r_a + r_b): nearer ones could touch only where the rod is bent more tightly than its own radius. This
+// excludes neighbours and all segments that meet in one point. If segments are shorter than they are wide, it also
+// excludes the next neighbours, whose capsules overlap in a straight rod. Farther segments are excluded too if their
+// capsules overlap at rest, as beside a node where rods meet at a sharp angle. Two static bodies are never in contact.
+// Throws SceneError for an invalid obstacle.
 #pragma once
 
 #include <algorithm>
@@ -37,10 +37,10 @@ class ContactBodies {
     return b < 0 ? body(a).radius : std::min(body(a).radius, body(b).radius);
   }
 
-  /// Whether two bodies, a < b, are ever to be kept apart.
+  /// Whether two bodies, a < b, can be in contact.
   bool matter(int a, int b) const;
 
-  /// Where a rod goes on at an end of a segment: its next segment, and the direction into that along its axis.
+  /// The continuation of a rod at an end of a segment: the next segment, and the direction into it along its axis.
   struct Next {
     int end;   ///< of the segment: -1 or 1
     int body;  ///< the next

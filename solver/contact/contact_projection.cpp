@@ -24,7 +24,7 @@ ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settin
     : scene_(scene), settings_(settings), finder_(scene, settings.recovery), motion_(scene, finder_.bodies()) {
   check_least("friction", settings.friction, 0);
   check_least("tolerance", settings.tolerance, 0);
-  if (settings.tolerance == 0) throw SceneError("tolerance is 0, which nothing reaches; must be positive");
+  if (settings.tolerance == 0) throw SceneError("tolerance is 0; must be positive");
   check_least("sweeps", settings.sweeps, 1);
   check_least("recovery", settings.recovery, 0);
   if (settings.recovery > 1)

@@ -2,19 +2,18 @@
 // Gauss-Seidel (Jean 1999) on accumulated multipliers (XPBD, Macklin et al. 2016), after the projection of the rods.
 // Gaps count from what is allowed (contact.hpp), slips from the start of the step.
 //
-// Once a Newton iteration the contacts are linearised at the current positions: normal, gap, and one common point
+// In every Newton iteration the contacts are linearised at the current positions: normal, gap, and one common point
 // midway between the surfaces, at which equal and opposite impulses act on both segments. Then the multipliers are
-// iterated: a sweep in a fixed order takes every segment to be free, and the joints take back their part
-// (contact_motion.hpp). A rod is never freer than its pieces, so that both together are a step of a projected gradient
-// method with a safe metric, to which Nesterov's acceleration applies (APGD, Mazhar et al. 2015). Then everything moves
-// once. It leaves joints as closed as they were, but for the second order, which the next Newton iteration closes,
-// keeps linear momentum to rounding, and angular momentum as well as one rotation update does, to O(dtheta^2).
+// iterated: a sweep in a fixed order treats every segment as free, and then the joints respond (contact_motion.hpp). The
+// mobility of a rod is at most that of its free segments, so both together are a step of a projected gradient method
+// with a safe metric, to which Nesterov's acceleration applies (APGD, Mazhar et al. 2015). Then all bodies move once.
+// Joints open by second-order terms only, which the next Newton iteration closes. Linear momentum is kept to rounding,
+// angular momentum to O(dtheta^2), the error of one rotation update.
 //
-// Multipliers start from those of the last step where a contact lasts; a step's result depends on that start only as
-// far as it has not converged.
+// Multipliers of contacts that last start from those of the last step; a converged result does not depend on the start.
 //
-// Allocates only when there are more contacts than ever before, when a rod is touched for the first time, and where the
-// broad phase searches anew.
+// Allocates only for more contacts than ever before, for a rod that is touched for the first time, and in a search of
+// the broad phase.
 #pragma once
 
 #include "solver/contact/contact.hpp"
@@ -33,19 +32,19 @@ class ContactProjection {
  public:
   ContactProjection(Scene& scene, const ContactSettings& settings);
 
-  /// To be called before the scene leaves p, with the time at the end of the step.
+  /// Call before the scene leaves p, with the time at the end of the step.
   void start_step(double end_s);
 
-  /// To be called at p*, or where else Newton starts: finds the contacts of the step. Returns false where p* is not
+  /// Call at p*, or at another start of Newton's iteration: finds the contacts of the step. Returns false if p* is not
   /// finite. Where the balance of momentum is kept, the impulses of contacts that last count in it from now on.
   bool find(bool keeps_balance);
 
-  /// To be called after the rods' projection. Returns whether the contacts had converged: then nothing is moved.
+  /// Call after the rods' projection. Returns whether the contacts had converged: then no body is moved.
   bool project(double constraint_dt);
 
   const std::vector<Contact>& contacts() const { return contacts_; }
 
-  /// How the contacts of the step are met in the current state, which stays. Tells the rods their impulses.
+  /// The residuals of the contacts in the current state, which is not changed. Sets the rods' contact impulses.
   ContactState state();
 
  private:

@@ -3,9 +3,9 @@
 //   gap >= 0,  lambda_n >= 0,  gap lambda_n = 0
 //   |lambda_t| <= mu lambda_n;  the slip is 0, or against |lambda_t| = mu lambda_n
 //
-// A relaxation takes the normal part first, then friction for that (Jean 1999): the friction that stops the slip, where
-// the contact bears it, else a step of projected gradient descent, which the larger eigenvalue of W across the normal
-// makes safe in every direction, however much more easily a body rolls than it slides.
+// A relaxation updates the normal part first, then friction (Jean 1999): the friction that stops the slip, if it is
+// within the cone, else a step of projected gradient descent. Its step size is that of the larger eigenvalue of W across
+// the normal, which is safe in every direction, also where a body rolls much more easily than it slides.
 #pragma once
 
 #include "solver/numbers/types.hpp"
@@ -21,7 +21,7 @@ class CoulombContact {
   /// From the impulse so far, and from the gap (negative: overlap) and slip that this leaves.
   Vector3 relaxed(const Vector3& impulse, double gap, const Vector3& slip) const;
 
-  /// The nearest in the friction cone along its axis: the normal part, and what friction it bears.
+  /// The projection into the friction cone: the normal part, and the friction that it allows.
   Vector3 admissible(const Vector3& impulse) const;
 
   /// n . W n [1/kg]

@@ -1,11 +1,11 @@
-// How a rod as a whole gives way to impulses on its segments, to first order: what its joints leave of the motions that
-// the segments would take on their own.
+// The response of a rod to impulses on its segments, to first order: the joints reduce the motions of the free
+// segments.
 //
 //   A dlambda = -J R^T u,   u <- u + R M^-1 J^T dlambda,   A = J M^-1 J^T + alpha~
 //
-// so that the constraints and their multipliers stay as consistent as they were, J R^T u + alpha~ dlambda = 0; R turns
-// from the segments' frames into the world, where contacts push. With u = M^-1 f this is H f, where, but for R,
-// H = M^-1 - M^-1 J^T A^-1 J M^-1, which is at most M^-1: a rod is never freer than its pieces.
+// so that constraints and multipliers stay consistent, J R^T u + alpha~ dlambda = 0; R turns from the segments' frames
+// into the world, where contacts push. With u = M^-1 f this is H f, where, except for R,
+// H = M^-1 - M^-1 J^T A^-1 J M^-1, which is at most M^-1: a rod moves no more than its free segments would.
 // A response costs O(n) on chains and trees, with the factor of A kept. Nothing allocates after the first assembly.
 #pragma once
 
@@ -20,8 +20,8 @@ class RodResponse {
  public:
   explicit RodResponse(const Rod& rod);
 
-  /// At the rod's positions. Multipliers start from zero. Whether A is positive definite is for the rod's projection to
-  /// say, which has just solved with nearly the same one; Gauss-Seidel has none, and a response that is not finite then
+  /// At the rod's positions. Multipliers start from zero. Does not check that A is positive definite: the rod's projection
+  /// has just solved with nearly the same A. Gauss-Seidel projections have no A; a response that is not finite then
   /// shows in the state.
   void assemble(const Rod& rod, double dt);
 

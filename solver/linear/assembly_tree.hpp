@@ -1,15 +1,15 @@
-// The plan of a multifrontal factorisation (Duff & Reid 1983): columns of L that share their rows are one supernode,
-// and every supernode is a dense front,
+// The plan of a multifrontal factorisation (Duff & Reid 1983): columns of L with the same rows form a supernode, and
+// every supernode is a dense front,
 //
-//   [ P  .  ]   P: its columns, `columns` block columns wide           (the pivots)
-//   [ R  U  ]   R: their later rows, U: what they change of the rest   (handed to the parent's front)
+//   [ P  .  ]   P: its columns, `columns` block columns wide         (the pivots)
+//   [ R  U  ]   R: their later rows, U: their update of the rest     (added to the parent's front)
 //
-// A child whose columns would pad its parent's rows with few zeros becomes a part of it: small fronts waste more than
-// they save. Siblings stand so that updates wait for as little memory as the order of the fronts allows (Liu 1986), on
-// two stacks by the parity of their depth: a parent's U never lies where those of its children still are.
+// A child is merged into its parent where that adds few zeros to the parent's rows: small fronts cost more than these
+// zeros. Siblings are ordered so that pending updates need the least memory (Liu 1986). Updates are kept on two stacks,
+// by the parity of their depth, so that a parent's U does not overlap those of its children.
 //
-// P, R and U are stored in tiles of four block rows, 24 entries of one column after the other; the rows of P and of R
-// begin with a tile each, and what a last tile lacks is zero. U has its lower triangle of tiles alone.
+// P, R and U are stored in tiles of four block rows, 24 entries of one column after the other. P and R each begin with a
+// new tile, the last tile is padded with zeros, and only the lower triangle of U's tiles is stored.
 #pragma once
 
 #include <array>
@@ -53,7 +53,7 @@ struct Supernode {
 
 class AssemblyTree {
  public:
-  /// Fronts alone, without their rows: enough to tell what they need.
+  /// Fronts without their rows: enough for the cost and memory.
   explicit AssemblyTree(const EliminationTree& tree);
 
   /// Finds the rows of all fronts; `pattern` is that of the elimination tree.
@@ -67,7 +67,7 @@ class AssemblyTree {
 
   std::size_t panel_size = 0;               ///< doubles
   std::array<std::size_t, 2> stack_size{};  ///< doubles
-  std::int64_t blocks = 0;                  ///< of L, what fronts are padded with included
+  std::int64_t blocks = 0;                  ///< of L, padding of fronts included
   /// Of a factor: panels and stacks.
   double bytes() const {
     return static_cast<double>(sizeof(double)) * static_cast<double>(panel_size + stack_size[0] + stack_size[1]);

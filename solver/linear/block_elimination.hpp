@@ -1,11 +1,11 @@
-// Block elimination A = L D L^T from the leaves of a rod to its root, O(n) on chains and trees, where nothing fills in;
-// where little does (rings, small nets) every update of one block by another is listed.
+// Block elimination A = L D L^T from the leaves of a rod to its root: O(n) on chains and trees, which have no fill-in.
+// With little fill-in (rings, small nets) every update of one block by another is listed.
 //
 // Per joint k, with S = L D L^T the block left on the diagonal and B_p the blocks towards the joints p eliminated
 // later:
 //   W_p = L^-1 B_p,  U_p = D^-1 W_p,  X_p = L^-T U_p,  y = S^-1 b_k,
 //   A_pp -= W_p^T U_p,  A_pq -= X_p^T B_q,  b_p -= X_p^T b_k     and backwards   x_k = y - sum_p X_p x_p.
-// A factor that is kept needs S^-1 and the X_p alone. b rides along in a spare lane of the rows, so the forward
+// A factor that is kept consists of S^-1 and the X_p. b is stored in a spare lane of the rows, so the forward
 // substitution costs nothing. A pivot in D that is not positive means that A is not positive definite.
 #pragma once
 
@@ -21,7 +21,7 @@ class BlockElimination {
   /// `order`: block rows, eliminated from the last to the first.
   BlockElimination(const BlockMatrix& pattern, const std::vector<int>& order);
 
-  /// What BlockFactor promises, of this elimination.
+  /// The same functions as those of BlockFactor.
   SolveOutcome solve(const BlockMatrix& a, const VectorX& b, VectorX& x);
   bool factorise(const BlockMatrix& a);
   void substitute(VectorX& x);
@@ -33,12 +33,12 @@ class BlockElimination {
     int off_begin, off_end;  ///< its later neighbours: entries of off_
     int update_begin;        ///< its pairs of later neighbours: entries of updates_
     int diagonal_source;     ///< block of A
-    bool updated;            ///< by earlier eliminations: then it stands in diagonal_work_
+    bool updated;            ///< by earlier eliminations: then it is in diagonal_work_
   };
   struct Off {
     int position;  ///< of the neighbour in the elimination order
     int source;    ///< block of A whose columns are this block's rows; -1 for fill
-    bool updated;  ///< by earlier eliminations: then it stands in off_work_
+    bool updated;  ///< by earlier eliminations: then it is in off_work_
     bool first;    ///< to update the neighbour's diagonal block
   };
   struct Update {

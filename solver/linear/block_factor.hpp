@@ -1,11 +1,11 @@
 // Direct solution of A x = b by elimination from the leaves of a rod to its root, O(n) on chains and trees.
 //
-// All leaves come first, then what they leave as leaves, and so on to the middle: the remaining neighbours of an
-// eliminated joint share a segment with it and are coupled already, so no block fills in (as in the body-and-joint tree
-// of Deul et al. 2018), and joints that follow each other don't wait for each other: a chain is eliminated from both
-// ends at once, and the processor overlaps the two (long rods one branch after the other, as memory likes it). Where
-// joints close loops (rings, nets, lattices), elimination_plan.hpp finds the order that fills in least: with little
-// fill the blocks are eliminated one by one (block_elimination.hpp), with more in dense fronts
+// All leaves are eliminated first, then the leaves of the remaining tree, and so on to the middle. The remaining
+// neighbours of an eliminated joint share a segment with it and are already coupled, so there is no fill-in (as in the
+// body-and-joint tree of Deul et al. 2018). Consecutive joints of the order are independent: a chain is eliminated from
+// both ends at once, and the processor overlaps the two. (Long rods are eliminated one branch after the other, for the
+// caches.) Where joints close loops (rings, nets, lattices), elimination_plan.hpp finds the order with the least
+// fill-in. With little fill-in blocks are eliminated one by one (block_elimination.hpp), else in dense fronts
 // (multifrontal_factor.hpp).
 #pragma once
 
@@ -20,17 +20,17 @@
 
 namespace rodsweep {
 
-/// Joints of the rod from its middle to its leaves; what hangs on a static segment ends there as on a free one. Joints
-/// of loops, and between them, come first.
+/// Joints of the rod from its middle to its leaves; a branch ends at a static segment as at a free end. Joints of loops,
+/// and between loops, come first.
 std::vector<int> root_to_leaf_order(const Rod& rod);
 
 class BlockFactor {
  public:
-  /// `preferred`: block rows, eliminated from the last to the first; an order that fills in gives way to a better one.
-  /// Throws FactorTooLarge before it asks for more memory than a factor may have.
+  /// `preferred`: block rows, eliminated from the last to the first; replaced by a better order if it has fill-in. Throws
+  /// FactorTooLarge before it allocates more memory than allowed.
   BlockFactor(const BlockMatrix& pattern, const std::vector<int>& preferred);
 
-  /// Factorises and solves. `a` has the pattern of construction. On anything but `converged`, x is not to be used.
+  /// Factorises and solves. `a` has the pattern of construction. x is valid only if the outcome is `converged`.
   SolveOutcome solve(const BlockMatrix& a, const VectorX& b, VectorX& x);
 
   /// Factorises for substitute(). Returns false where `a` is not positive definite.

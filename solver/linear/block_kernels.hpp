@@ -1,9 +1,9 @@
-// Kernels on 6x6 blocks whose rows are lanes, with right-hand sides that ride along in the spare lane 6: the factors
-// of a symmetric S = L D L^T, and S^-1 B in its two halves,
+// Kernels on 6x6 blocks whose rows are lanes, with right-hand sides in the spare lane 6: the factors of a symmetric
+// S = L D L^T, and S^-1 B in its two halves,
 //   W = L^-1 B     and     L^-T D^-1 W.
 //
-// Pivots come in pairs, the second as the determinant of both over the first, so that it need not wait for the first
-// division. All of it works on one register's columns after the other (Lane): six rows of a slice and a broadcast
+// Pivots are computed in pairs, the second as the determinant of both over the first, so that it does not depend on the
+// first division. The kernels process one register's columns after the other (Lane): six rows of a slice and a broadcast
 // factor fit into the registers of any processor.
 #pragma once
 

@@ -1,6 +1,6 @@
 // A symmetric matrix of 6x6 blocks in compressed block rows: a block row and column per joint.
 //
-// Both triangles are stored: a product reads each block once, in order, and needs no transposed kernel.
+// Both triangles are stored: a product reads each block once, in order, without a transposed kernel.
 #pragma once
 
 #include <utility>
@@ -24,7 +24,7 @@ class BlockMatrix {
   int row_end(int row) const { return row_start_[static_cast<std::size_t>(row) + 1]; }
   int column(int block) const { return columns_[static_cast<std::size_t>(block)]; }
   int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
-  int find(int row, int column) const;  ///< index of the block, -1 where there is none
+  int find(int row, int column) const;  ///< index of the block; -1: not in the pattern
 
   /// y = A x. `x` and `y` hold unknowns() doubles and don't overlap.
   void multiply(const double* x, double* y) const;
@@ -40,7 +40,7 @@ class BlockMatrix {
   std::vector<int> row_start_{0}, columns_, diagonal_;
 };
 
-/// s = D^-1/2, D the diagonal of A: what Jacobi scales a system by. Sized by the caller.
+/// s = D^-1/2, D the diagonal of A: the scaling of Jacobi. The caller sizes s.
 void inverse_root_diagonal(const BlockMatrix& a, VectorX& s);
 
 /// r^T D^-1 r.

@@ -1,4 +1,4 @@
-// Preconditioners of CG that are made of our own block kernels, behind one interface.
+// Preconditioners of CG built from our block kernels, behind one interface.
 #pragma once
 
 #include <memory>
@@ -10,23 +10,23 @@ namespace rodsweep {
 /// none; jacobi: the diagonal; point_block_jacobi: the 6x6 diagonal blocks; icc: incomplete Cholesky without fill, by
 /// PETSc, joints in the rod's order (exact on an unbranched chain); block_icc: incomplete with `fill_levels` of fill,
 /// in reverse Cuthill-McKee order and single precision (incomplete_factor.hpp); cholesky: complete (block_factor.hpp);
-/// lagged_cholesky: the same, for who is to keep it for some steps; condensed: struts exactly, what is left of their
-/// ends by block_icc (condensed_cg.hpp).
+/// lagged_cholesky: the same, kept for some steps by the caller; condensed: struts exactly, the matrix of their ends by
+/// block_icc (condensed_cg.hpp).
 enum class Preconditioner { none, jacobi, point_block_jacobi, icc, block_icc, cholesky, lagged_cholesky, condensed };
 
-/// Of block_icc and condensed, where a job does not say.
+/// Default of block_icc and condensed.
 inline constexpr int default_fill_levels = 3;
 
 class BlockPreconditioner {
  public:
   virtual ~BlockPreconditioner() = default;
-  /// Of a matrix with the pattern of construction. False where it is not positive definite.
+  /// Sets up for a matrix with the pattern of construction. Returns false where it is not positive definite.
   virtual bool set_up(const BlockMatrix& a) = 0;
   /// z = P^-1 r. Allocates nothing.
   virtual void apply(const double* r, double* z) = 0;
 };
 
-/// Null where PETSc's own serves.
+/// Null for preconditioners of PETSc.
 std::unique_ptr<BlockPreconditioner> block_preconditioner(Preconditioner kind, const BlockMatrix& pattern,
                                                           int fill_levels);
 

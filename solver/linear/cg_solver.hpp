@@ -1,5 +1,5 @@
-// Conjugate gradients on A x = b, instrumented: what their kinds have in common, those on the joints' multipliers
-// (conjugate_gradient.hpp) and those on the motions of crossings (condensed_cg.hpp).
+// Conjugate gradients on A x = b, instrumented: the interface of the two kinds, on the joints' multipliers
+// (conjugate_gradient.hpp) and on the motions of crossings (condensed_cg.hpp).
 //
 // Convergence: the norm of A's residual relative to that of b (`reference`), also with a nonzero guess. One solver per
 // guess and rod.
@@ -16,8 +16,8 @@
 
 namespace rodsweep {
 
-/// The norm of r = b - A x that decides convergence: its 2-norm, or (r^T P^-1 r)^1/2 with the preconditioner P, which
-/// `condensed` has not.
+/// The norm of r = b - A x in the convergence test: its 2-norm, or (r^T P^-1 r)^1/2 with the preconditioner P, which is
+/// not available for `condensed`.
 enum class Norm { true_residual, natural };
 
 struct CgSettings {
@@ -27,13 +27,13 @@ struct CgSettings {
   int fill_levels = default_fill_levels;  ///< of block_icc and condensed
 };
 
-/// Of a system with so many unknowns; iterations are stored in 16 bits.
+/// The cap for a system with that many unknowns; iterations are stored in 16 bits.
 int iteration_limit(const CgSettings& settings, int unknowns);
 
 /// What a solve starts from.
 struct CgStart {
   bool nonzero = false;               ///< from x; else from zero
-  const VectorX* residual = nullptr;  ///< b - A x, where somebody knows it
+  const VectorX* residual = nullptr;  ///< b - A x, if it is known
 
   CgStart(bool is_nonzero, const VectorX* known_residual = nullptr) : nonzero(is_nonzero), residual(known_residual) {}
 };
@@ -48,11 +48,11 @@ class CgSolver {
  public:
   virtual ~CgSolver() = default;
 
-  /// The preconditioner is rebuilt in the next solve that iterates (and its time counted there); else the old is kept.
+  /// Rebuilds the preconditioner in the next solve that iterates (and counts its time there); else the old one is kept.
   virtual void matrix_changed() = 0;
 
   /// Until the norm is below tolerance * reference. x receives the solution.
-  /// With `deflation` every preconditioned residual is projected; the first residual has no part in its space then.
+  /// With `deflation` every preconditioned residual is projected; the first residual must be orthogonal to its space.
   virtual CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
                          Deflation* deflation = nullptr) = 0;
 
@@ -67,7 +67,7 @@ class CgSolver {
 /// `rod` and `system` must outlive it.
 std::unique_ptr<CgSolver> make_cg(const Rod& rod, const LinearSystem& system, const CgSettings& settings);
 
-/// For each tolerance, the first entry of the history at or below tolerance * reference, -1 where there is none.
+/// For each tolerance, the first entry of the history at or below tolerance * reference, -1 if not reached.
 void iterations_to(const std::vector<double>& history, double reference, const std::vector<double>& tolerances,
                    std::int16_t* out);
 

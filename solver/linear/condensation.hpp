@@ -1,26 +1,24 @@
 // The linear system of a Newton iteration, condensed to the motions of the segments where rods cross.
 //
-// A d = r with A = J M^-1 J^T + alpha~ says what is missing from multipliers whose residual is r. In terms of the
-// motions y that d makes, M y = J^T d, it is
+// A d = r with A = J M^-1 J^T + alpha~ is the equation of the correction d of multipliers with residual r. In terms of
+// the motions y of d, M y = J^T d, it is
 //   K y = J^T C r,   K = M + J^T C J,   C = alpha~^-1,   d = C (r - J y)
-// (Woodbury). K couples segments that a joint connects, so struts (strut_graph.hpp) are eliminated exactly, one after
-// the other, and what they leave is a matrix S of the crossings alone,
+// (Woodbury). K couples segments that share a joint, so struts (strut_graph.hpp) are eliminated exactly, one after the
+// other, and a matrix S of the crossings remains,
 //   S y_c = g,   S = K_cc - K_ci K_ii^-1 K_ic,   g = f_c - K_ci K_ii^-1 f_i,   f = J^T C r
-// (static condensation: Guyan 1965; Przemieniecki 1963). It has far fewer rows than A where struts are long, no
-// self-stresses, and within a strut nothing is left for an iteration to find. With p = g - S y_c, what then is missing
-// of the system in multipliers is
+// (static condensation: Guyan 1965; Przemieniecki 1963). Where struts are long it has far fewer rows than A. It has no
+// self-stresses, and struts are solved exactly. With p = g - S y_c, which is zero in struts, the residual of A is
 //   r - A d = -J M^-1 p,
-// since p is zero in struts: its norm is that of A's residual, and needs no product with A.
-// Stretch and bending must have a compliance above zero; what is nearly inextensible costs digits, alpha~ over
-// J M^-1 J^T of them. M is that of the rod, stiffened in iterations that keep the balance of momentum.
+// without a product with A. Stretch and bending must have a compliance above zero. Nearly inextensible rods lose digits
+// in the ratio of alpha~ to J M^-1 J^T. M is that of the rod, stiffened in iterations that keep the balance of momentum.
 //
-// Struts with as many segments are eliminated together, one in each lane. Nothing allocates after construction.
+// Struts with equally many segments are eliminated together, one in each lane. Nothing allocates after construction.
 #pragma once
 
 #include <vector>
 
-#include "solver/linear/block_matrix.hpp"
 #include "solver/linear/strut_graph.hpp"
+#include "solver/linear/block_matrix.hpp"
 #include "solver/numbers/lane_blocks.hpp"
 #include "solver/rod/linearization.hpp"
 
@@ -46,12 +44,12 @@ class Condensation {
   double residual_norm(const double* p) const;
 
  private:
-  /// Struts with equally many segments, one in each lane; lanes that are too many repeat the last.
+  /// Struts with equally many segments, one in each lane; unused lanes repeat the last.
   struct Batch {
     std::size_t first_strut, first_inner;
     int count, segments;
   };
-  /// What is left of a segment of each strut once those before it are eliminated.
+  /// The block of a segment of each strut after the elimination of those before it.
   struct Inner {
     LaneFactor factor;
     LaneVector6 to_begin[6], to_next[6];  ///< the factor's answers to the columns that couple it to the strut's begin,

@@ -6,12 +6,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "solver/linear/condensation.hpp"
-#include "solver/linear/interruption.hpp"
 #include "solver/linear/ksp_outcome.hpp"
 #include "solver/linear/petsc_check.hpp"
 #include "solver/linear/petsc_operator.hpp"
 #include "solver/linear/petsc_vector.hpp"
+#include "solver/linear/condensation.hpp"
+#include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
 

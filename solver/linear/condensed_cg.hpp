@@ -1,10 +1,10 @@
 // Conjugate gradients on a condensed system (condensation.hpp) by PETSc's KSPCG: struts exactly, crossings by
 // iteration, with an incomplete factor of their matrix (block_icc of block_preconditioner.hpp).
 //
-// It solves A d = r for what multipliers lack, whose residual is r, and stops at the norm of A's residual, so its
-// accuracy is that of ConjugateGradient. The first iteration is the elimination of struts: residuals are known before
-// it (entry 0 of the history), and after every further one. Needs PETSc initialised. Throws PetscError when a call
-// fails.
+// It solves A d = r for the correction of multipliers with residual r. The convergence test uses the norm of A's
+// residual, so the accuracy is that of ConjugateGradient. The first iteration is the elimination of struts: residuals are
+// known before it (entry 0 of the history), and after every further one. PETSc must be initialised. Throws PetscError
+// when a call fails.
 #pragma once
 
 #include <memory>

@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "solver/linear/interruption.hpp"
 #include "solver/linear/ksp_outcome.hpp"
 #include "solver/linear/petsc_check.hpp"
 #include "solver/linear/petsc_operator.hpp"
 #include "solver/linear/petsc_vector.hpp"
+#include "solver/linear/interruption.hpp"
 
 namespace rodsweep {
 namespace {
@@ -213,7 +213,7 @@ void ConjugateGradient::Impl::use(Deflation* deflation) {
   projected.deflation = deflation;
 }
 
-/// b - A x, with a product where nobody knows it.
+/// b - A x, with a product if it is not known.
 const VectorX& ConjugateGradient::Impl::first_residual(const VectorX& rhs, const VectorX& guess, const CgStart& start) {
   if (!start.nonzero) return rhs;
   if (start.residual) return *start.residual;

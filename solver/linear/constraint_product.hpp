@@ -1,10 +1,10 @@
 // y = A x without A: y = J (M^-1 (J^T x)) + alpha~ x, from the turns of joints and the arms of their segments.
 //
-// A joint's J is known by d, its half turn H, the arms and 1/l (linearization.hpp), some twenty numbers where A has
-// four or five blocks of 36 a row: where those do not stay in the processor's near caches, products wait for memory.
-// Both passes over the joints work on as many at once as a register has lanes; impulses and motions of segments, which
-// several joints share, stand one after the other. Equal to BlockMatrix::multiply() but for rounding. Allocates nothing
-// after construction; a scratch array makes two products at once on one object a race.
+// J of a joint follows from d, its half turn H, the arms and 1/l (linearization.hpp): some twenty numbers, where A has
+// four or five blocks of 36 in a row. If the blocks do not fit into the near caches, their product is bound by memory.
+// Both passes process as many joints at once as a register has lanes. Several joints share a segment, so impulses and
+// motions of segments are stored one after the other. Equal to BlockMatrix::multiply() up to rounding. Allocates nothing
+// after construction. Not safe for concurrent products on one object: they share a scratch array.
 #pragma once
 
 #include <vector>
@@ -15,13 +15,13 @@ namespace rodsweep {
 
 class ConstraintProduct {
  public:
-  /// From so many blocks of A on, a chain of 200 joints or a lattice of 160, A is left alone
+  /// Systems with at least this many blocks of A use this product: a chain of 200 joints, a lattice of 160
   /// (tests/bench/bench_preconditioners.cpp).
   static constexpr int least_blocks = 600;
 
   explicit ConstraintProduct(const Rod& rod);
 
-  /// Of the rod's positions, at which `linearization` was evaluated, and the mobilities that its segments have.
+  /// Uses the rod's positions, at which `linearization` was evaluated, and the mobilities of its segments.
   void update(const Rod& rod, const Linearization& linearization, double inverse_dt2);
 
   /// `x` and `y` hold six doubles per joint and don't overlap.

@@ -1,9 +1,9 @@
-// How a matrix is best factorised, and what that takes, before any memory is asked for.
+// How a matrix is best factorised, and the cost of it, before any memory is allocated.
 //
-// An order without fill is taken as it is: chains and trees. One that fills in gives way to minimum degree
-// (elimination_order.hpp) or nested dissection (nested_dissection.hpp), whichever costs less by the elimination tree
-// (elimination_tree.hpp): blocks one by one in the first order where little fills in, dense fronts in the better one of
-// both where they are expected to be faster.
+// An order without fill-in is kept: chains and trees. Otherwise minimum degree (elimination_order.hpp) and nested
+// dissection (nested_dissection.hpp) are compared by the cost that the elimination tree gives (elimination_tree.hpp).
+// With little fill-in blocks are eliminated one by one in the order of minimum degree; dense fronts in the cheaper order
+// are used where they are expected to be faster.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@
 
 namespace rodsweep {
 
-/// What one factor may take: about what a core of a cluster has. A lattice of 100,000 joints needs half of it.
+/// Most memory of one factor: about the share of a core on a cluster. A lattice of 100,000 joints needs half of it.
 inline constexpr double most_factor_bytes = 4.0 * 1024 * 1024 * 1024;
 
 struct EliminationPlan {
   std::vector<int> order;                ///< block rows, eliminated from the last to the first
-  std::optional<AssemblyTree> fronts{};  ///< where it is done in fronts
+  std::optional<AssemblyTree> fronts{};  ///< empty: blocks one by one
   std::int64_t fill_in = 0;              ///< blocks of L that A does not have
   double bytes = 0;                      ///< of the factor
   double flops = 0;                      ///< of a factorisation; 0 without fill
@@ -29,7 +29,7 @@ struct EliminationPlan {
 
 EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<int>& preferred);
 
-/// A factor would need more than it may have.
+/// A factor would need more memory than allowed.
 struct FactorTooLarge : std::runtime_error {
   FactorTooLarge(int block_rows, double bytes, double most_bytes);
   int block_rows;

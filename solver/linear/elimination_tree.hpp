@@ -1,9 +1,9 @@
-// What an elimination will cost, before any of it is stored: the elimination tree and how many blocks every column of L
-// has, in time nearly linear in the blocks of A and independent of the fill.
+// The cost of an elimination before it is stored: the elimination tree and the number of blocks of every column of L, in
+// time nearly linear in the blocks of A and independent of the fill-in.
 //
-// The parent of a column is its first later neighbour, fill included (Liu 1990); counts are those of Gilbert, Ng &
-// Peyton 1994: leaves of the row subtrees less their common ancestors. Columns are numbered in a postorder, which every
-// order of elimination can be brought to without another block of fill.
+// The parent of a column is its first later neighbour, fill-in included (Liu 1990). Counts are those of Gilbert, Ng &
+// Peyton 1994: leaves of the row subtrees less their common ancestors. Columns are numbered in a postorder; a postorder
+// of an elimination order has the same fill-in.
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,10 @@
-// Dense kernels of a front (assembly_tree.hpp): 24 rows of a tile by the six rows of a block, whatever the registers of
-// the processor hold, so that all of it runs near the peak of one core.
+// Dense kernels of a front (assembly_tree.hpp): 24 rows of a tile by the six rows of a block, for any size of registers,
+// near the peak of one core.
 //
 //   P = L L^T,   R <- R L^-T,   U <- U - R R^T
 //
-// Everything is in place and nothing allocates. `inverse_pivot` are the reciprocals of L's diagonal. Large fronts take
-// many seconds: both steps look up now and then whether anybody waits for them, and throw InterruptedComputation
-// (interruption.hpp) where nobody does.
+// All kernels work in place and allocate nothing. `inverse_pivot` are the reciprocals of L's diagonal. Large fronts take
+// many seconds: both steps can be interrupted (interruption.hpp) and then throw InterruptedComputation.
 #pragma once
 
 #include "solver/linear/assembly_tree.hpp"
@@ -55,7 +54,7 @@ class Panel {
   double* block_row(int local) const { return panel_ + node_.block_offset(local); }
   static double* column(double* tile, int c) { return tile + static_cast<std::ptrdiff_t>(c) * tile_rows; }
 
-  /// P = L L^T and R L^-T. Returns false at a pivot that is not positive; what is left then is not to be used.
+  /// P = L L^T and R L^-T. Returns false at a pivot that is not positive; P and R are invalid then.
   bool factorise(double* inverse_pivot) const;
 
   /// U -= R R^T.

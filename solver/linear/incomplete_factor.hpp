@@ -1,19 +1,19 @@
 // An incomplete factor P = L D L^T of a symmetric positive definite matrix A of 6x6 blocks, to precondition with.
 //
-// Elimination couples all later neighbours of a block row; a coupling that A lacks is kept where its level of fill, the
-// least sum of the levels of the two couplings that make it and one, is at most `levels` (Saad 2003, Iterative Methods
-// for Sparse Linear Systems, 10.3.3). At level 0 none is kept; where elimination couples nothing anew, as on chains and
-// trees from their leaves on, P is A at every level. Where joints close loops the order decides: in reverse
-// Cuthill-McKee (breadth_first_order() of elimination_order.hpp) a level of fill mostly leaves a quarter to half of the
-// iterations that it leaves in the joints' own order (lattices and nets; on stiff ones it may leave more).
+// Elimination couples all later neighbours of a block row. The level of fill of a new coupling is one plus the least sum
+// of the levels of the two couplings that cause it; couplings up to `levels` are kept (Saad 2003, Iterative Methods for
+// Sparse Linear Systems, 10.3.3). At level 0 none is kept. Without fill-in, as on chains and trees eliminated from their
+// leaves, P is A at every level. With loops the order matters: in reverse Cuthill-McKee (breadth_first_order() of
+// elimination_order.hpp) a level of fill mostly leaves a quarter to half of the iterations that it leaves in the joints'
+// own order (on lattices and nets; on stiff ones it may leave more).
 //
-// P need not be positive definite though A is. Then A's diagonal is raised by a share of itself, the least of 1e-4,
-// 4e-4, 1.6e-3, ... that helps (Manteuffel 1980, Math. Comp. 34); a set-up costs as many attempts, and a stiff system
-// many iterations.
+// P may be indefinite although A is positive definite. Then a multiple of A's diagonal is added to A, the least of 1e-4,
+// 4e-4, 1.6e-3, ... that gives a definite P (Manteuffel 1980, Math. Comp. 34). Every multiple tried costs a set-up, and
+// a large one costs many iterations.
 //
-// Factorised in double and kept in single precision: both halves of a solve read the factor from memory, and P is an
-// approximation anyway. A block is three registers of two rows each, so an application costs about a product with A.
-// Nothing allocates after construction.
+// Computed in double and stored in single precision: a solve is bound by reading the factor, and P is an approximation.
+// A block is three registers of two rows each, so an application costs about as much as a product with A. Nothing
+// allocates after construction.
 #pragma once
 
 #include <vector>
@@ -27,13 +27,13 @@ class IncompleteFactor {
   /// `order`: block rows, eliminated from the last to the first.
   IncompleteFactor(const BlockMatrix& pattern, const std::vector<int>& order, int levels);
 
-  /// `a` has the pattern of construction. False where no share of the diagonal helps; it is not to be used then.
+  /// `a` has the pattern of construction. Returns false if no multiple of the diagonal helps; the factor is invalid then.
   bool factorise(const BlockMatrix& a);
 
   /// z = P^-1 r.
   void apply(const double* r, double* z);
 
-  double shift() const { return shift_; }  ///< the share of its diagonal that was added to A
+  double shift() const { return shift_; }  ///< the multiple of its diagonal that was added to A
   int off_diagonal_blocks() const { return static_cast<int>(off_.size()); }
 
  private:
@@ -61,10 +61,10 @@ class IncompleteFactor {
   std::vector<Column> columns_;
   std::vector<Off> off_;
   std::vector<Update> updates_;
-  std::vector<Block6> diagonal_work_, off_work_;  ///< rows of what is left of A
+  std::vector<Block6> diagonal_work_, off_work_;  ///< rows of the remaining A
   std::vector<FloatBlock> inverse_, factor_;      ///< S^-1 of every column, X_p of its neighbours (block_factor.hpp)
-  std::vector<TwoRows> solution_;                 ///< forward in two halves to be added, backward twice the same
-  double scale_ = 1;                              ///< S^-1 is kept this many times too large: floats end at 1e38
+  std::vector<TwoRows> solution_;                 ///< forward: two halves to be added; backward: both the same
+  double scale_ = 1;                              ///< factor of the stored S^-1: floats end at 1e38
   double shift_ = 0;
 };
 

@@ -1,7 +1,7 @@
-// Long computations look, now and then, whether anybody still wants their result: a task's time may be over, or its
-// sweep stopped. Whoever waits says how to find out, for as long as an Interruptible lives, one at a time on a thread;
-// loops that may last (iterations of CG, fronts of a factorisation, sweeps over contacts) say what they have done, and
-// look when that has come to about two milliseconds. Without an Interruptible nothing is ever interrupted.
+// Cancelling of long computations: a task may exceed its time limit, or its sweep may be stopped. The caller creates an
+// Interruptible with a function that tells whether to stop; one may exist per thread at a time. Long loops (iterations
+// of CG, fronts of a factorisation, sweeps over contacts) report their work, and call that function about every two
+// milliseconds of it. Without an Interruptible nothing is interrupted.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace rodsweep {
 
-/// What a computation that nobody wants any more ends with. What it was changing is in no state to go on from.
+/// Thrown by a cancelled computation. The objects that it was changing must not be used further.
 class InterruptedComputation : public std::exception {
  public:
-  const char* what() const noexcept override { return "interrupted: nobody waits for the result any more"; }
+  const char* what() const noexcept override { return "interrupted: the computation was cancelled"; }
 };
 
 class Interruptible {
@@ -27,11 +27,11 @@ class Interruptible {
   std::function<bool()> unwanted_;
 };
 
-/// `work`: what was done since the last call, in nanoseconds, roughly. For places that an exception may not cross: once
-/// it was true, check_interrupted() throws as soon as it may.
+/// `work`: the work done since the last call, in nanoseconds, roughly. For code that must not throw: once this has
+/// returned true, the next check_interrupted() throws.
 bool is_interrupted(std::int64_t work) noexcept;
 
-/// Throws InterruptedComputation, or what finding out whether anybody waits threw.
+/// Throws InterruptedComputation, or any exception of the Interruptible's function.
 void check_interrupted(std::int64_t work);
 
 }  // namespace rodsweep

@@ -1,4 +1,4 @@
-// What PETSc says of the end of a solve, as the outcome that goes to files. Included by sources only.
+// PETSc's reason for the end of a solve as a SolveOutcome. Included by sources only.
 #pragma once
 
 #include <petscksp.h>

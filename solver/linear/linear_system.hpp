@@ -8,9 +8,9 @@
 //   A = J (M + K)^-1 J^T + alpha~,   b = -C - alpha~ lambda + J (M + K)^-1 g
 //   (u, phi) = (M + K)^-1 (J^T dlambda - g)
 //
-// All in the segments' and joints' own frames (linearization.hpp): A and b are those of any turned or shifted rod.
-// (Deul et al. 2018; Shao et al. 2021.) A is symmetric positive definite, with one 6x6 block row per joint coupled to
-// all joints that share a dynamic segment with it; siblings at a branching couple too. Nothing allocates after
+// All in the segments' and joints' own frames (linearization.hpp): turning or shifting a rod changes neither A nor b
+// (Deul et al. 2018; Shao et al. 2021). A is symmetric positive definite, with one 6x6 block row per joint, which is
+// coupled to all joints that share a dynamic segment with it, siblings at a branching included. Nothing allocates after
 // construction.
 #pragma once
 
@@ -42,14 +42,16 @@ class LinearSystem {
   const VectorX& rhs() const { return rhs_; }
   /// y = A x, by the matrix or, where it is faster, without it.
   void multiply(const double* x, double* y) const { product_ ? product_->multiply(x, y) : matrix_.multiply(x, y); }
-  const ConstraintProduct* product() const { return product_ ? &*product_ : nullptr; }  ///< null: the matrix's serves
+  const ConstraintProduct* product() const {
+    return product_ ? &*product_ : nullptr;
+  }  ///< null: the product of the matrix is used
   const Linearization& linearization() const { return linearization_; }
   double dt() const { return dt_; }  ///< of the assembly
   /// max |C + alpha~ lambda|, the residual that Newton drives to zero; NaN when any entry is.
   double newton_residual() const { return newton_residual_; }
-  /// Of the balance of momentum (MomentumBalance::residual); 0 where it is not kept.
+  /// Residual of the balance of momentum (MomentumBalance::residual); 0 where it is not kept.
   double momentum_residual() const { return balanced_ ? balance_.residual : 0; }
-  /// max |b|: with nothing to balance, the Newton residual.
+  /// max |b|; equal to the Newton residual where the balance is not kept.
   double largest_rhs() const;
 
  private:
@@ -58,7 +60,7 @@ class LinearSystem {
     int joint;
     bool is_b;
   };
-  /// The 6x6 product of two sides on one segment: where it goes, and whether it is the first to go there.
+  /// The 6x6 product of two sides on one segment: its block, and whether it is the first contribution to it.
   struct Contribution {
     int block;
     bool first;
@@ -81,10 +83,10 @@ class LinearSystem {
   std::vector<Lane8> balancing_;  ///< (M + K)^-1 g of every segment
 };
 
-/// Moves a free segment by u (lanes 0..2) and phi (lanes 3..5) in its own frame; a static one stays.
+/// Moves a free segment by u (lanes 0..2) and phi (lanes 3..5) in its own frame; does not move a static one.
 void displace(Rod& rod, std::size_t segment, const Lane8& displacement);
 
-/// The update: lambda += dlambda, and every free segment by its displacement.
+/// The update: lambda += dlambda, and displaces every free segment.
 void displace(Rod& rod, const std::vector<Lane8>& displacements, const VectorX& delta_lambda);
 
 }  // namespace rodsweep

@@ -1,10 +1,10 @@
-// The multifrontal Cholesky factorisation A = L L^T of matrices that fill in (Duff & Reid 1983; assembly_tree.hpp for
-// what is stored where). From the leaves of the tree to its roots, every front gathers its blocks of A and the updates
-// of its children, factorises its pivots and hands on what it changes of the rest:
+// The multifrontal Cholesky factorisation A = L L^T of matrices with fill-in (Duff & Reid 1983; assembly_tree.hpp
+// describes the storage). From the leaves of the tree to its roots, every front gathers its blocks of A and the updates
+// of its children, factorises its pivots, and passes its own update to its parent:
 //
 //   P = L L^T,   R <- R L^-T,   U <- sum of the children's U - R R^T
 //
-// Nearly all of it are dense products. Nothing allocates after construction, and the same matrix gives the same bits.
+// Nearly all of the work is dense products. Nothing allocates after construction; the same matrix gives the same bits.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ class MultifrontalFactor {
   /// `pattern` is that of the elimination tree from which `tree` was made.
   MultifrontalFactor(const BlockMatrix& pattern, AssemblyTree tree);
 
-  /// Returns false where `a` is not positive definite; nothing may be solved then.
+  /// Returns false where `a` is not positive definite; the factor is invalid then.
   bool factorise(const BlockMatrix& a);
 
   /// x <- A^-1 x with the matrix of the last factorise().

@@ -1,8 +1,8 @@
-// Nested dissection (George 1973) of the block rows of a matrix: a small set of rows whose removal leaves two halves
-// that are not coupled is eliminated last, and so on within the halves. Separators are those of METIS's multilevel
-// bisection (Karypis & Kumar 1998), from a fixed seed: the same pattern has the same order every time.
+// Nested dissection (George 1973) of the block rows of a matrix: a small separator, without which two halves are not
+// coupled, is eliminated last, and each half is treated likewise. METIS finds the separators by multilevel bisection
+// (Karypis & Kumar 1998) with a fixed seed: the same pattern always has the same order.
 //
-// On lattices the fill is far below that of minimum degree, the tree wide and its fronts dense.
+// On lattices it has far less fill-in than minimum degree, a wide tree and dense fronts.
 #pragma once
 
 #include <vector>

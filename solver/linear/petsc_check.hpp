@@ -1,5 +1,5 @@
-// The one check for PETSc calls. Included by sources only: PETSc stays out of the solver's headers. It throws, so it is
-// not for what PETSc calls back: an exception may not cross its C frames, and such functions are noexcept.
+// The check of PETSc calls. Included by sources only: the solver's headers do not include PETSc. It throws, so callbacks
+// from PETSc must not use it: an exception must not cross C frames, and callbacks are noexcept.
 #pragma once
 
 #include <petscsys.h>

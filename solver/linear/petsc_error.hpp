@@ -1,4 +1,4 @@
-// A PETSc call that failed: a bug or an exhausted machine, never the user's input. The text names the call.
+// A PETSc call failed: a bug or lack of memory, not an error of the user. The text names the call.
 #pragma once
 
 #include <stdexcept>

@@ -1,7 +1,7 @@
-// A BlockMatrix as a PETSc matrix that is nothing but its product, perhaps made without the blocks, and its diagonal.
+// A BlockMatrix as a PETSc matrix that has only a product, with or without the blocks, and a diagonal.
 //
-// It is a matrix class of its own rather than a MATSHELL, which looks up its context by name and asks for scalings and
-// shifts in every product: as much work as the product itself on short rods.
+// It is its own matrix class, not a MATSHELL: that looks up its context by name and checks for scalings and shifts in
+// every product, which costs as much as the product itself on short rods.
 #pragma once
 
 #include <petscmat.h>
@@ -13,10 +13,10 @@
 
 namespace rodsweep {
 
-/// What the matrix stands for; outlives it.
+/// The data of the matrix; must outlive it.
 struct BlockOperator {
   const BlockMatrix& a;
-  const ConstraintProduct* product = nullptr;  ///< with the same matrix; null: by its blocks
+  const ConstraintProduct* product = nullptr;  ///< of the same matrix; null: use its blocks
   int products = 0;                            ///< made so far
 
   void multiply(const double* x, double* y) const { product ? product->multiply(x, y) : a.multiply(x, y); }
@@ -25,7 +25,7 @@ struct BlockOperator {
 /// Nanoseconds that an iteration of CG takes, roughly, for is_interrupted().
 inline std::int64_t work_of_iteration(const BlockMatrix& a) { return 10 * static_cast<std::int64_t>(a.blocks.size()); }
 
-/// A matrix whose product is that of `op`. Changed entries are told by MatAssemblyBegin() and MatAssemblyEnd().
+/// A matrix with the product of `op`. Call MatAssemblyBegin() and MatAssemblyEnd() when entries change.
 Mat create_operator(BlockOperator& op);
 
 }  // namespace rodsweep

@@ -1,8 +1,8 @@
 // The lifetime of PETSc: one object in main() around everything that solves.
 //
-// PETSC_COMM_WORLD is MPI_COMM_SELF, since a task belongs to one rank; PETSc's signal handler is off, since the runner
-// has its own; no petscrc file is read, so that results do not depend on one. The environment's PETSC_OPTIONS does
-// apply. If MPI is not running yet, the session starts and ends it. A session inside a session does nothing. Throws
+// PETSC_COMM_WORLD is MPI_COMM_SELF, since a task runs on one rank. PETSc's signal handler is off, since the runner has
+// its own. No petscrc file is read, so that results do not depend on one; the environment variable PETSC_OPTIONS does
+// apply. If MPI is not initialised, the session initialises and finalises it. A nested session does nothing. Throws
 // PetscError.
 #pragma once
 
@@ -23,7 +23,7 @@ class PetscSession {
   bool owns_petsc_ = false, owns_mpi_ = false;
 };
 
-/// "3.18.5", of the library that runs.
+/// The version of the loaded library, such as "3.18.5".
 std::string petsc_version();
 
 }  // namespace rodsweep

@@ -1,11 +1,10 @@
 // PETSc vectors with vector kernels built for this processor.
 //
-// KSPCG spends much of a small system's iteration in dot products and updates, which Debian's PETSc leaves to a
-// reference BLAS compiled without wide vectors, on memory that is not aligned to them. These vectors have kernels over
-// whole Lane8s in their table of operations, on memory that starts with a cache line and is padded with zeros to the
-// end of one, so that KSP itself runs on them unchanged. Whatever PETSc makes for itself must be of the same kind:
-// duplicates are, and so are the vectors of a matrix after use_our_vectors(). A kernel that is given another vector
-// returns PETSC_ERR_ARG_WRONG.
+// On small systems KSPCG spends much of an iteration in dot products and updates. Debian's PETSc uses a reference BLAS
+// for them, compiled without wide vectors, on unaligned memory. These vectors replace the operations by kernels over
+// whole Lane8s, on memory that is aligned to cache lines and padded with zeros; KSP itself is unchanged. All vectors of
+// a solve must be of this kind: duplicates are, and so are the vectors of a matrix after use_our_vectors(). A kernel
+// returns PETSC_ERR_ARG_WRONG for any other vector.
 #pragma once
 
 #include <petscmat.h>
@@ -16,10 +15,10 @@ namespace rodsweep {
 
 Vec create_vector(PetscInt size);
 
-/// Lets PETSc make vectors that fit `m`, which has as many rows as columns, of our kind.
+/// Makes PETSc create vectors of this kind for `m`, a square matrix.
 void use_our_vectors(Mat m);
 
-/// The entries, without PETSc's access bookkeeping. Who writes says so with entries_changed().
+/// The entries, without PETSc's access bookkeeping. Call entries_changed() after writing.
 double* vector_data(Vec v);
 PetscErrorCode entries_changed(Vec v);
 

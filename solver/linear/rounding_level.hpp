@@ -1,9 +1,9 @@
-// Where a linear system is solved as well as it can be told.
+// The size of rounding errors in a linear system.
 #pragma once
 
 namespace rodsweep {
 
-/// Residuals and right-hand sides whose largest entry is up to this are rounding: entries are dimensionless, of
+/// Residuals and right-hand sides with no larger entry than this are rounding errors: entries are dimensionless and of
 /// order 1.
 inline constexpr double rounding_level = 1e-13;
 

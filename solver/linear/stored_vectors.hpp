@@ -1,12 +1,11 @@
-// Some vectors of unknowns side by side, the same entry of eight of them in neighbouring lanes (a panel), so that what
-// is asked of all of them with A takes one pass over A and over them: V^T A V and V^T b of a Galerkin projection, V c.
-// Up to three beyond whole panels stand alone, the six entries of a block row in one number of eight lanes: another
-// panel would cost as much as eight of them.
+// Vectors of unknowns stored side by side, the same entry of eight vectors in neighbouring lanes (a panel). V^T A V and
+// V^T b of a Galerkin projection, and V c, then take one pass over A and over the vectors. Up to three vectors beyond
+// whole panels are stored singly, the six entries of a block row in one number of eight lanes: another panel would cost
+// as much as eight vectors.
 //
-// As A is symmetric, V^T A V = G + G^T with G = V^T H, H = (D / 2 + L) V, D the diagonal of A and L what is below it:
-// half the blocks, and half the entries of those on the diagonal. A pass forms H and G of one panel in registers, and
-// what the panel has to do with all others: 57 + 48 eight-lane multiply-adds a block row, 25 more for each vector that
-// stands alone.
+// As A is symmetric, V^T A V = G + G^T with G = V^T H, H = (D / 2 + L) V, D the diagonal of A and L its part below the
+// diagonal: half the blocks, and half the entries of the diagonal ones. A pass forms H and G of one panel in registers,
+// and its products with all other panels: 57 + 48 eight-lane multiply-adds a block row, 25 more for each single vector.
 #pragma once
 
 #include <vector>
@@ -24,7 +23,7 @@ class StoredVectors {
   /// Sets gram to V^T A V and right_side to V^T b. Sized by the caller: count.
   void project(const BlockMatrix& a, const VectorX& b, Eigen::MatrixXd& gram, VectorX& right_side);
 
-  /// Sets these to A V of others, as many.
+  /// Sets these vectors to A V of equally many others.
   void multiply(const BlockMatrix& a, const StoredVectors& v);
 
   /// c = V^T x.
@@ -40,7 +39,7 @@ class StoredVectors {
   const Lane8* single(int index) const { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
   Lane8* single(int index) { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
 
-  /// What A has to do with one panel, or a part of it: its rows of half_ and dots_, and all of the single vectors.
+  /// The products of A and one panel, or a part of it: its rows of half_ and dots_, and all those of the single vectors.
   template <int singles>
   void pass(const BlockMatrix& a, const VectorX& b, int panel, int part);
   /// Calls take(block row, its six entries of V c).

@@ -1,12 +1,11 @@
 // A rod as struts between crossings.
 //
-// Crossings are the segments that the others cannot be told from one after the other: those with more than two joints,
-// those at a joint without arms (where rods cross; also at the corners of a net, so that all of its crossings look
-// alike), and one of every ring. All other segments that move form struts: chains from a crossing to a crossing, to a
-// segment that is held, or to a free end. What joints leave of a strut once its segments are eliminated couples the two
-// ends; links are the joints that have a crossing at both sides, or a crossing and a segment that is held.
+// Crossings are the segments with more than two joints, those at a joint without arms (where rods cross; also at the
+// corners of a net, so that all of its crossings are alike), and one segment of every ring. All other free segments form
+// struts: chains from a crossing to another crossing, to a held segment or to a free end. Eliminating the segments of a
+// strut couples its two ends. Links are the joints between two crossings, or between a crossing and a held segment.
 //
-// A rod without crossings is one strut or several without ends.
+// A rod without crossings consists of struts without ends.
 #pragma once
 
 #include <utility>

@@ -32,7 +32,7 @@ struct LaneFactor {
   Lane& at(int row, int column) { return l[row * (row - 1) / 2 + column]; }
 };
 
-/// S = L D L^T; s is used up. Returns where all pivots are positive (false for NaN). Pivots come in pairs, the second
+/// S = L D L^T; overwrites s. Returns where all pivots are positive (false for NaN). Pivots come in pairs, the second
 /// as the determinant of both over the first, so that it need not wait for the first division.
 inline LaneMask factorise(LaneBlock& s, LaneFactor& out) {
   LaneMask positive = Lane{} < 1;

@@ -1,4 +1,4 @@
-// The larger of two numbers, or NaN where either is: std::max forgets a NaN that comes second.
+// The larger of two numbers, or NaN if either is NaN: std::max ignores a NaN in second place.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Whole numbers in fewer bits: a bug, not a wrong number, where they do not fit.
+// Conversion of whole numbers to fewer bits; throws std::logic_error if they do not fit.
 #pragma once
 
 #include <cstdint>

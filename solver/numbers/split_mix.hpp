@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-/// What its counter grows by from one number to the next.
+/// The increment of its counter from one number to the next.
 inline constexpr std::uint64_t split_mix_increment = 0x9e3779b97f4a7c15u;
 
 /// The number after the counter `z`.

@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-/// What never changes of a joint.
+/// The constants of a joint.
 template <class T>
 struct JointShape {
   Quad<T> rest;            ///< d0
@@ -16,7 +16,7 @@ struct JointShape {
   T inverse_length;        ///< 1/l [1/m]
 };
 
-/// d, and what else H is made of.
+/// d and the other terms of H.
 template <class T>
 struct JointTurn {
   Quad<T> d;

@@ -1,4 +1,4 @@
-// What one joint contributes to A = J M^-1 J^T and to M^-1 J^T dlambda, in lanes: six rows of C, or one segment's
+// The contributions of one joint to A = J M^-1 J^T and to M^-1 J^T dlambda, in lanes: six rows of C, or one segment's
 // (u, phi) in lanes 0..2 and 3..5. In the segments' own frames M is diagonal.
 #pragma once
 

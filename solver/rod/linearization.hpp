@@ -9,9 +9,9 @@
 // Segments move by u and turn by phi, both in their own frame: dx = R u, q <- normalise(q (1 + [0, phi] / 2)). Then
 //   dC_s/du_a = H^T/l,   dC_s/dphi_a = -H^T [arm_a]x / l,   dC_b/dphi_a = -(w I - [v]x)
 //   dC_s/du_b = -H/l,    dC_s/dphi_b =  H [arm_b]x / l,     dC_b/dphi_b =   w I + [v]x
-// depend on d alone: where a scene stands and how it is turned enters neither J nor C. That R_m turns with the
-// segments is left out of J: what it would add is proportional to the gap, and without it Newton's iterates are those
-// of C_s in the world. (H is not regular where w = -1: a joint turned all round from a rest that folds it back.)
+// depend on d alone: J and C do not depend on the position and orientation of a scene. J neglects that R_m turns with
+// the segments: that term is proportional to the gap, and without it Newton's iterates are those of C_s in the world.
+// (H is singular where w = -1: a joint turned all round from a rest that folds it back.)
 #pragma once
 
 #include <vector>

@@ -76,17 +76,17 @@ class Rod {
   std::vector<Quaternion> orientation;
   VectorX lambda;
 
-  // Of the step: where segments would be without joints and contacts, p*, and the impulses of contacts on them: force
+  // Of the step: the positions p* of segments without joints and contacts, and the impulses of contacts on them: force
   // and torque about the centre, in the world, times dt_c^2; none in a scene without contact.
   std::vector<Vector3> free_position;
   std::vector<Quaternion> free_orientation;
   std::vector<Vector6> contact_impulse;
 };
 
-/// Refuses a joint between two static segments, which nothing can move.
+/// Throws SceneError for a joint between two static segments.
 void refuse_static_joints(const Rod& rod);
 
-/// What a cross-section puts against each strain, in the segments' local frames.
+/// The stiffness of a cross-section, in the segments' local frames.
 struct Section {
   double bending_x_nm2, bending_y_nm2;  ///< EI about the local x and y axis
   double torsion_nm2;                   ///< GJ

@@ -1,4 +1,4 @@
-// What rods touch besides each other, and how.
+// Contact: obstacles, and the settings of contacts.
 #pragma once
 
 #include <variant>
@@ -7,7 +7,7 @@
 
 namespace rodsweep {
 
-// Solids are where they are given at time 0, and go on from there at their velocity without turning.
+// Obstacles are at the given place at time 0 and move at their velocity without turning.
 
 /// All points x with (x - point).normal <= 0 are solid. The normal need not be of unit length.
 struct HalfSpace {
@@ -29,15 +29,14 @@ struct Capsule {
   Vector3 velocity_m_s{0, 0, 0};
 };
 
-/// Solid; nothing that touches it moves it.
+/// A solid that contacts do not move.
 using Obstacle = std::variant<HalfSpace, Ball, Capsule>;
 
 struct ContactSettings {
   double friction = 0.3;    ///< Coulomb's coefficient mu, at rest and sliding
-  double tolerance = 1e-5;  ///< contacts have converged where none wants to move its segments by more, in their radii
-  int sweeps = 100;         ///< over all contacts after a projection of the rods, at most
-  double recovery =
-      0.2;  ///< share of a penetration, left by earlier steps, that a step takes back, within 1 % of a radius
+  double tolerance = 1e-5;  ///< converged if no contact would move its segments by more, in their radii
+  int sweeps = 100;         ///< most sweeps over all contacts after a projection of the rods
+  double recovery = 0.2;    ///< share of an earlier penetration that a step corrects, at most 1 % of a radius
 };
 
 }  // namespace rodsweep

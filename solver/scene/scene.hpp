@@ -40,7 +40,7 @@ struct Scene {
   double damping_per_s = 0;  ///< viscous drag rate c: dv/dt = -c v, dw/dt = -c w, taken implicitly
   std::vector<MovingClamp> clamps;
   std::vector<PointLoad> loads;
-  std::optional<ContactSettings> contact;  ///< empty: everything passes through everything
+  std::optional<ContactSettings> contact;  ///< empty: no contacts
   std::vector<Obstacle> obstacles;
   std::optional<Wind> wind;
   double time_s = 0;

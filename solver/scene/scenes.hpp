@@ -1,10 +1,10 @@
-// The scenes that jobs name, each a struct of its parameters (SI units): the bending rod and the hanging helix of Shao
-// et al. 2021, a ring, nets and lattices, trees, and rods that touch each other. A scene's struct has the name by which
-// jobs know it and, in a source of its own:
+// The scenes of jobs, each a struct of its parameters (SI units): the bending rod and the hanging helix of Shao et al.
+// 2021, a ring, nets and lattices, trees, and rods in contact. A scene's struct has its name in jobs and, in a source
+// of its own:
 //
 //   check()  throws SceneError where parameters do not fit together, with the bound
-//   size()   counts, without building anything
-//   build()  adds its rods to an empty scene, and what it has of loads, solids and moving clamps of its own
+//   size()   counts segments, joints and rods without building them
+//   build()  adds its rods, loads, solids and moving clamps to an empty scene
 #pragma once
 
 #include <memory>
@@ -39,7 +39,7 @@ enum class Stretch {
   physical       ///< EA along the rod, kappa G A across it, see Section
 };
 
-/// What all scenes share.
+/// The parameters of all scenes.
 struct RodParameters {
   double radius_m = 0.05;
   double density_kg_m3 = 1000;
@@ -82,8 +82,8 @@ struct Helix : OpenRod {
   void build(Scene& scene) const;
 };
 
-/// A closed regular polygon in the vertical xy-plane below the origin, the middle of its first and topmost side;
-/// naturally straight or circular, and twisted by a total angle before its ends were joined.
+/// A closed regular polygon in the vertical xy-plane below the origin, the middle of its first and topmost side. It is
+/// naturally straight or circular, and twisted by a total angle before its ends are joined.
 struct Ring : RodParameters {
   static constexpr const char* name = "ring";
   enum class RestShape { straight, circle };
@@ -97,7 +97,7 @@ struct Ring : RodParameters {
   void build(Scene& scene) const;
 };
 
-/// What does not move of a net or a lattice.
+/// The held segments of a net or a lattice.
 enum class Held {
   side,     ///< the first segments of all rods of a net along z; the nodes of a lattice with the least x
   corners,  ///< the first and last segments of a net's outermost rods along z; the eight corners of a lattice's box
@@ -253,10 +253,10 @@ struct Bundle : RodParameters {
 using SceneSpec = std::variant<BendingRod, Helix, Ring, Net, Lattice, Tree, Forest, SkeletonTree, FallingRods,
                                CoilingRod, Knot, RingChain, Bundle>;
 
-/// The scene's rod where it is one with two ends, else null.
+/// The scene's rod if it is a single rod with two ends, else null.
 const OpenRod* open_rod(const SceneSpec& spec);
 
-/// What all scenes share, of this one.
+/// The parameters that all scenes share.
 const RodParameters& rod_parameters(const SceneSpec& spec);
 
 /// Throws SceneError where parameters do not fit together, and for more than `most_rods`; build_scene() does so too.
@@ -264,7 +264,7 @@ void validate(const SceneSpec& spec);
 
 Scene build_scene(const SceneSpec& spec);
 
-// Of the scene without building it: what a plan needs.
+// Counts of a scene that is not built, for the plan.
 SceneSize size_of(const SceneSpec& spec);
 inline int segment_count(const SceneSpec& spec) { return size_of(spec).segments; }
 inline int joint_count(const SceneSpec& spec) { return size_of(spec).joints; }

@@ -9,7 +9,7 @@
 // et al. 1964; Leonardo's rule at exponent 2): of the edge below a branching and those above it,
 //   r^e = sum of r_i^e,   so r_i = r b^(-1/e);
 // within a branch they fall linearly from its first edge to `taper` times that at its last. Lengths in m.
-// Throws SceneError, which names what is out of bounds.
+// Throws SceneError with the value that is out of bounds.
 #pragma once
 
 #include <cstdint>
@@ -29,19 +29,19 @@ struct SkeletonNode {
 
 using Skeleton = std::vector<SkeletonNode>;
 
-/// What makes a skeleton none of a rod, at the first such node.
+/// Why a skeleton cannot become a rod, at the first such node.
 struct SkeletonFault {
   int node;
   std::string text;
 };
 
-/// Radii that are not positive, edges without length, and such as turn back onto the one below (those from the root:
-/// onto its first) by more than 160 degrees: the constraint of a joint ends at 180.
+/// Finds radii that are not positive, edges without length, and edges that turn back by more than 160 degrees onto the one
+/// below (edges from the root: onto its first): the constraint of a joint is singular at 180.
 std::optional<SkeletonFault> fault(const Skeleton& skeleton);
 
 enum class Up { y, z };
 
-/// In metres, its root at the origin and y up, of one in another unit with the axis `up` upwards.
+/// Converts a skeleton in another unit with the axis `up` upwards to metres, its root at the origin and y up.
 Skeleton placed(const Skeleton& skeleton, double unit_m, Up up);
 
 struct TreeShape {

@@ -1,4 +1,4 @@
-// Wind, and what it does to a segment. SI; y is up. Throws SceneError.
+// Wind and its drag on a segment. SI; y is up. Throws SceneError.
 //
 //   u(x, t) = U h(y) (1 + g sin(2 pi t / T)) + sum over m of a_m cos(k_m . (x - U t) + w_m t + phi_m)
 //
@@ -15,10 +15,10 @@
 //
 //   F = 1/2 rho C_d d l |u_n| u_n + 1/2 rho C_f pi d l |u_t| u_t
 //
-// TimeStepper takes it at the start of the step: first order in dt, exact at rest. Its factors k = 1/2 rho C d l |u|
-// are held below m / dt, above which drag would overshoot within a step: so it never adds to the motion past the air,
-// at any dt. Implicit drag in the prediction would be as stable, but the multipliers do not know of it: what resists
-// the wind would feel it weaker by 1 + dt k / m.
+// TimeStepper evaluates it at the start of the step: first order in dt, exact at rest. The factors k = 1/2 rho C d l |u|
+// are limited to m / dt, above which drag would overshoot within a step: so it never accelerates a segment past the air.
+// Implicit drag in the prediction would be as stable, but the multipliers do not contain it: constraints would balance
+// a drag that is too small by 1 + dt k / m.
 #pragma once
 
 #include <cstdint>

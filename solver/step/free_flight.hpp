@@ -14,7 +14,7 @@
 
 namespace rodsweep {
 
-/// What acts on every segment of a rod, in the world.
+/// The loads on a segment of a rod, in the world.
 struct SegmentLoads {
   std::vector<Vector3> force_n, torque_nm;
 };

@@ -4,10 +4,10 @@
 //
 // Joints take turns in bilateral interleaving order (Umetani, Schmidt & Stam 2014; Kugelstadt & Schoemer 2016): even
 // ones from the first, odd ones from the last, alternately, so that neither end of a chain is favoured. Any graph of
-// joints will do, trees and closed loops included, since no joint needs to know its neighbours.
+// joints is allowed, trees and closed loops included, since the correction of a joint does not use its neighbours.
 //
-// The residual of an iteration is the largest |C + alpha~ lambda| that it met, every joint's just before its own
-// correction: it costs nothing. Nothing allocates after construction.
+// The residual of an iteration is the largest |C + alpha~ lambda|, each evaluated just before the correction of its
+// joint, at no extra cost. Nothing allocates after construction.
 #pragma once
 
 #include <vector>
@@ -24,8 +24,8 @@ class GaussSeidelProjection : public Projection {
   /// Throws SceneError where a joint joins two static segments.
   explicit GaussSeidelProjection(const Scene& scene);
 
-  /// `not_run` where the residual met was below `newton_tolerance`: what little the iteration did stays done.
-  /// `not_a_number` where it is none, `indefinite` where a joint's own block was.
+  /// `not_run` if the residual was below `newton_tolerance` (the corrections of the iteration are kept), `not_a_number` if
+  /// it is not finite, `indefinite` if a joint's block is not positive definite.
   ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) final;
 
  protected:

@@ -1,4 +1,4 @@
-// What is measured on a scene: length, gaps, energies, momenta. Pure functions of the state; SI.
+// Measures of a scene: length, gaps, energies, momenta. Pure functions of the state; SI.
 #pragma once
 
 #include "solver/rod/linearization.hpp"
@@ -15,11 +15,11 @@ double rod_length(const Rod& rod);
 /// max over joints of |x_a + rho_a - x_b - rho_b| / l.
 double joint_gap(const Rod& rod);
 
-/// max |C + alpha~ lambda|, alpha~ = alpha / constraint_dt^2 (TimeStepper::constraint_dt): what is left for Newton.
+/// max |C + alpha~ lambda|, alpha~ = alpha / constraint_dt^2 (TimeStepper::constraint_dt): the residual of Newton.
 double newton_residual(const Rod& rod, double constraint_dt);
 double newton_residual(const Rod& rod, const Linearization& at, double constraint_dt);  ///< linearised here already
 
-/// What the forces on a segment lack, relative to the greatest that a joint carries (MomentumBalance::residual).
+/// The largest imbalance of forces on a segment, relative to the largest force of a joint (MomentumBalance::residual).
 double momentum_residual(const Rod& rod);
 
 /// Sum over joints of C^T alpha^-1 C / 2 [J]; rows of zero compliance store nothing.

@@ -1,4 +1,4 @@
-// What happens to one rod in one Newton iteration of the time step, behind one interface.
+// One Newton iteration of the time step on one rod, behind one interface.
 //
 // Projection moves a rod towards its constraints. LinearProjection is the family that assembles A dlambda = b, has a
 // LinearSolve solve it and applies the result: the direct solve, CG, and the paired evaluation that tries many guesses
@@ -16,7 +16,7 @@
 
 namespace rodsweep {
 
-/// Where in a simulation a solve stands.
+/// The place of a solve in a simulation.
 struct SolvePosition {
   int step = 0;    ///< time step, from 0
   int newton = 0;  ///< Newton iteration, from 0
@@ -34,8 +34,8 @@ class Projection {
   virtual ~Projection() = default;
   /// Projects unless the residual is below `newton_tolerance` already (outcome not_run).
   virtual ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) = 0;
-  /// Whether Newton is to go on, from now on, until momentum is in balance as well (momentum_balance.hpp). Returns
-  /// whether it does.
+  /// Whether Newton's iteration continues until momentum is in balance as well (momentum_balance.hpp). Returns whether
+  /// this projection supports that.
   virtual bool keep_balance(bool) { return false; }
 };
 

@@ -6,9 +6,9 @@
 //   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
 //   v, w of what moved (free_flight.hpp)
 // Where the projection keeps the balance of momentum (momentum_balance.hpp), Newton starts from the last step's lambda,
-// from x + dt (2 v - v_before) and q likewise, and ends when momentum is in balance as well. A step in which two thirds
-// of the iterations come nowhere near that (a slender rod that hits the floor end-on can fold in many ways) is taken
-// back and made as above.
+// from x + dt (2 v - v_before) and q likewise, and ends when momentum is in balance as well. If two thirds of the
+// iterations do not come near that (a slender rod that hits the floor end-on can fold in many ways), the step is undone
+// and made as above.
 // Loads: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
 // allocates after construction, but for contacts (contact_projection.hpp).
 #pragma once
@@ -50,7 +50,7 @@ class TimeStepper {
  public:
   TimeStepper(Scene& scene, const StepSettings& settings);
 
-  /// Advances the scene by dt. After a failed solve the step ends there: the rods are not to be trusted.
+  /// Advances the scene by dt. A failed solve ends the step; the state of the rods is invalid then.
   StepReport step(Projection& projection);
 
   int steps_taken() const { return steps_; }

@@ -16,7 +16,7 @@ MODELS = {   # name: job, network, simulations
     "more": (MSE, NETWORK, 64),
     "deep": (MSE, {**NETWORK, "steps": 12}, 256),
     "energy": ({"training": {"loss": "energy"}}, {**NETWORK, "moves": False}, 256),
-    "sweeps": (MSE, {key: value for key, value in {**NETWORK, "processor": "sweeps"}.items()
+    "factors": (MSE, {key: value for key, value in {**NETWORK, "processor": "factors"}.items()
                      if key not in ("steps", "globals", "moves")}, 256),
     "all": ({"training": {"loss": "mse", "systems": "all"}}, NETWORK, 256),
     "both": ({"training": {"loss": "energy"}}, {**NETWORK, "globals": True, "moves": False}, 256),
@@ -47,7 +47,7 @@ class Ablation(Scripts):
         self.assertEqual(changed["few"], {"training simulations": 8})
         self.assertEqual(changed["deep"], {"message-passing steps": 12})
         self.assertEqual(changed["energy"], {"loss": "energy"})
-        self.assertEqual(changed["sweeps"], {"processor": "gated sweeps"})
+        self.assertEqual(changed["factors"], {"processor": "factors"})
         self.assertEqual(changed["both"], {"loss": "energy", "global state": "on"})
         # The base's job says nothing of the iterations that it learned from.
         self.assertEqual(changed["all"], {"Newton iterations learned": "all"})

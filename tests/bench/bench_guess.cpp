@@ -7,7 +7,6 @@
 #include "network/guess/base_guess.hpp"
 #include "network/guess/coping_net_guess.hpp"
 #include "network/processor/factor_inference.hpp"
-#include "network/processor/sweeps_inference.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
@@ -19,32 +18,26 @@ namespace {
 
 using namespace rodsweep;
 
-constexpr std::array<int, 2> sizes{50, 100};           // segments
-constexpr std::array<int, 4> latents{16, 32, 48, 64};  // of sweeps
+constexpr std::array<int, 2> sizes{50, 100};  // segments
+constexpr std::array<int, 4> latents{16, 32, 48, 64};
 
-/// Learned guesses: those of rods-large.h5 and of rods.h5 but for their latent size, and others.
+/// Learned guesses: those of rods-large.h5 and of rods.h5 but for their latent size.
 struct Kind {
   const char* name;
   const char* words;
   BaseGuess base;
   int base_size;
-  Processor processor;
-  Recurrence recurrence;
 };
-constexpr std::array<Kind, 3> kinds{{
-    {"gated", "base subspace 10, gated sweeps", BaseGuess::subspace, 10, Processor::sweeps, Recurrence::gated},
-    {"linear", "base regression 6, linear sweeps", BaseGuess::regression, 6, Processor::sweeps, Recurrence::linear},
-    {"factors", "base regression 6, factors", BaseGuess::regression, 6, Processor::factors, Recurrence::gated},
+constexpr std::array<Kind, 2> kinds{{
+    {"subspace", "subspace 10", BaseGuess::subspace, 10},
+    {"regression", "regression 6", BaseGuess::regression, 6},
 }};
 constexpr int many_corrections = 5;
 
 CopingNetSettings settings_of(const Kind& kind, int latent) {
   CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
   settings.base = kind.base;
   settings.base_size = kind.base_size;
-  settings.processor = kind.processor;
-  settings.recurrence = kind.recurrence;
   settings.latent = latent;
   return settings;
 }
@@ -123,7 +116,7 @@ struct Case {
     const CopingNetSettings settings = settings_of(kind, latent);
     model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
     base = base_guess(settings, scene, 1);
-    guess = std::make_unique<CopingNetGuess>(model, scene, 0.02, 1, use);
+    guess = std::make_unique<CopingNetGuess>(model, scene, 1, use);
     system = std::make_unique<LinearSystem>(scene.rods.front());
     DirectSolve direct(scene);
     LinearProjection projection(scene, direct);
@@ -162,35 +155,24 @@ void base_alone(benchmark::State& state, const Kind& kind) {
 void features(benchmark::State& state, const Kind& kind) {
   Case c(kind, static_cast<int>(state.range(0)), 16);
   FeatureEncoder encoder(c.model->net.settings(), c.scene.rods.front(), c.system->matrix());
-  Tensor<float> nodes(0, c.scene.rods.front().segment_count()), edges(CanonicalEncoding::size, state.range(0) - 1);
+  Tensor<float> nodes(0, c.scene.rods.front().segment_count()), edges(SystemEncoding::size, state.range(0) - 1);
   for (auto _ : state) {
-    encoder.encode(c.scene.rods.front(), *c.system, 0, 0.02, c.x0, c.system->rhs(), nodes, edges);
+    encoder.encode(c.scene.rods.front(), *c.system, 0, c.x0, c.system->rhs(), nodes, edges);
     benchmark::ClobberMemory();
   }
 }
 
 void network(benchmark::State& state, const Kind& kind) {
   Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
-  const Topology chain = topology(c.scene.rods.front());
-  const Tensor<float> x = 0.1 * Tensor<float>::Random(CanonicalEncoding::size, chain.forest.size());
-  Tensor<float> y(6, chain.forest.size());
+  const Rod& rod = c.scene.rods.front();
   const CopingNet<float>& net = c.model->net;
-  if (kind.processor == Processor::factors) {
-    const Rod& rod = c.scene.rods.front();
-    FeatureEncoder encoder(net.settings(), rod, c.system->matrix());
-    Tensor<float> nodes(0, rod.segment_count()), features(CanonicalEncoding::size, chain.forest.size());
-    encoder.encode(rod, *c.system, 0, 0.02, c.x0, c.system->rhs(), nodes, features);
-    FactorInference inference(net.factors(), net.parameters(), encoder.topology().forest, encoder.pattern());
-    for (auto _ : state) {
-      inference.factorise(features, encoder.canonical()->frames(), c.system->matrix());
-      inference.solve(c.system->rhs(), c.x0);
-      benchmark::ClobberMemory();
-    }
-    return;
-  }
-  SweepsInference inference(net.sweeps(), net.parameters(), chain.forest.size());
+  FeatureEncoder encoder(net.settings(), rod, c.system->matrix());
+  Tensor<float> nodes(0, rod.segment_count()), features(SystemEncoding::size, rod.joint_count());
+  encoder.encode(rod, *c.system, 0, c.x0, c.system->rhs(), nodes, features);
+  FactorInference inference(net.factors(), net.parameters(), encoder.topology().forest, encoder.pattern());
   for (auto _ : state) {
-    inference.run(chain.forest, x, y);
+    inference.factorise(features, encoder.system()->frames(), c.system->matrix());
+    inference.solve(c.system->rhs(), c.x0);
     benchmark::ClobberMemory();
   }
 }
@@ -207,7 +189,7 @@ void print_summary(const Medians& median) {
   }
   for (const Kind& kind : kinds) {
     const std::string of = std::string("_") + kind.name;
-    std::printf("\nA learned guess (encoding canonical, %s), us per segment\n", kind.words);
+    std::printf("\nA learned guess (factors on %s), us per segment\n", kind.words);
     std::printf("%9s %7s %9s %7s %9s %9s %8s %9s\n", "segments", "latent", "weights", "base", "features", "network",
                 "GFLOP/s", "whole");
     for (const int n : sizes)
@@ -220,7 +202,6 @@ void print_summary(const Medians& median) {
         std::printf("%9d %7d %9.0f %7.3f %9.3f %9.3f %8.0f %9.3f\n", n, latent, weights,
                     per_segment(median("base" + size)), per_segment(median("features" + size)), per_segment(seconds),
                     2 * weights * n / seconds * 1e-9, per_segment(median("whole" + both)));
-        if (kind.processor != Processor::factors) continue;
         std::printf("%59s %.3f, with factors of an earlier step %.3f\n", "every further correction",
                     per_segment(median("whole_again" + both) - median("whole" + both)) / (many_corrections - 1),
                     per_segment(median("whole_lagging" + both)));
@@ -246,7 +227,6 @@ int main(int argc, char** argv) {
       for (const int latent : latents) {
         add("network", network, {n, latent});
         add("whole", whole<1>, {n, latent});
-        if (kind.processor != Processor::factors) continue;
         add("whole_again", whole<many_corrections>, {n, latent});
         add("whole_lagging", whole<1, true>, {n, latent});
       }

@@ -114,13 +114,11 @@ template <bool lag>
 void learned(benchmark::State& state) {
   const Assembled a(scene_of(state));
   CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
-  settings.processor = Processor::factors;
   settings.couplings = Couplings::all;
   settings.base = BaseGuess::none;
   settings.latent = 32;
   const auto model = std::make_shared<Model>(Model{CopingNet<float>(settings, 1), {}});
-  CopingNetGuess guess(model, a.scene, 0.02, 1, {1, lag ? 1000000 : 0, 0});
+  CopingNetGuess guess(model, a.scene, 1, {1, lag ? 1000000 : 0, 0});
   VectorX x = a.b;
   guess.propose(a.system, {}, x);
   SolvePosition at;

@@ -29,8 +29,8 @@ struct Case {
     scene = build_scene(spec);
     graph = rod_graph(scene.rods.front());
     WeightSource source(1);
-    const int node_in = GraphEncoding::node_features(Encoding::physics);
-    const int edge_in = GraphEncoding::edge_features(Encoding::physics);
+    const int node_in = GraphEncoding::node_features(Encoding::paper_residual);
+    const int edge_in = GraphEncoding::edge_features(Encoding::paper_residual);
     net = MessagePassing<float>(parameters, {node_in, edge_in, latent, steps, 6, 0, false}, source);
     x_nodes = Tensor<float>::Random(node_in, graph.nodes);
     x_edges = Tensor<float>::Random(edge_in, graph.edges());
@@ -42,9 +42,9 @@ void encode(benchmark::State& state) {
   const Rod& rod = c.scene.rods.front();
   LinearSystem system(rod);
   system.assemble(rod, 0.02);
-  const GraphEncoding encoding(Encoding::physics, rod);
+  const GraphEncoding encoding(Encoding::paper_residual, rod);
   for (auto _ : state) {
-    encoding.encode(rod, system, 0, 0.02, c.x_nodes, c.x_edges);
+    encoding.encode(rod, system, 1, c.x_nodes, c.x_edges);
     benchmark::ClobberMemory();
   }
 }

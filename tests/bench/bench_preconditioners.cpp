@@ -10,8 +10,8 @@
 #include <string>
 
 #include "solver/linear/cg_solver.hpp"
-#include "solver/linear/linear_system.hpp"
 #include "solver/linear/petsc_session.hpp"
+#include "solver/linear/linear_system.hpp"
 #include "solver/scene/scenes.hpp"
 #include "tests/bench/medians.hpp"
 

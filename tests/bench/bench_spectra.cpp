@@ -157,8 +157,8 @@ class LearnedFactors {
         zero_(VectorX::Zero(system.rhs().size())) {}
 
   void set_up() {
-    encoder_.encode(rod_, system_, 0, dt, zero_, system_.rhs(), nodes_, edges_);
-    inference_.factorise(encoder_.canonical()->frames(), system_.matrix());
+    encoder_.encode(rod_, system_, 0, zero_, system_.rhs(), nodes_, edges_);
+    inference_.factorise(encoder_.system()->frames(), system_.matrix());
   }
   void apply(const VectorX& r, VectorX& z) { inference_.solve(r, z); }
 

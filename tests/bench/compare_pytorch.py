@@ -151,7 +151,7 @@ def rodsweep_systems_per_second(program, latent, segments):
     data = {"name": "data", "kind": "dataset", "seed": 1, "samples": 24, "scene": rods,
             "time": {"step_s": 0.02, "steps": 40, "newton_iterations": 6}, "record": {"systems": "all"}}
     train = {"name": "train", "kind": "train", "seed": 1, "data": "data.h5", "validation_simulations": 1,
-             "network": {"encoding": "canonical", "processor": "factors", "base": "none", "latent": latent},
+             "network": {"encoding": "linear_system", "processor": "factors", "base": "none", "latent": latent},
              "training": {"epochs": 8, "batch": 32, "shards": 4, "ratio_every_epochs": 0, "ratio_simulations": 1}}
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     with tempfile.TemporaryDirectory() as folder:

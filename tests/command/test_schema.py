@@ -51,7 +51,7 @@ GOOD = {
     "a data set": {"kind": "dataset", "guesses": None},
     "a training": TRAINING,
     "a training with all its keys": {**TRAINING, "validation_simulations": 3, "network": {
-        "encoding": "deck", "processor": "message_passing", "base": "none", "base_size": 3, "latent": 16, "steps": 2,
+        "encoding": "paper_residual", "processor": "message_passing", "base": "none", "base_size": 3, "latent": 16, "steps": 2,
         "globals": True, "best_length": False, "moves": True}, "training": {
             "loss": "mse", "epochs": 3, "batch": 8, "shards": 2, "rate": 1e-3, "warm_up": 0.1, "weight_decay": 1e-4,
             "clip": 2, "patience_epochs": 2, "ratio_every_epochs": 0, "ratio_simulations": 3}},
@@ -78,8 +78,8 @@ BAD = {
     "a training with a scene": {**TRAINING, "scene": ROD},
     "a training without data": {**TRAINING, "data": None},
     "a training that is swept": {**TRAINING, "training": {"rate": {"grid": [1e-3, 2e-3]}}},
-    "sweeps with moves": {**TRAINING, "network": {"moves": True}, "training": {"loss": "mse"}},
-    "sweeps with hops": {**TRAINING, "network": {"processor": "sweeps", "steps": 3}},
+    "factors with moves": {**TRAINING, "network": {"moves": True}, "training": {"loss": "mse"}},
+    "factors with hops": {**TRAINING, "network": {"processor": "factors", "steps": 3}},
     "an energy loss with steps of CG": {**TRAINING, "training": {"cg_steps": 3}},
     "a number for true": {**TRAINING, "network": {"best_length": 1}},
     "a sweep with a network": {"network": {}},

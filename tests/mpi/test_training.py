@@ -43,15 +43,15 @@ class TrainingCase(SweepCase):
 class Learning(TrainingCase):
     def test_models_are_the_same_on_1_2_4_and_6_ranks(self):
         for name, changes in (
-                ("sweeps", {}),
-                ("hops", {"network": {"encoding": "deck", "processor": "message_passing", "base": "none", "latent": 16,
+                ("factors", {}),
+                ("hops", {"network": {"encoding": "paper_residual", "processor": "message_passing", "base": "none", "latent": 16,
                                       "steps": 2, "best_length": False, "moves": True}, "training": {"loss": "mse"}})):
             path = train_job(name, **changes)
             alone = rodsweep(0, "run", path, "-o", f"{name}.h5")
             self.assert_exit(alone, ALL_DONE)
             self.assertIn("all 3 epochs; the model is that of epoch", alone.stdout)
             self.assertIn("CG ratio on 5 validation simulations", alone.stdout)
-            for ranks in (2, 4, 6) if name == "sweeps" else (3,):
+            for ranks in (2, 4, 6) if name == "factors" else (3,):
                 with self.subTest(name=name, ranks=ranks):
                     ran = rodsweep(ranks, "run", path, "-o", f"{name}{ranks}.h5")
                     self.assert_exit(ran, ALL_DONE)

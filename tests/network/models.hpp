@@ -33,11 +33,11 @@ inline CopingNetSettings message_passing(Encoding encoding, bool moves) {
 /// A small one of every kind.
 inline std::vector<CopingNetSettings> kinds_of_networks() {
   std::vector<CopingNetSettings> out;
-  for (const Encoding encoding : {Encoding::deck, Encoding::physics, Encoding::system, Encoding::canonical})
-    for (const Processor processor : {Processor::sweeps, Processor::factors, Processor::message_passing})
+  for (const Encoding encoding : {Encoding::paper, Encoding::paper_residual, Encoding::linear_system})
+    for (const Processor processor : {Processor::factors, Processor::message_passing})
       for (const BaseGuess base :
            {BaseGuess::none, BaseGuess::extrapolation, BaseGuess::regression, BaseGuess::subspace}) {
-        if (processor == Processor::factors && encoding != Encoding::canonical) continue;
+        if (processor == Processor::factors && encoding != Encoding::linear_system) continue;
         CopingNetSettings settings;
         settings.encoding = encoding;
         settings.processor = processor;
@@ -46,12 +46,8 @@ inline std::vector<CopingNetSettings> kinds_of_networks() {
         settings.latent = 16;
         settings.steps = 2;
         out.push_back(settings);
-        if (processor == Processor::factors) {
-          settings.couplings = Couplings::all;
-          out.push_back(settings);
-        }
-        if (processor != Processor::sweeps || base != BaseGuess::none) continue;
-        settings.recurrence = Recurrence::linear;
+        if (processor != Processor::factors) continue;
+        settings.couplings = Couplings::all;
         out.push_back(settings);
       }
   return out;

@@ -24,7 +24,7 @@ Json toy_tree_data_job() {
 Json toy_train_job() {
   Json job = train_job();
   job["validation_simulations"] = 4;
-  job["network"] = {{"base", "none"}, {"latent", 8}};
+  job["network"] = {{"base", "none"}, {"latent", 16}};
   job["training"] = {{"epochs", 4}, {"batch", 8}, {"shards", 4}, {"ratio_every_epochs", 2}, {"ratio_simulations", 3}};
   return job;
 }

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "solver/linear/block_factor.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
+#include "solver/linear/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 

@@ -21,7 +21,7 @@ Encoded encoded(Encoding encoding, const Rod& rod, int newton = 0) {
   system.assemble(rod, dt);
   Encoded out{Tensor<float>(GraphEncoding::node_features(encoding), rod.segment_count()),
               Tensor<float>(GraphEncoding::edge_features(encoding), rod.joint_count())};
-  encode.encode(rod, system, newton, dt, out.nodes, out.edges);
+  encode.encode(rod, system, newton, out.nodes, out.edges);
   return out;
 }
 
@@ -56,8 +56,6 @@ Rod bent_rod() {
   }
   Rod rod(segments, joints);
   rod.orientation[1].coeffs() = -rod.orientation[1].coeffs();  // the same rotation, from the other hemisphere
-  rod.velocity[2] = {1, 2, 3};
-  rod.angular_velocity[2] = {4, 5, 6};
   return rod;
 }
 
@@ -76,19 +74,19 @@ const double y1 = 5 - 0.5 * std::sin(0.3), z1 = 1 + 0.5 * std::cos(0.3);
 const double y2 = 5 - std::sin(0.3) - std::sin(0.1), z2 = 1 + std::cos(0.3) + std::cos(0.1);
 const double bend0 = 2 * std::sin(0.15), bend1 = 2 * std::sin(-0.1), rest1 = 2 * std::sin(0.05);
 
-TEST_CASE("paper: the nodes of deck, and of its edges what bends and how stiff, at every Newton iteration") {
+TEST_CASE("paper: the features of paper_residual without the residual, at every Newton iteration") {
   for (const int newton : {0, 1}) {
     const Encoded paper = encoded(Encoding::paper, bent_rod(), newton),
-                  deck = encoded(Encoding::deck, bent_rod(), newton);
+                  more = encoded(Encoding::paper_residual, bent_rod(), newton);
     CHECK(paper.nodes.rows() == 14);
     CHECK(paper.edges.rows() == 5);
-    CHECK(paper.nodes == deck.nodes);
-    CHECK(paper.edges == deck.edges.topRows(5));
+    CHECK(paper.nodes == more.nodes);
+    CHECK(paper.edges == more.edges.topRows(5));
   }
 }
 
-TEST_CASE("deck: a bent rod of three segments, by hand") {
-  const Encoded e = encoded(Encoding::deck, bent_rod());
+TEST_CASE("paper_residual: a bent rod of three segments, by hand") {
+  const Encoded e = encoded(Encoding::paper_residual, bent_rod());
   check_column(e.nodes, 0, {0, 5, .5, 1, 0, 0, 0, .05, 1000, 1, 0, 1, 1, 0});
   check_column(e.nodes, 1, {0, y1, z1, std::cos(.15), std::sin(.15), 0, 0, .05, 1000, 1, 0.4, 0, 0, 0});
   check_column(e.nodes, 2, {0, y2, z2, std::cos(.05), std::sin(.05), 0, 0, .05, 1000, 2, 1, 0, 0, 1});
@@ -96,25 +94,14 @@ TEST_CASE("deck: a bent rod of three segments, by hand") {
   check_column(e.edges, 1, {bend1 / 1.5, 0, 0, 2e5, 3e6, 0, 0, 0, 0, 0, 0});
 }
 
-TEST_CASE("deck: from the second Newton iteration on, edges have -C - alpha~ lambda") {
+TEST_CASE("paper_residual: from the second Newton iteration on, edges have -C - alpha~ lambda") {
   Rod rod = bent_rod();
   rod.lambda[9] = 1e-3;
-  const Encoded e = encoded(Encoding::deck, rod, 1);
+  const Encoded e = encoded(Encoding::paper_residual, rod, 1);
   const double compliance = 1.5 / (2e5 * pi * std::pow(0.05, 4) / 4) / (dt * dt);
   CHECK(e.edges.col(0).tail<6>().norm() == Approx(bend0));
   CHECK(e.edges(8, 0) == Approx(-bend0));
   CHECK(e.edges(8, 1) == Approx(-(bend1 - rest1) - compliance * 1e-3));
-}
-
-TEST_CASE("physics: the same rod in natural units, by hand") {
-  const Encoded e = encoded(Encoding::physics, bent_rod());
-  const double L = 4, l = 1.25;  // total length, mean joint length
-  check_column(e.nodes, 0, {0, 0, 0, 1, 0, 0, 0, .05, 1000, 1, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0});
-  check_column(e.nodes, 2,
-               {0, (y2 - 5) / L, (z2 - .5) / L, std::cos(.05), std::sin(.05), 0,      0,     .05, 1000, 2, 1, 0, 0,
-                1, 1 * dt / l,   2 * dt / l,    3 * dt / l,    4 * dt,        5 * dt, 6 * dt});
-  check_column(e.edges, 0, {bend0, 0, 0, std::log10(2e5), std::log10(3e6), 0, 0, 0, -bend0, 0, 0, 0, 0, 0});
-  check_column(e.edges, 1, {bend1, 0, 0, std::log10(2e5), std::log10(3e6), 0, 0, 0, rest1 - bend1, 0, 0, rest1, 0, 0});
 }
 
 /// The rod moved and turned about the vertical, y, velocities with it.
@@ -123,8 +110,6 @@ Rod moved(Rod rod, const Vector3& shift, double angle) {
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     rod.position[s] = turn * rod.position[s] + shift;
     rod.orientation[s] = turn * rod.orientation[s];
-    rod.velocity[s] = turn * rod.velocity[s];
-    rod.angular_velocity[s] = turn * rod.angular_velocity[s];
   }
   return rod;
 }
@@ -137,35 +122,25 @@ std::vector<int> changed(const Tensor<float>& a, const Tensor<float>& b) {
   return out;
 }
 
-TEST_CASE("a shifted rod differs in deck's positions only, and in nothing of physics") {
-  Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
-  for (Vector3& v : rod.velocity) v = {1, 2, 3};
+TEST_CASE("a shifted rod differs in positions only") {
+  const Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
   const Rod shifted = moved(rod, {1, -2, 3}, 0);
-  CHECK(changed(encoded(Encoding::deck, rod, 1).nodes, encoded(Encoding::deck, shifted, 1).nodes) ==
+  CHECK(changed(encoded(Encoding::paper_residual, rod, 1).nodes, encoded(Encoding::paper_residual, shifted, 1).nodes) ==
         std::vector<int>{0, 1, 2});
-  CHECK(changed(encoded(Encoding::deck, rod, 1).edges, encoded(Encoding::deck, shifted, 1).edges).empty());
-  CHECK(changed(encoded(Encoding::physics, rod).nodes, encoded(Encoding::physics, shifted).nodes).empty());
-  CHECK(changed(encoded(Encoding::physics, rod).edges, encoded(Encoding::physics, shifted).edges).empty());
+  CHECK(changed(encoded(Encoding::paper_residual, rod, 1).edges, encoded(Encoding::paper_residual, shifted, 1).edges)
+            .empty());
 }
 
-TEST_CASE(
-    "turned about the vertical, a rod differs in world vectors across it and its rotations, in nothing of joints") {
-  Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
-  for (std::size_t s = 1; s < rod.segments.size(); ++s) {
-    rod.velocity[s] = {1, 2, 3};
-    rod.angular_velocity[s] = {3, 1, 2};
-  }
+TEST_CASE("a rod turned about the vertical differs in horizontal positions and rotations, and in no joint") {
+  const Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
   const Rod turned = moved(rod, {0, 0, 0}, 0.7);
-  CHECK(changed(encoded(Encoding::deck, rod).nodes, encoded(Encoding::deck, turned).nodes) ==
+  CHECK(changed(encoded(Encoding::paper_residual, rod).nodes, encoded(Encoding::paper_residual, turned).nodes) ==
         std::vector<int>{0, 2, 3, 4, 5, 6});
-  CHECK(changed(encoded(Encoding::deck, rod).edges, encoded(Encoding::deck, turned).edges).empty());
-  CHECK(changed(encoded(Encoding::physics, rod).nodes, encoded(Encoding::physics, turned).nodes) ==
-        std::vector<int>{0, 2, 3, 4, 5, 6, 14, 16, 17, 19});
-  CHECK(changed(encoded(Encoding::physics, rod).edges, encoded(Encoding::physics, turned).edges).empty());
+  CHECK(changed(encoded(Encoding::paper_residual, rod).edges, encoded(Encoding::paper_residual, turned).edges).empty());
 }
 
 TEST_CASE("alpha and the flags count from the static segment, along branches and around loops") {
-  const Encoded chain = encoded(Encoding::deck, test::random_rod(test::chain(4), {3}, 1));
+  const Encoded chain = encoded(Encoding::paper_residual, test::random_rod(test::chain(4), {3}, 1));
   CHECK(chain.nodes.row(13) == Eigen::RowVector4f(1, 0, 0, 0));  // last
   CHECK(chain.nodes.row(12) == Eigen::RowVector4f(0, 0, 0, 1));  // first
   CHECK(chain.nodes.row(11) == Eigen::RowVector4f(0, 0, 0, 1));  // fixed
@@ -173,14 +148,14 @@ TEST_CASE("alpha and the flags count from the static segment, along branches and
   CHECK(chain.nodes(10, 3) == 0);
   for (int i = 1; i < 4; ++i) CHECK(chain.nodes(10, i) < chain.nodes(10, i - 1));
 
-  const Encoded tree = encoded(Encoding::deck, test::random_rod(test::tree(2, 2), {}, 1));
+  const Encoded tree = encoded(Encoding::paper_residual, test::random_rod(test::tree(2, 2), {}, 1));
   CHECK(tree.nodes.row(11).isZero());
   CHECK(tree.nodes.row(12).sum() == 1);
   CHECK(tree.nodes.row(13).sum() == 4);
   CHECK(tree.nodes(10, 0) == 0);
   CHECK(tree.nodes.row(10).maxCoeff() == 1);
 
-  const Encoded ring = encoded(Encoding::deck, test::random_rod(test::ring(5), {0}, 1));
+  const Encoded ring = encoded(Encoding::paper_residual, test::random_rod(test::ring(5), {0}, 1));
   CHECK(ring.nodes.row(13).isZero());
   CHECK(ring.nodes(10, 1) < ring.nodes(10, 2));
   CHECK(ring.nodes(10, 4) < ring.nodes(10, 3));
@@ -188,16 +163,16 @@ TEST_CASE("alpha and the flags count from the static segment, along branches and
 
 TEST_CASE("a wall without radius and a joint without compliance have finite moduli") {
   const Scene scene = build_scene(test::bending_rod(4, Clamp::wall));
-  const Encoded e = encoded(Encoding::physics, scene.rods.front());
+  const Encoded e = encoded(Encoding::paper, scene.rods.front());
   CHECK(e.nodes.allFinite());
   CHECK(e.edges(3, 0) == Approx(e.edges(3, 1)));
   Rod rigid = scene.rods.front();
   rigid.joints[0].compliance.setZero();
-  CHECK(encoded(Encoding::physics, rigid).edges(3, 0) == 15);
+  CHECK(encoded(Encoding::paper, rigid).edges(3, 0) == 1e15F);
 }
 
-TEST_CASE("the system's encoding is not one of graphs") {
-  CHECK_THROWS_AS(GraphEncoding(Encoding::system, bent_rod()), std::invalid_argument);
+TEST_CASE("encodings without features of graphs are refused") {
+  CHECK_THROWS_AS(GraphEncoding(Encoding::linear_system, bent_rod()), std::invalid_argument);
 }
 
 }  // namespace test_graph_encoding

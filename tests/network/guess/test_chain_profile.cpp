@@ -138,7 +138,7 @@ TEST_CASE("joints in another order and direction are the same chain") {
   CHECK((loads[0] - loads[1]).norm() < 1e-4 * loads[0].norm());
 }
 
-TEST_CASE("rods that are no single chain are refused") {
+TEST_CASE("rods that are not a single chain are refused") {
   const auto profile = [](const test::Edges& edges) { return ChainProfile(test::random_rod(edges, {0}, 1), gravity); };
   CHECK_NOTHROW(profile(test::chain(4)));
   CHECK_THROWS_WITH(profile(test::tree(2, 2)), Catch::Contains("has 3 joints") && Catch::Contains("a single chain"));

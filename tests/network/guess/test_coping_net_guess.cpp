@@ -46,7 +46,7 @@ TEST_CASE("with the best length what is left of the error is A-orthogonal to the
   for (CopingNetSettings settings : test::kinds_of_networks()) {
     CAPTURE(static_cast<int>(settings.encoding), static_cast<int>(settings.processor), static_cast<int>(settings.base));
     Scene scene = build_scene(test::bending_rod(8));
-    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 2);
+    CopingNetGuess guess(test::random_model(settings), scene, 2);
     const auto base = base_guess(settings, scene, 2);
     int corrected = 0;
     simulate(scene, 4, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
@@ -83,7 +83,7 @@ TEST_CASE("weights that are not numbers leave the base guess") {
   std::fill(model->net.parameters().values().begin(), model->net.parameters().values().end(),
             std::numeric_limits<float>::quiet_NaN());
   Scene scene = build_scene(test::bending_rod(6));
-  CopingNetGuess guess(model, scene, 0.02, 2);
+  CopingNetGuess guess(model, scene, 2);
   const auto base = base_guess(settings, scene, 2);
   simulate(scene, 3, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
     VectorX x0(solution.size()), alone(solution.size());
@@ -99,7 +99,7 @@ TEST_CASE("a right-hand side of zero is answered with zero") {
   Scene scene = build_scene(test::bending_rod(5));
   scene.gravity_m_s2.setZero();
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
-    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1);
+    CopingNetGuess guess(test::random_model(settings), scene, 1);
     LinearSystem system(scene.rods.front());
     system.assemble(scene.rods.front(), 0.02);
     VectorX x0(system.rhs().size());
@@ -118,7 +118,7 @@ TEST_CASE("where loops are cut a network proposes what lowers the residual, or n
   VectorX x0(system.rhs().size()), residual(x0.size());
   int proposed = 0;
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
-    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1);
+    CopingNetGuess guess(test::random_model(settings), scene, 1);
     const Proposal proposal = guess.propose(system, {}, x0);
     proposed += proposal.nonzero;
     CHECK(x0.allFinite());
@@ -133,7 +133,7 @@ TEST_CASE("where loops are cut a network proposes what lowers the residual, or n
 
 CopingNetSettings with_factors() {
   CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
+  settings.encoding = Encoding::linear_system;
   settings.processor = Processor::factors;
   settings.base = BaseGuess::none;
   settings.latent = 16;
@@ -159,7 +159,7 @@ TEST_CASE("factors that lag are those of the first solve of every so many steps"
     guess.propose(systems[static_cast<std::size_t>(system)], at, x0);
     return x0;
   };
-  CopingNetGuess lagging(model, scene, 0.02, 1, {1, 3}), always(model, scene, 0.02, 1);
+  CopingNetGuess lagging(model, scene, 1, {1, 3}), always(model, scene, 1);
   CHECK(proposed(lagging, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // there are none before
   CHECK(proposed(lagging, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // and again
   const VectorX later = proposed(lagging, 1, {4, 2, 0});
@@ -177,7 +177,7 @@ TEST_CASE("corrections stop where the residual is small enough") {
   LinearSystem system(scene.rods.front());
   system.assemble(scene.rods.front(), 0.02);
   const auto left = [&](double stop_at, int corrections) {
-    CopingNetGuess guess(test::random_model(with_factors()), scene, 0.02, 1, {corrections, 0, stop_at});
+    CopingNetGuess guess(test::random_model(with_factors()), scene, 1, {corrections, 0, stop_at});
     VectorX x0(system.rhs().size());
     const Proposal proposal = guess.propose(system, {}, x0);
     return std::pair(proposal.products, proposal.residual->norm() / system.rhs().norm());
@@ -200,7 +200,7 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
   double before = energy_norm_squared(system.matrix(), exact, scratch);
   const double all = before;
   for (const int corrections : {1, 2, 3, 5, 8, 200}) {
-    CopingNetGuess guess(test::random_model(settings), scene, 0.02, 1, {corrections});
+    CopingNetGuess guess(test::random_model(settings), scene, 1, {corrections});
     VectorX x0(exact.size());
     const Proposal proposal = guess.propose(system, {}, x0);
     CHECK((corrections < 200 ? proposal.products == corrections : proposal.products < 200));  // solved long before
@@ -211,9 +211,9 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
   }
   CHECK(before < 1e-12 * all);
 
-  settings.processor = Processor::sweeps;
+  settings.processor = Processor::message_passing;
   VectorX x0(exact.size());
-  CHECK_THROWS_WITH(CopingNetGuess(test::random_model(settings), scene, 0.02, 1, {2}).propose(system, {}, x0),
+  CHECK_THROWS_WITH(CopingNetGuess(test::random_model(settings), scene, 1, {2}).propose(system, {}, x0),
                     Catch::Contains("corrections, lag_steps or stop_at without factors"));
 }
 
@@ -241,7 +241,7 @@ TEST_CASE("the joints' order does not matter") {
       LinearSystem system(one);
       system.assemble(one, 0.02);
       VectorX x0(system.rhs().size());
-      CopingNetGuess(model, scene, 0.02, 1).propose(system, {}, x0);
+      CopingNetGuess(model, scene, 1).propose(system, {}, x0);
       return x0;
     };
     const VectorX x = guess_of(rod), y = guess_of(other);

@@ -16,7 +16,7 @@ namespace test_end_to_end {
 class ExactIncrements : public IncrementSource {
  public:
   explicit ExactIncrements(const Scene& scene) : direct_(scene) {}
-  bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda,
+  bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, VectorX& delta_lambda,
                std::vector<Lane8>& moves) override {
     direct_.solve(system, at, 0, delta_lambda);
     system.displacements(rod, delta_lambda, moves);
@@ -55,7 +55,7 @@ TEST_CASE("exact increments give the trajectory of the direct solve") {
 TEST_CASE("a network that says nothing lets all but the held segment fall") {
   Scene scene = build_scene(test::bending_rod(5));
   const Scene start = scene;
-  const auto model = test::random_model(test::message_passing(Encoding::physics, false));
+  const auto model = test::random_model(test::message_passing(Encoding::paper_residual, false));
   fill(*model, 0);
   EndToEndProjection projection(scene, of_network(model, scene));
   TimeStepper stepper(scene, {0.02, 2, 1e-9});
@@ -77,7 +77,7 @@ TEST_CASE("without moves of its own a network moves the segments as its multipli
     LinearSystem system(expected);
     system.assemble(expected, 0.02);
     VectorX x0(system.rhs().size());
-    CopingNetGuess(model, scene, 0.02, 2).propose(system, {}, x0);
+    CopingNetGuess(model, scene, 2).propose(system, {}, x0);
     system.apply(expected, x0);
 
     EndToEndProjection projection(scene, of_network(model, scene));
@@ -93,7 +93,7 @@ TEST_CASE("without moves of its own a network moves the segments as its multipli
 TEST_CASE("predicted moves are in the units of the training set and leave static segments where they are") {
   Scene scene = test::moving_scene(6);
   const Rod before = scene.rods[0];
-  const auto model = test::random_model(test::message_passing(Encoding::physics, true));
+  const auto model = test::random_model(test::message_passing(Encoding::paper_residual, true));
   model->scales.moves.deviation << 0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F;
   model->scales.multipliers.deviation << 1, 2, 3, 4, 5, 6;
 
@@ -103,7 +103,7 @@ TEST_CASE("predicted moves are in the units of the training set and leave static
   const VectorX none = VectorX::Zero(system.rhs().size());
   Tensor<float> nodes(node_features(model->net.settings()), 6), edges(edge_features(model->net.settings()), 5), y,
       moves;
-  encoder.encode(before, system, 0, 0.02, none, system.rhs(), nodes, edges);
+  encoder.encode(before, system, 0, none, system.rhs(), nodes, edges);
   CopingNet<float>::Tape tape;
   model->net.forward(encoder.topology(), nodes, edges, tape, y, &moves);
 
@@ -132,7 +132,7 @@ TEST_CASE("predicted moves are in the units of the training set and leave static
 TEST_CASE("an answer, or a rod, that is not a number is an outcome and moves nothing") {
   const bool moves = GENERATE(false, true);
   Scene scene = test::moving_scene(5);
-  const auto model = test::random_model(test::message_passing(Encoding::physics, moves));
+  const auto model = test::random_model(test::message_passing(Encoding::paper_residual, moves));
   const Rod before = scene.rods[0];
   SECTION("weights") { fill(*model, std::numeric_limits<float>::quiet_NaN()); }
   SECTION("the unit of the moves") {
@@ -148,8 +148,8 @@ TEST_CASE("an answer, or a rod, that is not a number is an outcome and moves not
 TEST_CASE("a rod whose residual is below the tolerance is left alone") {
   Scene scene = test::moving_scene(5);
   const Rod before = scene.rods[0];
-  EndToEndProjection projection(scene,
-                                of_network(test::random_model(test::message_passing(Encoding::physics, true)), scene));
+  EndToEndProjection projection(
+      scene, of_network(test::random_model(test::message_passing(Encoding::paper_residual, true)), scene));
   CHECK(projection.project(scene.rods[0], {}, 0.02, 1).outcome == SolveOutcome::not_run);
   for (std::size_t s = 0; s < 5; ++s) CHECK(scene.rods[0].position[s] == before.position[s]);
 }

@@ -185,7 +185,7 @@ TEST_CASE("a simulator that says nothing keeps every free segment in its motion"
     CHECK((scene.rods[0].position[s] - start.rods[0].position[s] - Vector3(0.1, 0, 0)).norm() < 1e-12);
 }
 
-TEST_CASE("a simulator's answer that is no number leaves the rod as it was; other models are refused") {
+TEST_CASE("an output that is not finite leaves the rod unchanged; other models are refused") {
   Scene scene = sample_scene(0);
   auto model = random_model(of_states());
   model->scales.moves.deviation[0] = std::numeric_limits<float>::infinity();
@@ -193,7 +193,7 @@ TEST_CASE("a simulator's answer that is no number leaves the rod as it was; othe
   Rod rod = scene.rods.front();
   CHECK(projection.project(rod, {0, 0, 0}, 0.02, 0).outcome == SolveOutcome::not_a_number);
   CHECK(rod.position[1] == scene.rods[0].position[1]);
-  CHECK_THROWS_AS(StateNetworkProjection(scene, random_model(message_passing(Encoding::physics, true)), 0.02),
+  CHECK_THROWS_AS(StateNetworkProjection(scene, random_model(message_passing(Encoding::paper_residual, true)), 0.02),
                   std::invalid_argument);
 }
 

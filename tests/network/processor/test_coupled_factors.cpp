@@ -23,7 +23,7 @@ using System = ScaledSystem<double>;
 /// The system of a rod as a network sees it, with a random residual.
 ScaledSystem<float> system_of(const Rod& rod, unsigned seed = 1) {
   CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
+  settings.encoding = Encoding::linear_system;
   settings.processor = Processor::factors;
   LinearSystem system(rod);
   system.assemble(rod, 0.02);
@@ -236,7 +236,7 @@ TEST_CASE("untrained factors of all couplings are Jacobi's: the residual itself"
 
 TEST_CASE("inference of factors of all couplings gives the training code's answers, as exactly as its operands") {
   CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
+  settings.encoding = Encoding::linear_system;
   settings.processor = Processor::factors;
   settings.couplings = Couplings::all;
   for (const int latent : {16, 32})

@@ -51,6 +51,26 @@ TEST_CASE("the gradients of factors are those of central differences") {
   Parameters<double> gradient = net.weights.zeros();
   net.sweeps.backward(net.weights, forest, x, net.tape, weights, gradient);
   CHECK(gradient_error(net.weights.values(), gradient.values(), loss) < 1e-7);
+  Parameters<double> twice = gradient;
+  loss();
+  net.sweeps.backward(net.weights, forest, x, net.tape, weights, twice);
+  for (std::size_t i = 0; i < twice.values().size(); ++i)  // a second backward adds the same
+    CHECK(twice.values()[i] == Approx(2 * gradient.values()[i]).margin(1e-14));
+}
+
+TEST_CASE("a tree's factors are the same alone and beside others") {
+  const JointForest alone = joint_forest(random_rod(chain(6), {0}, 2)),
+                    other = joint_forest(random_rod(tree(2, 3), {0}, 1));
+  const JointForest both = side_by_side(std::vector{&other, &alone});
+  Net<double> net(6);
+  const Matrix x = features(both, 4);
+  Matrix ordered(x.rows(), x.cols());
+  for (int i = 0; i < both.size(); ++i) ordered.col(i) = x.col(both.order[static_cast<std::size_t>(i)]);
+  const Matrix together = net(both, ordered), expected = net(alone, x.rightCols(alone.size()));
+  for (int i = 0; i < both.size(); ++i) {
+    const int place = both.order[static_cast<std::size_t>(i)] - other.size();
+    if (place >= 0) CHECK((together.col(i) - expected.col(place)).norm() < 1e-14);
+  }
 }
 
 TEST_CASE("answers are linear in the residual and symmetric, and see the whole tree") {
@@ -104,7 +124,7 @@ TEST_CASE("a state that has grown too long is not carried on, and gradients stay
 
 TEST_CASE("inference of factors gives the training code's answers, as exactly as its operands, to any residual") {
   CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
+  settings.encoding = Encoding::linear_system;
   settings.processor = Processor::factors;
   for (const int latent : {16, 32, 48})
     for (const Edges& edges : {chain(5), chain(20), tree(3, 2), ring(7)}) {
@@ -116,19 +136,19 @@ TEST_CASE("inference of factors gives the training code's answers, as exactly as
       Net<float> net(latent);
       net.weights[net.sweeps.layers().factors.weight()] *= 0.02F;  // or states grow too long to be carried on
       FactorInference inference(net.sweeps, net.weights, forest, encoder.pattern());
-      Tensor<float> nodes(0, rod.segment_count()), x(CanonicalEncoding::size, forest.size());
+      Tensor<float> nodes(0, rod.segment_count()), x(SystemEncoding::size, forest.size());
       for (const unsigned seed : {2U, 9U}) {
         const VectorX r = random_matrix(6 * forest.size(), 1, seed).col(0);
-        encoder.encode(rod, system, 0, 0.02, VectorX(), r, nodes, x);
+        encoder.encode(rod, system, 0, VectorX(), r, nodes, x);
         const Tensor<float> y = net(forest, x);
         VectorX expected(r.size()), d(r.size());
         for (int place = 0; place < forest.size(); ++place) {
           Lane8 answer{};
           for (int row = 0; row < 6; ++row) answer[row] = y(row, place);
           store6(expected.data() + 6 * encoder.pattern().joint[static_cast<std::size_t>(place)],
-                 encoder.canonical()->from_unit(place, answer));
+                 encoder.system()->from_unit(place, answer));
         }
-        if (seed == 2) inference.factorise(x, encoder.canonical()->frames(), system.matrix());
+        if (seed == 2) inference.factorise(x, encoder.system()->frames(), system.matrix());
         inference.solve(r, d);
         CHECK((d - expected).norm() < (narrow_bits == 16 ? 3e-3 : 1e-5) * expected.norm());
       }

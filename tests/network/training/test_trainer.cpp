@@ -21,7 +21,7 @@ TrainingSettings small_training() {
   return settings;
 }
 
-CopingNetSettings small_network(Processor processor = Processor::sweeps) {
+CopingNetSettings small_network(Processor processor = Processor::factors) {
   CopingNetSettings settings;
   settings.processor = processor;
   settings.base = BaseGuess::none;
@@ -57,9 +57,9 @@ TEST_CASE("a few examples are learned by heart, with every processor and loss") 
     double left;  ///< of the loss
   };
   for (const Case& of :
-       {Case{Processor::sweeps, LossKind::energy, 0.15}, Case{Processor::sweeps, LossKind::mse, 0.05},
-        Case{Processor::sweeps, LossKind::in_the_loop, 0.5}, Case{Processor::message_passing, LossKind::energy, 0.15},
-        Case{Processor::message_passing, LossKind::mse, 0.05}}) {
+       {Case{Processor::factors, LossKind::energy, 0.15}, Case{Processor::factors, LossKind::mse, 0.05},
+        Case{Processor::message_passing, LossKind::energy, 0.15}, Case{Processor::message_passing, LossKind::mse, 0.05},
+        Case{Processor::message_passing, LossKind::in_the_loop, 0.5}}) {
     CAPTURE(static_cast<int>(of.processor), static_cast<int>(of.loss));
     const Examples data = sample_examples(small_network(of.processor), 1, 4);
     TrainingSettings settings = small_training();
@@ -78,7 +78,7 @@ TEST_CASE("a few examples are learned by heart, with every processor and loss") 
 
 TEST_CASE("the moves of segments are learned beside the multipliers") {
   CopingNetSettings network = small_network(Processor::message_passing);
-  network.encoding = Encoding::deck;
+  network.encoding = Encoding::paper_residual;
   network.moves = true;
   const Examples data = sample_examples(network, 1, 4);
   TrainingSettings settings = small_training();
@@ -94,10 +94,8 @@ TEST_CASE("the moves of segments are learned beside the multipliers") {
 }
 
 TEST_CASE("a network learns from the features that a guess gives it, though no example keeps them") {
-  for (const Encoding encoding : {Encoding::system, Encoding::canonical}) {
-    CopingNetSettings settings = small_network();
-    settings.encoding = encoding;
-    settings.base = BaseGuess::none;
+  for (const Processor processor : {Processor::factors, Processor::message_passing}) {
+    const CopingNetSettings settings = small_network(processor);
     const StoredSimulation simulation = stored_simulation(sample_scene(3), 2);
     std::vector<Example> examples;
     add_examples(settings, simulation, examples);
@@ -111,7 +109,7 @@ TEST_CASE("a network learns from the features that a guess gives it, though no e
       FeatureEncoder encoder(settings, rod, system.matrix());
       Tensor<float> nodes(0, rod.segment_count()), edges(edge_features(settings), rod.joint_count());
       const VectorX zero = VectorX::Zero(system.rhs().size());
-      encoder.encode(rod, system, stored.at.newton, simulation.constraint_dt_s, zero, system.rhs(), nodes, edges);
+      encoder.encode(rod, system, stored.at.newton, zero, system.rhs(), nodes, edges);
       CHECK((batch.edges.middleCols(first, edges.cols()) - edges).cwiseAbs().maxCoeff() < 1e-6F);
       first += edges.cols();
     });
@@ -120,7 +118,7 @@ TEST_CASE("a network learns from the features that a guess gives it, though no e
 }
 
 TEST_CASE("weights have the same bits however the shards are divided among ranks") {
-  for (const Processor processor : {Processor::sweeps, Processor::message_passing}) {
+  for (const Processor processor : {Processor::factors, Processor::message_passing}) {
     const Examples data = sample_examples(small_network(processor), 3, 4);
     AlignedVector<float> first;
     for (const int ranks : {1, 2, 3, 4, 9}) {
@@ -135,7 +133,7 @@ TEST_CASE("weights have the same bits however the shards are divided among ranks
 }
 
 TEST_CASE("weights and losses have the same bits on any number of threads") {
-  for (const Processor processor : {Processor::sweeps, Processor::message_passing}) {
+  for (const Processor processor : {Processor::factors, Processor::message_passing}) {
     const Examples data = sample_examples(small_network(processor), 3, 4);
     AlignedVector<float> first;
     std::vector<double> losses;

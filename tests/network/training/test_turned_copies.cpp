@@ -34,7 +34,7 @@ TEST_CASE("without gravity a turn is about anything") {
 }
 
 TEST_CASE("copies have features and moves of the turned rod, and the same edges, system and multipliers") {
-  for (const Encoding encoding : {Encoding::paper, Encoding::deck, Encoding::physics}) {
+  for (const Encoding encoding : {Encoding::paper, Encoding::paper_residual}) {
     CAPTURE(static_cast<int>(encoding));
     CopingNetSettings settings;
     settings.encoding = encoding;

@@ -39,12 +39,12 @@ TEST_CASE("what only some kinds of job have is required there and refused elsewh
 
 TEST_CASE("a tag that is not given has its default: the keys of other values are refused") {
   const Json rules = job_schema()["properties"]["network"]["allOf"];
-  const auto sweeps = std::find_if(rules.begin(), rules.end(), [](const Json& rule) {
-    return rule["if"]["properties"]["processor"]["const"] == "sweeps";
+  const auto factors = std::find_if(rules.begin(), rules.end(), [](const Json& rule) {
+    return rule["if"]["properties"]["processor"]["const"] == "factors";
   });
-  REQUIRE(sweeps != rules.end());
-  CHECK_FALSE((*sweeps)["if"].contains("required"));
-  CHECK((*sweeps)["then"]["properties"]["steps"] == false);
+  REQUIRE(factors != rules.end());
+  CHECK_FALSE((*factors)["if"].contains("required"));
+  CHECK((*factors)["then"]["properties"]["steps"] == false);
 }
 
 TEST_CASE("every guess has a definition, a name alone where nothing is required") {

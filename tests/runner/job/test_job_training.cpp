@@ -24,10 +24,12 @@ TEST_CASE("the least that a training says is where its data are") {
   const TrainingJob job = training_of(train_job());
   CHECK(job.data == Paths{"data.h5"});
   CHECK(job.validation_simulations == 100);
-  CHECK(job.network.encoding == Encoding::system);
-  CHECK(job.network.processor == Processor::sweeps);
-  CHECK(job.network.base == BaseGuess::subspace);
-  CHECK(job.network.recurrence == Recurrence::gated);
+  CHECK(job.network.encoding == Encoding::linear_system);
+  CHECK(job.network.processor == Processor::factors);
+  CHECK(job.network.couplings == Couplings::tree);
+  CHECK(job.network.base == BaseGuess::regression);
+  CHECK(job.network.base_size == 6);
+  CHECK(job.network.latent == 16);
   CHECK(job.network.best_length);
   CHECK(job.training.loss == LossKind::energy);
   CHECK(job.patience_epochs == 0);
@@ -47,22 +49,13 @@ TEST_CASE("data are looked for beside the job") {
   CHECK_THAT(refused("/data", R"(["a.h5", 5])"), Catch::Contains("data[1]: 5 is not allowed"));
 }
 
-TEST_CASE("sweeps may be linear in the state, and correct the guess of regression, in canonical frames") {
-  const TrainingJob job = training_of(
-      with("/network", R"({"encoding": "canonical", "recurrence": "linear", "base": "regression"})", train_job()));
-  CHECK(job.network.encoding == Encoding::canonical);
-  CHECK(job.network.recurrence == Recurrence::linear);
-  CHECK(job.network.base == BaseGuess::regression);
-  CHECK_THAT(refusal(with("/network", R"({"processor": "message_passing", "recurrence": "linear"})", train_job())),
-             Catch::Contains("network.recurrence"));
-}
-
 TEST_CASE("every key of a training arrives where it belongs") {
   Json values = train_job();
   values["seed"] = 7;
   values["validation_simulations"] = 3;
   values["training_simulations"] = 9;
-  values["network"] = Json::parse(R"({"encoding": "deck", "processor": "message_passing", "base": "extrapolation",
+  values["network"] =
+      Json::parse(R"({"encoding": "paper_residual", "processor": "message_passing", "base": "extrapolation",
       "base_size": 4, "latent": 16, "steps": 2, "hidden_layers": 3, "globals": true, "best_length": false, "moves": true})");
   values["training"] = Json::parse(R"({"loss": "mse", "epochs": 5, "batch": 12, "shards": 3, "rate": 0.01,
       "warm_up": 0.1, "weight_decay": 0.2, "clip": 0.5, "patience_epochs": 4, "ratio_every_epochs": 2,
@@ -73,7 +66,7 @@ TEST_CASE("every key of a training arrives where it belongs") {
   CHECK(job.turned_copies == 2);
   CHECK(job.first_iterations_only);
   CHECK(job.network.hidden_layers == 3);
-  CHECK(job.network.encoding == Encoding::deck);
+  CHECK(job.network.encoding == Encoding::paper_residual);
   CHECK(job.network.processor == Processor::message_passing);
   CHECK(job.network.base == BaseGuess::extrapolation);
   CHECK(job.network.base_size == 4);
@@ -122,17 +115,17 @@ TEST_CASE("misspelt and impossible values of a training are refused") {
         "job.json: training.epochs: 0 is not allowed; must be an integer from 1 to 1000000");
   CHECK(refused("/network/best_length", "1") ==
         "job.json: network.best_length: 1 is not allowed; must be true or false");
-  CHECK(refused("/network/encoding", "\"decks\"") ==
-        "job.json: network.encoding: \"decks\" is not allowed; must be one of \"paper\", \"deck\", \"physics\", "
-        "\"system\", \"canonical\", \"state\"; did you mean \"deck\"?");
+  CHECK(refused("/network/encoding", "\"papers\"") ==
+        "job.json: network.encoding: \"papers\" is not allowed; must be one of \"paper\", \"paper_residual\", "
+        "\"linear_system\", \"state\"; did you mean \"paper\"?");
 }
 
 TEST_CASE("keys that the network or the loss has no use for are refused, also where its kind is the default") {
   CHECK(refused("/network/moves", "true") ==
-        "job.json: network.moves: this key belongs to network.processor \"message_passing\", not to \"sweeps\"; "
-        "sweeps and factors work on joints alone");
-  CHECK(refused("/network", R"({"processor": "sweeps", "steps": 3})") ==
-        "job.json: network.steps: this key belongs to network.processor \"message_passing\", not to \"sweeps\"");
+        "job.json: network.moves: this key belongs to network.processor \"message_passing\", not to \"factors\"; "
+        "factors work on joints alone");
+  CHECK(refused("/network", R"({"processor": "factors", "steps": 3})") ==
+        "job.json: network.steps: this key belongs to network.processor \"message_passing\", not to \"factors\"");
   CHECK(refused("/training/cg_steps", "3") ==
         "job.json: training.cg_steps: this key belongs to training.loss \"in_the_loop\", not to \"energy\"");
 }
@@ -140,9 +133,13 @@ TEST_CASE("keys that the network or the loss has no use for are refused, also wh
 TEST_CASE("values that do not go together are refused") {
   CHECK(refused("/training/shards", "5") ==
         "job.json: training.shards: 5 is not allowed; must be a divisor of training.batch, 16");
+  CHECK_THAT(
+      refused("/network/encoding", "\"paper\""),
+      Catch::StartsWith("job.json: network.encoding: \"paper\" is not allowed with network.processor \"factors\""));
+  CHECK_THAT(refused("/network/latent", "24"), Catch::StartsWith("job.json: network.latent: 24 is not allowed"));
   CHECK(refused("/network", R"({"processor": "message_passing", "moves": true})") ==
-        "job.json: network.moves: true is not allowed with training.loss \"energy\", which teaches the network nothing "
-        "of moves; use \"mse\" or remove this key");
+        "job.json: network.moves: true is not allowed with training.loss \"energy\", which does not train moves; "
+        "use \"mse\" or remove this key");
 }
 
 TEST_CASE("a simulator of states is a network of message passing that learns moves from squares, with noise") {
@@ -156,28 +153,27 @@ TEST_CASE("a simulator of states is a network of message passing that learns mov
   CHECK(job.copies().noise == 0.2);
   const auto refused_with = [&](const char* path, const char* value) { return refusal(with(path, value, values)); };
   CHECK(refused_with("/network/base", "\"subspace\"") ==
-        "job.json: network.base: \"subspace\" is not allowed with network.encoding \"state\", a simulator's; must be "
-        "\"none\"");
+        "job.json: network.base: \"subspace\" is not allowed with network.encoding \"state\"; must be \"none\"");
   CHECK_THAT(refused_with("/network/moves", "false"), Catch::StartsWith("job.json: network.moves: false"));
   CHECK_THAT(refused_with("/training/loss", "\"energy\""), Catch::StartsWith("job.json: training.loss: \"energy\""));
   CHECK_THAT(refused_with("/training/turned_copies", "1"), Catch::StartsWith("job.json: training.turned_copies: 1"));
   CHECK_THAT(refused_with("/network", R"({"encoding": "state", "base": "none"})"),
-             Catch::StartsWith("job.json: network.processor: \"sweeps\""));
+             Catch::StartsWith("job.json: network.processor: \"factors\""));
   CHECK(refused("/training/noisy_copies", "2") ==
-        "job.json: training.noisy_copies: 2 is not allowed with network.encoding \"system\"; must be with \"state\"");
+        "job.json: training.noisy_copies: 2 is not allowed with network.encoding \"linear_system\"; must be with "
+        "\"state\"");
 }
 
 TEST_CASE("the settings of every kind of network are the same after a round trip") {
-  for (const char* text :
-       {"{}", R"({"encoding": "physics", "base": "none", "latent": 8, "best_length": false})",
-        R"({"recurrence": "linear"})", R"({"encoding": "canonical", "processor": "factors", "couplings": "all"})",
-        R"({"processor": "message_passing", "steps": 1, "globals": true})",
-        R"({"processor": "message_passing", "hidden_layers": 2})",
-        R"({"encoding": "state", "processor": "message_passing", "base": "none", "moves": true})"}) {
+  for (const char* text : {"{}", R"({"couplings": "all", "base": "none", "latent": 32, "best_length": false})",
+                           R"({"encoding": "paper", "processor": "message_passing", "latent": 8})",
+                           R"({"processor": "message_passing", "steps": 1, "globals": true})",
+                           R"({"processor": "message_passing", "hidden_layers": 2})",
+                           R"({"encoding": "state", "processor": "message_passing", "base": "none", "moves": true})"}) {
     Json values =
         job_of(with("/training", R"({"loss": "mse"})", with("/network", text, train_job()))).values["network"];
-    if (values.value("recurrence", "") == "gated") values.erase("recurrence");  // models of before have no word for it
-    if (values.value("hidden_layers", 0) == 1) values.erase("hidden_layers");   // nor for this
+    if (values.value("couplings", "") == "tree") values.erase("couplings");    // written only where they are all
+    if (values.value("hidden_layers", 0) == 1) values.erase("hidden_layers");  // likewise
     const Json written = network_json(network_settings(values));
     CHECK(network_json(network_settings(written)) == written);
     CHECK(written.size() == values.size());

@@ -114,11 +114,8 @@ bool same(const Normalisation& a, const Normalisation& b) {
 TEST_CASE("a model of every kind is read as it was written") {
   const TemporaryFolder folder;
   std::vector<CopingNetSettings> kinds = test::kinds_of_networks();
-  kinds.push_back(kinds[2]);
-  kinds.back().processor = Processor::message_passing;
-  kinds.back().encoding = Encoding::deck;
-  kinds.back().globals = kinds.back().moves = true;
-  kinds.back().best_length = false;
+  kinds.push_back(test::message_passing(Encoding::paper_residual, true));
+  kinds.back().globals = true;
   kinds.push_back(kinds.back());
   kinds.back().encoding = Encoding::state;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
@@ -141,7 +138,8 @@ TEST_CASE("a model of every kind is read as it was written") {
 
 TEST_CASE("models that say something else have another hash") {
   CopingNetSettings settings;
-  settings.encoding = Encoding::deck;
+  settings.encoding = Encoding::paper_residual;
+  settings.processor = Processor::message_passing;
   const auto model = some_model(settings);
   const std::string hash = model_hash(*model);
   CHECK(hash.size() == 16);
@@ -155,16 +153,18 @@ TEST_CASE("models that say something else have another hash") {
 
 TEST_CASE("a model of twenty thousand parameters is small, and a checkpoint is read as it was written") {
   const TemporaryFolder folder;
-  const auto model = some_model({});
+  CopingNetSettings settings;
+  settings.latent = 64;
+  const auto model = some_model(settings);
   CHECK(model->net.parameters().values().size() > 19000);
   CHECK(fs::file_size(save(folder / "small.h5", *model)) < 200000);
 
   ModelCard card = some_card();
   card.ending = Ending::none;
   Checkpoint checkpoint;
-  checkpoint.weights = some_model({}, 2)->net.parameters().values();
-  checkpoint.optimiser = {17, some_model({}, 3)->net.parameters().values(),
-                          some_model({}, 4)->net.parameters().values()};
+  checkpoint.weights = some_model(settings, 2)->net.parameters().values();
+  checkpoint.optimiser = {17, some_model(settings, 3)->net.parameters().values(),
+                          some_model(settings, 4)->net.parameters().values()};
   checkpoint.epoch_loss = 0.1;
   checkpoint.epoch_seconds = 0.2;
   const StoredModel read = read_training(save(folder / "large.h5", *model, card, checkpoint));
@@ -203,7 +203,8 @@ template <class Change>
 std::string refusal_after(Change&& change) {
   const TemporaryFolder folder;
   CopingNetSettings settings;
-  settings.encoding = Encoding::deck;
+  settings.encoding = Encoding::paper_residual;
+  settings.processor = Processor::message_passing;
   settings.latent = 8;
   const fs::path path = save(folder / "model.h5", *some_model(settings));
   {
@@ -216,9 +217,9 @@ std::string refusal_after(Change&& change) {
 }
 
 void replace_weights(hid_t file, hsize_t rows, hsize_t columns) {
-  H5Ldelete(file, "/model/weights/encode.bias", H5P_DEFAULT);
-  hdf5::create_dataset(file, "/model/weights/encode.bias", H5T_NATIVE_FLOAT, {rows, columns});
-  hdf5::write_all(file, "/model/weights/encode.bias", std::vector<float>(rows * columns, 0.5F));
+  H5Ldelete(file, "/model/weights/decode_edges.1.bias", H5P_DEFAULT);
+  hdf5::create_dataset(file, "/model/weights/decode_edges.1.bias", H5T_NATIVE_FLOAT, {rows, columns});
+  hdf5::write_all(file, "/model/weights/decode_edges.1.bias", std::vector<float>(rows * columns, 0.5F));
 }
 
 void set_text_attribute(hid_t file, const char* object, const char* name, const char* text) {
@@ -247,19 +248,19 @@ TEST_CASE("files that are no models are refused") {
 }
 
 TEST_CASE("weights that cannot be are refused") {
-  CHECK_THAT(refusal_after([](hid_t file) { replace_weights(file, 8, 2); }),
-             Contains("/model/weights/encode.bias has the shape [8, 2], not [8, 1]"));
-  CHECK_THAT(refusal_after([](hid_t file) { replace_weights(file, 8, 1); }),
+  CHECK_THAT(refusal_after([](hid_t file) { replace_weights(file, 6, 2); }),
+             Contains("/model/weights/decode_edges.1.bias has the shape [6, 2], not [6, 1]"));
+  CHECK_THAT(refusal_after([](hid_t file) { replace_weights(file, 6, 1); }),
              Contains("the model is not what was written: it has another hash"));
   CHECK_THAT(refusal_after([](hid_t file) {
-               hdf5::write_all(file, "/model/weights/encode.bias",
-                               std::vector<float>(8, std::numeric_limits<float>::quiet_NaN()));
+               hdf5::write_all(file, "/model/weights/decode_edges.1.bias",
+                               std::vector<float>(6, std::numeric_limits<float>::quiet_NaN()));
              }),
-             Contains("/model/weights/encode.bias holds something that is not a finite number"));
-  CHECK_THAT(refusal_after([](hid_t file) { H5Ldelete(file, "/model/weights/encode.bias", H5P_DEFAULT); }),
-             Contains("encode.bias"));
+             Contains("/model/weights/decode_edges.1.bias holds something that is not a finite number"));
+  CHECK_THAT(refusal_after([](hid_t file) { H5Ldelete(file, "/model/weights/decode_edges.1.bias", H5P_DEFAULT); }),
+             Contains("decode_edges.1.bias"));
   CHECK_THAT(refusal_after(
-                 [](hid_t file) { hdf5::write_all(file, "/model/scales/edges/deviation", std::vector<float>(17, 0)); }),
+                 [](hid_t file) { hdf5::write_all(file, "/model/scales/edges/deviation", std::vector<float>(11, 0)); }),
              Contains("/model/scales/edges/deviation is not above 0 everywhere"));
 }
 

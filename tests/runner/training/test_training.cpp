@@ -21,7 +21,8 @@ bool same(const std::vector<Epoch>& a, const std::vector<Epoch>& b) {
 
 TEST_CASE("simulations are divided between training and validation, scales are those of the training's") {
   Json job = toy_train_job();
-  job["network"]["encoding"] = "deck";
+  job["network"]["encoding"] = "paper_residual";
+  job["network"]["processor"] = "message_passing";
   const Toy toy(job);
   CHECK(toy.data.training_simulations == 4);
   CHECK(toy.data.validation_simulations == 4);
@@ -39,7 +40,7 @@ TEST_CASE("simulations are divided between training and validation, scales are t
 
 TEST_CASE(
     "networks learn from trees in the wind, whose joints have several children, and their guess saves iterations") {
-  for (const char* processor : {"sweeps", "message_passing"}) {
+  for (const char* processor : {"factors", "message_passing"}) {
     INFO(processor);
     Json job = toy_train_job();
     job["network"]["processor"] = processor;

@@ -345,11 +345,11 @@ TEST_CASE("what a batch cannot hold is refused") {
     const Rod& rod = scenes[0].rods[0];
     const Pose pose{rod.position[0], rod.orientation[0]};
     scenes[0].clamps.push_back({0, 0, [pose](double) { return pose; }});
-    expected = "scene 0 of a batch has a moving clamp; a batched step knows none";
+    expected = "scene 0 of a batch has a moving clamp; a batched step has no moving clamps";
   }
   SECTION("a point load") {
     scenes[1].loads.push_back({0, 4, {1, 0, 0}});
-    expected = "scene 1 of a batch has a point load; a batched step knows none";
+    expected = "scene 1 of a batch has a point load; a batched step has no point loads";
   }
   SECTION("different numbers of segments") {
     scenes[1] = bending_scene(6, 0);

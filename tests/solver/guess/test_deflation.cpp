@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "solver/guess/subspace_guess.hpp"
 #include "solver/linear/conjugate_gradient.hpp"
+#include "solver/guess/subspace_guess.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {

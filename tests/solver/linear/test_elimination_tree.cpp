@@ -7,8 +7,8 @@
 
 #include "solver/linear/block_factor.hpp"
 #include "solver/linear/elimination_order.hpp"
-#include "solver/linear/linear_system.hpp"
 #include "solver/linear/nested_dissection.hpp"
+#include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {

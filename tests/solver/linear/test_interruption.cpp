@@ -5,7 +5,7 @@
 
 using namespace rodsweep;
 
-TEST_CASE("nothing is interrupted while nobody said how to find out") {
+TEST_CASE("nothing is interrupted without an Interruptible") {
   CHECK_FALSE(is_interrupted(1'000'000'000));
   CHECK_NOTHROW(check_interrupted(1'000'000'000));
 }

@@ -212,14 +212,14 @@ TEST_CASE("a thousand segments sway in gusts for two thousand steps and hold tog
   CHECK(moved < 4);
 }
 
-TEST_CASE("winds that cannot blow are refused, and a batched step knows none") {
+TEST_CASE("invalid winds are refused, and wind in a batched step") {
   WindParameters p = turbulence(0);
   CHECK_THROWS_WITH(Wind(p), "wind: turbulence_modes is 0; must be at least 1");
   p.turbulence_length_m = 0;
   CHECK_THROWS_WITH(Wind(p), "wind: turbulence_length_m is 0; must be positive");
   BendingRod rod = test::bending_rod(5);
   rod.wind = breeze({1, 0, 0});
-  CHECK_THROWS_WITH(BatchedStepper({build_scene(rod)}, {}), "scene 0 of a batch has wind; a batched step knows none");
+  CHECK_THROWS_WITH(BatchedStepper({build_scene(rod)}, {}), Catch::StartsWith("scene 0 of a batch has wind"));
 }
 
 }  // namespace test_wind

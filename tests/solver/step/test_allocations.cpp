@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "solver/batch/batched_step.hpp"
+#include "solver/linear/conjugate_gradient.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
-#include "solver/linear/conjugate_gradient.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/pbd_projection.hpp"
 #include "solver/step/time_step.hpp"

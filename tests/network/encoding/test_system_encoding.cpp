@@ -1,4 +1,4 @@
-// The encoding `canonical`: a scene that is turned, mirrored, or whose frames are rolled, is the same to it.
+// The encoding `linear_system`: turning or mirroring a scene, or rolling its frames, does not change it.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -8,7 +8,7 @@
 #include "tests/solver/turned.hpp"
 
 namespace rodsweep {
-namespace test_canonical_encoding {
+namespace test_system_encoding {
 
 /// The same scene, in which all segments' frames are rolled about their axes by one angle. (By angles of their own,
 /// joints would be twisted at rest, and a finite twist is not measured as a small one.)
@@ -25,12 +25,10 @@ Scene rolled(Scene scene) {
   return scene;
 }
 
-CopingNetSettings settings_of(Processor processor, Recurrence recurrence = Recurrence::gated) {
+CopingNetSettings settings_of(Processor processor) {
   CopingNetSettings settings;
-  settings.encoding = Encoding::canonical;
   settings.base = BaseGuess::none;
   settings.processor = processor;
-  settings.recurrence = recurrence;
   settings.latent = 16;
   return settings;
 }
@@ -43,7 +41,7 @@ CopingNetSettings of_all_couplings() {
 
 /// What a network with random weights leaves of each system's error, in the energy norm, over the error of zero.
 std::vector<double> left(Scene scene, const CopingNetSettings& settings) {
-  CopingNetGuess guess(test::random_model(settings), scene, 0.02, 3);
+  CopingNetGuess guess(test::random_model(settings), scene, 3);
   std::vector<double> out;
   int seen = 0;
   test::observe(scene, [&](const LinearSystem& system) {
@@ -58,8 +56,8 @@ std::vector<double> left(Scene scene, const CopingNetSettings& settings) {
 }
 
 TEST_CASE("to a network with canonical frames turned, mirrored and rolled scenes are one") {
-  const CopingNetSettings settings = GENERATE(settings_of(Processor::sweeps), settings_of(Processor::factors),
-                                              of_all_couplings(), settings_of(Processor::sweeps, Recurrence::linear));
+  const CopingNetSettings settings =
+      GENERATE(settings_of(Processor::message_passing), settings_of(Processor::factors), of_all_couplings());
   for (const test::TurnedCase& each : test::turned_cases()) {
     if (std::string(each.name) == "ring") continue;  // its residual has neither an axis nor a hand but by rounding
     const bool lattice = std::string(each.name) == "lattice";
@@ -87,15 +85,15 @@ TEST_CASE("frames are orthogonal, and units come back") {
   Scene scene = build_scene(test::bending_rod(6));
   const Rod& rod = scene.rods[0];
   test::observe(scene, [&](const LinearSystem& system) {
-    FeatureEncoder encoder(settings_of(Processor::sweeps), rod, system.matrix());
-    Tensor<float> nodes(0, 6), edges(CanonicalEncoding::size, 5);
-    encoder.encode(rod, system, 0, 0.02, VectorX(), system.rhs(), nodes, edges);
+    FeatureEncoder encoder(settings_of(Processor::message_passing), rod, system.matrix());
+    Tensor<float> nodes(0, 6), edges(SystemEncoding::size, 5);
+    encoder.encode(rod, system, 0, VectorX(), system.rhs(), nodes, edges);
     CHECK(edges.topRows(6).squaredNorm() / 30 == Approx(1).epsilon(1e-5));  // r^ has a root mean square of one
     const Lane8 v = {0.3, -1, 2, 0.7, 5, -0.2, 0, 0};
     for (int place = 0; place < 5; ++place) {
-      const CanonicalFrame& frame = encoder.canonical()->frames().frame(place);
+      const CanonicalFrame& frame = encoder.system()->frames().frame(place);
       const Lane8 turned = frame(v), back = frame.back(turned);
-      const Lane8 there = encoder.canonical()->to_unit(place, encoder.canonical()->from_unit(place, v));
+      const Lane8 there = encoder.system()->to_unit(place, encoder.system()->from_unit(place, v));
       for (int i = 0; i < 6; ++i) {
         CHECK(back[i] == Approx(v[i]));
         CHECK(there[i] == Approx(v[i]));
@@ -104,5 +102,5 @@ TEST_CASE("frames are orthogonal, and units come back") {
   });
 }
 
-}  // namespace test_canonical_encoding
+}  // namespace test_system_encoding
 }  // namespace rodsweep
