@@ -1,5 +1,5 @@
 // Test programs that solve: MPI and PETSc start once, around all cases.
-#include "solver/linear/petsc_session.hpp"
+#include "solver/cg/petsc_session.hpp"
 #include "tests/run_cases.hpp"
 
 int main(int argc, char* argv[]) {

@@ -1,6 +1,6 @@
 // A learned block factorisation: an operator that is linear and symmetric, as A^-1 is.
 //
-// Block elimination of a tree's joints from the tips to the root (solver/linear/block_factor.hpp) needs the inverses of
+// Block elimination of a tree's joints from the tips to the root (solver/factor/block_factor.hpp) needs the inverses of
 // the Schur complements S_k = A_kk - sum over children c of B_c^T S_c^-1 B_c, where B_c is A's block of a child's row
 // and its parent's column, and then solves A y = r by two passes. Here a network predicts symmetric matrices in the place
 // of S_k^-1, N_k on the diagonal and T_k beside B_k, for all joints at once, from three generations of the tree:

@@ -23,7 +23,7 @@
 #include "runner/file/provenance.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
-#include "solver/linear/petsc_session.hpp"
+#include "solver/cg/petsc_session.hpp"
 
 namespace rodsweep {
 

@@ -6,7 +6,7 @@
 #include "runner/command/training_run.hpp"
 #include "runner/experiment/inputs.hpp"
 #include "runner/job/plausible.hpp"
-#include "solver/linear/petsc_session.hpp"
+#include "solver/cg/petsc_session.hpp"
 
 namespace rodsweep {
 namespace {

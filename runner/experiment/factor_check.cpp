@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "solver/linear/block_factor.hpp"
+#include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 
 namespace rodsweep {

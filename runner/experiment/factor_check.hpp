@@ -1,10 +1,10 @@
-// Scenes whose direct solve would need more memory than a factor may have (solver/linear/elimination_plan.hpp), found
+// Scenes whose direct solve would need more memory than a factor may have (solver/factor/elimination_plan.hpp), found
 // before anything runs. Only rods with loops and thousands of joints can; of those that a job has, each size is looked
 // at once, in about a second per 100,000 joints.
 #pragma once
 
 #include "runner/job/plan.hpp"
-#include "solver/linear/elimination_plan.hpp"
+#include "solver/factor/elimination_plan.hpp"
 
 namespace rodsweep {
 

@@ -11,7 +11,7 @@
 #include "runner/experiment/solve_rows.hpp"
 #include "runner/experiment/timed_guess.hpp"
 #include "runner/job/plan.hpp"
-#include "solver/linear/cg_solver.hpp"
+#include "solver/cg/cg_solver.hpp"
 #include "solver/linear/rounding_level.hpp"
 #include "solver/step/stopwatch.hpp"
 

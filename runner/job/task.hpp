@@ -9,7 +9,7 @@
 
 #include "network/guess/knn.hpp"
 #include "runner/job/rows.hpp"
-#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/pbd_projection.hpp"

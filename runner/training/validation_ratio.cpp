@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "runner/job/plan.hpp"
-#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
 #include "solver/linear/rounding_level.hpp"
 
 namespace rodsweep {

@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "solver/linear/block_factor.hpp"
+#include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 
 namespace rodsweep {

@@ -12,9 +12,9 @@
 #include <memory>
 #include <vector>
 
-#include "solver/linear/conjugate_gradient.hpp"
-#include "solver/linear/deflation.hpp"
-#include "solver/linear/block_factor.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
+#include "solver/cg/deflation.hpp"
+#include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/step/projection.hpp"
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "solver/linear/block_factor.hpp"
+#include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/linear/solve_outcome.hpp"
 #include "solver/scene/scene.hpp"

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <string>
 
-#include "solver/linear/conjugate_gradient.hpp"
-#include "solver/linear/petsc_session.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
+#include "solver/cg/petsc_session.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/bench/bare_cg.hpp"

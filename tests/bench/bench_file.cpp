@@ -14,7 +14,7 @@
 #include "runner/file/results_file.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/text.hpp"
-#include "solver/linear/petsc_session.hpp"
+#include "solver/cg/petsc_session.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "network/guess/coping_net_guess.hpp"
-#include "solver/linear/block_factor.hpp"
+#include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/scene/scenes.hpp"
 #include "tests/bench/medians.hpp"

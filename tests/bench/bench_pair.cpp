@@ -17,8 +17,8 @@
 
 #include "network/guess/end_to_end.hpp"
 #include "runner/training/model_file.hpp"
-#include "solver/linear/conjugate_gradient.hpp"
-#include "solver/linear/petsc_session.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
+#include "solver/cg/petsc_session.hpp"
 #include "solver/numbers/split_mix.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/observables.hpp"

@@ -9,8 +9,8 @@
 #include <memory>
 #include <string>
 
-#include "solver/linear/cg_solver.hpp"
-#include "solver/linear/petsc_session.hpp"
+#include "solver/cg/cg_solver.hpp"
+#include "solver/cg/petsc_session.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/scene/scenes.hpp"
 #include "tests/bench/medians.hpp"

@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "solver/linear/conjugate_gradient.hpp"
-#include "solver/linear/petsc_session.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
+#include "solver/cg/petsc_session.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/pbd_projection.hpp"
 #include "solver/step/time_step.hpp"

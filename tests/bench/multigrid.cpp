@@ -2,7 +2,7 @@
 
 #include <petscksp.h>
 
-#include "solver/linear/petsc_check.hpp"
+#include "solver/cg/petsc_check.hpp"
 
 namespace rodsweep::bench {
 

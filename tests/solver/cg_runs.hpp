@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "solver/linear/conjugate_gradient.hpp"
-#include "solver/linear/block_factor.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
+#include "solver/factor/block_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 

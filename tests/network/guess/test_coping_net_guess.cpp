@@ -5,7 +5,7 @@
 
 #include "network/guess/base_guess.hpp"
 #include "network/guess/coping_net_guess.hpp"
-#include "solver/linear/block_factor.hpp"
+#include "solver/factor/block_factor.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/network/models.hpp"
 #include "tests/solver/support.hpp"

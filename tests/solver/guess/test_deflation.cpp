@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "tests/solver/support.hpp"
 

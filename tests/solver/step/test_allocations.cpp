@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/batch/batched_step.hpp"
-#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <optional>
 
-#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
 #include "solver/guess/initial_guess.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/solver/support.hpp"

@@ -1,7 +1,7 @@
 // Eisenstat and Walker's forcing terms, by their formulas and by what Newton makes of them.
 #include <catch2/catch.hpp>
 
-#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
 #include "solver/step/forcing_terms.hpp"
 #include "solver/step/observables.hpp"
 #include "solver/step/time_step.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "solver/linear/conjugate_gradient.hpp"
+#include "solver/cg/conjugate_gradient.hpp"
 #include "tests/solver/turned.hpp"
 
 namespace rodsweep {

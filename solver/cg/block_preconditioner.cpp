@@ -1,0 +1,62 @@
+#include "solver/cg/block_preconditioner.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "solver/factor/block_factor.hpp"
+#include "solver/factor/elimination_order.hpp"
+#include "solver/factor/incomplete_factor.hpp"
+
+namespace rodsweep {
+namespace {
+
+class Incomplete : public BlockPreconditioner {
+ public:
+  Incomplete(const BlockMatrix& pattern, int levels) : factor_(pattern, breadth_first_order(pattern), levels) {}
+  bool set_up(const BlockMatrix& a) override { return factor_.factorise(a); }
+  void apply(const double* r, double* z) override { factor_.apply(r, z); }
+
+ private:
+  IncompleteFactor factor_;
+};
+
+std::vector<int> given_order(const BlockMatrix& pattern) {
+  std::vector<int> order(static_cast<std::size_t>(pattern.block_rows()));
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+class Complete : public BlockPreconditioner {
+ public:
+  explicit Complete(const BlockMatrix& pattern)
+      : factor_(pattern, given_order(pattern)), x_(VectorX::Zero(pattern.unknowns())) {}
+  bool set_up(const BlockMatrix& a) override { return factor_.factorise(a); }
+  void apply(const double* r, double* z) override {
+    std::copy_n(r, x_.size(), x_.data());
+    factor_.substitute(x_);
+    std::copy_n(x_.data(), x_.size(), z);
+  }
+
+ private:
+  BlockFactor factor_;
+  VectorX x_;
+};
+
+}  // namespace
+
+std::unique_ptr<BlockPreconditioner> block_preconditioner(Preconditioner kind, const BlockMatrix& pattern,
+                                                          int fill_levels) {
+  switch (kind) {
+    case Preconditioner::none:
+    case Preconditioner::jacobi:
+    case Preconditioner::point_block_jacobi:
+    case Preconditioner::icc:
+    case Preconditioner::condensed: break;
+    case Preconditioner::block_icc: return std::make_unique<Incomplete>(pattern, fill_levels);
+    case Preconditioner::cholesky:
+    case Preconditioner::lagged_cholesky: return std::make_unique<Complete>(pattern);
+  }
+  return nullptr;
+}
+
+}  // namespace rodsweep

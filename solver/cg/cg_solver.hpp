@@ -1,0 +1,74 @@
+// Conjugate gradients on A x = b, instrumented: the interface of the two kinds, on the joints' multipliers
+// (conjugate_gradient.hpp) and on the motions of crossings (condensed_cg.hpp).
+//
+// Convergence: the norm of A's residual relative to that of b (`reference`), also with a nonzero guess. One solver per
+// guess and rod.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "solver/cg/block_preconditioner.hpp"
+#include "solver/cg/deflation.hpp"
+#include "solver/linear/linear_system.hpp"
+#include "solver/linear/solve_outcome.hpp"
+
+namespace rodsweep {
+
+/// The norm of r = b - A x in the convergence test: its 2-norm, or (r^T P^-1 r)^1/2 with the preconditioner P, which is
+/// not available for `condensed`.
+enum class Norm { true_residual, natural };
+
+struct CgSettings {
+  Preconditioner preconditioner = Preconditioner::jacobi;
+  Norm norm = Norm::true_residual;
+  int max_iterations = 0;                 ///< 0: ten times the number of unknowns
+  int fill_levels = default_fill_levels;  ///< of block_icc and condensed
+};
+
+/// The cap for a system with that many unknowns; iterations are stored in 16 bits.
+int iteration_limit(const CgSettings& settings, int unknowns);
+
+/// What a solve starts from.
+struct CgStart {
+  bool nonzero = false;               ///< from x; else from zero
+  const VectorX* residual = nullptr;  ///< b - A x, if it is known
+
+  CgStart(bool is_nonzero, const VectorX* known_residual = nullptr) : nonzero(is_nonzero), residual(known_residual) {}
+};
+
+struct CgReport {
+  SolveOutcome outcome = SolveOutcome::not_run;
+  int iterations = 0;
+  int products = 0;  ///< with A
+};
+
+class CgSolver {
+ public:
+  virtual ~CgSolver() = default;
+
+  /// Rebuilds the preconditioner in the next solve that iterates (and counts its time there); else the old one is kept.
+  virtual void matrix_changed() = 0;
+
+  /// Until the norm is below tolerance * reference. x receives the solution.
+  /// With `deflation` every preconditioned residual is projected; the first residual must be orthogonal to its space.
+  virtual CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
+                         Deflation* deflation = nullptr) = 0;
+
+  /// The norm of b in which `reference` is to be given: ||b||_2, or the natural one.
+  virtual double norm_of(const VectorX& b) = 0;
+
+  /// Norms of the residual, [0] before the first iteration; of the last solve, if it was kept.
+  virtual void keep_history(bool on) = 0;
+  virtual const std::vector<double>& history() const = 0;
+};
+
+/// `rod` and `system` must outlive it.
+std::unique_ptr<CgSolver> make_cg(const Rod& rod, const LinearSystem& system, const CgSettings& settings);
+
+/// For each tolerance, the first entry of the history at or below tolerance * reference, -1 if not reached.
+void iterations_to(const std::vector<double>& history, double reference, const std::vector<double>& tolerances,
+                   std::int16_t* out);
+
+}  // namespace rodsweep

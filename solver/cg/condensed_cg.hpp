@@ -1,0 +1,36 @@
+// Conjugate gradients on a condensed system (condensation.hpp) by PETSc's KSPCG: struts exactly, crossings by
+// iteration, with an incomplete factor of their matrix (block_icc of block_preconditioner.hpp).
+//
+// It solves A d = r for the correction of multipliers with residual r. The convergence test uses the norm of A's
+// residual, so the accuracy is that of ConjugateGradient. The first iteration is the elimination of struts: residuals are
+// known before it (entry 0 of the history), and after every further one. PETSc must be initialised. Throws PetscError
+// when a call fails.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/cg/cg_solver.hpp"
+
+namespace rodsweep {
+
+class CondensedCg : public CgSolver {
+ public:
+  /// `rod` and `system` must outlive this.
+  CondensedCg(const Rod& rod, const LinearSystem& system, const CgSettings& settings = {});
+  ~CondensedCg() override;
+
+  void matrix_changed() override;
+  /// Products with A: one for the residual of a nonzero guess, if not known. `deflation` must be null.
+  CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
+                 Deflation* deflation = nullptr) override;
+  double norm_of(const VectorX& b) override { return b.norm(); }
+  void keep_history(bool on) override;
+  const std::vector<double>& history() const override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rodsweep

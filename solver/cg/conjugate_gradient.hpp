@@ -1,0 +1,41 @@
+// Conjugate gradients on A x = b by PETSc's KSPCG, instrumented: iterations to any tolerance from the residual history.
+//
+// The operator is BlockMatrix::multiply or that of a system (petsc_operator.hpp). Preconditioners are PETSc's, with a
+// copy of the blocks in its format where they need entries, or ours (block_preconditioner.hpp). If one of ours is not
+// positive definite, no iteration is made. None is set up if the guess already meets the tolerance (2-norm). The solve
+// diverges only past 1e30 times `reference`: a guess from history may start far above a late, tiny b. Products: one for
+// each iteration, one more for the residual of a nonzero guess, if not known. PETSc must be initialised (PetscSession).
+// Throws PetscError when a call fails.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/cg/cg_solver.hpp"
+#include "solver/linear/block_matrix.hpp"
+
+namespace rodsweep {
+
+class ConjugateGradient : public CgSolver {
+ public:
+  /// Solves with `a`, which must outlive this. Call matrix_changed() when its entries change.
+  ConjugateGradient(const BlockMatrix& a, const CgSettings& settings);
+  /// With the matrix of a system, and its product.
+  ConjugateGradient(const LinearSystem& system, const CgSettings& settings);
+  ~ConjugateGradient() override;
+  ConjugateGradient(ConjugateGradient&&) noexcept;
+  ConjugateGradient& operator=(ConjugateGradient&&) noexcept;
+
+  void matrix_changed() override;  ///< products always take the entries as they are
+  CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
+                 Deflation* deflation = nullptr) override;
+  double norm_of(const VectorX& b) override;
+  void keep_history(bool on) override;
+  const std::vector<double>& history() const override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rodsweep

@@ -1,0 +1,38 @@
+#include "solver/cg/petsc_session.hpp"
+
+#include <petscsys.h>
+
+namespace rodsweep {
+
+PetscSession::PetscSession() {
+  PetscBool running = PETSC_FALSE;
+  PetscInitialized(&running);
+  if (running) return;
+
+  int mpi_running = 0;
+  MPI_Initialized(&mpi_running);
+  if (!mpi_running) {  // PETSc refuses a communicator of ours if it has to start MPI itself
+    if (MPI_Init(nullptr, nullptr) != MPI_SUCCESS) throw PetscError("MPI_Init failed");
+    owns_mpi_ = true;
+  }
+  PETSC_COMM_WORLD = MPI_COMM_SELF;
+  char program[] = "rodsweep", no_petscrc[] = "-skip_petscrc", no_handler[] = "-no_signal_handler";
+  char* arguments[] = {program, no_petscrc, no_handler, nullptr};
+  int count = 3;
+  char** argv = arguments;
+  if (PetscInitialize(&count, &argv, nullptr, nullptr) != 0) throw PetscError("PetscInitialize failed");
+  owns_petsc_ = true;
+}
+
+PetscSession::~PetscSession() {
+  if (owns_petsc_) PetscFinalize();
+  if (owns_mpi_) MPI_Finalize();
+}
+
+std::string petsc_version() {
+  PetscInt major = 0, minor = 0, subminor = 0;
+  PetscGetVersionNumber(&major, &minor, &subminor, nullptr);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(subminor);
+}
+
+}  // namespace rodsweep

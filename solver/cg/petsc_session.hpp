@@ -1,0 +1,29 @@
+// The lifetime of PETSc: one object in main() around everything that solves.
+//
+// PETSC_COMM_WORLD is MPI_COMM_SELF, since a task runs on one rank. PETSc's signal handler is off, since the runner has
+// its own. No petscrc file is read, so that results do not depend on one; the environment variable PETSC_OPTIONS does
+// apply. If MPI is not initialised, the session initialises and finalises it. A nested session does nothing. Throws
+// PetscError.
+#pragma once
+
+#include <string>
+
+#include "solver/cg/petsc_error.hpp"
+
+namespace rodsweep {
+
+class PetscSession {
+ public:
+  PetscSession();
+  ~PetscSession();
+  PetscSession(const PetscSession&) = delete;
+  PetscSession& operator=(const PetscSession&) = delete;
+
+ private:
+  bool owns_petsc_ = false, owns_mpi_ = false;
+};
+
+/// The version of the loaded library, such as "3.18.5".
+std::string petsc_version();
+
+}  // namespace rodsweep

@@ -1,0 +1,152 @@
+#include "solver/cg/petsc_vector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "solver/cg/petsc_check.hpp"
+#include "solver/numbers/lanes.hpp"
+
+// The table of vector operations is in PETSc's private header, which Debian installs with the public ones.
+#include <petsc/private/vecimpl.h>
+
+namespace rodsweep {
+namespace {
+
+PetscInt lane_count(Vec v) { return (v->map->n + 7) / 8; }
+
+Lane8* lanes(Vec v) { return reinterpret_cast<Lane8*>(vector_data(v)); }
+
+PetscErrorCode dot(Vec x, Vec y, PetscScalar* out) noexcept;
+
+template <class... Vecs>
+bool ours(Vecs... vectors) {
+  return (... && (vectors->ops->dot == dot));
+}
+
+double sum(const Lane8& v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
+
+double product(Vec x, Vec y) {
+  const Lane8 *a = lanes(x), *b = lanes(y);
+  const PetscInt count = lane_count(x);
+  Lane8 sums[4]{};  // as many as hide the latency of an addition
+  PetscInt i = 0;
+  for (; i + 4 <= count; i += 4)
+#pragma GCC unroll 4
+    for (int j = 0; j < 4; ++j) sums[j] += a[i + j] * b[i + j];
+  for (; i < count; ++i) sums[0] += a[i] * b[i];
+  return sum((sums[0] + sums[1]) + (sums[2] + sums[3]));
+}
+
+PetscErrorCode dot(Vec x, Vec y, PetscScalar* out) noexcept {
+  if (!ours(x, y)) return PETSC_ERR_ARG_WRONG;
+  *out = product(x, y);
+  return 0;
+}
+
+PetscErrorCode (*other_norm)(Vec, NormType, PetscReal*) = nullptr;  ///< PETSc's own
+
+PetscErrorCode norm(Vec x, NormType type, PetscReal* out) noexcept {
+  if (type != NORM_2) return other_norm(x, type, out);
+  *out = std::sqrt(product(x, x));
+  return 0;
+}
+
+PetscErrorCode axpy(Vec y, PetscScalar alpha, Vec x) noexcept {
+  if (!ours(x, y)) return PETSC_ERR_ARG_WRONG;
+  Lane8* const to = lanes(y);
+  const Lane8* const from = lanes(x);
+  for (PetscInt i = 0, count = lane_count(y); i < count; ++i) to[i] += alpha * from[i];
+  return 0;
+}
+
+PetscErrorCode aypx(Vec y, PetscScalar beta, Vec x) noexcept {
+  if (!ours(x, y)) return PETSC_ERR_ARG_WRONG;
+  Lane8* const to = lanes(y);
+  const Lane8* const from = lanes(x);
+  for (PetscInt i = 0, count = lane_count(y); i < count; ++i) to[i] = from[i] + beta * to[i];
+  return 0;
+}
+
+PetscErrorCode pointwise_multiply(Vec w, Vec x, Vec y) noexcept {
+  if (!ours(w, x, y)) return PETSC_ERR_ARG_WRONG;
+  Lane8* const to = lanes(w);
+  const Lane8 *const a = lanes(x), *const b = lanes(y);
+  for (PetscInt i = 0, count = lane_count(w); i < count; ++i) to[i] = a[i] * b[i];
+  return 0;
+}
+
+PetscErrorCode copy_entries(Vec x, Vec y) noexcept {
+  std::copy_n(vector_data(x), x->map->n, vector_data(y));
+  return 0;
+}
+
+PetscErrorCode release(void* memory) noexcept {
+  std::free(memory);
+  return 0;
+}
+
+PetscErrorCode create(PetscInt size, Vec* out) noexcept;
+
+PetscErrorCode duplicate(Vec v, Vec* out) noexcept { return create(v->map->n, out); }
+
+PetscErrorCode create_vectors(Mat m, Vec* right, Vec* left) noexcept {
+  PetscInt rows = 0;
+  PetscErrorCode code = MatGetLocalSize(m, &rows, nullptr);
+  if (right && code == 0) code = create(rows, right);
+  if (left && code == 0) code = create(rows, left);
+  return code;
+}
+
+PetscErrorCode create(PetscInt size, Vec* out) noexcept {
+  const std::size_t count = static_cast<std::size_t>(size) / 8 + 1;
+  Lane8* const memory = static_cast<Lane8*>(std::aligned_alloc(alignof(Lane8), count * sizeof(Lane8)));
+  if (!memory) return PETSC_ERR_MEM;
+  std::fill_n(memory, count, Lane8{});
+  PetscContainer owner = nullptr;
+  PetscErrorCode code = PetscContainerCreate(PETSC_COMM_SELF, &owner);
+  if (code == 0) code = PetscContainerSetPointer(owner, memory);
+  if (code == 0) code = PetscContainerSetUserDestroy(owner, release);
+  if (code == 0) code = VecCreateSeqWithArray(PETSC_COMM_SELF, 1, size, reinterpret_cast<double*>(memory), out);
+  if (code == 0)
+    code = PetscObjectCompose(reinterpret_cast<PetscObject>(*out), "entries", reinterpret_cast<PetscObject>(owner));
+  if (code == 0) code = PetscContainerDestroy(&owner);  // the vector's from here on
+  if (code != 0) return code;
+
+  _VecOps& ops = *(*out)->ops;
+  if (!other_norm) other_norm = ops.norm;
+  ops.dot = ops.tdot = ops.dot_local = ops.tdot_local = dot;
+  ops.norm = ops.norm_local = norm;
+  ops.axpy = axpy;
+  ops.aypx = aypx;
+  ops.pointwisemult = pointwise_multiply;
+  ops.copy = copy_entries;
+  ops.duplicate = duplicate;
+  return 0;
+}
+
+}  // namespace
+
+Vec create_vector(PetscInt size) {
+  Vec v = nullptr;
+  petsc_check(create(size, &v), "VecCreateSeqWithArray");
+  return v;
+}
+
+void use_our_vectors(Mat m) {
+  petsc_check(MatSetOperation(m, MATOP_CREATE_VECS, reinterpret_cast<void (*)()>(create_vectors)), "MatSetOperation");
+}
+
+double* vector_data(Vec v) { return *static_cast<double**>(v->data); }
+
+PetscErrorCode entries_changed(Vec v) { return PetscObjectStateIncrease(reinterpret_cast<PetscObject>(v)); }
+
+void copy(const VectorX& from, Vec to) {
+  std::copy_n(from.data(), from.size(), vector_data(to));
+  petsc_check(entries_changed(to), "PetscObjectStateIncrease");
+}
+
+void copy(Vec from, VectorX& to) { std::copy_n(vector_data(from), to.size(), to.data()); }
+void add(Vec from, VectorX& to) { to += Eigen::Map<const VectorX>(vector_data(from), to.size()); }
+
+}  // namespace rodsweep

@@ -1,0 +1,363 @@
+#include "solver/factor/condensation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solver/rod/joint_kernels.hpp"
+
+namespace rodsweep {
+namespace {
+
+/// A side of a joint in each lane: dC_s/du and dC/dphi by columns.
+struct LaneSide {
+  Lane shift[3][3], rotation[3][6];
+};
+
+/// Six rows of C J, of which three or all are not zero.
+template <int rows>
+struct Weighted {
+  Lane row[rows];
+};
+
+template <int rows>
+Lane dot(const Lane* column, const Weighted<rows>& weighted) {
+  Lane sum = column[0] * weighted.row[0];
+#pragma GCC unroll 6
+  for (int r = 1; r < rows; ++r) sum += column[r] * weighted.row[r];
+  return sum;
+}
+
+template <int rows>
+Weighted<rows> weighted(const Lane (&c)[6], const Lane* column) {
+  Weighted<rows> out;
+#pragma GCC unroll 6
+  for (int r = 0; r < rows; ++r) out.row[r] = c[r] * column[r];
+  return out;
+}
+
+/// A column of J^T C J', of which J' has `column` as its own: entry(i) for the rows i.
+template <int rows, class Entry>
+void put_column(const LaneSide& side, const Weighted<rows>& column, int first_row, const Entry& entry) {
+#pragma GCC unroll 6
+  for (int i = 0; i < 6; ++i)
+    if (i >= first_row)
+      entry(i, i < 3 ? dot<3>(side.shift[i], Weighted<3>{column.row[0], column.row[1], column.row[2]})
+                     : dot<rows>(side.rotation[i - 3], column));
+}
+
+/// out = J^T C J', by columns.
+void product(const LaneSide& side, const Lane (&c)[6], const LaneSide& other, LaneVector6 (&out)[6]) {
+#pragma GCC unroll 1
+  for (int j = 0; j < 3; ++j) {
+    put_column(side, weighted<3>(c, other.shift[j]), 0, [&](int i, const Lane& value) { out[j][i] = value; });
+    put_column(side, weighted<6>(c, other.rotation[j]), 0, [&](int i, const Lane& value) { out[3 + j][i] = value; });
+  }
+}
+
+/// out += J^T C J.
+void add_square(const LaneSide& side, const Lane (&c)[6], LaneBlock& out) {
+#pragma GCC unroll 3
+  for (int j = 0; j < 3; ++j) {
+    put_column(side, weighted<3>(c, side.shift[j]), j, [&](int i, const Lane& value) { out[i][j] += value; });
+    put_column(side, weighted<6>(c, side.rotation[j]), 3 + j,
+               [&](int i, const Lane& value) { out[i][3 + j] += value; });
+  }
+}
+
+struct LaneJoint {
+  Lane c[6];
+  LaneSide before, after;
+};
+
+void put(const JointJacobian& jacobian, bool is_b, int lane, LaneSide& out) {
+  const JointSide side(jacobian, is_b);
+  for (int j = 0; j < 3; ++j) {
+    for (int r = 0; r < 3; ++r) out.shift[j][r][lane] = side.shift[j][r];
+    for (int r = 0; r < 6; ++r) out.rotation[j][r][lane] = side.rotation[j][r];
+  }
+}
+
+/// A symmetric block of one lane, by columns.
+void add_symmetric(const LaneBlock& from, int lane, Block6& to) {
+  for (int c = 0; c < 6; ++c)
+    for (int r = 0; r < 6; ++r) to.column[c][r] += from[std::max(r, c)][std::min(r, c)][lane];
+}
+void add(const LaneVector6 (&columns)[6], int lane, Block6& to) {
+  for (int c = 0; c < 6; ++c)
+    for (int r = 0; r < 6; ++r) to.column[c][r] += columns[c][r][lane];
+}
+void add_transposed(const LaneVector6 (&columns)[6], int lane, Block6& to) {
+  for (int c = 0; c < 6; ++c)
+    for (int r = 0; r < 6; ++r) to.column[r][c] += columns[c][r][lane];
+}
+
+/// f_to -= (columns)^T f.
+void subtract_transposed(const LaneVector6 (&columns)[6], const LaneVector6& f, LaneVector6& to) {
+#pragma GCC unroll 6
+  for (int c = 0; c < 6; ++c)
+#pragma GCC unroll 6
+    for (int r = 0; r < 6; ++r) to[c] -= columns[c][r] * f[r];
+}
+
+Lane8 mass_of(const Segment& segment) {
+  const double m = 1 / segment.inverse_mass, transverse = 1 / segment.turn_mobility;
+  return Lane8{m, m, m, transverse, transverse, 1 / segment.inverse_inertia_axial, 0, 0};
+}
+
+}  // namespace
+
+Condensation::Condensation(const Rod& rod)
+    : graph_(strut_graph(rod)),
+      stiffness_(rod.joints.size()),
+      inverse_mass_(rod.segments.size()),
+      motion_(rod.segments.size()) {
+  // Struts of a length together, and as S has them, so that memory is read and written in order.
+  std::stable_sort(graph_.struts.begin(), graph_.struts.end(), [](const Strut& one, const Strut& other) {
+    return std::make_pair(one.segments.size(), std::max(one.begin, one.end)) <
+           std::make_pair(other.segments.size(), std::max(other.begin, other.end));
+  });
+  for (std::size_t s = 0; s < graph_.struts.size();) {
+    Batch batch{s, inner_.size(), 0, static_cast<int>(graph_.struts[s].segments.size())};
+    while (s < graph_.struts.size() && batch.count < lane_width &&
+           graph_.struts[s].segments.size() == at(batch.segments)) {
+      ++batch.count;
+      ++s;
+    }
+    batches_.push_back(batch);
+    inner_.resize(inner_.size() + at(batch.segments));
+  }
+
+  std::vector<std::pair<int, int>> ends;  // crossings that a strut or a link couples
+  for (const Strut& strut : graph_.struts) ends.emplace_back(strut.begin, strut.end);
+  for (const int k : graph_.links) {
+    const Joint& joint = rod.joints[at(k)];
+    ends.emplace_back(graph_.place[at(joint.a)], graph_.place[at(joint.b)]);
+  }
+  std::vector<std::pair<int, int>> couplings;
+  for (const auto& [a, b] : ends)
+    if (a >= 0 && b >= 0) couplings.emplace_back(a, b);
+  matrix_ = BlockMatrix(static_cast<int>(graph_.crossings.size()), couplings);
+  for (const auto& [a, b] : ends) {
+    const bool both = a >= 0 && b >= 0;
+    places_.push_back({a < 0 ? -1 : matrix_.diagonal(a), b < 0 ? -1 : matrix_.diagonal(b),
+                       both ? matrix_.find(a, b) : -1, both ? matrix_.find(b, a) : -1});
+  }
+  for (int k = 0; k < rod.joint_count(); ++k) {
+    const Joint& joint = rod.joints[at(k)];
+    if (graph_.place[at(joint.a)] >= 0 || graph_.place[at(joint.b)] >= 0) near_.push_back(k);
+  }
+}
+
+const Strut& Condensation::strut(const Batch& batch, int lane) const {
+  return graph_.struts[batch.first_strut + at(std::min(lane, batch.count - 1))];
+}
+
+bool Condensation::assemble(const Rod& rod, const Linearization& linearization, double dt) {
+  rod_ = &rod;
+  linearization_ = &linearization;
+  for (std::size_t k = 0; k < rod.joints.size(); ++k)
+    stiffness_[k] = load6(Vector6(dt * dt * rod.joints[k].compliance.cwiseInverse()).data());
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) inverse_mass_[s] = motion(rod.segments[s], broadcast(1));
+  for (Block6& block : matrix_.blocks) block = Block6{};
+  for (int c = 0; c < matrix_.block_rows(); ++c) {
+    const Lane8 mass = mass_of(rod.segments[at(graph_.crossings[at(c)])]);
+    Block6& diagonal = matrix_.blocks[at(matrix_.diagonal(c))];
+    for (int i = 0; i < 6; ++i) diagonal.column[i] = mass * unit_lane[i];
+  }
+  LaneMask positive = Lane{} < 1;
+  for (const Batch& batch : batches_) positive &= eliminate(batch);
+  add_links();
+  for (int lane = 0; lane < lane_width; ++lane)
+    if (!positive[lane]) return false;
+  return true;
+}
+
+LaneMask Condensation::eliminate(const Batch& batch) {
+  const auto load = [&](int joint, LaneJoint& out) {
+    for (int lane = 0; lane < lane_width; ++lane) {
+      const Strut& of = strut(batch, lane);
+      const int k = of.joints[at(joint)];
+      for (int i = 0; i < 6; ++i) out.c[i][lane] = k < 0 ? 0 : stiffness_[at(k)][i];
+      if (k < 0) continue;  // nothing there
+      const bool b_is_before = joint > 0 ? rod_->joints[at(k)].b == of.segments[at(joint - 1)]
+                                         : rod_->joints[at(k)].a == of.segments.front();
+      put(linearization_->joints[at(k)], b_is_before, lane, out.before);
+      put(linearization_->joints[at(k)], !b_is_before, lane, out.after);
+    }
+  };
+  LaneMask positive = Lane{} < 1;
+  LaneBlock begin{}, s{};
+  LaneVector6 to_begin[6];
+  LaneJoint joint{};
+  load(0, joint);
+  add_square(joint.before, joint.c, begin);
+  add_square(joint.after, joint.c, s);
+  product(joint.after, joint.c, joint.before, to_begin);
+  for (int p = 0; p < batch.segments; ++p) {
+    Inner& inner = inner_[batch.first_inner + at(p)];
+    for (int lane = 0; lane < lane_width; ++lane) {
+      const Lane8 mass = mass_of(rod_->segments[at(strut(batch, lane).segments[at(p)])]);
+      for (int i = 0; i < 6; ++i) s[i][i][lane] += mass[i];
+    }
+    load(p + 1, joint);
+    add_square(joint.before, joint.c, s);
+    LaneVector6 to_next[6];
+    product(joint.before, joint.c, joint.after, to_next);
+    LaneBlock next{};
+    add_square(joint.after, joint.c, next);
+
+    positive &= factorise(s, inner.factor);
+    LaneVector6 across[6]{};  // the next segment's coupling to begin
+#pragma GCC unroll 1
+    for (int c = 0; c < 6; ++c) {
+      forward(inner.factor, to_begin[c]);
+      inner.to_begin[c] = divided(inner.factor, to_begin[c]);
+      forward(inner.factor, to_next[c]);
+      inner.to_next[c] = divided(inner.factor, to_next[c]);
+    }
+    LaneVector6 unused{};
+    subtract_products(begin, unused, to_begin, inner.to_begin, LaneVector6{});
+    subtract_products(next, unused, to_next, inner.to_next, LaneVector6{});
+#pragma GCC unroll 1
+    for (int c = 0; c < 6; ++c)
+#pragma GCC unroll 6
+      for (int i = 0; i < 6; ++i)
+#pragma GCC unroll 6
+        for (int r = 0; r < 6; ++r) across[c][r] -= to_next[r][i] * inner.to_begin[c][i];
+#pragma GCC unroll 1
+    for (int c = 0; c < 6; ++c) {
+      backward(inner.factor, inner.to_begin[c]);
+      backward(inner.factor, inner.to_next[c]);
+      to_begin[c] = across[c];
+    }
+    s = next;
+  }
+  for (int lane = 0; lane < batch.count; ++lane) {
+    const Places& to = places_[batch.first_strut + at(lane)];
+    if (to.begin >= 0) add_symmetric(begin, lane, matrix_.blocks[at(to.begin)]);
+    if (to.end >= 0) add_symmetric(s, lane, matrix_.blocks[at(to.end)]);
+    if (to.end_begin >= 0) {
+      add(to_begin, lane, matrix_.blocks[at(to.end_begin)]);
+      add_transposed(to_begin, lane, matrix_.blocks[at(to.begin_end)]);
+    }
+  }
+  return positive;
+}
+
+void Condensation::add_links() {
+  LaneJoint joint{};
+  for (std::size_t i = 0; i < graph_.links.size(); i += lane_width) {
+    const std::size_t count = std::min<std::size_t>(lane_width, graph_.links.size() - i);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const auto k = at(graph_.links[i + lane]);
+      for (int r = 0; r < 6; ++r) joint.c[r][lane] = stiffness_[k][r];
+      put(linearization_->joints[k], false, static_cast<int>(lane), joint.before);
+      put(linearization_->joints[k], true, static_cast<int>(lane), joint.after);
+    }
+    LaneBlock a{}, b{};
+    LaneVector6 b_a[6];
+    add_square(joint.before, joint.c, a);
+    add_square(joint.after, joint.c, b);
+    product(joint.after, joint.c, joint.before, b_a);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const Places& to = places_[graph_.struts.size() + i + lane];
+      const auto l = static_cast<int>(lane);
+      if (to.begin >= 0) add_symmetric(a, l, matrix_.blocks[at(to.begin)]);
+      if (to.end >= 0) add_symmetric(b, l, matrix_.blocks[at(to.end)]);
+      if (to.end_begin < 0) continue;
+      add(b_a, l, matrix_.blocks[at(to.end_begin)]);
+      add_transposed(b_a, l, matrix_.blocks[at(to.begin_end)]);
+    }
+  }
+}
+
+void Condensation::condense(const VectorX& r, VectorX& g) {
+  std::fill(motion_.begin(), motion_.end(), Lane8{});
+  for (std::size_t k = 0; k < rod_->joints.size(); ++k) {
+    Lane8 on_a, on_b;
+    impulses(linearization_->joints[k], stiffness_[k] * load6(r.data() + 6 * k), on_a, on_b);
+    motion_[at(rod_->joints[k].a)] += on_a;
+    motion_[at(rod_->joints[k].b)] += on_b;
+  }
+  for (const Batch& batch : batches_) condense(batch);
+  g.resize(matrix_.unknowns());
+  for (std::size_t c = 0; c < graph_.crossings.size(); ++c) store6(g.data() + 6 * c, motion_[at(graph_.crossings[c])]);
+}
+
+void Condensation::condense(const Batch& batch) {
+  LaneVector6 begin{}, next{};
+  for (int p = 0; p < batch.segments; ++p) {
+    Inner& inner = inner_[batch.first_inner + at(p)];
+    for (int lane = 0; lane < lane_width; ++lane) {
+      const Lane8& f = motion_[at(strut(batch, lane).segments[at(p)])];
+      for (int i = 0; i < 6; ++i) inner.f[i][lane] = next[i][lane] + f[i];
+    }
+    subtract_transposed(inner.to_begin, inner.f, begin);
+    next = LaneVector6{};
+    subtract_transposed(inner.to_next, inner.f, next);
+  }
+  for (int lane = 0; lane < batch.count; ++lane) {
+    const Strut& of = strut(batch, lane);
+    for (int i = 0; i < 6; ++i) {
+      if (of.begin >= 0) motion_[at(graph_.crossings[at(of.begin)])][i] += begin[i][lane];
+      if (of.end >= 0) motion_[at(graph_.crossings[at(of.end)])][i] += next[i][lane];
+    }
+  }
+}
+
+void Condensation::expand(const VectorX& r, const double* y, VectorX& d) {
+  for (std::size_t s = 0; s < motion_.size(); ++s)
+    if (rod_->segments[s].is_static) motion_[s] = Lane8{};
+  for (std::size_t c = 0; c < graph_.crossings.size(); ++c) motion_[at(graph_.crossings[c])] = load6(y + 6 * c);
+  for (const Batch& batch : batches_) expand(batch);
+  d.resize(r.size());
+  for (std::size_t k = 0; k < rod_->joints.size(); ++k) {
+    const Joint& joint = rod_->joints[k];
+    store6(d.data() + 6 * k,
+           stiffness_[k] * (load6(r.data() + 6 * k) -
+                            constraint_change(linearization_->joints[k], motion_[at(joint.a)], motion_[at(joint.b)])));
+  }
+}
+
+void Condensation::expand(const Batch& batch) {
+  LaneVector6 begin{}, next{};
+  for (int lane = 0; lane < lane_width; ++lane) {
+    const Strut& of = strut(batch, lane);
+    for (int i = 0; i < 6; ++i) {
+      if (of.begin >= 0) begin[i][lane] = motion_[at(graph_.crossings[at(of.begin)])][i];
+      if (of.end >= 0) next[i][lane] = motion_[at(graph_.crossings[at(of.end)])][i];
+    }
+  }
+  for (int p = batch.segments; p-- > 0;) {
+    const Inner& inner = inner_[batch.first_inner + at(p)];
+    LaneVector6 y = inner.f;
+    forward(inner.factor, y);
+    y = divided(inner.factor, y);
+    backward(inner.factor, y);
+    subtract_product(y, inner.to_begin, begin);
+    subtract_product(y, inner.to_next, next);
+    for (int lane = 0; lane < batch.count; ++lane) {
+      Lane8& to = motion_[at(strut(batch, lane).segments[at(p)])];
+      for (int i = 0; i < 6; ++i) to[i] = y[i][lane];
+    }
+    next = y;
+  }
+}
+
+double Condensation::residual_norm(const double* p) const {
+  double sum = 0;
+  const auto motion_of = [&](int segment) {
+    const int place = graph_.place[at(segment)];
+    return place < 0 ? Lane8{} : inverse_mass_[at(segment)] * load6(p + 6 * place);
+  };
+  for (const int k : near_) {
+    const Joint& joint = rod_->joints[at(k)];
+    const Lane8 change = constraint_change(linearization_->joints[at(k)], motion_of(joint.a), motion_of(joint.b));
+    const Lane8 square = change * change;
+    sum += ((square[0] + square[1]) + (square[2] + square[3])) + (square[4] + square[5]);
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace rodsweep

@@ -1,0 +1,90 @@
+#include "solver/factor/elimination_order.hpp"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <algorithm>
+
+namespace rodsweep {
+
+bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order) {
+  std::vector<std::size_t> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) place[static_cast<std::size_t>(order[i])] = i;
+  const auto place_of = [&](int row) { return place[static_cast<std::size_t>(row)]; };
+  std::vector<int> left;  // neighbours of a row that are eliminated after it
+  for (const int row : order) {
+    left.clear();
+    for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k)
+      if (place_of(pattern.column(k)) < place_of(row)) left.push_back(pattern.column(k));
+    if (left.empty()) continue;
+    // Enough that the next of them knows the others: whom that leaves uncoupled is found at its own elimination.
+    const int next =
+        *std::max_element(left.begin(), left.end(), [&](int a, int b) { return place_of(a) < place_of(b); });
+    for (const int other : left)
+      if (pattern.find(next, other) < 0) return true;
+  }
+  return false;
+}
+
+std::vector<int> minimum_degree_order(const BlockMatrix& pattern) {
+  std::vector<Eigen::Triplet<double>> couplings;
+  for (int row = 0; row < pattern.block_rows(); ++row)
+    for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k)
+      couplings.emplace_back(row, pattern.column(k), 1);
+  Eigen::SparseMatrix<double> graph(pattern.block_rows(), pattern.block_rows());
+  graph.setFromTriplets(couplings.begin(), couplings.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic> permutation;
+  Eigen::AMDOrdering<int>()(graph, permutation);  // indices: rows in the order of their elimination
+  std::vector<int> order(permutation.indices().begin(), permutation.indices().end());
+  std::reverse(order.begin(), order.end());
+  return order;
+}
+
+namespace {
+
+/// The part of the pattern that hangs together with `first`, appended to `order`; returns where the last distance of it
+/// begins.
+std::size_t append_part(const BlockMatrix& pattern, int first, std::vector<bool>& seen, std::vector<int>& order) {
+  const auto degree = [&](int row) { return pattern.row_end(row) - pattern.row_begin(row); };
+  std::size_t level = order.size(), next_level = level + 1;
+  order.push_back(first);
+  seen[static_cast<std::size_t>(first)] = true;
+  for (std::size_t at = level; at < order.size(); ++at) {
+    if (at == next_level) {
+      level = at;
+      next_level = order.size();
+    }
+    const auto found = static_cast<std::ptrdiff_t>(order.size());
+    const int row = order[at];
+    for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k) {
+      const int column = pattern.column(k);
+      if (!seen[static_cast<std::size_t>(column)]) order.push_back(column);
+      seen[static_cast<std::size_t>(column)] = true;
+    }
+    std::stable_sort(order.begin() + found, order.end(), [&](int a, int b) { return degree(a) < degree(b); });
+  }
+  return level;
+}
+
+}  // namespace
+
+std::vector<int> breadth_first_order(const BlockMatrix& pattern) {
+  std::vector<bool> seen(static_cast<std::size_t>(pattern.block_rows()), false);
+  std::vector<int> order;
+  for (int row = 0; row < pattern.block_rows(); ++row) {
+    if (seen[static_cast<std::size_t>(row)]) continue;
+    const std::size_t begin = order.size();
+    int first = row;
+    for (int tries = 0; tries < 3; ++tries) {  // from the far end of the last try, where the rim is
+      const std::size_t last = append_part(pattern, first, seen, order);
+      first = *std::min_element(order.begin() + static_cast<std::ptrdiff_t>(last), order.end(), [&](int a, int b) {
+        return pattern.row_end(a) - pattern.row_begin(a) < pattern.row_end(b) - pattern.row_begin(b);
+      });
+      for (std::size_t i = begin; i < order.size(); ++i) seen[static_cast<std::size_t>(order[i])] = false;
+      order.resize(begin);
+    }
+    append_part(pattern, first, seen, order);
+  }
+  return order;
+}
+
+}  // namespace rodsweep

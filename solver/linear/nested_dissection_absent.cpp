@@ -1,7 +1,0 @@
-#include "solver/linear/nested_dissection.hpp"
-
-namespace rodsweep {
-
-std::vector<int> nested_dissection_order(const BlockMatrix&) { return {}; }
-
-}  // namespace rodsweep

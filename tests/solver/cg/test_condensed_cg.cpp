@@ -1,0 +1,136 @@
+// CG on condensed systems: the solution and the accuracy of CG on all joints, in fewer iterations.
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "solver/cg/condensed_cg.hpp"
+#include "tests/solver/cg_runs.hpp"
+
+namespace rodsweep {
+namespace test_condensed_cg {
+
+using test::Case;
+
+Case lattice(int nodes, double modulus, Lattice::Cell cell = Lattice::Cell::cubic) {
+  Lattice p;
+  p.cell = cell;
+  p.nodes_x = nodes;
+  p.radius_m = 0.01;
+  p.youngs_modulus_pa = modulus;
+  p.torsion_modulus_pa = 0.4 * modulus;
+  p.held = Held::side;
+  Rod rod = build_scene(p).rods.front();  // about to fall
+  test::Random random(1);
+  for (int s = 0; s < rod.segment_count(); ++s)
+    if (!rod.segments[s].is_static) rod.position[s] += Vector3(0, -0.004, 0) + random.vector(1e-4);
+  return Case(rod);
+}
+
+struct Solved {
+  CgReport report;
+  VectorX x;
+  std::vector<double> history;
+};
+Solved solved(const Case& c, CgSolver& cg, double tolerance, const VectorX* start = nullptr,
+              const VectorX* residual = nullptr) {
+  Solved out{{}, start ? *start : VectorX(VectorX::Zero(c.b().size())), {}};
+  cg.keep_history(true);
+  cg.matrix_changed();
+  out.report = cg.solve(c.b(), out.x, {start != nullptr, residual}, tolerance, cg.norm_of(c.b()));
+  out.history = cg.history();
+  return out;
+}
+double residual(const Case& c, const VectorX& x) {
+  VectorX product(x.size());
+  c.a().multiply(x.data(), product.data());
+  return (c.b() - product).norm() / c.b().norm();
+}
+
+TEST_CASE("condensed CG stops where the residual of all joints is small, and says how small it was") {
+  for (const Lattice::Cell cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet}) {
+    const Case c = lattice(3, 1e6, cell);
+    CondensedCg cg(c.rod, c.system);
+    for (const double tolerance : {1e-1, 1e-3, 1e-8}) {
+      const Solved run = solved(c, cg, tolerance);
+      REQUIRE(run.report.outcome == SolveOutcome::converged);
+      CHECK(run.report.products == 0);
+      CHECK(static_cast<int>(run.history.size()) == run.report.iterations + 1);
+      CHECK(run.history.front() == Approx(c.b().norm()));
+      CHECK(residual(c, run.x) <= tolerance * (1 + 1e-6));
+      CHECK(residual(c, run.x) == Approx(run.history.back() / c.b().norm()).epsilon(1e-3).margin(1e-12));
+    }
+    CHECK((solved(c, cg, 1e-10).x - c.exact).norm() < 1e-6 * c.exact.norm());
+  }
+}
+
+TEST_CASE("eliminating struts saves iterations") {
+  const Case c = lattice(4, 1e7);
+  CondensedCg condensed(c.rod, c.system);
+  ConjugateGradient jacobi(c.a(), {});
+  CHECK(2 * solved(c, condensed, 1e-2).report.iterations < solved(c, jacobi, 1e-2).report.iterations);
+}
+
+TEST_CASE("a chain is solved in one iteration") {
+  const Case c = test::moving_chain();
+  CondensedCg cg(c.rod, c.system);
+  const Solved run = solved(c, cg, 1e-8);
+  CHECK(run.report.outcome == SolveOutcome::converged);
+  CHECK(run.report.iterations == 1);
+  CHECK(residual(c, run.x) < 1e-8);
+}
+
+TEST_CASE("condensed CG starts from a guess, whose residual costs a product unless it is known") {
+  const Case c = lattice(3, 1e6);
+  CondensedCg cg(c.rod, c.system);
+  test::Random random(3);
+  const VectorX start =
+      c.exact + 0.05 * c.exact.norm() / std::sqrt(c.exact.size()) * random.entries(static_cast<int>(c.exact.size()));
+  VectorX left(start.size());
+  c.system.multiply(start.data(), left.data());
+  left = c.b() - left;
+  const Solved run = solved(c, cg, 1e-6, &start), known = solved(c, cg, 1e-6, &start, &left);
+  CHECK(run.report.products == 1);
+  CHECK(known.report.products == 0);
+  CHECK(run.history.front() == Approx(left.norm()));
+  CHECK(run.x == known.x);
+  CHECK(residual(c, run.x) <= 1e-6);
+  const Solved exact = solved(c, cg, 1e-6, &c.exact);
+  CHECK(exact.report.iterations == 0);
+  CHECK(exact.x == c.exact);
+}
+
+TEST_CASE("a kept preconditioner serves a system that has changed, which is condensed anew") {
+  Case c = lattice(3, 1e6);
+  CondensedCg cg(c.rod, c.system), fresh(c.rod, c.system);
+  const int at_first = solved(c, cg, 1e-6).report.iterations;
+  for (int s = 0; s < c.rod.segment_count(); ++s)
+    if (!c.rod.segments[s].is_static) c.rod.position[s] += 0.1 * c.rod.position[s].x() * Vector3(0, 1, 1);
+  c.system.assemble(c.rod, 0.02);
+  VectorX x = VectorX::Zero(c.b().size());
+  const CgReport kept = cg.solve(c.b(), x, false, 1e-6, c.b().norm());
+  CHECK(kept.outcome == SolveOutcome::converged);
+  CHECK(residual(c, x) <= 1e-6 * (1 + 1e-6));
+  CHECK(kept.iterations > at_first);
+  CHECK(solved(c, fresh, 1e-6).report.iterations <= kept.iterations);
+}
+
+TEST_CASE("condensed CG has the same bits every time") {
+  const Case c = lattice(3, 1e5);
+  CondensedCg one(c.rod, c.system), other(c.rod, c.system);
+  const Solved first = solved(c, one, 1e-6);
+  CHECK(solved(c, one, 1e-6).x == first.x);
+  CHECK(solved(c, other, 1e-6).x == first.x);
+}
+
+TEST_CASE("condensed CG reports what is not a number and what takes too long") {
+  Case c = lattice(3, 1e6);
+  CondensedCg cg(c.rod, c.system), impatient(c.rod, c.system, {Preconditioner::condensed, Norm::true_residual, 2});
+  const CgReport limited = solved(c, impatient, 1e-12).report;
+  CHECK(limited.outcome == SolveOutcome::iteration_limit);
+  CHECK(limited.iterations == 2);
+  VectorX b = c.b(), x = VectorX::Zero(b.size());
+  b[7] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(cg.solve(b, x, false, 1e-2, 1).outcome == SolveOutcome::not_a_number);
+}
+
+}  // namespace test_condensed_cg
+}  // namespace rodsweep

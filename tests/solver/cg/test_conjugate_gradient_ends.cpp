@@ -1,0 +1,310 @@
+// Every way for a CG solve to end other than well, and what a solver keeps from one solve to the next.
+#include <catch2/catch.hpp>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "solver/cg/petsc_session.hpp"
+#include "tests/solver/cg_runs.hpp"
+
+namespace rodsweep {
+namespace test_conjugate_gradient_ends {
+
+using namespace test;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST_CASE("the iteration limit is an outcome, and leaves the best iterate") {
+  const Case c = moving_chain();
+  const Run stopped = run(c.a(), {Preconditioner::jacobi, Norm::true_residual, 3}, c.b(), 1e-8);
+  CHECK(stopped.report.outcome == SolveOutcome::iteration_limit);
+  CHECK(stopped.report.iterations == 3);
+  CHECK(stopped.history.size() == 4);
+  CHECK(energy_error(c.a().dense(), stopped.x, c.exact) < 1);
+}
+
+TEST_CASE("products with the matrix are counted: one for each iteration, one for the residual of a nonzero guess") {
+  const Case c = moving_chain();
+  ConjugateGradient cg(c.a(), {});
+  const Run from_zero = run(cg, c.b(), 1e-4);
+  CHECK(from_zero.report.products == from_zero.report.iterations);
+  const VectorX guess = 0.5 * c.exact;
+  const Run from_guess = run(cg, c.b(), 1e-4, &guess);
+  CHECK(from_guess.report.products == from_guess.report.iterations + 1);
+}
+
+TEST_CASE("a guess whose residual is known saves the product, and is solved from in as many iterations") {
+  const Case c = moving_chain();
+  const VectorX guess = 0.9 * c.exact;
+  VectorX residual(guess.size());  // by the product that CG takes: the fiftieth iteration of plain CG feels rounding
+  c.a().multiply(guess.data(), residual.data());
+  residual = c.b() - residual;
+  for (const Preconditioner p : preconditioners)
+    for (const Norm norm : norms) {
+      INFO(name(p));
+      ConjugateGradient cg(c.a(), {p, norm, 0});
+      const Run computed = run(cg, c.b(), 1e-8, &guess);
+      VectorX x = guess;
+      const CgReport known = cg.solve(c.b(), x, {true, &residual}, 1e-8, cg.norm_of(c.b()));
+      CHECK(known.outcome == SolveOutcome::converged);
+      CHECK(std::abs(known.iterations - computed.report.iterations) <= 1);
+      CHECK(known.products == known.iterations);
+      CHECK(computed.report.products == computed.report.iterations + 1);
+      CHECK((x - computed.x).norm() < 1e-6 * c.exact.norm());
+    }
+}
+
+TEST_CASE("a lagged factor solves the next matrix in fewer iterations than jacobi, and its own in one") {
+  const Rod rod = moving_scene(12).rods.front();
+  LinearSystem system(rod);
+  Rod moved = rod;
+  system.assemble(moved, 0.02);
+  ConjugateGradient lagged(system.matrix(), {Preconditioner::lagged_cholesky, Norm::true_residual, 0});
+  ConjugateGradient jacobi(system.matrix(), {});
+  CHECK(run(lagged, system.rhs(), 1e-8).report.iterations == 1);
+  for (int s = 0; s < moved.segment_count(); ++s)
+    if (!moved.segments[s].is_static) moved.position[s] += 0.02 * moved.velocity[s];
+  Random random(2);
+  for (Quaternion& q : moved.orientation) q = (q.coeffs() + 0.02 * random.entries(4)).normalized().eval();
+  system.assemble(moved, 0.02);
+  jacobi.matrix_changed();
+  const Run kept = run(lagged, system.rhs(), 1e-8);
+  CHECK(kept.report.outcome == SolveOutcome::converged);
+  CHECK(kept.report.iterations > 1);
+  CHECK(kept.report.iterations < run(jacobi, system.rhs(), 1e-8).report.iterations / 2);
+  CHECK((system.rhs() - system.matrix().dense() * kept.x).norm() < 1e-7 * system.rhs().norm());
+  lagged.matrix_changed();
+  CHECK(run(lagged, system.rhs(), 1e-8).report.iterations == 1);
+}
+
+TEST_CASE("a right-hand side of zero takes no iteration") {
+  const Case c = moving_chain();
+  const VectorX zero = VectorX::Zero(c.a().unknowns());
+  for (const Preconditioner p : preconditioners)
+    for (const Norm norm : norms) {
+      const Run solved = run(c.a(), {p, norm, 0}, zero, 1e-8);
+      CHECK(solved.report.outcome == SolveOutcome::converged);
+      CHECK(solved.report.iterations == 0);
+      CHECK(solved.x == zero);
+    }
+}
+
+TEST_CASE("a residual past 1e30 times b is called diverged") {
+  const Case c = moving_chain();
+  const VectorX absurd = 1e36 * c.exact;
+  ConjugateGradient cg(c.a(), {});
+  CHECK(run(cg, c.b(), 1e-6, &absurd).report.outcome == SolveOutcome::diverged);
+}
+
+TEST_CASE("without a guess, what x held does not matter") {
+  const Case c = moving_chain();
+  const Run expected = run(c.a(), {}, c.b(), 1e-8);
+  ConjugateGradient cg(c.a(), {});
+  VectorX x = VectorX::Constant(c.a().unknowns(), nan);
+  CHECK(cg.solve(c.b(), x, false, 1e-8, c.b().norm()).outcome == SolveOutcome::converged);
+  CHECK(x == expected.x);
+}
+
+TEST_CASE("a NaN in b is an outcome") {
+  const Case c = moving_chain();
+  for (const Preconditioner p : preconditioners)
+    for (const Norm norm : norms) {
+      INFO(name(p));
+      VectorX b = c.b();
+      b[7] = nan;
+      CHECK(run(c.a(), {p, norm, 0}, b, 1e-8).report.outcome == SolveOutcome::not_a_number);
+    }
+}
+
+TEST_CASE("a guess whose residual is not finite is an outcome, without a history that could be read") {
+  const Case c = moving_chain();
+  for (const double entry :
+       {nan, std::numeric_limits<double>::infinity(), 1e200})  // the last one's square is not finite
+    for (const Preconditioner p : preconditioners)
+      for (const Norm norm : norms) {
+        INFO(name(p) << ", " << entry);
+        ConjugateGradient cg(c.a(), {p, norm, 0});
+        const VectorX guess = VectorX::Constant(c.a().unknowns(), entry);
+        const Run ended = run(cg, c.b(), 1e-8, &guess);
+        CHECK(ended.report.outcome == SolveOutcome::not_a_number);
+        CHECK(ended.report.iterations == 0);
+        CHECK(ended.history.empty());
+      }
+}
+
+TEST_CASE("a NaN in the matrix never converges") {
+  const Case c = moving_chain();
+  BlockMatrix bad = c.a();
+  bad.blocks[bad.diagonal(2)].column[1][1] = nan;
+  for (const Preconditioner p : preconditioners)
+    for (const Norm norm : norms) {
+      const SolveOutcome outcome = run(bad, {p, norm, 0}, c.b(), 1e-8).report.outcome;
+      INFO(name(p) << ": " << to_string(outcome));
+      CHECK((outcome == SolveOutcome::not_a_number || outcome == SolveOutcome::indefinite));
+    }
+}
+
+TEST_CASE("an indefinite matrix is called indefinite, unless the preconditioner solves it exactly") {
+  const Case c = moving_chain();
+  for (int row = 0; row < c.a().block_rows(); row += 5) {
+    BlockMatrix bad = c.a();
+    for (Lane8& column : bad.blocks[bad.diagonal(row)].column) column *= broadcast(-1);
+    for (const Preconditioner p : preconditioners)
+      for (const Norm norm : norms) {
+        const Run ended = run(bad, {p, norm, 0}, c.b(), 1e-8);
+        INFO(name(p) << ", block " << row << ": " << to_string(ended.report.outcome));
+        if (p == Preconditioner::icc)  // PETSc's LDL^T does not look at D's sign
+          CHECK((c.b() - bad.dense() * ended.x).norm() < 1e-7 * c.b().norm());
+        else
+          CHECK(ended.report.outcome == SolveOutcome::indefinite);
+      }
+  }
+}
+
+TEST_CASE("nothing is set up for a guess that is good enough: not even what could not be") {
+  const Case c = moving_chain();
+  BlockMatrix bad = c.a();
+  for (Lane8& column : bad.blocks[bad.diagonal(5)].column) column *= broadcast(-1);
+  const VectorX exact = bad.dense().fullPivLu().solve(c.b());
+  for (const Preconditioner p : {Preconditioner::block_icc, Preconditioner::cholesky}) {
+    INFO(name(p));
+    ConjugateGradient cg(bad, {p, Norm::true_residual, 0});
+    const Run good = run(cg, c.b(), 1e-8, &exact);
+    CHECK(good.report.outcome == SolveOutcome::converged);
+    CHECK(good.report.iterations == 0);
+    CHECK(good.report.products == 1);
+    CHECK(good.history.size() == 1);
+    CHECK(good.x == exact);
+    const VectorX half = 0.5 * exact;
+    CHECK(run(cg, c.b(), 1e-8, &half).report.outcome == SolveOutcome::indefinite);
+  }
+}
+
+TEST_CASE("a solver that failed solves the next system as if new") {
+  const Case c = moving_chain();
+  for (const Preconditioner p : preconditioners) {
+    INFO(name(p));
+    BlockMatrix a = c.a();
+    ConjugateGradient cg(a, {p, Norm::true_residual, 0});
+    for (Lane8& column : a.blocks[a.diagonal(3)].column) column *= broadcast(-1);
+    run(cg, c.b(), 1e-8);
+    CHECK(run(cg, VectorX::Constant(a.unknowns(), nan), 1e-8).report.outcome == SolveOutcome::not_a_number);
+    a = c.a();
+    cg.matrix_changed();
+    const Run again = run(cg, c.b(), 1e-8);
+    CHECK(again.report.outcome == SolveOutcome::converged);
+    CHECK(again.x == run(c.a(), {p, Norm::true_residual, 0}, c.b(), 1e-8).x);
+  }
+}
+
+TEST_CASE("after matrix_changed() the preconditioner is that of the new matrix") {
+  // The same rod in two poses, the second one crumpled, since joints that turn little change the diagonal little. An
+  // old preconditioner still converges, only later: that is what to look for.
+  const Case first = moving_chain();
+  Rod bent = first.rod;
+  for (int s = 1; s < bent.segment_count(); ++s)
+    bent.orientation[s] = Eigen::AngleAxisd(2.0 * s * s, Vector3(1, 0.3 * s, 0).normalized()) * bent.orientation[s];
+  const Case second(bent);
+  for (const Preconditioner p : preconditioners) {
+    if (p == Preconditioner::none) continue;
+    INFO(name(p));
+    const CgSettings settings{p, Norm::true_residual, 0};
+    BlockMatrix a = first.a();
+    ConjugateGradient forgot(a, settings), told(a, settings);
+    run(forgot, first.b(), 1e-8);
+    run(told, first.b(), 1e-8);
+    a = second.a();
+    told.matrix_changed();
+    const Run fresh = run(second.a(), settings, second.b(), 1e-8), now = run(told, second.b(), 1e-8);
+    CHECK(now.report.iterations == fresh.report.iterations);
+    CHECK(now.x == fresh.x);
+    // Jacobi's is the mildest: a sixth more.
+    CHECK(run(forgot, second.b(), 1e-8).report.iterations > 1.1 * fresh.report.iterations);
+    if (p == Preconditioner::cholesky || p == Preconditioner::icc) CHECK(now.report.iterations == 1);
+  }
+}
+
+TEST_CASE("norm_of() after matrix_changed() is in the new preconditioner's norm") {
+  const Case c = moving_chain();
+  for (const Preconditioner p : preconditioners) {
+    INFO(name(p));
+    BlockMatrix a = c.a();
+    ConjugateGradient cg(a, {p, Norm::natural, 0});
+    const double before = cg.norm_of(c.b());
+    for (Block6& block : a.blocks)
+      for (Lane8& column : block.column) column *= broadcast(4);
+    cg.matrix_changed();
+    CHECK(cg.norm_of(c.b()) == Approx(p == Preconditioner::none ? before : before / 2).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("solvers move, and leave a source that can be destroyed or given a new solver") {
+  static_assert(std::is_nothrow_move_constructible_v<ConjugateGradient>);
+  static_assert(std::is_nothrow_move_assignable_v<ConjugateGradient>);
+  static_assert(!std::is_copy_constructible_v<ConjugateGradient>);
+  const Case c = moving_chain();
+  const VectorX expected = run(c.a(), {}, c.b(), 1e-8).x;
+  ConjugateGradient first(c.a(), {});
+  run(first, c.b(), 1e-8);
+  ConjugateGradient second(std::move(first));
+  CHECK(run(second, c.b(), 1e-8).x == expected);
+  first = std::move(second);
+  CHECK(run(first, c.b(), 1e-8).x == expected);
+  second = ConjugateGradient(c.a(), {Preconditioner::cholesky, Norm::true_residual, 0});
+  CHECK(run(second, c.b(), 1e-8).report.iterations == 1);
+  std::vector<ConjugateGradient> many;
+  for (int i = 0; i < 5; ++i) many.emplace_back(c.a(), CgSettings{});  // reallocation moves them
+  for (ConjugateGradient& cg : many) CHECK(run(cg, c.b(), 1e-8).x == expected);
+}
+
+TEST_CASE("a solver used a hundred times gives the same bits") {
+  const Case c = moving_chain();
+  const VectorX other = Random(5).entries(c.a().unknowns()), guess = 0.9 * c.exact;
+  for (const Preconditioner p : preconditioners) {
+    ConjugateGradient cg(c.a(), {p, Norm::true_residual, 0});
+    const Run zero = run(cg, c.b(), 1e-8), guessed = run(cg, c.b(), 1e-8, &guess);
+    for (int i = 0; i < 100; ++i) {
+      switch (i % 3) {
+        case 0: run(cg, other, 1e-4); break;
+        case 1: cg.matrix_changed(); break;
+        default: cg.norm_of(other);
+      }
+      const Run again = run(cg, c.b(), 1e-8), again_guessed = run(cg, c.b(), 1e-8, &guess);
+      REQUIRE(again.x == zero.x);
+      REQUIRE(again.history == zero.history);
+      REQUIRE(again_guessed.x == guessed.x);
+    }
+  }
+}
+
+TEST_CASE("the history is empty while recording is off, and the solution the same") {
+  const Case c = moving_chain();
+  ConjugateGradient cg(c.a(), {});
+  VectorX x = VectorX::Zero(c.a().unknowns());
+  cg.solve(c.b(), x, false, 1e-8, c.b().norm());
+  CHECK(cg.history().empty());
+  const Run recorded = run(cg, c.b(), 1e-8);
+  CHECK(recorded.x == x);
+  CHECK_FALSE(recorded.history.empty());
+  cg.keep_history(false);
+  cg.solve(c.b(), x, false, 1e-8, c.b().norm());
+  CHECK(cg.history().empty());
+  CHECK(run(cg, c.b(), 1e-8).history == recorded.history);
+}
+
+TEST_CASE("a PETSc session inside another leaves PETSc running when it ends") {
+  { const PetscSession inner; }
+  const Case c = moving_chain();
+  CHECK(run(c.a(), {}, c.b(), 1e-8).report.outcome == SolveOutcome::converged);
+  CHECK_THAT(petsc_version(), Catch::Matches("[0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
+TEST_CASE("b is not written to") {
+  const Case c = moving_chain();
+  const VectorX b = c.b();
+  for (const Preconditioner p : preconditioners) run(c.a(), {p, Norm::natural, 0}, b, 1e-8);
+  CHECK(b == c.b());
+}
+
+}  // namespace test_conjugate_gradient_ends
+}  // namespace rodsweep

@@ -1,0 +1,242 @@
+// The block elimination against Eigen's dense Cholesky, its order and its refusals.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <string>
+
+#include "solver/factor/block_factor.hpp"
+#include "solver/linear/linear_system.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace test_block_factor {
+
+using test::Edges;
+using test::MatrixX;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Graph {
+  const char* name;
+  Edges edges;
+  std::vector<int> held;
+};
+
+std::vector<Graph> trees() {
+  return {
+      {"two segments", test::chain(2), {}},
+      {"free chain", test::chain(12), {}},
+      {"chain held at both ends", test::chain(12), {0, 11}},
+      {"chain held in the middle", test::chain(12), {5}},
+      {"tree, depth 4, branching 3", test::tree(4, 3), {0}},
+      {"tree, depth 2, branching 7", test::tree(2, 7), {}},
+      {"tree held at a leaf and a branching", test::tree(3, 3), {2, 39}},
+      {"two separate chains", {{0, 1}, {1, 2}, {3, 4}, {4, 5}}, {}},
+      {"chain numbered at random", {{4, 1}, {0, 3}, {1, 3}, {2, 0}, {5, 4}}, {}},
+  };
+}
+
+std::vector<Graph> loops() {
+  return {
+      {"ring", test::ring(9), {}},
+      {"held ring", test::ring(9), {4}},
+      {"net", test::net(4, 5), {0}},
+      {"net held at its corners", test::net(7, 8), {0, 7, 48, 55}},
+      {"ring held at two segments", test::ring(30), {4, 20}},
+      {"two rings at one segment", {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {4, 5}, {5, 6}, {6, 0}}, {}},
+  };
+}
+
+std::vector<Graph> all_graphs() {
+  std::vector<Graph> all = trees();
+  for (Graph& graph : loops()) all.push_back(graph);
+  return all;
+}
+
+/// Any matrix with the pattern of a rod's system.
+BlockMatrix matrix_like(const Rod& rod, unsigned seed) {
+  const BlockMatrix pattern = LinearSystem(rod).matrix();
+  Edges couplings;
+  for (int row = 0; row < pattern.block_rows(); ++row)
+    for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k) couplings.emplace_back(row, pattern.column(k));
+  return test::random_matrix(couplings, rod.joint_count(), seed);
+}
+
+struct Solved {
+  SolveOutcome outcome;
+  VectorX x;
+};
+
+Solved solve(BlockFactor& factor, const BlockMatrix& a, const VectorX& b) {
+  Solved out{SolveOutcome::not_run, VectorX::Zero(b.size())};
+  out.outcome = factor.solve(a, b, out.x);
+  return out;
+}
+
+TEST_CASE("the solution equals that of a dense Cholesky on any graph") {
+  for (const Graph& graph : all_graphs()) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
+    const BlockMatrix a = matrix_like(rod, 2);
+    const VectorX b = test::Random(3).entries(a.unknowns());
+    BlockFactor factor(a, root_to_leaf_order(rod));
+    const Solved solved = solve(factor, a, b);
+    CHECK(solved.outcome == SolveOutcome::converged);
+    CHECK((solved.x - test::dense_solve(a.dense(), b)).lpNorm<Eigen::Infinity>() < 1e-13);
+  }
+}
+
+TEST_CASE("systems of rods are solved to rounding") {
+  for (const Graph& graph : all_graphs()) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 4);
+    LinearSystem system(rod);
+    system.assemble(rod, 0.02);
+    BlockFactor factor(system.matrix(), root_to_leaf_order(rod));
+    const Solved solved = solve(factor, system.matrix(), system.rhs());
+    CHECK(solved.outcome == SolveOutcome::converged);
+    const MatrixX a = system.matrix().dense();
+    // Nets are over-constrained, their condition numbers near 1e6: the dense reference is known to some 1e-10 itself.
+    const double rounding = std::string(graph.name).rfind("net", 0) == 0 ? 1e-9 : 1e-10;
+    CHECK((system.rhs() - a * solved.x).norm() < rounding * system.rhs().norm());
+    CHECK(test::energy_error(a, solved.x, test::dense_solve(a, system.rhs())) < rounding);
+  }
+}
+
+TEST_CASE("a factor that is kept solves as often as wanted, whatever was solved before") {
+  for (const Graph& graph : all_graphs()) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
+    const BlockMatrix a = matrix_like(rod, 2);
+    BlockFactor factor(a, root_to_leaf_order(rod));
+    solve(factor, matrix_like(rod, 5), test::Random(6).entries(a.unknowns()));
+    CHECK(factor.factorise(a));
+    for (const unsigned seed : {3U, 4U}) {
+      const VectorX b = test::Random(seed).entries(a.unknowns());
+      VectorX x = b;
+      factor.substitute(x);
+      CHECK((x - test::dense_solve(a.dense(), b)).lpNorm<Eigen::Infinity>() < 1e-13);
+    }
+  }
+  BlockMatrix indefinite = matrix_like(test::random_rod(test::chain(4), {0}, 1), 2);
+  indefinite.blocks[static_cast<std::size_t>(indefinite.diagonal(1))].column[2][2] = -1;
+  CHECK(!BlockFactor(indefinite, {0, 1, 2}).factorise(indefinite));
+}
+
+TEST_CASE("nothing fills in on chains and trees, whatever is held") {
+  for (const Graph& graph : trees()) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
+    CHECK(BlockFactor(LinearSystem(rod).matrix(), root_to_leaf_order(rod)).fill_in() == 0);
+  }
+}
+
+TEST_CASE("loops fill in") {
+  for (const Graph& graph : {loops()[0], loops()[2]}) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
+    CHECK(BlockFactor(LinearSystem(rod).matrix(), root_to_leaf_order(rod)).fill_in() > 0);
+  }
+}
+
+TEST_CASE("a bad order is solved all the same") {
+  const Rod rod = test::random_rod(test::chain(9), {0}, 1);
+  const BlockMatrix a = matrix_like(rod, 2);
+  const VectorX b = test::Random(3).entries(a.unknowns());
+  BlockFactor factor(a, {0, 4, 2, 6, 1, 3, 5, 7});
+  CHECK((solve(factor, a, b).x - test::dense_solve(a.dense(), b)).lpNorm<Eigen::Infinity>() < 1e-13);
+}
+
+TEST_CASE("the order names every joint once") {
+  for (const Graph& graph : all_graphs()) {
+    INFO(graph.name);
+    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
+    std::vector<int> order = root_to_leaf_order(rod);
+    std::sort(order.begin(), order.end());
+    REQUIRE(order.size() == rod.joints.size());
+    for (int k = 0; k < rod.joint_count(); ++k) REQUIRE(order[k] == k);
+  }
+}
+
+TEST_CASE("the order ends with all free and held ends, and what stands next to each other before it does not wait") {
+  CHECK(root_to_leaf_order(test::random_rod(test::chain(7), {6}, 1)) == std::vector<int>{3, 2, 4, 1, 5, 0});
+  CHECK(root_to_leaf_order(test::random_rod(test::chain(7), {3}, 1)) == std::vector<int>{4, 1, 5, 3, 2, 0});
+  CHECK(root_to_leaf_order(test::random_rod(test::ring(6), {0}, 1)) == std::vector<int>{3, 2, 4, 1, 5, 0});
+}
+
+TEST_CASE("a matrix that is not positive definite is called indefinite, wherever its bad pivot is") {
+  for (const Graph& graph : {trees()[1], trees()[6], loops()[0]}) {
+    const Rod rod = test::random_rod(graph.edges, graph.held, 1);
+    const BlockMatrix good = matrix_like(rod, 2);
+    const VectorX b = test::Random(3).entries(good.unknowns());
+    BlockFactor factor(good, root_to_leaf_order(rod));
+    for (int row = 0; row < good.block_rows(); ++row)
+      for (const double factor_of_block : {-1.0, 0.0}) {
+        INFO(graph.name << ", block " << row << " times " << factor_of_block);
+        BlockMatrix bad = good;
+        for (Lane8& column : bad.blocks[bad.diagonal(row)].column) column *= broadcast(factor_of_block);
+        CHECK(solve(factor, bad, b).outcome == SolveOutcome::indefinite);
+      }
+    BlockMatrix one_pivot = good;
+    one_pivot.blocks[one_pivot.diagonal(1)].column[5][5] *= -1;
+    CHECK(solve(factor, one_pivot, b).outcome == SolveOutcome::indefinite);
+  }
+}
+
+TEST_CASE("a NaN anywhere in the matrix is never converged, one in b is called what it is") {
+  const Rod rod = test::random_rod(test::tree(2, 2), {0}, 1);
+  const BlockMatrix good = matrix_like(rod, 2);
+  const VectorX b = test::Random(3).entries(good.unknowns());
+  BlockFactor factor(good, root_to_leaf_order(rod));
+  for (int row = 0; row < good.block_rows(); ++row)
+    for (int k = good.row_begin(row); k < good.row_end(row); ++k) {
+      BlockMatrix bad = good;
+      bad.blocks[k].column[3][4] = bad.blocks[bad.find(good.column(k), row)].column[4][3] = nan;
+      const SolveOutcome outcome = solve(factor, bad, b).outcome;
+      INFO("block " << row << ", " << good.column(k) << ": " << to_string(outcome));
+      CHECK((outcome == SolveOutcome::indefinite || outcome == SolveOutcome::not_a_number));
+    }
+  for (const double value : {nan, infinity})
+    for (int row = 0; row < good.unknowns(); ++row) {
+      VectorX bad = b;
+      bad[row] = value;
+      CHECK(solve(factor, good, bad).outcome == SolveOutcome::not_a_number);
+    }
+}
+
+TEST_CASE("a factor that failed solves the next system as if new") {
+  const Rod rod = test::random_rod(test::ring(7), {}, 1);
+  const BlockMatrix good = matrix_like(rod, 2);
+  const VectorX b = test::Random(3).entries(good.unknowns());
+  BlockFactor used(good, root_to_leaf_order(rod)), fresh(good, root_to_leaf_order(rod));
+  BlockMatrix bad = good;
+  for (Block6& block : bad.blocks)
+    for (Lane8& column : block.column) column = broadcast(nan);
+  CHECK(solve(used, bad, VectorX::Constant(b.size(), nan)).outcome != SolveOutcome::converged);
+  const Solved again = solve(used, good, b);
+  CHECK(again.outcome == SolveOutcome::converged);
+  CHECK(again.x == solve(fresh, good, b).x);
+}
+
+TEST_CASE("the same system gives the same bits every time") {
+  const Rod rod = test::random_rod(test::tree(3, 2), {0}, 1);
+  const BlockMatrix a = matrix_like(rod, 2), other = matrix_like(rod, 5);
+  const VectorX b = test::Random(3).entries(a.unknowns());
+  BlockFactor factor(a, root_to_leaf_order(rod));
+  const VectorX first = solve(factor, a, b).x;
+  for (int i = 0; i < 20; ++i) {
+    solve(factor, other, b);
+    REQUIRE(solve(factor, a, b).x == first);
+  }
+}
+
+TEST_CASE("a rod without joints has an empty solution") {
+  const Rod rod = build_scene(test::bending_rod(1, Clamp::free)).rods.front();
+  const BlockMatrix a = LinearSystem(rod).matrix();
+  BlockFactor factor(a, root_to_leaf_order(rod));
+  CHECK(solve(factor, a, VectorX(0)).outcome == SolveOutcome::converged);
+}
+
+}  // namespace test_block_factor
+}  // namespace rodsweep

@@ -1,0 +1,166 @@
+// Struts and crossings of a rod, and the system that is left when struts are eliminated.
+#include <catch2/catch.hpp>
+#include <set>
+#include <vector>
+
+#include "solver/factor/condensation.hpp"
+#include "solver/linear/linear_system.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace test_condensation {
+
+using test::random_rod;
+
+template <class Scene>
+Rod rod_of(Scene p) {
+  p.stretch = Stretch::physical;
+  return build_scene(p).rods.front();
+}
+
+Rod lattice(Lattice::Cell cell, int nodes, int segments, Held held) {
+  Lattice p;
+  p.cell = cell;
+  p.nodes_x = nodes;
+  p.nodes_z = nodes + 1;
+  p.segments = segments;
+  p.held = held;
+  return rod_of(p);
+}
+
+/// Of every kind: chains, trees, rings, nets, lattices, held and free.
+std::vector<Rod> rods() {
+  Net net;
+  net.segments = 3;
+  return {random_rod(test::chain(7), {}, 1),
+          random_rod(test::chain(7), {0}, 2),
+          random_rod(test::chain(9), {4}, 3),
+          random_rod(test::tree(3, 2), {0}, 4),
+          random_rod(test::ring(6), {}, 5),
+          random_rod(test::ring(6), {2}, 6),
+          random_rod(test::net(4, 5), {0, 4}, 7),
+          rod_of(net),
+          lattice(Lattice::Cell::cubic, 3, 1, Held::side),
+          lattice(Lattice::Cell::cubic, 3, 4, Held::corners),
+          lattice(Lattice::Cell::body_centred, 2, 3, Held::free),
+          lattice(Lattice::Cell::octet, 2, 2, Held::side)};
+}
+
+/// Segments moved about, so that no two joints are alike.
+Rod shaken(Rod rod, unsigned seed) {
+  test::Random random(seed);
+  for (int s = 0; s < rod.segment_count(); ++s) {
+    if (rod.segments[s].is_static) continue;
+    rod.position[s] += random.vector(0.01);
+    rod.orientation[s] =
+        (rod.orientation[s] * Quaternion(1, random.uniform(-.1, .1), random.uniform(-.1, .1), random.uniform(-.1, .1)))
+            .normalized();
+  }
+  return rod;
+}
+
+TEST_CASE("every segment that moves is a crossing or in one strut, every joint in one strut or a link") {
+  for (const Rod& rod : rods()) {
+    const StrutGraph graph = strut_graph(rod);
+    std::multiset<int> segments(graph.crossings.begin(), graph.crossings.end());
+    std::multiset<int> joints(graph.links.begin(), graph.links.end());
+    for (const Strut& strut : graph.struts) {
+      REQUIRE(strut.joints.size() == strut.segments.size() + 1);
+      segments.insert(strut.segments.begin(), strut.segments.end());
+      for (std::size_t i = 0; i < strut.joints.size(); ++i) {
+        const bool first = i == 0, last = i + 1 == strut.joints.size();
+        if (strut.joints[i] < 0) {
+          CHECK((first ? strut.begin : last ? strut.end : 0) == -1);
+          continue;
+        }
+        joints.insert(strut.joints[i]);
+        const Joint& joint = rod.joints[strut.joints[i]];
+        const auto is_end = [&](int segment, int place) {
+          return graph.place[segment] == place && (place >= 0 || rod.segments[segment].is_static);
+        };
+        const auto meets = [&](int a, int b) {
+          return (first ? is_end(a, strut.begin) : a == strut.segments[i - 1]) &&
+                 (last ? is_end(b, strut.end) : b == strut.segments[i]);
+        };
+        CHECK((meets(joint.a, joint.b) || meets(joint.b, joint.a)));
+      }
+    }
+    int moving = 0;
+    for (const Segment& s : rod.segments) moving += !s.is_static;
+    CHECK(static_cast<int>(segments.size()) == moving);
+    CHECK(std::set<int>(segments.begin(), segments.end()).size() == segments.size());
+    CHECK(static_cast<int>(joints.size()) == rod.joint_count());
+    CHECK(std::set<int>(joints.begin(), joints.end()).size() == joints.size());
+    for (int c = 0; c < static_cast<int>(graph.crossings.size()); ++c) CHECK(graph.place[graph.crossings[c]] == c);
+  }
+}
+
+TEST_CASE("a chain has no crossing, a ring one, a net as many as rods cross, by nodes") {
+  CHECK(strut_graph(random_rod(test::chain(5), {0}, 1)).crossings.empty());
+  const StrutGraph ring = strut_graph(random_rod(test::ring(5), {}, 1));
+  CHECK(ring.crossings.size() == 1);
+  CHECK(ring.struts.front().begin == ring.struts.front().end);
+  Net p;
+  p.rows = 3;
+  p.columns = 4;
+  p.segments = 5;
+  p.held = Held::free;
+  const StrutGraph net = strut_graph(rod_of(p));
+  CHECK(net.crossings.size() == 24);
+  CHECK(net.nodes() == 12);
+  CHECK(net.struts.size() == 17);
+  CHECK(net.links.size() == 12);
+  for (const Strut& strut : net.struts) CHECK(strut.segments.size() == 4);
+  const StrutGraph cubic = strut_graph(lattice(Lattice::Cell::cubic, 3, 3, Held::free));
+  CHECK(cubic.nodes() == 36);
+  CHECK(cubic.crossings.size() == 108);
+}
+
+TEST_CASE("a condensed system has the answer of the whole one") {
+  constexpr double dt = 0.02;
+  for (Rod rod : rods()) {
+    rod = shaken(rod, 1);
+    LinearSystem system(rod);
+    system.assemble(rod, dt);
+    Condensation condensation(rod);
+    REQUIRE(condensation.assemble(rod, system.linearization(), dt));
+    const VectorX r = test::Random(2).entries(system.matrix().unknowns());
+    VectorX g, d;
+    condensation.condense(r, g);
+    const test::MatrixX s = condensation.matrix().dense();
+    CHECK((s - s.transpose()).norm() <= 1e-12 * s.norm());
+    const VectorX y = g.size() > 0 ? test::dense_solve(s, g) : g;
+    condensation.expand(r, y.data(), d);
+    const VectorX exact = test::dense_solve(system.matrix().dense(), r);
+    CAPTURE(rod.joint_count());
+    CHECK((d - exact).norm() < 1e-8 * exact.norm());
+
+    // What is missing of the crossings' motions is missing of the whole system.
+    const VectorX other = y + 0.1 * y.norm() * test::Random(3).entries(static_cast<int>(y.size()));
+    const VectorX p = g - s * other;
+    condensation.expand(r, other.data(), d);
+    VectorX product(d.size());
+    system.matrix().multiply(d.data(), product.data());
+    CHECK(condensation.residual_norm(p.data()) == Approx((r - product).norm()).epsilon(1e-7).margin(1e-9 * r.norm()));
+  }
+}
+
+TEST_CASE("a condensed system follows the masses of an iteration that keeps the balance") {
+  Rod rod = shaken(lattice(Lattice::Cell::cubic, 2, 3, Held::side), 4);
+  rod.lambda = 1e-4 * test::Random(5).entries(6 * rod.joint_count());
+  rod.free_position = rod.position;
+  rod.free_orientation = rod.orientation;
+  LinearSystem system(rod);
+  system.assemble_balanced(rod, 0.02);
+  Condensation condensation(rod);
+  REQUIRE(condensation.assemble(rod, system.linearization(), 0.02));
+  VectorX g, d;
+  condensation.condense(system.rhs(), g);
+  const VectorX y = test::dense_solve(condensation.matrix().dense(), g);
+  condensation.expand(system.rhs(), y.data(), d);
+  const VectorX exact = test::dense_solve(system.matrix().dense(), system.rhs());
+  CHECK((d - exact).norm() < 1e-8 * exact.norm());
+}
+
+}  // namespace test_condensation
+}  // namespace rodsweep

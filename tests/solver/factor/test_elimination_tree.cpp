@@ -1,0 +1,165 @@
+// Elimination trees against an elimination by sets: parents, counts, postorders; what a plan makes of them.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include "solver/factor/block_factor.hpp"
+#include "solver/factor/elimination_order.hpp"
+#include "solver/factor/nested_dissection.hpp"
+#include "solver/linear/linear_system.hpp"
+#include "tests/solver/support.hpp"
+
+namespace rodsweep {
+namespace test_elimination_tree {
+
+using test::Edges;
+
+std::vector<int> shuffled(int count, unsigned seed) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+  return order;
+}
+
+/// Later neighbours of every column, fill included, of an elimination in the order of `row`.
+std::vector<std::set<int>> later_neighbours(const BlockMatrix& pattern, const std::vector<int>& row) {
+  std::vector<int> place(row.size());
+  for (std::size_t k = 0; k < row.size(); ++k) place[row[k]] = static_cast<int>(k);
+  std::vector<std::set<int>> later(row.size());
+  for (int k = 0; k < static_cast<int>(row.size()); ++k)
+    for (int e = pattern.row_begin(row[k]); e < pattern.row_end(row[k]); ++e)
+      if (place[pattern.column(e)] > k) later[k].insert(place[pattern.column(e)]);
+  for (auto& column : later)
+    if (!column.empty()) later[*column.begin()].insert(std::next(column.begin()), column.end());
+  return later;
+}
+
+Lattice cubic(int nodes, int segments) {
+  Lattice lattice;
+  lattice.nodes_x = nodes;
+  lattice.segments = segments;
+  return lattice;
+}
+
+BlockMatrix system_of(const SceneSpec& scene) { return LinearSystem(build_scene(scene).rods.front()).matrix(); }
+
+TEST_CASE("parents and counts of an elimination tree are those of an elimination, whatever the graph and order") {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const int rows = 1 + static_cast<int>(seed);
+    const BlockMatrix pattern = test::random_matrix(test::random_couplings(rows, 2 * rows, seed), rows, seed);
+    const EliminationTree tree = elimination_tree(pattern, shuffled(rows, seed + 1));
+    const std::vector<std::set<int>> later = later_neighbours(pattern, tree.row);
+    REQUIRE(tree.columns() == rows);
+    std::int64_t blocks = 0;
+    for (int k = 0; k < rows; ++k) {
+      REQUIRE(tree.count[k] == 1 + static_cast<int>(later[k].size()));
+      REQUIRE(tree.parent[k] == (later[k].empty() ? -1 : *later[k].begin()));
+      blocks += tree.count[k];
+    }
+    CHECK(tree.blocks() == blocks);
+  }
+}
+
+TEST_CASE("an elimination tree is numbered in a postorder, and costs what the given order does") {
+  const BlockMatrix pattern = LinearSystem(test::random_rod(test::net(6, 7), {0}, 1)).matrix();
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    const std::vector<int> order = shuffled(pattern.block_rows(), seed);
+    const EliminationTree tree = elimination_tree(pattern, order);
+    std::vector<int> first(tree.columns());  // of the subtree, which is first .. k
+    for (int k = 0; k < tree.columns(); ++k) {
+      first[k] = k;
+      for (int c = 0; c < k; ++c)
+        if (tree.parent[c] == k) first[k] = std::min(first[k], first[c]);
+    }
+    for (int k = 0; k < tree.columns(); ++k)
+      for (int inside = first[k]; inside < k; ++inside) REQUIRE(tree.parent[inside] <= k);
+    std::int64_t blocks = pattern.block_rows();
+    for (const auto& column : later_neighbours(pattern, {order.rbegin(), order.rend()}))
+      blocks += static_cast<std::int64_t>(column.size());
+    CHECK(tree.blocks() == blocks);
+  }
+}
+
+TEST_CASE("supernodes hold every column once, parents after children, and no fewer blocks than L has") {
+  for (const BlockMatrix& pattern : {system_of(cubic(4, 2)), system_of(Net{})}) {
+    const EliminationTree tree = elimination_tree(pattern, minimum_degree_order(pattern));
+    AssemblyTree fronts(tree);
+    fronts.find_rows(pattern);
+    std::vector<int> rows = fronts.row;
+    std::sort(rows.begin(), rows.end());
+    for (int k = 0; k < pattern.block_rows(); ++k) REQUIRE(rows[k] == k);
+    CHECK(fronts.blocks >= tree.blocks());
+    CHECK(static_cast<double>(fronts.blocks) < 1.5 * static_cast<double>(tree.blocks()));
+    CHECK(fronts.supernodes.size() < fronts.row.size() / 2);
+    for (std::size_t s = 0; s < fronts.supernodes.size(); ++s) {
+      const Supernode& node = fronts.supernodes[s];
+      CHECK((node.parent == -1 || node.parent > static_cast<int>(s)));
+      CHECK((node.parent == -1) == (node.row_count == 0));
+      for (int r = 0; r < node.row_count; ++r) {
+        const int row = fronts.rows[node.row_begin + r];
+        REQUIRE(row >= node.first + node.columns);
+        REQUIRE((r == 0 || row > fronts.rows[node.row_begin + r - 1]));
+        const Supernode& parent = fronts.supernodes[node.parent];
+        const int place = fronts.in_parent[node.row_begin + r];
+        REQUIRE(row == (place < parent.columns ? parent.first + place
+                                               : fronts.rows[parent.row_begin + place - parent.columns]));
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "rings and small nets are eliminated block by block, lattices in fronts, with less fill than minimum degree's") {
+  const auto plan = [](const SceneSpec& spec) {
+    const Scene scene = build_scene(spec);
+    return plan_elimination(LinearSystem(scene.rods.front()).matrix(), root_to_leaf_order(scene.rods.front()));
+  };
+  CHECK(!plan(BendingRod{}).fronts);
+  CHECK(plan(BendingRod{}).flops == 0);
+  CHECK(!plan(Ring{}).fronts);
+  CHECK(!plan(Net{}).fronts);
+  const EliminationPlan lattice = plan(cubic(5, 3));
+  REQUIRE(lattice.fronts);
+  CHECK(lattice.bytes == lattice.fronts->bytes());
+  const BlockMatrix pattern = system_of(cubic(5, 3));
+  const EliminationTree minimum_degree = elimination_tree(pattern, minimum_degree_order(pattern));
+  if (nested_dissection_order(pattern).empty()) {  // built without METIS
+    CHECK(lattice.flops == minimum_degree.flops());
+    return;
+  }
+  CHECK(lattice.flops < 0.6 * minimum_degree.flops());
+  CHECK(elimination_tree(pattern, nested_dissection_order(pattern)).flops() == lattice.flops);
+}
+
+TEST_CASE("nested dissection names every row once and the same way every time") {
+  const BlockMatrix pattern = system_of(cubic(4, 3));
+  std::vector<int> order = nested_dissection_order(pattern);
+  if (order.empty()) return;  // built without METIS
+  CHECK(nested_dissection_order(pattern) == order);
+  std::sort(order.begin(), order.end());
+  for (int k = 0; k < pattern.block_rows(); ++k) REQUIRE(order[k] == k);
+  CHECK(nested_dissection_order(test::random_matrix({}, 3, 1)).empty());  // nothing to part
+}
+
+TEST_CASE("a factor that would need too much memory is refused with its size, before it asks for any") {
+  EliminationPlan plan{std::vector<int>(1000)};
+  plan.bytes = most_factor_bytes;
+  CHECK_NOTHROW(refuse_too_large(plan));
+  plan.bytes = 1.5 * most_factor_bytes;
+  CHECK_THROWS_AS(refuse_too_large(plan), FactorTooLarge);
+  CHECK_THROWS_WITH(refuse_too_large(plan),
+                    "a direct solve of 1000 joints would need 6 GiB for its factor; the most is 4 GiB");
+  EliminationTree dense;  // 14,000 rows, all coupled to each other
+  for (int k = 0; k < 14000; ++k) {
+    dense.row.push_back(k);
+    dense.parent.push_back(k < 13999 ? k + 1 : -1);
+    dense.count.push_back(14000 - k);
+  }
+  CHECK(AssemblyTree(dense).supernodes.size() == 1);
+  CHECK(AssemblyTree(dense).bytes() > most_factor_bytes);
+}
+
+}  // namespace test_elimination_tree
+}  // namespace rodsweep
