@@ -12,9 +12,7 @@
 namespace rodsweep {
 namespace {
 
-bool is_oracle(const GuessSpec& guess) {
-  return guess.kind == GuessSpec::Kind::oracle || std::any_of(guess.inner.begin(), guess.inner.end(), is_oracle);
-}
+bool is_oracle(const GuessSpec& guess) { return find_guess<guess::Oracle>(guess) != nullptr; }
 
 /// What a task factorises for, and what it could do instead; null: nothing.
 struct Need {

@@ -19,13 +19,6 @@ bool branches(const SceneSpec& scene) {
   return false;
 }
 
-void refuse(const Plan& plan, const Task& task, const std::string& path, const std::string& what,
-            const char* joints = "close a loop") {
-  throw job_error(
-      plan.job().path, path,
-      fmt::format("{}; the joints of the {} segments of task {} {}", what, task.segments, task.index, joints));
-}
-
 /// A model says what it is for.
 void check_model(const Plan& plan, const std::string& key, const std::filesystem::path& model, bool of_states) {
   if (is_guess(shared_model(model)->net.settings()) != of_states) return;
@@ -41,29 +34,37 @@ void check_model(const Plan& plan, const std::string& key, const std::filesystem
                         name));
 }
 
+/// A rod along one arc length has neither loops nor branches.
+void check_knn(const Plan& plan, const Task& task, const TaskSpec& spec, const std::string& key) {
+  const bool loops = task.joints > task.segments - rod_count(spec.scene);
+  if (!loops && !branches(spec.scene)) return;
+  throw job_error(plan.job().path, key,
+                  fmt::format("\"knn\" is not allowed on rods {}; must be another guess; the joints of the {} segments "
+                              "of task {} {}",
+                              loops ? "with loops" : "that branch", task.segments, task.index,
+                              loops ? "close a loop" : "form a tree"));
+}
+
+void check_copingnet(const Plan& plan, const guess::CopingNet& guess, const std::string& key) {
+  check_model(plan, key, guess.model, false);
+  const char* for_factors = guess.corrections > 1 ? "corrections above 1"
+                            : guess.lag_steps > 0 ? "lag_steps"
+                            : guess.stop_at > 0   ? "stop_at"
+                                                  : nullptr;
+  if (for_factors && shared_model(guess.model)->net.settings().processor != Processor::factors)
+    throw job_error(plan.job().path, key,
+                    fmt::format("{} is not allowed with {}, a network without factors", for_factors,
+                                guess.model.filename().string()));
+}
+
 void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
   if (is_network(spec.solve.method))
     check_model(plan, "solve.model", spec.solve.model, spec.solve.method == Method::state_network);
-  const bool may_loop = task.joints > task.segments - rod_count(spec.scene);
-  for (std::size_t i = 0; i < spec.guesses.size(); ++i)
-    for (const GuessSpec* guess = &spec.guesses[i]; guess;
-         guess = guess->inner.empty() ? nullptr : &guess->inner.front()) {
-      const bool knn = guess->kind == GuessSpec::Kind::knn;
-      if (knn && may_loop)
-        refuse(plan, task, element("guesses", i), "\"knn\" is not allowed on rods with loops; must be another guess");
-      if (knn && branches(spec.scene))
-        refuse(plan, task, element("guesses", i), "\"knn\" is not allowed on rods that branch; must be another guess",
-               "form a tree");
-      if (guess->kind == GuessSpec::Kind::copingnet) check_model(plan, element("guesses", i), guess->model, false);
-      const char* for_factors = guess->corrections > 1        ? "corrections above 1"
-                                : guess->factor_lag_steps > 0 ? "lag_steps"
-                                : guess->stop_at > 0          ? "stop_at"
-                                                              : nullptr;
-      if (for_factors && shared_model(guess->model)->net.settings().processor != Processor::factors)
-        throw job_error(plan.job().path, element("guesses", i),
-                        fmt::format("{} is not allowed with {}, a network without factors", for_factors,
-                                    guess->model.filename().string()));
-    }
+  for (std::size_t i = 0; i < spec.guesses.size(); ++i) {
+    const std::string key = element("guesses", i);
+    if (find_guess<guess::Knn>(spec.guesses[i])) check_knn(plan, task, spec, key);
+    if (const auto* learned = find_guess<guess::CopingNet>(spec.guesses[i])) check_copingnet(plan, *learned, key);
+  }
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "runner/experiment/guesses.hpp"
 
-#include <stdexcept>
+#include <variant>
 
 #include "network/guess/coping_net_guess.hpp"
 #include "network/guess/knn_guess.hpp"
@@ -12,50 +12,59 @@
 #include "solver/step/time_step.hpp"
 
 namespace rodsweep {
-
 namespace {
 
-/// `noise`: the relative error of the solutions that the guess will hear of.
-std::unique_ptr<InitialGuess> make(const GuessSpec& guess, const TaskSpec& task, const Scene& scene, double noise) {
-  using Kind = GuessSpec::Kind;
-  const auto extrapolation = [&](int terms) {
-    return std::make_unique<ExtrapolationGuess>(scene, task.time.newton_iterations, terms);
-  };
-  using Use = SubspaceGuess::Use;
-  const auto subspace = [&](SubspaceGuess::Window window, Use use = Use::guess) {
-    return std::make_unique<SubspaceGuess>(scene, task.time.newton_iterations, guess.size, window, use);
-  };
-  switch (guess.kind) {
-    case Kind::zero: return std::make_unique<ZeroGuess>();
-    case Kind::previous: return extrapolation(1);
-    case Kind::linear: return extrapolation(2);
-    case Kind::quadratic: return extrapolation(3);
-    case Kind::fischer: return subspace(SubspaceGuess::Window::restarted);
-    case Kind::subspace: return subspace(SubspaceGuess::Window::sliding);
-    case Kind::deflation: return subspace(SubspaceGuess::Window::sliding, Use::guess_and_deflation);
-    case Kind::regression:
-      return std::make_unique<RegressionGuess>(scene, task.time.newton_iterations, guess.window, noise);
-    case Kind::copingnet:
-      return std::make_unique<CopingNetGuess>(shared_model(guess.model), scene, task.time.newton_iterations,
-                                              FactorUse{guess.corrections, guess.factor_lag_steps, guess.stop_at});
-    case Kind::knn:
-      return std::make_unique<KnnGuess>(shared_knn_set(guess.data, guess.simulations, guess.knn_inputs), scene,
-                                        constraint_dt(scene, task.time.step_s), guess.neighbours);
-    case Kind::oracle: return std::make_unique<OracleGuess>(scene, guess.error, guess.error_kind, task.seed);
-    case Kind::guarded:
-      return std::make_unique<GuardedGuess>(scene, make(guess.inner.front(), task, scene, noise), guess.threshold);
-    case Kind::totals:
-      return std::make_unique<TotalsGuess>(scene, make(guess.inner.front(), task, scene, 0));  // Newton corrects them
-    case Kind::first: return std::make_unique<FirstGuess>(make(guess.inner.front(), task, scene, noise));
+/// Makes guesses for the rods of a task.
+struct Maker {
+  using Made = std::unique_ptr<InitialGuess>;
+  const TaskSpec& task;
+  const Scene& scene;
+  double noise;  ///< relative error of the solutions that the guess accepts
+  int newton_iterations = task.time.newton_iterations;
+
+  Made make(const GuessSpec& guess) const { return std::visit(*this, guess.kind); }
+  Made subspace(int size, SubspaceGuess::Window window, SubspaceGuess::Use use = SubspaceGuess::Use::guess) const {
+    return std::make_unique<SubspaceGuess>(scene, newton_iterations, size, window, use);
   }
-  throw std::logic_error("make_guess: unknown kind of guess \"" + guess.label + "\"");
-}
+  double dt_c() const { return constraint_dt(scene, task.time.step_s); }
+
+  Made operator()(const guess::Zero&) const { return std::make_unique<ZeroGuess>(); }
+  Made operator()(const guess::Extrapolation& g) const {
+    return std::make_unique<ExtrapolationGuess>(scene, newton_iterations, g.terms);
+  }
+  Made operator()(const guess::Fischer& g) const { return subspace(g.size, SubspaceGuess::Window::restarted); }
+  Made operator()(const guess::Subspace& g) const { return subspace(g.size, SubspaceGuess::Window::sliding); }
+  Made operator()(const guess::Deflation& g) const {
+    return subspace(g.size, SubspaceGuess::Window::sliding, SubspaceGuess::Use::guess_and_deflation);
+  }
+  Made operator()(const guess::Regression& g) const {
+    return std::make_unique<RegressionGuess>(scene, newton_iterations, g.size, noise);
+  }
+  Made operator()(const guess::CopingNet& g) const {
+    return std::make_unique<CopingNetGuess>(shared_model(g.model), scene, newton_iterations,
+                                            FactorUse{g.corrections, g.lag_steps, g.stop_at});
+  }
+  Made operator()(const guess::Knn& g) const {
+    return std::make_unique<KnnGuess>(shared_knn_set(g.data, g.simulations, g.inputs), scene, dt_c(), g.neighbours);
+  }
+  Made operator()(const guess::Oracle& g) const {
+    return std::make_unique<OracleGuess>(scene, g.error, g.kind, task.seed);
+  }
+  Made operator()(const guess::Guarded& g) const {
+    return std::make_unique<GuardedGuess>(scene, make(*g.guess), g.threshold);
+  }
+  Made operator()(const guess::Totals& g) const {
+    const Maker exact{task, scene, 0};  // later Newton iterations correct the sums
+    return std::make_unique<TotalsGuess>(scene, exact.make(*g.guess));
+  }
+  Made operator()(const guess::First& g) const { return std::make_unique<FirstGuess>(make(*g.guess)); }
+};
 
 }  // namespace
 
 std::unique_ptr<InitialGuess> make_guess(const GuessSpec& guess, const TaskSpec& task, const Scene& scene) {
   const bool closed_loop = task.own_guess >= 0;
-  return make(guess, task, scene, closed_loop ? task.solve.tolerance : 0);
+  return Maker{task, scene, closed_loop ? task.solve.tolerance : 0}.make(guess);
 }
 
 }  // namespace rodsweep

@@ -18,6 +18,8 @@
 namespace rodsweep {
 namespace {
 
+bool is_zero(const GuessSpec& guess) { return std::holds_alternative<guess::Zero>(guess.kind); }
+
 /// A condensed system has one norm.
 bool has_other_norm(const TaskSpec& spec) {
   return spec.output.other_norm && spec.solve.preconditioner != Preconditioner::condensed;
@@ -89,8 +91,7 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
   const bool one = spec.own_guess >= 0;
   for (std::size_t g = 0; g < spec.guesses.size(); ++g)
     if (one ? static_cast<int>(g) == spec.own_guess : spec.settled.empty() || spec.settled[g] == 0)
-      guesses_.push_back(
-          {g, spec.guesses[g].kind == GuessSpec::Kind::zero, TimedGuess(make_guess(spec.guesses[g], spec, scene))});
+      guesses_.push_back({g, is_zero(spec.guesses[g]), TimedGuess(make_guess(spec.guesses[g], spec, scene))});
   const std::size_t tolerances = tolerance_ladder().size();
   for (const Guess& guess : guesses_) {
     const auto reset = [&](auto& sums) {
@@ -280,10 +281,8 @@ void MeasuredSolve::finish() {
 }
 
 void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {
-  const auto zero = static_cast<std::size_t>(
-      std::find_if(spec.guesses.begin(), spec.guesses.end(),
-                   [](const GuessSpec& guess) { return guess.kind == GuessSpec::Kind::zero; }) -
-      spec.guesses.begin());
+  const auto zero =
+      static_cast<std::size_t>(std::find_if(spec.guesses.begin(), spec.guesses.end(), is_zero) - spec.guesses.begin());
   if (zero == spec.guesses.size()) return;
   const std::size_t tolerances = tolerance_ladder().size();
   for (CountSums* sums : {&record.counted, &record.counted_all, &record.counted_other_norm})

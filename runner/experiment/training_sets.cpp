@@ -27,13 +27,6 @@ std::shared_ptr<const KnnSet> read_set(const Wanted& wanted, std::optional<MPI_C
   return shared;
 }
 
-void collect(const std::vector<GuessSpec>& guesses, std::set<Wanted>& all) {
-  for (const GuessSpec& guess : guesses) {
-    collect(guess.inner, all);
-    if (guess.kind == GuessSpec::Kind::knn) all.emplace(guess.data, guess.simulations, guess.knn_inputs);
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations, KnnInputs inputs) {
@@ -45,7 +38,9 @@ void read_knn_sets(const Plan& plan, MPI_Comm ranks) {
   const auto is_of_knn = [](const auto& file) { return file.second.key_path.find(".knn.") != std::string::npos; };
   if (std::none_of(files.begin(), files.end(), is_of_knn)) return;
   std::set<Wanted> all;
-  for (const Task& task : plan.tasks()) collect(plan.spec(task.index).guesses, all);
+  for (const Task& task : plan.tasks())
+    for (const GuessSpec& guess : plan.spec(task.index).guesses)
+      if (const auto* knn = find_guess<guess::Knn>(guess)) all.emplace(knn->data, knn->simulations, knn->inputs);
   collectively(ranks, [&] {
     for (const Wanted& wanted : all) read_set(wanted, ranks);
   });

@@ -1,20 +1,26 @@
 #include "runner/job/guess_keys.hpp"
 
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
 #include "runner/job/key_table.hpp"
 #include "runner/job/sweep.hpp"
 
 namespace rodsweep {
+
+static GuessKind read_guess(const Place& at);
+
+// Found by KeyTable among its overloads.
+static void read_value(const Place& at, std::shared_ptr<const GuessSpec>& guess) {
+  guess = std::make_shared<const GuessSpec>(GuessSpec{read_guess(at), ""});
+}
+
 namespace {
 
-using Guess = GuessSpec;
-
-struct Kind {
-  Guess::Kind kind;
-  const char* name;
-  const char* help;
-  KeyTable<Guess> parameters;
-};
-
+/// The keys of Fischer, Subspace and Deflation.
+template <class Guess>
 KeyTable<Guess> subspace_keys() {
   KeyTable<Guess> table;
   table.optional(integer_key("size", "most solutions that span the subspace; each costs a product with A").from(1, 200),
@@ -22,137 +28,145 @@ KeyTable<Guess> subspace_keys() {
   return table;
 }
 
-KeyTable<Guess> regression_keys() {
-  KeyTable<Guess> table;
-  table.optional(integer_key("size", "most systems to regress on").from(1, 200), &Guess::window);
+KeyTable<guess::Regression> regression_keys() {
+  KeyTable<guess::Regression> table;
+  table.optional(integer_key("size", "most systems to regress on").from(1, 200), &guess::Regression::size);
   return table;
 }
 
-KeyTable<Guess> copingnet_keys() {
-  KeyTable<Guess> table;
-  table.required(file_key("model", "model file of a train job"), &Guess::model);
+KeyTable<guess::CopingNet> copingnet_keys() {
+  using guess::CopingNet;
+  KeyTable<CopingNet> table;
+  table.required(file_key("model", "model file of a train job"), &CopingNet::model);
   table.optional(integer_key("corrections",
-                             "models with factors: solves with them, each of what is left; every further one costs a "
-                             "product with A")
+                             "models with factors: number of corrections, each of the residual of the one before; "
+                             "each further one costs a product with A")
                      .from(1, 100)
                      .labelled_if_changed(),
-                 &Guess::corrections);
+                 &CopingNet::corrections);
   table.optional(integer_key("lag_steps",
-                             "models with factors: so many time steps a prediction of them serves; 0: the solve that "
-                             "it was made for")
+                             "models with factors: for how many time steps predicted factors are used; 0: for one "
+                             "solve")
                      .from(0, 1000000)
                      .labelled_if_changed("lag"),
-                 &Guess::factor_lag_steps);
+                 &CopingNet::lag_steps);
   table.optional(
       number_key("stop_at", "models with factors: no correction once the residual is at most this, relative to ||b||")
           .from(0, 1)
           .labelled_if_changed("to"),
-      &Guess::stop_at);
+      &CopingNet::stop_at);
   return table;
 }
 
-KeyTable<Guess> knn_keys() {
-  KeyTable<Guess> table;
-  table.optional(integer_key("k", "how many").from(1, 1000).also_called({"neighbours"}), &Guess::neighbours);
-  table.required(file_key("data", "data set: the file of a job of kind \"dataset\"").unlabelled(), &Guess::data);
-  table.optional(integer_key("simulations", "the first so many simulations of the data set, or fewer; 0: all")
+KeyTable<guess::Knn> knn_keys() {
+  using guess::Knn;
+  KeyTable<Knn> table;
+  table.optional(integer_key("k", "number of neighbours").from(1, 1000).also_called({"neighbours"}), &Knn::neighbours);
+  table.required(file_key("data", "data set: the file of a job of kind \"dataset\"").unlabelled(), &Knn::data);
+  table.optional(integer_key("simulations", "how many simulations of the data set are used, from the first; 0: all")
                      .from(0, 1000000)
                      .unlabelled(),
-                 &Guess::simulations);
+                 &Knn::simulations);
   table.optional(choice_key("inputs",
-                            "what neighbours are alike in. all: shape, gaps of the joints and velocities; shape: what "
-                            "the paper's network knows")
+                            "what neighbours are compared by. all: shape, gaps of the joints and velocities; shape: "
+                            "what the paper's network sees")
                      .labelled_if_changed(""),
-                 Words<KnnInputs>{{"all", KnnInputs::all}, {"shape", KnnInputs::shape}}, &Guess::knn_inputs);
+                 Words<KnnInputs>{{"all", KnnInputs::all}, {"shape", KnnInputs::shape}}, &Knn::inputs);
   return table;
 }
 
-KeyTable<Guess> oracle_keys() {
+KeyTable<guess::Oracle> oracle_keys() {
+  using guess::Oracle;
   using Error = OracleGuess::Error;
-  KeyTable<Guess> table;
-  table.optional(number_key("error", "A-norm of the error relative to the solution's").from(0, 1e6), &Guess::error);
+  KeyTable<Oracle> table;
+  table.optional(number_key("error", "A-norm of the error relative to the solution's").from(0, 1e6), &Oracle::error);
   table.optional(choice_key("errors", "white: independent in every entry; smooth: of the modes that CG finds last"),
-                 Words<Error>{{"white", Error::white}, {"smooth", Error::smooth}}, &Guess::error_kind);
+                 Words<Error>{{"white", Error::white}, {"smooth", Error::smooth}}, &Oracle::kind);
   return table;
 }
 
-KeyTable<Guess> guarded_keys() {
-  KeyTable<Guess> table;
-  table.unbound(guess_key("guess", "the guess that is guarded"));
+KeyTable<guess::Guarded> guarded_keys() {
+  using guess::Guarded;
+  KeyTable<Guarded> table;
+  table.required(guess_key("guess", "the guess that is guarded"), &Guarded::guess);
   table.required(number_key("threshold", "the guess is used where the natural norm of b - A x0 is below this times b's")
                      .above(0)
                      .at_most(1e6),
-                 &Guess::threshold);
+                 &Guarded::threshold);
   return table;
 }
 
-KeyTable<Guess> totals_keys() {
+/// The keys of Totals and First.
+template <class Guess>
+KeyTable<Guess> keys_of_another(const char* help) {
   KeyTable<Guess> table;
-  table.unbound(guess_key("guess", "the guess that hears of whole steps"));
+  table.required(guess_key("guess", help), &Guess::guess);
   return table;
 }
 
-KeyTable<Guess> first_keys() {
-  KeyTable<Guess> table;
-  table.unbound(guess_key("guess", "the guess for first Newton iterations"));
-  return table;
+/// A kind of guess: its key with its parameters' keys, and how these are read.
+struct Kind {
+  Key key;
+  std::function<GuessKind(const Place& parameters)> read;
+};
+
+template <class Guess>
+Kind kind(const char* help, const KeyTable<Guess>& table = {}, const std::vector<std::string>& synonyms = {}) {
+  return {object_key(Guess::name, help, table.keys()).also_called(synonyms), [table](const Place& parameters) {
+            Guess guess;
+            table.fill(guess, parameters);
+            return GuessKind(guess);
+          }};
 }
 
+/// In the order in which help texts and the schema list them.
 const std::vector<Kind>& kinds() {
+  using namespace guess;
   static const std::vector<Kind> kinds{
-      {Guess::Kind::zero, "zero", "no guess: the denominator of every ratio", {}},
-      {Guess::Kind::previous, "previous", "the solution of the same Newton iteration of the last step", {}},
-      {Guess::Kind::linear, "linear", "linear extrapolation in time", {}},
-      {Guess::Kind::quadratic, "quadratic", "quadratic extrapolation in time", {}},
-      {Guess::Kind::fischer, "fischer",
-       "best approximation within the last solutions, collected until there are `size`, then from one again",
-       subspace_keys()},
-      {Guess::Kind::subspace, "subspace", "best approximation within the last `size` solutions", subspace_keys()},
-      {Guess::Kind::deflation, "deflation",
-       "as subspace, and the last `size` solutions are projected out of all of CG's residuals too (deflated CG)",
-       subspace_keys()},
-      {Guess::Kind::regression, "regression",
-       "the last `size` solutions combined as their right-hand sides make up today's: no product with A",
-       regression_keys()},
-      {Guess::Kind::copingnet, "copingnet",
-       "a learned guess: a network's correction of the guess that it was trained with", copingnet_keys()},
-      {Guess::Kind::knn, "knn",
-       "the solutions of the most similar systems of a data set, resampled by arc length and averaged", knn_keys()},
-      {Guess::Kind::oracle, "oracle", "the exact solution plus a random error", oracle_keys()},
-      {Guess::Kind::guarded, "guarded", "another guess, used only where its residual is small", guarded_keys()},
-      {Guess::Kind::totals, "totals",
-       "another guess, that hears what a step's increments add up to in place of the first one: for closed loops",
-       totals_keys()},
-      {Guess::Kind::first, "first",
-       "another guess at the first Newton iteration of a step, none at the others: for networks that learned of those "
-       "alone",
-       first_keys()},
+      kind<Zero>("no guess: the denominator of every ratio"),
+      kind<Previous>("the solution of the same Newton iteration of the last step"),
+      kind<Linear>("linear extrapolation in time"),
+      kind<Quadratic>("quadratic extrapolation in time"),
+      kind<Fischer>("best approximation within the last solutions, collected until there are `size`, then from one "
+                    "again",
+                    subspace_keys<Fischer>()),
+      kind<Subspace>("best approximation within the last `size` solutions", subspace_keys<Subspace>(), {"pod"}),
+      kind<Deflation>("as subspace, and the last `size` solutions are projected out of all of CG's residuals too "
+                      "(deflated CG)",
+                      subspace_keys<Deflation>()),
+      kind<Regression>("the last `size` solutions, combined by the coefficients that combine their right-hand "
+                       "sides to the current one: no product with A",
+                       regression_keys()),
+      kind<CopingNet>("a learned guess: a network's correction of the guess that it was trained with",
+                      copingnet_keys()),
+      kind<Knn>("the solutions of the most similar systems of a data set, resampled by arc length and averaged",
+                knn_keys()),
+      kind<Oracle>("the exact solution plus a random error", oracle_keys()),
+      kind<Guarded>("another guess, used only where its residual is small", guarded_keys()),
+      kind<Totals>("another guess, whose history of first Newton iterations holds the sum of a step's increments: "
+                   "for closed loops",
+                   keys_of_another<Totals>("the guess that is given these sums")),
+      kind<First>("another guess at the first Newton iteration of a step, zero at the others: for networks that "
+                  "were trained on first iterations alone",
+                  keys_of_another<First>("the guess for first Newton iterations")),
   };
   return kinds;
 }
 
-Guess guess_spec(const Place& at) {
-  const std::string& name = at.point.text(at.path);
-  Guess guess;
-  for (const Kind& kind : kinds()) {
-    if (name != kind.name) continue;
-    guess.kind = kind.kind;
-    kind.parameters.fill(guess, at.of(name));
-  }
-  const Place within = at.of(name).of("guess");
-  if (at.point.has(within.path)) {
-    guess.inner.push_back(guess_spec(within));
-    guess.inner.back().label = within.point.text(within.path);
-  }
-  return guess;
-}
-
 }  // namespace
+
+static GuessKind read_guess(const Place& at) {
+  const std::string& name = at.point.text(at.path);
+  const auto found =
+      std::find_if(kinds().begin(), kinds().end(), [&](const Kind& kind) { return kind.key.name == name; });
+  if (found == kinds().end()) throw std::logic_error("no guess is called " + name);
+  return found->read(at.of(name));
+}
 
 const std::vector<Key>& guess_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> objects;
-    for (const Kind& kind : kinds()) objects.push_back(object_key(kind.name, kind.help, kind.parameters.keys()));
+    for (const Kind& kind : kinds()) objects.push_back(kind.key);
     return objects;
   }();
   return keys;
@@ -175,8 +189,7 @@ std::vector<std::string> guess_labels(const Job& job) {
 std::vector<GuessSpec> guess_specs(const Point& point, const Job& job) {
   std::vector<GuessSpec> guesses;
   for (const std::string& label : guess_labels(job)) {
-    guesses.push_back(guess_spec({point, job, element("guesses", guesses.size())}));
-    guesses.back().label = label;
+    guesses.push_back({read_guess({point, job, element("guesses", guesses.size())}), label});
   }
   return guesses;
 }

@@ -15,10 +15,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<std::string> names(const std::vector<Key>& keys) {
-  std::vector<std::string> result;
-  for (const Key& key : keys) result.push_back(key.name);
-  return result;
+/// The name of the key that `word` most resembles, by its name or a synonym; empty if it resembles none.
+std::string nearest_key(const std::string& word, const std::vector<Key>& keys) {
+  std::vector<std::string> words;
+  std::map<std::string, std::string> meant;
+  const auto add = [&](const std::string& known, const Key& key) {
+    words.push_back(known);
+    meant[known] = key.name;
+  };
+  for (const Key& key : keys) {
+    add(key.name, key);
+    for (const std::string& synonym : key.synonyms) add(synonym, key);
+  }
+  const std::string near = nearest(word, words);
+  return near.empty() ? "" : meant[near];
 }
 
 /// "a" or "b"
@@ -162,22 +172,17 @@ void JobReader::refuse_unknown(const Key& key, const std::string& name, const st
                         tag_.value, other->only_advice.empty() ? "" : "; ", other->only_advice));
     return;
   }
-  std::vector<std::string> known, words;
-  std::map<std::string, std::string> meant;
+  std::vector<Key> known;
+  std::vector<std::string> names;
   for (const Key& child : key.keys) {
     if (!applies(child)) continue;
-    known.push_back(child.name);
-    words.push_back(child.name);
-    meant[child.name] = child.name;
-    for (const std::string& synonym : child.synonyms) {
-      words.push_back(synonym);
-      meant[synonym] = child.name;
-    }
+    known.push_back(child);
+    names.push_back(child.name);
   }
-  const std::string near = nearest(name, words);
+  const std::string near = nearest_key(name, known);
   const std::string hint = near.empty()
-                               ? (known.empty() ? "no keys are allowed here" : "allowed here: " + quoted_list(known))
-                               : "did you mean \"" + meant[near] + "\"?";
+                               ? (names.empty() ? "no keys are allowed here" : "allowed here: " + quoted_list(names))
+                               : "did you mean \"" + near + "\"?";
   mistake(member(path, name), "unknown key; " + hint);
 }
 
@@ -224,7 +229,8 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
   }
   const Key* guess = find_key(guess_keys(), name);
   if (!guess) {
-    refuse(key, value, path, did_you_mean(name, names(guess_keys())));
+    const std::string near = nearest_key(name, guess_keys());
+    refuse(key, value, path, near.empty() ? "" : "; did you mean \"" + near + "\"?");
     return value;
   }
   Key keys = *guess;

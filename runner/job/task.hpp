@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "network/guess/knn.hpp"
+#include "runner/job/guess_spec.hpp"
 #include "runner/job/rows.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
-#include "solver/guess/initial_guess.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/pbd_projection.hpp"
 
@@ -76,43 +75,6 @@ struct SolveSpec {
     if (lag_steps > 0) return lag_steps;
     return preconditioner == Preconditioner::lagged_cholesky ? of_lagged_cholesky : 0;
   }
-};
-
-/// An initial guess by name with its parameters. `label` names it in files and figures and is unique within a job.
-struct GuessSpec {
-  enum class Kind {
-    zero,
-    previous,
-    linear,
-    quadratic,
-    fischer,
-    subspace,
-    deflation,
-    regression,
-    copingnet,
-    knn,
-    oracle,
-    guarded,
-    totals,
-    first
-  };
-  Kind kind = Kind::zero;
-  std::string label;
-  int size = 10;                ///< fischer, subspace: how many solutions span the subspace
-  int window = 6;               ///< regression: on how many of the last systems
-  std::filesystem::path model;  ///< copingnet
-  int corrections = 1;          ///< copingnet
-  int factor_lag_steps = 0;     ///< copingnet: time steps that a prediction of factors serves; 0: one solve
-  double stop_at = 0;           ///< copingnet: no correction where ||r|| is at most this times ||b||
-  std::filesystem::path data;   ///< knn: the data set
-  int simulations = 0;          ///< knn: of the data set, from the first; 0: all
-  int neighbours = 3;           ///< knn
-  KnnInputs knn_inputs = KnnInputs::all;
-  double error = 0.1;  ///< oracle: relative A-norm of the error added to the exact solution
-  OracleGuess::Error error_kind = OracleGuess::Error::white;  ///< oracle
-  double threshold =
-      1;  ///< guarded: use `inner` only where the natural norm of b - A x0 is below threshold times that of b
-  std::vector<GuessSpec> inner;  ///< guarded, totals, first: exactly one
 };
 
 /// Of which linear systems a data set holds what they were assembled from, and the solution.

@@ -207,7 +207,7 @@ static void check_condensed(const Point& point, const Job& job) {
                     fmt::format("\"{}\" is {}; must be \"true_residual\"", point.text("solve.norm"), not_allowed));
   const std::vector<GuessSpec> guesses = guess_specs(point, job);
   for (std::size_t i = 0; i < guesses.size(); ++i)
-    if (guesses[i].kind == GuessSpec::Kind::deflation)
+    if (std::holds_alternative<guess::Deflation>(guesses[i].kind))
       throw job_error(job.path, element("guesses", i),
                       fmt::format("\"deflation\" is {}; must be another guess, such as \"subspace\"", not_allowed));
 }

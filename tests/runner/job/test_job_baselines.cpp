@@ -19,14 +19,13 @@ TEST_CASE("nearest neighbours are named by how many they are, and read from besi
   folder.write("data.h5", "systems");
   const Plan plan(folder.job(neighbours(R"({"data": "data.h5", "simulations": 256})")));
   CHECK(plan.guess_labels().back() == "knn 3");
-  const GuessSpec guess = plan.spec(0).guesses.back();
-  CHECK(guess.kind == GuessSpec::Kind::knn);
-  CHECK(guess.neighbours == 3);
-  CHECK(guess.simulations == 256);
-  CHECK(std::filesystem::equivalent(guess.data, folder.path() / "data.h5"));
+  const auto found = std::get<guess::Knn>(plan.spec(0).guesses.back().kind);
+  CHECK(found.neighbours == 3);
+  CHECK(found.simulations == 256);
+  CHECK(std::filesystem::equivalent(found.data, folder.path() / "data.h5"));
   const Plan five(folder.job(neighbours(R"({"k": 5, "data": "data.h5"})")));
   CHECK(five.guess_labels().back() == "knn 5");
-  CHECK(five.spec(0).guesses.back().simulations == 0);
+  CHECK(std::get<guess::Knn>(five.spec(0).guesses.back().kind).simulations == 0);
 }
 
 TEST_CASE("what nearest neighbours are depends on what their data set holds") {

@@ -61,13 +61,11 @@ TEST_CASE("every value of a job arrives in the task") {
   CHECK(spec.time_limit_s == 60);
 
   REQUIRE(spec.guesses.size() == 6);
-  CHECK(spec.guesses[3].kind == GuessSpec::Kind::quadratic);
-  CHECK(spec.guesses[4].error == 0.3);
-  CHECK(spec.guesses[5].kind == GuessSpec::Kind::guarded);
-  CHECK(spec.guesses[5].threshold == 0.7);
-  REQUIRE(spec.guesses[5].inner.size() == 1);
-  CHECK(spec.guesses[5].inner[0].kind == GuessSpec::Kind::oracle);
-  CHECK(spec.guesses[5].inner[0].error == 0.2);
+  CHECK(std::holds_alternative<guess::Quadratic>(spec.guesses[3].kind));
+  CHECK(std::get<guess::Oracle>(spec.guesses[4].kind).error == 0.3);
+  const auto guarded = std::get<guess::Guarded>(spec.guesses[5].kind);
+  CHECK(guarded.threshold == 0.7);
+  CHECK(std::get<guess::Oracle>(guarded.guess->kind).error == 0.2);
   CHECK(plan.guess_labels() == std::vector<std::string>{"zero", "previous", "linear", "q", "oracle 0.3", "careful"});
 }
 

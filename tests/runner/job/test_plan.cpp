@@ -249,10 +249,11 @@ TEST_CASE("parameters of guesses are swept like any other, and guarded guesses t
   const Plan plan = plan_of(with("/guesses", R"(["zero", {"oracle": {"error": {"grid": [0.1, 0.2]}}},
       {"guarded": {"guess": {"grid": ["linear", {"oracle": {"error": 3}}]}, "threshold": 1}}, {"oracle": {"error": 0.5}}])"));
   REQUIRE(plan.size() == 4);
-  CHECK(plan.spec(2).guesses[1].error == 0.2);
-  CHECK(plan.spec(2).guesses[2].inner[0].kind == GuessSpec::Kind::linear);
-  CHECK(plan.spec(3).guesses[2].inner[0].kind == GuessSpec::Kind::oracle);
-  CHECK(plan.spec(3).guesses[2].inner[0].error == 3);
+  CHECK(std::get<guess::Oracle>(plan.spec(2).guesses[1].kind).error == 0.2);
+  CHECK(find_guess<guess::Linear>(plan.spec(2).guesses[2]) != nullptr);
+  const TaskSpec last = plan.spec(3);
+  REQUIRE(find_guess<guess::Oracle>(last.guesses[2]) != nullptr);
+  CHECK(find_guess<guess::Oracle>(last.guesses[2])->error == 3);
   CHECK(numbers(plan, "guesses[1].oracle.error") == std::vector<double>{0.1, 0.1, 0.2, 0.2});
   CHECK(texts(plan, "guesses[2].guarded.guess") == std::vector<std::string>{"linear", "oracle", "linear", "oracle"});
   CHECK_FALSE(has_column(plan, "guesses[3].oracle.error"));
@@ -263,17 +264,17 @@ TEST_CASE("a whole guess is swept, and columns say which one each task had, with
       {"grid": ["previous", {"oracle": {"error": 0.1}},
                 {"guarded": {"guess": "linear", "threshold": {"grid": [1, 2]}}}]}])"));
   REQUIRE(plan.size() == 4);
-  using Kind = GuessSpec::Kind;
-  const std::vector<Kind> kinds{Kind::previous, Kind::oracle, Kind::guarded, Kind::guarded};
+  const std::vector<GuessKind> kinds{guess::Previous{}, guess::Oracle{}, guess::Guarded{}, guess::Guarded{}};
   for (std::int64_t i = 0; i < 4; ++i) {
     const auto guesses = plan.spec(i).guesses;
     REQUIRE(guesses.size() == 3);
-    CHECK(guesses[2].kind == kinds[static_cast<std::size_t>(i)]);
-    CHECK(guesses[1].error == 0.7);
+    CHECK(guesses[2].kind.index() == kinds[static_cast<std::size_t>(i)].index());
+    CHECK(std::get<guess::Oracle>(guesses[1].kind).error == 0.7);
   }
-  CHECK(plan.spec(1).guesses[2].error == 0.1);
-  CHECK(plan.spec(3).guesses[2].threshold == 2);
-  CHECK(plan.spec(3).guesses[2].inner[0].kind == Kind::linear);
+  CHECK(std::get<guess::Oracle>(plan.spec(1).guesses[2].kind).error == 0.1);
+  const TaskSpec last = plan.spec(3);
+  CHECK(std::get<guess::Guarded>(last.guesses[2].kind).threshold == 2);
+  CHECK(find_guess<guess::Linear>(last.guesses[2]) != nullptr);
   CHECK(texts(plan, "guesses[2]") == std::vector<std::string>{"previous", "oracle", "guarded", "guarded"});
   CHECK(column(plan, "guesses[2]").swept);
   const auto errors = numbers(plan, "guesses[2].oracle.error"),
