@@ -5,7 +5,6 @@
 #include "runner/command/sweep_run.hpp"
 #include "runner/command/training_run.hpp"
 #include "runner/experiment/inputs.hpp"
-#include "runner/job/plausible.hpp"
 #include "solver/cg/petsc_session.hpp"
 
 namespace rodsweep {
@@ -31,7 +30,7 @@ Job read_job_everywhere(const fs::path& path, const MpiSession& mpi) {
 ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console) {
   const PetscSession petsc;
   const Job job = read_job_everywhere(options.job, mpi);
-  for (const std::string& warning : implausible_values(job)) console.warn(warning);
+  for (const std::string& warning : job.warnings) console.warn(warning);
   return is_training(job) ? run_training(options, job, mpi, console) : run_sweep(options, job, mpi, console);
 }
 

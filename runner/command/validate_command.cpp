@@ -8,7 +8,6 @@
 #include "runner/experiment/inputs.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/job/plan.hpp"
-#include "runner/job/plausible.hpp"
 #include "runner/job/training_job.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/learning_sets.hpp"
@@ -74,7 +73,7 @@ class Validation {
     check_data(job);
     console_.result(fmt::format("{}: sound, {}", path.native(), extent_text(job)));
     for (const std::string& note : notes) console_.note(note);
-    for (const std::string& warning : implausible_values(job)) console_.warn(warning);
+    for (const std::string& warning : job.warnings) console_.warn(warning);
   }
 
  private:

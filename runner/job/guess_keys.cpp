@@ -111,8 +111,8 @@ struct Kind {
 };
 
 template <class Guess>
-Kind kind(const char* help, const KeyTable<Guess>& table = {}, const std::vector<std::string>& synonyms = {}) {
-  return {object_key(Guess::name, help, table.keys()).also_called(synonyms), [table](const Place& parameters) {
+Kind kind(const char* help, const KeyTable<Guess>& table = {}) {
+  return {object_key(Guess::name, help, table.keys()), [table](const Place& parameters) {
             Guess guess;
             table.fill(guess, parameters);
             return GuessKind(guess);
@@ -130,7 +130,7 @@ const std::vector<Kind>& kinds() {
       kind<Fischer>("best approximation within the last solutions, collected until there are `size`, then from one "
                     "again",
                     subspace_keys<Fischer>()),
-      kind<Subspace>("best approximation within the last `size` solutions", subspace_keys<Subspace>(), {"pod"}),
+      kind<Subspace>("best approximation within the last `size` solutions", subspace_keys<Subspace>()),
       kind<Deflation>("as subspace, and the last `size` solutions are projected out of all of CG's residuals too "
                       "(deflated CG)",
                       subspace_keys<Deflation>()),

@@ -9,7 +9,7 @@
 
 #include "runner/job/job_keys.hpp"
 #include "runner/job/job_reader.hpp"
-#include "runner/job/obstacle_keys.hpp"
+#include "runner/job/scene_part_keys.hpp"
 #include "runner/job/shortened.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/job/sweep_space.hpp"
@@ -54,6 +54,7 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   job.values = reader.read(job_key(), parse_strict_json(text, path), "");
   reader.throw_mistakes();
   for (const auto& [file, key_path] : reader.files()) job.files.emplace(file, look(file, key_path));
+  job.warnings = reader.warnings();
   job.path = path;
   job.text = std::move(text);
   job.name = job.values["name"];

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "runner/job/input_file.hpp"
 
@@ -31,9 +32,10 @@ struct Job {
   std::string text;            ///< the file as it was read, byte for byte: stored in /job/text
   std::string name;
   std::uint64_t seed = 0;
-  std::int64_t samples = 1;       ///< of a training 1
-  InputFiles files;               ///< that it names
-  nlohmann::ordered_json values;  ///< validated, every default filled in, sweeps still in place
+  std::int64_t samples = 1;           ///< of a training 1
+  InputFiles files;                   ///< that it names
+  nlohmann::ordered_json values;      ///< validated, every default filled in, sweeps still in place
+  std::vector<std::string> warnings;  ///< of values that are not plausible, a line each, ready to print
 
   /// The list of guesses; empty in a kind of job that has none.
   nlohmann::ordered_json guesses() const;

@@ -25,6 +25,9 @@ class JobReader {
   /// The files that the job names, each with the first key path that does.
   const std::map<std::string, std::string>& files() const { return files_; }
 
+  /// Of values that are allowed but not plausible, one line for each key path.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
   /// Throws JobError with one line for each of the first mistakes, if there was any.
   void throw_mistakes() const;
 
@@ -43,6 +46,8 @@ class JobReader {
   void refuse_unknown(const Key& key, const std::string& name, const std::string& path);
   void fill_absent(const Key& key, const std::string& path, Json& result);
   bool applies(const Key& key) const;
+  void warn_if_implausible(const Key& key, double value, const std::string& path);
+  void warn_if_thick(const Key& scene_key, const Json& scene, const std::string& path);
   void refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark = "");
   void mistake(const std::string& path, const std::string& text);
 
@@ -57,6 +62,7 @@ class JobReader {
   std::size_t mistakes_ = 0;
   std::vector<std::string> told_;  ///< of the first of them
   std::map<std::string, std::string> files_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace rodsweep

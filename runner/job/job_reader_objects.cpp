@@ -15,20 +15,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The name of the key that `word` most resembles, by its name or a synonym; empty if it resembles none.
-std::string nearest_key(const std::string& word, const std::vector<Key>& keys) {
-  std::vector<std::string> words;
-  std::map<std::string, std::string> meant;
-  const auto add = [&](const std::string& known, const Key& key) {
-    words.push_back(known);
-    meant[known] = key.name;
-  };
-  for (const Key& key : keys) {
-    add(key.name, key);
-    for (const std::string& synonym : key.synonyms) add(synonym, key);
-  }
-  const std::string near = nearest(word, words);
-  return near.empty() ? "" : meant[near];
+std::vector<std::string> names(const std::vector<Key>& keys) {
+  std::vector<std::string> result;
+  for (const Key& key : keys) result.push_back(key.name);
+  return result;
 }
 
 /// "a" or "b"
@@ -128,13 +118,16 @@ Json JobReader::read_object(const Key& key, const Json& value, const std::string
   Json result = Json::object();
   for (const auto& [name, child] : value.items()) {
     const Key* child_key = find_key(key.keys, name);
-    if (child_key && applies(*child_key)) {
-      result[name] = read(*child_key, child, member(path, name));
-    } else {
+    if (!child_key || !applies(*child_key))
       refuse_unknown(key, name, path);
-    }
+    else if (result.contains(child_key->name))
+      mistake(member(path, name),
+              fmt::format("\"{}\" and \"{}\" are the same key; give one of them", child_key->name, child_key->alias));
+    else
+      result[child_key->name] = read(*child_key, child, member(path, name));
   }
   fill_absent(key, path, result);
+  warn_if_thick(key, result, path);
   tag_ = outer;
   return result;
 }
@@ -172,17 +165,22 @@ void JobReader::refuse_unknown(const Key& key, const std::string& name, const st
                         tag_.value, other->only_advice.empty() ? "" : "; ", other->only_advice));
     return;
   }
-  std::vector<Key> known;
-  std::vector<std::string> names;
+  std::vector<std::string> known, words;
+  std::map<std::string, std::string> meant;
   for (const Key& child : key.keys) {
     if (!applies(child)) continue;
-    known.push_back(child);
-    names.push_back(child.name);
+    known.push_back(child.name);
+    words.push_back(child.name);
+    meant[child.name] = child.name;
+    for (const std::string& synonym : child.synonyms) {
+      words.push_back(synonym);
+      meant[synonym] = child.name;
+    }
   }
-  const std::string near = nearest_key(name, known);
+  const std::string near = nearest(name, words);
   const std::string hint = near.empty()
-                               ? (names.empty() ? "no keys are allowed here" : "allowed here: " + quoted_list(names))
-                               : "did you mean \"" + near + "\"?";
+                               ? (known.empty() ? "no keys are allowed here" : "allowed here: " + quoted_list(known))
+                               : "did you mean \"" + meant[near] + "\"?";
   mistake(member(path, name), "unknown key; " + hint);
 }
 
@@ -229,8 +227,7 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
   }
   const Key* guess = find_key(guess_keys(), name);
   if (!guess) {
-    const std::string near = nearest_key(name, guess_keys());
-    refuse(key, value, path, near.empty() ? "" : "; did you mean \"" + near + "\"?");
+    refuse(key, value, path, did_you_mean(name, names(guess_keys())));
     return value;
   }
   Key keys = *guess;

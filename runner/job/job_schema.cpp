@@ -140,8 +140,15 @@ class SchemaWriter {
     std::map<std::string, Json> groups;
     for (const Key& child : key.keys) {
       properties[child.name] = place(child, member(path, child.name));
-      if (!child.alternative_group.empty()) {
-        groups[child.alternative_group].push_back(Json{{"required", Json::array({child.name})}});
+      const auto one_of = [&](const std::string& group, const std::string& name) {
+        groups[group].push_back(Json{{"required", Json::array({name})}});
+      };
+      if (!child.alias.empty()) {
+        properties[child.alias] = properties[child.name];
+        properties[child.alias]["description"] = "the same as " + child.name;
+        for (const std::string& name : {child.name, child.alias}) one_of(child.name, name);
+      } else if (!child.alternative_group.empty()) {
+        one_of(child.alternative_group, child.name);
       } else if (!child.preset && child.only_for.empty()) {
         required.push_back(child.name);
       }

@@ -49,6 +49,10 @@ Key& Key::at_most(double bound) {
   return *this;
 }
 Key& Key::from(double least, double most) { return at_least(least).at_most(most); }
+Key& Key::plausibly(double least, double most, const char* known) {
+  plausible = Plausible{least, most, known};
+  return *this;
+}
 Key& Key::or_word(const char* word) {
   choices.emplace_back(word);
   return *this;
@@ -71,6 +75,10 @@ Key& Key::one_of_group(const char* group) {
 }
 Key& Key::of_form(Text form) {
   text = form;
+  return *this;
+}
+Key& Key::also_accepted_as(const char* name) {
+  alias = name;
   return *this;
 }
 Key& Key::also_called(std::vector<std::string> words) {
@@ -203,7 +211,7 @@ bool belongs(const Key& key, const std::string& tag_value) {
 
 const Key* find_key(const std::vector<Key>& keys, const std::string& name) {
   for (const Key& key : keys) {
-    if (key.name == name) return &key;
+    if (key.name == name || (!key.alias.empty() && key.alias == name)) return &key;
   }
   return nullptr;
 }

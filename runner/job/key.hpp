@@ -33,6 +33,12 @@ struct Key {
     file_name  ///< letters, digits, "_", "-" and ".", beginning with none of the latter two
   };
 
+  /// Where the magnitudes of real things lie, or 0. A value outside is warned of, not refused.
+  struct Plausible {
+    double least, most;
+    std::string known;  ///< to compare with: "water has 1000", or ""
+  };
+
   std::string name;
   Kind kind = Kind::object;
   std::string unit;  ///< SI, "" where there is none
@@ -41,6 +47,7 @@ struct Key {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool above_low = false;  ///< `low` itself is excluded
+  std::optional<Plausible> plausible;
   std::vector<std::string> choices;
   Text text = Text::any;
   std::optional<nlohmann::ordered_json> preset;              ///< value if the key is absent; none: the key is required
@@ -52,6 +59,7 @@ struct Key {
   bool parameter = true;              ///< part of a task's parameters, not a setting of the whole job?
   bool or_list = false;               ///< or a list of at least one such value
   std::string no_sweep_advice;        ///< what to do instead of sweeping it
+  std::string alias;                  ///< another name that is accepted as the same, or ""
   std::vector<std::string> synonyms;  ///< other words for it: suggested, never accepted
   std::vector<std::string> only_for;  ///< the values of the enclosing `tag`, of its own object or one further out, that
                                       ///< have this key; none: all have
@@ -66,12 +74,14 @@ struct Key {
   Key& at_least(double bound);
   Key& at_most(double bound);
   Key& from(double least, double most);
+  Key& plausibly(double least, double most, const char* known = "");
   Key& or_word(const char* word);
   Key& defaults_to(nlohmann::ordered_json value);
   Key& only(std::vector<std::string> tag_values, const char* advice = "");
   Key& otherwise(const char* advice);  ///< only_advice, where a table of keys knows whose the key is
   Key& one_of_group(const char* group);
   Key& of_form(Text form);
+  Key& also_accepted_as(const char* name);
   Key& also_called(std::vector<std::string> words);
   Key& unswept(const char* advice = "");
   Key& or_list_of_such();
@@ -105,7 +115,7 @@ std::string allowed(const Key& key);
 /// "clamped length [m], a number above 0".
 std::string describe(const Key& key);
 
-/// Member by name, nullptr if there is none.
+/// Member by name or alias, nullptr if there is none.
 const Key* find_key(const std::vector<Key>& keys, const std::string& name);
 
 /// Does a key belong to this value of the tag?

@@ -45,7 +45,7 @@ struct Place {
 
 // How a value is read where its key has one. Types of their own have overloads of their own, beside their tables.
 inline void read_value(const Place& at, double& value) { value = at.point.number(at.path); }
-inline void read_value(const Place& at, bool& value) { value = at.point.text(at.path) == "true"; }
+inline void read_value(const Place& at, bool& value) { value = at.point.number(at.path) != 0; }
 inline void read_value(const Place& at, int& value) { value = static_cast<int>(at.point.integer(at.path)); }
 inline void read_value(const Place& at, std::uint64_t& value) {
   value = static_cast<std::uint64_t>(at.point.integer(at.path));

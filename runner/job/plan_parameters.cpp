@@ -19,8 +19,9 @@ ParameterColumn empty_column(const std::string& path, const Key& key, std::size_
   column.unit = key.unit;
   column.meaning = key.help;
   if (key.kind == Key::Kind::number && !key.choices.empty()) column.meaning += "; NaN: " + quoted_list(key.choices);
+  if (key.kind == Key::Kind::boolean) column.meaning += "; 1: true";
   column.width = key.kind == Key::Kind::vector ? 3 : 1;
-  if (key.kind == Key::Kind::integer) {
+  if (key.kind == Key::Kind::integer || key.kind == Key::Kind::boolean) {
     column.values = std::vector<std::int64_t>(tasks, -1);
   } else if (key.kind == Key::Kind::number || key.kind == Key::Kind::vector) {
     const auto width = static_cast<std::size_t>(column.width);

@@ -1,9 +1,7 @@
 #include "runner/job/scene_keys.hpp"
 
-#include "runner/job/contact_keys.hpp"
-#include "runner/job/obstacle_keys.hpp"
+#include "runner/job/scene_part_keys.hpp"
 #include "runner/job/skeleton_file.hpp"
-#include "runner/job/wind_keys.hpp"
 
 namespace rodsweep {
 
@@ -61,7 +59,8 @@ void add_shapes(Table& table) {
           .also_called({"n", "number_of_segments", "elements"})
           .otherwise("a skeleton has one for every edge"),
       segments, shape(&TreeShape::segments));
-  table.required(length_key("length_m", "length of the rod; of a tree's trunk"), length_m, shape(&TreeShape::length_m));
+  table.required(length_key("length_m", "length of the rod; of a tree's trunk").plausibly(1e-4, 1e3), length_m,
+                 shape(&TreeShape::length_m));
   table.optional(
       angle_key("twist_deg", "total angle by which a ring was twisted before its ends were joined", -1e6, 1e6),
       &Ring::twist_deg);
@@ -72,8 +71,9 @@ void add_shapes(Table& table) {
                  &Forest::rows);
   table.required(integer_key("columns", "rods of a net along z; trees in a row of a forest").from(1, 1000),
                  &Net::columns, &Forest::columns);
-  table.required(length_key("mesh_m", "distance of neighbouring rods of a net; edge of a lattice's cell"), &Net::mesh_m,
-                 &Lattice::mesh_m);
+  table.required(
+      length_key("mesh_m", "distance of neighbouring rods of a net; edge of a lattice's cell").plausibly(1e-5, 1e2),
+      &Net::mesh_m, &Lattice::mesh_m);
   table.optional(choice_key("cell",
                             "where the rods of a lattice run: along the edges of its cells, along their "
                             "diagonals, or along the diagonals of their faces"),
@@ -91,8 +91,8 @@ void add_shapes(Table& table) {
           .above(0)
           .at_most(1e9),
       &Lattice::node_stiffness);
-  table.required(length_key("helix_radius_m", "radius of the helix"), &Helix::helix_radius_m);
-  table.required(length_key("helix_height_m", "height of the helix"), &Helix::helix_height_m);
+  table.required(length_key("helix_radius_m", "radius of the helix").plausibly(1e-5, 1e2), &Helix::helix_radius_m);
+  table.required(length_key("helix_height_m", "height of the helix").plausibly(1e-5, 1e3), &Helix::helix_height_m);
   table.required(number_key("windings", "turns of the helix").above(0).at_most(1e6).also_called({"turns"}),
                  &Helix::windings);
 }
@@ -102,27 +102,39 @@ void add_rods(Table& table) {
                      .in("m")
                      .above(0)
                      .at_most(1e3)
+                     .plausibly(1e-6, 10)
                      .otherwise("a skeleton has its own radii"),
                  OwnRadius());
-  table.required(number_key("density_kg_m3", "density").in("kg/m^3").above(0).at_most(1e6).also_called({"rho"}),
+  table.required(number_key("density_kg_m3", "density")
+                     .in("kg/m^3")
+                     .above(0)
+                     .at_most(1e6)
+                     .plausibly(10, 25000, "water has 1000, steel 7850")
+                     .also_called({"rho"}),
                  &Rods::density_kg_m3);
   table.required(number_key("youngs_modulus_pa", "Young's modulus, for bending")
                      .in("Pa")
                      .above(0)
                      .at_most(1e15)
+                     .plausibly(1e3, 2e12, "rubber has 1e6 to 1e8, steel 2e11")
                      .also_called({"bending_modulus_pa", "elastic_modulus_pa", "e", "y"}),
                  &Rods::youngs_modulus_pa);
   table.required(number_key("torsion_modulus_pa", "torsion modulus, for twisting and shear")
                      .in("Pa")
                      .above(0)
                      .at_most(1e15)
-                     .also_called({"shear_modulus_pa", "g", "t"}),
+                     .plausibly(1e3, 2e12, "rubber has 3e5 to 3e7, steel 8e10")
+                     .also_accepted_as("shear_modulus_pa")
+                     .also_called({"g", "t"}),
                  &Rods::torsion_modulus_pa);
   table.optional(
       angle_key("initial_angle_deg",
                 "angle from the horizontal at the start; of a bundle's outermost rods from the vertical", -360, 360),
       &BendingRod::initial_angle_deg, &Bundle::initial_angle_deg, &Lattice::initial_angle_deg);
-  table.optional(vector_key("gravity_m_s2", "acceleration of gravity").in("m/s^2").from(-1e6, 1e6),
+  table.optional(vector_key("gravity_m_s2", "acceleration of gravity")
+                     .in("m/s^2")
+                     .from(-1e6, 1e6)
+                     .plausibly(0, 300, "the Earth has 9.81"),
                  &Rods::gravity_m_s2);
   table.optional(number_key("damping_per_s", "viscous damping: velocities decay at this rate").in("1/s").from(0, 1e6),
                  &Rods::damping_per_s);

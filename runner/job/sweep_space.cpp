@@ -111,13 +111,10 @@ void SweepSpace::read(const Key& key, const Json& value, const std::string& path
     case Key::Kind::choice:
     case Key::Kind::text: {
       Fixed fixed{parameter(path, key), component, 0.0};
-      if (value.is_string()) {
+      if (value.is_string())
         fixed.value = value.get<std::string>();
-      } else if (value.is_boolean()) {
-        fixed.value = value.dump();
-      } else {
-        fixed.value = value.get<double>();
-      }
+      else
+        fixed.value = value.is_boolean() ? value.get<bool>() : value.get<double>();
       scope.fixed.push_back(std::move(fixed));
     }
   }

@@ -47,7 +47,7 @@ class Point {
   struct Value {
     enum class State : std::uint8_t { absent, number, text };
     State state = State::absent;
-    double number[3] = {0, 0, 0};  ///< integers too: they are below 2^53
+    double number[3] = {0, 0, 0};  ///< integers too, which are below 2^53; of a boolean 0 or 1
     const std::string* text = nullptr;
   };
   const Value& operator[](std::size_t parameter) const { return values_[parameter]; }

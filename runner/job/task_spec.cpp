@@ -48,9 +48,13 @@ int whole_steps(double duration_s, double step_s, const Job& job) {
 KeyTable<TimeSpec> time_keys() {
   constexpr const char* run = "length of the run";
   KeyTable<TimeSpec> table;
-  table.required(
-      number_key("step_s", "time step").in("s").above(0).at_most(1000).also_called({"dt", "dt_s", "time_step_s"}),
-      &TimeSpec::step_s);
+  table.required(number_key("step_s", "time step")
+                     .in("s")
+                     .above(0)
+                     .at_most(1000)
+                     .plausibly(1e-6, 1)
+                     .also_called({"dt", "dt_s", "time_step_s"}),
+                 &TimeSpec::step_s);
   table.required(integer_key("steps", "number of time steps").from(1, 10000000).one_of_group(run), &TimeSpec::steps);
   table.unbound(number_key("duration_s", "simulated time, a whole number of steps")
                     .in("s")
@@ -215,7 +219,7 @@ static void check_condensed(const Point& point, const Job& job) {
 void check_method(const Point& point, const Job& job) {
   check_condensed(point, job);
   if (const Method own = method(point);
-      point.has("time.balance") && point.text("time.balance") == "true" && own != Method::cg && own != Method::direct)
+      point.has("time.balance") && point.number("time.balance") != 0 && own != Method::cg && own != Method::direct)
     throw job_error(job.path, "time.balance",
                     fmt::format("true is not allowed with solve.method \"{}\", which solves no linear system that "
                                 "could hold the balance; must be with \"direct\" or \"cg\"",

@@ -1,4 +1,4 @@
-// What the rods of a scene in a job touch besides each other: the keys of `scene.obstacles`.
+// The keys of the parts of a scene in a job: `scene.wind`, `scene.contact`, `scene.obstacles`.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,12 @@
 
 #include "runner/job/key_table.hpp"
 #include "solver/scene/contact_settings.hpp"
+#include "solver/scene/wind.hpp"
 
 namespace rodsweep {
 
+KeyTable<WindParameters> wind_keys();
+KeyTable<ContactSettings> contact_keys();
 Key obstacles_key();
 
 /// Throws JobError for a half-space without a direction.
