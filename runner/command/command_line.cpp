@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "runner/job/job_schema.hpp"
-#include "runner/job/nearest.hpp"
 #include "runner/terminal/text.hpp"
+#include "runner/text/nearest.hpp"
 
 namespace rodsweep {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runner/experiment/task_body.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

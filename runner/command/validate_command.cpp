@@ -7,8 +7,8 @@
 
 #include "runner/experiment/inputs.hpp"
 #include "runner/file/file_error.hpp"
-#include "runner/job/plan.hpp"
 #include "runner/job/training_job.hpp"
+#include "runner/plan/plan.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/training/learning_sets.hpp"
 

@@ -10,9 +10,9 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/stored_plan.hpp"
-#include "runner/job/checksum.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/text.hpp"
+#include "runner/text/checksum.hpp"
 #include "solver/step/time_step.hpp"
 
 namespace rodsweep {

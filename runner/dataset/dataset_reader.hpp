@@ -18,7 +18,7 @@
 
 #include "network/encoding/stored_simulation.hpp"
 #include "runner/file/task_reader.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

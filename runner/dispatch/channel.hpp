@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "runner/job/task_outcome.hpp"
+#include "runner/plan/task_outcome.hpp"
 
 namespace rodsweep {
 

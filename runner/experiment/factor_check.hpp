@@ -3,7 +3,7 @@
 // at once, in about a second per 100,000 joints.
 #pragma once
 
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 #include "solver/factor/elimination_plan.hpp"
 
 namespace rodsweep {

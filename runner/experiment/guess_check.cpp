@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "runner/experiment/models.hpp"
-#include "runner/job/key_path.hpp"
+#include "runner/text/key_path.hpp"
 
 namespace rodsweep {
 namespace {

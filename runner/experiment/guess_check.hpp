@@ -5,7 +5,7 @@
 // lag_steps and stop_at are for models with factors; a model of states is for state_network alone.
 #pragma once
 
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

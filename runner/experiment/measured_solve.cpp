@@ -10,7 +10,7 @@
 #include "runner/experiment/median.hpp"
 #include "runner/experiment/solve_rows.hpp"
 #include "runner/experiment/timed_guess.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 #include "solver/cg/cg_solver.hpp"
 #include "solver/linear/rounding_level.hpp"
 #include "solver/step/stopwatch.hpp"

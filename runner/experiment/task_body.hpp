@@ -11,7 +11,7 @@
 
 #include "runner/dispatch/worker.hpp"
 #include "runner/experiment/evaluation.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

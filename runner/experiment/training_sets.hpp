@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "network/guess/knn.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

@@ -14,7 +14,7 @@
 #include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/stored_plan.hpp"
-#include "runner/job/job_extension.hpp"
+#include "runner/plan/job_extension.hpp"
 
 namespace rodsweep {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "runner/file/task_reader.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

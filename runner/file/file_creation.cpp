@@ -13,7 +13,7 @@
 #include "runner/file/planned_columns.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/unfinished_file.hpp"
-#include "runner/job/task_outcome.hpp"
+#include "runner/plan/task_outcome.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {

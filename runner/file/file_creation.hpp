@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runner/file/file_error.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

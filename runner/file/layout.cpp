@@ -8,7 +8,7 @@
 #include "runner/file/columns.hpp"
 #include "runner/file/planned_columns.hpp"
 #include "runner/file/runs.hpp"
-#include "runner/job/checksum.hpp"
+#include "runner/text/checksum.hpp"
 
 namespace rodsweep {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runner/file/hdf5.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

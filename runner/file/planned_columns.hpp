@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "runner/file/columns.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

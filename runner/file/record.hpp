@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runner/job/task.hpp"
-#include "runner/job/task_outcome.hpp"
+#include "runner/plan/task_outcome.hpp"
 
 namespace rodsweep {
 

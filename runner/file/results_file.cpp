@@ -18,8 +18,8 @@
 #include "runner/file/runs.hpp"
 #include "runner/file/task_checksum.hpp"
 #include "runner/file/task_reader.hpp"
-#include "runner/job/task_outcome.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "runner/plan/task_outcome.hpp"
 
 namespace rodsweep {
 namespace {

@@ -29,7 +29,7 @@
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
 #include "runner/file/task_times.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

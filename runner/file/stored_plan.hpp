@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "runner/file/inspect.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 

@@ -2,7 +2,7 @@
 
 #include "runner/file/columns.hpp"
 #include "runner/file/layout.hpp"
-#include "runner/job/checksum.hpp"
+#include "runner/text/checksum.hpp"
 
 namespace rodsweep {
 

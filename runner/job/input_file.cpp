@@ -9,10 +9,10 @@
 #include <fstream>
 #include <vector>
 
-#include "runner/job/checksum.hpp"
 #include "runner/job/job.hpp"
-#include "runner/job/key_path.hpp"
-#include "runner/job/nearest.hpp"
+#include "runner/text/checksum.hpp"
+#include "runner/text/key_path.hpp"
+#include "runner/text/nearest.hpp"
 
 namespace rodsweep {
 namespace {

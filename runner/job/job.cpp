@@ -10,10 +10,10 @@
 #include "runner/job/job_keys.hpp"
 #include "runner/job/job_reader.hpp"
 #include "runner/job/scene_part_keys.hpp"
-#include "runner/job/shortened.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/job/sweep_space.hpp"
 #include "runner/job/training_job.hpp"
+#include "runner/text/shortened.hpp"
 
 namespace rodsweep {
 namespace {

@@ -45,7 +45,7 @@ struct Job {
 bool is_training(const Job& job);
 
 /// Reads and validates every key and every value that a sweep can take; throws JobError. What depends on several values
-/// at one parameter point (such as a duration of a whole number of steps) is checked by Plan (runner/job/plan.hpp).
+/// at one parameter point (such as a duration of a whole number of steps) is checked by Plan (runner/plan/plan.hpp).
 Job read_job(const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);
 std::string read_job_text(const std::filesystem::path& path);  ///< refuses what is no file, or larger than a job may be
 Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);

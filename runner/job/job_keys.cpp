@@ -2,7 +2,7 @@
 
 #include "runner/job/scene_keys.hpp"
 #include "runner/job/task_spec.hpp"
-#include "runner/job/training_keys.hpp"
+#include "runner/job/training_job.hpp"
 
 namespace rodsweep {
 namespace {

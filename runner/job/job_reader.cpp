@@ -7,10 +7,10 @@
 #include <functional>
 
 #include "runner/job/job.hpp"
-#include "runner/job/key_path.hpp"
-#include "runner/job/nearest.hpp"
-#include "runner/job/shortened.hpp"
 #include "runner/job/sweep.hpp"
+#include "runner/text/key_path.hpp"
+#include "runner/text/nearest.hpp"
+#include "runner/text/shortened.hpp"
 
 namespace rodsweep {
 namespace {

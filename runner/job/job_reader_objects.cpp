@@ -6,9 +6,9 @@
 
 #include "runner/job/guess_keys.hpp"
 #include "runner/job/job_reader.hpp"
-#include "runner/job/key_path.hpp"
-#include "runner/job/nearest.hpp"
 #include "runner/job/sweep.hpp"
+#include "runner/text/key_path.hpp"
+#include "runner/text/nearest.hpp"
 
 namespace rodsweep {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "runner/job/guess_keys.hpp"
 #include "runner/job/job_keys.hpp"
-#include "runner/job/key_path.hpp"
 #include "runner/job/sweep.hpp"
+#include "runner/text/key_path.hpp"
 
 namespace rodsweep {
 namespace {

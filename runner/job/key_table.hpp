@@ -27,9 +27,9 @@
 
 #include "runner/job/job.hpp"
 #include "runner/job/key.hpp"
-#include "runner/job/key_path.hpp"
 #include "runner/job/sweep_space.hpp"
-#include "runner/job/words.hpp"
+#include "runner/text/key_path.hpp"
+#include "runner/text/words.hpp"
 #include "solver/numbers/types.hpp"
 
 namespace rodsweep {

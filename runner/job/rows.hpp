@@ -1,5 +1,5 @@
 // The kinds of rows that datasets of a results file have, and where /tasks says which of them are a task's.
-// A kind is said here and sized in size_rows() (runner/job/plan.cpp); plan, layout, writing and reading walk the array.
+// A kind is said here and sized in size_rows() (runner/plan/plan.cpp); plan, layout, writing and reading walk the array.
 #pragma once
 
 #include <array>

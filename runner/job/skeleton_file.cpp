@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "runner/job/shortened.hpp"
+#include "runner/text/shortened.hpp"
 
 namespace rodsweep {
 namespace {

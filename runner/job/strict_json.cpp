@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "runner/job/job.hpp"
-#include "runner/job/shortened.hpp"
-#include "runner/job/syntax_error.hpp"
+#include "runner/text/shortened.hpp"
+#include "runner/text/syntax_error.hpp"
 
 namespace rodsweep {
 namespace {

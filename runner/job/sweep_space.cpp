@@ -6,13 +6,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "runner/job/counter_random.hpp"
 #include "runner/job/guess_keys.hpp"
 #include "runner/job/job.hpp"
 #include "runner/job/job_keys.hpp"
-#include "runner/job/key_path.hpp"
 #include "runner/job/option_label.hpp"
 #include "runner/job/sweep.hpp"
+#include "runner/text/key_path.hpp"
+#include "solver/numbers/counter_random.hpp"
 
 namespace rodsweep {
 namespace {

@@ -1,5 +1,5 @@
 // One task of a sweep: a concrete simulation with all its settings, and where its results live in the file.
-// Plain values; made by Plan (runner/job/plan.hpp), run by evaluate() (runner/experiment/evaluation.hpp).
+// Plain values; made by Plan (runner/plan/plan.hpp), run by evaluate() (runner/experiment/evaluation.hpp).
 #pragma once
 
 #include <cstdint>

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "runner/job/guess_keys.hpp"
-#include "runner/job/key_path.hpp"
 #include "runner/job/key_table.hpp"
+#include "runner/text/key_path.hpp"
 
 namespace rodsweep {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "network/processor/factor_inference.hpp"
-#include "runner/job/words.hpp"
+#include "runner/text/words.hpp"
 
 namespace rodsweep {
 namespace {

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "network/encoding/coping_net_settings.hpp"
 #include "network/training/example_builder.hpp"
 #include "network/training/trainer.hpp"
 #include "runner/job/job.hpp"
+#include "runner/job/key.hpp"
 
 namespace rodsweep {
 
@@ -35,5 +37,12 @@ TrainingJob training_job(const Job& job);
 /// The object `network` of a job, with every key that belongs to its processor, and back.
 CopingNetSettings network_settings(const nlohmann::ordered_json& values);
 nlohmann::ordered_json network_json(const CopingNetSettings& settings);
+
+/// The keys that jobs of kind "train" have beside those of all jobs: `data`, `validation_simulations`, `network`,
+/// `training`. None may be swept.
+std::vector<Key> training_keys();
+
+/// `network` alone: what a model file holds of it too.
+Key network_key();
 
 }  // namespace rodsweep

@@ -1,4 +1,4 @@
-#include "runner/job/training_keys.hpp"
+#include "runner/job/training_job.hpp"
 
 namespace rodsweep {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "runner/job/task_outcome.hpp"
+#include "runner/plan/task_outcome.hpp"
 #include "runner/terminal/progress_line.hpp"
 
 namespace rodsweep {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "runner/job/checksum.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "runner/text/checksum.hpp"
 
 namespace rodsweep {
 namespace {

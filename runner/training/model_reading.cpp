@@ -8,7 +8,6 @@
 #include "runner/job/job_reader.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/job/training_job.hpp"
-#include "runner/job/training_keys.hpp"
 #include "runner/training/model_file.hpp"
 #include "runner/training/model_layout.hpp"
 

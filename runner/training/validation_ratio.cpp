@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/linear/rounding_level.hpp"
 

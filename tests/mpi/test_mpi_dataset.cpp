@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "runner/dataset/dataset_reader.hpp"
-#include "runner/job/checksum.hpp"
 #include "runner/mpi/mpi_session.hpp"
+#include "runner/text/checksum.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/runner/data_set_examples.hpp"
 

@@ -48,7 +48,7 @@ def listed(names, all_by=""):
 
 
 def nearest(word, known):
-    """The known name that a mistyped one is meant for, "" where none is near. As in the program (runner/job/nearest.hpp)
+    """The known name that a mistyped one is meant for, "" where none is near. As in the program (runner/text/nearest.hpp)
     case does not count, and where none is spelled alike one that holds the word is near ("length": "length_m"). Here the
     last part alone is a name too ("segments": "scene.segments"), and no number is near to another."""
     typed = word.lower()

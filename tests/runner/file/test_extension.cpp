@@ -2,7 +2,7 @@
 
 #include "runner/experiment/task_body.hpp"
 #include "runner/file/extension.hpp"
-#include "runner/job/job_extension.hpp"
+#include "runner/plan/job_extension.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;

@@ -10,7 +10,7 @@
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
 #include "runner/file/task_checksum.hpp"
-#include "runner/job/checksum.hpp"
+#include "runner/text/checksum.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;

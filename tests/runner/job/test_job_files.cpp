@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 using namespace rodsweep;
 

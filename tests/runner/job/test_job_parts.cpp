@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runner/job/counter_random.hpp"
 #include "runner/job/guess_keys.hpp"
 #include "runner/job/job_keys.hpp"
-#include "runner/job/nearest.hpp"
+#include "runner/text/nearest.hpp"
+#include "solver/numbers/counter_random.hpp"
 
 using namespace rodsweep;
 

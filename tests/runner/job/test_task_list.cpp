@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "runner/job/task_list.hpp"
+#include "runner/plan/task_list.hpp"
 
 using namespace rodsweep;
 

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "runner/job/option_label.hpp"
-#include "runner/job/plan.hpp"
 #include "runner/job/task_spec.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 namespace {

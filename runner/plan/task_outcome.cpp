@@ -1,4 +1,4 @@
-#include "runner/job/task_outcome.hpp"
+#include "runner/plan/task_outcome.hpp"
 
 namespace rodsweep {
 

@@ -15,7 +15,7 @@
 #include "runner/job/job.hpp"
 #include "runner/job/sweep_space.hpp"
 #include "runner/job/task.hpp"
-#include "runner/job/task_list.hpp"
+#include "runner/plan/task_list.hpp"
 
 namespace rodsweep {
 

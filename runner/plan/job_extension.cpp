@@ -1,4 +1,4 @@
-#include "runner/job/job_extension.hpp"
+#include "runner/plan/job_extension.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "runner/job/guess_keys.hpp"
-#include "runner/job/key_path.hpp"
 #include "runner/job/sweep.hpp"
+#include "runner/text/key_path.hpp"
 
 namespace rodsweep {
 namespace {

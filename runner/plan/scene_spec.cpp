@@ -1,4 +1,4 @@
-#include "runner/job/scene_spec.hpp"
+#include "runner/plan/scene_spec.hpp"
 
 #include <fmt/format.h>
 

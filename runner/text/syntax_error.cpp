@@ -1,4 +1,4 @@
-#include "runner/job/syntax_error.hpp"
+#include "runner/text/syntax_error.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 
 #include "runner/job/job_keys.hpp"
 #include "runner/job/option_label.hpp"
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 namespace {

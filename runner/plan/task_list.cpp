@@ -1,4 +1,4 @@
-#include "runner/job/task_list.hpp"
+#include "runner/plan/task_list.hpp"
 
 #include <stdexcept>
 

@@ -1,13 +1,13 @@
-#include "runner/job/plan.hpp"
+#include "runner/plan/plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "runner/job/counter_random.hpp"
 #include "runner/job/guess_keys.hpp"
-#include "runner/job/scene_spec.hpp"
 #include "runner/job/task_spec.hpp"
+#include "runner/plan/scene_spec.hpp"
+#include "solver/numbers/counter_random.hpp"
 
 namespace rodsweep {
 namespace {

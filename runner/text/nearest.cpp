@@ -1,4 +1,4 @@
-#include "runner/job/nearest.hpp"
+#include "runner/text/nearest.hpp"
 
 #include <algorithm>
 #include <cctype>
