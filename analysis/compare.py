@@ -28,9 +28,9 @@ EXAMPLES = """examples:
   rodsweep compare results/jacobi.h5 results/icc.h5 --by parameters
   rodsweep compare old.h5 new.h5 --tasks --csv >differing.csv
 
-exit codes: 0 what is in both files is the same, to the last bit; 3 results differ; 2 an error of the command line or a
+exit codes: 0 what is in both files is the same, to the last bit; 8 results differ; 2 an error of the command line or a
 file, or no task is in both"""
-DIFFER = 3
+DIFFER = 8
 MOST_KEYS, MOST_CHANGES, LONGEST = 20, 10, 60
 
 

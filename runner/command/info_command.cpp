@@ -103,7 +103,7 @@ ExitCode execute(const InfoOptions& options, Console& console) {
       fmt::format("{} is damaged: the data of task{} {} are not what was written. Run its job again with "
                   "--resume, which does such tasks again; of a packed copy, pack the original again",
                   options.file.native(), verified.damaged.size() == 1 ? "" : "s", fmt::join(verified.damaged, ", ")));
-  return ExitCode::user_error;
+  return ExitCode::damaged;
 }
 
 }  // namespace rodsweep

@@ -38,7 +38,7 @@ ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan
   }
   console.result(fmt::format("{} of {} datasets differ from task {} of {}:\n  {}", found.differing.size(),
                              found.compared, options.task, options.file.native(), fmt::join(found.differing, "\n  ")));
-  return ExitCode::tasks_failed;
+  return ExitCode::differ;
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ constexpr double most_of_time_for_saving = 0.02, longest_unsaved_s = 30;
 ExitCode exit_code_of(Ending ending) {
   switch (ending) {
     case Ending::none: return ExitCode::stopped;
-    case Ending::diverged: return ExitCode::tasks_failed;
+    case Ending::diverged: return ExitCode::diverged;
     default: return ExitCode::ok;
   }
 }
