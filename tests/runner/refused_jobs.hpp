@@ -1,0 +1,33 @@
+// For tests of refusals: tables of jobs with something wrong in them, and of what is said of each.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/runner/job_examples.hpp"
+
+namespace rodsweep {
+
+/// The texts that a job's refusal must hold: the key's path and its value, which follow the file; the bound; and what
+/// to do instead.
+struct RefusedJob {
+  Json job;
+  std::string path_value;
+  std::string bound = "";
+  std::string advice = "";
+};
+
+inline void check_refused(const std::vector<RefusedJob>& jobs,
+                          const std::function<std::string(const Json&)>& refusal_of = refusal) {
+  for (const RefusedJob& refused : jobs) {
+    CAPTURE(refused.job.dump());
+    const std::string text = refusal_of(refused.job);
+    CHECK_THAT(text, Catch::Contains("job.json: " + refused.path_value));
+    CHECK_THAT(text, Catch::Contains(refused.bound));
+    CHECK_THAT(text, Catch::Contains(refused.advice));
+  }
+}
+
+}  // namespace rodsweep
