@@ -1,5 +1,5 @@
 // For tests of results files: a folder that goes away, plans with every kind of dataset, records with a distinct value
-// in every place, and what a call refuses with.
+// in every place.
 #pragma once
 
 #include <filesystem>
@@ -44,16 +44,5 @@ std::string bytes_of(const std::filesystem::path& path);
 
 /// Everything outside /timing and /runs, by path.
 std::map<std::string, std::string> reproducible_bytes(const std::filesystem::path& path, const Plan& plan);
-
-/// The text of the `Error` that `call` throws.
-template <class Error, class Call>
-std::string message_of(Call&& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 }  // namespace rodsweep

@@ -57,13 +57,10 @@ Job job_of(const Json& job) { return parse_job(job.dump(), "job.json"); }
 Plan plan_of(const Json& job) { return Plan(job_of(job)); }
 
 std::string refusal_of_text(const std::string& text) {
-  try {
+  return message_of<JobError>([&] {
     const Job job = parse_job(text, "job.json");
     if (!is_training(job)) Plan plan(job);
-  } catch (const JobError& e) {
-    return e.what();
-  }
-  return "";
+  });
 }
 
 std::string refusal(const Json& job) { return refusal_of_text(job.dump()); }

@@ -37,6 +37,17 @@ Json uniform(double a, double b);
 Job job_of(const Json& job);
 Plan plan_of(const Json& job);
 
+/// The text of the `Error` that `call` throws, "" if it throws none.
+template <class Error, class Call>
+std::string message_of(Call&& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 /// What the user is told, "" if nothing is wrong.
 std::string refusal_of_text(const std::string& text);
 

@@ -21,12 +21,7 @@ class JobFolder {
   void write(const char* name, const char* text) const { std::ofstream(path_ / name) << text; }
   Job job(const Json& job) const { return parse_job(job.dump(), path_ / "job.json"); }
   std::string refusal(const Json& of) const {
-    try {
-      const Plan plan(job(of));
-    } catch (const JobError& error) {
-      return error.what();
-    }
-    return "";
+    return message_of<JobError>([&] { const Plan plan(job(of)); });
   }
   const std::filesystem::path& path() const { return path_; }
 

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/runner/job_folder.hpp"
+#include "tests/runner/refused_jobs.hpp"
 
 namespace rodsweep {
 namespace test_job_baselines {
@@ -40,13 +41,15 @@ TEST_CASE("what nearest neighbours are depends on what their data set holds") {
 
 TEST_CASE("nearest neighbours without data, or with none, are refused") {
   const JobFolder folder;
-  CHECK_THAT(folder.refusal(neighbours("{}")), Catch::Contains("guesses[1].knn.data: missing"));
-  CHECK_THAT(folder.refusal(neighbours(R"({"data": "none.h5"})")), Catch::Contains("is not there"));
   folder.write("data.h5", "systems");
-  CHECK_THAT(folder.refusal(neighbours(R"({"data": "data.h5", "k": 0})")),
-             Catch::Contains("guesses[1].knn.k: 0 is not allowed"));
-  CHECK_THAT(folder.refusal(neighbours(R"({"data": "data.h5", "neighbours": 4})")),
-             Catch::Contains("did you mean \"k\"?"));
+  check_refused(
+      {
+          {neighbours("{}"), "guesses[1].knn.data: missing"},
+          {neighbours(R"({"data": "none.h5"})"), "guesses[1].knn.data: \"none.h5\" ", "is not there"},
+          {neighbours(R"({"data": "data.h5", "k": 0})"), "guesses[1].knn.k: 0 is not allowed"},
+          {neighbours(R"({"data": "data.h5", "neighbours": 4})"), "guesses[1].knn.neighbours: ", "did you mean \"k\"?"},
+      },
+      [&](const Json& job) { return folder.refusal(job); });
 }
 
 TEST_CASE("a network instead of the solve has a trajectory of its own and no guesses") {
@@ -83,20 +86,18 @@ TEST_CASE("a network instead of the solve is refused without a model, among gues
   const JobFolder folder;
   folder.write("net.h5", "weights");
   const std::string named = R"({"method": "end_to_end", "model": "net.h5"})";
-  CHECK_THAT(folder.refusal(end_to_end(R"({"method": "end_to_end"})")),
-             Catch::Contains("solve.model: missing: model file of a train job"));
-  CHECK_THAT(folder.refusal(end_to_end(R"({"method": "state_network"})")),
-             Catch::Contains("solve.model: missing: model file of a train job"));
-  CHECK_THAT(folder.refusal(end_to_end(R"({"method": {"grid": ["direct", "end_to_end"]}})")),
-             Catch::Contains("solve.model: missing"));
-  CHECK_THAT(folder.refusal(with("/solve", R"({"model": "net.h5"})")),
-             Catch::Contains(
-                 "solve.model: this key belongs to solve.method \"end_to_end\" or \"state_network\", not to \"cg\""));
-  CHECK_THAT(folder.refusal(with("/evaluation", "\"closed_loop\"", with("/solve", named))),
-             Catch::Contains("only solve.method \"cg\" uses initial guesses"));
-  CHECK_THAT(folder.refusal(with("/evaluation", "\"paired\"", end_to_end(named))),
-             Catch::Contains("solve.method: \"end_to_end\" is not allowed with evaluation \"paired\"") &&
-                 Catch::Contains("\"closed_loop\""));
+  check_refused(
+      {
+          {end_to_end(R"({"method": "end_to_end"})"), "solve.model: missing: model file of a train job"},
+          {end_to_end(R"({"method": "state_network"})"), "solve.model: missing: model file of a train job"},
+          {end_to_end(R"({"method": {"grid": ["direct", "end_to_end"]}})"), "solve.model: missing"},
+          {with("/solve", R"({"model": "net.h5"})"),
+           "solve.model: ", "\"end_to_end\" or \"state_network\", not to \"cg\""},
+          {with("/evaluation", "\"closed_loop\"", with("/solve", named)), "guesses: ", "only solve.method \"cg\""},
+          {with("/evaluation", "\"paired\"", end_to_end(named)), "solve.method: \"end_to_end\" is not allowed",
+           "evaluation \"paired\"", "\"closed_loop\""},
+      },
+      [&](const Json& job) { return folder.refusal(job); });
 }
 
 }  // namespace test_job_baselines

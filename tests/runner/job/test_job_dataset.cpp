@@ -2,34 +2,24 @@
 #include <catch2/catch.hpp>
 
 #include "runner/file/record.hpp"
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/refused_jobs.hpp"
 
 using namespace rodsweep;
 
-TEST_CASE("a data set has no keys of guesses and solves: they are refused with what to do") {
+TEST_CASE("a data set has no keys of guesses and solves, a sweep no systems: they are refused with what to do") {
+  const std::string sweeps = "belongs to kind \"sweep\", not to \"dataset\"", advice = "remove this key";
+  check_refused({
+      {with("/solve", R"({"method": "direct"})", data_job()), "solve: ", sweeps, advice},
+      {with("/guesses", R"(["zero"])", data_job()), "guesses: ", sweeps, advice},
+      {with("/evaluation", "\"paired\"", data_job()), "evaluation: ", sweeps, advice},
+      {with("/record", R"({"norms": "one"})", data_job()), "record.norms: ", sweeps, advice},
+      {with("/record", R"({"systems": "none"})", data_job()), "record.systems: \"none\" ", "\"first\", \"all\""},
+      {with("/record", R"({"system": "all"})", data_job()), "record.system: unknown key", "did you mean \"systems\"?"},
+      {with("/record", R"({"systems": "all"})"), "record.systems: ", "\"dataset\", not to \"sweep\"",
+       "make the simulations a job of that kind"},
+  });
   CHECK(refusal(data_job()).empty());
-  const auto refused = [](const std::string& key, const std::string& value) {
-    return refusal(with("/" + key, value, data_job())) ==
-           "job.json: " + key +
-               ": this key belongs to kind \"sweep\", not to \"dataset\"; only a sweep tries guesses: remove this key";
-  };
-  CHECK(refused("solve", R"({"method": "direct"})"));
-  CHECK(refused("guesses", R"(["zero"])"));
-  CHECK(refused("evaluation", R"("paired")"));
-  CHECK(refusal(with("/record", R"({"norms": "one"})", data_job())) ==
-        "job.json: record.norms: this key belongs to kind \"sweep\", not to \"dataset\"; only a sweep tries guesses: "
-        "remove this key");
-}
-
-TEST_CASE("record.systems is a data set's and no sweep's") {
   CHECK(refusal(with("/record", R"({"systems": "all"})", data_job())).empty());
-  CHECK(refusal(with("/record", R"({"systems": "none"})", data_job())) ==
-        "job.json: record.systems: \"none\" is not allowed; must be one of \"first\", \"all\"");
-  CHECK(refusal(with("/record", R"({"systems": "all"})")) ==
-        "job.json: record.systems: this key belongs to kind \"dataset\", not to \"sweep\"; make the simulations a job "
-        "of that kind");
-  CHECK(refusal(with("/record", R"({"system": "all"})", data_job())) ==
-        "job.json: record.system: unknown key; did you mean \"systems\"?");
 }
 
 TEST_CASE("a data set is simulated with the direct solve and no guesses") {

@@ -1,12 +1,10 @@
 // Jobs with Gauss-Seidel in the place of linear solves.
 #include <catch2/catch.hpp>
 
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/refused_jobs.hpp"
 
 namespace rodsweep {
 namespace test_job_gauss_seidel {
-
-using Catch::Contains;
 
 Json by(const std::string& solve) {
   return with("/evaluation", "\"closed_loop\"", with("/solve", solve, without("/guesses")));
@@ -50,32 +48,27 @@ TEST_CASE("iterations and stiffness are part of what a trajectory is") {
 }
 
 TEST_CASE("keys of Gauss-Seidel are refused out of bounds and with other methods") {
-  CHECK(refusal(by(R"({"method": "xpbd", "iterations": 0})")) ==
-        "job.json: solve.iterations: 0 is not allowed; must be an integer from 1 to 10000");
-  CHECK(refusal(by(R"({"method": "pbd", "stretch_stiffness": 1.5})")) ==
-        "job.json: solve.stretch_stiffness: 1.5 is not allowed; must be a number from 0 to 1");
-  CHECK(refusal(by(R"({"method": "pbd", "bending_stiffness": -1})")) ==
-        "job.json: solve.bending_stiffness: -1 is not allowed; must be a number from 0 to 1");
-  CHECK(refusal(with("/solve", R"({"iterations": 5})")) ==
-        "job.json: solve.iterations: this key belongs to solve.method \"xpbd\" or \"pbd\", not to \"cg\"; cg has "
-        "max_iterations, Newton time.newton_iterations");
-  CHECK(refusal(by(R"({"method": "xpbd", "stretch_stiffness": 1})")) ==
-        "job.json: solve.stretch_stiffness: this key belongs to solve.method \"pbd\", not to \"xpbd\"; moduli and "
-        "stretch_compliance_per_j of the scene say how stiff a rod is");
-  CHECK(refusal(by(R"({"method": "xpbd", "bending_stiffness": 1})")) ==
-        "job.json: solve.bending_stiffness: this key belongs to solve.method \"pbd\", not to \"xpbd\"; moduli of the "
-        "scene say how stiff a rod is");
+  check_refused({
+      {by(R"({"method": "xpbd", "iterations": 0})"), "solve.iterations: 0 ", "must be an integer from 1 to 10000"},
+      {by(R"({"method": "pbd", "stretch_stiffness": 1.5})"), "solve.stretch_stiffness: 1.5 ", "a number from 0 to 1"},
+      {by(R"({"method": "pbd", "bending_stiffness": -1})"), "solve.bending_stiffness: -1 ", "a number from 0 to 1"},
+      {with("/solve", R"({"iterations": 5})"), "solve.iterations: ", "\"xpbd\" or \"pbd\", not to \"cg\"",
+       "max_iterations, Newton time.newton_iterations"},
+      {by(R"({"method": "xpbd", "stretch_stiffness": 1})"), "solve.stretch_stiffness: ", "\"pbd\", not to \"xpbd\"",
+       "moduli and stretch_compliance_per_j of the scene"},
+      {by(R"({"method": "xpbd", "bending_stiffness": 1})"), "solve.bending_stiffness: ", "\"pbd\", not to \"xpbd\"",
+       "moduli of the scene"},
+  });
 }
 
 TEST_CASE("Gauss-Seidel is refused where the direct solve advances the rod, and with guesses") {
   for (const std::string method : {"pbd", "xpbd"}) {
-    const std::string solve = R"({"method": ")" + method + "\"}";
-    CHECK(
-        refusal(with("/solve", solve, without("/guesses"))) ==
-        "job.json: solve.method: \"" + method +
-            "\" is not allowed with evaluation \"paired\", in which the direct solve advances the rod: what stands in "
-            "its place has a trajectory of its own; must be with \"closed_loop\"");
-    CHECK_THAT(refusal(with("/solve", solve)), Contains("only solve.method \"cg\" uses initial guesses"));
+    const Json job = with("/solve", R"({"method": ")" + method + "\"}");
+    check_refused({
+        {without("/guesses", job), "solve.method: \"" + method + "\" ", "evaluation \"paired\"",
+         "must be with \"closed_loop\""},
+        {job, "guesses: only solve.method \"cg\" uses initial guesses"},
+    });
   }
 }
 

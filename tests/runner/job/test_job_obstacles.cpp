@@ -2,12 +2,10 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/refused_jobs.hpp"
 
 namespace rodsweep {
 namespace test_job_obstacles {
-
-using Catch::StartsWith;
 
 /// The small job with contact and these obstacles.
 Json job_with(const std::string& obstacles) {
@@ -78,35 +76,36 @@ TEST_CASE("values of obstacles, whole ones and whole lists of them are swept") {
 }
 
 TEST_CASE("obstacles that nothing can touch are refused, but not where contact is swept") {
-  const std::string advice =
-      ": rods pass through all obstacles without \"contact\"; give the scene \"contact\": {\"friction\": 0.3}, or "
-      "remove this key";
+  const std::string without_contact = "rods pass through all obstacles without \"contact\"";
+  const std::string advice = "\"contact\": {\"friction\": 0.3}, or remove this key";
   const Json untouched = with("/scene/obstacles", R"([{"half_space": {}}])");
-  CHECK(refusal(untouched) == "job.json: scene.obstacles" + advice);
-  CHECK(refusal(with("/scene/obstacles", R"({"grid": [[], [{"half_space": {}}]]})")) ==
-        "job.json: scene.obstacles" + advice);
   Json scenes = small_job();
   scenes["scene"] = grid({bending_scene(), untouched["scene"]});
-  CHECK(refusal(scenes) == "job.json: scene.grid[1].obstacles" + advice);
+  check_refused({
+      {untouched, "scene.obstacles: ", without_contact, advice},
+      {with("/scene/obstacles", R"({"grid": [[], [{"half_space": {}}]]})"), "scene.obstacles: ", without_contact,
+       advice},
+      {scenes, "scene.grid[1].obstacles: ", without_contact, advice},
+  });
   CHECK(refusal(with("/scene/obstacles", "[]")).empty());
   CHECK(refusal(with("/scene/contact", R"({"grid": ["none", {}]})", untouched)).empty());
 }
 
 TEST_CASE("obstacles that are none are refused with what is wrong") {
-  CHECK(refusal(job_with(R"({"ball": {"centre_m": [0, 0, 0], "radius_m": 1}})")) ==
-        "job.json: scene.obstacles: {\"ball\":{\"centre_m\":[0,0,0],\"radius_m\":1}} is not allowed; must be a list "
-        "[...], of which each is an object {...} with one of \"half_space\", \"ball\", \"capsule\"");
-  CHECK(refusal(job_with(R"([{"bal": {"centre_m": [0, 0, 0], "radius_m": 1}}])")) ==
-        "job.json: scene.obstacles[0].bal: unknown key; did you mean \"ball\"?");
-  CHECK_THAT(refusal(job_with(R"([{"half_space": {}, "ball": {}}])")),
-             StartsWith("job.json: scene.obstacles[0]: {\"half_space\":{},\"ball\":{}} is not allowed; must be an "
-                        "object {...} with one of"));
-  CHECK_THAT(refusal(job_with(R"([{"half_space": {}}, {"ball": {"centre_m": [0, 0, 0]}}])")),
-             StartsWith("job.json: scene.obstacles[1].ball.radius_m: missing"));
-  CHECK_THAT(refusal(job_with(R"([{"ball": {"centre_m": [0, 0, 0], "radius_m": 0}}])")),
-             StartsWith("job.json: scene.obstacles[0].ball.radius_m: 0 is not allowed"));
-  CHECK(refusal(job_with(R"([{"half_space": {"normal": [0, 0, 0]}}])")) ==
-        "job.json: scene.obstacles[0].half_space.normal: [0, 0, 0] is not allowed; must have a direction");
+  const std::string one_of = "an object {...} with one of \"half_space\", \"ball\", \"capsule\"";
+  check_refused({
+      {job_with(R"({"ball": {"centre_m": [0, 0, 0], "radius_m": 1}})"), "scene.obstacles: {\"ball\":{", "a list [...]",
+       one_of},
+      {job_with(R"([{"bal": {"centre_m": [0, 0, 0], "radius_m": 1}}])"), "scene.obstacles[0].bal: unknown key",
+       "did you mean \"ball\"?"},
+      {job_with(R"([{"half_space": {}, "ball": {}}])"), "scene.obstacles[0]: {\"half_space\":{},\"ball\":{}} ", one_of},
+      {job_with(R"([{"half_space": {}}, {"ball": {"centre_m": [0, 0, 0]}}])"),
+       "scene.obstacles[1].ball.radius_m: missing"},
+      {job_with(R"([{"ball": {"centre_m": [0, 0, 0], "radius_m": 0}}])"),
+       "scene.obstacles[0].ball.radius_m: 0 is not allowed"},
+      {job_with(R"([{"half_space": {"normal": [0, 0, 0]}}])"), "scene.obstacles[0].half_space.normal: [0, 0, 0] ",
+       "must have a direction"},
+  });
 }
 
 }  // namespace test_job_obstacles

@@ -4,41 +4,31 @@
 
 #include "runner/experiment/factor_check.hpp"
 #include "runner/experiment/guess_check.hpp"
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/refused_jobs.hpp"
 
 using namespace rodsweep;
 
 namespace test_job_scenes {
 
-Json job_with_scene(const std::string& scene) {
-  Json job = small_job();
-  job["scene"] = Json::parse(scene);
-  return job;
+/// The small job with a scene of these keys, of one material.
+Json job_with_scene(const std::string& keys) {
+  return with("/scene",
+              "{" + keys + R"(, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
 }
 
-Json ring_job() {
-  return job_with_scene(R"({"type": "ring", "segments": 12, "length_m": 3, "radius_m": 0.05, "density_kg_m3": 1000,
-                            "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
-}
+Json ring_job() { return job_with_scene(R"("type": "ring", "segments": 12, "length_m": 3, "radius_m": 0.05)"); }
 
 Json net_job() {
-  return job_with_scene(R"({"type": "net", "rows": 3, "columns": 4, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05,
-                            "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
+  return job_with_scene(R"("type": "net", "rows": 3, "columns": 4, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05)");
 }
 
 Json lattice_job() {
-  return job_with_scene(R"({"type": "lattice", "nodes_x": 3, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05,
-                            "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
+  return job_with_scene(R"("type": "lattice", "nodes_x": 3, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05)");
 }
 
 /// What check_guesses() says of a job, "" if nothing.
 std::string refusal_of_loops(const Json& job) {
-  try {
-    check_guesses(plan_of(job));
-  } catch (const JobError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<JobError>([&] { check_guesses(plan_of(job)); });
 }
 
 Json guess_of_model(Json job) {
@@ -120,27 +110,23 @@ TEST_CASE("rods stretch physically where the job says so") {
   const Plan plan = plan_of(with("/scene/stretch", R"({"grid": ["inextensible", "physical"]})"));
   CHECK(std::get<BendingRod>(plan.spec(0).scene).stretch == Stretch::inextensible);
   CHECK(std::get<BendingRod>(plan.spec(1).scene).stretch == Stretch::physical);
-  CHECK(refusal(with("/scene/stretch_compliance_per_j", "1e-6", with("/scene/stretch", "\"physical\""))) ==
-        "job.json: scene: stretch is physical, but stretch_compliance_per_j is given too; must be one of them");
 }
 
 TEST_CASE("scenes whose values do not fit together are refused with what is wrong") {
-  CHECK(refusal(with("/scene/segments", "2", ring_job())) ==
-        "job.json: scene: segments is 2; must be at least 3: fewer do not close a ring");
-  CHECK(refusal(with("/scene/clamp", "\"wall\"", ring_job())) ==
-        "job.json: scene: a ring has no end that the clamp \"wall\" could hold");
-  CHECK(refusal(with("/scene/rows", "1", net_job())) == "job.json: scene: rows is 1; must be at least 2");
-  CHECK(refusal(with("/scene/nodes_z", "1", lattice_job())) == "job.json: scene: nodes_z is 1; must be at least 2");
-  CHECK_THAT(refusal(with("/scene/nodes_x", "1", lattice_job())),
-             Catch::StartsWith("job.json: scene.nodes_x: 1 is not allowed"));
-  CHECK_THAT(refusal(with("/scene/node_stiffness", "0", lattice_job())),
-             Catch::StartsWith("job.json: scene.node_stiffness: 0 is not allowed"));
-  CHECK_THAT(refusal(with("/scene/cell", "\"fcc\"", lattice_job())),
-             Catch::StartsWith("job.json: scene.cell: \"fcc\" is not allowed"));
-  CHECK(
-      refusal(with("/scene/clamp", "\"free\"", net_job())) ==
-      "job.json: scene.clamp: this key belongs to scene.type \"bending_rod\" or \"helix\" or \"ring\", not to \"net\"; "
-      "a net is \"held\", trees stand on the ground");
+  check_refused({
+      {with("/scene/stretch_compliance_per_j", "1e-6", with("/scene/stretch", "\"physical\"")),
+       "scene: stretch is physical", "stretch_compliance_per_j is given too", "must be one of them"},
+      {with("/scene/segments", "2", ring_job()), "scene: segments is 2", "must be at least 3"},
+      {with("/scene/clamp", "\"wall\"", ring_job()), "scene: a ring has no end", "\"wall\""},
+      {with("/scene/rows", "1", net_job()), "scene: rows is 1", "must be at least 2"},
+      {with("/scene/nodes_z", "1", lattice_job()), "scene: nodes_z is 1", "must be at least 2"},
+      {with("/scene/nodes_x", "1", lattice_job()), "scene.nodes_x: 1 is not allowed"},
+      {with("/scene/node_stiffness", "0", lattice_job()), "scene.node_stiffness: 0 is not allowed"},
+      {with("/scene/cell", "\"fcc\"", lattice_job()), "scene.cell: \"fcc\" is not allowed"},
+      {with("/scene/contact", R"({"friction": -1})", net_job()), "scene.contact.friction: -1 is not allowed"},
+      {with("/scene/clamp", "\"free\"", net_job()), "scene.clamp: ",
+       "\"bending_rod\" or \"helix\" or \"ring\", not to \"net\"", "a net is \"held\", trees stand on the ground"},
+  });
 }
 
 TEST_CASE("guesses that need rods without loops are refused before anything runs") {
@@ -148,16 +134,17 @@ TEST_CASE("guesses that need rods without loops are refused before anything runs
   Json ring = ring_job(), rod = small_job();
   ring["guesses"].push_back(knn);
   rod["guesses"].push_back(knn);
-  CHECK(refusal_of_loops(ring) ==
-        "job.json: guesses[2]: \"knn\" is not allowed on rods with loops; must be another guess; the joints of the 12 "
-        "segments of task 0 close a loop");
   CHECK(refusal_of_loops(rod).empty());
 
   CHECK(refusal_of_loops(guess_of_model(net_job())).empty());
   Json several = guess_of_model(small_job());
   several["guesses"].back()["copingnet"]["corrections"] = 2;
-  CHECK(refusal_of_loops(several) ==
-        "job.json: guesses[2]: corrections above 1 is not allowed with bending-paper.h5, a network without factors");
+  check_refused(
+      {
+          {ring, "guesses[2]: \"knn\" ", "rods with loops", "12 segments of task 0"},
+          {several, "guesses[2]: corrections above 1 ", "bending-paper.h5, a network without factors"},
+      },
+      refusal_of_loops);
 }
 
 TEST_CASE("contact is a key of every scene, and none where it is not asked for") {
@@ -170,14 +157,10 @@ TEST_CASE("contact is a key of every scene, and none where it is not asked for")
   CHECK(contact->friction == 0.6);
   CHECK(contact->sweeps == 9);
   CHECK(contact->tolerance == ContactSettings{}.tolerance);
-  CHECK_THAT(refusal(with("/scene/contact", R"({"friction": -1})", net_job())),
-             Catch::StartsWith("job.json: scene.contact.friction: -1 is not allowed"));
 }
 
 TEST_CASE("the scenes that are made for contact are read from their keys, and count all their rods") {
-  const std::string material =
-      R"("radius_m": 0.01, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})";
-  const auto plan = [&](const std::string& keys) { return plan_of(job_with_scene("{" + keys + ", " + material)); };
+  const auto plan = [](const std::string& keys) { return plan_of(job_with_scene(keys + R"(, "radius_m": 0.01)")); };
   const Plan falling =
       plan(R"("type": "falling_rods", "rods": 3, "segments": 5, "length_m": 1, "height_m": 0.3, "turn_deg": 70)");
   const FallingRods rods = std::get<FallingRods>(falling.spec(0).scene);
@@ -200,16 +183,10 @@ TEST_CASE("the scenes that are made for contact are read from their keys, and co
 
 TEST_CASE("a scene whose factor needs too much memory is refused before it runs, with what does without") {
   constexpr double little = 1e6;
-  const auto refusal_of_factors = [](const Json& job) -> std::string {
-    try {
-      check_factors(plan_of(job), little);
-    } catch (const JobError& error) {
-      return error.what();
-    }
-    return "";
+  const auto refusal_of_factors = [](const Json& job) {
+    return message_of<JobError>([&] { check_factors(plan_of(job), little); });
   };
-  Json job = job_with_scene(R"({"type": "lattice", "nodes_x": 4, "segments": 2, "mesh_m": 0.2, "radius_m": 0.01,
-                                "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
+  Json job = job_with_scene(R"("type": "lattice", "nodes_x": 4, "segments": 2, "mesh_m": 0.2, "radius_m": 0.01)");
   CHECK_THAT(refusal_of_factors(job),
              Catch::Contains("solve: task 0: a direct solve of 400 joints would need 0.00") &&
                  Catch::Contains("; the most is 0.000931 GiB; must be a smaller scene, or method \"cg\" with "

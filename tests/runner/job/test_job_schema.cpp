@@ -37,16 +37,6 @@ TEST_CASE("what only some kinds of job have is required there and refused elsewh
   }
 }
 
-TEST_CASE("a tag that is not given has its default: the keys of other values are refused") {
-  const Json rules = job_schema()["properties"]["network"]["allOf"];
-  const auto factors = std::find_if(rules.begin(), rules.end(), [](const Json& rule) {
-    return rule["if"]["properties"]["processor"]["const"] == "factors";
-  });
-  REQUIRE(factors != rules.end());
-  CHECK_FALSE((*factors)["if"].contains("required"));
-  CHECK((*factors)["then"]["properties"]["steps"] == false);
-}
-
 TEST_CASE("every guess has a definition, a name alone where nothing is required") {
   const Json guess = job_schema()["definitions"]["guess"]["anyOf"];
   for (const Key& key : guess_keys()) CHECK(guess[1]["properties"].contains(key.name));
@@ -55,20 +45,4 @@ TEST_CASE("every guess has a definition, a name alone where nothing is required"
   CHECK(std::find(names.begin(), names.end(), "guarded") == names.end());
 }
 
-TEST_CASE("bounds are those of the keys") {
-  const Json definitions = job_schema()["definitions"];
-  const Json length = definitions["scene.length_m"]["anyOf"][0];
-  CHECK(length["exclusiveMinimum"] == 0);
-  CHECK_FALSE(length.contains("minimum"));
-  CHECK(definitions["scene.segments"]["anyOf"][0] == Json{{"type", "integer"}, {"minimum", 1}, {"maximum", 1000000}});
-}
-
 TEST_CASE("the text is the schema, whole") { CHECK(Json::parse(job_schema_text()) == job_schema()); }
-
-TEST_CASE("a job may name its schema, which changes nothing") {
-  Json job = small_job();
-  job["$schema"] = "schema.json";
-  CHECK(refusal(job).empty());
-  job["$schema"] = 3;
-  CHECK(refusal(job) == "job.json: $schema: 3 is not allowed; must be a text");
-}

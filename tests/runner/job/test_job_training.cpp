@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "runner/job/training_job.hpp"
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/refused_jobs.hpp"
 
 using namespace rodsweep;
 
@@ -12,12 +12,12 @@ using Paths = std::vector<std::filesystem::path>;
 
 TrainingJob training_of(const Json& job) { return training_job(job_of(job)); }
 
-/// Refusal of the training job with that value.
-std::string refused(const std::string& pointer, const std::string& value) {
+/// The training job with that value.
+Json training_with(const std::string& pointer, const std::string& value) {
   Json job = train_job();
   job["network"] = Json::object();
   job["training"] = Json::object();
-  return refusal(with(pointer, value, job));
+  return with(pointer, value, job);
 }
 
 TEST_CASE("the least that a training says is where its data are") {
@@ -33,20 +33,15 @@ TEST_CASE("the least that a training says is where its data are") {
   CHECK(job.network.best_length);
   CHECK(job.training.loss == LossKind::energy);
   CHECK(job.patience_epochs == 0);
-  CHECK(refusal(without("/data", train_job())) ==
-        "job.json: data: missing: data set to learn from: the file of a job of kind \"dataset\", a text of 1 to 4000 "
-        "characters on one line, or a list of at least one such");
 }
 
 TEST_CASE("data are looked for beside the job") {
-  const Job job = parse_job(with("/data", R"("../results/data.h5")", train_job()).dump(), "jobs/train.json");
-  CHECK(training_job(job).data == Paths{"results/data.h5"});
-  const Job absolute = parse_job(with("/data", R"("/data.h5")", train_job()).dump(), "jobs/train.json");
-  CHECK(training_job(absolute).data == Paths{"/data.h5"});
-  const Job several = parse_job(with("/data", R"(["../a.h5", "b.h5"])", train_job()).dump(), "jobs/train.json");
-  CHECK(training_job(several).data == Paths{"a.h5", "jobs/b.h5"});
-  CHECK_THAT(refused("/data", "[]"), Catch::Contains("data: ") && Catch::Contains("or a list of at least one such"));
-  CHECK_THAT(refused("/data", R"(["a.h5", 5])"), Catch::Contains("data[1]: 5 is not allowed"));
+  const auto paths = [](const char* data) {
+    return training_job(parse_job(with("/data", data, train_job()).dump(), "jobs/train.json")).data;
+  };
+  CHECK(paths(R"("../results/data.h5")") == Paths{"results/data.h5"});
+  CHECK(paths(R"("/data.h5")") == Paths{"/data.h5"});
+  CHECK(paths(R"(["../a.h5", "b.h5"])") == Paths{"a.h5", "jobs/b.h5"});
 }
 
 TEST_CASE("every key of a training arrives where it belongs") {
@@ -90,56 +85,59 @@ TEST_CASE("every key of a training arrives where it belongs") {
 }
 
 TEST_CASE("nothing of a training is swept") {
-  const char* text = ": this key cannot be swept; a job trains one model; write another job for another";
-  CHECK(refused("/training/rate", R"({"grid": [0.1, 0.2]})") == std::string("job.json: training.rate") + text);
-  CHECK(refused("/network", R"({"grid": [{}, {"latent": 16}]})") == std::string("job.json: network") + text);
-  CHECK(refused("/data", R"({"grid": ["a.h5", "b.h5"]})") == std::string("job.json: data") + text);
+  const std::string advice = "this key cannot be swept; a job trains one model";
+  check_refused({
+      {training_with("/training/rate", R"({"grid": [0.1, 0.2]})"), "training.rate: ", advice},
+      {training_with("/network", R"({"grid": [{}, {"latent": 16}]})"), "network: ", advice},
+      {training_with("/data", R"({"grid": ["a.h5", "b.h5"]})"), "data: ", advice},
+  });
 }
 
 TEST_CASE("keys of simulations are refused with where a training has its own from, and the reverse") {
-  CHECK(refusal(with("/scene", bending_scene().dump(), train_job())) ==
-        "job.json: scene: this key belongs to kind \"sweep\" or \"dataset\", not to \"train\"; a training learns from "
-        "the simulations in \"data\": remove this key");
-  CHECK(refusal(with("/guesses", R"(["zero"])", train_job())) ==
-        "job.json: guesses: this key belongs to kind \"sweep\", not to \"train\"; only a sweep tries guesses: remove "
-        "this key");
-  CHECK(refusal(with("/network", "{}")) == "job.json: network: this key belongs to kind \"train\", not to \"sweep\"");
+  check_refused({
+      {with("/scene", bending_scene().dump(), train_job()), "scene: ", "\"sweep\" or \"dataset\", not to \"train\"",
+       "learns from the simulations in \"data\": remove this key"},
+      {with("/guesses", R"(["zero"])", train_job()), "guesses: ", "\"sweep\", not to \"train\"", "remove this key"},
+      {with("/network", "{}"), "network: ", "\"train\", not to \"sweep\""},
+  });
 }
 
-TEST_CASE("misspelt and impossible values of a training are refused") {
-  CHECK(refused("/training/epoch", "3") == "job.json: training.epoch: unknown key; did you mean \"epochs\"?");
-  CHECK(refused("/training/lr", "3") == "job.json: training.lr: unknown key; did you mean \"rate\"?");
-  CHECK(refused("/training/rate", "0") ==
-        "job.json: training.rate: 0 is not allowed; must be a number above 0 and at most 1");
-  CHECK(refused("/training/epochs", "0") ==
-        "job.json: training.epochs: 0 is not allowed; must be an integer from 1 to 1000000");
-  CHECK(refused("/network/best_length", "1") ==
-        "job.json: network.best_length: 1 is not allowed; must be true or false");
-  CHECK(refused("/network/encoding", "\"papers\"") ==
-        "job.json: network.encoding: \"papers\" is not allowed; must be one of \"paper\", \"paper_residual\", "
-        "\"linear_system\", \"state\"; did you mean \"paper\"?");
+TEST_CASE("missing, misspelt and impossible values of a training are refused") {
+  check_refused({
+      {without("/data", train_job()), "data: missing: data set to learn from",
+       "a text of 1 to 4000 characters on one line, or a list of at least one such"},
+      {training_with("/data", "[]"), "data: ", "or a list of at least one such"},
+      {training_with("/data", R"(["a.h5", 5])"), "data[1]: 5 is not allowed"},
+      {training_with("/training/epoch", "3"), "training.epoch: unknown key", "did you mean \"epochs\"?"},
+      {training_with("/training/lr", "3"), "training.lr: unknown key", "did you mean \"rate\"?"},
+      {training_with("/training/rate", "0"), "training.rate: 0 ", "must be a number above 0 and at most 1"},
+      {training_with("/training/epochs", "0"), "training.epochs: 0 ", "must be an integer from 1 to 1000000"},
+      {training_with("/network/best_length", "1"), "network.best_length: 1 ", "must be true or false"},
+      {training_with("/network/encoding", "\"papers\""), "network.encoding: \"papers\" ",
+       "\"paper\", \"paper_residual\", \"linear_system\", \"state\"", "did you mean \"paper\"?"},
+  });
 }
 
 TEST_CASE("keys that the network or the loss has no use for are refused, also where its kind is the default") {
-  CHECK(refused("/network/moves", "true") ==
-        "job.json: network.moves: this key belongs to network.processor \"message_passing\", not to \"factors\"; "
-        "factors work on joints alone");
-  CHECK(refused("/network", R"({"processor": "factors", "steps": 3})") ==
-        "job.json: network.steps: this key belongs to network.processor \"message_passing\", not to \"factors\"");
-  CHECK(refused("/training/cg_steps", "3") ==
-        "job.json: training.cg_steps: this key belongs to training.loss \"in_the_loop\", not to \"energy\"");
+  const std::string not_factors = "network.processor \"message_passing\", not to \"factors\"";
+  check_refused({
+      {training_with("/network/moves", "true"), "network.moves: ", not_factors, "factors work on joints alone"},
+      {training_with("/network", R"({"processor": "factors", "steps": 3})"), "network.steps: ", not_factors},
+      {training_with("/training/cg_steps", "3"), "training.cg_steps: ", "\"in_the_loop\", not to \"energy\""},
+  });
 }
 
 TEST_CASE("values that do not go together are refused") {
-  CHECK(refused("/training/shards", "5") ==
-        "job.json: training.shards: 5 is not allowed; must be a divisor of training.batch, 16");
-  CHECK_THAT(
-      refused("/network/encoding", "\"paper\""),
-      Catch::StartsWith("job.json: network.encoding: \"paper\" is not allowed with network.processor \"factors\""));
-  CHECK_THAT(refused("/network/latent", "24"), Catch::StartsWith("job.json: network.latent: 24 is not allowed"));
-  CHECK(refused("/network", R"({"processor": "message_passing", "moves": true})") ==
-        "job.json: network.moves: true is not allowed with training.loss \"energy\", which does not train moves; "
-        "use \"mse\" or remove this key");
+  check_refused({
+      {training_with("/training/shards", "5"), "training.shards: 5 ", "a divisor of training.batch, 16"},
+      {training_with("/network/encoding", "\"paper\""), "network.encoding: \"paper\" ",
+       "with network.processor \"factors\""},
+      {training_with("/network/latent", "24"), "network.latent: 24 is not allowed"},
+      {training_with("/network", R"({"processor": "message_passing", "moves": true})"), "network.moves: true ",
+       "with training.loss \"energy\"", "use \"mse\" or remove this key"},
+      {training_with("/training/noisy_copies", "2"), "training.noisy_copies: 2 ", "network.encoding \"linear_system\"",
+       "must be with \"state\""},
+  });
 }
 
 TEST_CASE("a simulator of states is a network of message passing that learns moves from squares, with noise") {
@@ -151,17 +149,14 @@ TEST_CASE("a simulator of states is a network of message passing that learns mov
   CHECK(job.network.encoding == Encoding::state);
   CHECK(job.copies().count == 3);
   CHECK(job.copies().noise == 0.2);
-  const auto refused_with = [&](const char* path, const char* value) { return refusal(with(path, value, values)); };
-  CHECK(refused_with("/network/base", "\"subspace\"") ==
-        "job.json: network.base: \"subspace\" is not allowed with network.encoding \"state\"; must be \"none\"");
-  CHECK_THAT(refused_with("/network/moves", "false"), Catch::StartsWith("job.json: network.moves: false"));
-  CHECK_THAT(refused_with("/training/loss", "\"energy\""), Catch::StartsWith("job.json: training.loss: \"energy\""));
-  CHECK_THAT(refused_with("/training/turned_copies", "1"), Catch::StartsWith("job.json: training.turned_copies: 1"));
-  CHECK_THAT(refused_with("/network", R"({"encoding": "state", "base": "none"})"),
-             Catch::StartsWith("job.json: network.processor: \"factors\""));
-  CHECK(refused("/training/noisy_copies", "2") ==
-        "job.json: training.noisy_copies: 2 is not allowed with network.encoding \"linear_system\"; must be with "
-        "\"state\"");
+  check_refused({
+      {with("/network/base", "\"subspace\"", values), "network.base: \"subspace\" ", "network.encoding \"state\"",
+       "must be \"none\""},
+      {with("/network/moves", "false", values), "network.moves: false"},
+      {with("/training/loss", "\"energy\"", values), "training.loss: \"energy\""},
+      {with("/training/turned_copies", "1", values), "training.turned_copies: 1"},
+      {with("/network", R"({"encoding": "state", "base": "none"})", values), "network.processor: \"factors\""},
+  });
 }
 
 TEST_CASE("the settings of every kind of network are the same after a round trip") {

@@ -5,26 +5,21 @@
 #include "runner/experiment/guess_check.hpp"
 #include "runner/job/skeleton_file.hpp"
 #include "tests/runner/job_folder.hpp"
+#include "tests/runner/refused_jobs.hpp"
 
 namespace rodsweep {
 namespace test_job_trees {
 
-Json job_with_scene(const std::string& scene) {
-  Json job = small_job();
-  job["scene"] = Json::parse(scene);
-  return job;
-}
-
 Json tree_job(const std::string& type = "tree", const std::string& more = "") {
-  return job_with_scene(R"({"type": ")" + type + R"(", "depth": 2, "branches": 3, "segments": 2, "length_m": 2,
-                            "radius_m": 0.1, "density_kg_m3": 800, "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 1e8)" +
-                        more + "}");
+  return with("/scene", R"({"type": ")" + type + R"(", "depth": 2, "branches": 3, "segments": 2, "length_m": 2,
+      "radius_m": 0.1, "density_kg_m3": 800, "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 1e8)" +
+                            more + "}");
 }
 
 Json skeleton_job(const std::string& more = "") {
-  return job_with_scene(R"({"type": "skeleton", "skeleton": "plum.swc", "density_kg_m3": 800, "youngs_modulus_pa": 1e9,
-                            "torsion_modulus_pa": 1e8)" +
-                        more + "}");
+  return with("/scene", R"({"type": "skeleton", "skeleton": "plum.swc", "density_kg_m3": 800,
+      "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 1e8)" +
+                            more + "}");
 }
 
 constexpr const char* plum = R"(# a plum, in centimetres, z up
@@ -36,12 +31,7 @@ constexpr const char* plum = R"(# a plum, in centimetres, z up
 )";
 
 std::string refusal_of_skeleton(const std::string& text) {
-  try {
-    parse_skeleton(text, "plum.swc");
-  } catch (const SkeletonError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<SkeletonError>([&] { parse_skeleton(text, "plum.swc"); });
 }
 
 TEST_CASE("a tree's keys and their defaults become a tree, whose segments the plan counts") {
@@ -90,9 +80,7 @@ TEST_CASE("a forest has at most as many trees as the rods of a file can be numbe
   CHECK(plan_of(job).task(0).segments == 32767 * 3);
   job["scene"]["rows"] = 182;
   job["scene"]["columns"] = {{"grid", {180, 182}}};
-  CHECK(refusal(job) ==
-        "job.json: scene: rows x columns is 33124; must be at most 32767, since results number rods in 16 bits: take "
-        "fewer, in several scenes");
+  check_refused({{job, "scene: rows x columns is 33124", "must be at most 32767", "take fewer, in several scenes"}});
 }
 
 TEST_CASE("wind blows on any scene, and may be one value of a grid with none") {
@@ -112,24 +100,18 @@ TEST_CASE("wind blows on any scene, and may be one value of a grid with none") {
 }
 
 TEST_CASE("winds and trees that a job cannot mean are refused with what is allowed") {
-  CHECK(refusal(with("/scene/wind", "\"calm\"")) ==
-        "job.json: scene.wind: \"calm\" is not allowed; must be an object {...}, or \"none\"");
-  CHECK(refusal(with("/scene/wind", R"({"mean_m_s": [1, 0, 0], "gusts": 1})")) ==
-        "job.json: scene.wind.gusts: unknown key; allowed here: \"mean_m_s\", \"gust_strength\", \"gust_period_s\", "
-        "\"turbulence_m_s\", \"turbulence_length_m\", \"turbulence_modes\", \"seed\", \"profile_exponent\", "
-        "\"reference_height_m\", \"air_density_kg_m3\", \"drag_coefficient\", \"friction_coefficient\"");
-  CHECK(
-      refusal(with("/scene/wind", "{}")) ==
-      "job.json: scene.wind.mean_m_s: missing: mean velocity [m/s], three numbers [x, y, z], each from -1000 to 1000");
-  CHECK(refusal(tree_job("tree", R"(, "taper": 0)")) ==
-        "job.json: scene.taper: 0 is not allowed; must be a number above 0 and at most 1");
-  CHECK(refusal(with("/scene/segments", "1", tree_job("tree", R"(, "taper": 0.5)"))) ==
-        "job.json: scene: taper is 0.5; must be 1 where a branch is one segment");
-  CHECK(refusal(with("/scene/depth", "20", tree_job())) ==
-        "job.json: scene: number of segments of a tree is 1.04604e+10; must be at most 1e7");
-  CHECK(refusal(tree_job("tree", R"(, "clamp": "free")")) ==
-        "job.json: scene.clamp: this key belongs to scene.type \"bending_rod\" or \"helix\" or \"ring\", not to "
-        "\"tree\"; a net is \"held\", trees stand on the ground");
+  check_refused({
+      {with("/scene/wind", "\"calm\""), "scene.wind: \"calm\" ", "an object {...}, or \"none\""},
+      {with("/scene/wind", R"({"mean_m_s": [1, 0, 0], "gusts": 1})"), "scene.wind.gusts: unknown key",
+       "\"mean_m_s\", \"gust_strength\", \"gust_period_s\", \"turbulence_m_s\", \"turbulence_length_m\", "
+       "\"turbulence_modes\", \"seed\", \"profile_exponent\", \"reference_height_m\", \"air_density_kg_m3\", "
+       "\"drag_coefficient\", \"friction_coefficient\""},
+      {with("/scene/wind", "{}"), "scene.wind.mean_m_s: missing: mean velocity [m/s]", "each from -1000 to 1000"},
+      {tree_job("tree", R"(, "taper": 0)"), "scene.taper: 0 ", "must be a number above 0 and at most 1"},
+      {with("/scene/segments", "1", tree_job("tree", R"(, "taper": 0.5)")), "scene: taper is 0.5", "must be 1 "},
+      {with("/scene/depth", "20", tree_job()), "scene: number of segments of a tree is 1.04604e+10", "at most 1e7"},
+      {tree_job("tree", R"(, "clamp": "free")"), "scene.clamp: ", "not to \"tree\"", "trees stand on the ground"},
+  });
 }
 
 TEST_CASE("a skeleton is found beside the job; units, axis and root are brought to the scene's") {
@@ -183,18 +165,12 @@ TEST_CASE("a skeleton that is none is refused with file, line, value and bound")
 }
 
 TEST_CASE("nearest neighbours are refused on a tree, but not on a trunk") {
-  const auto refusal_of_neighbours = [](Json job) -> std::string {
+  const auto refusal_of_neighbours = [](Json job) {
     job["guesses"].push_back({{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}});  // the data are not read yet
-    try {
-      check_guesses(plan_of(job));
-    } catch (const JobError& error) {
-      return error.what();
-    }
-    return "";
+    return message_of<JobError>([&] { check_guesses(plan_of(job)); });
   };
-  CHECK(refusal_of_neighbours(tree_job()) ==
-        "job.json: guesses[2]: \"knn\" is not allowed on rods that branch; must be another guess; the joints of the 27 "
-        "segments of task 0 form a tree");
+  check_refused({{tree_job(), "guesses[2]: \"knn\" ", "rods that branch", "27 segments of task 0"}},
+                refusal_of_neighbours);
   CHECK(refusal_of_neighbours(with("/scene/depth", "0", tree_job())).empty());
 }
 
