@@ -1,9 +1,12 @@
-// For tests of what reads data sets: their files, made by one process.
+// For tests of evaluated tasks and of what reads data sets: records, and files made by one process.
 #pragma once
 
 #include "tests/runner/file_examples.hpp"
 
 namespace rodsweep {
+
+/// What a task's evaluation records; an exception if it is abandoned.
+TaskRecord record_of(const Plan& plan, std::int64_t task = 0);
 
 /// The file of a job, of which tasks from `failing` on fail, or are left out where `pending`.
 Plan make_data_set(const std::filesystem::path& path, const Json& job, std::int64_t failing = 1000,

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "runner/dataset/stored_systems.hpp"
-#include "runner/experiment/evaluation.hpp"
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/data_set_examples.hpp"
 #include "tests/runner/stored_examples.hpp"
 #include "tests/solver/support.hpp"
 
@@ -12,9 +11,7 @@ namespace rodsweep {
 namespace test_stored_systems {
 
 TaskRecord evaluated(const Plan& plan) {
-  TaskRecord record;
-  record.prepare(plan.task(0), axis_sizes(plan));
-  REQUIRE(evaluate(plan.task(0), plan.spec(0), record, [] { return false; }));
+  TaskRecord record = record_of(plan);
   REQUIRE(record.outcome == TaskOutcome::ok);
   return record;
 }

@@ -3,28 +3,15 @@
 #include <cmath>
 #include <fstream>
 
-#include "runner/experiment/evaluation.hpp"
 #include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/training_sets.hpp"
 #include "runner/training/model_file.hpp"
-#include "tests/runner/file_examples.hpp"
+#include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {
 namespace test_baselines {
 
 namespace fs = std::filesystem;
-
-void write_data(const fs::path& path, const Json& job) {
-  const Plan plan = plan_of(job);
-  ResultsFile file = ResultsFile::create(path, plan, test_provenance(), MPI_COMM_SELF);
-  for (const Task& task : plan.tasks()) {
-    TaskRecord record;
-    record.prepare(task, axis_sizes(plan));
-    evaluate(task, plan.spec(task.index), record, [] { return false; });
-    file.write(task, record);
-  }
-  file.close();
-}
 
 /// A network of random weights times `factor`; of a simulator, with units of one.
 void write_model(const fs::path& path, float factor, bool of_states = false) {
@@ -54,10 +41,7 @@ void write_model(const fs::path& path, float factor, bool of_states = false) {
 std::vector<TaskRecord> evaluated(const TemporaryFolder& folder, const Json& job) {
   const Plan plan(parse_job(job.dump(), folder / "job.json"));
   std::vector<TaskRecord> records;
-  for (const Task& task : plan.tasks()) {
-    records.emplace_back().prepare(task, axis_sizes(plan));
-    REQUIRE(evaluate(task, plan.spec(task.index), records.back(), [] { return false; }));
-  }
+  for (const Task& task : plan.tasks()) records.push_back(record_of(plan, task.index));
   return records;
 }
 
@@ -69,8 +53,8 @@ Json instead_of_the_solve(const std::string& model) {
 
 TEST_CASE("nearest neighbours know the simulations of their own data set, the first of which are enough") {
   const TemporaryFolder folder;
-  Json data = data_job();
-  write_data(folder / "data.h5", data);
+  const Json data = data_job();
+  make_data_set(folder / "data.h5", data);
   Json job = without("/record", data);
   job["kind"] = "sweep";
   job["guesses"] = Json::parse(R"(["zero", {"knn": {"data": "data.h5", "k": 1}},
@@ -137,13 +121,7 @@ TEST_CASE("models are refused where they are for something else") {
   write_model(folder / "states.h5", 1, true);
   write_model(folder / "systems.h5", 1);
   const auto refusal_of = [&](const Json& job) {
-    const Plan plan(parse_job(job.dump(), folder / "job.json"));
-    try {
-      check_guesses(plan);
-    } catch (const JobError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return message_of<JobError>([&] { check_guesses(Plan(parse_job(job.dump(), folder / "job.json"))); });
   };
   CHECK_THAT(refusal_of(instead_of_the_solve("states.h5")),
              Catch::Contains("solve.model: states.h5 is not allowed: it is of the encoding \"state\""));

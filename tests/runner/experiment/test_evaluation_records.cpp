@@ -3,8 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runner/experiment/evaluation.hpp"
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {
 namespace test_evaluation_records {
@@ -18,13 +17,7 @@ Json job_with(const std::string& guesses, const std::string& solve = "{}") {
   return job;
 }
 
-TaskRecord evaluated(const Json& job, std::int64_t task = 0) {
-  const Plan plan = plan_of(job);
-  TaskRecord record;
-  record.prepare(plan.task(task), axis_sizes(plan));
-  REQUIRE(evaluate(plan.task(task), plan.spec(task), record, [] { return false; }));
-  return record;
-}
+TaskRecord evaluated(const Json& job, std::int64_t task = 0) { return record_of(plan_of(job), task); }
 
 TEST_CASE("a guess with a history starts from the steps before, from the second step on") {
   const TaskRecord r = evaluated(job_with(R"(["zero", "previous"])"));

@@ -2,8 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runner/experiment/evaluation.hpp"
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {
 namespace test_gauss_seidel_tasks {
@@ -12,11 +11,7 @@ TaskRecord evaluated(const std::string& solve, Json job = small_job()) {
   job.erase("guesses");
   job["evaluation"] = "closed_loop";
   job["solve"] = Json::parse(solve);
-  const Plan plan = plan_of(job);
-  TaskRecord record;
-  record.prepare(plan.task(0), axis_sizes(plan));
-  REQUIRE(evaluate(plan.task(0), plan.spec(0), record, [] { return false; }));
-  return record;
+  return record_of(plan_of(job));
 }
 
 TEST_CASE("a task of xpbd holds the residual of every iteration, and the state and time of every step") {

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "runner/dataset/dataset_reader.hpp"
-#include "runner/experiment/evaluation.hpp"
 #include "runner/experiment/guesses.hpp"
 #include "runner/training/validation_ratio.hpp"
 #include "tests/runner/data_set_examples.hpp"
@@ -32,10 +31,8 @@ TEST_CASE("the CG ratio of a guess on recorded simulations is that of a paired s
 
     const Plan sweep = plan_of(rods("\"sweep\""));
     for (const Task& task : sweep.tasks()) {
-      TaskRecord record;
-      record.prepare(task, axis_sizes(sweep));
+      const TaskRecord record = record_of(sweep, task.index);
       const TaskSpec spec = sweep.spec(task.index);
-      evaluate(task, spec, record, [] { return false; });
       for (std::size_t g = 0; g < 3; ++g) {
         CAPTURE(systems, task.index, g);
         const auto measured = ratios.measure(
