@@ -67,6 +67,11 @@ void make_file(const std::filesystem::path& path, const Plan& plan, std::int64_t
   file.close();
 }
 
+std::size_t entries(const std::filesystem::path& folder) {
+  using Entries = std::filesystem::directory_iterator;
+  return static_cast<std::size_t>(std::distance(Entries(folder), Entries()));
+}
+
 std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

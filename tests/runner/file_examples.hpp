@@ -40,6 +40,19 @@ Provenance test_provenance();
 /// A closed file of `plan` in which the first `done` tasks are complete.
 void make_file(const std::filesystem::path& path, const Plan& plan, std::int64_t done);
 
+/// A file of a job in a folder of its own.
+struct FullFile {
+  explicit FullFile(std::int64_t done, const Json& job = full_job()) : plan(plan_of(job)) {
+    make_file(path, plan, done);
+  }
+
+  TemporaryFolder folder;
+  Plan plan;
+  std::filesystem::path path = folder / "a.h5";
+};
+
+std::size_t entries(const std::filesystem::path& folder);
+
 std::string bytes_of(const std::filesystem::path& path);
 
 /// Everything outside /timing and /runs, by path.

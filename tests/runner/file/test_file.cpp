@@ -111,24 +111,20 @@ TEST_CASE("a task whose record cannot be written whole stays pending") {
 }
 
 TEST_CASE("what the plan knows is in the file from the start") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  make_file(folder / "a.h5", plan, 0);
-  CHECK(stored_texts(folder / "a.h5", "/job/text").at(0) == plan.job().text);
-  CHECK(stored_texts(folder / "a.h5", "/axes/guess") == std::vector<std::string>{"zero", "previous"});
-  CHECK(stored<double>(folder / "a.h5", "/axes/tolerance") == tolerance_ladder());
-  CHECK(stored<std::int32_t>(folder / "a.h5", "/tasks/segments") == std::vector<std::int32_t>{4, 4, 5, 5, 7, 7});
-  CHECK(stored<std::int64_t>(folder / "a.h5", "/tasks/parameters/scene.segments") ==
+  const FullFile made(0);
+  CHECK(stored_texts(made.path, "/job/text").at(0) == made.plan.job().text);
+  CHECK(stored_texts(made.path, "/axes/guess") == std::vector<std::string>{"zero", "previous"});
+  CHECK(stored<double>(made.path, "/axes/tolerance") == tolerance_ladder());
+  CHECK(stored<std::int32_t>(made.path, "/tasks/segments") == std::vector<std::int32_t>{4, 4, 5, 5, 7, 7});
+  CHECK(stored<std::int64_t>(made.path, "/tasks/parameters/scene.segments") ==
         std::vector<std::int64_t>{4, 4, 5, 5, 7, 7});
-  CHECK(stored<double>(folder / "a.h5", "/tasks/parameters/scene.gravity_m_s2").size() == 18);
-  CHECK(stored_texts(folder / "a.h5", "/tasks/parameters/scene.type") == std::vector<std::string>(6, "bending_rod"));
-  CHECK(stored<std::int64_t>(folder / "a.h5", "/tasks/first_frame_row") ==
-        std::vector<std::int64_t>{0, 8, 16, 26, 36, 50});
-  CHECK(stored<std::int64_t>(folder / "a.h5", "/tasks/first_segment_row") ==
-        std::vector<std::int64_t>{0, 4, 8, 13, 18, 25});
-  CHECK(stored_texts(folder / "a.h5", "/tasks/outcome") == std::vector<std::string>(6, "pending"));
+  CHECK(stored<double>(made.path, "/tasks/parameters/scene.gravity_m_s2").size() == 18);
+  CHECK(stored_texts(made.path, "/tasks/parameters/scene.type") == std::vector<std::string>(6, "bending_rod"));
+  CHECK(stored<std::int64_t>(made.path, "/tasks/first_frame_row") == std::vector<std::int64_t>{0, 8, 16, 26, 36, 50});
+  CHECK(stored<std::int64_t>(made.path, "/tasks/first_segment_row") == std::vector<std::int64_t>{0, 4, 8, 13, 18, 25});
+  CHECK(stored_texts(made.path, "/tasks/outcome") == std::vector<std::string>(6, "pending"));
 
-  const hdf5::File read = hdf5::open_file(folder / "a.h5", H5F_ACC_RDONLY);
+  const hdf5::File read = hdf5::open_file(made.path, H5F_ACC_RDONLY);
   CHECK(hdf5::read_text_attribute(read.id(), "/", "program") == "rodsweep");
   CHECK(hdf5::read_int_attribute(read.id(), "/", "schema_version") == schema_version);
   CHECK(hdf5::read_text_attribute(read.id(), "/job", "name") == "small");
@@ -137,10 +133,8 @@ TEST_CASE("what the plan knows is in the file from the start") {
 }
 
 TEST_CASE("every dataset says its unit and meaning") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  make_file(folder / "a.h5", plan, 0);
-  const hdf5::File read = hdf5::open_file(folder / "a.h5", H5F_ACC_RDONLY);
+  const FullFile made(0);
+  const hdf5::File read = hdf5::open_file(made.path, H5F_ACC_RDONLY);
   std::vector<std::string> datasets;
   H5Ovisit2(
       read.id(), H5_INDEX_NAME, H5_ITER_NATIVE,
@@ -149,7 +143,7 @@ TEST_CASE("every dataset says its unit and meaning") {
         return 0;
       },
       &datasets, H5O_INFO_BASIC);
-  CHECK(datasets.size() == layout(plan, plan.parameters()).size());
+  CHECK(datasets.size() == layout(made.plan, made.plan.parameters()).size());
   for (const std::string& path : datasets) {
     INFO(path);
     CHECK_FALSE(hdf5::read_text_attribute(read.id(), path, "unit").empty());

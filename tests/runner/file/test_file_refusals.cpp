@@ -36,10 +36,6 @@ std::string inspect_refusal(const fs::path& path) {
   return message_of<FileError>([&] { inspect(path); });
 }
 
-std::size_t entries(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
 TEST_CASE("a file that exists is refused, untouched, with the two ways on") {
   const TemporaryFolder folder;
   std::ofstream(folder / "a.h5") << "precious";
@@ -49,12 +45,8 @@ TEST_CASE("a file that exists is refused, untouched, with the two ways on") {
             " exists already and is never overwritten: continue it with --resume, or name another file with -o FILE");
   CHECK(bytes_of(path) == "precious");
   CHECK(entries(folder.path()) == 1);
-}
-
-TEST_CASE("a dangling link counts as a file that exists") {
-  const TemporaryFolder folder;
-  fs::create_symlink(folder / "nowhere", folder / "a.h5");
-  CHECK_THAT(creation_refusal(folder / "a.h5", plan_of(full_job())), Contains("exists already"));
+  fs::create_symlink(folder / "nowhere", folder / "dangling.h5");
+  CHECK_THAT(creation_refusal(folder / "dangling.h5", plan_of(full_job())), Contains("exists already"));
 }
 
 TEST_CASE("a file that appears while ours is being made is not replaced") {
@@ -127,64 +119,51 @@ TEST_CASE("what is not a results file is refused with what it is") {
 }
 
 TEST_CASE("a truncated results file is refused as damaged") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  make_file(folder / "a.h5", plan, 2);
-  fs::resize_file(folder / "a.h5", fs::file_size(folder / "a.h5") / 2);
-  CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("a.h5 is damaged or incomplete") && Contains("truncated file"));
-  CHECK_THAT(resume_refusal(folder / "a.h5", plan), Contains("a.h5 is damaged or incomplete"));
+  const FullFile made(2);
+  fs::resize_file(made.path, fs::file_size(made.path) / 2);
+  CHECK_THAT(inspect_refusal(made.path), Contains("a.h5 is damaged or incomplete") && Contains("truncated file"));
+  CHECK_THAT(resume_refusal(made.path, made.plan), Contains("a.h5 is damaged or incomplete"));
 }
 
 TEST_CASE("a results file without one of its datasets is refused by name") {
-  const TemporaryFolder folder;
-  make_file(folder / "a.h5", plan_of(full_job()), 2);
-  {
-    const hdf5::File file = hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR);
-    REQUIRE(H5Ldelete(file.id(), "/tasks/state", H5P_DEFAULT) >= 0);
-  }
-  CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("damaged or incomplete") && Contains("/tasks/state"));
+  const FullFile made(2);
+  REQUIRE(H5Ldelete(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/state", H5P_DEFAULT) >= 0);
+  CHECK_THAT(inspect_refusal(made.path), Contains("damaged or incomplete") && Contains("/tasks/state"));
 }
 
 TEST_CASE("a state byte that is neither 0 nor 1 is damage") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  make_file(folder / "a.h5", plan, 2);
-  hdf5::write_row<std::uint8_t>(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/tasks/state", 4, 7);
-  CHECK_THAT(inspect_refusal(folder / "a.h5"),
+  const FullFile made(2);
+  hdf5::write_row<std::uint8_t>(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/state", 4, 7);
+  CHECK_THAT(inspect_refusal(made.path),
              Contains("/tasks/state of task 4 is 7, neither 0 nor 1. Its job, run into this file with --resume"));
-  const auto file = ResultsFile::resume(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
+  const auto file = ResultsFile::resume(made.path, made.plan, test_provenance(), MPI_COMM_SELF);
   CHECK_THAT(file.value().note(), Contains("task 4 is run again"));
   CHECK(file.value().done().at(4) == 0);
-  CHECK(inspect(folder / "a.h5").pending >= 1);
+  CHECK(inspect(made.path).pending >= 1);
 }
 
 TEST_CASE("frames whose rows no number can count are damage") {
-  const TemporaryFolder folder;
-  make_file(folder / "a.h5", plan_of(full_job()), 2);
-  hdf5::write_row<std::int64_t>(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/tasks/frames", 0,
+  const FullFile made(2);
+  hdf5::write_row<std::int64_t>(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/tasks/frames", 0,
                                 std::numeric_limits<std::int64_t>::max());
-  CHECK_THAT(message_of<FileError>([&] { verify(folder / "a.h5"); }),
-             Contains("a task has rows outside /trajectories"));
+  CHECK_THAT(message_of<FileError>([&] { verify(made.path); }), Contains("a task has rows outside /trajectories"));
 }
 
 TEST_CASE("a file of another schema version is refused with both versions") {
-  const TemporaryFolder folder;
-  make_file(folder / "a.h5", plan_of(full_job()), 0);
+  const FullFile made(0);
   {
-    const hdf5::File file = hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR);
+    const hdf5::File file = hdf5::open_file(made.path, H5F_ACC_RDWR);
     REQUIRE(H5Adelete(file.id(), "schema_version") >= 0);
     hdf5::write_attribute(file.id(), "schema_version", 99);
   }
-  CHECK_THAT(inspect_refusal(folder / "a.h5"), Contains("has schema version 99, and this rodsweep knows version 1"));
+  CHECK_THAT(inspect_refusal(made.path), Contains("has schema version 99, and this rodsweep knows version 1"));
 }
 
 TEST_CASE("a file whose multipliers are in the world frame is not continued") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  make_file(folder / "a.h5", plan, 2);
-  REQUIRE(H5Adelete(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "multiplier_frame") >= 0);
-  CHECK_THAT(resume_refusal(folder / "a.h5", plan), Contains("which measured stretch and shear in the world") &&
-                                                        EndsWith("run into another file with -o FILE"));
+  const FullFile made(2);
+  REQUIRE(H5Adelete(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "multiplier_frame") >= 0);
+  CHECK_THAT(resume_refusal(made.path, made.plan), Contains("which measured stretch and shear in the world") &&
+                                                       EndsWith("run into another file with -o FILE"));
 }
 
 TEST_CASE("resume with another job is refused with the line that differs") {
@@ -202,38 +181,35 @@ TEST_CASE("resume with another job is refused with the line that differs") {
 }
 
 TEST_CASE("resume with a program that expands the job differently is refused with the difference") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  const fs::path path = folder / "a.h5";
-  make_file(path, plan, 3);
+  const FullFile made(3);
   const std::string length = "/tasks/parameters/scene.length_m";
-  auto lengths = hdf5::read_all<double>(hdf5::open_file(path, H5F_ACC_RDONLY).id(), length);
+  auto lengths = hdf5::read_all<double>(hdf5::open_file(made.path, H5F_ACC_RDONLY).id(), length);
 
   SECTION("another value of a parameter") {
     lengths[4] *= 1.001;
-    hdf5::write_all(hdf5::open_file(path, H5F_ACC_RDWR).id(), length, lengths);
+    hdf5::write_all(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), length, lengths);
     const std::string own = source_revision();
     const bool is_known = own != "unknown" && own.find("-dirty") == std::string::npos;
-    CHECK_THAT(resume_refusal(path, plan),
+    CHECK_THAT(resume_refusal(made.path, made.plan),
                Contains("scene.length_m of task 4 is") &&
                    Contains(is_known ? "this very revision made it" : "expands it differently"));
-    hdf5::write_text_row(hdf5::open_file(path, H5F_ACC_RDWR).id(), "/runs/revision", 0, "0123456789ab");
-    CHECK_THAT(resume_refusal(path, plan),
+    hdf5::write_text_row(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/revision", 0, "0123456789ab");
+    CHECK_THAT(resume_refusal(made.path, made.plan),
                Contains("expands it differently (revision 0123456789ab): scene.length_m of task 4 is"));
   }
   SECTION("last digits of a parameter do not matter") {
     lengths[4] *= 1 + 1e-14;
-    hdf5::write_all(hdf5::open_file(path, H5F_ACC_RDWR).id(), length, lengths);
-    CHECK(resume_refusal(path, plan) == "");
+    hdf5::write_all(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), length, lengths);
+    CHECK(resume_refusal(made.path, made.plan) == "");
   }
   SECTION("another list of tasks") {
     {
-      const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
+      const hdf5::File file = hdf5::open_file(made.path, H5F_ACC_RDWR);
       const hdf5::Object job(H5Oopen(file.id(), "/job", H5P_DEFAULT));
       REQUIRE(H5Adelete(job.id(), "plan_hash") >= 0);
       hdf5::write_attribute(job.id(), "plan_hash", "0123456789abcdef");
     }
-    CHECK_THAT(resume_refusal(path, plan), Contains("its list of tasks is another"));
+    CHECK_THAT(resume_refusal(made.path, made.plan), Contains("its list of tasks is another"));
   }
 }
 

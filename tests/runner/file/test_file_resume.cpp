@@ -85,27 +85,23 @@ TEST_CASE("a file that a run writes is refused to another, until that ends") {
 }
 
 TEST_CASE("a complete task is never written again") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  make_file(folder / "a.h5", plan, 2);
-  const auto before = reproducible_bytes(folder / "a.h5", plan);
-  ResultsFile file = resume(folder / "a.h5", plan);
-  CHECK_THAT(message_of<std::logic_error>([&] { file.write(plan.task(1), synthetic_record(plan, 0)); }),
+  const FullFile made(2);
+  const auto before = reproducible_bytes(made.path, made.plan);
+  ResultsFile file = resume(made.path, made.plan);
+  CHECK_THAT(message_of<std::logic_error>([&] { file.write(made.plan.task(1), synthetic_record(made.plan, 0)); }),
              Contains("task 1 is complete") && Contains("must not be written again"));
-  const bool untouched = reproducible_bytes(folder / "a.h5", plan) == before;
+  const bool untouched = reproducible_bytes(made.path, made.plan) == before;
   CHECK(untouched);
 }
 
 TEST_CASE("a sweep can be resumed more often than /runs has rows, and says so") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  make_file(folder / "a.h5", plan, 0);
-  hdf5::write_texts(hdf5::open_file(folder / "a.h5", H5F_ACC_RDWR).id(), "/runs/begin",
+  const FullFile made(0);
+  hdf5::write_texts(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/runs/begin",
                     std::vector<std::string>(run_rows, "2025-01-01T00:00:00Z"));
-  ResultsFile file = resume(folder / "a.h5", plan);
+  ResultsFile file = resume(made.path, made.plan);
   CHECK(file.run_index() == run_rows - 1);
   CHECK_THAT(file.note(), Contains("was started 64 times before") && Contains("/runs"));
-  const FileSummary summary = inspect(folder / "a.h5");
+  const FileSummary summary = inspect(made.path);
   CHECK(summary.runs.size() == run_rows);
   CHECK(summary.runs.back().provenance.begin_utc != "2025-01-01T00:00:00Z");
 }
@@ -154,18 +150,15 @@ TEST_CASE("failed tasks are run again on request, if they may end otherwise") {
 }
 
 TEST_CASE("verifying shows that it lives, and stops when told to, with the file as it was") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  const auto path = folder / "a.h5";
-  make_file(path, plan, 4);
-  fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  const FullFile made(4);
+  fs::last_write_time(made.path, fs::file_time_type::clock::now() - std::chrono::hours(1));
   int asked = 0;
-  CHECK_FALSE(
-      ResultsFile::resume(path, plan, test_provenance(), MPI_COMM_SELF, Retry::none, [&] { return ++asked == 3; }));
+  CHECK_FALSE(ResultsFile::resume(made.path, made.plan, test_provenance(), MPI_COMM_SELF, Retry::none,
+                                  [&] { return ++asked == 3; }));
   CHECK(asked == 3);
-  CHECK(fs::file_time_type::clock::now() - fs::last_write_time(path) < std::chrono::minutes(1));
-  CHECK(inspect(path).runs.size() == 1);
-  CHECK(resume(path, plan).done() == std::vector<std::uint8_t>{1, 1, 1, 1, 0, 0});
+  CHECK(fs::file_time_type::clock::now() - fs::last_write_time(made.path) < std::chrono::minutes(1));
+  CHECK(inspect(made.path).runs.size() == 1);
+  CHECK(resume(made.path, made.plan).done() == std::vector<std::uint8_t>{1, 1, 1, 1, 0, 0});
 }
 
 TEST_CASE("status can be read while the sweep writes") {
@@ -226,33 +219,30 @@ TEST_CASE("a long message is cut, not refused") {
 }
 
 TEST_CASE("verification finds one flipped bit in the data of a complete task") {
-  const TemporaryFolder folder;
-  const Plan plan = plan_of(full_job());
-  const fs::path path = folder / "a.h5";
-  make_file(path, plan, 4);
-  CHECK(verify(path).checked == 4);
-  CHECK(verify(path).damaged.empty());
+  const FullFile made(4);
+  CHECK(verify(made.path).checked == 4);
+  CHECK(verify(made.path).damaged.empty());
 
-  const AxisSizes sizes = axis_sizes(plan);
+  const AxisSizes sizes = axis_sizes(made.plan);
   const auto first_byte = [&](const Task& task, std::int64_t width_bytes) {
     return static_cast<std::size_t>(task.rows[Rows::solve].first * width_bytes);
   };
   SECTION("in a row of a solve") {
-    flip_bit(path, "/solves/iterations", first_byte(plan.task(2), sizes.guesses * sizes.tolerances * 2) + 5);
-    CHECK(verify(path).damaged == std::vector<std::int64_t>{2});
+    flip_bit(made.path, "/solves/iterations", first_byte(made.plan.task(2), sizes.guesses * sizes.tolerances * 2) + 5);
+    CHECK(verify(made.path).damaged == std::vector<std::int64_t>{2});
   }
   SECTION("in the message") {
-    flip_bit(path, "/tasks/message", 3 * message_bytes);
-    CHECK(verify(path).damaged == std::vector<std::int64_t>{3});
+    flip_bit(made.path, "/tasks/message", 3 * message_bytes);
+    CHECK(verify(made.path).damaged == std::vector<std::int64_t>{3});
   }
   SECTION("in the checksum itself") {
-    flip_bit(path, "/tasks/checksum", 0);
-    CHECK(verify(path).damaged == std::vector<std::int64_t>{0});
+    flip_bit(made.path, "/tasks/checksum", 0);
+    CHECK(verify(made.path).damaged == std::vector<std::int64_t>{0});
   }
   SECTION("not in a pending task, nor in times") {
-    flip_bit(path, "/solves/iterations", first_byte(plan.task(4), sizes.guesses * sizes.tolerances * 2));
-    flip_bit(path, "/timing/solves/cg_s", 0);
-    CHECK(verify(path).damaged.empty());
+    flip_bit(made.path, "/solves/iterations", first_byte(made.plan.task(4), sizes.guesses * sizes.tolerances * 2));
+    flip_bit(made.path, "/timing/solves/cg_s", 0);
+    CHECK(verify(made.path).damaged.empty());
   }
 }
 
