@@ -17,6 +17,20 @@ int no_signal() { return 0; }
 
 TaskResult succeed(std::int64_t, const StopRequested&) { return {TaskOutcome::ok, ""}; }
 
+/// Runs the sweep with one worker; its tasks in the order in which it runs them.
+std::vector<std::int64_t> order_of(Sweep& sweep) {
+  std::vector<std::int64_t> order;
+  Worker worker(
+      sweep.network[1],
+      [&](std::int64_t task, const StopRequested& stop) {
+        order.push_back(task);
+        return succeed(task, stop);
+      },
+      no_signal);
+  while (sweep.master.step() != Master::Step::finished) worker.step();
+  return order;
+}
+
 /// Steps master and workers in a random order until the master is finished, then lets the workers leave.
 void play(Sweep& sweep, std::vector<std::unique_ptr<Worker>>& workers, unsigned seed) {
   std::mt19937 random(seed);
@@ -32,16 +46,7 @@ void play(Sweep& sweep, std::vector<std::unique_ptr<Worker>>& workers, unsigned 
 
 TEST_CASE("tasks are handed out longest first, ties by number") {
   Sweep sweep(1, tasks_of_cost({1, 5, 3, 5, 2}));
-  std::vector<std::int64_t> order;
-  Worker worker(
-      sweep.network[1],
-      [&](std::int64_t task, const StopRequested&) {
-        order.push_back(task);
-        return TaskResult{TaskOutcome::ok, ""};
-      },
-      no_signal);
-  while (sweep.master.step() != Master::Step::finished) worker.step();
-  CHECK(order == std::vector<std::int64_t>{1, 3, 2, 4, 0});
+  CHECK(order_of(sweep) == std::vector<std::int64_t>{1, 3, 2, 4, 0});
 }
 
 TEST_CASE("tasks that lost their workers come last, and again lost ones with nothing beside them") {
@@ -82,9 +87,9 @@ TEST_CASE("every task is run exactly once, whatever the order in which ranks get
   for (int rank = 1; rank <= 4; ++rank)
     workers.push_back(std::make_unique<Worker>(
         sweep.network[rank],
-        [&](std::int64_t task, const StopRequested&) {
+        [&](std::int64_t task, const StopRequested& stop) {
           ++runs[task];
-          return TaskResult{TaskOutcome::ok, ""};
+          return succeed(task, stop);
         },
         no_signal));
   play(sweep, workers, seed);
@@ -152,16 +157,7 @@ TEST_CASE("without tasks the workers are dismissed at once") {
 
 TEST_CASE("only the tasks given are run, so a resumed sweep skips what is done") {
   Sweep sweep(1, {{4, 1.0}, {9, 2.0}});
-  std::vector<std::int64_t> order;
-  Worker worker(
-      sweep.network[1],
-      [&](std::int64_t task, const StopRequested&) {
-        order.push_back(task);
-        return TaskResult{TaskOutcome::ok, ""};
-      },
-      no_signal);
-  while (sweep.master.step() != Master::Step::finished) worker.step();
-  CHECK(order == std::vector<std::int64_t>{9, 4});
+  CHECK(order_of(sweep) == std::vector<std::int64_t>{9, 4});
 }
 
 TEST_CASE("a report of a task that the worker does not have is a protocol error") {

@@ -28,6 +28,16 @@ void time_out(Sweep& sweep, Workers&... others) {
   }
 }
 
+/// Lets this worker run what is left; the order of its tasks.
+std::vector<std::int64_t> run_rest(Sweep& sweep, Inbox& worker) {
+  std::vector<std::int64_t> order;
+  for (bool finished = false; !finished;) {
+    for (const std::int64_t task : worker.assigned()) order.push_back(task), worker.report(task);
+    finished = sweep.master.step() == Master::Step::finished;
+  }
+  return order;
+}
+
 TEST_CASE("a silent worker's task goes to another, the one in its hand as if nothing had been") {
   std::vector<int> lost;
   Callbacks callbacks;
@@ -40,11 +50,7 @@ TEST_CASE("a silent worker's task goes to another, the one in its hand as if not
   time_out(sweep, other);
   CHECK(lost == std::vector<int>{1});
 
-  std::vector<std::int64_t> order;
-  for (bool finished = false; !finished;) {
-    for (const std::int64_t task : other.assigned()) order.push_back(task), other.report(task);
-    finished = sweep.master.step() == Master::Step::finished;
-  }
+  const std::vector<std::int64_t> order = run_rest(sweep, other);
   REQUIRE(order.size() == 12);
   CHECK(order.back() == held[0]);  // it may be to blame: last
   CHECK(order[1] != held[1]);
@@ -68,12 +74,7 @@ TEST_CASE("a lost worker that is heard again is ignored, and dismissed with the 
   other.report(1);
   sweep.master.step();
   CHECK(slow.assigned().empty());
-  std::vector<std::int64_t> order;
-  for (bool finished = false; !finished;) {
-    for (const std::int64_t task : other.assigned()) order.push_back(task), other.report(task);
-    finished = sweep.master.step() == Master::Step::finished;
-  }
-  CHECK(order == std::vector<std::int64_t>{2, 0});
+  CHECK(run_rest(sweep, other) == std::vector<std::int64_t>{2, 0});
   CHECK(slow.assigned().empty());
   CHECK((slow.finishes == 1 && slow.ranks_lost));
   CHECK(sweep.master.dispatch().finished[static_cast<std::size_t>(TaskOutcome::ok)] == 3);
@@ -114,12 +115,7 @@ TEST_CASE("what a lost worker finished and had not brought to disk is done again
   CHECK(other.assigned() == std::vector<std::int64_t>{1});
   other.report(1);
   time_out(sweep, other);
-  std::vector<std::int64_t> again;
-  for (bool finished = false; !finished;) {
-    for (const std::int64_t task : other.assigned()) again.push_back(task), other.report(task);
-    finished = sweep.master.step() == Master::Step::finished;
-  }
-  CHECK(again == std::vector<std::int64_t>{2, 3});
+  CHECK(run_rest(sweep, other) == std::vector<std::int64_t>{2, 3});
   CHECK(sweep.master.dispatch().finished[static_cast<std::size_t>(TaskOutcome::ok)] == 4);
   CHECK(sweep.master.dispatch().finished[static_cast<std::size_t>(TaskOutcome::torn)] == 0);
   CHECK(sweep.master.dispatch().failures.empty());

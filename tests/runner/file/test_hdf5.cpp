@@ -51,17 +51,6 @@ TEST_CASE("text of a fixed length is padded with zeros and never cut within a ch
   CHECK(hdf5::fixed_text("", 2) == std::string(2, '\0'));
 }
 
-TEST_CASE("texts come back without their padding") {
-  const TemporaryFolder folder;
-  const hdf5::File file = hdf5::create_file(folder / "a.h5");
-  hdf5::create_dataset(file.id(), "/x/names", hdf5::text_type(6).id(), {3});
-  hdf5::write_texts(file.id(), "/x/names", {"zero", "", "previous"});
-  CHECK(hdf5::read_texts(file.id(), "/x/names") == std::vector<std::string>{"zero", "", "previo"});
-  hdf5::write_text_row(file.id(), "/x/names", 1, "mean");
-  CHECK(hdf5::read_text_row(file.id(), "/x/names", 1) == "mean");
-  CHECK(hdf5::read_text_row(file.id(), "/x/names", 2) == "previo");
-}
-
 TEST_CASE("rows of a dataset are written and read without touching their neighbours") {
   const TemporaryFolder folder;
   const hdf5::File file = hdf5::create_file(folder / "a.h5");
@@ -78,18 +67,4 @@ TEST_CASE("rows of a dataset are written and read without touching their neighbo
   CHECK(one == std::vector<double>{4, 5, 6});
   CHECK_THROWS_AS(rows.write(hdf5::type_of<double>(), 3, 2, two.data()), Hdf5Error);
   CHECK_FALSE(hdf5::RowDataset(file.id(), "/group/y"));
-}
-
-TEST_CASE("members and attributes are told in the order of their names") {
-  const TemporaryFolder folder;
-  const hdf5::File file = hdf5::create_file(folder / "a.h5");
-  CHECK(hdf5::members(file.id()).empty());
-  for (const char* path : {"/runs", "/a longer name than the others", "/x/y"})
-    hdf5::create_dataset(file.id(), path, hdf5::type_of<double>(), {1});
-  CHECK(hdf5::members(file.id()) == std::vector<std::string>{"a longer name than the others", "runs", "x"});
-  const hdf5::Dataset dataset = hdf5::open_dataset(file.id(), "/runs");
-  CHECK(hdf5::attribute_names(dataset.id()).empty());
-  hdf5::write_attribute(dataset.id(), "unit", "m");
-  hdf5::write_attribute(dataset.id(), "meaning", "none");
-  CHECK(hdf5::attribute_names(dataset.id()) == std::vector<std::string>{"meaning", "unit"});
 }

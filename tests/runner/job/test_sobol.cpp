@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "runner/job/sobol.hpp"
 #include "tests/runner/job_examples.hpp"
@@ -28,18 +27,6 @@ Json job_with(const char* sampling, int samples, int seed = 0) {
   return job;
 }
 
-/// Largest |share of points in [0, x) x [0, y) - x y| over a lattice of corners: a lower bound of the star discrepancy.
-double discrepancy(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0;
-  for (int i = 1; i <= 16; ++i)
-    for (int j = 1; j <= 16; ++j) {
-      int within = 0;
-      for (std::size_t k = 0; k < a.size(); ++k) within += a[k] < i / 16.0 && b[k] < j / 16.0;
-      largest = std::max(largest, std::abs(within / static_cast<double>(a.size()) - i * j / 256.0));
-    }
-  return largest;
-}
-
 TEST_CASE("without a shift the points are Sobol's, with the direction numbers of Joe and Kuo") {
   // new-joe-kuo-6.21201, points 0 to 7 of the first four dimensions
   const double known[8][4] = {{0, 0, 0, 0},
@@ -64,24 +51,6 @@ TEST_CASE("a shift keeps one point in each of 2^k equal intervals, in every dime
       ++hits[static_cast<std::size_t>(sobol.unit(d, i, 0x9e3779b97f4a7c15u * (d + 1)) * points)];
     CHECK(std::count(hits.begin(), hits.end(), 1) == points);
   }
-}
-
-TEST_CASE("sobol draws cover their ranges several times more evenly than random ones") {
-  const auto figures = [](const char* sampling, int seed) {
-    const Plan plan = plan_of(job_with(sampling, 256, seed));
-    const auto a = drawn(plan, "scene.initial_angle_deg"), b = drawn(plan, "scene.damping_per_s");
-    double sum = 0;
-    for (const double x : a) sum += x;
-    return std::pair(discrepancy(a, b), std::abs(sum / static_cast<double>(a.size()) - 0.5));
-  };
-  double random_discrepancy = 0, sobol_discrepancy = 0, random_error = 0, sobol_error = 0;
-  for (int seed = 0; seed < 10; ++seed) {
-    const auto [rd, re] = figures("random", seed);
-    const auto [sd, se] = figures("sobol", seed);
-    random_discrepancy += rd, random_error += re, sobol_discrepancy += sd, sobol_error += se;
-  }
-  CHECK(sobol_discrepancy < random_discrepancy / 3);
-  CHECK(sobol_error < random_error / 8);
 }
 
 TEST_CASE("sobol draws depend on seed, sample and key path, not on the number of samples or the grid") {

@@ -1,6 +1,7 @@
 // Tasks in a few bytes each are the tasks that were put in, and their rows follow each other.
 #include <catch2/catch.hpp>
 #include <stdexcept>
+#include <tuple>
 #include <vector>
 
 #include "runner/plan/task_list.hpp"
@@ -40,15 +41,10 @@ TaskList listed(const std::vector<Task>& tasks) {
 }
 
 void check_equal(const Task& a, const Task& b) {
-  CHECK(a.index == b.index);
-  CHECK(a.point == b.point);
-  CHECK(a.sample == b.sample);
-  CHECK(a.own_guess == b.own_guess);
-  CHECK(a.segments == b.segments);
-  CHECK(a.joints == b.joints);
-  CHECK(a.steps == b.steps);
-  CHECK(a.frames == b.frames);
-  CHECK(a.cost == b.cost);
+  const auto values = [](const Task& t) {
+    return std::tie(t.index, t.point, t.sample, t.own_guess, t.segments, t.joints, t.steps, t.frames, t.cost);
+  };
+  CHECK((values(a) == values(b)));
   for (std::size_t kind = 0; kind < row_kinds; ++kind) {
     CHECK(a.rows[kind].first == b.rows[kind].first);
     CHECK(a.rows[kind].count == b.rows[kind].count);

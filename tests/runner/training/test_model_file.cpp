@@ -1,10 +1,12 @@
 // Model files: what is read is what was written, and what is no model is refused.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <tuple>
 
 #include "runner/file/hdf5.hpp"
 #include "runner/job/training_job.hpp"
@@ -66,45 +68,32 @@ fs::path save(const fs::path& path, const Model& model, const ModelCard& card = 
 }
 
 void check_same(const ModelCard& a, const ModelCard& b) {
-  CHECK(a.name == b.name);
-  CHECK(a.job_text == b.job_text);
-  CHECK(a.data_path == b.data_path);
-  CHECK(a.data_hash == b.data_hash);
-  CHECK(a.training_simulations == b.training_simulations);
-  CHECK(a.validation_simulations == b.validation_simulations);
-  CHECK(a.training_examples == b.training_examples);
-  CHECK(a.validation_examples == b.validation_examples);
-  CHECK(a.planned_epochs == b.planned_epochs);
-  CHECK(a.best_epoch == b.best_epoch);
-  CHECK(a.ending == b.ending);
-  CHECK(a.message == b.message);
-  CHECK(a.cg_ratio == b.cg_ratio);
-  CHECK(a.base_cg_ratio == b.base_cg_ratio);
-  CHECK(a.ratio_simulations == b.ratio_simulations);
-  REQUIRE(a.scenes.size() == b.scenes.size());
-  for (std::size_t i = 0; i < a.scenes.size(); ++i) {
-    CHECK(a.scenes[i].scene == b.scenes[i].scene);
-    CHECK(a.scenes[i].cg_ratio == b.scenes[i].cg_ratio);
-    CHECK(a.scenes[i].base_cg_ratio == b.scenes[i].base_cg_ratio);
-  }
+  const auto training = [](const ModelCard& c) {
+    return std::tie(c.name, c.job_text, c.data_path, c.data_hash, c.training_simulations, c.validation_simulations,
+                    c.training_examples, c.validation_examples, c.planned_epochs);
+  };
+  const auto result = [](const ModelCard& c) {
+    return std::tie(c.best_epoch, c.ending, c.message, c.cg_ratio, c.base_cg_ratio, c.ratio_simulations);
+  };
+  CHECK((training(a) == training(b)));
+  CHECK((result(a) == result(b)));
+  const auto same_scene = [](const SceneRatios& x, const SceneRatios& y) {
+    return x.scene == y.scene && x.cg_ratio == y.cg_ratio && x.base_cg_ratio == y.base_cg_ratio;
+  };
+  CHECK(std::equal(a.scenes.begin(), a.scenes.end(), b.scenes.begin(), b.scenes.end(), same_scene));
+  const auto epoch = [](const Epoch& e) { return std::tie(e.training_loss, e.validation_loss, e.rate, e.seconds); };
   REQUIRE(a.epochs.size() == b.epochs.size());
   for (std::size_t i = 0; i < a.epochs.size(); ++i) {
-    CHECK(a.epochs[i].training_loss == b.epochs[i].training_loss);
-    CHECK(a.epochs[i].validation_loss == b.epochs[i].validation_loss);
-    CHECK(a.epochs[i].rate == b.epochs[i].rate);
-    CHECK(a.epochs[i].seconds == b.epochs[i].seconds);
+    CHECK((epoch(a.epochs[i]) == epoch(b.epochs[i])));
     CHECK(std::isnan(a.epochs[i].cg_ratio[3]) == std::isnan(b.epochs[i].cg_ratio[3]));
   }
   CHECK(a.epochs.back().cg_ratio == b.epochs.back().cg_ratio);
-  REQUIRE(a.starts.size() == b.starts.size());
-  for (std::size_t i = 0; i < a.starts.size(); ++i) {
-    CHECK(a.starts[i].end_utc == b.starts[i].end_utc);
-    CHECK(a.starts[i].exit_code == b.starts[i].exit_code);
-    CHECK(a.starts[i].provenance.begin_utc == b.starts[i].provenance.begin_utc);
-    CHECK(a.starts[i].provenance.versions == b.starts[i].provenance.versions);
-    CHECK(a.starts[i].provenance.ranks == b.starts[i].provenance.ranks);
-    CHECK(a.starts[i].provenance.oversubscribed == b.starts[i].provenance.oversubscribed);
-  }
+  const auto start = [](const TrainingStart& s) {
+    return std::tie(s.end_utc, s.exit_code, s.provenance.begin_utc, s.provenance.versions, s.provenance.ranks,
+                    s.provenance.oversubscribed);
+  };
+  const auto same_start = [&](const TrainingStart& x, const TrainingStart& y) { return start(x) == start(y); };
+  CHECK(std::equal(a.starts.begin(), a.starts.end(), b.starts.begin(), b.starts.end(), same_start));
 }
 
 bool same(const Normalisation& a, const Normalisation& b) {
