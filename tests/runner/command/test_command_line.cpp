@@ -89,12 +89,6 @@ TEST_CASE("the commands on results files take their options") {
   CHECK(std::get<PackOptions>(parse({"pack", "a.h5", "-o", "b.h5"})).output == "b.h5");
 }
 
-TEST_CASE("mistakes on the command line of results files are answered with exit code 2") {
-  CHECK_THAT(answer({"rerun", "a.h5"}).text, Contains("TASK is required"));
-  CHECK(answer({"rerun", "a.h5", "first"}).code == ExitCode::user_error);
-  CHECK(answer({"rerun", "a.h5", "1", "--trajectory-every", "0"}).code == ExitCode::user_error);
-}
-
 TEST_CASE("a word that is not a command names a program of its own, or what may have been meant") {
   const auto query = std::get<ExternalCommand>(parse({"query", "a.h5", "--csv"}));
   CHECK(query.name == "query");
@@ -125,14 +119,21 @@ TEST_CASE("a program is looked for beside this one, in the source tree, and on t
 }
 
 TEST_CASE("mistakes on the command line are answered with exit code 2 and what is wrong") {
-  CHECK(answer({}).code == ExitCode::user_error);
-  CHECK_THAT(answer({}).text, Contains("Examples:"));
-  CHECK(answer({"run"}).code == ExitCode::user_error);
-  CHECK_THAT(answer({"run"}).text, Contains("JOB is required"));
-  CHECK(answer({"run", "a.json", "--resumee"}).code == ExitCode::user_error);
-  CHECK_THAT(answer({"run", "a.json", "--resumee"}).text, Contains("--resumee"));
-  CHECK_THAT(answer({"run", "a.json", "--retry-failed"}).text, Contains("--retry-failed requires --resume"));
-  CHECK(answer({"info", "a.h5", "--job", "--json"}).code == ExitCode::user_error);
+  const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes{
+      {{}, "Examples:"},
+      {{"run"}, "JOB is required"},
+      {{"run", "a.json", "--resumee"}, "--resumee"},
+      {{"run", "a.json", "--retry-failed"}, "--retry-failed requires --resume"},
+      {{"info", "a.h5", "--job", "--json"}, ""},
+      {{"rerun", "a.h5"}, "TASK is required"},
+      {{"rerun", "a.h5", "first"}, ""},
+      {{"rerun", "a.h5", "1", "--trajectory-every", "0"}, ""},
+  };
+  for (const auto& [words, says] : mistakes) {
+    CAPTURE(words);
+    CHECK(answer(words).code == ExitCode::user_error);
+    CHECK_THAT(answer(words).text, Contains(says));
+  }
 }
 
 TEST_CASE("every command's help shows an example and the exit codes") {

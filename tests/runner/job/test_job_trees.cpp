@@ -140,23 +140,22 @@ TEST_CASE("a skeleton is found beside the job; units, axis and root are brought 
 TEST_CASE("a skeleton that is none is refused with file, line, value and bound") {
   CHECK(refusal_of_skeleton(plum).empty());
   CHECK(refusal_of_skeleton("") == "plum.swc:0: 0 nodes; must be at least 2");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1 0 1\n") ==
-        "plum.swc:2: 6 values; must be the 7 of SWC: id type x y z radius parent");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1m 0 1 1\n") == "plum.swc:2: y is \"1m\"; must be a finite number");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 nan 0 1 1\n") ==
-        "plum.swc:2: y is \"nan\"; must be a finite number");
-  CHECK(refusal_of_skeleton("1.5 0 0 0 0 1 -1\n") == "plum.swc:1: id is \"1.5\"; must be an integer");
+  const std::string id_above = "must be the id of a line above, or -1 of the first node alone";
+  const std::vector<std::pair<std::string, std::string>> after_first_line{
+      {"2 0 0 1 0 1\n", "2: 6 values; must be the 7 of SWC: id type x y z radius parent"},
+      {"2 0 0 1m 0 1 1\n", "2: y is \"1m\"; must be a finite number"},
+      {"2 0 0 nan 0 1 1\n", "2: y is \"nan\"; must be a finite number"},
+      {"1.5 0 0 0 0 1 1\n", "2: id is \"1.5\"; must be an integer"},
+      {"2 0 0 1 0 1 3\n3 0 0 2 0 1 1\n", "2: parent is 3; " + id_above},
+      {"2 0 0 1 0 1 -1\n", "2: parent is -1; " + id_above},
+      {"1 0 0 1 0 1 1\n", "2: id is 1, as in line 1; must be another"},
+      {"\n2 0 0 1 0 0 1\n", "3: radius is 0; must be positive"},
+      {"2 0 0 0 0 1 1\n", "2: stands where its parent does; must be elsewhere"},
+      {"2 0 0 1 0 1 1\n3 0 0 0.5 0 1 2\n", "3: turns back onto the edge below by 180 degrees; must be at most 160"},
+  };
+  for (const auto& [lines, says] : after_first_line)
+    CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n" + lines) == "plum.swc:" + says);
   CHECK(refusal_of_skeleton("1 0 0 0 0 1 0\n") == "plum.swc:1: parent is 0; must be -1, since this is the first node");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1 0 1 3\n3 0 0 2 0 1 1\n") ==
-        "plum.swc:2: parent is 3; must be the id of a line above, or -1 of the first node alone");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1 0 1 -1\n") ==
-        "plum.swc:2: parent is -1; must be the id of a line above, or -1 of the first node alone");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n1 0 0 1 0 1 1\n") == "plum.swc:2: id is 1, as in line 1; must be another");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n\n2 0 0 1 0 0 1\n") == "plum.swc:3: radius is 0; must be positive");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 0 0 1 1\n") ==
-        "plum.swc:2: stands where its parent does; must be elsewhere");
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n2 0 0 1 0 1 1\n3 0 0 0.5 0 1 2\n") ==
-        "plum.swc:3: turns back onto the edge below by 180 degrees; must be at most 160");
   const JobFolder folder;
   folder.write("plum.swc", "1 0 0 0\n");
   CHECK(folder.refusal(skeleton_job()) == (folder.path() / "job.json").native() +
