@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
-#include <string>
 
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/cg/petsc_session.hpp"
@@ -79,13 +78,12 @@ void petsc_cg(benchmark::State& state) {
 }
 
 void print_summary(const Medians& median) {
-  const auto at = [](const char* name, int n) { return name + ("/" + std::to_string(n)); };
   std::printf("\nCG per iteration, Jacobi (target: KSP at most 1.3 times the bare loop)\n");
   std::printf("%6s %14s %14s %8s %22s\n", "N", "bare [us]", "KSPCG [us]", "ratio", "product, of bare [%]");
   for (const int n : sizes) {
-    const double bare = median(at("bare_cg", n)) / cg_iterations, petsc = median(at("petsc_cg", n)) / cg_iterations;
+    const double bare = median("bare_cg", n) / cg_iterations, petsc = median("petsc_cg", n) / cg_iterations;
     std::printf("%6d %14.3f %14.3f %8.2f %22.0f\n", n, bare * 1e6, petsc * 1e6, petsc / bare,
-                100 * median(at("multiply", n)) / bare);
+                100 * median("multiply", n) / bare);
   }
 }
 
@@ -93,9 +91,6 @@ void print_summary(const Medians& median) {
 
 int main(int argc, char** argv) {
   const PetscSession petsc;
-  for (const auto& [name, function] : {std::pair{"multiply", multiply}, {"bare_cg", bare_cg}, {"petsc_cg", petsc_cg}})
-    for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
-  Medians medians;
-  if (!run_benchmarks(argc, argv, medians)) return 2;
-  print_summary(medians);
+  register_cases({{"multiply", multiply}, {"bare_cg", bare_cg}, {"petsc_cg", petsc_cg}}, sizes);
+  return run_benchmarks(argc, argv, print_summary);
 }

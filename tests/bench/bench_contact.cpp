@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <map>
 #include <random>
-#include <string>
 
 #include "solver/contact/contact_projection.hpp"
 #include "solver/scene/scene_parts.hpp"
@@ -90,19 +89,20 @@ void project(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(fallen.projection.project(0.01));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  for (const auto& [name, function] : {std::pair{"search", search}, {"find", find}, {"project", project}})
-    for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
-  Medians medians;
-  if (!run_benchmarks(argc, argv, medians)) return 2;
+void print_summary(const Medians& median) {
   std::printf("\nContact, per segment [us]: searching pairs anew, finding contacts of known pairs, one projection\n");
   std::printf("%8s %10s %8s %8s %22s\n", "segments", "search", "find", "project", "contacts per segment");
   for (const int n : sizes) {
-    const auto us = [&](const char* name) { return medians(name + ("/" + std::to_string(n))) / n * 1e6; };
+    const auto us = [&](const char* name) { return median(name, n) / n * 1e6; };
     Fallen fallen(n);
     std::printf("%8d %10.3f %8.3f %8.3f %22.2f\n", n, us("search"), us("find"), us("project"),
                 static_cast<double>(fallen.projection.contacts().size()) / n);
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  register_cases({{"search", search}, {"find", find}, {"project", project}}, sizes);
+  return run_benchmarks(argc, argv, print_summary);
 }

@@ -43,30 +43,23 @@ CopingNetSettings settings_of(const Kind& kind, int latent) {
 }
 
 using MakeGuess = std::unique_ptr<InitialGuess> (*)(const Scene&);
+template <class Guess, auto... arguments>
+std::unique_ptr<InitialGuess> guess_of(const Scene& scene) {
+  return std::make_unique<Guess>(scene, 1, arguments...);
+}
+std::unique_ptr<InitialGuess> totals_guess(const Scene& scene) {
+  return std::make_unique<TotalsGuess>(scene, guess_of<RegressionGuess, 6, 0>(scene));
+}
+constexpr auto sliding = SubspaceGuess::Window::sliding;
+constexpr auto deflation = SubspaceGuess::Use::guess_and_deflation;
 constexpr std::array<std::pair<const char*, MakeGuess>, 7> classical_guesses{{
-    {"previous",
-     [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<ExtrapolationGuess>(s, 1, 1); }},
-    {"quadratic",
-     [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<ExtrapolationGuess>(s, 1, 3); }},
-    {"regression 6",
-     [](const Scene& s) -> std::unique_ptr<InitialGuess> { return std::make_unique<RegressionGuess>(s, 1, 6, 0); }},
-    {"totals regression 6",
-     [](const Scene& s) -> std::unique_ptr<InitialGuess> {
-       return std::make_unique<TotalsGuess>(s, std::make_unique<RegressionGuess>(s, 1, 6, 0));
-     }},
-    {"subspace 8",
-     [](const Scene& s) -> std::unique_ptr<InitialGuess> {
-       return std::make_unique<SubspaceGuess>(s, 1, 8, SubspaceGuess::Window::sliding);
-     }},
-    {"deflation 10",
-     [](const Scene& s) -> std::unique_ptr<InitialGuess> {
-       return std::make_unique<SubspaceGuess>(s, 1, 10, SubspaceGuess::Window::sliding,
-                                              SubspaceGuess::Use::guess_and_deflation);
-     }},
-    {"subspace 10",
-     [](const Scene& s) -> std::unique_ptr<InitialGuess> {
-       return std::make_unique<SubspaceGuess>(s, 1, 10, SubspaceGuess::Window::sliding);
-     }},
+    {"previous", guess_of<ExtrapolationGuess, 1>},
+    {"quadratic", guess_of<ExtrapolationGuess, 3>},
+    {"regression 6", guess_of<RegressionGuess, 6, 0>},
+    {"totals regression 6", totals_guess},
+    {"subspace 8", guess_of<SubspaceGuess, 8, sliding>},
+    {"deflation 10", guess_of<SubspaceGuess, 10, sliding, deflation>},
+    {"subspace 10", guess_of<SubspaceGuess, 10, sliding>},
 }};
 
 /// The step of a classical guess, with the history that 30 steps make.
@@ -183,8 +176,7 @@ void print_summary(const Medians& median) {
   std::printf("\n");
   for (const int n : sizes) {
     std::printf("%9d", n);
-    for (const auto& [name, make] : classical_guesses)
-      std::printf(" %13.4f", median(std::string(name) + "/" + std::to_string(n)) / n * 1e6);
+    for (const auto& [name, make] : classical_guesses) std::printf(" %13.4f", median(name, n) / n * 1e6);
     std::printf("\n");
   }
   for (const Kind& kind : kinds) {
@@ -232,7 +224,5 @@ int main(int argc, char** argv) {
       }
     }
   }
-  Medians medians;
-  if (!run_benchmarks(argc, argv, medians)) return 2;
-  print_summary(medians);
+  return run_benchmarks(argc, argv, print_summary);
 }

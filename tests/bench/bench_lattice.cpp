@@ -5,8 +5,8 @@
 // of this run.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cstdio>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -129,11 +129,10 @@ void learned(benchmark::State& state) {
   }
 }
 
-const std::vector<std::pair<const char*, void (*)(benchmark::State&)>> costs{
-    {"pattern", pattern},        {"plan", plan},
-    {"assembly", assembly},      {"product", product},
-    {"direct", direct},          {"substitution", substitution},
-    {"learned", learned<false>}, {"lagging", learned<true>}};
+const Cases costs{{"pattern", pattern},        {"plan", plan},
+                  {"assembly", assembly},      {"product", product},
+                  {"direct", direct},          {"substitution", substitution},
+                  {"learned", learned<false>}, {"lagging", learned<true>}};
 
 void print_summary(const Medians& median) {
   std::printf("\nPer joint [us]; the direct solve also in products with A, and what L takes\n%-18s %8s", "", "joints");
@@ -141,7 +140,7 @@ void print_summary(const Medians& median) {
   std::printf(" %10s %9s\n", "products", "MiB");
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const auto& [scene, spec] = scenes[i];
-    const auto of = [&](const char* name) { return median(name + ("/" + std::to_string(i))); };
+    const auto of = [&](const char* name) { return median(name, static_cast<std::int64_t>(i)); };
     std::printf("%-18s %8d", scene, joint_count(spec));
     for (const auto& [name, function] : costs) std::printf(" %12.4f", 1e6 * of(name) / joint_count(spec));
     const Scene built = build_scene(spec);
@@ -154,10 +153,6 @@ void print_summary(const Medians& median) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (std::size_t i = 0; i < scenes.size(); ++i)
-    for (const auto& [name, function] : costs)
-      benchmark::RegisterBenchmark(name, function)->Arg(static_cast<std::int64_t>(i))->Unit(benchmark::kNanosecond);
-  Medians medians;
-  if (!run_benchmarks(argc, argv, medians)) return 2;
-  print_summary(medians);
+  for (std::size_t i = 0; i < scenes.size(); ++i) register_cases(costs, std::array{static_cast<std::int64_t>(i)});
+  return run_benchmarks(argc, argv, print_summary);
 }

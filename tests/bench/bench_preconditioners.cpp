@@ -119,11 +119,9 @@ void for_all(const Visit& visit) {
       if (kind.preconditioner != Preconditioner::cholesky || nodes <= most_for_all_fill) visit(kind, nodes);
 }
 
-std::string at(const std::string& name, int nodes) { return name + "/" + std::to_string(nodes); }
-
 void print_summary(const Medians& median) {
   const auto per_joint = [&](const std::string& name, int nodes) {
-    return median(at(name, nodes)) / case_of(nodes).system.matrix().block_rows() * 1e9;
+    return median(name, nodes) / case_of(nodes).system.matrix().block_rows() * 1e9;
   };
   std::printf("\nProducts on cubic lattices, per joint [ns]\n%6s %8s %12s %14s %8s\n", "nodes", "joints", "with blocks",
               "without blocks", "ratio");
@@ -148,9 +146,7 @@ void print_summary(const Medians& median) {
 
 int main(int argc, char** argv) {
   const PetscSession petsc;
-  for (const auto& [name, function] : {std::pair{"with_blocks", with_blocks}, {"without_blocks", without_blocks}})
-    for (const int nodes : product_sizes)
-      benchmark::RegisterBenchmark(name, function)->Arg(nodes)->Unit(benchmark::kNanosecond);
+  register_cases({{"with_blocks", with_blocks}, {"without_blocks", without_blocks}}, product_sizes);
   for_all([](const Kind& kind, int nodes) {
     const std::string name = kind.name;
     const auto add = [&](const std::string& prefix, const auto& function) {
@@ -160,7 +156,5 @@ int main(int argc, char** argv) {
     add("anew ", [&kind](benchmark::State& state) { iterate(state, kind, true); });
     add("solve ", [&kind](benchmark::State& state) { solve(state, kind); });
   });
-  Medians medians;
-  if (!run_benchmarks(argc, argv, medians)) return 2;
-  print_summary(medians);
+  return run_benchmarks(argc, argv, print_summary);
 }

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <map>
 #include <optional>
-#include <string>
 
 #include "solver/batch/batched_step.hpp"
 #include "solver/scene/scenes.hpp"
@@ -168,7 +167,7 @@ void pbd(benchmark::State& state) {
   iterate(state, projection, rod);
 }
 
-double us(const Medians& median, const char* name, int n) { return median(name + ("/" + std::to_string(n))) / n * 1e6; }
+double us(const Medians& median, const char* name, int n) { return median(name, n) / n * 1e6; }
 
 void print_summary(const Medians& median) {
   std::printf(
@@ -209,20 +208,20 @@ void print_balanced(const Medians& median) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const auto& [name, function] : {std::pair{"step", step},
-                                       {"batched_step", batched_step},
-                                       {"linearize", linearize},
-                                       {"assemble", assemble},
-                                       {"factor_and_solve", factor_and_solve},
-                                       {"update", update},
-                                       {"newton", newton},
-                                       {"newton_balanced", newton_balanced},
-                                       {"batched_balanced_step", batched_balanced_step},
-                                       {"xpbd", xpbd},
-                                       {"pbd", pbd}})
-    for (const int n : sizes) benchmark::RegisterBenchmark(name, function)->Arg(n)->Unit(benchmark::kNanosecond);
-  Medians medians;
-  if (!run_benchmarks(argc, argv, medians)) return 2;
-  print_summary(medians);
-  print_balanced(medians);
+  register_cases({{"step", step},
+                  {"batched_step", batched_step},
+                  {"linearize", linearize},
+                  {"assemble", assemble},
+                  {"factor_and_solve", factor_and_solve},
+                  {"update", update},
+                  {"newton", newton},
+                  {"newton_balanced", newton_balanced},
+                  {"batched_balanced_step", batched_balanced_step},
+                  {"xpbd", xpbd},
+                  {"pbd", pbd}},
+                 sizes);
+  return run_benchmarks(argc, argv, [](const Medians& medians) {
+    print_summary(medians);
+    print_balanced(medians);
+  });
 }

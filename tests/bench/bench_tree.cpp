@@ -3,11 +3,10 @@
 // beside the targets, as ratios of this run.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <optional>
-#include <string>
 
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/cg/petsc_session.hpp"
@@ -117,10 +116,9 @@ void print_summary(const Medians& median) {
               "of the first", "wind [%]");
   const double first = median("direct/1") / segment_count(trees.at(1));
   for (const auto& [thousands, spec] : trees) {
-    const std::string size = "/" + std::to_string(thousands);
-    const double step = median("direct" + size), each = step / segment_count(spec);
+    const double step = median("direct", thousands), each = step / segment_count(spec);
     std::printf("%9d %10.3f %12.2f %11.0f\n", segment_count(spec), 1e6 * each, each / first,
-                100 * (1 - median("calm" + size) / step));
+                100 * (1 - median("calm", thousands) / step));
   }
 }
 
@@ -129,11 +127,7 @@ void print_summary(const Medians& median) {
 int main(int argc, char** argv) {
   const PetscSession petsc;
   for (const auto& [thousands, spec] : trees)
-    for (const auto& [name, function] : {std::pair{"direct", direct}, {"calm", calm}})
-      benchmark::RegisterBenchmark(name, function)->Arg(thousands)->Unit(benchmark::kNanosecond);
-  for (const auto& [name, function] : {std::pair{"cg", cg}, {"xpbd", xpbd}, {"pbd", pbd}})
-    benchmark::RegisterBenchmark(name, function)->Arg(1)->Unit(benchmark::kNanosecond);
-  Medians medians;
-  if (!run_benchmarks(argc, argv, medians)) return 2;
-  print_summary(medians);
+    register_cases({{"direct", direct}, {"calm", calm}}, std::array{thousands});
+  register_cases({{"cg", cg}, {"xpbd", xpbd}, {"pbd", pbd}}, std::array{1});
+  return run_benchmarks(argc, argv, print_summary);
 }

@@ -1,7 +1,5 @@
 #include "tests/bench/medians.hpp"
 
-#include <vector>
-
 namespace rodsweep {
 
 void Medians::ReportRuns(const std::vector<Run>& runs) {
@@ -17,7 +15,7 @@ double Medians::operator()(const std::string& name) const {
   return at == seconds_.end() ? 0 : at->second;
 }
 
-bool run_benchmarks(int argc, char** argv, Medians& medians) {
+int run_benchmarks(int argc, char** argv, const std::function<void(const Medians&)>& print) {
   std::string defaults[] = {"--benchmark_repetitions=9", "--benchmark_enable_random_interleaving=true",
                             "--benchmark_min_time=0.05", "--benchmark_report_aggregates_only=true"};
   std::vector<char*> arguments{argv[0]};
@@ -25,9 +23,11 @@ bool run_benchmarks(int argc, char** argv, Medians& medians) {
   arguments.insert(arguments.end(), argv + 1, argv + argc);
   argc = static_cast<int>(arguments.size());
   benchmark::Initialize(&argc, arguments.data());
-  if (benchmark::ReportUnrecognizedArguments(argc, arguments.data())) return false;
+  if (benchmark::ReportUnrecognizedArguments(argc, arguments.data())) return 2;
+  Medians medians;
   benchmark::RunSpecifiedBenchmarks(&medians);
-  return true;
+  print(medians);
+  return 0;
 }
 
 }  // namespace rodsweep
