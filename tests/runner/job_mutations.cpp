@@ -16,51 +16,16 @@ auto& any_of(Items& items, std::mt19937_64& random) {
 
 const std::vector<Json>& odd_values() {
   static const std::vector<Json> values = [] {
-    std::vector<Json> all;
-    for (const char* text : {"null",
-                             "true",
-                             "-1",
-                             "0",
-                             "1",
-                             "2",
-                             "7",
-                             "0.5",
-                             "1e300",
-                             "-1e300",
-                             "1e-300",
-                             "9007199254740993",
-                             "18446744073709551615",
-                             R"("")",
-                             R"("x")",
-                             R"("zero")",
-                             R"("grid")",
-                             R"("\u0000")",
-                             R"("ü\n")",
-                             "[]",
-                             "{}",
-                             "[[]]",
-                             "[0,0,0]",
-                             R"(["zero"])",
-                             R"({"grid": []})",
-                             R"({"grid": [1, "a"]})",
-                             R"({"grid": [{}, []]})",
-                             R"({"zip": [1, 2]})",
-                             R"({"zip": [1, 2, 3]})",
-                             R"({"uniform": [1, 2]})",
-                             R"({"uniform": [2, 1]})",
-                             R"({"log_uniform": [0, 1]})",
-                             R"({"integer": [1, 3]})",
-                             R"({"gird": [5, 10]})",
-                             R"({"label": "x"})",
-                             R"({"subspace": {"size": {"grid": [1, 2]}}})",
-                             R"({"copingnet": {"model": "x.h5"}})",
-                             R"({"copingnet": {"model": 5}})",
-                             R"({"guarded": {"guess": "zero", "threshold": 1}})",
-                             R"({"knn": {"data": "."}})",
-                             R"({"oracle": {"error": "x"}})",
-                             R"({"obstacles": [{"sphere": {}}]})",
-                             R"({"mean_m_s": [1, 2]})"})
-      all.push_back(Json::parse(text));
+    const Json listed = Json::parse(R"([
+          null, true, -1, 0, 1, 2, 7, 0.5, 1e300, -1e300, 1e-300, 9007199254740993, 18446744073709551615, "", "x",
+          "zero", "grid", "\u0000", "ü\n", [], {}, [[]], [0,0,0], ["zero"], {"grid": []}, {"grid": [1, "a"]},
+          {"grid": [{}, []]}, {"zip": [1, 2]}, {"zip": [1, 2, 3]}, {"uniform": [1, 2]}, {"uniform": [2, 1]},
+          {"log_uniform": [0, 1]}, {"integer": [1, 3]}, {"gird": [5, 10]}, {"label": "x"},
+          {"subspace": {"size": {"grid": [1, 2]}}}, {"copingnet": {"model": "x.h5"}}, {"copingnet": {"model": 5}},
+          {"guarded": {"guess": "zero", "threshold": 1}}, {"knn": {"data": "."}}, {"oracle": {"error": "x"}},
+          {"obstacles": [{"sphere": {}}]}, {"mean_m_s": [1, 2]}
+        ])");
+    std::vector<Json> all(listed.begin(), listed.end());
     all.emplace_back(std::string(5000, 'a'));
     return all;
   }();
