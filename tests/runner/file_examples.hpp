@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "runner/file/hdf5.hpp"
 #include "runner/file/record.hpp"
 #include "runner/file/results_file.hpp"
 #include "tests/runner/job_examples.hpp"
@@ -50,6 +51,13 @@ struct FullFile {
   Plan plan;
   std::filesystem::path path = folder / "a.h5";
 };
+
+/// Replaces an attribute of an open file's object.
+template <class Value>
+void set_attribute(hid_t file, const char* object, const char* name, const Value& value) {
+  H5Adelete_by_name(file, object, name, H5P_DEFAULT);
+  hdf5::write_attribute(hdf5::Object(H5Oopen(file, object, H5P_DEFAULT)).id(), name, value);
+}
 
 std::size_t entries(const std::filesystem::path& folder);
 

@@ -151,11 +151,7 @@ TEST_CASE("frames whose rows no number can count are damage") {
 
 TEST_CASE("a file of another schema version is refused with both versions") {
   const FullFile made(0);
-  {
-    const hdf5::File file = hdf5::open_file(made.path, H5F_ACC_RDWR);
-    REQUIRE(H5Adelete(file.id(), "schema_version") >= 0);
-    hdf5::write_attribute(file.id(), "schema_version", 99);
-  }
+  set_attribute(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/", "schema_version", 99);
   CHECK_THAT(inspect_refusal(made.path), Contains("has schema version 99, and this rodsweep knows version 1"));
 }
 
@@ -203,12 +199,7 @@ TEST_CASE("resume with a program that expands the job differently is refused wit
     CHECK(resume_refusal(made.path, made.plan) == "");
   }
   SECTION("another list of tasks") {
-    {
-      const hdf5::File file = hdf5::open_file(made.path, H5F_ACC_RDWR);
-      const hdf5::Object job(H5Oopen(file.id(), "/job", H5P_DEFAULT));
-      REQUIRE(H5Adelete(job.id(), "plan_hash") >= 0);
-      hdf5::write_attribute(job.id(), "plan_hash", "0123456789abcdef");
-    }
+    set_attribute(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/job", "plan_hash", "0123456789abcdef");
     CHECK_THAT(resume_refusal(made.path, made.plan), Contains("its list of tasks is another"));
   }
 }

@@ -52,14 +52,6 @@ TEST_CASE("a packed copy is smaller and holds the same values, types and attribu
   CHECK(contents(made.path, made.plan) == contents(made.folder / "c.h5", made.plan));
 }
 
-TEST_CASE("an unfinished sweep is packed with what it has") {
-  const FullFile made(2);
-  const Packing packing = pack_results(made.path, made.folder / "b.h5");
-  CHECK(packing.verified == 2);
-  CHECK(packing.tasks == 6);
-  CHECK(inspect(made.folder / "b.h5").pending == 4);
-}
-
 TEST_CASE("a damaged file is not packed, and nothing is left behind") {
   const FullFile made(6);
   hdf5::write_row<double>(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/steps/joint_gap", 4, 12345);
