@@ -103,8 +103,7 @@ TEST_CASE("a task is the same in another plan only where all that its results de
   CHECK(plan_of(with("/task_time_limit_s", "5", full_job())).identity(0).trajectory == trajectory);
 }
 
-// That what is taken over stands at its new rows: tests/mpi/test_extend.py, beside a run from scratch.
-TEST_CASE("what is taken over keeps its counts, and a simulation that differs is told by its first value") {
+TEST_CASE("what is taken over stands at its new rows, and a simulation that differs is told by its first value") {
   const TemporaryFolder folder;
   const Plan before = plan_of(full_job());
   make_file(folder / "old.h5", before, 5);
@@ -124,11 +123,26 @@ TEST_CASE("what is taken over keeps its counts, and a simulation that differs is
   TaskRecord taken;
   taken.prepare(task, axis_sizes(plan));
   REQUIRE(extension.take(4, taken));
+  const TaskRecord written = synthetic_record(before, 3);
+  CHECK(taken.joint_gap == written.joint_gap);
+  CHECK(taken.position_m == written.position_m);
+  CHECK(taken.segment_radius_m == written.segment_radius_m);
+  CHECK(taken.copied_guess == std::vector<std::int8_t>{-1, 1, 1});
+  const std::size_t tolerances = tolerance_ladder().size();
+  for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t t = 0; t < tolerances; ++t) {
+      CHECK(taken.iterations[(row * 3 + 0) * tolerances + t] == -1);
+      CHECK(taken.iterations[(row * 3 + 1) * tolerances + t] == written.iterations[(row * 2 + 1) * tolerances + t]);
+      CHECK(taken.iterations[(row * 3 + 2) * tolerances + t] == written.iterations[(row * 2 + 0) * tolerances + t]);
+    }
+  CHECK(taken.first_row[0] ==
+        written.first_row[0] + task.rows[Rows::frame_segment].first - before.task(3).rows[Rows::frame_segment].first);
+
   TaskRecord record = taken;  // as if simulated again, with other guesses
   for (auto& iterations : record.iterations) iterations = 7;
   CHECK(complete(task, record, taken) == "");
   CHECK(record.iterations[0] == 7);
-  CHECK(record.iterations[tolerance_ladder().size()] == taken.iterations[tolerance_ladder().size()]);
+  CHECK(record.iterations[tolerances] == taken.iterations[tolerances]);
   CHECK(record.source_task[0] == 3);
 
   TaskRecord other = taken;
