@@ -14,6 +14,17 @@ TaskRecord record_of(const Plan& plan, std::int64_t index) {
   return record;
 }
 
+std::vector<std::size_t> rows_run(const TaskRecord& record) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < record.newton.size(); ++row)
+    if (record.newton[row] >= 0) rows.push_back(row);
+  return rows;
+}
+
+Json five_steps(const std::string& guesses, const std::string& solve) {
+  return with("/time/steps", "5", with("/guesses", guesses, with("/solve", solve)));
+}
+
 Plan make_data_set(const std::filesystem::path& path, const Json& job, std::int64_t failing, bool pending) {
   const Plan plan = plan_of(job);
   ResultsFile file = ResultsFile::create(path, plan, test_provenance(), MPI_COMM_SELF);

@@ -7,7 +7,7 @@
 #include "runner/experiment/measured_solve.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/hand_clock.hpp"
-#include "tests/runner/job_examples.hpp"
+#include "tests/runner/data_set_examples.hpp"
 
 namespace rodsweep {
 namespace test_evaluation {
@@ -25,21 +25,12 @@ TaskRecord evaluated(const Json& job, TaskOutcome expected = TaskOutcome::ok,
   return record;
 }
 
-Json job_with(const std::string& guesses, const std::string& solve = "{}") {
-  Json job = with("/guesses", guesses, with("/solve", solve));
-  job["time"]["steps"] = 5;
-  return job;
-}
-
 constexpr std::size_t tolerances = 8;
 
-/// Solves that were run.
-std::int64_t solves_of(const TaskRecord& r) {
-  return std::count_if(r.newton.begin(), r.newton.end(), [](int newton) { return newton >= 0; });
-}
+std::int64_t solves_of(const TaskRecord& r) { return static_cast<std::int64_t>(rows_run(r).size()); }
 
 TEST_CASE("an exact guess takes no iteration, one product with the matrix for each solve, and has ratio 0") {
-  const TaskRecord r = evaluated(job_with(R"(["zero", {"oracle": {"error": 0}}])"));
+  const TaskRecord r = evaluated(five_steps(R"(["zero", {"oracle": {"error": 0}}])"));
   for (std::size_t t = 0; t < tolerances; ++t) {
     CHECK(r.counted.cg_ratio[t] == 1);
     CHECK(r.counted_all.matvecs[t] == r.counted_all.iterations[t]);  // from zero, b is the first residual
@@ -53,7 +44,7 @@ TEST_CASE("an exact guess takes no iteration, one product with the matrix for ea
 }
 
 TEST_CASE("a time limit and a stop are met in the middle of a solve") {
-  Json job = with("/scene/segments", "300", job_with(R"(["zero"])", R"({"reference": "cg"})"));
+  Json job = with("/scene/segments", "300", five_steps(R"(["zero"])", R"({"reference": "cg"})"));
   const auto looks_of_one_step = [&] {  // at the clock, which moves on by a second each time
     Json one = job;
     one["time"]["steps"] = 1;
@@ -79,7 +70,7 @@ TEST_CASE("a time limit and a stop are met in the middle of a solve") {
 }
 
 TEST_CASE("a time limit and a stop are met while scene and systems are built") {
-  Json job = with("/scene/segments", "20000", job_with(R"(["zero"])"));
+  Json job = with("/scene/segments", "20000", five_steps(R"(["zero"])"));
   job["task_time_limit_s"] = 0.5;
   test::HandClock::set_tick(std::chrono::seconds(1));
   const TaskRecord late = evaluated(job, TaskOutcome::timed_out, test::HandClock::ticking);
@@ -97,8 +88,8 @@ TEST_CASE("a time limit and a stop are met while scene and systems are built") {
 
 TEST_CASE("with CG as the reference the counts are those beside the direct solve, which is not run") {
   for (const char* guesses : {R"(["zero", "previous", "quadratic"])", R"(["previous", "zero"])"}) {
-    const TaskRecord direct = evaluated(job_with(guesses));
-    const TaskRecord by_cg = evaluated(job_with(guesses, R"({"reference": "cg"})"));
+    const TaskRecord direct = evaluated(five_steps(guesses));
+    const TaskRecord by_cg = evaluated(five_steps(guesses, R"({"reference": "cg"})"));
     const std::size_t guess_count = by_cg.cg_s.size() / by_cg.newton.size();
     CHECK(by_cg.newton == direct.newton);
     CHECK(by_cg.counted.iterations.size() == direct.counted.iterations.size());
@@ -114,33 +105,32 @@ TEST_CASE("with CG as the reference the counts are those beside the direct solve
 }
 
 TEST_CASE("with CG as the reference a closed loop is what it is beside the direct solve, bit by bit") {
-  Json job = job_with(R"(["zero"])");
+  Json job = five_steps(R"(["zero"])");
   job["evaluation"] = "closed_loop";
   const TaskRecord direct = evaluated(job);
   job["solve"]["reference"] = "cg";
   const TaskRecord by_cg = evaluated(job);
   CHECK(by_cg.iterations == direct.iterations);
   CHECK(by_cg.newton == direct.newton);
-  for (std::size_t row = 0; row < by_cg.newton.size(); ++row)
-    if (by_cg.newton[row] >= 0) CHECK(by_cg.final_residual[row] == direct.final_residual[row]);
+  for (const std::size_t row : rows_run(by_cg)) CHECK(by_cg.final_residual[row] == direct.final_residual[row]);
   CHECK(std::all_of(by_cg.direct_s.begin(), by_cg.direct_s.end(), [](float s) { return std::isnan(s); }));
 }
 
 TEST_CASE("a reference that runs out of iterations advances the rod all the same, and its task says so") {
-  const TaskRecord r =
-      evaluated(job_with(R"(["zero"])", R"({"reference": "cg", "max_iterations": 12})"), TaskOutcome::iteration_limit);
+  const TaskRecord r = evaluated(five_steps(R"(["zero"])", R"({"reference": "cg", "max_iterations": 12})"),
+                                 TaskOutcome::iteration_limit);
   CHECK(r.counted_all.unreached.back() > 0);
   CHECK(r.steps_done.front() == 5);
 }
 
 TEST_CASE("sums are those of the rows, of first Newton iterations and of all") {
-  const TaskRecord r = evaluated(job_with(R"(["zero", "previous", {"guarded": {"guess": "linear", "threshold": 1}}])"));
+  const TaskRecord r =
+      evaluated(five_steps(R"(["zero", "previous", {"guarded": {"guess": "linear", "threshold": 1}}])"));
   REQUIRE(solves_of(r) > 5);
   for (std::size_t g = 0; g < 3; ++g)
     for (std::size_t t = 0; t < tolerances; ++t) {
       std::int64_t first = 0, all = 0, matvecs = 0;
-      for (std::size_t row = 0; row < r.newton.size(); ++row) {
-        if (r.newton[row] < 0) continue;
+      for (const std::size_t row : rows_run(r)) {
         const int iterations = r.iterations[(3 * row + g) * tolerances + t];
         REQUIRE(iterations >= 0);
         all += iterations;
@@ -155,18 +145,18 @@ TEST_CASE("sums are those of the rows, of first Newton iterations and of all") {
 
 TEST_CASE("the other norm's counts are those of a job in that norm") {
   const std::string guesses = R"(["zero", "previous", {"subspace": {"size": 3}}])";
-  const TaskRecord in_2_norm = evaluated(job_with(guesses));
-  const TaskRecord in_natural = evaluated(job_with(guesses, R"({"norm": "natural"})"));
+  const TaskRecord in_2_norm = evaluated(five_steps(guesses));
+  const TaskRecord in_natural = evaluated(five_steps(guesses, R"({"norm": "natural"})"));
   CHECK(in_2_norm.counted_other_norm.iterations == in_natural.counted.iterations);
   CHECK(in_natural.counted_other_norm.iterations == in_2_norm.counted.iterations);
   CHECK(in_2_norm.counted.iterations != in_natural.counted.iterations);
-  const TaskRecord bare = evaluated(job_with(guesses, R"({"preconditioner": "none", "max_iterations": 2000})"));
+  const TaskRecord bare = evaluated(five_steps(guesses, R"({"preconditioner": "none", "max_iterations": 2000})"));
   for (std::size_t t = 0; t < 2; ++t)  // without P the norms are one; later, rounding makes unpreconditioned CG erratic
     CHECK(bare.counted_other_norm.iterations[t] == bare.counted.iterations[t]);
 }
 
 TEST_CASE("without the other norm its columns are sentinels, and nothing else changes") {
-  Json job = job_with(R"(["zero", "previous"])");
+  Json job = five_steps(R"(["zero", "previous"])");
   const TaskRecord both = evaluated(job);
   job["record"] = {{"norms", "one"}};
   const TaskRecord one = evaluated(job);
@@ -177,21 +167,19 @@ TEST_CASE("without the other norm its columns are sentinels, and nothing else ch
 
 TEST_CASE("repeats of the timed solves change no count, and every time is there") {
   const std::string guesses = R"(["zero", {"fischer": {"size": 2}}])";
-  const TaskRecord once = evaluated(job_with(guesses));
-  const TaskRecord thrice = evaluated(job_with(guesses, R"({"timing_repeats": 3})"));
+  const TaskRecord once = evaluated(five_steps(guesses));
+  const TaskRecord thrice = evaluated(five_steps(guesses, R"({"timing_repeats": 3})"));
   CHECK(once.iterations == thrice.iterations);
   CHECK(once.length_drift == thrice.length_drift);
-  for (std::size_t row = 0; row < thrice.newton.size(); ++row)
-    if (thrice.newton[row] >= 0) CHECK((thrice.cg_s[2 * row] > 0 && thrice.guess_s[2 * row + 1] > 0));
+  for (const std::size_t row : rows_run(thrice)) CHECK((thrice.cg_s[2 * row] > 0 && thrice.guess_s[2 * row + 1] > 0));
 }
 
 TEST_CASE("a lagged factor is exact where it is made, and better than jacobi where it is not") {
   const std::string settings = R"({"preconditioner": "lagged_cholesky", "lag_steps": 2})";
-  const TaskRecord lagged = evaluated(job_with(R"(["zero"])", settings));
-  const TaskRecord jacobi = evaluated(job_with(R"(["zero"])"));
+  const TaskRecord lagged = evaluated(five_steps(R"(["zero"])", settings));
+  const TaskRecord jacobi = evaluated(five_steps(R"(["zero"])"));
   bool older = false;
-  for (std::size_t row = 0; row < lagged.newton.size(); ++row) {
-    if (lagged.newton[row] < 0) continue;
+  for (const std::size_t row : rows_run(lagged)) {
     const bool fresh = lagged.newton[row] == 0 && lagged.step[row] % 2 == 0;
     const int iterations = lagged.iterations[row * tolerances + 5];
     if (fresh) CHECK(iterations <= 1);
@@ -202,15 +190,14 @@ TEST_CASE("a lagged factor is exact where it is made, and better than jacobi whe
 }
 
 TEST_CASE("a condensed system is solved to the job's tolerances, in its one norm") {
-  Json job = job_with(R"(["zero", "previous"])", R"({"preconditioner": "condensed"})");
+  Json job = five_steps(R"(["zero", "previous"])", R"({"preconditioner": "condensed"})");
   job["scene"] = Json::parse(R"({"type": "lattice", "nodes_x": 2, "mesh_m": 0.2, "segments": 2, "radius_m": 0.01,
                                  "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 4e5})");
   const TaskRecord condensed = evaluated(job);
   job["solve"]["preconditioner"] = "jacobi";
   const TaskRecord jacobi = evaluated(job);
   CHECK(condensed.position_m == jacobi.position_m);
-  for (std::size_t row = 0; row < condensed.newton.size(); ++row) {
-    if (condensed.newton[row] < 0) continue;
+  for (const std::size_t row : rows_run(condensed)) {
     for (std::size_t t = 0; t < 4; ++t)
       CHECK(condensed.iterations[2 * row * tolerances + t] <= jacobi.iterations[2 * row * tolerances + t]);
     CHECK(condensed.final_residual[2 * row] < 1e-8);
@@ -222,12 +209,11 @@ TEST_CASE("a condensed system is solved to the job's tolerances, in its one norm
 
 TEST_CASE("lag_steps keeps any preconditioner: set up for every system, a step, or some of them") {
   const auto at = [](int lag_steps) {
-    return evaluated(job_with(R"(["zero"])", R"({"preconditioner": "block_icc", "fill_levels": 0, "lag_steps": )" +
-                                                 std::to_string(lag_steps) + "}"));
+    return evaluated(five_steps(R"(["zero"])", R"({"preconditioner": "block_icc", "fill_levels": 0, "lag_steps": )" +
+                                                   std::to_string(lag_steps) + "}"));
   };
   const TaskRecord anew = at(0), a_step = at(1), two = at(2);
-  for (std::size_t row = 0; row < anew.newton.size(); ++row) {
-    if (anew.newton[row] < 0) continue;
+  for (const std::size_t row : rows_run(anew)) {
     const int first = anew.newton[row] == 0, even = anew.step[row] % 2 == 0;
     CHECK(anew.renewed[row] == 0);
     CHECK(a_step.renewed[row] == first);
@@ -243,7 +229,7 @@ TEST_CASE("lag_steps keeps any preconditioner: set up for every system, a step, 
 }
 
 TEST_CASE("a closed loop advances by its own guess's solution, at the job's tolerance") {
-  Json job = job_with(R"(["zero"])", R"({"tolerance": 0.5})");
+  Json job = five_steps(R"(["zero"])", R"({"tolerance": 0.5})");
   const TaskRecord paired = evaluated(job);
   job["evaluation"] = "closed_loop";
   const TaskRecord loose = evaluated(job);
@@ -255,7 +241,7 @@ TEST_CASE("a closed loop advances by its own guess's solution, at the job's tole
 }
 
 TEST_CASE("a guess that no solve can start from fails the task by its name, and is not counted as zero iterations") {
-  const Plan plan = plan_of(job_with(R"(["zero", {"oracle": {"error": 1e6}}, "previous"])"));
+  const Plan plan = plan_of(five_steps(R"(["zero", {"oracle": {"error": 1e6}}, "previous"])"));
   const TaskSpec spec = plan.spec(0);
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
@@ -281,7 +267,7 @@ TEST_CASE("a guess that no solve can start from fails the task by its name, and 
 }
 
 TEST_CASE("the joint gap before a step's first solve is not that of the step before: the rod has moved by itself") {
-  const TaskRecord r = evaluated(job_with(R"(["zero"])"));
+  const TaskRecord r = evaluated(five_steps(R"(["zero"])"));
   for (std::size_t row = 0; row < r.newton.size(); ++row)
     if (r.newton[row] > 0) CHECK(r.solve_joint_gap[row] < 0.5 * r.solve_joint_gap[row - 1]);
   CHECK(r.solve_joint_gap[0] > 1e-6);

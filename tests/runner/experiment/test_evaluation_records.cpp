@@ -11,19 +11,12 @@ namespace test_evaluation_records {
 constexpr int steps = 5;
 constexpr std::size_t tolerances = 8;
 
-Json job_with(const std::string& guesses, const std::string& solve = "{}") {
-  Json job = with("/guesses", guesses, with("/solve", solve));
-  job["time"]["steps"] = steps;
-  return job;
-}
-
 TaskRecord evaluated(const Json& job, std::int64_t task = 0) { return record_of(plan_of(job), task); }
 
 TEST_CASE("a guess with a history starts from the steps before, from the second step on") {
-  const TaskRecord r = evaluated(job_with(R"(["zero", "previous"])"));
+  const TaskRecord r = evaluated(five_steps(R"(["zero", "previous"])"));
   int with_history = 0;
-  for (std::size_t row = 0; row < r.newton.size(); ++row) {
-    if (r.newton[row] < 0) continue;
+  for (const std::size_t row : rows_run(r)) {
     CHECK(r.initial_residual[2 * row] == Approx(1));
     if (r.step[row] == 0) {
       CHECK(r.initial_residual[2 * row + 1] == Approx(1));
@@ -38,12 +31,10 @@ TEST_CASE("a guess with a history starts from the steps before, from the second 
 }
 
 TEST_CASE("a solve that misses a tolerance counts the iterations that it spent, and as unreached") {
-  const TaskRecord r = evaluated(job_with(R"(["zero"])", R"({"preconditioner": "none", "max_iterations": 2})"));
+  const TaskRecord r = evaluated(five_steps(R"(["zero"])", R"({"preconditioner": "none", "max_iterations": 2})"));
   CHECK(r.outcome == TaskOutcome::ok);  // the direct solve advances the rod
-  std::int64_t solves = 0;
-  for (std::size_t row = 0; row < r.newton.size(); ++row) {
-    if (r.newton[row] < 0) continue;
-    ++solves;
+  const auto solves = static_cast<std::int64_t>(rows_run(r).size());
+  for (const std::size_t row : rows_run(r)) {
     CHECK(r.solve_outcome[row] == static_cast<std::int8_t>(SolveOutcome::iteration_limit));
     CHECK(r.iterations[row * tolerances + tolerances - 1] == -1);
   }
@@ -51,11 +42,11 @@ TEST_CASE("a solve that misses a tolerance counts the iterations that it spent, 
   CHECK(r.counted_all.unreached.back() == solves);
   CHECK(r.counted.iterations.back() == 2 * steps);
   CHECK(r.counted.unreached.back() == steps);
-  CHECK(evaluated(job_with(R"(["zero"])")).counted_all.unreached.back() == 0);
+  CHECK(evaluated(five_steps(R"(["zero"])")).counted_all.unreached.back() == 0);
 }
 
 TEST_CASE("a system that is solved to rounding already takes no iteration, and is recorded as such") {
-  Json job = job_with(R"(["zero", "previous"])");
+  Json job = five_steps(R"(["zero", "previous"])");
   job["scene"]["gravity_m_s2"] = {0, 0, 0};
   job["time"]["newton_tolerance"] = 0;
   const TaskRecord r = evaluated(job);
@@ -69,7 +60,7 @@ TEST_CASE("a system that is solved to rounding already takes no iteration, and i
 
 TEST_CASE("every step tells what its forces lack, and steps that keep the balance lack little") {
   for (const bool balance : {false, true}) {
-    Json job = job_with(R"(["zero", "quadratic"])");
+    Json job = five_steps(R"(["zero", "quadratic"])");
     job["time"]["balance"] = balance;
     job["time"]["momentum_tolerance"] = 1e-5;
     job["time"]["newton_iterations"] = 20;
@@ -81,7 +72,7 @@ TEST_CASE("every step tells what its forces lack, and steps that keep the balanc
 }
 
 TEST_CASE("steps and frames of a falling rod have its times, energies, length and poses") {
-  Json job = job_with(R"(["zero"])");
+  Json job = five_steps(R"(["zero"])");
   job["record"] = {{"trajectory_every", 2}};
   const TaskRecord r = evaluated(job);
   CHECK(r.steps_done[0] == steps);
@@ -107,7 +98,7 @@ TEST_CASE("steps and frames of a falling rod have its times, energies, length an
 }
 
 TEST_CASE("a recorded trajectory says how long, thick and free its segments are, rod after rod") {
-  Json job = job_with(R"(["zero"])");
+  Json job = five_steps(R"(["zero"])");
   job["scene"]["clamp"] = "wall";
   CHECK(evaluated(job).segment_radius_m.empty());
   job["record"] = {{"trajectory_every", 2}};
@@ -124,7 +115,7 @@ TEST_CASE("a recorded trajectory says how long, thick and free its segments are,
 }
 
 TEST_CASE("contacts and the deepest penetration are recorded where rods touch, and are not there where they cannot") {
-  Json job = job_with(R"(["zero"])");
+  Json job = five_steps(R"(["zero"])");
   job["scene"] = Json::parse(R"({"type": "falling_rods", "rods": 1, "segments": 4, "length_m": 1, "height_m": 0.11,
                                  "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6,
                                  "torsion_modulus_pa": 1e6, "contact": {"grid": ["none", {}]}})");
@@ -146,7 +137,7 @@ TEST_CASE("contacts and the deepest penetration are recorded where rods touch, a
 }
 
 TEST_CASE("a rod that blows up or is torn and a task out of time end with what was done") {
-  Json wild = job_with(R"(["zero"])");
+  Json wild = five_steps(R"(["zero"])");
   wild["scene"]["tip_force_n"] = {0, 1e12, 0};
   wild["time"]["newton_iterations"] = 1;
   const TaskRecord blown = evaluated(wild);
@@ -162,7 +153,7 @@ TEST_CASE("a rod that blows up or is torn and a task out of time end with what w
   CHECK_THAT(torn.message, Catch::Matchers::Contains("a joint is open by"));
   CHECK(torn.joint_gap[static_cast<std::size_t>(torn.steps_done[0] - 1)] > 1);
 
-  Json slow = job_with(R"(["zero"])");
+  Json slow = five_steps(R"(["zero"])");
   slow["task_time_limit_s"] = 1e-9;
   const TaskRecord late = evaluated(slow);
   CHECK(late.outcome == TaskOutcome::timed_out);
