@@ -23,6 +23,7 @@
 namespace {
 
 using namespace rodsweep;
+using bench::Multigrid;
 
 constexpr double dt = 0.02;
 constexpr int steps = 12, nodes = 8, most_iterations = 2000, lanczos_steps = 300, repeats = 5;
@@ -171,24 +172,14 @@ class LearnedFactors {
   VectorX zero_;
 };
 
-Way multigrid(const Case& of, bench::Multigrid::Kind kind, const char* name) {
-  const auto grids = std::make_shared<bench::Multigrid>(kind, of.scene.rods.front(), *of.system);
+template <class Solver>
+Way way_of(const char* name, const std::shared_ptr<Solver>& solver) {
   return {name,
-          [grids] {
-            grids->set_up();
+          [solver] {
+            solver->set_up();
             return true;
           },
-          [grids](const VectorX& r, VectorX& z) { grids->apply(r, z); }};
-}
-
-Way learned(const Case& of, const Model& model) {
-  const auto factors = std::make_shared<LearnedFactors>(model, of.scene.rods.front(), *of.system);
-  return {"learned",
-          [factors] {
-            factors->set_up();
-            return true;
-          },
-          [factors](const VectorX& r, VectorX& z) { factors->apply(r, z); }};
+          [solver](const VectorX& r, VectorX& z) { solver->apply(r, z); }};
 }
 
 }  // namespace
@@ -198,14 +189,15 @@ int main(int argc, char** argv) {
   const StoredModel stored = read_model(argc > 1 ? argv[1] : RODSWEEP_SOURCE_DIR "/network/pretrained/lattices.h5");
   for (const double youngs_modulus_pa : {3e5, 1e6, 1e7}) {
     const Case of(youngs_modulus_pa);
-    std::printf("\ncubic lattice, %d^3 nodes, %d joints, E = %.0e Pa, step %d\n", nodes,
-                of.scene.rods.front().joint_count(), youngs_modulus_pa, steps);
+    const Rod& rod = of.scene.rods.front();
+    std::printf("\ncubic lattice, %d^3 nodes, %d joints, E = %.0e Pa, step %d\n", nodes, rod.joint_count(),
+                youngs_modulus_pa, steps);
     std::printf("%-22s %9s %10s %9s %9s %9s %11s %10s\n", "", "least", "greatest", "ratio", "to 1e-2", "to 1e-4",
                 "set-up ns", "apply ns");
     print(of, jacobi(*of.system));
     for (const int levels : {0, 1, 3}) print(of, incomplete(*of.system, levels));
-    print(of, multigrid(of, bench::Multigrid::Kind::gamg, "gamg"));
-    print(of, multigrid(of, bench::Multigrid::Kind::boomer, "boomeramg"));
-    print(of, learned(of, *stored.model));
+    print(of, way_of("gamg", std::make_shared<Multigrid>(Multigrid::Kind::gamg, rod, *of.system)));
+    print(of, way_of("boomeramg", std::make_shared<Multigrid>(Multigrid::Kind::boomer, rod, *of.system)));
+    print(of, way_of("learned", std::make_shared<LearnedFactors>(*stored.model, rod, *of.system)));
   }
 }

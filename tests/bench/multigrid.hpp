@@ -5,9 +5,7 @@
 // R the frame of a joint, its second segment's, and l its length.
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <string>
 
 #include "solver/linear/linear_system.hpp"
 

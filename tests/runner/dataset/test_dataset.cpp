@@ -27,9 +27,7 @@ Json ragged_job() {
 /// Two trees in the wind.
 Json forest_job() {
   Json job = data_job();
-  job["scene"] = Json::parse(R"({"type": "forest", "rows": 1, "columns": 2, "spacing_m": 3, "depth": 2, "branches": 2,
-      "segments": 2, "length_m": 1, "radius_m": 0.05, "density_kg_m3": 800, "youngs_modulus_pa": 1e7,
-      "torsion_modulus_pa": 1e7, "wind": {"mean_m_s": [9, 0, 0], "turbulence_m_s": 2}})");
+  job["scene"] = with("/wind", R"({"mean_m_s": [9, 0, 0], "turbulence_m_s": 2})", with("/depth", "2", forest_scene()));
   return job;
 }
 
