@@ -31,6 +31,13 @@ std::vector<std::int64_t> order_of(Sweep& sweep) {
   return order;
 }
 
+std::vector<std::unique_ptr<Worker>> workers_of(Sweep& sweep, int count, const TaskBody& body) {
+  std::vector<std::unique_ptr<Worker>> workers;
+  for (int rank = 1; rank <= count; ++rank)
+    workers.push_back(std::make_unique<Worker>(sweep.network[rank], body, no_signal));
+  return workers;
+}
+
 /// Steps master and workers in a random order until the master is finished, then lets the workers leave.
 void play(Sweep& sweep, std::vector<std::unique_ptr<Worker>>& workers, unsigned seed) {
   std::mt19937 random(seed);
@@ -83,15 +90,11 @@ TEST_CASE("every task is run exactly once, whatever the order in which ranks get
   for (double& cost : costs) cost = std::exp(std::normal_distribution<double>()(random));
   Sweep sweep(4, tasks_of_cost(costs));
   std::map<std::int64_t, int> runs;
-  std::vector<std::unique_ptr<Worker>> workers;
-  for (int rank = 1; rank <= 4; ++rank)
-    workers.push_back(std::make_unique<Worker>(
-        sweep.network[rank],
-        [&](std::int64_t task, const StopRequested& stop) {
-          ++runs[task];
-          return succeed(task, stop);
-        },
-        no_signal));
+  const TaskBody body = [&](std::int64_t task, const StopRequested& stop) {
+    ++runs[task];
+    return succeed(task, stop);
+  };
+  auto workers = workers_of(sweep, 4, body);
   play(sweep, workers, seed);
   CHECK(runs.size() == 300);
   CHECK(std::all_of(runs.begin(), runs.end(), [](const auto& run) { return run.second == 1; }));
@@ -106,9 +109,7 @@ TEST_CASE("failed tasks are counted by outcome and the sweep goes on") {
     if (task == 7) return {TaskOutcome::error, std::string(1000, 'x')};
     return {TaskOutcome::ok, ""};
   };
-  std::vector<std::unique_ptr<Worker>> workers;
-  for (int rank = 1; rank <= 2; ++rank)
-    workers.push_back(std::make_unique<Worker>(sweep.network[rank], body, no_signal));
+  auto workers = workers_of(sweep, 2, body);
   play(sweep, workers, 1);
   const Dispatch& dispatch = sweep.master.dispatch();
   CHECK(dispatch.finished[static_cast<std::size_t>(TaskOutcome::ok)] == 26);

@@ -11,28 +11,18 @@ namespace test_task_body {
 
 bool never() { return false; }
 
-struct Written {
-  std::int64_t task;
-  TaskOutcome outcome;
-  std::string message;
-  std::int32_t steps_done;
-};
-
-struct Writer {
-  std::vector<Written> rows;
-  WriteRecord writes() {
-    return [this](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
-      CHECK(origin == nullptr);
-      rows.push_back({task.index, record.outcome, record.message, record.steps_done.at(0)});
-    };
-  }
-};
+WriteRecord into(std::vector<TaskRecord>& written) {
+  return [&written](const Task&, const TaskRecord& record, const TaskOrigin* origin) {
+    CHECK(origin == nullptr);
+    written.push_back(record);
+  };
+}
 
 TEST_CASE("a record that was filled is written and its outcome returned") {
   const Plan plan = plan_of(small_job());
-  Writer writer;
+  std::vector<TaskRecord> written;
   BatchBody body =
-      task_body(plan, writer.writes(), [](const Task&, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
+      task_body(plan, into(written), [](const Task&, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
         record.outcome = TaskOutcome::diverged;
         record.message = "joint gap 12";
         record.steps_done[0] = spec.time.steps;
@@ -41,34 +31,34 @@ TEST_CASE("a record that was filled is written and its outcome returned") {
   const TaskResult result = body({0}, never).at(0);
   CHECK(result.outcome == TaskOutcome::diverged);
   CHECK(result.message == "joint gap 12");
-  REQUIRE(writer.rows.size() == 1);
-  CHECK(writer.rows[0].outcome == TaskOutcome::diverged);
-  CHECK(writer.rows[0].steps_done == 10);
+  REQUIRE(written.size() == 1);
+  CHECK(written[0].outcome == TaskOutcome::diverged);
+  CHECK(written[0].steps_done[0] == 10);
 }
 
 TEST_CASE("a task that throws is an error with its message, written with sentinels") {
   const Plan plan = plan_of(small_job());
-  Writer writer;
-  BatchBody body = task_body(plan, writer.writes(),
+  std::vector<TaskRecord> written;
+  BatchBody body = task_body(plan, into(written),
                              [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) -> bool {
                                record.steps_done[0] = 3;
                                throw std::runtime_error("the matrix has no diagonal");
                              });
   CHECK(body({0}, never).at(0).outcome == TaskOutcome::error);
-  REQUIRE(writer.rows.size() == 1);
-  CHECK(writer.rows[0].outcome == TaskOutcome::error);
-  CHECK(writer.rows[0].message == "the matrix has no diagonal");
-  CHECK(writer.rows[0].steps_done == -1);
+  REQUIRE(written.size() == 1);
+  CHECK(written[0].outcome == TaskOutcome::error);
+  CHECK(written[0].message == "the matrix has no diagonal");
+  CHECK(written[0].steps_done[0] == -1);
 }
 
 TEST_CASE("an abandoned task is not written") {
   const Plan plan = plan_of(small_job());
-  Writer writer;
+  std::vector<TaskRecord> written;
   BatchBody body =
-      task_body(plan, writer.writes(),
+      task_body(plan, into(written),
                 [](const Task&, const TaskSpec&, TaskRecord&, const StopRequested& stop) { return !stop(); });
   CHECK(body({0}, [] { return true; }).at(0).outcome == TaskOutcome::pending);
-  CHECK(writer.rows.empty());
+  CHECK(written.empty());
 }
 
 TEST_CASE("a failing write is no outcome of the task") {

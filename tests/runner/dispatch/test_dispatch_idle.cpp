@@ -11,7 +11,7 @@
 using namespace rodsweep;
 using namespace rodsweep::examples;
 
-namespace test_dispatch_hand {
+namespace test_dispatch_idle {
 
 struct Played {
   double end = 0;        ///< when the last task was finished
@@ -122,4 +122,4 @@ TEST_CASE("a single task that takes a tenth of all the time is begun first, and 
   CHECK(play(10, tasks_of_cost(costs), costs).idle_share() < 1e-12);
 }
 
-}  // namespace test_dispatch_hand
+}  // namespace test_dispatch_idle
