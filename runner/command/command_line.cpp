@@ -58,19 +58,19 @@ std::string typed(int argc, const char* const* argv) {
   return line;
 }
 
-/// "rodsweep 1.0.0 (revision ...)" and the libraries, a line each.
+/// "rodsweep 1.0.0 (revision ...)", then one line per library.
 std::string version_text() {
   std::string text = library_versions() + '\n';
   for (std::size_t at = text.find("; "); at != std::string::npos; at = text.find("; ", at)) text.replace(at, 2, "\n  ");
   return text.insert(text.find('\n'), " (revision " + source_revision() + ")");
 }
 
-// CLI11's own name the largest double.
+// Replaces CLI11's validators, whose messages print the largest double.
 CLI::Validator number_check(bool zero, const char* bound) {
   return CLI::Validator(
       [zero, bound](std::string& text) {
         double value = 0;
-        constexpr double most = 1e9;  // also of what is no number
+        constexpr double most = 1e9;  // also rejects infinity and NaN
         const bool good =
             CLI::detail::lexical_cast(text, value) && value <= most && (value > 0 || (zero && value == 0));
         return good ? std::string() : fmt::format("{} is not a number {}", text, bound);
@@ -80,7 +80,7 @@ CLI::Validator number_check(bool zero, const char* bound) {
 CLI::Validator above_zero() { return number_check(false, "above 0 and up to 1e9"); }
 CLI::Validator not_negative() { return number_check(true, "from 0 to 1e9"); }
 
-// Each adds a command, whose arguments fill the options given.
+// Each function adds a command whose arguments fill the given options.
 
 CLI::App* add(CLI::App& app, RunOptions& run) {
   CLI::App* command = app.add_subcommand("run", "Runs a job, or goes on with it");
@@ -106,7 +106,7 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
   command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
                    "Memory of a rank; a task that needs more is an error [90 % of the host's, divided by its ranks]")
-      ->check(CLI::Range(0.1, 1e9))  // the program itself has most of that
+      ->check(CLI::Range(0.1, 1e9))  // the program itself needs most of 0.1 GB
       ->type_name("GB");
   command->add_option("--max-crashes", run.max_crashes, "Mark a task as crashed after this many worker deaths [3]")
       ->check(CLI::Range(1, 100))
@@ -210,7 +210,7 @@ std::string unknown_command_text(const CLI::App& app, const std::string& word) {
                      did_you_mean(word, known), help_line);
 }
 
-/// The message for a word that is neither a command nor an option: what may have been meant.
+/// The message for an unknown command or option, with a suggestion.
 std::string complaint_text(const CLI::App* app, const CLI::Error& error) {
   const auto chosen = app->get_subcommands();
   const CLI::App& command = chosen.empty() ? *app : *chosen.front();

@@ -1,4 +1,4 @@
-// The command line: what the user asked for. Parsing alone; nothing is run, printed or started here.
+// Parses the command line. Runs, prints and starts nothing.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@
 
 namespace rodsweep {
 
-/// Nothing to run: help, the version or the schema, or the message for a mistake in the command line.
+/// Text to print instead of a command to run: help, version, schema, or a command-line error.
 struct PrintedText {
   std::string text;
   ExitCode code = ExitCode::ok;

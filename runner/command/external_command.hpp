@@ -1,6 +1,5 @@
-// A command that is a program of its own: `rodsweep query FILE` starts `rodsweep-query FILE`, as git does for commands
-// that it does not have. It is looked for beside this program, then as a script of a source tree (build/../analysis/),
-// then on PATH.
+// A command that is a separate program: `rodsweep query FILE` starts `rodsweep-query FILE`, as git does for unknown
+// commands. Search order: the folder of this program, the scripts of a source tree (build/../analysis/), PATH.
 #pragma once
 
 #include <filesystem>
@@ -14,11 +13,11 @@ namespace rodsweep {
 
 struct ExternalCommand {
   std::string name;                ///< "query"
-  std::vector<std::string> words;  ///< its arguments
-  std::string unknown;             ///< what to print if there is no such program
+  std::vector<std::string> words;  ///< the arguments
+  std::string unknown;             ///< the message if the program is not found
 };
 
-/// Empty: there is none. `program`: the path of this one; `path`: as the environment variable PATH.
+/// Empty if not found. `program`: the path of this program; `path`: formatted like the environment variable PATH.
 std::filesystem::path find_command(const std::string& name, const std::filesystem::path& program,
                                    const std::string& path);
 

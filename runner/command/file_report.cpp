@@ -21,7 +21,7 @@ std::string outcomes_text(const FileSummary& file) {
 
 namespace {
 
-constexpr double hung_s = 60;  // a run that shows no activity for so long may hang
+constexpr double hung_s = 60;  // a run without activity for this long may hang
 
 std::string life_text(const FileSummary& file) {
   const std::string silence = duration_text(std::round(file.silent_s));

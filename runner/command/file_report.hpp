@@ -1,4 +1,4 @@
-// What `status` and `info` say of a results file, in words and as JSON.
+// The report of `status` and `info` on a results file, as text and as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace rodsweep {
 
 std::string outcomes_text(const FileSummary& file);  ///< "98 ok, 2 torn"
 
-/// What its last start had to do: all tasks, or those of its shard.
+/// The tasks of the last start: all tasks, or those of its shard.
 struct Share {
   std::optional<Shard> shard;
   std::int64_t tasks = 0;
@@ -20,14 +20,14 @@ struct Share {
 };
 Share share_of(const FileSummary& file);
 
-/// Does a run work on it? By its lock, which dies with it; where the file system has none, by the file's time, which a
-/// run renews.
+/// Whether a run is writing the file. Uses the run's lock, which the system releases when the run dies. Without locks,
+/// uses the file's modification time, which a run renews.
 bool is_alive(const FileSummary& file);
 
-/// Tasks a second of the start that works on it; none before its first.
+/// Tasks per second of the current start; none before its first task.
 std::optional<double> rate_of(const FileSummary& file);
 
-/// Start `index` of the sweep, a line.
+/// One line about start `index` of the sweep.
 std::string start_text(const FileSummary& file, std::size_t index);
 
 nlohmann::ordered_json to_json(const FileSummary& file);

@@ -46,13 +46,13 @@ ExitCode show_model(const InfoOptions& options, Console& console) {
     console.result(to_json(stored, options.file).dump(2));
   } else {
     console.result(training_summary(stored.card, options.file) + '\n' + provenance_text(stored));
-    if (options.verify) console.result("verified: the model is as it was written");  // else it could not be read
+    if (options.verify) console.result("verified: the model is as it was written");  // reading it checks this
   }
   return ExitCode::ok;
 }
 
-/// Compares what the checksums of tasks do not cover, parameters, axes and places of rows, with the job, of which this
-/// program makes the same again if it wrote the file. Whether it could.
+/// Checks what task checksums don't cover (parameters, axes, row positions) against a plan rebuilt from the job.
+/// Returns false if it can't: a rerun, a file of another revision, or a job with input files.
 bool verify_plan(const FileSummary& file) {
   if (file.rerun_of_task || file.runs.empty() || file.runs.front().provenance.revision != source_revision())
     return false;

@@ -1,5 +1,4 @@
-// The command `info`: what a results file or a model holds, and where it comes from. No MPI. Throws FileError and
-// Hdf5Error.
+// The command `info`: the content and provenance of a results file or a model. No MPI. Throws FileError and Hdf5Error.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +11,7 @@ namespace rodsweep {
 struct InfoOptions {
   std::filesystem::path file;
   bool verify = false;
-  bool job = false;  ///< its text alone
+  bool job = false;  ///< print only the job's text
   bool json = false;
 };
 

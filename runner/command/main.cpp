@@ -1,10 +1,10 @@
-// The program. Parses, starts MPI and PETSc where a command needs them, reports what went wrong, and exits.
+// The program: parses the command line, starts MPI and PETSc if the command needs them, reports errors, exits.
 //
-// An error that all ranks share (a bad job, an existing file) is printed once and ends all of them. An error of one rank
-// alone (a full disk) is printed by that rank, which then aborts the others, since they would wait for it for ever; the
-// file keeps every finished task. Output on stdout that is lost (a full disk, a closed descriptor) is an error, but it
-// stops nothing: a sweep goes on, and its results are in their file. If the reader of stdout has left (`| head`), the
-// program ends as if by SIGPIPE, without a message. exit_codes.hpp lists the exit codes.
+// An error on all ranks (a bad job, an existing file) is printed once; all ranks exit.
+// An error on one rank (a full disk) is printed by that rank. It then calls MPI_Abort, because the other ranks would
+// wait for it forever. The file keeps every finished task.
+// A failed write to stdout (a full disk, a closed descriptor) is an error, but the command runs to its end.
+// If the reader closed stdout (`| head`), the program ends with SIGPIPE, without a message.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -29,21 +29,21 @@ namespace rodsweep {
 
 namespace {
 
-/// A standard descriptor that is closed would become that of the next file, a results file say, and what is printed
-/// would end in there. Opened the wrong way round, it fails instead.
+/// Opens closed standard descriptors. Otherwise the next file opened, such as a results file, gets that descriptor and
+/// receives printed text. The inverted access mode makes reads and writes fail instead.
 void occupy_standard_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(descriptor, F_GETFD) < 0) open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
-/// Under mpirun or srun every rank gets the command; one should speak.
+/// Under mpirun or srun every rank runs the command, but only one should print.
 bool is_first_rank() {
   for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK"})
     if (const char* rank = std::getenv(name)) return std::atoi(rank) == 0;
   return true;
 }
 
-/// After a failed write HDF5 would crash as MPI finalises: the error is said, and this process leaves at once.
+/// After a failed write HDF5 would crash in MPI_Finalize: prints the error and exits immediately.
 void leave_if_broken(const MpiSession& mpi, const std::exception& error, Console& console) {
   if (!hdf5_is_broken()) return;
   console.error(error.what());
@@ -52,7 +52,7 @@ void leave_if_broken(const MpiSession& mpi, const std::exception& error, Console
   std::_Exit(static_cast<int>(ExitCode::user_error));
 }
 
-/// A command that computes, on one rank. All must start MPI where one does.
+/// Runs a command on rank 0. All ranks start MPI, because MPI_Init is collective.
 template <class Options>
 ExitCode execute_with_petsc(const Options& options, Console& console) {
   const MpiSession mpi;
@@ -65,7 +65,7 @@ ExitCode execute_with_petsc(const Options& options, Console& console) {
   }
 }
 
-/// A command that one rank does for all.
+/// Runs a command without MPI on the first rank only.
 template <class Options>
 ExitCode start(const Options& options, Console& console) {
   return is_first_rank() ? execute(options, console) : ExitCode::ok;
@@ -124,7 +124,7 @@ ExitCode run_program(int argc, const char* const* argv, Console& console) {
 int main(int argc, char** argv) {
   using namespace rodsweep;
   occupy_standard_descriptors();
-  std::signal(SIGPIPE, SIG_IGN);  // nor should a reader that has left end a sweep
+  std::signal(SIGPIPE, SIG_IGN);  // a closed reader must not end a sweep
   Console console(is_first_rank());
   ExitCode code = run_program(argc, argv, console);
   const int failure = console.close();

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file to take tasks from, and where its starts are among those of the new one.
+/// An input file, and the index of its first start in the new file.
 struct Part {
   fs::path path;
   TaskReader reader;

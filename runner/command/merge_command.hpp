@@ -1,5 +1,5 @@
-// The command `merge`: one results file of several of the same job, as shards (run --shard) leave them, or starts that
-// were made on different machines. Throws FileError and Hdf5Error.
+// The command `merge`: combines results files of the same job, for example of shards (run --shard) or of runs on
+// different machines. Throws FileError and Hdf5Error.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace rodsweep {
 struct MergeOptions {
   std::vector<std::filesystem::path> files;
   std::filesystem::path output;
-  std::string command;  ///< the whole line, for /runs
+  std::string command;  ///< the whole command line, for /runs
 };
 
 inline constexpr const char* merge_help =

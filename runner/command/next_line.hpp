@@ -1,4 +1,4 @@
-// What to type next: a run, or a script of analysis/ on a file that was just made.
+// The command line to suggest next: a run, or a script of analysis/ on a new file.
 #pragma once
 
 #include <filesystem>
@@ -8,21 +8,21 @@
 
 namespace rodsweep {
 
-/// Of a sweep on so many cores: the master sleeps.
+/// Ranks of a sweep with this many workers: one more for the master, which sleeps; 1 for a single worker.
 int ranks_for(int workers);
 
-/// The line to type for this job on so many ranks: "mpirun --oversubscribe -n 3 rodsweep run jobs/demo.json".
+/// The command for this job on this many ranks: "mpirun --oversubscribe -n 3 rodsweep run jobs/demo.json".
 std::string run_line(const RunOptions& options, int ranks);
 
-/// "stopped early by SIGTERM; nothing is lost. To continue: " and the line.
+/// "stopped early by SIGTERM; nothing is lost. To continue: " and the command.
 std::string stopped_text(int signal, RunOptions options, int ranks);
 
-/// Of a shard's file, with the others beside it: "rodsweep merge results/demo-*of4.h5 -o results/demo.h5"; of files
-/// named otherwise "rodsweep merge SHARDS... -o FILE".
+/// For a shard's file with the default name: "rodsweep merge results/demo-*of4.h5 -o results/demo.h5"; for other names:
+/// "rodsweep merge SHARDS... -o FILE".
 std::string merge_line(const std::string& program, const std::filesystem::path& file, const Shard& shard);
 
-/// "/usr/bin/python3 analysis/summary.py results/demo.h5", the script being that of the source tree or installation
-/// that this program belongs to, as typed from here.
+/// "/usr/bin/python3 analysis/summary.py results/demo.h5". The script is that of this program's source tree or
+/// installation; its path is relative to the current folder where possible.
 std::string script_line(const std::string& script, const std::filesystem::path& file);
 
 }  // namespace rodsweep

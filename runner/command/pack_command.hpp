@@ -11,7 +11,7 @@ namespace rodsweep {
 
 struct PackOptions {
   std::filesystem::path file;
-  std::optional<std::filesystem::path> output;  ///< default: FILE's name with "-packed", beside it
+  std::optional<std::filesystem::path> output;  ///< default: FILE-packed.h5 in FILE's folder
 };
 
 inline constexpr const char* pack_help =

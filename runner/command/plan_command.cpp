@@ -38,8 +38,8 @@ Extent extent(const Plan& plan, Member member) {
   return out;
 }
 
-/// Linear systems (of Gauss-Seidel: iterations) at most, were no step to end early: Task::cost is segments x steps x
-/// those of a step.
+/// Upper bound of the linear systems (Gauss-Seidel: iterations), reached if no step ends early.
+/// Task::cost is segments x steps x systems per step.
 std::int64_t most_systems(const Plan& plan) {
   double systems = 0;
   for (const Task& task : plan.tasks()) systems += task.cost / task.segments;
@@ -56,7 +56,7 @@ int cores_here() { return static_cast<int>(std::max(1u, std::thread::hardware_co
 
 int workers_of(const PlanOptions& options) { return options.workers > 0 ? options.workers : cores_here(); }
 
-/// As sbatch --time takes it, in whole minutes.
+/// The format of sbatch --time, rounded up to minutes.
 std::string slurm_time(double seconds) {
   const auto minutes = std::llround(std::ceil(seconds / 60));
   const auto hours = minutes / 60, days = hours / 24;
@@ -72,7 +72,7 @@ std::string slurm_text(const Estimate& needs, const PlanOptions& options) {
       slurm_time(time_limit_for(needs.longest_s)), needs.longest, duration_text(needs.longest_s));
 }
 
-/// Says so where the workers want more than a single master hands out; else nothing.
+/// A warning if the workers need more tasks per second than one master can send; else empty.
 std::string master_text(const Estimate& needs, int workers) {
   const double wanted = needs.tasks_per_s(workers);
   const int shards = shards_for(wanted);

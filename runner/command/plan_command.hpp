@@ -1,4 +1,4 @@
-// The command `plan`: what a job would do, and what it would take. Throws JobError. No MPI; with probes it needs PETSc.
+// The command `plan`: the extent and estimated cost of a job. Throws JobError. No MPI; probes need PETSc.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ struct PlanOptions {
   std::filesystem::path job;
   bool probe = true;
   bool json = false;
-  int workers = 0;                   ///< 0: as many as there are cores here
+  int workers = 0;                   ///< 0: one per core of this host
   std::string program = "rodsweep";  ///< as the user typed it
 };
 

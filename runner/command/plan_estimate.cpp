@@ -12,7 +12,7 @@ namespace {
 
 constexpr double enough_s = 0.5, too_long_s = 5;
 
-/// The first `steps` steps of a task.
+/// Reduces a task to its first `steps` steps.
 void truncate(Task& task, TaskSpec& spec, int steps) {
   spec.time.steps = steps;
   size_rows(task, spec.scene, spec.time, spec.output);
@@ -36,7 +36,7 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
 
     const auto done = static_cast<std::int64_t>(record.steps_done.front());
     const auto memory = static_cast<std::int64_t>(peak_memory());
-    // Where the time was over within a step, half of that step, unless it was the first.
+    // A step cut off by the time limit counts as half a step, unless it was the first.
     const double cut = record.outcome == TaskOutcome::timed_out ? 0.5 : 0;
     const double step_s = seconds / std::max(1.0, static_cast<double>(done) + cut);
     return {index,
@@ -50,7 +50,7 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
   }
 }
 
-/// Seconds per unit of cost at `cost`; probes are in ascending order of cost.
+/// Seconds per unit of cost, interpolated at `cost`; probes are in ascending order of cost.
 double rate(const std::vector<Probe>& probes, double cost) {
   const auto of = [](const Probe& p) { return p.seconds / p.cost; };
   const auto above = std::find_if(probes.begin(), probes.end(), [&](const Probe& p) { return p.cost >= cost; });

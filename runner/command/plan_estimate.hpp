@@ -1,7 +1,6 @@
-// What a plan will cost, from a few of its tasks really run: the cheapest, the median and the dearest one by
-// Task::cost, over as many of their first steps as fit into about half a second. Seconds per unit of cost are
-// interpolated between them. An estimate: random parameters and later steps can be harder than those probed. Needs
-// PETSc.
+// Estimates the time and memory of a plan from probes: the cheapest, median and dearest task by Task::cost. A probe
+// runs the first steps of its task for about half a second. Seconds per unit of cost are interpolated between probes.
+// Random parameters and later steps can be harder than those probed. Needs PETSc.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +15,9 @@ namespace rodsweep {
 struct Probe {
   std::int64_t task = 0;
   double cost = 0;
-  std::int64_t steps = 0, of_steps = 0;  ///< run, and in the whole task
-  double seconds = 0;                    ///< of the whole task, extrapolated from the steps run; without any, at least
-  /// The most that the process had so far, cheaper probes included, and the record of the steps left out; 0: not known.
+  std::int64_t steps = 0, of_steps = 0;  ///< steps run; steps of the whole task
+  double seconds = 0;                    ///< of the whole task, extrapolated from the steps run; a lower bound if none
+  /// Peak memory of the process so far, including cheaper probes, plus the record of the steps not run; 0: unknown.
   std::int64_t memory_bytes = 0;
   TaskOutcome outcome{};
   std::string message;
@@ -26,28 +25,28 @@ struct Probe {
 
 std::vector<Probe> probe(const Plan& plan, const Evaluate& evaluate);
 
-/// What tasks will take on one core.
+/// Estimated times on one core.
 struct Estimate {
   std::int64_t tasks = 0;
-  double core_s = 0;     ///< all of them
-  double longest_s = 0;  ///< the longest
+  double core_s = 0;     ///< all tasks
+  double longest_s = 0;  ///< the longest task
   std::int64_t longest = 0;
 
   double wall_s(int workers) const;
-  double tasks_per_s(int workers) const;  ///< that so many workers, all of them busy, take from the master
+  double tasks_per_s(int workers) const;  ///< rate that the master must send to keep all workers busy
 };
 
 Estimate estimate(const Plan& plan, const std::vector<Probe>& probes);
 
-/// What one master hands out: a task takes 22 us of its processor with four workers and 111 us with one, for which it
-/// wakes up each time (tests/bench/bench_limits.py; docs/scale.md).
+/// Tasks per second that one master can send. A task takes 22 us of its CPU time with four workers. With one worker it
+/// takes 111 us, because the master wakes up for each task (tests/bench/bench_limits.py; docs/scale.md).
 inline constexpr double master_tasks_per_s = 10'000;
 
-/// Shards, each with a master of its own, of which none has to hand out more than half of what it can.
+/// The number of shards for which each master sends at most half of its maximum rate.
 int shards_for(double tasks_per_s);
 
-/// What to ask a batch system for, in seconds, so that jobs/slurm/sweep.sbatch has `wall_s` to run: half as much again,
-/// since estimates are what they are, and what starting and stopping take.
+/// Time limit for the batch system, in seconds, to run jobs/slurm/sweep.sbatch for `wall_s`. Adds 50 % for the error of
+/// the estimate, and the time to start and stop.
 double time_limit_for(double wall_s);
 
 }  // namespace rodsweep

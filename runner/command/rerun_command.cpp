@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The task in the file, refused with what can be had instead.
+/// Throws FileError, with advice, if the file does not have this task or is itself a rerun.
 void check_task(const RerunOptions& options, const FileSummary& file) {
   if (file.rerun_of_task)
     throw FileError(fmt::format("{} holds task {} of a sweep, made by `rodsweep rerun`: rerun it from the sweep's file",

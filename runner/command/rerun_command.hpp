@@ -1,6 +1,6 @@
-// The command `rerun`: one task of a results file once more, from the job in the file, with its trajectory, into a file
-// of its own; then what it wrote is compared with what the sweep has. One process; needs PETSc. The new file appears
-// when the task is through. Throws FileError and Hdf5Error.
+// The command `rerun`: repeats one task of a results file, from the job in that file, and records its trajectory in a
+// new file. Then compares its results with those of the sweep. One process; needs PETSc. The new file is created when
+// the task ends. Throws FileError and Hdf5Error.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace rodsweep {
 struct RerunOptions {
   std::filesystem::path file;
   std::int64_t task = 0;
-  std::optional<std::filesystem::path> output;  ///< default: FILE's name with "-task-N", beside it
+  std::optional<std::filesystem::path> output;  ///< default: FILE-task-N.h5 in FILE's folder
   int trajectory_every = 1;
-  std::string command;  ///< the whole line, for /runs
+  std::string command;  ///< the whole command line, for /runs
 };
 
 inline constexpr const char* rerun_help =
@@ -36,8 +36,8 @@ inline constexpr const char* rerun_help =
     "  3  the results differ; or the task failed, and was pending in FILE\n"
     "  4  stopped early; nothing was written";
 
-/// tasks_failed if the results differ from those in the file, or if it has none and the task fails; stopped after a
-/// signal, and then nothing is written.
+/// Returns tasks_failed if the results differ from those in the file, or if the file has none to compare with and the
+/// task fails. Returns stopped after a signal; then nothing is written.
 ExitCode execute(const RerunOptions& options, Console& console);
 
 }  // namespace rodsweep

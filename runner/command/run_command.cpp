@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rank 0 reads the job and the files that it names; its text and their hashes travel, so that every rank has the same
-/// ones, wherever its own copies stand, and a data set is not read by every rank to know what it holds.
+/// Rank 0 reads the job and its input files, then broadcasts the job's text and the files' hashes. So all ranks use the
+/// same input even if their copies differ, and only one rank reads the data sets to hash them.
 Job read_job_everywhere(const fs::path& path, const MpiSession& mpi) {
   std::optional<Job> job;
   by_rank_0(mpi.world(), [&] {

@@ -1,4 +1,4 @@
-// The command `run`: a job of kind "train" trains a model (training_run.hpp), any other is a sweep (sweep_run.hpp).
+// The command `run`: a job of kind "train" trains a model (training_run.hpp); any other job is a sweep (sweep_run.hpp).
 // Collective over all ranks.
 #pragma once
 
@@ -18,17 +18,17 @@ struct RunOptions {
   std::filesystem::path job;
   std::optional<std::filesystem::path> output;  ///< default: results/NAME.h5 in the current folder
   bool resume = false;                          ///< continue the output if it exists
-  bool retry_failed = false;  ///< and run its tasks again that ended in an error, timed out or crashed
-  std::optional<std::filesystem::path> extend;  ///< results of a smaller job, which need not be computed again
-  std::optional<Shard> shard;                   ///< runs its tasks alone
-  std::optional<double> task_time_limit_s;      ///< in place of the job's
-  std::optional<double> memory_limit_gb;        ///< of every rank; default: its share of the host's memory
+  bool retry_failed = false;  ///< with `resume`: repeat tasks that ended in an error, timed out or crashed
+  std::optional<std::filesystem::path> extend;  ///< results of a smaller job to reuse
+  std::optional<Shard> shard;                   ///< run only its tasks
+  std::optional<double> task_time_limit_s;      ///< replaces the job's limit
+  std::optional<double> memory_limit_gb;        ///< per rank; default: a share of the host's memory
   std::optional<double> time_limit_s;           ///< of this start
-  double time_passed_s = 0;                     ///< of that limit, before this start
-  int max_crashes = 3;                          ///< a task that loses so many workers is not tried again
-  double worker_timeout_s = 120;                ///< a worker that is silent for so long is lost; 0: none ever is
+  double time_passed_s = 0;                     ///< part of that limit used before this start
+  int max_crashes = 3;                          ///< a task is not retried after this many worker deaths
+  double worker_timeout_s = 120;                ///< a worker without heartbeat for this long is lost; 0: no timeout
   std::string program = "rodsweep";             ///< as the user typed it
-  std::string command;                          ///< the whole line, for /runs
+  std::string command;                          ///< the whole command line, for /runs
 };
 
 inline constexpr const char* run_help =
@@ -59,15 +59,14 @@ inline constexpr const char* run_help =
     "                                                      new guesses alone on its trajectories, runs the rest.\n"
     "                                                      out.h5 is read only; more.h5 is as if run from scratch.";
 
-/// Starts PETSc. The same result on every rank. Throws CollectiveError, the same on every rank, when nothing could be
-/// started (a job or file error); any other exception belongs to this rank alone, and the others wait for it in vain:
-/// the caller must abort.
+/// Starts PETSc. All ranks return the same result. Throws CollectiveError on all ranks if the run cannot start (a job
+/// or file error). Any other exception concerns one rank only; the caller must abort, because the others wait for it.
 ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console);
 
-/// Where the results of a job go: results/NAME.h5, of a shard results/NAME-IofN.h5, unless the user names another file.
+/// The results file: the user's choice; default results/NAME.h5, or results/NAME-IofN.h5 for a shard.
 std::filesystem::path output_of(const RunOptions& options, const std::string& job_name);
 
-/// Of a start on these ranks: a row of /runs.
+/// The row of /runs for a start on these ranks.
 Provenance provenance_of(const RunOptions& options, const MpiSession& mpi, const Placement& where);
 
 }  // namespace rodsweep

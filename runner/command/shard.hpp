@@ -1,5 +1,5 @@
-// One of the parts that the tasks of a sweep are dealt out to (`run --shard 3/16`), each into a file of its own, which
-// `merge` puts together.
+// A shard: one of the parts of a sweep's tasks (`run --shard 3/16`). Each shard has its own results file; `merge`
+// combines these files.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ struct Shard {
   int of = 1;
 };
 
-/// Of "3/16"; none of anything else.
+/// Parses "3/16"; none if `text` is not a valid shard.
 std::optional<Shard> shard_of(const std::string& text);
 
-/// How many of a sweep's tasks are the shard's.
+/// The number of tasks in the shard, for a sweep of `tasks` tasks.
 std::int64_t share_of(const Shard& shard, std::int64_t tasks);
 
-/// Which they are: dealt out in the order of their costs, so that shards take about as long. Without a shard: all.
+/// A flag per task; all set without a shard. Tasks are dealt out by descending cost, so that shards take similar times.
 std::vector<bool> in_shard(const Plan& plan, const std::optional<Shard>& shard);
 
 }  // namespace rodsweep

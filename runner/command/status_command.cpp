@@ -32,7 +32,7 @@ std::string progress_text(const FileSummary& file) {
   return text;
 }
 
-/// The tasks that workers have in hand.
+/// The tasks that workers of the last start are running.
 std::string running_text(const FileSummary& file) {
   const int last = static_cast<int>(file.runs.size()) - 1;
   std::string text;
@@ -77,7 +77,7 @@ ExitCode execute(const StatusOptions& options, Console& console) {
     const FileSummary file = inspect(options.file);
     const bool last = options.watch_s == 0 || !is_alive(file);
     if (options.json)
-      console.result(to_json(file).dump(options.watch_s == 0 ? 2 : -1));  // watched: an object a line
+      console.result(to_json(file).dump(options.watch_s == 0 ? 2 : -1));  // --watch: one object per line
     else
       console.result(last ? status_text(file) : progress_text(file));
     if (last) return ExitCode::ok;

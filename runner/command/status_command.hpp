@@ -1,4 +1,4 @@
-// The command `status`: how far a sweep or a training is, and, of a sweep that is being run, what runs where. No MPI.
+// The command `status`: the progress of a sweep or a training, and where each task of a live sweep runs. No MPI.
 // Throws FileError and Hdf5Error.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace rodsweep {
 struct StatusOptions {
   std::filesystem::path file;
   bool json = false;
-  double watch_s = 0;  ///< say it again so often until nobody writes the file; 0: once
+  double watch_s = 0;  ///< repeat at this interval until no run writes the file; 0: print once
 };
 
 inline constexpr const char* status_help =

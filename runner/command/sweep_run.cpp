@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-/// Every rank looks for itself into the file to extend.
+/// Every rank opens the file to extend.
 std::optional<Extension> open_extension(const RunOptions& options, const fs::path& path, const Plan& plan) {
   if (!options.extend) return std::nullopt;
   std::error_code error;
@@ -55,14 +55,14 @@ std::string extension_text(const Extension& extension, std::int64_t total) {
                      extension.count(Use::run));
 }
 
-/// Is there a file to be continued? Else it is to be created.
+/// Whether to continue an existing file, rather than create it.
 bool has_begun(const RunOptions& options, const fs::path& path, const std::optional<Extension>& extension) {
   if (!options.resume || !fs::exists(path)) return false;
   if (extension) extension->check_started(path);
   return true;
 }
 
-/// Stores a task that reached the limit of crashes as crashed, and returns its message. One rank.
+/// Stores a task as crashed after its last allowed crash, and returns its message. Called on one rank.
 std::string store_as_crashed(const Task& task, int crashes, const Plan& plan, ResultsFile& file) {
   TaskRecord record;
   record.prepare(task, axis_sizes(plan));
@@ -164,19 +164,19 @@ Dispatch dispatch_alone(std::vector<PendingTask> pending, Progress& progress, co
   return master.dispatch();
 }
 
-/// With Open MPI's orte_enable_recovery, ranks exit one by one, and MPI_Abort ends the calling rank alone.
+/// With Open MPI's orte_enable_recovery, ranks exit independently, and MPI_Abort ends only the calling rank.
 bool ranks_exit_alone() {
   const char* told = std::getenv("OMPI_MCA_orte_enable_recovery");
   return told != nullptr && std::string_view(told) != "0";
 }
 
-/// How a worker exits when ranks are lost: MPI_Finalize would wait for them.
+/// Exits a worker after ranks were lost, without MPI_Finalize, which would wait for them.
 [[noreturn]] void exit_worker() {
   if (!ranks_exit_alone()) std::this_thread::sleep_for(std::chrono::minutes(1));  // until the master's MPI_Abort
   std::_Exit(static_cast<int>(ExitCode::ok));
 }
 
-/// Likewise the master.
+/// The same for the master.
 [[noreturn]] void exit_master(const MpiSession& mpi, ExitCode code) {
   if (!ranks_exit_alone()) MPI_Abort(mpi.world(), static_cast<int>(code));
   std::_Exit(static_cast<int>(code));
@@ -204,7 +204,7 @@ Dispatch dispatch_to_workers(const MpiSession& mpi, std::vector<PendingTask> pen
   return master.dispatch();
 }
 
-/// Of a run that began then.
+/// The timeouts of a run that began at `begin`.
 Timeouts timeouts_of(const RunOptions& options, Clock::time_point begin) {
   constexpr std::chrono::minutes drain{1};
   Timeouts timeouts;
@@ -252,7 +252,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     if (options.task_time_limit_s) made.set_task_time_limit(*options.task_time_limit_s);
     return made;
   });
-  const StopSignal signal;  // from here on a signal is a request, until the file is closed
+  const StopSignal signal;  // from here until the file is closed, a signal only requests a stop
   const fs::path path = output_of(options, job.name);
   read_knn_sets(plan, mpi.world());
   const Placement where = placement(mpi.world());
@@ -287,7 +287,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
       collectively(mpi.world(), [&] { return continues && mpi.rank() == 0 ? inspect(path) : FileSummary(); });
 
   std::vector<PendingTask> pending;
-  if (mpi.rank() == 0)  // who alone hands them out
+  if (mpi.rank() == 0)  // only the master sends tasks
     pending = pending_tasks(plan, file, extension, options.shard, options.max_crashes);
   advise(console, options, where, pending.size());
   const auto total = plan.size(), to_do = static_cast<std::int64_t>(pending.size());
@@ -305,7 +305,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const WriteRecord write = [&](const Task& task, const TaskRecord& record, const TaskOrigin* origin) {
     file.write(task, record, origin);
   };
-  const auto warn = [](const std::string& text) { Console(true).warn(text); };  // whichever rank finds the damage
+  const auto warn = [](const std::string& text) { Console(true).warn(text); };  // the rank that finds the damage prints
   const auto hosts = everywhere(host_name(), mpi.world());
   Callbacks callbacks;
   callbacks.lost = [&](int rank) {

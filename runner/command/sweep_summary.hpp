@@ -1,5 +1,5 @@
-// The end of a run in words: tasks by outcome, first failures, time, how busy the workers were, where the results are
-// and what to type next.
+// The summary printed after a run: tasks by outcome, first failures, time, utilisation of workers, results file, and
+// the command to type next.
 #pragma once
 
 #include <filesystem>
@@ -13,25 +13,25 @@
 
 namespace rodsweep {
 
-/// Tasks whose results alone are more than the memory of a rank.
+/// Tasks whose results exceed the memory of a rank.
 struct TooLarge {
   std::int64_t tasks = 0;
   std::int64_t task = 0;   ///< the largest of them
-  std::int64_t bytes = 0;  ///< of its results
+  std::int64_t bytes = 0;  ///< size of its results
 };
 
 struct SweepSummary {
-  std::int64_t tasks = 0;                      ///< of the plan
+  std::int64_t tasks = 0;                      ///< in the plan
   std::map<std::string, std::int64_t> before;  ///< finished in earlier starts, by outcome
   Dispatch dispatch;                           ///< of this start
   int workers = 1;
   std::filesystem::path path;
   std::string program{};         ///< as the user typed it
-  TooLarge too_large{};          ///< of the tasks that are left
-  std::optional<Shard> shard{};  ///< whose tasks alone this start had to do
+  TooLarge too_large{};          ///< among the tasks left
+  std::optional<Shard> shard{};  ///< of this start
 };
 
-/// Judges the whole file, not this start alone: a sweep with failed tasks stays one when it is resumed.
+/// The exit code of the whole file, not only of this start: a resumed sweep with failed tasks returns tasks_failed.
 ExitCode exit_code(const SweepSummary& summary);
 std::string summary_text(const SweepSummary& summary);
 

@@ -16,7 +16,7 @@ std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file
                                        const std::optional<Extension>& extension, const std::optional<Shard>& shard,
                                        int max_crashes) {
   const std::vector<bool> mine = in_shard(plan, shard);
-  // Tasks of an earlier file are looked at one by one.
+  // Each task of an extended file is handled on its own: no batches.
   const std::vector<std::int64_t> batch =
       extension ? std::vector<std::int64_t>(static_cast<std::size_t>(plan.size()), -1) : batches(plan);
   const double limit_s = plan.spec(0).time_limit_s;

@@ -1,4 +1,4 @@
-// Which tasks of a sweep a run has to do, and what is known of them from earlier runs.
+// The tasks that a run has to do, and what earlier runs measured about them.
 #pragma once
 
 #include <filesystem>
@@ -14,18 +14,18 @@
 
 namespace rodsweep {
 
-/// Whether a task that is not done has crashed as often as allowed, and is not tried again.
+/// Whether an incomplete task has reached the limit of crashes and is not retried.
 bool has_crashed(const ResultsFile& file, std::int64_t task, int max_crashes);
 
-/// Those of the shard that are neither done nor crashed.
+/// The tasks of the shard that are neither done nor crashed.
 std::vector<PendingTask> pending_tasks(const Plan& plan, const ResultsFile& file,
                                        const std::optional<Extension>& extension, const std::optional<Shard>& shard,
                                        int max_crashes);
 
-/// Takes out of `pending` what keeps more than `memory` bytes of results: no rank has room for them.
+/// Removes tasks from `pending` whose results exceed `memory` bytes.
 TooLarge leave_out_too_large(const Plan& plan, std::vector<PendingTask>& pending, double memory);
 
-/// How long tasks took, and how far abandoned ones came.
+/// Reads the durations of finished tasks into `time`, and the progress of abandoned tasks into `pending` and `time`.
 void learn_from_earlier_runs(const std::filesystem::path& path, const Plan& plan, const ResultsFile& file,
                              std::vector<PendingTask>& pending, TimeBudget& time);
 

@@ -20,18 +20,18 @@ namespace {
 constexpr std::int64_t fewest_simulations = 8;
 constexpr double probed_s = 0.5;
 
-/// What is known without computing anything.
+/// Sizes known without computing anything.
 struct Extent {
   std::size_t parameters = 0;
   std::int64_t training_simulations = 0, validation_simulations = 0;
-  std::int64_t training_examples = 0, validation_examples = 0;  ///< at most
+  std::int64_t training_examples = 0, validation_examples = 0;  ///< upper bounds
   std::int64_t steps_per_epoch = 0, steps = 0;
 };
 
-/// What a probe tells. Seconds are of one core; what every rank does for itself is apart from what they share.
+/// Result of a probe. Seconds on one core. Reading is repeated by every rank; the rest is shared.
 struct Probe {
   double bytes = 0;         ///< of all examples
-  double reading_s = 0;     ///< of the data, on every rank
+  double reading_s = 0;     ///< of all data, on each rank
   double training_s = 0;    ///< of all steps
   double validation_s = 0;  ///< of all losses and CG ratios
 };
@@ -73,7 +73,7 @@ double seconds_of_ratio(const TrainingJob& job, const Model& model, StoredSimula
   return watch.seconds() * times * static_cast<double>(std::min(job.ratio_simulations, simulations));
 }
 
-/// Of one step of the optimiser.
+/// Seconds per step of the optimiser.
 double seconds_of_step(Trainer& trainer, int shard_count) {
   std::vector<std::vector<float>> shards(static_cast<std::size_t>(shard_count),
                                          std::vector<float>(trainer.shard_size()));
@@ -83,7 +83,7 @@ double seconds_of_step(Trainer& trainer, int shard_count) {
     parts.push_back({static_cast<int>(parts.size()), shard.data()});
     gradients.push_back(shard.data());
   }
-  int steps = -1;  // the first one touches its memory for the first time
+  int steps = -1;  // the first step is not timed: it allocates memory
   Stopwatch watch;
   for (; steps < 3 || watch.seconds() < probed_s; ++steps) {
     if (steps == 0) watch = Stopwatch();
@@ -99,7 +99,7 @@ Probe probe(const TrainingJob& job, const LearningSets& sets, const Extent& exte
   const std::int64_t for_a_batch = 1 + job.training.batch * all / std::max<std::int64_t>(extent.training_examples, 1);
   const std::int64_t tried = std::min(all, std::max(fewest_simulations, for_a_batch));
   std::vector<Example> examples;
-  std::int64_t systems = 0;  // those whose base guess is the solution are no examples
+  std::int64_t systems = 0;  // a system whose base guess is exact yields no example
   const Stopwatch reading;
   for (std::int64_t i = 0; i < tried; ++i) {
     const LearningSets::Simulation& simulation = sets.training()[static_cast<std::size_t>(i * all / tried)];

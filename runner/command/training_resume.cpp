@@ -10,7 +10,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// What the results depend on, by JSON pointer. (The data set is known by its hash.)
+/// The settings that affect the results, by JSON pointer. The data set is compared by its hash instead.
 Json settings_of(const Job& job) {
   Json values = job.values;
   for (const char* key : {"name", "description", "$schema", "data"}) values.erase(key);

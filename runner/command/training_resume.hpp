@@ -1,4 +1,4 @@
-// What a training goes on from: the file that an earlier start of the same job has left.
+// Reads the file of an earlier start, to resume its training.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace rodsweep {
 
-/// With --resume and where the file is there; without --resume a file that is there is refused. Throws FileError for a
-/// file of another job.
+/// The stored training; none if the file does not exist. Throws FileError if the file exists without --resume, or if it
+/// belongs to another job.
 std::optional<StoredModel> earlier_training(const RunOptions& options, const Job& job,
                                             const std::filesystem::path& path);
 

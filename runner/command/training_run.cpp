@@ -31,7 +31,7 @@ ExitCode exit_code_of(Ending ending) {
   }
 }
 
-/// A training under way, as this rank sees it.
+/// A running training, on this rank.
 class TrainingRun {
  public:
   TrainingRun(const RunOptions& options, const Job& job, const fs::path& path, const MpiSession& mpi, Console& console)
@@ -69,12 +69,12 @@ class TrainingRun {
   std::optional<ModelFile> file_;
   std::optional<ProgressLine> progress_;
   std::vector<TrainingStart> starts_;
-  Stopwatch since_begin_, since_save_;  ///< of the steps; of the last time that the file was written
-  double save_s_ = 0;                   ///< how long that took
+  Stopwatch since_begin_, since_save_;  ///< since the first step; since the last save
+  double save_s_ = 0;                   ///< duration of the last save
   std::int64_t first_step_ = 0;
 };
 
-/// Collective: reads the data and creates the file, or goes on from it.
+/// Collective: reads the data, and creates the file or resumes from it.
 void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   console_.note(fmt::format("reading {}", paths_of(training_job_.data)));
   std::vector<StoredSimulation> simulations;
@@ -164,15 +164,15 @@ void TrainingRun::show_progress() {
                   progress_text(training_->card(), since_begin_.seconds() / done * left));
 }
 
-/// After an epoch, unless that would take much of the time (a slow disk), and in long epochs now and then.
+/// True after an epoch, unless saving takes too much of the time (a slow disk), and every longest_unsaved_s.
 bool TrainingRun::save_is_due() const {
   const double unsaved_s = since_save_.seconds();
-  if (training_->ended()) return false;  // its end is yet to be measured
+  if (training_->ended()) return false;  // run() saves it after the final measurements
   return unsaved_s > longest_unsaved_s ||
          (training_->at_epoch_begin() && save_s_ < most_of_time_for_saving * unsaved_s);
 }
 
-/// What is known now, and what it takes to go on, as long as there is something to do.
+/// Saves the current state, with a checkpoint unless the training has ended.
 void TrainingRun::save() {
   const Stopwatch watch;
   ModelCard card = training_->card();
@@ -187,7 +187,7 @@ void TrainingRun::save() {
 }  // namespace
 
 ExitCode run_training(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
-  const StopSignal signal;  // from here on a signal is a request, until the file is closed
+  const StopSignal signal;  // from here until the file is closed, a signal only requests a stop
   const fs::path path = output_of(options, job.name);
   if (const std::string left = unfinished_text(path); !left.empty()) console.warn(left);
   const auto earlier = collectively(mpi.world(), [&] {

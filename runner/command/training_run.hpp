@@ -1,7 +1,7 @@
-// A training run: the data set is read, the network trained by all ranks, and the model
-// kept in a file, from which a training that was interrupted goes on.
+// A training run: reads the data set, trains the network, and saves the model and checkpoints to a file. An interrupted
+// training resumes from that file.
 //
-// Collective over all ranks. Nobody is master: every rank reads the data set and works; rank 0 also writes the file.
+// Collective over all ranks. There is no master: all ranks train; rank 0 also reads the data sets and writes the file.
 #pragma once
 
 #include "runner/command/run_command.hpp"
@@ -9,7 +9,7 @@
 
 namespace rodsweep {
 
-/// Part of execute(RunOptions); `job`: of options.job, the same on every rank.
+/// Part of execute(RunOptions). `job` is read from options.job and is the same on every rank.
 ExitCode run_training(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console);
 
 }  // namespace rodsweep

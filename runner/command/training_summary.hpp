@@ -1,4 +1,4 @@
-// A training, and the model that came of it, in words and as JSON.
+// The report on a training and its model, as text and as JSON.
 #pragma once
 
 #include <filesystem>
@@ -10,13 +10,13 @@
 namespace rodsweep {
 
 /// "epoch 34 of 120, loss 0.412, validation 0.431 (best 0.428), CG ratio 0.052 0.151 0.490 0.750, rate 1.7e-03, 1 min
-/// 20 s left": the epoch that has begun, the results of the last one, the CG ratio measured last.
+/// 20 s left": the current epoch, the losses of the last finished one, and the latest CG ratio.
 std::string progress_text(const ModelCard& card, double seconds_left);
 
-/// The end of a training, or how far it came: a few lines for stdout.
+/// A few lines for stdout: the result or the progress of a training.
 std::string training_summary(const ModelCard& card, const std::filesystem::path& path);
 
-/// What `info` adds: the model, its data, every start.
+/// The additional lines of `info`: model, data, all starts.
 std::string provenance_text(const StoredModel& stored);
 nlohmann::ordered_json to_json(const StoredModel& stored, const std::filesystem::path& path);
 

@@ -21,7 +21,7 @@ std::string extent_text(const Job& job) {
   return counted(plan.size(), "task");
 }
 
-/// What stands in a file, as far as it can be told without reading it as a job; null if it is no JSON.
+/// The JSON of a file, without the checks for a job; null if the file cannot be read or is not JSON.
 nlohmann::json glance(const std::filesystem::path& path) {
   try {
     return nlohmann::json::parse(read_job_text(path), nullptr, false);
@@ -35,7 +35,7 @@ std::string text_of(const nlohmann::json& json, const char* key) {
   return json.is_object() && found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-/// Of a training whose data sets are all there: can it learn from them?
+/// Throws JobError if a training cannot use its data sets. Skipped while a file is missing.
 void check_data(const Job& job) {
   if (!is_training(job) || !missing_files(job).empty()) return;
   try {
@@ -45,12 +45,12 @@ void check_data(const Job& job) {
   }
 }
 
-/// jobs/schema.json stands among the jobs, and `validate jobs/*.json` should pass it.
+/// jobs/schema.json is in the folder of the jobs; `validate jobs/*.json` must accept it.
 bool is_json_schema(const nlohmann::json& json) {
   return text_of(json, "$schema").find("json-schema.org/") != std::string::npos;
 }
 
-/// Which of the jobs makes a data set or model NAME.h5, by that name.
+/// Maps NAME to the job that makes the data set or model NAME.h5.
 std::map<std::string, std::filesystem::path> makers(const std::vector<std::filesystem::path>& jobs) {
   std::map<std::string, std::filesystem::path> found;
   for (const auto& path : jobs) {
@@ -77,7 +77,7 @@ class Validation {
   }
 
  private:
-  /// Who will make what is missing, a line each.
+  /// One note per missing file that another job makes. Throws JobError for the other missing files.
   std::vector<std::string> check_missing(const Job& job) const {
     std::string mistakes;
     std::vector<std::string> notes;

@@ -1,4 +1,4 @@
-// The command `validate`: is a job sound? No MPI.
+// The command `validate`: checks jobs. No MPI.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace rodsweep {
 
 struct ValidateOptions {
   std::vector<std::filesystem::path> jobs;
-  bool later = false;  ///< files that are missing will be there when the job runs
+  bool later = false;  ///< accept missing files; they must exist when the job runs
 };
 
 inline constexpr const char* validate_help =
@@ -24,8 +24,8 @@ inline constexpr const char* validate_help =
     "  rodsweep validate data.json train.json use.json     the first makes what the second learns from, and so on\n"
     "  rodsweep validate --later jobs/*.json               whatever is missing will be made";
 
-/// Says of every job whether it is sound, and goes on after one that is not. A missing file is a mistake unless one of
-/// the other jobs has its name (or with `later`).
+/// Reports whether each job is valid; continues after an invalid one. A missing file is an error unless another given
+/// job makes it, or `later` is set.
 ExitCode execute(const ValidateOptions& options, Console& console);
 
 }  // namespace rodsweep

@@ -1,11 +1,11 @@
-// A finished data set, read simulation by simulation: what of it is in memory is the caller's choice.
+// Reads a finished data set one simulation at a time.
 //
-// Simulations are numbered from 0 in the order of their samples, within a sample of their grid points, so that the
-// first and the last ones have something of every grid point; those that failed are left out. Throws FileError for a
-// file that is missing, foreign, damaged, not a data set or not complete.
+// Simulations are numbered from 0, ordered by sample, then by grid point, so that the first and the last ones cover
+// all grid points. Failed simulations are left out. Throws FileError if the file is missing, foreign, damaged,
+// incomplete or not a data set.
 //
-// Of ranks that read a data set together one reads, and the others get what it read: then all calls are collective, in
-// the same order on every rank, and what goes wrong is a CollectiveError on all of them.
+// With `ranks`, rank 0 reads and broadcasts. Then all calls are collective, in the same order on every rank, and an
+// error is a CollectiveError on all ranks.
 #pragma once
 
 #include <mpi.h>
@@ -24,20 +24,20 @@ namespace rodsweep {
 
 class DatasetReader {
  public:
-  /// Without ranks this process reads alone, and needs no MPI.
+  /// Without `ranks`, this process reads alone and needs no MPI.
   explicit DatasetReader(const std::filesystem::path& path, std::optional<MPI_Comm> ranks = std::nullopt);
 
   std::int64_t size() const { return static_cast<std::int64_t>(tasks_.size()); }  ///< simulations
-  Task task(std::int64_t simulation) const;  ///< its sample, and its row in the plan's parameters()
+  Task task(std::int64_t simulation) const;  ///< has its sample and its row in the plan's parameters()
   const Plan& plan() const { return *plan_; }
 
-  /// Compared with its checksum.
+  /// Verifies the checksum.
   StoredSimulation read(std::int64_t simulation) const;
   std::vector<StoredSimulation> read(std::int64_t first, std::int64_t count) const;
 
-  /// Sixteen hexadecimal digits over the job's text and all checksums: the same for the same data.
+  /// A hash of the job's text and all checksums: sixteen hexadecimal digits.
   const std::string& hash() const { return hash_; }
-  /// Which simulations failed and are left out; empty: none.
+  /// A text about failed simulations, which are left out; empty if none failed.
   const std::string& note() const { return note_; }
 
  private:
@@ -46,7 +46,7 @@ class DatasetReader {
   std::filesystem::path path_;
   std::optional<MPI_Comm> ranks_;
   std::optional<Plan> plan_;
-  std::optional<TaskReader> reader_;  ///< of the rank that reads
+  std::optional<TaskReader> reader_;  ///< only on the rank that reads
   std::vector<std::int64_t> tasks_;
   std::string hash_, note_;
 };

@@ -1,7 +1,7 @@
-// The linear systems of a data set, written into a task's record during its simulation and read back from it.
+// The linear systems of a data set: written to a task's record during its simulation, and read back from it.
 //
-// Rows go step by step, within a step by Newton iteration (the first, or all), then by rod; each has as many rows of
-// segments and joints as its rod. Newton iterations that a step did not need keep their sentinels.
+// Rows are ordered by step, then by Newton iteration (the first, or all), then by rod. Each system has the segment and
+// joint rows of its rod. Rows of Newton iterations that a step did not need keep their fill values.
 #pragma once
 
 #include <vector>
@@ -11,14 +11,14 @@
 
 namespace rodsweep {
 
-/// Where a system stands in a record.
+/// The rows of a system in a record.
 class SystemRows {
  public:
   struct Place {
     std::size_t system = 0, segment = 0, joint = 0;  ///< (first) rows
   };
 
-  /// `iterations`: stored Newton iterations of a step.
+  /// `iterations`: stored Newton iterations per step.
   SystemRows(const Scene& scene, int iterations);
 
   bool holds(const SolvePosition& at) const { return at.newton < iterations_; }
@@ -26,7 +26,7 @@ class SystemRows {
 
  private:
   int iterations_;
-  std::vector<Place> rods_;  ///< of every rod within an iteration
+  std::vector<Place> rods_;  ///< offset of each rod within an iteration
   Place iteration_;          ///< rows of all rods
 };
 
@@ -37,10 +37,10 @@ class SystemStore {
 
   bool holds(const SolvePosition& at) const { return rows_.holds(at); }
 
-  /// What the system is assembled from: the rod as it is. `balanced`: with the balance of momentum.
+  /// Writes the rod's state, from which the system is assembled. `balanced`: also the data of the momentum balance.
   void before(const Rod& rod, const SolvePosition& at, bool balanced);
 
-  /// Where the solution belongs once there is one, six numbers a joint.
+  /// Where to write the solution: six numbers per joint.
   double* solution(const SolvePosition& at) { return record_.system_solution.data() + 6 * rows_.place(at).joint; }
 
  private:
@@ -48,7 +48,7 @@ class SystemStore {
   TaskRecord& record_;
 };
 
-/// Records what another solve is given and what it finds. Allocates nothing.
+/// Records the input and the solution of another solve. Allocates nothing.
 class StoringSolve : public LinearSolve {
  public:
   /// All arguments must outlive this.
@@ -63,7 +63,7 @@ class StoringSolve : public LinearSolve {
   LinearSolve& solve_;
 };
 
-/// The systems that were solved, in order.
+/// Reads the solved systems, in order.
 std::vector<StoredSystem> stored_systems(const TaskRecord& record, const Scene& scene, int iterations);
 
 }  // namespace rodsweep

@@ -1,5 +1,5 @@
-// How a rank waits without burning its core: a short spin that yields, then sleeps that grow from 50 us to 2 ms.
-// Open MPI's blocking calls spin for ever, which costs the workers beside them their core.
+// Polling that leaves the core to other ranks: a short spin with sched_yield, then sleeps that grow from 50 us to 2 ms.
+// Open MPI's blocking calls spin forever and take a core away from the workers.
 #pragma once
 
 #include <chrono>
@@ -8,8 +8,8 @@ namespace rodsweep {
 
 class Backoff {
  public:
-  void wait();                  ///< nothing came: wait a little, longer each time
-  void reset() { polls_ = 0; }  ///< something came
+  void wait();                  ///< no message: wait, longer each time
+  void reset() { polls_ = 0; }  ///< a message arrived
 
  private:
   int polls_ = 0;

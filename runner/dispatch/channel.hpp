@@ -1,9 +1,9 @@
-// Every message between master (rank 0) and workers, and the small interface that carries them.
+// All messages between master (rank 0) and workers, and the interface that sends them.
 //
-// Messages are plain structs; between two ranks they arrive in the order in which they were sent. Sending never waits
-// for the receiver (messages are far below any eager limit and at most a few per worker are under way); probing never
-// waits. MpiChannel (runner/dispatch/mpi_channel.hpp) is the real one. MemoryNetwork is its twin in one process and one
-// thread: it serves the tests of dispatch, and a sweep on a single rank.
+// Messages are plain structs. Between two ranks they arrive in the order sent. Sending never waits for the receiver:
+// messages are far below any eager limit, with only a few per worker in flight. Probing never waits either.
+// MpiChannel (runner/dispatch/mpi_channel.hpp) uses MPI. MemoryNetwork does the same in one process and one thread,
+// for the tests of dispatch and for a sweep on a single rank.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace rodsweep {
 
 enum class Tag : int { assign = 1, stop, finish, report, interrupted, alive, gone };
 
-/// Master to worker: run these tasks after those that you have, together where they can be.
+/// Master to worker: run these tasks after those assigned before, together if possible.
 struct Assign {
   static constexpr Tag tag = Tag::assign;
   static constexpr std::size_t most = 8;
@@ -40,17 +40,17 @@ struct Stop {
 /// Master to worker: no more tasks; exit.
 struct Finish {
   static constexpr Tag tag = Tag::finish;
-  bool ranks_lost = false;  ///< make no collective call; answer Gone when your results are on disk
+  bool ranks_lost = false;  ///< make no collective call; send Gone when your results are on disk
 };
 
-/// Worker to master: one for every task of every Assign.
+/// Worker to master: one per task of each Assign.
 struct Report {
   static constexpr Tag tag = Tag::report;
   std::int64_t task = 0;
   TaskOutcome outcome = TaskOutcome::pending;  ///< pending: abandoned, nothing was written
   double busy_s = 0;                           ///< wall time, writing included
-  double share = 1;                            ///< of its work that was done; below 1 if abandoned
-  std::array<char, 200> text{};                ///< what went wrong, cut if long; ends with a zero
+  double share = 1;                            ///< completed share of the task; below 1 if abandoned
+  std::array<char, 200> text{};                ///< error message, truncated; ends with a zero
 
   Report() = default;
   Report(std::int64_t task, TaskOutcome outcome, double busy_s, std::string_view message);
@@ -60,10 +60,10 @@ struct Report {
 /// Worker to master, about every second: a heartbeat.
 struct Alive {
   static constexpr Tag tag = Tag::alive;
-  std::int64_t saved = 0;  ///< of the tasks that it finished, the first so many are on disk
+  std::int64_t saved = 0;  ///< number of its finished tasks that are on disk, in order of finishing
 };
 
-/// Worker to master: all that it wrote is on disk; it exits.
+/// Worker to master: all its results are on disk; it exits.
 struct Gone {
   static constexpr Tag tag = Tag::gone;
 };
@@ -74,7 +74,7 @@ struct Interrupted {
   int signal = 0;
 };
 
-/// A message that does not belong to the protocol: a bug.
+/// A message that violates the protocol: a bug.
 class ProtocolError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
@@ -91,7 +91,7 @@ class Channel {
   virtual ~Channel() = default;
   virtual int rank() const = 0;
   virtual int size() const = 0;
-  /// The next message that has arrived, if any; it stays until receive().
+  /// The next message, if one has arrived. It stays in the queue until receive().
   virtual std::optional<Envelope> probe() = 0;
   virtual void send_bytes(int destination, Tag tag, const void* data, std::size_t bytes) = 0;
   virtual void receive_bytes(const Envelope& envelope, void* data) = 0;
@@ -111,7 +111,7 @@ class Channel {
     return message;
   }
 
-  /// Throws ProtocolError naming the message.
+  /// Throws ProtocolError with the message's tag, size and source.
   [[noreturn]] void unexpected(const Envelope& envelope) const;
 };
 

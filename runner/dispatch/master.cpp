@@ -155,7 +155,7 @@ void Master::uncount(const PendingTask& task, const Report& report) {
 
 void Master::find_lost() {
   const TimePoint now = now_();
-  if (now - std::exchange(stepped_, now) > timeouts_.silence / 2)  // the master itself was suspended
+  if (now - std::exchange(stepped_, now) > timeouts_.silence / 2)  // the master was suspended
     for (Worker& worker : workers_) worker.heard = now;
   const bool drained = stopping_ && now - stopped_ > timeouts_.drain;
   for (int rank = 1; rank < channel_->size(); ++rank) {

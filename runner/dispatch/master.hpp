@@ -1,22 +1,22 @@
-// Assigns the tasks of a sweep to workers: longest first (by cost, ties by number), one to each idle worker. Tasks that
-// are evaluated together are assigned together, as many as a batch holds.
+// Assigns the tasks of a sweep to workers: longest first (by cost, ties by index), one to each idle worker. Tasks that
+// are evaluated together are assigned together, up to the batch size.
 //
-// A worker gets a second task while it runs the first only if the tasks that are left keep all workers busy for at
-// least twice as long as both of its tasks take (by cost). So no worker waits for an assignment in mid-sweep, and at
-// the end no task waits behind a running one while another worker idles.
+// A worker that runs a task gets a second one only if enough tasks are left: they must keep all workers busy for at
+// least twice the time of both its tasks (by cost). So no worker waits for an assignment in mid-sweep, and at the end
+// no task waits behind a running one while another worker is idle.
 //
-// A worker whose heartbeat stops (it hangs, died, or its host is cut off) is lost for the rest of the run. Its tasks
-// are reassigned, and so are those that it finished and had not brought to disk. Tasks that were running on lost
-// workers come after all others; from the last allowed crash on, they run one at a time, with nothing beside them. The
-// master sends nothing to a silent rank, since Open MPI may end a rank that cannot reach another. If a lost worker is
-// heard again, its reports are ignored (results have the same bits, whoever writes them last), and it is dismissed with
-// the others. If no worker is left, the sweep ends.
+// A worker whose heartbeat times out (it hangs, died, or its host is disconnected) is lost for the rest of the run. Its
+// tasks are reassigned, also finished ones that are not on disk. Tasks that were running on lost workers are retried
+// after all others. A task that may crash only once more runs alone in the sweep.
+// The master sends nothing to a lost rank, because Open MPI may abort a rank that cannot reach another. If a lost
+// worker sends again, its reports are ignored (a rewritten result has the same bits), and it is dismissed with the
+// others. If all workers are lost, the sweep ends.
 //
-// On a signal, here or on a worker, no more tasks are assigned and running ones are abandoned. Workers that do not
-// report this within the drain timeout are lost.
-// With a time limit, no task is begun that would probably not end before it (time_budget.hpp), and running tasks are
-// abandoned when it is over. Every Assign is answered by one Report for each of its tasks; workers are dismissed
-// (Finish) after the last one.
+// After a signal to any rank, no more tasks are assigned and running ones are abandoned. Workers that do not report
+// this within the drain timeout are lost.
+// With a time limit, tasks that would probably exceed it are not started (time_budget.hpp), and running tasks are
+// abandoned when it expires. Each Assign is answered by one Report per task; workers are dismissed (Finish) after the
+// last Report.
 #pragma once
 
 #include <array>
@@ -41,15 +41,15 @@ struct Timeouts {
   std::chrono::duration<double> silence{std::numeric_limits<double>::infinity()};  ///< without a worker's heartbeat
   std::chrono::duration<double> drain{std::numeric_limits<double>::infinity()};    ///< after a request to stop
   TimeBudget time{};                                                               ///< of the whole run
-  int max_crashes = 3;  ///< a task that loses so many workers is not tried again
+  int max_crashes = 3;  ///< a task is not retried after this many worker deaths
 };
 
-/// What the master reports while it runs. Empty functions are not called.
+/// Called by the master while it runs; empty functions are skipped.
 struct Callbacks {
   std::function<void(int rank)> lost;
-  /// Called before the workers have drained: mpirun kills all ranks a second after its SIGTERM.
+  /// Called before the workers drain, because mpirun kills all ranks one second after SIGTERM.
   std::function<void(int signal)> stopping;
-  /// A task has reached Timeouts::max_crashes. Stores it as crashed and returns its message.
+  /// Called for a task that reaches Timeouts::max_crashes. Stores it as crashed and returns its message.
   std::function<std::string(std::int64_t task, int crashes)> crashed;
 };
 
@@ -63,10 +63,10 @@ struct Dispatch {
 
   std::array<std::int64_t, task_outcomes> finished{};  ///< by TaskOutcome
   std::vector<Failure> failures;                       ///< the first few
-  std::int64_t left = 0;                               ///< not run, or abandoned: 0 unless stopped early
-  int signal = 0;                                      ///< the signal that stopped it
-  bool late = false;                                   ///< stopped since no time is left for the rest
-  std::optional<PendingTask> too_long;                 ///< if no task that is left would ever fit: the longest
+  std::int64_t left = 0;                               ///< not run or abandoned; 0 unless stopped early
+  int signal = 0;                                      ///< the signal that stopped the sweep
+  bool late = false;                                   ///< stopped by the time limit
+  std::optional<PendingTask> too_long;                 ///< the longest task left, if none would ever fit
   double too_long_s = 0;                               ///< its expected time
   bool ranks_lost = false;                             ///< no collective call may follow
   double busy_s = 0;                                   ///< of all workers
@@ -79,14 +79,14 @@ class Master {
   Master(Channel& channel, std::vector<PendingTask> tasks, Progress& progress, std::function<int()> signal,
          const Timeouts& timeouts = {}, Callbacks callbacks = {}, TimeSource now = std::chrono::steady_clock::now);
 
-  /// Handles all messages that have arrived and assigns what it can.
+  /// Handles all arrived messages and assigns tasks.
   enum class Step { worked, waited, finished };
   Step step();
 
-  /// Steps until all is finished, and sleeps between messages.
+  /// Calls step() until it returns `finished`; sleeps between messages.
   void run(const std::function<void()>& now_and_then = {});
 
-  /// Waits until all workers have said Gone, at most for the drain timeout. Workers that have not are lost.
+  /// Waits for Gone from all workers, at most for the drain timeout. The other workers are lost.
   void wait_until_gone();
 
   const Dispatch& dispatch() const { return dispatch_; }
@@ -98,11 +98,11 @@ class Master {
   };
 
   struct Worker {
-    std::vector<PendingTask> tasks;  ///< the running one, then the next
+    std::vector<PendingTask> tasks;  ///< the running task, then the next
     TimePoint heard;
     bool lost = false, heard_again = false, gone = false;
-    std::deque<Finished> unsaved;         ///< finished, and not known to be on disk
-    std::int64_t saved = 0, removed = 0;  ///< of all that it finished: on disk; no more in `unsaved`
+    std::deque<Finished> unsaved;         ///< finished, but not confirmed on disk
+    std::int64_t saved = 0, removed = 0;  ///< finished tasks: confirmed on disk; removed from `unsaved`
 
     bool reachable() const { return !lost || heard_again; }
   };
@@ -132,10 +132,10 @@ class Master {
   Timeouts timeouts_;
   Callbacks callbacks_;
   TimeSource now_;
-  std::vector<PendingTask> pool_;  ///< by crashes, then descending cost; [next_, end) is not assigned
+  std::vector<PendingTask> pool_;  ///< by crashes, then descending cost; [next_, end) is unassigned
   std::size_t next_ = 0;
   double pool_cost_ = 0;
-  std::vector<Worker> workers_;  ///< by rank; that of the master stays empty
+  std::vector<Worker> workers_;  ///< by rank; the master's entry is unused
   std::int64_t in_flight_ = 0;
   bool stopping_ = false, nothing_fits_ = false;
   std::vector<PendingTask> abandoned_;

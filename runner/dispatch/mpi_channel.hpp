@@ -1,6 +1,6 @@
-// The channel between ranks of an MPI communicator; messages travel on a duplicate of it. Throws MpiError.
+// The channel between ranks of an MPI communicator; uses a duplicate of it. Throws MpiError.
 //
-// Messages are sent without waiting: to a rank whose connection is broken, since its host died, MPI_Send never returns.
+// Sends with MPI_Isend, because MPI_Send to a rank on a dead host never returns.
 #pragma once
 
 #include <mpi.h>
@@ -16,11 +16,10 @@ namespace rodsweep {
 class MpiChannel : public Channel {
  public:
   explicit MpiChannel(MPI_Comm comm);  ///< collective
-  /// Collective too, unless an exception unwinds this rank: the others need not be on their way here, and it must not
-  /// wait for them before it can say what happened.
+  /// Collective, except during stack unwinding: the other ranks may never get here, and waiting for them would block
+  /// the error message.
   ~MpiChannel() override;
-  /// Leaves the communicator to the end of the process, with all that is under way: a rank is lost that would have to
-  /// free it too.
+  /// Leaks the communicator and all pending messages. After a rank is lost, the collective MPI_Comm_free would hang.
   void abandon();
   MpiChannel(const MpiChannel&) = delete;
   MpiChannel& operator=(const MpiChannel&) = delete;
@@ -42,7 +41,7 @@ class MpiChannel : public Channel {
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   std::vector<Outgoing> outgoing_;
-  int exceptions_ = std::uncaught_exceptions();  ///< under way when this was made
+  int exceptions_ = std::uncaught_exceptions();  ///< at construction
 };
 
 }  // namespace rodsweep

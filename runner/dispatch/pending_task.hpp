@@ -1,4 +1,4 @@
-// A task that is to be done, as the master sees it.
+// A task not yet done, with the master's data on it.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@ namespace rodsweep {
 struct PendingTask {
   std::int64_t index = 0;
   double cost = 0;
-  std::int64_t batch = -1;  ///< tasks of equal cost and number here may be evaluated together; -1: this one alone
-  int crashes = 0;          ///< workers that were lost while they ran it
-  double tried_s = 0;       ///< its longest try that was abandoned
-  double limit_s = std::numeric_limits<double>::infinity();  ///< its own time limit, after which it times out
+  std::int64_t batch = -1;  ///< tasks of equal cost and batch may be evaluated together; -1: this one alone
+  int crashes = 0;          ///< workers lost while running it
+  double tried_s = 0;       ///< its longest abandoned try
+  double limit_s = std::numeric_limits<double>::infinity();  ///< its own time limit
 };
 
 }  // namespace rodsweep

@@ -1,11 +1,11 @@
-// The question that a running task asks between its time steps, and now and then within them.
+// The function that a running task polls between time steps and within them.
 #pragma once
 
 #include <functional>
 
 namespace rodsweep {
 
-/// True abandons the task; what it has so far must then be thrown away.
+/// True: abandon the task and discard its results.
 using StopRequested = std::function<bool()>;
 
 }  // namespace rodsweep

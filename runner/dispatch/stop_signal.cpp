@@ -9,7 +9,7 @@ namespace rodsweep {
 namespace {
 
 volatile std::sig_atomic_t first_signal = 0;
-volatile std::sig_atomic_t from_parent = 0;  ///< the process that started this one sent it
+volatile std::sig_atomic_t from_parent = 0;  ///< whether the parent process sent it
 
 void note(int signal, siginfo_t* told, void*) {
   if (first_signal != 0) return;

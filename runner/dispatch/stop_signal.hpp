@@ -1,6 +1,5 @@
-// SIGTERM, SIGINT and SIGUSR1 as a request to stop, as soon as a task may be abandoned. Installed for the life of the
-// object, then the old handlers return. The handler only notes the number, so a second signal during the stop changes
-// nothing.
+// Turns SIGTERM, SIGINT and SIGUSR1 into a request to stop. The handlers are installed for the lifetime of the object;
+// the destructor restores the old ones. The handler only records the first signal, so a second one has no effect.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// The first signal received; 0 while there was none.
+  /// The first signal received; 0 if none.
   int received() const;
 
  private:
@@ -27,9 +26,9 @@ class StopSignal {
 /// "SIGTERM", for messages.
 const char* signal_name(int signal);
 
-/// What this process knows of the signal that it received: "SIGUSR1", "Ctrl-C (SIGINT)". mpirun makes SIGTERM of
-/// Ctrl-C, of a SIGTERM of its own and of the death of another rank; which it was cannot be told: "mpirun (SIGTERM),
-/// which got Ctrl-C or a signal, or lost a rank".
+/// The likely cause of the received signal, for messages: "SIGUSR1", "Ctrl-C (SIGINT)". mpirun sends SIGTERM on Ctrl-C,
+/// on a SIGTERM of its own and on the death of a rank. These cannot be distinguished: "mpirun (SIGTERM), which got
+/// Ctrl-C or a signal, or lost a rank".
 std::string signal_cause(int signal);
 
 }  // namespace rodsweep

@@ -6,9 +6,9 @@ namespace rodsweep {
 namespace {
 
 constexpr double margin = 1.5;        // costs are estimates
-constexpr double nearly_whole = 0.9;  // starting takes some of it
+constexpr double nearly_whole = 0.9;  // startup takes some of it
 
-/// What it takes at least: nothing is longer than its own limit.
+/// Lower bound of the task's time, capped by its own limit.
 TimeBudget::Seconds tried(const PendingTask& task) { return TimeBudget::Seconds(std::min(task.tried_s, task.limit_s)); }
 
 }  // namespace

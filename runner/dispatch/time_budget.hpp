@@ -1,11 +1,11 @@
-// Which tasks may still be begun before a start's time limit, and which ones never could be.
+// Decides which tasks may start before the time limit of a run, and which ones never fit into it.
 //
-// A task is expected to take what its cost says at the pace of the tasks known so far: of those that ended, in this
-// start or an earlier one, and for a task that costs no less than one that was given up, also of those, by the share of
-// their steps that was done (the first steps of a long task say little of a short one). Costs are estimates: of what is
-// left of the limit a task may take two thirds. While the limit has hardly begun (nine tenths are left) there will
-// never be more of it, and half as much again as there is may be expected. A task that had a whole limit, but for a
-// tenth, and was not done, is not begun again under such a limit.
+// Expected time = cost x pace, with the pace measured on finished tasks of this and earlier starts. For tasks that cost
+// at least as much as an abandoned one, the pace includes the completed shares of abandoned tasks. (The first steps of
+// a long task say little about short tasks.)
+// Costs are estimates. A task may start if its expected time is below 2/3 of the time left. If more than 90 % of the
+// limit is left, up to 150 % of the whole limit is allowed: a later start won't have more time.
+// A task that was abandoned after at least 90 % of the whole limit never fits.
 #pragma once
 
 #include <chrono>
@@ -21,17 +21,17 @@ class TimeBudget {
   static constexpr Seconds unlimited{std::numeric_limits<double>::infinity()};
 
   TimeBudget() = default;
-  /// `left`: of this start; `whole`: of one that begins with the limit.
+  /// `left`: time left in this start; `whole`: the full limit.
   TimeBudget(Seconds left, Seconds whole) : left_(left), whole_(whole) {}
 
-  /// A task of that cost took so long.
+  /// Adds a finished task.
   void learn(double cost, Seconds took);
-  /// That share of it took so long, and it was given up.
+  /// Adds an abandoned task of which `share` was completed in `took`.
   void learn_part(double cost, double share, Seconds took);
 
   bool is_over(Seconds since_begin) const { return since_begin > left_; }
   bool fits(const PendingTask& task, Seconds since_begin) const;
-  /// In a start that has the whole limit.
+  /// Whether the task fits into a start with the whole limit.
   bool ever_fits(const PendingTask& task) const;
   Seconds expected(const PendingTask& task) const;
   Seconds whole() const { return whole_; }
@@ -44,7 +44,7 @@ class TimeBudget {
 
   Seconds left_ = unlimited, whole_ = unlimited;
   Pace whole_tasks_, parts_;
-  double least_given_up_ = std::numeric_limits<double>::infinity();  ///< cost
+  double least_given_up_ = std::numeric_limits<double>::infinity();  ///< least cost of abandoned tasks
 };
 
 }  // namespace rodsweep

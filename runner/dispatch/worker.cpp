@@ -74,7 +74,7 @@ bool Worker::receive() {
     switch (envelope->tag) {
       case Tag::assign: hand_.push_back(channel_->receive<Assign>(*envelope).tasks()); break;
       case Tag::stop: channel_->receive<Stop>(*envelope), stopping_ = true; break;
-      case Tag::finish:  // while tasks run: the master lost this rank, and others have them
+      case Tag::finish:  // during a task: the master declared this rank lost and reassigned its tasks
         ranks_lost_ = channel_->receive<Finish>(*envelope).ranks_lost;
         dismissed_ = stopping_ = true;
         break;

@@ -1,9 +1,8 @@
 // Runs the tasks that the master assigns, one assignment after the other, and reports each task.
 //
-// A running task calls StopRequested between time steps and within solves. Every few milliseconds that call also reads
-// the messages, and about every second it sends a heartbeat. An exception from the task's body ends this rank (for
-// example a results file that cannot be written). A failure of the task itself is an outcome
-// (runner/experiment/task_body.hpp).
+// A running task calls StopRequested between time steps and within solves. This call also reads messages every few
+// milliseconds and sends a heartbeat about every second. An exception from the task's body, such as a failed write to
+// the results file, ends this rank. A failure of the task itself is an outcome (runner/experiment/task_body.hpp).
 #pragma once
 
 #include <chrono>
@@ -23,39 +22,38 @@ namespace rodsweep {
 struct TaskResult {
   TaskOutcome outcome = TaskOutcome::pending;  ///< pending: abandoned on request
   std::string message;
-  double share = 0;  ///< of its steps that were done, if abandoned
+  double share = 0;  ///< completed share of its steps, if abandoned
 };
 
 /// Runs one task.
 using TaskBody = std::function<TaskResult(std::int64_t task, const StopRequested& stop)>;
 
-/// Runs the tasks of an assignment. One result for each.
+/// Runs the tasks of an assignment; one result per task.
 using BatchBody =
     std::function<std::vector<TaskResult>(const std::vector<std::int64_t>& tasks, const StopRequested& stop)>;
 
 BatchBody one_by_one(TaskBody body);
 
-/// What a worker tells the master while it runs.
+/// The heartbeat of a worker.
 struct Heartbeat {
   std::chrono::duration<double> interval{1};
-  std::function<std::int64_t()> saved = [] { return 0; };  ///< how many of its finished tasks are on disk
+  std::function<std::int64_t()> saved = [] { return 0; };  ///< number of its finished tasks on disk
 };
 
 class Worker {
  public:
-  /// `signal` returns the signal that this rank received, 0 for none. `while_running` is called now and then during a
-  /// task and while there is nothing to do (on a single rank it runs the master).
+  /// `signal` returns the signal that this rank received, 0 for none. `while_running` is called every few milliseconds
+  /// during a task, and while idle (on a single rank it runs the master).
   Worker(Channel& channel, BatchBody body, std::function<int()> signal, std::function<void()> while_running = {},
          Heartbeat heartbeat = {}, TimeSource now = std::chrono::steady_clock::now);
   Worker(Channel& channel, TaskBody body, std::function<int()> signal, std::function<void()> while_running = {},
          Heartbeat heartbeat = {}, TimeSource now = std::chrono::steady_clock::now);
 
-  /// Handles all messages that have arrived, then runs at most one assignment.
+  /// Handles all arrived messages, then runs at most one assignment.
   enum class Step { worked, waited, finished };
   Step step();
 
-  /// Steps until dismissed, and sleeps while there is nothing to do. True: ranks were lost, so that no collective call
-  /// may follow.
+  /// Calls step() until dismissed; sleeps while idle. Returns true if ranks were lost: then make no collective calls.
   bool run();
 
  private:

@@ -18,7 +18,7 @@
 namespace rodsweep {
 namespace {
 
-/// One of the batch: its scene as the record sees it, and where its results go.
+/// A task of the batch: its scene, copied from its lane for the record, and its results.
 struct Member {
   const TaskRun& run;
   Scene scene;
@@ -34,7 +34,7 @@ struct Member {
   Member& operator=(const Member&) = delete;
 };
 
-/// Its columns of /solves and the system itself, before the solve.
+/// Logs the columns of /solves and the system before the solve.
 void log_before(const BatchedStepper& stepper, int lane, const SolvePosition& at, Member& member) {
   TaskRecord& record = *member.run.record;
   if (member.run.spec.output.solves) {
@@ -50,7 +50,7 @@ void log_before(const BatchedStepper& stepper, int lane, const SolvePosition& at
   member.systems.before(member.scene.rods.front(), at, stepper.keeps_balance(lane));
 }
 
-/// One step of all that go on.
+/// Advances all active lanes by one step.
 const std::vector<StepReport>& step(BatchedStepper& stepper, std::deque<Member>& members, int step) {
   const auto each = [&](const auto& visit) {
     for (std::size_t lane = 0; lane < members.size(); ++lane)
@@ -73,7 +73,7 @@ void fail(TaskRecord& record, const std::exception& error) {
   record.message = dynamic_cast<const std::bad_alloc*>(&error) ? out_of_memory_text() : error.what();
 }
 
-/// Members whose scenes can be built; of the others the record says why not.
+/// The members whose scenes can be built; the records of the others get the error.
 std::deque<Member> built(const std::vector<TaskRun>& runs) {
   std::deque<Member> members;
   for (const TaskRun& run : runs) {
@@ -94,9 +94,9 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop) {
   BatchedStepper stepper(scenes, {time.step_s, time.newton_iterations, time.newton_tolerance},
                          time.balance ? std::optional(time.momentum_tolerance) : std::nullopt);
 
-  std::vector<int> left(members.size());  // lanes that go on
+  std::vector<int> left(members.size());  // active lanes
   std::iota(left.begin(), left.end(), 0);
-  /// Keeps the lanes of which `goes_on` is true.
+  /// Abandons the lanes for which `goes_on` is false.
   const auto keep = [&](const auto& goes_on) {
     const auto ends = [&](int lane) {
       if (goes_on(lane, members[static_cast<std::size_t>(lane)])) return false;
@@ -122,7 +122,7 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop) {
   return true;
 }
 
-/// As many as a batch holds.
+/// Evaluates at most BatchedRods::lanes tasks.
 bool evaluate_at_once(const std::vector<TaskRun>& runs, const StopRequested& stop) {
   std::deque<Member> members = built(runs);
   try {

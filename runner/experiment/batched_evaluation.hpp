@@ -1,7 +1,7 @@
-// Simulations of a data set, one in each lane of a register at once (solver/batch/batched_step.hpp).
+// Simulates a batch of data set tasks at once, one task per SIMD lane (solver/batch/batched_step.hpp).
 //
-// A task's record is the same to the bit in every batch, also alone in one: what is simulated together is a matter of
-// speed only. Systems have no times of their own; a step's and a task's are its share of the batch's.
+// A task's record is bitwise the same in every batch, also alone in one: batching only affects speed.
+// Systems are not timed; the time of a step or task is its share of the batch's time.
 #pragma once
 
 #include <tuple>
@@ -18,17 +18,17 @@ struct TaskRun {
   TaskRecord* record = nullptr;
 };
 
-/// Is this a simulation of a data set that the batched step knows: an inextensible chain without loads or wind?
+/// Whether the batched step supports this task: a data set task of a chain without tip force, wind or contact.
 bool steps_in_batches(const TaskSpec& spec);
 
-/// Such tasks fit together whose keys are equal: equal chains, and as many steps of the same kind.
+/// Tasks with equal keys may share a batch: their segments, clamp, steps and Newton settings agree.
 using BatchKey = std::tuple<int, Clamp, double, int, int, double, double>;
 BatchKey batch_key(const TaskSpec& spec);
 
-/// evaluate() of all of them, one or more that fit together. False: abandoned on request, and so are all records.
+/// Evaluates one or more tasks with equal keys. Returns false if abandoned on request; then discard all records.
 bool evaluate_batch(const std::vector<TaskRun>& runs, const StopRequested& stop);
 
-/// evaluate() with the time that the task takes in a full batch, where it would be in one: what a plan estimates from.
+/// evaluate() with the time per task of a full batch if the task supports batches. Used for estimates of a plan.
 bool evaluate_among_equals(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop);
 
 }  // namespace rodsweep

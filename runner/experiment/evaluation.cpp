@@ -18,8 +18,8 @@
 namespace rodsweep {
 namespace {
 
-/// Builds the scene and its systems and runs the steps; sets outcome and message. Returns false when abandoned. Throws
-/// InterruptedComputation in the middle of either: without ratios, since not every guess was tried on the last system.
+/// Builds the scene and its systems and runs the steps; sets outcome and message. Returns false if abandoned between
+/// steps. If interrupted elsewhere, throws InterruptedComputation and sets no ratios: the last system may lack guesses.
 bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop,
               const Stopwatch& watch) {
   const auto is_late = [&] { return spec.time_limit_s > 0 && watch.seconds() > spec.time_limit_s; };

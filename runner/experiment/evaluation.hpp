@@ -1,5 +1,5 @@
-// Runs one task: simulates its rods, counts CG iterations for every guess, times the parts, and returns the record.
-// Physics, iteration counts and everything outside /timing depend on the spec alone.
+// Runs one task: simulates its rods, counts CG iterations for every guess, measures times, and fills the record.
+// Everything outside /timing depends only on the spec.
 #pragma once
 
 #include "runner/dispatch/stop_requested.hpp"
@@ -9,11 +9,11 @@
 
 namespace rodsweep {
 
-/// Fills `record` (already prepared). Returns false if it was abandoned on request. A task that fails is a record with
-/// that outcome and whatever rows it reached; exceptions of the scene or the solver become TaskOutcome::error.
+/// Fills `record` (already prepared). Returns false if abandoned on request. The record of a failed task has the
+/// failure's outcome and the rows up to it; exceptions of the scene or the solver become TaskOutcome::error.
 bool evaluate(const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested& stop);
 
-/// The same with the clock that its time limit is of.
+/// The same, with the clock for the task's time limit.
 bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, TaskRecord& record,
                        const StopRequested& stop);
 

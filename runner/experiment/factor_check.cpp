@@ -14,7 +14,7 @@ namespace {
 
 bool is_oracle(const GuessSpec& guess) { return find_guess<guess::Oracle>(guess) != nullptr; }
 
-/// What a task factorises for, and what it could do instead; null: nothing.
+/// The key that makes a task factorise, and the alternative; null if it does not factorise.
 struct Need {
   const char *for_what, *instead;
 };
@@ -27,7 +27,7 @@ Need need(const TaskSpec& spec) {
   return {nullptr, nullptr};
 }
 
-/// Would a factor with every block of its lower half be too large?
+/// Whether a factor with all 6 x 6 blocks of its lower triangle might be too large.
 bool may_be_too_large(std::int64_t joints, double most_bytes) {
   const auto n = static_cast<double>(joints);
   return sizeof(double) * 36 * n * n / 2 > most_bytes / 2;  // fronts are padded

@@ -1,6 +1,6 @@
-// Scenes whose direct solve would need more memory than a factor may have (solver/factor/elimination_plan.hpp), found
-// before anything runs. Only rods with loops and thousands of joints can; of those that a job has, each size is looked
-// at once, in about a second per 100,000 joints.
+// Checks before a run whether a factorisation would exceed its memory limit (solver/factor/elimination_plan.hpp).
+// Only rods with loops and thousands of joints can exceed it. Each size of such rods in a job is checked once, in about
+// a second per 100,000 joints.
 #pragma once
 
 #include "runner/plan/plan.hpp"
@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-/// Throws JobError, naming what the solve would need and what does without it.
+/// Throws JobError with the memory needed and an alternative that needs no factor.
 void check_factors(const Plan& plan, double most_bytes = most_factor_bytes);
 
 }  // namespace rodsweep

@@ -19,7 +19,7 @@ bool branches(const SceneSpec& scene) {
   return false;
 }
 
-/// A model says what it is for.
+/// Throws JobError unless the model's encoding is for states (`of_states`) or for linear systems.
 void check_model(const Plan& plan, const std::string& key, const std::filesystem::path& model, bool of_states) {
   if (is_guess(shared_model(model)->net.settings()) != of_states) return;
   const std::string name = model.filename().string();
@@ -70,7 +70,7 @@ void check(const Plan& plan, const Task& task, const TaskSpec& spec) {
 }  // namespace
 
 void check_guesses(const Plan& plan) {
-  if (plan.job().files.empty()) return;  // no network, no data of neighbours
+  if (plan.job().files.empty()) return;  // no models or data sets to check
   for (const Task& task : plan.tasks()) check(plan, task, plan.spec(task.index));
 }
 

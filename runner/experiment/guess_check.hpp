@@ -1,15 +1,14 @@
-// Guesses, and networks in place of the solve, that are not for the rods or with the model that a job gives them, found
-// before anything runs.
+// Checks before a run that guesses, and networks that replace the solve, fit the job's rods and models.
 //
-// Nearest neighbours compare rods along one arc length, which loops and branches do not have; several corrections,
-// lag_steps and stop_at are for models with factors; a model of states is for state_network alone.
+// Nearest neighbours compare rods by arc length, so they need rods without loops and branches. Several corrections,
+// lag_steps and stop_at need a model with factors. A model of the encoding "state" works only with state_network.
 #pragma once
 
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 
-/// Throws JobError, naming the key; FileError where a model file that it needs is not one.
+/// Throws JobError with the key, or FileError for a file that is not a model.
 void check_guesses(const Plan& plan);
 
 }  // namespace rodsweep

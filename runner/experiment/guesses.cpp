@@ -19,7 +19,7 @@ struct Maker {
   using Made = std::unique_ptr<InitialGuess>;
   const TaskSpec& task;
   const Scene& scene;
-  double noise;  ///< relative error of the solutions that the guess accepts
+  double noise;  ///< relative error of the solutions passed to the guess
   int newton_iterations = task.time.newton_iterations;
 
   Made make(const GuessSpec& guess) const { return std::visit(*this, guess.kind); }

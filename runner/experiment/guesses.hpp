@@ -1,4 +1,4 @@
-// Makes the initial guess that a job names.
+// Constructs an initial guess from its spec.
 #pragma once
 
 #include <memory>

@@ -19,7 +19,7 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 double allowed = unlimited;  // bytes, of this process
 
-/// Bytes that /proc says this process has; 0: it does not say.
+/// A value of /proc/self/status in bytes; 0 if missing.
 double of_status(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -31,14 +31,14 @@ double of_status(const std::string& key) {
   return 0;
 }
 
-/// A file with one number in it; "max", which cgroups write for none, is none.
+/// The number in a file; unlimited if the file is missing or contains "max", the cgroup value for no limit.
 double number_in(const fs::path& path) {
   std::ifstream file(path);
   double value = 0;
   return file >> value ? value : unlimited;
 }
 
-/// The least limit of a control group and those above it.
+/// The lowest limit of a control group and its ancestors.
 double limit_of(const fs::path& mount, std::string group, const char* name) {
   double least = unlimited;
   for (;;) {
@@ -66,11 +66,11 @@ double host_memory(const fs::path& root, const fs::path& proc) {
 
 void limit_memory(double bytes) {
 #ifdef __SANITIZE_ADDRESS__
-  static_cast<void>(bytes);  // its shadow is as large as the address space
+  static_cast<void>(bytes);  // the sanitizer's shadow memory would exceed any limit
 #else
   rlimit limit{};
   if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
-  // The system counts addresses, of which threads' stacks and libraries' buffers take many that they never touch.
+  // RLIMIT_DATA counts address space; much of that of thread stacks and library buffers is never touched.
   const double untouched = std::max(0.0, of_status("VmData:") - of_status("RssAnon:"));
   const double most = std::min(static_cast<double>(limit.rlim_cur), 1e18);
   allowed = bytes;

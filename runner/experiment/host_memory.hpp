@@ -1,5 +1,5 @@
-// How much memory this host has for its processes, and a bound for this one, so that a task that wants more ends in an
-// error of its own (std::bad_alloc) and not in the death of its process by the kernel's hand.
+// The host's memory, and a memory limit for this process. A task that exceeds the limit fails with std::bad_alloc,
+// before the kernel's out-of-memory killer ends the process.
 #pragma once
 
 #include <filesystem>
@@ -7,26 +7,26 @@
 
 namespace rodsweep {
 
-/// Bytes: what the machine has, or the least that a control group of this process allows (Slurm and containers set
-/// them). `root` and `proc` stand for / and /proc in tests.
+/// Bytes: the physical memory or the lowest limit of this process's control groups (set by Slurm and containers).
+/// Tests replace / and /proc by `root` and `proc`.
 double host_memory(const std::filesystem::path& root = "/", const std::filesystem::path& proc = "/proc");
 
-/// Share of the host's memory that is left to everything else.
+/// Share of the host's memory reserved for other processes.
 inline constexpr double memory_reserve = 0.1;
 
-/// For good: what this process allocates from now on beyond `bytes` in all is refused. Nothing where the system cannot.
+/// Permanently limits the memory of this process to `bytes`; allocations beyond fail. No effect if the system refuses.
 void limit_memory(double bytes);
 
-/// Bytes that this process may still allocate; infinity where nothing bounds it.
+/// Bytes that this process may still allocate; infinity without a limit.
 double memory_left();
 
-/// How to have more: "fewer ranks on a host leave each more, --memory-limit-gb sets it".
+/// Advice for messages: how to give a rank more memory.
 extern const char* const more_memory_text;
 
-/// "out of memory: ..." with this process's bound, for messages.
+/// "out of memory: ..." with this process's limit, for messages.
 std::string out_of_memory_text();
 
-/// Bytes: the most memory that this process has had at a time. 0: not known.
+/// Peak memory of this process in bytes; 0: unknown.
 double peak_memory();
 
 }  // namespace rodsweep

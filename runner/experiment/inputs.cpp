@@ -14,7 +14,7 @@ bool ends_with(const std::string& text, const std::string& end) {
 void open(const InputFile& file) {
   if (ends_with(file.key_path, "model"))
     shared_model(file.path);
-  else if (!ends_with(file.key_path, "skeleton"))  // which the plan has read
+  else if (!ends_with(file.key_path, "skeleton"))  // the plan reads skeletons
     DatasetReader reader(file.path);
 }
 

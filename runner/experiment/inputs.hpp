@@ -1,12 +1,12 @@
-// The files that a job names, looked into before anything runs: a model must be one, a data set too.
+// Checks a job's input files before a run.
 #pragma once
 
 #include "runner/job/job.hpp"
 
 namespace rodsweep {
 
-/// Opens every file of the job (but those that were missing and accepted) as what its key says it is. Throws JobError
-/// with the key and the reason.
+/// Opens each file of the job, except accepted missing ones, as a model or a data set according to its key. Throws
+/// JobError with the key and the reason.
 void check_inputs(const Job& job);
 
 }  // namespace rodsweep

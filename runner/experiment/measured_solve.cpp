@@ -20,7 +20,7 @@ namespace {
 
 bool is_zero(const GuessSpec& guess) { return std::holds_alternative<guess::Zero>(guess.kind); }
 
-/// A condensed system has one norm.
+/// A condensed system has only one norm.
 bool has_other_norm(const TaskSpec& spec) {
   return spec.output.other_norm && spec.solve.preconditioner != Preconditioner::condensed;
 }
@@ -28,12 +28,12 @@ bool has_other_norm(const TaskSpec& spec) {
 }  // namespace
 
 struct MeasuredSolve::Guess {
-  std::size_t column;  ///< on the file's guess axis
+  std::size_t column;  ///< index on the file's guess axis
   bool is_zero;
   TimedGuess guess;
 };
 
-/// Everything of one rod that is sized once.
+/// The solvers and buffers of one rod, allocated once.
 struct MeasuredSolve::RodSolvers {
   struct PerGuess {
     std::unique_ptr<CgSolver> timed;
@@ -43,14 +43,14 @@ struct MeasuredSolve::RodSolvers {
     CgReport advanced;
   };
   std::unique_ptr<CgSolver> tight;
-  std::unique_ptr<CgSolver> tight_other;  ///< in the other norm, or none
+  std::unique_ptr<CgSolver> tight_other;  ///< in the other norm; may be null
   std::vector<PerGuess> guesses;
   std::vector<double> direct_s;  ///< [repeat]
   std::vector<std::int16_t> iterations, iterations_other;
   double reference = 0;  ///< norm of b
-  bool renewed = false;  ///< the preconditioners are of this system
+  bool renewed = false;  ///< the preconditioners were set up for this system
   VectorX exact, x, residual;
-  std::optional<SolveOutcome> exact_outcome;  ///< of `exact`, once this system has it
+  std::optional<SolveOutcome> exact_outcome;  ///< of `exact`; none until it is computed for this system
 
   RodSolvers(const Rod& rod, const LinearSystem& system, const TaskSpec& spec, std::size_t guess_count)
       : tight(make_cg(rod, system, settings(spec, spec.solve.norm))),
@@ -162,7 +162,7 @@ SolveOutcome MeasuredSolve::solve_directly(const LinearSystem& system, const Sol
   return outcome;
 }
 
-/// The tightest solution of CG from zero where it is wanted and the zero guess has not found it.
+/// Solves with CG from zero to the tightest tolerance, unless the zero guess did so or no reference is needed.
 SolveOutcome MeasuredSolve::solve_reference(const LinearSystem& system, RodSolvers& solvers) const {
   if (solvers.exact_outcome) return *solvers.exact_outcome;
   solvers.exact.setZero();
@@ -171,7 +171,7 @@ SolveOutcome MeasuredSolve::solve_reference(const LinearSystem& system, RodSolve
       .outcome;
 }
 
-/// One tight solve for each guess and norm, untimed. Not converged: a solve could not start from its guess.
+/// One untimed tight solve per guess and norm. Returns `converged` unless a guess has an invalid first residual.
 SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePosition& at, std::size_t row,
                                   RodSolvers& solvers) {
   const VectorX& b = system.rhs();
@@ -193,7 +193,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
       solvers.x = own.x0;
       const CgReport report =
           cg.solve(b, solvers.x, own.proposal.start(), ladder.back(), reference, guesses_[g].guess.deflation());
-      if (cg.history().empty()) failure = report.outcome;  // its first residual was not a number
+      if (cg.history().empty()) failure = report.outcome;  // the first residual was not a number
       iterations_to(cg.history(), reference, ladder, iterations.data());
       return report;
     };
@@ -229,7 +229,7 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
   return SolveOutcome::converged;
 }
 
-/// One solve each to the job's tolerance, in an order that rotates from system to system and repeat to repeat.
+/// Timed solves to the job's tolerance. The order of the guesses rotates with each system and repeat.
 void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, std::size_t row, RodSolvers& solvers) {
   const bool rounding = system.largest_rhs() <= rounding_level;
   const double tolerance = spec_.solve.forcing == Forcing::fixed
@@ -250,7 +250,7 @@ void MeasuredSolve::time(const LinearSystem& system, const SolvePosition& at, st
     }
 }
 
-/// Guesses learn the solution that advances the rod; what they make of it belongs to their time.
+/// Passes the solution that advances the rod to the guesses; their time for this is counted.
 void MeasuredSolve::accept(const SolvePosition& at, std::size_t row, RodSolvers& solvers, const VectorX& solution) {
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
     guesses_[g].guess.accept(at, solution);
@@ -290,7 +290,7 @@ void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {
       for (std::size_t t = 0; t < tolerances; ++t) {
         const std::int64_t own = sums->iterations[g * tolerances + t];
         const std::int64_t of_zero = sums->iterations[zero * tolerances + t];
-        if (own >= 0 && of_zero > 0)  // below 0: not tried in this task
+        if (own >= 0 && of_zero > 0)  // negative: not tried in this task
           sums->cg_ratio[g * tolerances + t] = static_cast<double>(own) / static_cast<double>(of_zero);
       }
 }

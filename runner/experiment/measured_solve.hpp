@@ -1,14 +1,14 @@
-// The linear solve of an experiment: solves each system directly and with CG from every guess under test, counts,
-// times, and lets one of the solutions advance the trajectory. With the reference "cg" nothing is solved directly: in
-// place of the direct solution stands that of CG from zero, which the zero guess's untimed solve finds anyway.
+// The linear solve of an experiment. Solves each system directly and with CG from every guess under test; counts
+// iterations and measures times. One of the solutions advances the trajectory. With the reference "cg" there is no
+// direct solve: the solution of CG from zero, known from the zero guess's untimed solve, replaces the direct one.
 //
-// Per system and guess: one untimed solve to the tightest tolerance of the ladder, in each norm, whose residual history
-// gives the iterations to every tolerance; `timing_repeats` timed solves to the job's tolerance (or as its forcing
-// terms ask), without history, the guesses in rotated order, the preconditioner's set-up included; the median counts. A
-// lagged preconditioner is set up at the first Newton iteration of every `lag_steps`-th step, and costs nothing in
-// between. Guesses hear of the solution that advanced the trajectory. Right-hand sides at rounding level (max |b| <=
-// 1e-13) count as solved: zero iterations for every guess. A guess that no solve can start from (its first residual is
-// not a number) ends the task.
+// Per system and guess:
+// - One untimed solve per norm to the ladder's tightest tolerance; its history gives the iterations to all tolerances.
+// - `timing_repeats` timed solves to the job's tolerance (or forcing terms), without history, with guesses in rotated
+//   order, including the preconditioner's setup. The median is recorded.
+// A lagged preconditioner is set up at the first Newton iteration of every `lag_steps`-th step, at no cost in between.
+// Guesses receive the solution that advanced the trajectory. If max |b| <= 1e-13 (rounding level), all guesses need
+// zero iterations. A guess with a first residual that is not a number ends the task.
 #pragma once
 
 #include <memory>
@@ -24,26 +24,26 @@
 
 namespace rodsweep {
 
-/// cg_ratio from the sums, of all guesses that have any.
+/// Sets cg_ratio from the sums, for all guesses that were tried.
 void set_cg_ratios(const TaskSpec& spec, TaskRecord& record);
 
 class MeasuredSolve : public LinearSolve {
  public:
-  /// Fills the rows of /solves, their timings and the per-task sums of `record`. All arguments must outlive this.
+  /// Fills the rows of /solves, their times and the per-task sums of `record`. All arguments must outlive this.
   MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecord& record);
   ~MeasuredSolve() override;
 
   SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
                      VectorX& delta_lambda) override;
 
-  /// Wall time spent in assembly and in here since the last call [s].
+  /// Wall time of assembly and solves since the last call [s].
   double take_elapsed_s();
 
-  /// To be called once, at the end of the task.
+  /// Call once, at the end of the task.
   void finish();
 
  private:
-  struct Guess;       // one guess under test
+  struct Guess;
   struct RodSolvers;  // the solvers of one rod
   RodSolvers& solvers_for(const LinearSystem& system, int rod);
   SolveOutcome solve_directly(const LinearSystem& system, const SolvePosition& at, RodSolvers& solvers);
@@ -57,12 +57,12 @@ class MeasuredSolve : public LinearSolve {
   const Scene& scene_;
   const TaskSpec& spec_;
   TaskRecord& record_;
-  std::optional<DirectSolve> direct_;  ///< unless nothing is solved directly
+  std::optional<DirectSolve> direct_;  ///< if spec.solve.is_direct()
   ForcingTerms forcing_;
   std::vector<Guess> guesses_;
-  std::vector<std::unique_ptr<RodSolvers>> solvers_;  // made at a rod's first solve
+  std::vector<std::unique_ptr<RodSolvers>> solvers_;  // created at a rod's first solve
   double elapsed_s_ = 0;
-  std::string unusable_;  // label of the guess that no solve can start from
+  std::string unusable_;  // label of a guess with an invalid first residual
 };
 
 }  // namespace rodsweep

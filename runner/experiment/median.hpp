@@ -6,7 +6,7 @@
 
 namespace rodsweep {
 
-/// Of an even count the upper one, so that it is a time that was measured. Reorders.
+/// The upper median if the count is even, so that the result is a measured time. Reorders `values`.
 inline double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

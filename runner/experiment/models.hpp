@@ -1,4 +1,4 @@
-// Models by path, each read once in a process: every task that uses one shares it.
+// A cache of models by path: each is read once per process and shared by all tasks.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-/// Throws FileError for what is not a model.
+/// Throws FileError if the file is not a model.
 std::shared_ptr<const Model> shared_model(const std::filesystem::path& path);
 
 }  // namespace rodsweep

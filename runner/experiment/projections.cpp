@@ -11,8 +11,8 @@
 namespace rodsweep {
 namespace {
 
-/// A network in place of the solve: its row of /solves holds the system that it was given. There are no iterations to
-/// count, and its time is within that of the step.
+/// A network that replaces the solve. Its rows of /solves describe its input system, without iterations; its time is
+/// part of the step's time.
 class LoggedIncrements : public IncrementSource {
  public:
   LoggedIncrements(const Scene& scene, const TaskSpec& spec, TaskRecord& record)
@@ -34,8 +34,8 @@ class LoggedIncrements : public IncrementSource {
   CopingNetIncrements network_;
 };
 
-/// Gauss-Seidel: every iteration has a row of /solves with the residual that it met. There is no linear system to tell
-/// more of; the time is that of the step.
+/// Gauss-Seidel: each iteration has a row of /solves with the residual before it. There is no linear system, and its
+/// time is part of the step's time.
 class LoggedIterations : public Projection {
  public:
   LoggedIterations(const Scene& scene, const TaskSpec& spec, TaskRecord& record,

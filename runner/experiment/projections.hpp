@@ -1,4 +1,4 @@
-// What moves the rods of a task in every iteration of a step, by its solve.method.
+// Constructs the projection that moves the rods in each iteration of a step, by the task's solve.method.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace rodsweep {
 
-/// `solve` solves the linear systems of the methods that have any. All arguments must outlive the projection.
+/// `solve` is used by the methods "direct" and "cg". All arguments must outlive the projection.
 std::unique_ptr<Projection> make_projection(const Scene& scene, const TaskSpec& spec, TaskRecord& record,
                                             LinearSolve& solve);
 
-/// "the linear solve ended as ", to go before an outcome.
+/// The text before an outcome in messages: "the linear solve ended as ".
 const char* projection_failed(Method method);
 
 }  // namespace rodsweep

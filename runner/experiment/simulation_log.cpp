@@ -14,7 +14,7 @@
 namespace rodsweep {
 namespace {
 
-// Largest joint gaps, in joint lengths.
+// Upper bounds of the joint gap, in joint lengths.
 constexpr double whole_rod = 1, meaningless_gap = 100;
 
 TaskOutcome outcome_of(SolveOutcome solve) {
@@ -27,7 +27,7 @@ TaskOutcome outcome_of(SolveOutcome solve) {
   }
 }
 
-/// What the segments of a trajectory's frames are.
+/// Logs the constant properties of the segments in a trajectory's frames.
 void log_segments(const Scene& scene, TaskRecord& record) {
   std::size_t row = 0;
   for (std::size_t rod = 0; rod < scene.rods.size(); ++rod) {
@@ -45,7 +45,7 @@ void log_segments(const Scene& scene, TaskRecord& record) {
 
 void end_late(const TaskSpec& spec, TaskRecord& record) {
   int& step = record.steps_done[0];
-  step = std::max(step, 0);  // it has its fill value until the scene is built
+  step = std::max(step, 0);  // the negative fill value until the scene is built
   record.outcome = TaskOutcome::timed_out;
   record.message = fmt::format("step {}: the time limit of {:g} s has passed (task_time_limit_s or --task-time-limit)",
                                step, spec.time_limit_s);
@@ -65,7 +65,7 @@ SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord&
   }
 }
 
-/// Writes the observables of one finished step into row `step` of /steps.
+/// Writes the observables of a finished step to row `step` of /steps.
 void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepReport& report, double constraint_dt) {
   double length = 0, gap = 0, residual = 0, imbalance = 0, kinetic = 0, potential = 0, elastic = 0;
   Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();

@@ -1,5 +1,5 @@
-// What a simulation leaves in its task's record after every step, and when it has to end: the observables, the frames
-// of the trajectory, the outcome. The same for tasks that run alone and in batches.
+// Records the observables, trajectory frames and outcome of a simulation after each step, and decides when it ends.
+// Used for single tasks and for batches.
 #pragma once
 
 #include <string>
@@ -13,22 +13,22 @@
 
 namespace rodsweep {
 
-/// Ends a task whose time limit has passed: in the step that it was in, or while its systems were built for the first.
+/// Records that a task timed out in its current step, or in step 0 if its scene was still being built.
 void end_late(const TaskSpec& spec, TaskRecord& record);
 
 class SimulationLog {
  public:
-  /// `scene` at the start, which is frame 0. All but the scene must outlive this.
+  /// `scene` is the initial state, which is frame 0. All other arguments must outlive this.
   SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord& record, const Scene& scene);
 
-  /// Ends the task if its time limit has passed: true.
+  /// Returns true and ends the task if its time limit has passed.
   bool out_of_time(double elapsed_s);
 
-  /// `scene` after the step. False: the task has ended here, by a failure.
+  /// `scene` is the state after the step. Returns false if a failure ends the task.
   bool finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt);
 
  private:
-  /// What several observables of a rod are made of.
+  /// Intermediate results shared by several observables of a rod.
   struct Observed {
     Linearization at;
     MomentumBalance balance;
@@ -40,7 +40,7 @@ class SimulationLog {
   const Task& task_;
   const TaskSpec& spec_;
   TaskRecord& record_;
-  std::vector<Observed> observed_;  ///< of every rod
+  std::vector<Observed> observed_;  ///< by rod
   double initial_length_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What every method says of a linear system before it is solved: the columns of /solves that belong to no guess.
+// The columns of /solves that do not depend on the guess; they describe a linear system before its solve.
 #pragma once
 
 #include "runner/file/record.hpp"
@@ -8,13 +8,13 @@
 
 namespace rodsweep {
 
-/// The row of a solve among its task's, of a scene of so many rods: step-major, then Newton iterations, then rods.
+/// The row of a solve within its task: ordered by step, Newton iteration, rod. `rods`: number of rods in the scene.
 std::size_t solve_row(const TaskSpec& spec, std::size_t rods, const SolvePosition& at);
 
-/// Where in its simulation a row stands.
+/// Writes step, Newton iteration and rod.
 void log_position(const SolvePosition& at, std::size_t row, TaskRecord& record);
 
-/// Position, residuals and gap: `rod` in the state that the system was assembled from.
+/// Writes position, residual, gap and norm. `rod` is in the state from which the system was assembled.
 void log_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
                 TaskRecord& record);
 

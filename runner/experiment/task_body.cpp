@@ -17,7 +17,7 @@
 namespace rodsweep {
 namespace {
 
-/// Of a task that throws nothing is kept but why.
+/// If the task throws, its record keeps only the error message.
 bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& evaluate, const StopRequested& stop) {
   try {
     return evaluate(run.task, run.spec, *run.record, stop);
@@ -33,13 +33,13 @@ bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& 
   return true;
 }
 
-/// The guesses that the earlier file lacks, on the task's trajectory, put beside those that it has. False: abandoned.
+/// Evaluates the guesses missing in the earlier file, and merges the others into the record. False if abandoned.
 bool complete_task(const Plan& plan, const Extension& extension, const Evaluate& evaluate, const StopRequested& stop,
                    const Task& task, const TaskRecord& taken, TaskRecord& record) {
   TaskSpec spec = plan.spec(task.index);
   for (const std::int8_t copied : taken.copied_guess) spec.settled.push_back(copied == 1);
   if (!evaluate(task, spec, record, stop)) return false;
-  // Not the trajectory's doing: an outcome like any other.
+  // These outcomes do not mean that the trajectory differs.
   if (record.outcome == TaskOutcome::timed_out || record.outcome == TaskOutcome::error) return true;
   const std::string difference = complete(task, record, taken);
   if (!difference.empty()) {
@@ -72,7 +72,7 @@ BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
   return [&plan, write = std::move(write), evaluate = std::move(evaluate), sizes = axis_sizes(plan),
           records = std::vector<TaskRecord>()](const std::vector<std::int64_t>& tasks,
                                                const StopRequested& stop) mutable -> std::vector<TaskResult> {
-    records.resize(std::max(records.size(), tasks.size()));  // their memory is used again
+    records.resize(std::max(records.size(), tasks.size()));  // their memory is reused
     std::vector<TaskRun> runs;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       const Task task = plan.task(tasks[i]);

@@ -1,6 +1,6 @@
-// A guess, and what it costs at one system [s]:
+// A guess and its time for one system [s]:
 //   seconds = prepare + median of the repeated proposals + accept,
-// so that what is done once is counted once, however often it proposes.
+// so that one-time work is counted once, regardless of the repeats.
 #pragma once
 
 #include <memory>
@@ -16,15 +16,15 @@ class TimedGuess {
   explicit TimedGuess(std::unique_ptr<InitialGuess> guess, TimeSource now = std::chrono::steady_clock::now)
       : guess_(std::move(guess)), now_(now) {}
 
-  /// Begins a system: earlier times are forgotten.
+  /// Starts a system and clears earlier times.
   void prepare(const SolvePosition& at);
-  /// Not timed: the first proposal for a system finds it in no cache.
+  /// Not timed, because the first proposal for a system has cold caches.
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0);
   void propose_timed(const LinearSystem& system, const SolvePosition& at, VectorX& x0);
   void accept(const SolvePosition& at, const VectorX& solution);
   Deflation* deflation() { return guess_->deflation(); }
 
-  /// At least one proposal was timed.
+  /// Requires at least one timed proposal.
   double seconds();
 
  private:

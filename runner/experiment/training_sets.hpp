@@ -1,5 +1,5 @@
-// Training sets of nearest neighbours by data set, each read once in a process: every task that uses one shares it.
-// Ranks can read what they will need together, so that one of them reads it from the disk.
+// A cache of training sets of nearest neighbours: each is read once per process and shared by all tasks. Ranks can read
+// sets collectively, so that only one of them reads from the disk.
 #pragma once
 
 #include <mpi.h>
@@ -12,12 +12,12 @@
 
 namespace rodsweep {
 
-/// Of the first so many simulations of a data set, or as many as it has; 0: all. One simulation is in memory at a time.
-/// Throws FileError for what is not a data set, SceneError for rods that are no chains.
+/// The set of the first `simulations` simulations of a data set; 0: all. Only one simulation is in memory at a time.
+/// Throws FileError if the file is not a data set, SceneError if a rod is not a chain.
 std::shared_ptr<const KnnSet> shared_knn_set(const std::filesystem::path& data, int simulations,
                                              KnnInputs inputs = KnnInputs::all);
 
-/// Collective: of all guesses of a plan. Throws CollectiveError.
+/// Collective: reads the sets of all guesses of a plan. Throws CollectiveError.
 void read_knn_sets(const Plan& plan, MPI_Comm ranks);
 
 }  // namespace rodsweep

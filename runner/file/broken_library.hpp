@@ -1,10 +1,10 @@
-// HDF5 after a failed write or close (a full disk): shutting it down, which MPI does as it finalises and the C library
-// at exit, would crash.
+// Whether HDF5 is broken after a failed write or close (a full disk). Its shutdown would then crash, both in
+// MPI_Finalize and at exit.
 #pragma once
 
 namespace rodsweep {
 
-/// Has a write failed in this process? Then it has to leave by _Exit().
+/// Whether a write failed in this process. Then it must exit with _Exit().
 bool hdf5_is_broken();
 void set_hdf5_broken();
 

@@ -12,7 +12,7 @@
 namespace rodsweep {
 namespace {
 
-/// The vector of numbers that members lead to, from one to the next.
+/// The vector reached through a chain of member pointers.
 template <auto... members>
 auto& vector_of(TaskRecord& record) {
   return (record.*....*members);
@@ -234,7 +234,7 @@ std::string_view bytes_of(const Column& column, const TaskRecord& record) {
         return std::string_view(reinterpret_cast<const char*>(values->data()),
                                 values->size() * sizeof(values->front()));
       },
-      column.values(const_cast<TaskRecord&>(record)));  // which it only points into
+      column.values(const_cast<TaskRecord&>(record)));  // only pointed into
 }
 
 std::string text_of(const Column& column, const TaskRecord& record, std::size_t index) {

@@ -1,5 +1,5 @@
-// The one description of every dataset that tasks fill: its path, axes, unit, meaning and place in a TaskRecord.
-// Creation, size check, writing, reading, checksums and comparisons walk the list, which columns.cpp says.
+// The list of all datasets that tasks fill, with path, axes, unit, meaning and TaskRecord member (see columns.cpp).
+// Used to create, check, write, read, checksum and compare them.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace rodsweep {
 
-/// Axes after the row: guess, tolerance, the three components of a vector, four of a quaternion, the six of a joint's
-/// constraint (stretch-shear, then bend-twist), frames of a task.
+/// Axes after the row: guess, tolerance, vector (3), quaternion (4), joint constraint (6: stretch-shear, then
+/// bend-twist), frames of a task.
 enum class Axis { guess, tolerance, xyz, wxyz, constraint, frame };
 
 /// The values of a column in a record: [row, axes ...].
@@ -26,7 +26,7 @@ struct Column {
   std::vector<Axis> axes;
   const char* unit;        ///< "1" for dimensionless
   const char* meaning;     ///< one line
-  std::int64_t (*type)();  ///< HDF5's handle to the type of a value in memory
+  std::int64_t (*type)();  ///< HDF5 type of a value in memory
   Values (*values)(TaskRecord&);
 };
 
@@ -39,17 +39,17 @@ std::vector<std::int64_t> row_extent(const Column& column, const AxisSizes& size
 /// Values in one row.
 std::int64_t row_width(const Column& column, const AxisSizes& sizes);
 
-/// Is its first axis after the row that of the guesses?
+/// Whether the first axis after the row is the guess axis.
 bool has_guesses(const Column& column);
 
-/// Does it hold what may differ between two runs of the same job, and is in no checksum?
+/// Whether it may differ between runs of the same job, and so is not in the checksum.
 bool is_timing(const Column& column);
 
-/// A column's values in a record, their type put aside.
+/// The raw bytes of a column's values in a record.
 std::string_view bytes_of(const Column& column, const TaskRecord& record);
 char* data_of(const Column& column, TaskRecord& record);
 
-/// The value at `index` in words.
+/// The value at `index` as text.
 std::string text_of(const Column& column, const TaskRecord& record, std::size_t index);
 
 }  // namespace rodsweep

@@ -1,4 +1,4 @@
-// Owns one file descriptor of the system; empty after a move.
+// Owns one file descriptor; empty after a move.
 #pragma once
 
 #include <unistd.h>
@@ -10,7 +10,7 @@ namespace rodsweep {
 class Descriptor {
  public:
   Descriptor() = default;
-  /// As open() returns it, negative for none.
+  /// `number`: as returned by open(); negative: none.
   explicit Descriptor(int number) : number_(number) {}
   Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
   Descriptor& operator=(Descriptor&& other) noexcept {

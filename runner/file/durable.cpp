@@ -20,7 +20,7 @@ FileError sync_error(const std::filesystem::path& path, int code) {
                   path.native(), std::system_category().message(code)));
 }
 
-/// Some file systems cannot sync, and say so with these; there nothing can be promised.
+/// Error codes of file systems without sync. They are ignored; writes there may not survive a power cut.
 bool cannot(int code) { return code == EINVAL || code == ENOTSUP || code == EROFS; }
 
 }  // namespace
@@ -45,7 +45,7 @@ void SyncedFile::beat() {
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const Descriptor descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!descriptor) return;  // a folder that may be written, but not read
+  if (!descriptor) return;  // the folder is writable but not readable
   if (fsync(descriptor.number()) != 0 && !cannot(errno)) throw sync_error(folder, errno);
 }
 

@@ -1,7 +1,7 @@
-// Getting what was written onto the disk, in order: what outlives a power cut is what was synced before it.
+// Syncs files to disk in order. Only synced data survives a power cut.
 //
-// The kernel writes pages back when and in which order it likes. Where one part of a file says that another is there
-// (a state byte, a name in a folder), the other has to be synced first. Throws FileError where the disk says no.
+// The kernel writes pages back at any time and in any order. Data must be synced before a state byte or a name in a
+// folder marks it as valid. Throws FileError if a sync fails.
 #pragma once
 
 #include <chrono>
@@ -11,14 +11,14 @@
 
 namespace rodsweep {
 
-/// A file's data and length, whoever on this host wrote them.
+/// Syncs a file's data and length, including writes of other processes on this host.
 class SyncedFile {
  public:
   SyncedFile() = default;
   explicit SyncedFile(const std::filesystem::path& path);
 
   void sync() const;
-  /// Every few seconds, says "now" in the file's modification time: a sign of life for those who watch the file.
+  /// A heartbeat: sets the file's modification time to now, at most every few seconds.
   void beat();
 
  private:
@@ -27,7 +27,7 @@ class SyncedFile {
   Descriptor descriptor_;
 };
 
-/// The names in the folder that a file is in.
+/// Syncs the folder that contains a file.
 void sync_folder_of(const std::filesystem::path& path);
 
 }  // namespace rodsweep

@@ -21,12 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Guess `guess` of the columns of a record that has so many.
+/// An index on a guess axis, and the length of that axis.
 struct GuessPlace {
   std::size_t guess, guesses;
 };
 
-/// Copies a guess of every row; the two columns differ in the length of their guess axis alone.
+/// Copies one guess in every row; the two columns differ only in the length of their guess axis.
 void copy_guess(const Column& column, const Task& task, const TaskRecord& source, const GuessPlace& from,
                 TaskRecord& target, const GuessPlace& to) {
   const auto rows = static_cast<std::size_t>(task.rows[column.rows].count);
@@ -50,7 +50,7 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
                           revision, source_revision());
     }
     Job before = stored_job(file, plan.job().path);
-    before.path = path;  // which messages name
+    before.path = path;  // for messages
     check_extends(plan.job(), before);
     before_.emplace(std::move(before));
     if (file.rerun_of_task)
@@ -72,8 +72,8 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
   }
 }
 
-/// For every guess that the task tries, the column of the same guess in its source, or -1; for one that it does not
-/// try, -2.
+/// Per guess: the column of the same guess in the source, -1 if the source does not have it, -2 if the task does not
+/// try it.
 std::vector<int> Extension::sources(const Task& task, const TaskIdentity& wanted, const Task& source,
                                     const TaskIdentity& found) const {
   std::vector<int> columns(plan_->guess_labels().size(), -2);
@@ -96,7 +96,7 @@ Extension::Source Extension::find(const Task& task, const TaskIdentity& wanted,
     if (found.trajectory != wanted.trajectory) continue;
     const std::vector<int> places = sources(task, wanted, before_->task(candidate), found);
     const auto missing = static_cast<int>(std::count(places.begin(), places.end(), -1));
-    // Of a task that failed on its way there is no telling what another guess would have seen.
+    // A failed task cannot be completed: what another guess would have been given is unknown.
     if (missing > 0 && reader_->outcome(candidate) != TaskOutcome::ok) continue;
     if (best.task < 0 || missing < best.missing) best = {candidate, missing == 0 ? Use::copy : Use::complete, missing};
     if (missing == 0) break;
@@ -138,7 +138,7 @@ bool Extension::take(std::int64_t index, TaskRecord& record) const {
   record.message = earlier.message;
   const std::vector<int> guesses = sources(task, plan_->identity(index), from, before_->identity(from.index));
   for (const Column& column : columns()) {
-    if (!has_guesses(column)) {  // the frame axis is as long as the plan's longest task needs it
+    if (!has_guesses(column)) {  // the frame axes of the two plans may differ in length
       const std::string_view source = bytes_of(column, earlier);
       const std::size_t bytes = std::min(source.size(), bytes_of(column, record).size());
       std::copy_n(source.begin(), bytes, data_of(column, record));

@@ -1,10 +1,10 @@
-// What an earlier file of a smaller job saves a sweep (--extend). Two tasks are the same when all that their results
-// depend on is (TaskIdentity), wherever they stand in their plans. A task of the new plan is then
-//   copied     the earlier file holds it with every guess that it wants: its rows are taken over;
-//   completed  a paired task that wants more guesses: its trajectory is simulated again by the direct solve, the new
-//              guesses alone are tried on it, and the others' rows are taken over;
-//   run        all else, also what timed out or ended in an error before, which another attempt may not.
-// The earlier file is read only. Whoever takes a task over checks its sum: a damaged one is run.
+// Reuses results of an earlier file of a smaller job (--extend). Two tasks are equal if all inputs of their results are
+// (TaskIdentity), regardless of their indices. Each task of the new plan is
+//   copied     if the earlier file has it with all its guesses: its rows are copied;
+//   completed  if a paired task needs more guesses: its trajectory is simulated again by the direct solve with the
+//              new guesses only, and the rows of the other guesses are copied;
+//   run        otherwise, also if it timed out or ended in an error before, because a retry may succeed.
+// The earlier file is opened read-only. The checksum of each reused task is verified; a damaged one is run.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace rodsweep {
 
 class Extension {
  public:
-  /// Throws JobError where the plan's job is no extension of the file's, FileError about the file. The plan must
+  /// Throws JobError if the plan's job does not extend the file's job, FileError for errors of the file. The plan must
   /// outlive this.
   Extension(const std::filesystem::path& path, const Plan& plan);
 
@@ -29,27 +29,27 @@ class Extension {
   std::int64_t source(std::int64_t task) const { return uses_[static_cast<std::size_t>(task)].task; }  ///< or -1
   std::int64_t count(Use use) const;
 
-  /// Throws FileError unless the file `path` was begun as an extension of this one as it is now.
+  /// Throws FileError unless the file `path` was started as an extension of this one in its current state.
   void check_started(const std::filesystem::path& path) const;
 
-  /// Relative to a task that is run in full.
+  /// Relative to running the task in full.
   double cost(std::int64_t task) const;
 
-  /// Fills `record`, sized for the plan's task, with what its source holds of it: all rows without guess axis, and the
-  /// columns of the guesses that are found there, marked 1 in record.copied_guess. False, with `record` as prepared:
-  /// the source is damaged.
+  /// Fills `record`, prepared for the plan's task, from its source: all rows without guess axis, and the columns of the
+  /// guesses found there, marked 1 in record.copied_guess. Returns false, with `record` unchanged, if the source is
+  /// damaged.
   bool take(std::int64_t task, TaskRecord& record) const;
 
   TaskOrigin origin(std::int64_t task) const { return reader_->origin(source(task)); }
 
   const std::filesystem::path& path() const { return path_; }
-  const std::string& note() const { return note_; }  ///< what the user should hear though it is no error; or empty
+  const std::string& note() const { return note_; }  ///< a warning for the user; may be empty
 
  private:
   struct Source {
     std::int64_t task = -1;
     Use use = Use::run;
-    int missing = 0;  ///< guesses that it lacks
+    int missing = 0;  ///< number of guesses not in the source
   };
   std::vector<int> sources(const Task& task, const TaskIdentity& wanted, const Task& source,
                            const TaskIdentity& found) const;
@@ -63,9 +63,9 @@ class Extension {
   std::string note_;
 };
 
-/// Where a record that was simulated again differs from what was taken over, in rows without guess axis outside
-/// /timing: "/steps/joint_gap[3] is 1e-9 and was 2e-9"; empty: nowhere, to the last bit. Where they are equal, the
-/// columns of the guesses marked in taken.copied_guess are put into `record`.
+/// Compares a repeated record with the stored one, in rows without guess axis outside /timing. Returns the first
+/// difference: "/steps/joint_gap, value 3, is 1e-9 and was 2e-9". Returns empty if they are bitwise equal; then copies
+/// the columns of the guesses marked in taken.copied_guess to `record`.
 std::string complete(const Task& task, TaskRecord& record, const TaskRecord& taken);
 
 }  // namespace rodsweep

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Measured with HDF5 1.10: object headers with two attributes, and the symbol tables of groups.
+// Measured with HDF5 1.10: object headers with two attributes, and symbol tables of groups.
 constexpr std::int64_t metadata_bytes_per_dataset = 480;
 constexpr std::int64_t metadata_bytes_of_file = 6000;
 
@@ -70,7 +70,7 @@ void write_parameters(hid_t file, const std::vector<ParameterColumn>& parameters
   }
 }
 
-/// All that the plan knows already.
+/// Writes all data known from the plan.
 void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterColumn>& parameters) {
   hdf5::write_attribute(file, "program", "rodsweep");
   hdf5::write_attribute(file, "schema_version", schema_version);
@@ -94,7 +94,7 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   hdf5::write_texts(file, "/tasks/outcome", std::vector<std::string>(tasks, to_string(TaskOutcome::pending)));
 }
 
-/// The starts of earlier files, marked with their names unless they were copied there already.
+/// Copies the runs of earlier files; each row gets its source file unless it has one already.
 int copy_runs(const hdf5::File& file, const std::vector<fs::path>& earlier) {
   int row = 0;
   for (const fs::path& path : earlier)
@@ -106,8 +106,7 @@ int copy_runs(const hdf5::File& file, const std::vector<fs::path>& earlier) {
   return row;
 }
 
-/// Takes real blocks for the sparse file. File systems that cannot are left alone; the free-space check has to do
-/// there.
+/// Allocates blocks for the sparse file. Without support by the file system, only the free-space check protects.
 void reserve_blocks(const fs::path& file, const fs::path& path) {
   const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
   const Descriptor descriptor(open(file.c_str(), O_RDWR | O_CLOEXEC));

@@ -1,6 +1,6 @@
-// Creates the file of a sweep, complete but for its results, by one process with HDF5's ordinary driver, under a
-// temporary name until it is whole (runner/file/unfinished_file.hpp). Its blocks are
-// reserved where the file system can, so that the disk does not fill up halfway. Throws FileError (exists, no space, no
+// Creates the file of a sweep, complete except for the results, on one process with HDF5's default driver. The file has
+// a temporary name until it is complete (runner/file/unfinished_file.hpp). Its blocks are reserved if the file system
+// supports this, so that the disk can't become full during the sweep. Throws FileError (exists, no space, no
 // permission) and Hdf5Error.
 #pragma once
 
@@ -14,16 +14,16 @@
 
 namespace rodsweep {
 
-/// Bytes that this process may still write into a folder.
+/// Bytes that this process may still write to a folder.
 using FreeSpace = std::function<std::uintmax_t(const std::filesystem::path& folder)>;
 std::uintmax_t free_bytes(const std::filesystem::path& folder);
 
-/// `earlier`: files that this one takes tasks from, whose /runs come first here, as many as there is room for beside
-/// one more. Returns how many rows of /runs are in use.
+/// `earlier`: files whose tasks are copied. Their /runs come first, as far as they fit with one row left for this run.
+/// Returns the number of used rows of /runs.
 int create_results_file(const std::filesystem::path& path, const Plan& plan, const FreeSpace& free_space,
                         const std::vector<std::filesystem::path>& earlier = {});
 
-/// Bytes that the file of this plan takes.
+/// Size of the file of this plan.
 std::int64_t file_bytes(const Plan& plan);
 
 }  // namespace rodsweep

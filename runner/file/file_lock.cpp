@@ -30,7 +30,7 @@ std::optional<bool> FileLock::is_held(const std::filesystem::path& path) {
 }
 
 FileLock::FileLock(const std::filesystem::path& path) : descriptor_(open(path.c_str(), O_RDWR | O_CLOEXEC)) {
-  if (!descriptor_) return;  // whoever opens it next says why
+  if (!descriptor_) return;  // the next open of the file reports the error
   struct flock byte = far_byte();
   held_ = fcntl(descriptor_.number(), F_OFD_SETLK, &byte) == 0;
   if (held_ || (errno != EAGAIN && errno != EACCES)) return;

@@ -1,7 +1,7 @@
-// Keeps a second run away from a results file: a lock that the kernel takes back when its owner dies, however it dies.
+// A lock against a second run on a results file. The kernel releases it when the owner dies.
 //
-// An open-file-description lock (fcntl) on a byte far behind the end of the file, where no data and nobody else's locks
-// are; NFS from version 4 on knows them too. On file systems without locks there is none.
+// An open-file-description lock (fcntl) on a byte far behind the end of the file, where there is no data and no other
+// lock. Works on NFS from version 4 on. Has no effect on file systems without locks.
 #pragma once
 
 #include <filesystem>
@@ -14,12 +14,12 @@ namespace rodsweep {
 class FileLock {
  public:
   FileLock() = default;
-  /// Throws FileError where another run has it.
+  /// Throws FileError if another run holds the lock.
   explicit FileLock(const std::filesystem::path& path);
 
   bool held() const { return held_; }  ///< false: the file system has no locks
 
-  /// Whether a run on this or another host has it; nothing where that cannot be known.
+  /// Whether a run on any host holds the lock; none if unknown.
   static std::optional<bool> is_held(const std::filesystem::path& path);
 
  private:

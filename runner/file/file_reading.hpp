@@ -1,5 +1,5 @@
-// Opens a results file read-only, with one process and without MPI, after checking that it is one.
-// Throws FileError for what is missing, foreign, damaged or of another schema version.
+// Opens and checks a results file, read-only, on one process without MPI.
+// Throws FileError if it is missing, foreign, damaged or of another schema version.
 #pragma once
 
 #include <cstdint>
@@ -13,30 +13,30 @@
 
 namespace rodsweep {
 
-/// A file that rodsweep made, of whatever kind; `what` a foreign one is not: "results".
+/// Opens a file of any kind that rodsweep made. `what`: the expected kind, for the message about a foreign file.
 hdf5::File open_own(const std::filesystem::path& path, const char* what);
 
-/// What an own file holds, "model" or the kind of the job whose results it has.
+/// The kind of a file: "model" or the kind of its job.
 std::string kind_of(const hdf5::File& file);
 
-/// Refuses a file that another version of rodsweep wrote in another form.
+/// Throws FileError if the schema version is not `known`.
 void check_version(const hdf5::File& file, const std::filesystem::path& path, int known);
 
-/// Marks a file: its A, b and multipliers are in the joints' frames (solver/rod/linearization.hpp).
+/// Marks that a file's A, b and multipliers are in joint frames (solver/rod/linearization.hpp).
 void mark_frame(hid_t file);
 
-/// Refuses a file without that mark, of a rodsweep that measured stretch and shear in the world. `advice`: what to do.
+/// Throws FileError with `advice` if a file lacks that mark: it is from a version that used the world frame.
 void check_frame(const hdf5::File& file, const std::filesystem::path& path, const char* advice);
 
 hdf5::File open_results(const std::filesystem::path& path);
 
-/// A file that passed open_results() but does not hold what it should; `reason` says what.
+/// The error for a file that passed open_results() but has invalid contents; `reason` says why.
 FileError damaged_error(const std::filesystem::path& path, const std::string& reason);
 
-/// The reason for a damaged_error() in what reading a file threw. What is not said for users is not repeated.
+/// The reason for a damaged_error(), from an exception while reading. Messages not meant for users are replaced.
 std::string damage_text(const std::exception& failure);
 
-/// Does work(); what HDF5 or the sizes of a broken file make of it is the file's fault.
+/// Calls work(); turns exceptions other than FileError into damaged_error().
 template <class Work>
 auto reading(const std::filesystem::path& path, Work&& work) {
   try {
@@ -48,7 +48,7 @@ auto reading(const std::filesystem::path& path, Work&& work) {
   }
 }
 
-/// State bytes, 0 or 1 each.
+/// Reads the state bytes. Throws FileError unless each is 0 or 1.
 std::vector<std::uint8_t> read_states(const hdf5::File& file, const std::filesystem::path& path);
 
 }  // namespace rodsweep

@@ -23,13 +23,13 @@ namespace {
 
 constexpr std::size_t most_axes = 8;
 
-/// HDF5 prints its error stack by itself unless told not to; our exceptions carry it.
+/// Stops HDF5 from printing its error stack; exceptions contain it.
 void silence() {
   static const herr_t done = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   static_cast<void>(done);
 }
 
-/// No exception may pass through HDF5: without memory the text ends here.
+/// Exceptions must not pass through HDF5: if memory runs out, the text ends here.
 herr_t append_description(unsigned, const H5E_error2_t* error, void* text) noexcept try {
   auto& all = *static_cast<std::string*>(text);
   if (error->desc != nullptr && *error->desc != '\0' && all.find(error->desc) == std::string::npos) {
@@ -40,7 +40,7 @@ herr_t append_description(unsigned, const H5E_error2_t* error, void* text) noexc
   return -1;
 }
 
-/// The names that name_at(index, buffer, bytes) fills in and tells the lengths of.
+/// Collects names from name_at(index, buffer, bytes), which fills the buffer and returns the length.
 template <class NameAt>
 std::vector<std::string> names(hsize_t count, const char* call, NameAt&& name_at) {
   std::vector<std::string> all(count);
@@ -61,7 +61,7 @@ struct OpenAttribute {
   OpenAttribute(hid_t file, const std::string& path, const char* name)
       : object(check(H5Oopen(file, path.c_str(), H5P_DEFAULT), "H5Oopen", path)),
         attribute(check(H5Aopen(object.id(), name, H5P_DEFAULT), "H5Aopen", name)) {
-    // A text of another shape would be read past the end of its buffer.
+    // An array would be read past the end of the buffer.
     const Dataspace space(check(H5Aget_space(attribute.id()), "H5Aget_space", name));
     if (H5Sget_simple_extent_npoints(space.id()) != 1)
       throw Hdf5Error("attribute " + std::string(name) + " of " + path + " is not a single value");
@@ -70,14 +70,14 @@ struct OpenAttribute {
   Attribute attribute;
 };
 
-/// Length of a fixed-length text type; refuses any other type.
+/// Length of a fixed-length text type; throws Hdf5Error for any other type.
 std::size_t text_bytes(hid_t type, const std::string& path) {
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
     throw Hdf5Error(path + " does not hold text of a fixed length");
   return H5Tget_size(type);
 }
 
-/// What the system said, where a call of it failed: the rest of the error stack says how HDF5 came there.
+/// The system's error message in HDF5's error stack, if a system call failed; else empty.
 std::string system_reason(const std::string& text) {
   const std::string mark = "error message = '";
   const std::size_t begin = text.find(mark);
@@ -112,7 +112,7 @@ Datatype text_type(std::size_t bytes) {
 std::string fixed_text(std::string_view text, std::size_t bytes) {
   std::size_t end = std::min(text.size(), bytes);
   if (end < text.size()) {
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // the middle of a UTF-8 character
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // inside a UTF-8 character
   }
   std::string fixed(text.substr(0, end));
   fixed.resize(bytes, '\0');
@@ -174,7 +174,7 @@ std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path) {
 }
 
 hsize_t value_count(const Dataset& dataset, const std::string& path) {
-  constexpr double densest = 1100, index_bytes = 1 << 16;  // deflate's, and of chunks that hold nothing yet
+  constexpr double densest = 1100, index_bytes = 1 << 16;  // deflate's ratio; unwritten chunks
   const Datatype type(check(H5Dget_type(dataset.id()), "H5Dget_type", path));
   double bytes = static_cast<double>(H5Tget_size(type.id()));
   hsize_t count = 1;
@@ -211,7 +211,7 @@ RowDataset::RowDataset(hid_t file, std::string path) : path_(std::move(path)) {
 
 Datatype RowDataset::type() const { return Datatype(check(H5Dget_type(dataset_.id()), "H5Dget_type", path_)); }
 
-/// Selects the rows in the file and returns a space for their values in memory.
+/// Selects the rows in the file and returns the memory space for their values.
 Dataspace RowDataset::select(hsize_t first, hsize_t count) const {
   if (!dataset_) throw Hdf5Error((path_.empty() ? "a dataset" : path_) + " is not in the file");
   hsize_t start[most_axes] = {first}, size[most_axes] = {count};

@@ -1,9 +1,9 @@
-// Owners of HDF5 handles, one check for every call, and the few shapes of access that rodsweep needs (HDF5 1.10 C API).
+// Owners of HDF5 handles, one check for all calls, and the access functions that rodsweep needs (HDF5 1.10 C API).
 //
-// Datasets are contiguous with early allocation and no fill values, without time stamps: their place in the file is
-// fixed at creation, unwritten bytes read as zero, and two files of the same data hold the same metadata. Text has a
-// fixed length, padded with zeros. No file is locked: readers may look while a sweep writes, and some network file
-// systems refuse locks. Throws Hdf5Error: the failing call, the object, HDF5's own error text.
+// Datasets are contiguous with early allocation, without fill values and time stamps. So their place in the file is
+// fixed at creation, unwritten bytes are zero, and files with the same data have the same metadata. Texts have a fixed
+// length, padded with zeros. HDF5's locks are off, because readers may open the file while a sweep writes, and some
+// network file systems refuse locks. Throws Hdf5Error with the failed call, the object and HDF5's error text.
 #pragma once
 
 #include <hdf5.h>
@@ -38,7 +38,7 @@ class Handle {
 
   hid_t id() const noexcept { return id_; }
   explicit operator bool() const noexcept { return id_ >= 0; }
-  /// Gives the handle away without closing it.
+  /// Returns the handle without closing it.
   hid_t release() noexcept { return std::exchange(id_, H5I_INVALID_HID); }
 
  private:
@@ -56,23 +56,23 @@ using PropertyList = Handle<H5Pclose>;
 static_assert(std::is_nothrow_move_constructible_v<File> && std::is_nothrow_move_assignable_v<File>);
 static_assert(!std::is_copy_constructible_v<File> && !std::is_copy_assignable_v<File>);
 
-/// Throws Hdf5Error about `call` on `object`, with the text of HDF5's error stack.
+/// Throws Hdf5Error for `call` on `object`, with the text of HDF5's error stack.
 [[noreturn]] void fail(const char* call, std::string_view object);
 
-/// Passes the result of an HDF5 call on; a negative one is a failure.
+/// Returns the result of an HDF5 call; calls fail() if it is negative.
 template <class Result>
 Result check(Result result, const char* call, std::string_view object = {}) {
   if (result < 0) fail(call, object);
   return result;
 }
 
-/// Closes now and reports failure, which a destructor cannot.
+/// Closes the handle and reports failure, unlike the destructor.
 template <herr_t (*Close)(hid_t)>
 void close(Handle<Close>& handle, const char* call, std::string_view object) {
   if (handle) check(Close(handle.release()), call, object);
 }
 
-/// HDF5's type for a C++ number in memory.
+/// The HDF5 type of a C++ number in memory.
 template <class T>
 hid_t type_of() {
   if constexpr (std::is_same_v<T, std::int8_t>)
@@ -98,25 +98,25 @@ hid_t type_of() {
 /// UTF-8 text of exactly `bytes` bytes, padded with zeros.
 Datatype text_type(std::size_t bytes);
 
-/// `text` cut (between characters) or zero-padded to `bytes` bytes.
+/// `text`, truncated between characters or zero-padded to `bytes` bytes.
 std::string fixed_text(std::string_view text, std::size_t bytes);
 
 File create_file(const std::filesystem::path& path);  ///< fails if the path exists
 File open_file(const std::filesystem::path& path, unsigned flags, hid_t access = H5P_DEFAULT);  ///< access: e.g. MPI-IO
-PropertyList unlocked_access();  ///< file access by the ordinary driver, no locks
+PropertyList unlocked_access();  ///< file access with the default driver, without locks
 
-/// Creates missing groups on the way. An empty `extent` is a scalar.
+/// Also creates missing parent groups. An empty `extent` is a scalar.
 Dataset create_dataset(hid_t file, const std::string& path, hid_t type, const std::vector<hsize_t>& extent);
 Dataset open_dataset(hid_t file, const std::string& path);
-bool exists(hid_t file, const std::string& path);  ///< also false where a group on the way is missing
+bool exists(hid_t file, const std::string& path);  ///< also false if a parent group is missing
 std::vector<hsize_t> extent(const Dataset& dataset, const std::string& path);
-/// How many values it has. Refuses more than its part of the file can hold: a damaged extent would ask for all memory.
+/// Number of values. Throws Damage if its storage is too small for them: a damaged extent could exhaust the memory.
 hsize_t value_count(const Dataset& dataset, const std::string& path);
 
-std::vector<std::string> members(hid_t group);           ///< their names, sorted
+std::vector<std::string> members(hid_t group);           ///< names, sorted
 std::vector<std::string> attribute_names(hid_t object);  ///< sorted
 
-/// A dataset kept open for access to whole rows, which `first` and `count` name; empty where there is none at `path`.
+/// An open dataset for access to rows [first, first + count); empty if `path` does not exist.
 class RowDataset {
  public:
   RowDataset() = default;
@@ -126,7 +126,7 @@ class RowDataset {
   const std::string& path() const { return path_; }
   hsize_t rows() const { return extent_.at(0); }
   hsize_t row_values() const { return row_values_; }
-  Datatype type() const;  ///< as in the file
+  Datatype type() const;  ///< type in the file
 
   void write(hid_t type, hsize_t first, hsize_t count, const void* values) const;
   void read(hid_t type, hsize_t first, hsize_t count, void* values) const;
@@ -167,7 +167,7 @@ void write_row(hid_t file, const std::string& path, hsize_t row, T value) {
   RowDataset(file, path).write(type_of<T>(), row, 1, &value);
 }
 
-/// The one number of a row.
+/// The single number of a row.
 template <class T>
 T read_row(const RowDataset& rows, hsize_t row) {
   if (rows.row_values() != 1) throw Damage(rows.path() + " has rows of several values");

@@ -20,7 +20,7 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
   const std::vector<std::string> outcomes = hdf5::read_texts(file.id(), "/tasks/outcome");
   const auto run_of_task = hdf5::read_all<std::int32_t>(file.id(), "/timing/tasks/run");
   const auto seconds = hdf5::read_all<double>(file.id(), "/timing/tasks/elapsed_s");
-  const hdf5::RowDataset messages(file.id(), "/tasks/message");  // kept open: its chunks may be compressed
+  const hdf5::RowDataset messages(file.id(), "/tasks/message");  // stays open: its chunks may be compressed
   summary.tasks = static_cast<std::int64_t>(states.size());
   for (std::size_t task = 0; task < states.size(); ++task) {
     if (states[task] == 0) continue;
@@ -39,7 +39,7 @@ void count_tasks(const hdf5::File& file, const std::vector<std::uint8_t>& states
 
 void find_begun(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
   const char* path = "/timing/tasks/tries";
-  if (!hdf5::exists(file.id(), path)) return;  // of a program that did not count them
+  if (!hdf5::exists(file.id(), path)) return;  // the file is older than this column
   const auto tries = hdf5::read_all<std::uint8_t>(file.id(), path);
   std::vector<std::size_t> begun;
   for (std::size_t task = 0; task < states.size(); ++task)
@@ -55,7 +55,7 @@ void find_begun(const hdf5::File& file, const std::vector<std::uint8_t>& states,
 
 void find_momentum_residual(const hdf5::File& file, const std::vector<std::uint8_t>& states, FileSummary& summary) {
   const char* path = "/tasks/momentum_residual";
-  if (!hdf5::exists(file.id(), path)) return;  // of a program that did not measure it
+  if (!hdf5::exists(file.id(), path)) return;  // the file is older than this column
   const auto residuals = hdf5::read_all<double>(file.id(), path);
   for (std::size_t task = 0; task < states.size(); ++task)
     if (states[task] != 0 && residuals.at(task) >= summary.momentum_residual.value_or(0))
@@ -86,8 +86,8 @@ FileSummary inspect(const fs::path& path) {
     summary.job_text = hdf5::read_texts(file.id(), "/job/text").at(0);
     if (hdf5::exists(file.id(), "/axes/guess")) summary.guesses = hdf5::read_texts(file.id(), "/axes/guess");
     summary.tolerances = hdf5::read_all<double>(file.id(), "/axes/tolerance");
-    summary.being_written = FileLock::is_held(path);  // first: who ends while this reads has said so in /runs by then
-    // The states next: of a task that is complete now, everything else is there to be read.
+    summary.being_written = FileLock::is_held(path);  // before /runs, where a run that ends meanwhile stores its end
+    // States before data: all data of a task with state 1 are in the file.
     const std::vector<std::uint8_t> states = read_states(file, path);
     summary.runs = read_runs(file);
     count_tasks(file, states, summary);

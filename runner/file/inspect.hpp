@@ -1,6 +1,6 @@
-// A results file as seen from outside, for `rodsweep status` and `rodsweep info`: read-only, without MPI, without a
-// plan. Works while a sweep writes to the file (no lock is taken; the state byte of a task is set after its data).
-// Throws FileError for what is missing, foreign, damaged or of another schema version.
+// A summary of a results file for `rodsweep status` and `rodsweep info`: read-only, without MPI or a plan. Works while
+// a sweep writes the file, because it takes no lock and a task's state byte is set after its data.
+// Throws FileError if the file is missing, foreign, damaged or of another schema version.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct FailedTask {
   std::string message;
 };
 
-/// A task that a worker began and did not finish: it runs, or its worker ended while it ran.
+/// A started but unfinished task: it is running, or its worker died.
 struct BegunTask {
   std::int64_t index = 0;
   int start = 0;  ///< row of /runs
@@ -34,7 +34,7 @@ struct FileSummary {
   std::uintmax_t bytes = 0;
   int schema_version = 0;
   std::string job_name, job_kind, job_text, plan_hash;
-  std::optional<std::int64_t> rerun_of_task;  ///< the file holds that task of the job alone, run again
+  std::optional<std::int64_t> rerun_of_task;  ///< the file holds only a rerun of this task
   std::vector<std::string> guesses;           ///< labels of /axes/guess; empty without cg
   std::vector<double> tolerances;             ///< /axes/tolerance
 
@@ -43,28 +43,28 @@ struct FileSummary {
   std::int64_t failed = 0;   ///< done with an outcome other than "ok"
   std::int64_t pending = 0;  ///< tasks - done
   std::map<std::string, std::int64_t> done_by_outcome;
-  std::vector<FailedTask> failures;         ///< in order of their index
-  std::vector<BegunTask> begun;             ///< likewise
-  std::optional<bool> being_written;        ///< by a run that lives; empty: the file system does not tell
-  double silent_s = 0;                      ///< since the file's time changed, which a run renews every 5 s
-  std::optional<double> momentum_residual;  ///< the largest of finished tasks that measured it
+  std::vector<FailedTask> failures;         ///< by index
+  std::vector<BegunTask> begun;             ///< by index
+  std::optional<bool> being_written;        ///< by a live run; empty: unknown, without file locks
+  double silent_s = 0;                      ///< since the last heartbeat
+  std::optional<double> momentum_residual;  ///< maximum over finished tasks that measured it
   std::vector<RunRow> runs;
 };
 
-/// A run renews its file's time every 5 s: one that is silent for longer does not live.
+/// Liveness timeout: a run renews its file's modification time every 5 s.
 inline constexpr double alive_s = 30;
 
-/// Since the file's time changed, by this host's clock, which need not be that of whoever keeps the file: at least 0.
+/// Time since the file's modification by this host's clock; at least 0, because the file server's clock may differ.
 double silent_seconds(const std::filesystem::path& path);
 
 FileSummary inspect(const std::filesystem::path& path);
 
 struct Verification {
   std::int64_t checked = 0;           ///< finished tasks
-  std::vector<std::int64_t> damaged;  ///< those whose data do not have the checksum they were written with
+  std::vector<std::int64_t> damaged;  ///< tasks with a wrong checksum
 };
 
-/// Reads everything that finished tasks wrote (outside /timing) and compares it with /tasks/checksum.
+/// Reads all data of finished tasks (outside /timing) and compares it with /tasks/checksum.
 Verification verify(const std::filesystem::path& path);
 
 }  // namespace rodsweep

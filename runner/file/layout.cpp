@@ -35,7 +35,7 @@ void append_parameters(std::vector<Field>& fields, const Plan& plan, const std::
   }
 }
 
-/// Refuses sizes that no file system takes, far below overflow.
+/// Throws FileError for sizes beyond any file system, far below overflow.
 void check_sizes(const std::vector<Field>& fields, const Plan& plan) {
   constexpr double most_bytes = 1e18;
   double all = 0;

@@ -1,7 +1,6 @@
-// Every dataset of a plan's results file: path, type, extents, unit and meaning. Creating the file, its size, opening
-// it and the checks of --resume all walk this one list. A dataset that would hold nothing is left out (/solves of a job
-// that records summaries, /trajectories, /systems of a sweep, what has a guess axis where there are no guesses,
-// contacts where no task has contact).
+// All datasets of a plan's results file: path, type, extents, unit and meaning. Used to create and open the file, to
+// compute its size and to check it for --resume. Empty datasets are left out: for example /solves of a job that records
+// summaries, /systems of a sweep, those with a guess axis without guesses, and those of contacts without contact.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@ namespace rodsweep {
 
 struct Field {
   std::string path;
-  hid_t (*number)() = nullptr;       ///< hdf5::type_of<T>; none: text
+  hid_t (*number)() = nullptr;       ///< hdf5::type_of<T>; null: text
   std::int64_t text_bytes = 0;       ///< length of a text
   std::vector<std::int64_t> extent;  ///< empty: a scalar
   std::string unit, meaning;
@@ -27,7 +26,7 @@ inline constexpr int outcome_bytes = 16;
 inline constexpr int message_bytes = 240;
 inline constexpr int host_bytes = 64;
 
-/// `parameters` are plan.parameters(), which are built on demand. Throws FileError for more bytes than any file takes.
+/// `parameters`: plan.parameters(), which are built on demand. Throws FileError if the size exceeds any file system.
 std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& parameters);
 
 Field text_field(std::string path, std::int64_t bytes, std::vector<std::int64_t> extent, std::string meaning);
@@ -39,11 +38,11 @@ Field number_field(std::string path, std::vector<std::int64_t> extent, std::stri
 
 hdf5::Datatype type_of(const Field& field);
 
-/// Bytes of the values of a dataset of a layout().
+/// Bytes of a dataset's values.
 std::int64_t data_bytes(const Field& field);
 
-/// Sixteen hexadecimal digits over what the plan fixes about the file (floating-point parameters are left out: another
-/// machine may round them differently).
+/// A hash of the plan, sixteen hexadecimal digits. Floating-point parameters are left out, because other machines may
+/// round them differently.
 std::string plan_hash(const Plan& plan, const std::vector<ParameterColumn>& parameters);
 
 }  // namespace rodsweep

@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr hsize_t chunk_bytes = 1 << 18;  // small enough for a reader of single tasks, large enough to compress
-constexpr hsize_t least_bytes = 1 << 12;  // below, a chunk's index would take more than is saved
-constexpr unsigned deflate_level = 4;     // higher ones take much longer and save little
+constexpr hsize_t chunk_bytes = 1 << 18;  // small for readers of single tasks, but large enough to compress well
+constexpr hsize_t least_bytes = 1 << 12;  // below, a chunk's index takes more than is saved
+constexpr unsigned deflate_level = 4;     // higher levels take much longer and save little
 constexpr const char* state_path = "/tasks/state";
 
 void copy_attributes(hid_t from, hid_t to) {
@@ -33,7 +33,7 @@ void copy_attributes(hid_t from, hid_t to) {
   }
 }
 
-/// Whole rows, about chunk_bytes of them; where a row is longer than that, part of one.
+/// Whole rows of about chunk_bytes in total; part of a row if a row is longer.
 std::vector<hsize_t> chunk_of(const std::vector<hsize_t>& extent, hsize_t element_bytes) {
   std::vector<hsize_t> chunk = extent;
   hsize_t room = std::max<hsize_t>(1, chunk_bytes / element_bytes);
@@ -77,7 +77,7 @@ void copy_dataset(const hdf5::File& source, const hdf5::File& target, const std:
   }
   const hdf5::RowDataset rows(source.id(), path), packed(target.id(), path);
   const hsize_t row_bytes = rows.row_values() * H5Tget_size(type.id());
-  // A multiple of a chunk's rows, so that every chunk is compressed once.
+  // A multiple of the chunk's rows, so that each chunk is compressed once.
   const hsize_t chunk_rows = chunk_of(extent, H5Tget_size(type.id())).front();
   const hsize_t block = chunk_rows * std::max<hsize_t>(1, 16 * chunk_bytes / (chunk_rows * row_bytes));
   std::vector<char> values(std::min(block, rows.rows()) * row_bytes);
@@ -121,7 +121,7 @@ void refuse_damaged(const fs::path& path, const Verification& verified, const ch
 }  // namespace
 
 bool is_packed(const hdf5::File& file) {
-  // Those of some size are compressed; /runs, which is of the same size in every file, is always among them.
+  // All but small datasets are compressed. /runs/command has a fixed size and is always compressed.
   const hdf5::Dataset dataset = hdf5::open_dataset(file.id(), "/runs/command");
   const hdf5::PropertyList creation(
       hdf5::check(H5Dget_create_plist(dataset.id()), "H5Dget_create_plist", "/runs/command"));
@@ -131,7 +131,7 @@ bool is_packed(const hdf5::File& file) {
 Packing pack_results(const fs::path& source_path, const fs::path& target_path) {
   refuse_existing(target_path);
   const hdf5::File source = open_results(source_path);
-  // The states first: of a task that is complete now, everything else is there to be copied.
+  // States before data: all data of a task with state 1 are in the file.
   const std::vector<std::uint8_t> states = read_states(source, source_path);
   refuse_damaged(source_path, verify(source_path), "nothing was packed");
 

@@ -1,11 +1,10 @@
-// A compressed copy of a results file for keeping and sending: the same objects, attributes, types and values, but
-// every dataset of some size in chunks that are shuffled, deflated and carry a checksum. All readers take it for the
-// file it was made from; it cannot be continued, since ranks cannot write compressed chunks independently.
+// Makes a compressed copy of a results file for archives: the same objects, attributes, types and values. All but small
+// datasets are stored in shuffled, deflated chunks with checksums. All readers accept the copy. A sweep cannot be
+// resumed in it, because ranks cannot write compressed chunks independently.
 //
-// The finished tasks are compared with their checksums (/tasks/checksum) before and after. A file in which a sweep
-// still writes is packed as it was at the start: tasks that finish meanwhile stay pending in the copy. The copy gets
-// its name when it is whole. One process, no MPI. Throws FileError: damaged or foreign source, existing target, full
-// disk.
+// The checksums of finished tasks are verified before and after. If a sweep writes the source, tasks that finish during
+// the copy stay pending in it. The copy gets its name when it is complete. One process, no MPI. Throws FileError:
+// damaged or foreign source, existing target, full disk.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +15,13 @@
 namespace rodsweep {
 
 struct Packing {
-  std::int64_t tasks = 0, verified = 0;  ///< of the plan; finished ones whose checksums held in the copy
+  std::int64_t tasks = 0, verified = 0;  ///< in the plan; verified in the copy
   std::uintmax_t bytes_before = 0, bytes_after = 0;
 };
 
 Packing pack_results(const std::filesystem::path& source, const std::filesystem::path& target);
 
-/// Was this results file made by pack_results()?
+/// Whether pack_results() made this file.
 bool is_packed(const hdf5::File& file);
 
 }  // namespace rodsweep

@@ -1,5 +1,5 @@
-// What the plan says of every task, as columns of /tasks: its place in the sweep, and which rows are its own. The
-// layout, the plan's hash, creation and reading walk this list.
+// The columns of /tasks that come from the plan: each task's place in the sweep and its row ranges. Used for the
+// layout, the plan's hash, creation and reading.
 #pragma once
 
 #include <type_traits>
@@ -10,8 +10,8 @@
 
 namespace rodsweep {
 
-/// Calls visit(path, meaning, member), member(task) a number of it, for all columns of a file; of those that not every
-/// file has, for each RowPlace that `holds` says it has.
+/// Calls visit(path, meaning, member) for all columns of a file; member(task) is the value of a task. Optional columns
+/// are visited if `holds` returns true for their RowPlace.
 template <class Holds, class Visit>
 void visit_planned_columns(Holds&& holds, Visit&& visit) {
   visit(
@@ -38,7 +38,7 @@ void visit_planned_columns(Holds&& holds, Visit&& visit) {
   }
 }
 
-/// Calls visit(path, meaning, values), a vector with a number of every task.
+/// Calls visit(path, meaning, values), with one value per task.
 template <class Visit>
 void visit_planned_values(const Plan& plan, Visit&& visit) {
   const auto holds = [&](const RowPlace& place) { return plan.rows(place.with) > 0; };

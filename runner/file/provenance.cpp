@@ -16,7 +16,7 @@
 namespace rodsweep {
 namespace {
 
-/// "Open MPI v4.1.4": the library's own text up to its first comma or line end.
+/// "Open MPI v4.1.4": the library's version text up to the first comma or line end.
 std::string mpi_version() {
   char text[MPI_MAX_LIBRARY_VERSION_STRING];
   int length = 0;

@@ -1,4 +1,4 @@
-// Who made a file and with what. Works without MPI_Init and PetscInitialize.
+// Provenance of a file: host, command, versions. Works without MPI_Init and PetscInitialize.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 namespace rodsweep {
 
 struct Provenance {
-  /// `host`: in a file the hosts of all ranks, which ResultsFile finds out.
+  /// `host`: in a file the hosts of all ranks, set by ResultsFile.
   std::string begin_utc, host, user_command, revision, versions, petsc_options;
-  std::string job;  ///< absolute path of the job file: relative paths in the job begin in its folder
+  std::string job;  ///< absolute path of the job file; its folder is the base of relative paths in the job
   int ranks = 1;
-  int shard = 0, shards = 0;    ///< the part of the sweep that it ran; 0: the whole
-  bool oversubscribed = false;  ///< more ranks than cores: timings mean nothing
+  int shard = 0, shards = 0;    ///< the shard that it ran; 0: the whole sweep
+  bool oversubscribed = false;  ///< more ranks than cores: timings are invalid
 };
 
 /// One run of the program on a sweep: a row of /runs.
@@ -20,9 +20,9 @@ struct RunRow {
   Provenance provenance;
   std::string end_utc;      ///< empty: still running, or killed
   int exit_code = -1;       ///< -1: still running, or killed
-  std::string source;       ///< the file that this one extends, whose run it was; empty: a run of this sweep
+  std::string source;       ///< the extended or merged file that had this run; empty: a run of this file
   std::int64_t tasks = 0;   ///< tasks that this run completed (inspect())
-  double task_seconds = 0;  ///< their wall time, summed (inspect())
+  double task_seconds = 0;  ///< sum of their wall times (inspect())
 };
 
 /// Who ran a task (/timing/tasks).
@@ -33,10 +33,10 @@ struct TaskOrigin {
   double write_s = 0;
 };
 
-/// Begins now, on this host, with this program; `ranks` and `oversubscribed` are for the caller to complete.
+/// Begins now, on this host, with this program. The caller sets the other members.
 Provenance provenance_of_this_process(std::string user_command);
 
-/// The git revision of the sources when they were configured ("-dirty" with local changes), or "unknown".
+/// The git revision of the sources at configuration ("-dirty" with local changes), or "unknown".
 std::string source_revision();
 
 /// rodsweep, Open MPI (or another MPI), PETSc, HDF5, Eigen and the compiler, as "name version" joined by "; ".
@@ -44,10 +44,10 @@ std::string library_versions();
 
 std::string host_name();
 
-/// Now, as 2025-11-21T16:05:09Z.
+/// The current time, as 2025-11-21T16:05:09Z.
 std::string utc_now();
 
-/// Seconds since 1970 of such a text; 0 of another.
+/// Seconds since 1970 of such a text; 0 if invalid.
 std::int64_t seconds_of_utc(const std::string& text);
 
 }  // namespace rodsweep

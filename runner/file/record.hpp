@@ -1,8 +1,8 @@
-// The results of one task in memory: evaluate() fills a TaskRecord, ResultsFile writes it. What stands where in the
-// file is in the list of columns (runner/file/columns.hpp).
+// The results of one task in memory: evaluate() fills a TaskRecord, ResultsFile writes it. The columns of the file are
+// listed in runner/file/columns.hpp.
 //
-// Every vector is sized and set to its sentinel (-1 for counts, NaN for measurements, not_run for reasons) before the
-// task starts: a reader never mistakes a row that was not reached for a perfect result.
+// Before the task starts, every vector is sized and filled with its sentinel: -1 for counts, NaN for measurements,
+// not_run for outcomes. So rows not reached cannot be mistaken for results.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ namespace rodsweep {
 
 class Plan;
 
-/// Sizes of the axes that the whole file shares.
+/// Sizes of the axes shared by the whole file.
 struct AxisSizes {
   std::int64_t guesses = 0, tolerances = 0, frames = 0;
 };
 
 AxisSizes axis_sizes(const Plan& plan);
 
-/// Counts of a task, summed over its solves: [guess, tolerance]. Solves that missed the tolerance count what they used.
+/// Sums over the solves of a task: [guess, tolerance]. Solves that missed the tolerance count all their iterations.
 struct CountSums {
   std::vector<std::int64_t> iterations, matvecs;
   std::vector<std::int32_t> unreached;  ///< solves that missed the tolerance
@@ -33,12 +33,12 @@ struct CountSums {
 struct TaskRecord {
   // ---- /tasks [task ...]; state and checksum are ResultsFile's
   TaskOutcome outcome = TaskOutcome::pending;
-  std::string message;  ///< for outcomes other than ok: what happened, at which step
+  std::string message;  ///< for outcomes other than ok: the reason and the step
 
   std::vector<std::int32_t> steps_done;                                ///< [1]
   std::vector<double> deepest_penetration, largest_momentum_residual;  ///< [1]
-  CountSums counted, counted_all;                                      ///< of first Newton iterations; of all
-  CountSums counted_other_norm;                                        ///< of first ones, without matvecs
+  CountSums counted, counted_all;                                      ///< first Newton iterations; all of them
+  CountSums counted_other_norm;                                        ///< first ones, without matvecs
 
   // ---- /solves [row ...]
   std::vector<std::int32_t> step;
@@ -75,22 +75,22 @@ struct TaskRecord {
   std::vector<double> system_contact_force, system_contact_torque;         ///< [balanced_segment, 3]
   std::vector<double> system_lambda, system_solution;                      ///< [system x joint, 6]
 
-  // ---- /timing: whatever may differ between two runs of the same job; ResultsFile adds rank, host, attempt, write_s
+  // ---- /timing: data that may differ between runs of the same job; ResultsFile adds rank, host, run, write_s, tries
   std::vector<float> assemble_s, direct_s;  ///< [row]
-  std::vector<float> guess_s, cg_s;         ///< [row, guess]; cg_s includes the preconditioner's set-up
-  std::vector<float> rest_s;                ///< [step row] the step without assembly and solves
+  std::vector<float> guess_s, cg_s;         ///< [row, guess]; cg_s includes the preconditioner's setup
+  std::vector<float> rest_s;                ///< [step row] time of the step without assembly and solves
   std::vector<double> elapsed_s;            ///< [1]
   std::vector<std::int64_t> source_task;    ///< [1] \ of an extended sweep
   std::vector<std::int8_t> copied_guess;    ///< [guess] /
 
-  /// Sizes everything for this task and sets it to its sentinel. Memory of an earlier task is used again.
+  /// Sizes all vectors for this task and fills them with sentinels. Reuses the memory of an earlier task.
   void prepare(const Task& task, const AxisSizes& sizes);
 };
 
-/// What a row of each kind takes in a record.
+/// Bytes of a row of each kind in a record.
 PerRows<std::int64_t> row_bytes(const AxisSizes& sizes);
 
-/// What a record takes once it is prepared for this task.
+/// Bytes of a record prepared for this task.
 std::int64_t record_bytes(const Task& task, const PerRows<std::int64_t>& of_a_row);
 
 }  // namespace rodsweep

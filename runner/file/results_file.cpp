@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Runs `work` on rank 0 alone; when it throws there, every rank throws an error of the same text.
+/// Runs `work` on rank 0. If it throws, every rank throws an error with the same text.
 template <class Work>
 void on_first_rank(MPI_Comm comm, Work&& work) {
   int rank = 0;
@@ -51,7 +51,7 @@ void on_first_rank(MPI_Comm comm, Work&& work) {
   throw Hdf5Error(text);
 }
 
-/// Open MPI's file layer (4.1) builds names from the path in buffers of 256 bytes, and aborts where they overflow.
+/// Open MPI's file layer (4.1) copies the path to buffers of 256 bytes, and aborts if they overflow.
 void check_path(const fs::path& path) {
   constexpr std::size_t most = 230;
   if (path.native().size() > most)
@@ -61,7 +61,7 @@ void check_path(const fs::path& path) {
                     path.native(), path.native().size(), most));
 }
 
-/// Each host of the ranks once, in the order of their ranks. Collective.
+/// The hosts of all ranks without duplicates, in rank order. Collective.
 std::string host_names(MPI_Comm comm) {
   std::vector<std::string> names;
   for (std::string& name : everywhere(host_name(), comm))
@@ -69,10 +69,10 @@ std::string host_names(MPI_Comm comm) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-/// Why a task that is said to be complete is run again.
+/// Why a task marked as complete is run again.
 enum Again : std::uint8_t { not_again, failed, damaged };
 
-/// A state byte that is neither of the two says that the task is not complete: so its reader shall find it.
+/// Sets invalid state bytes to 0, so that their tasks are pending.
 void mend_states(const fs::path& path, const std::vector<std::uint8_t>& states) {
   if (std::all_of(states.begin(), states.end(), [](std::uint8_t state) { return state <= 1; })) return;
   const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDWR);
@@ -80,7 +80,7 @@ void mend_states(const fs::path& path, const std::vector<std::uint8_t>& states) 
     if (states[task] > 1) hdf5::write_row<std::uint8_t>(file.id(), "/tasks/state", task, 0);
 }
 
-/// Where the file system has no locks: a run that has not ended shows every few seconds that it lives.
+/// For file systems without locks: throws FileError if the last run has not ended and its heartbeat is recent.
 void refuse_living(const fs::path& path) {
   const std::vector<RunRow> runs = read_runs(open_results(path));
   const double silent_s = silent_seconds(path);
@@ -100,7 +100,7 @@ bool intact(const TaskReader& reader, std::int64_t task, TaskRecord& record, con
                   path.native(), task));
 }
 
-/// Of every task, found by all ranks together; nothing where any is told to stop before. Collective.
+/// Collective: for each task, whether it is run again and why. Returns none if `stop` is true on any rank.
 std::optional<std::vector<std::uint8_t>> to_run_again(const fs::path& path, const std::vector<std::uint8_t>& done,
                                                       Retry retry, MPI_Comm comm, const std::function<bool()>& stop) {
   int rank = 0, size = 1;
@@ -135,7 +135,7 @@ std::optional<std::vector<std::uint8_t>> to_run_again(const fs::path& path, cons
   return again;
 }
 
-/// "task 3 is" or "4 tasks, the first being 3, are"; empty where there are none.
+/// "task 3 is" or "4 tasks, the first being 3, are"; empty if there are none.
 std::string these_tasks(const std::vector<std::uint8_t>& again, Again why) {
   const auto count = std::count(again.begin(), again.end(), why);
   if (count == 0) return "";
@@ -143,16 +143,16 @@ std::string these_tasks(const std::vector<std::uint8_t>& again, Again why) {
   return count == 1 ? fmt::format("task {} is", first) : fmt::format("{} tasks, the first being {}, are", count, first);
 }
 
-constexpr double shortest_pause_s = 0.05, busy_share = 0.02;  // of the time that syncs may take
+constexpr double shortest_pause_s = 0.05, busy_share = 0.02;  // share of the time for syncs
 
 }  // namespace
 
-/// Handles of the file. They die in reverse order: datasets before their file.
+/// Handles of the file. They are destroyed in reverse order: datasets before their file.
 struct ResultsFile::Open {
   ~Open() {
     try {
       commit();
-    } catch (const std::exception&) {  // close() would have said so; these tasks are run again
+    } catch (const std::exception&) {  // close() reports this; these tasks are run again
     }
     if (std::uncaught_exceptions() > 0) file.release();
   }
@@ -160,7 +160,7 @@ struct ResultsFile::Open {
   void commit() {
     if (written.empty()) return;
     const auto begin = Clock::now();
-    // The kernel tells a failed write once, and a second sync would find nothing amiss.
+    // The kernel reports a failed write only once; a second sync would succeed.
     if (std::exchange(sync_failed, true)) throw FileError(fmt::format("{} could not be synced before", path.native()));
     synced.sync();
     sync_failed = false;
@@ -187,15 +187,15 @@ struct ResultsFile::Open {
   hdf5::File file;
   fs::path path;
   bool sync_failed = false;
-  FileLock lock;  // of the first rank
+  FileLock lock;  // on rank 0
   SyncedFile synced;
   Clock::time_point next_commit = Clock::now();
-  std::vector<std::int64_t> written;  ///< tasks whose data are, and whose state is to follow
+  std::vector<std::int64_t> written;  ///< tasks with written data, whose state byte is not set yet
   std::int64_t committed = 0;
   int own_rank = 0;
   AxisSizes sizes;
-  RunRow run;                             // this start's
-  std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: the file leaves it out
+  RunRow run;                             // of this start
+  std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: not in the file
   hdf5::RowDataset state, outcome, message, checksum, tries, rank, host, run_row, write_s, tried_s, tried_steps;
   hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
   hdf5::Datatype host_type = hdf5::text_type(host_bytes);
@@ -290,7 +290,7 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
   on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(run_index_), open_->run); });
 }
 
-/// What is run again is pending, in the file too, before anything is written over it.
+/// Marks the tasks to run again as pending in the file, before anything is overwritten.
 void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm comm) {
   if (std::all_of(again.begin(), again.end(), [](std::uint8_t why) { return why == not_again; })) return;
   on_first_rank(comm, [&] {
@@ -320,7 +320,7 @@ void ResultsFile::commit_if_due() {
 }
 
 void ResultsFile::begin(const Task& task) {
-  std::uint8_t before = 0;  // more than when the file was opened, if another rank was lost with the task meanwhile
+  std::uint8_t before = 0;  // another rank may have been lost with this task since the file was opened
   open_->tries.read(hdf5::type_of<std::uint8_t>(), static_cast<hsize_t>(task.index), 1, &before);
   before = std::max(before, tries_.at(static_cast<std::size_t>(task.index)));
   before_[task.index] = before;

@@ -1,15 +1,13 @@
-// The one HDF5 file of a sweep, written by many ranks at once (MPI-IO, independent transfers).
+// The HDF5 file of a sweep, written by many ranks at once (MPI-IO, independent transfers).
 //
-// Created whole before the sweep, by rank 0 (runner/file/file_creation.hpp): every dataset is contiguous with early
-// allocation, so that no rank creates an object at run time; unwritten bytes are zero and `/tasks/state` is zero,
-// "pending". A worker writes all rows of a task, sentinels included, brings them to disk, and writes the state byte
-// after that: a task whose state is 1 is complete, whatever happened to any process, or to the machine's power, since.
-// Several tasks share a sync, which takes no more than a fiftieth of the time. Metadata never change while the sweep
-// runs, so a killed sweep leaves a sound file. The layout is that of columns() (runner/file/columns.hpp) plus /job,
-// /runs, /axes and the plan's columns in /tasks: see runner/file/layout.hpp.
+// Rank 0 creates the complete file before the sweep (runner/file/file_creation.hpp). All datasets are contiguous with
+// early allocation, so no rank creates objects at run time; unwritten bytes and `/tasks/state` are zero ("pending").
+// A worker writes all rows of a task including sentinels, syncs them, then writes the state byte. So a task with state
+// 1 is complete, even after crashes or a power cut. Several tasks share a sync; syncs take at most 2 % of the time.
+// Metadata never changes during the sweep, so a killed sweep leaves a valid file. The layout is columns()
+// (runner/file/columns.hpp) plus /job, /runs, /axes and the plan's columns in /tasks: see runner/file/layout.hpp.
 //
-// Errors: FileError (the user's: exists already, not ours, another job, no space), Hdf5Error (a failing call, with its
-// name).
+// Errors: FileError (user error: exists already, foreign file, another job, no space), Hdf5Error (a failed call).
 #pragma once
 
 #include <mpi.h>
@@ -33,64 +31,63 @@
 
 namespace rodsweep {
 
-/// Of a sweep that goes on: which tasks that ended are run again.
+/// Which ended tasks a resumed sweep runs again.
 enum class Retry { none, failed };
 
 class ResultsFile {
  public:
-  /// Collective over `comm`. Refuses a path that exists and a disk that is too full (before creating anything). All
-  /// ranks throw the same error. `earlier`: files that this one takes tasks from; their rows of /runs come first here.
+  /// Collective over `comm`. All ranks throw the same FileError if the path exists or the disk is too full, before
+  /// anything is created. `earlier`: files whose tasks are copied; their rows of /runs come first.
   static ResultsFile create(const std::filesystem::path& path, const Plan& plan, const Provenance& provenance,
                             MPI_Comm comm, const FreeSpace& free_space = free_bytes,
                             const std::vector<std::filesystem::path>& earlier = {});
-  /// Collective. Refuses a file of another program, schema version, plan or job text, and one that another run is
-  /// writing. Tasks whose data are not what was written (checksums; the ranks share the work, and show meanwhile that
-  /// they live) count as pending again, and on request those that failed and may end otherwise (may_change()). Appends
-  /// a row to /runs. Nothing, the same on every rank, where any rank is told to `stop` before all are verified: the
-  /// file stays as it is.
+  /// Collective. Throws FileError for a file of another program, schema version, plan or job text, or one that another
+  /// run is writing. All ranks verify the checksums, with a heartbeat. Damaged tasks become pending again; with
+  /// Retry::failed also failed ones that may end differently (may_change()). Appends a row to /runs. Returns none on
+  /// all ranks, and leaves the file unchanged, if `stop` returns true on any rank before all tasks are verified.
   static std::optional<ResultsFile> resume(
       const std::filesystem::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
       Retry retry = Retry::none, const std::function<bool()>& stop = [] { return false; });
 
   ResultsFile(ResultsFile&&) noexcept;
   ResultsFile& operator=(ResultsFile&&) noexcept;
-  /// Commits, and closes, which is collective, unless an exception unwinds this rank: the others need not be on their
-  /// way here, and nothing is lost, since writes are not buffered.
+  /// Commits and closes. The close is collective, and is skipped during stack unwinding, when other ranks may never get
+  /// here; nothing is lost, because writes are not buffered.
   ~ResultsFile();
 
-  /// Which tasks are complete, by task index (from the state bytes as they were when the file was opened).
+  /// Complete tasks, by task index, when the file was opened.
   const std::vector<std::uint8_t>& done() const { return done_; }
-  /// Of every task, its tries in earlier runs whose workers crashed.
+  /// Per task, the number of tries in earlier runs whose worker crashed.
   const std::vector<std::uint8_t>& tries() const { return tries_; }
   int run_index() const { return run_index_; }  ///< this run's row of /runs
-  /// What the user should hear about this file though it is no error; empty: nothing.
+  /// A warning for the user about this file; may be empty.
   const std::string& note() const { return note_; }
 
-  /// Independent, before a rank runs a task: counts the try, and stores which rank runs it.
+  /// Independent; call before a rank runs a task. Counts the try and stores the rank.
   void begin(const Task& task);
-  /// Independent: uncounts a try that was abandoned on request, and stores how far it came if it is the longest so far.
-  /// Another rank may have the task by now, or have finished it: its results stay untouched.
+  /// Independent: uncounts a try that was abandoned on request, and stores its progress if it is the longest so far.
+  /// Does not touch results, because another rank may run or have finished the task.
   void abandon(const Task& task, const Try& tried = {});
 
-  /// Independent: any rank, any task that is not done() yet, once. It is complete with the next commit(), which this is
-  /// too where one is due. `origin`: who ran it, where that was not this run.
+  /// Independent: any rank, any task not done(), once. The task is complete after the next commit(); calls it if due.
+  /// `origin`: who ran the task, if not this run.
   void write(const Task& task, const TaskRecord& record, const TaskOrigin* origin = nullptr);
 
-  /// Independent: brings this rank's tasks to disk, then says that they are complete.
+  /// Independent: syncs this rank's tasks to disk, then marks them as complete.
   void commit();
   void commit_if_due();
-  std::int64_t committed() const;  ///< tasks of this rank in this run
+  std::int64_t committed() const;  ///< number of tasks, of this rank in this run
 
-  /// Independent, one rank: shows in the file's modification time, every few seconds, that this run lives.
+  /// Independent, one rank: the heartbeat; renews the file's modification time every few seconds.
   void beat();
 
-  /// Independent, one rank: how this run ended (row of /runs).
+  /// Independent, one rank: stores the end of this run in its row of /runs.
   void end_run(const std::string& end_utc, int exit_code);
 
-  /// Collective: commits, closes the file, brings it to disk and reports failure, which the destructor cannot.
+  /// Collective: commits, closes and syncs the file, and reports failure, unlike the destructor.
   void close();
 
-  /// Independent, in its place where ranks are lost: commits, brings all to disk, and closes nothing.
+  /// Independent; replaces close() if ranks were lost. Commits and syncs, but does not close the file.
   void leave();
 
  private:
@@ -103,7 +100,7 @@ class ResultsFile {
 
   std::unique_ptr<Open> open_;
   std::vector<std::uint8_t> done_, tries_;
-  std::map<std::int64_t, std::uint8_t> before_;  ///< tasks that this rank runs: their tries before
+  std::map<std::int64_t, std::uint8_t> before_;  ///< earlier tries of the tasks that this rank runs
   int run_index_ = 0;
   std::string note_;
 };

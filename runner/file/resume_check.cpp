@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Libraries of mathematical functions differ in the last digits, from machine to machine too.
+/// Math libraries differ in the last digits, also between machines.
 constexpr double rounding = 1e-9;
 
 constexpr const char* other_revision = "Use that revision, or run into another file with -o FILE";
@@ -32,7 +32,7 @@ struct Line {
   std::string here, in_file;
 };
 
-/// The first line in which two texts differ.
+/// The first line where two texts differ.
 Line first_difference(const std::string& here, const std::string& in_file) {
   std::istringstream a(here), b(in_file);
   for (Line line;; ++line.number) {
@@ -63,7 +63,7 @@ FileError other_program(const hdf5::File& file, const fs::path& path, const std:
                   path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference, advice));
 }
 
-/// Where the job's expansion is told in the file otherwise than here: the same revision says the same.
+/// The error for a different expansion of the job in the file. If the revision is the same, the file is damaged.
 FileError other_value(const hdf5::File& file, const fs::path& path, const std::string& difference, const char* advice) {
   const std::string own = source_revision();
   const bool is_known = own != "unknown" && own.find("-dirty") == std::string::npos;
@@ -90,7 +90,7 @@ bool same(double a, double b) {
   return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= rounding * std::max(std::abs(a), std::abs(b));
 }
 
-/// Before anything that a file named by the job may have a say in.
+/// Checked first, because all other checks may depend on the job's input files.
 void check_hash(const hdf5::File& file, const fs::path& path, const Plan& plan,
                 const std::vector<ParameterColumn>& parameters, const char* advice) {
   if (hdf5::read_text_attribute(file.id(), "/job", "plan_hash") != plan_hash(plan, parameters)) {
@@ -128,7 +128,7 @@ void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& 
   }
   visit_planned_values(plan, [&](const char* column, const char*, const auto& values) {
     using Value = typename std::decay_t<decltype(values)>::value_type;
-    if (!hdf5::exists(file.id(), column)) return;  // of a program that had no rows of that kind
+    if (!hdf5::exists(file.id(), column)) return;  // the file is older than this kind of rows
     compare(column, 1, values, hdf5::read_all<Value>(file.id(), column), std::equal_to<>());
   });
 }

@@ -1,5 +1,5 @@
-// May a sweep be continued in this file? One process, read-only. Throws FileError that says what differs and what to
-// do.
+// Checks whether a sweep can be resumed in a file. One process, read-only. Throws FileError with the difference and
+// advice.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,15 @@
 namespace rodsweep {
 
 struct ResumePoint {
-  std::vector<std::uint8_t> done;   ///< state bytes, by task index, whatever they are
-  std::vector<std::uint8_t> tries;  ///< /timing/tasks/tries, likewise
-  int runs = 0;                     ///< rows of /runs in use
+  std::vector<std::uint8_t> done;   ///< raw state bytes, by task index
+  std::vector<std::uint8_t> tries;  ///< /timing/tasks/tries, by task index
+  int runs = 0;                     ///< number of used rows of /runs
 };
 
-/// Does the job expand to the tasks that the file has?
+/// Throws unless the plan has the same tasks as the file.
 void check_same_tasks(const std::filesystem::path& path, const Plan& plan);
 
-/// Was the file made from this plan by a program that expands the plan's job in the same way? `advice`: what to do if
-/// not.
+/// Throws, with `advice`, unless the file was made from this plan by a program that expands its job in the same way.
 void check_same_plan(const std::filesystem::path& path, const Plan& plan, const char* advice);
 
 ResumePoint check_resumable(const std::filesystem::path& path, const Plan& plan);

@@ -42,7 +42,7 @@ constexpr std::array<RunColumn, 14> run_columns{{
      "1: more ranks than cores, so its times mean nothing"},
 }};
 
-/// How a number of a RunRow is stored.
+/// The type in the file of a RunRow's number.
 template <class T>
 using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
 

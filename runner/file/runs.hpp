@@ -1,4 +1,4 @@
-// The starts of a sweep, a row of /runs each. The list of its columns is in runs.cpp.
+// The starts of a sweep, one row of /runs each. The list of columns is in runs.cpp.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace rodsweep {
 
-inline constexpr int run_rows = 64;  ///< starts that one file remembers
+inline constexpr int run_rows = 64;  ///< maximum number of starts stored in a file
 
 /// The datasets, in the order of the file.
 std::vector<Field> run_fields();
 
-/// Rows in use. Files that are older than a column are read without it.
+/// The used rows. Columns missing in older files are skipped.
 std::vector<RunRow> read_runs(const hdf5::File& file);
 
-/// Writes a whole row, its begin last, which marks it as used.
+/// Writes a whole row. Writes the begin last, because it marks the row as used.
 void write_run(const hdf5::File& file, std::size_t row, const RunRow& run);
 
 }  // namespace rodsweep

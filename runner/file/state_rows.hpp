@@ -1,4 +1,4 @@
-// Vectors and quaternions of a rod's state as rows of the file, segment after segment: x, y, z; w, x, y, z. To the bit.
+// Copies vectors (x, y, z) and quaternions (w, x, y, z) of a rod's state to and from rows, one per segment, bit by bit.
 #pragma once
 
 #include <vector>

@@ -30,7 +30,7 @@ Job stored_job(const FileSummary& file, const fs::path& other, MissingFiles miss
     if (!other.empty()) {
       try {
         return parse_job(file.job_text, other);
-      } catch (const JobError&) {  // the first reason is the better one
+      } catch (const JobError&) {  // report the first error
       }
     }
     throw not_accepted(file, error);

@@ -1,4 +1,4 @@
-// The plan of a results file, made again from the job that the file holds.
+// The plan of a results file, rebuilt from the job stored in it.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 
 namespace rodsweep {
 
-/// The job file as the last start found it, where relative paths in the job begin; the results file where none says.
+/// The path of the job file of the last start that stored one, the base of relative paths; else the results file.
 std::filesystem::path stored_job_path(const FileSummary& file);
 
-/// The job that the file holds. Its relative paths begin where its own file was, or, if it cannot be read so, where
-/// `other` is, another job file that names the same models and data sets. Throws FileError for a job that this version
-/// does not accept.
+/// The job stored in the file. Relative paths start at its original folder. If it can't be read that way, they start at
+/// `other`, another job file with the same models and data sets. Throws FileError if this version does not accept the
+/// job.
 Job stored_job(const FileSummary& file, const std::filesystem::path& other = {},
                MissingFiles missing = MissingFiles::refused);
 
-/// Likewise of a file's job.
+/// The plan of a file's job. Throws FileError likewise.
 Plan planned(const FileSummary& file, Job job);
 Plan stored_plan(const FileSummary& file);
 

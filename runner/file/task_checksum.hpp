@@ -1,6 +1,6 @@
-// The checksum of one task (/tasks/checksum): its index, outcome and message as the file holds them, then every column
-// outside /timing in the order of columns(), but for those of contact where there are none: files that are older than
-// these know nothing of them. Writing and verifying ask for the same sum.
+// The checksum of one task (/tasks/checksum): its index, outcome and message as stored, then all columns outside
+// /timing in the order of columns(). Empty optional columns are skipped, because older files do not have them.
+// Used for writing and verifying.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A task's record, and every how many steps it has a frame.
+/// A task's record, and the number of steps between its frames.
 struct Written {
   Task task;
   TaskRecord record;
@@ -25,11 +25,11 @@ struct Written {
 Written read(const fs::path& path, std::int64_t task, std::int64_t every) {
   const TaskReader file(path, TaskReader::Times::left_out);
   Written written{reading(path, [&] { return file.tasks().at(static_cast<std::size_t>(task)); }), {}, every};
-  file.read(task, written.record);  // damaged or not: the comparison tells
+  file.read(task, written.record);  // even if damaged: the comparison detects this
   return written;
 }
 
-/// Frame by frame, where both have one of the same step.
+/// Compares the frames of common steps.
 bool same_frames(const Written& a, std::string_view bytes_a, const Written& b, std::string_view bytes_b) {
   const std::size_t frame_bytes = bytes_a.size() / static_cast<std::size_t>(a.task.frames);
   const auto of_frame = [&](std::string_view bytes, std::int64_t frame) {
@@ -49,7 +49,7 @@ void compare_results(const Written& a, const Written& b, TaskComparison& result)
     if (is_timing(column) || bytes_a.empty()) continue;
     const bool of_trajectory = std::string_view(column.path).rfind("/trajectories/", 0) == 0;
     if (of_trajectory && (a.every == 0 || b.every == 0)) continue;
-    if (of_trajectory && column.rows == Rows::task) continue;  // places and times of frames
+    if (of_trajectory && column.rows == Rows::task) continue;  // row numbers and times of frames
     ++result.compared;
     const bool same = column.rows == Rows::frame_segment ? same_frames(a, bytes_a, b, bytes_b) : bytes_a == bytes_b;
     if (!same) result.differing.emplace_back(column.path);
@@ -69,7 +69,7 @@ bool same_value(hid_t a, std::int64_t row_a, hid_t b, const std::string& path) {
   return std::equal(value_a.begin(), value_a.end(), value_b.begin(), value_b.end(), same);
 }
 
-/// Outcome, message and parameters.
+/// Compares outcome, message and parameters.
 void compare_values(const fs::path& sweep_path, std::int64_t task, const fs::path& rerun_path, TaskComparison& result) {
   const hdf5::File sweep = open_results(sweep_path), rerun = open_results(rerun_path);
   std::vector<std::string> paths{"/tasks/outcome", "/tasks/message"};

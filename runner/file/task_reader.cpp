@@ -39,13 +39,13 @@ std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
   return tasks;
 }
 
-/// Of an axis that a dataset has at `place`; 0 where the file leaves it out.
+/// The size of axis `place` of a dataset; 0 if the file does not have it.
 std::int64_t axis_size(const hdf5::File& file, const std::string& path, std::size_t place) {
   if (!hdf5::exists(file.id(), path)) return 0;
   return static_cast<std::int64_t>(hdf5::extent(hdf5::open_dataset(file.id(), path), path).at(place));
 }
 
-/// Refuses rows that are not in their dataset, or wider or narrower than the axes of the file make them.
+/// Throws Damage if rows are outside their dataset, or their width does not match the file's axes.
 void check_rows(const RowRange& rows, std::int64_t width, const hdf5::RowDataset& dataset) {
   const auto most = static_cast<std::int64_t>(dataset.rows());
   if (rows.first < 0 || rows.count < 0 || rows.count > most || rows.first > most - rows.count)
@@ -58,7 +58,7 @@ void check_rows(const RowRange& rows, std::int64_t width, const hdf5::RowDataset
 
 TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(open_results(path)) {
   reading(path, [&] {
-    // The states first: of a task that is complete now, everything else is there to be read.
+    // States before data: all data of a task with state 1 are in the file.
     states_ = read_states(file_, path);
     outcomes_ = hdf5::read_texts(file_.id(), "/tasks/outcome");
     if (outcomes_.size() != states_.size()) throw Damage("/tasks/outcome has another length than /tasks/state");

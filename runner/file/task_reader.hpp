@@ -1,5 +1,5 @@
-// Reads the records of finished tasks back from a results file, read-only, without MPI and without a plan. Throws
-// FileError for a file that is none, or contradicts itself.
+// Reads the records of finished tasks from a results file, read-only, without MPI or a plan. Throws FileError if the
+// file is not a results file or is inconsistent.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +18,18 @@ class TaskReader {
   enum class Times { read, left_out };
   explicit TaskReader(const std::filesystem::path& path, Times times = Times::read);
 
-  /// As the file tells them: identity and rows.
+  /// The tasks as stored: identity and rows.
   const std::vector<Task>& tasks() const { return tasks_; }
 
-  /// Was it complete when the file was opened?
+  /// Whether the task was complete when the file was opened.
   bool done(std::int64_t task) const { return states_[static_cast<std::size_t>(task)] == 1; }
-  TaskOutcome outcome(std::int64_t task) const;  ///< TaskOutcome::pending where it was not
+  TaskOutcome outcome(std::int64_t task) const;  ///< TaskOutcome::pending if it was not complete
 
-  /// The whole record of a complete task, empty vectors where the file leaves a column out. False: it does not have the
-  /// checksum that it was written with.
+  /// Reads the record of a complete task; vectors of columns not in the file are empty. Returns false if the checksum
+  /// is wrong.
   bool read(std::int64_t task, TaskRecord& record) const;
 
-  /// The same, and false also where it cannot be read at all.
+  /// The same, but also returns false if the record cannot be read.
   bool read_intact(std::int64_t task, TaskRecord& record) const;
 
   TaskOrigin origin(std::int64_t task) const;
@@ -41,7 +41,7 @@ class TaskReader {
   std::vector<Task> tasks_;
   std::vector<std::uint8_t> states_;
   std::vector<std::string> outcomes_;
-  std::vector<hdf5::RowDataset> columns_;  ///< in the order of columns(); empty: the file leaves it out
+  std::vector<hdf5::RowDataset> columns_;  ///< in the order of columns(); empty: not in the file
   hdf5::RowDataset message_, checksum_, rank_, host_, run_, write_s_;
 };
 

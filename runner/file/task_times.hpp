@@ -1,4 +1,4 @@
-// How long tasks took, and how far abandoned tries came: the time of what is left is estimated from these.
+// The times of finished tasks and the progress of abandoned tries, to estimate the time left.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct Try {
 
 /// By task.
 struct TaskTimes {
-  std::vector<double> elapsed_s;  ///< of those that are done
+  std::vector<double> elapsed_s;  ///< of finished tasks
   std::vector<Try> tried;
 };
 

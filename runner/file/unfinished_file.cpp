@@ -30,7 +30,7 @@ FileError exists_error(const fs::path& path) {
 
 constexpr const char* mark = ".unfinished-";
 
-/// Who makes an unfinished file, by the end of its name, HOST-PROCESS-RANDOM.
+/// The creator of an unfinished file, from the end of its name, HOST-PROCESS-RANDOM.
 struct Maker {
   std::string host;
   pid_t process = 0;
@@ -118,7 +118,7 @@ void UnfinishedFile::check_creatable() const {
 void UnfinishedFile::publish() const {
   SyncedFile(temporary_).sync();
   const bool linked = link(temporary_.c_str(), path_.c_str()) == 0;
-  // Renamed on a file system without hard links.
+  // On file systems without hard links, rename instead.
   if (!linked &&
       (errno == EEXIST || renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) != 0)) {
     if (errno == EEXIST) throw exists_error(path_);

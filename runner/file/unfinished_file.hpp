@@ -1,7 +1,6 @@
-// A file in the making: it has a temporary name beside its own, and gets its own name when it is whole, in one step
-// that never replaces another file and that a power cut either undoes or leaves whole. Whatever bears the temporary
-// name when this dies is removed: two programs cannot make the same file, and one that is killed meanwhile leaves its
-// name free. Throws FileError.
+// A file under construction. It has a temporary name in the same folder, and is renamed atomically when complete. This
+// never overwrites another file and survives a power cut. The destructor removes the temporary file. So two programs
+// can't create the same file, and a killed program does not block its name. Throws FileError.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +12,10 @@
 namespace rodsweep {
 
 FileError creation_error(const std::filesystem::path& path, const std::string& reason);
-/// The same in the middle, most often for want of space.
+/// The same for an error while writing, usually a full disk.
 FileError writing_error(const std::filesystem::path& path, const std::string& reason);
 
-/// Which file a path leads to, whatever its name.
+/// The identity of a file, independent of its path.
 struct FileIdentity {
   std::uintmax_t device = 0, number = 0;
   bool operator==(const FileIdentity& other) const { return device == other.device && number == other.number; }
@@ -25,7 +24,7 @@ FileIdentity identity_of(const std::filesystem::path& path);
 
 class UnfinishedFile {
  public:
-  /// `path` is the name that it will get. Creates nothing.
+  /// `path`: the final name. Does not create the file.
   explicit UnfinishedFile(const std::filesystem::path& path);
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
@@ -33,28 +32,28 @@ class UnfinishedFile {
 
   const std::filesystem::path& path() const { return temporary_; }
 
-  /// Asks the system whether it can be made: its reason reads better than HDF5's error stack.
+  /// Tries to create the file, because the system's error message is clearer than HDF5's error stack.
   void check_creatable() const;
 
-  /// Gives the file its name unless another file took it meanwhile.
+  /// Gives the file its final name; throws if another file has it.
   void publish() const;
-  /// Gives it its name in place of an earlier state of itself, which must still be there.
+  /// Replaces the earlier version of the file; throws if another file has its name.
   void replace(const FileIdentity& earlier) const;
 
  private:
   std::filesystem::path path_, temporary_;
 };
 
-/// What a program left that was ended while it made `path`, as a sentence for the user: empty where there is nothing.
+/// A message about temporary files left by killed programs that were creating `path`; empty if there are none.
 std::string unfinished_text(const std::filesystem::path& path);
 
-/// Refuses a path that exists, be it as a dangling link.
+/// Throws FileError if the path exists, also as a dangling link.
 void refuse_existing(const std::filesystem::path& path);
 
 /// results/demo.h5, "-task-12": results/demo-task-12.h5
 std::filesystem::path file_beside(const std::filesystem::path& file, const std::string& ending);
 
-/// Makes the folders on the way to `path`.
+/// Creates the parent folders of `path`.
 void make_folder_of(const std::filesystem::path& path);
 
 }  // namespace rodsweep

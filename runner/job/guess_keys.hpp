@@ -1,4 +1,4 @@
-// Initial guesses in a job: their names, keys and labels, and what is made of them.
+// Initial guesses in a job: names, keys, labels, and conversion to GuessSpec.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace rodsweep {
 
-/// By name, each an object of its parameters.
+/// One object key per kind of guess, with its parameters.
 const std::vector<Key>& guess_keys();
 
-/// `label`, which any entry of the list of guesses may have beside its parameters or its sweep.
+/// `label`, allowed in any entry of the list of guesses, beside its parameters or its sweep.
 const Key& guess_label_key();
 
 /// Labels of the job's guesses, in order.

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file of the same kind in the missing one's folder whose name is nearest, as it would be written; empty: none.
+/// The nearest file name with the same extension in the missing file's folder, as written in a job; empty if none.
 std::string nearest_name(const MissingFile& file) {
   std::vector<std::string> stems;
   std::error_code error;

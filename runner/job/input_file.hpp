@@ -1,5 +1,5 @@
-// A file that a job names: a model, a data set. Its path is relative to the job file; what it holds is part of what the
-// tasks are, as a hash, so that a sweep cannot go on with another file under the same name.
+// An input file of a job: a model, a data set or a skeleton. Its path is relative to the job file. The hash of its
+// content is part of the tasks' identity, so a sweep cannot be resumed with a changed file.
 #pragma once
 
 #include <filesystem>
@@ -10,37 +10,37 @@
 namespace rodsweep {
 
 struct InputFile {
-  std::string key_path;        ///< the first in the job that names it
+  std::string key_path;        ///< the first key with this file
   std::filesystem::path path;  ///< from the current folder
-  std::string hash;            ///< of its bytes, sixteen hexadecimal digits
+  std::string hash;            ///< of its content, sixteen hexadecimal digits
 };
 
-/// By their path as the job has it.
+/// By path as written in the job.
 using InputFiles = std::map<std::string, InputFile>;
 
-/// For other ranks, which need not read whole data sets to know what they hold.
+/// Serialisation for other ranks, so that they need not read whole data sets to hash them.
 std::string to_bytes(const InputFiles& files);
 InputFiles from_bytes(const std::string& bytes);
 
-enum class MissingFiles { refused, accepted };  ///< accepted: without a hash, for a job that is only looked at
+enum class MissingFiles { refused, accepted };  ///< accepted: without a hash, for a job that is not run
 
-/// The file named `text` under `key_path` of a job file. Throws JobError where it cannot be read.
+/// The file `text` at `key_path` of a job file. Throws JobError if it cannot be read.
 InputFile input_file(const std::filesystem::path& job, const std::string& key_path, const std::string& text,
                      MissingFiles missing);
 
-/// A file that a job names and that is not there.
+/// An input file that does not exist.
 struct MissingFile {
-  std::string key_path, written;  ///< the path as it stands in the job
+  std::string key_path, written;  ///< the path as written in the job
   std::filesystem::path path;     ///< from the current folder
 };
 
 struct Job;
 
-/// Those of a job that was read with MissingFiles::accepted, and the data sets of a training.
+/// The missing files of a job read with MissingFiles::accepted, and missing data sets of a training.
 std::vector<MissingFile> missing_files(const Job& job);
 
-/// Why that is no sound job, with what may have been meant: a job beside that makes the file, or the nearest name in
-/// its folder.
+/// The error text for a missing file, with a suggestion: a job in the folder that makes the file, or the nearest file
+/// name.
 std::string missing_file_text(const std::filesystem::path& job, const MissingFile& file);
 
 }  // namespace rodsweep

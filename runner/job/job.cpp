@@ -18,7 +18,7 @@
 namespace rodsweep {
 namespace {
 
-constexpr std::size_t most_bytes = 16 << 20;  // read in a second, in a gigabyte
+constexpr std::size_t most_bytes = 16 << 20;  // takes a second and a gigabyte to read
 constexpr std::size_t longest_path = 200;
 
 void check_guesses(const Job& job, const SweepSpace& space) {
@@ -46,7 +46,7 @@ void check_samples(const Job& job, const SweepSpace& space) {
                   job.samples));
 }
 
-/// `look(written, key_path)` says what an input file is.
+/// `look(written, key_path)` returns an input file.
 template <class Look>
 Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   JobReader reader(path);

@@ -1,9 +1,8 @@
-// A job file, read strictly: unknown, missing, duplicate, mistyped, non-finite and out-of-range keys are refused before
-// anything runs, with a message that names file, key path, value, what is allowed and the nearest known key.
+// A job file, read strictly. Unknown, missing, duplicate, mistyped, non-finite and out-of-range keys are errors before
+// the run. The message contains file, key path, value, the allowed values and the nearest known key.
 //
-// A sweep stands in place of a value: {"grid": [values]}, {"zip": [values]}, {"uniform": [a, b]}, {"log_uniform": [a,
-// b]},
-// {"integer": [a, b]}; see runner/job/sweep_space.hpp for what they expand to.
+// A sweep replaces a value: {"grid": [values]}, {"zip": [values]}, {"uniform": [a, b]}, {"log_uniform": [a, b]},
+// {"integer": [a, b]}. runner/job/sweep_space.hpp explains their expansion.
 #pragma once
 
 #include <cstdint>
@@ -17,39 +16,38 @@
 
 namespace rodsweep {
 
-/// Something in a job file that its author must change. what() is the whole message for the user, ready to print: one
-/// line per mistake, each beginning with the file.
+/// An error in a job file. what() is the complete message for the user: one line per mistake, each with the file first.
 class JobError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// "FILE: KEY.PATH: TEXT"; without a path "FILE: TEXT".
+/// "FILE: KEY.PATH: TEXT"; without a key path "FILE: TEXT".
 JobError job_error(const std::filesystem::path& file, const std::string& key_path, const std::string& text);
 
 struct Job {
-  std::filesystem::path path;  ///< as given by the user; relative paths in the job are relative to its folder
-  std::string text;            ///< the file as it was read, byte for byte: stored in /job/text
+  std::filesystem::path path;  ///< as given by the user; its folder is the base of relative paths in the job
+  std::string text;            ///< the unchanged file content, stored in /job/text
   std::string name;
   std::uint64_t seed = 0;
-  std::int64_t samples = 1;           ///< of a training 1
-  InputFiles files;                   ///< that it names
-  nlohmann::ordered_json values;      ///< validated, every default filled in, sweeps still in place
-  std::vector<std::string> warnings;  ///< of values that are not plausible, a line each, ready to print
+  std::int64_t samples = 1;           ///< 1 in a training
+  InputFiles files;                   ///< input files
+  nlohmann::ordered_json values;      ///< validated, with all defaults; sweeps not expanded
+  std::vector<std::string> warnings;  ///< one line for each implausible value, ready to print
 
-  /// The list of guesses; empty in a kind of job that has none.
+  /// The list of guesses; empty if the kind of job has none.
   nlohmann::ordered_json guesses() const;
 };
 
-/// Is a network trained? Then it is a TrainingJob (runner/job/training_job.hpp), not a Plan.
+/// Whether the job trains a network. Then it becomes a TrainingJob (runner/job/training_job.hpp), not a Plan.
 bool is_training(const Job& job);
 
-/// Reads and validates every key and every value that a sweep can take; throws JobError. What depends on several values
-/// at one parameter point (such as a duration of a whole number of steps) is checked by Plan (runner/plan/plan.hpp).
+/// Reads and validates all keys and all values of sweeps; throws JobError. Plan (runner/plan/plan.hpp) checks conditions
+/// on several values at one parameter point, such as a duration of a whole number of steps.
 Job read_job(const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);
-std::string read_job_text(const std::filesystem::path& path);  ///< refuses what is no file, or larger than a job may be
+std::string read_job_text(const std::filesystem::path& path);  ///< throws JobError if not a file, or too large
 Job parse_job(std::string text, const std::filesystem::path& path, MissingFiles missing = MissingFiles::refused);
-/// Of a job that another rank has read with its files.
+/// For a job whose files another rank has read.
 Job parse_job(std::string text, const std::filesystem::path& path, const InputFiles& files);
 
 }  // namespace rodsweep

@@ -1,12 +1,12 @@
-// The table of everything that a job file may say. What scenes, guesses, time steps, solves and trainings have is said
-// in tables of their own, beside what is made of it.
+// The table of all keys of a job file. The keys of scenes, guesses, time steps, solves and trainings are in separate
+// tables.
 #pragma once
 
 #include "runner/job/key.hpp"
 
 namespace rodsweep {
 
-/// The whole job: an object whose `kind` decides which keys it has.
+/// The key of the whole job: an object whose `kind` determines its other keys.
 const Key& job_key();
 
 }  // namespace rodsweep

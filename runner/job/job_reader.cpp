@@ -19,10 +19,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_told = 20;  // mistakes
 
-/// A value as the user wrote it, shortened.
+/// A value as JSON, shortened.
 std::string written(const Json& value) { return shortened(value.dump()); }
 
-/// Is this of the JSON type of the key's values? (A list of numbers is one of vectors' values, and no list of them.)
+/// Whether the value has the JSON type of the key's values.
 bool looks_like_one(const Key& key, const Json& value) {
   switch (key.kind) {
     case Key::Kind::integer:
@@ -35,7 +35,7 @@ bool looks_like_one(const Key& key, const Json& value) {
   }
 }
 
-/// What to write for a list of values where one is wanted: a sweep, which a bare list is not.
+/// Advice to write a sweep, if a plain list of values is given where one value is expected.
 std::string sweep_advice(const Key& key, const Json& value) {
   const auto fits = [&](const Json& item) { return looks_like_one(key, item); };
   if (!key.sweepable || !value.is_array() || value.empty() || !std::all_of(value.begin(), value.end(), fits)) return "";
@@ -216,7 +216,7 @@ Json JobReader::read_range(const Key& key, const std::string& word, const Json& 
   }
   Key end_key = key;
   if (whole) end_key.kind = Key::Kind::integer;
-  end_key.choices.clear();  // a word is no end of a range
+  end_key.choices.clear();  // the ends of a range are numbers
   end_key.sweepable = false;
   const std::size_t before = mistakes_;
   Json result = Json::array();

@@ -1,5 +1,5 @@
-// Checks a job's JSON against the table of keys (runner/job/job_keys.hpp) and fills in the defaults. Every value that a
-// sweep can take is checked like a plain one, a range at both ends. All mistakes are collected, not just the first.
+// Checks a job's JSON against the table of keys (runner/job/job_keys.hpp) and fills in the defaults. All values of a
+// sweep are checked, and both ends of a range. Collects all mistakes, not only the first.
 #pragma once
 
 #include <filesystem>
@@ -18,17 +18,17 @@ class JobReader {
 
   explicit JobReader(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// The value as it is to be used: defaults in place, guesses all in the form {"name": {parameters, "label"}} or
+  /// The normalised value: with defaults, and all guesses in the form {"name": {parameters, "label"}} or
   /// {"grid": [...], "label"}.
   Json read(const Key& key, const Json& value, const std::string& path);
 
-  /// The files that the job names, each with the first key path that does.
+  /// The job's input files, each with the first key path that contains it.
   const std::map<std::string, std::string>& files() const { return files_; }
 
-  /// Of values that are allowed but not plausible, one line for each key path.
+  /// One line for each value that is allowed but not plausible.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// Throws JobError with one line for each of the first mistakes, if there was any.
+  /// Throws JobError with one line for each of the first mistakes, if any.
   void throw_mistakes() const;
 
  private:
@@ -51,16 +51,16 @@ class JobReader {
   void refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark = "");
   void mistake(const std::string& path, const std::string& text);
 
-  /// What decides which keys apply. An object without a tag has that of the object around it.
+  /// The tag determines which keys apply. An object without a tag has that of its parent.
   struct Tag {
-    std::string path, value;  ///< no value where it is missing or wrong: then the keys of all values pass
+    std::string path, value;  ///< empty if missing or wrong: then all keys are accepted
   };
   static Tag tag_of(const Key& key, const Json& value, const std::string& path);
 
   std::filesystem::path file_;
   Tag tag_;
   std::size_t mistakes_ = 0;
-  std::vector<std::string> told_;  ///< of the first of them
+  std::vector<std::string> told_;  ///< texts of the first mistakes
   std::map<std::string, std::string> files_;
   std::vector<std::string> warnings_;
 };

@@ -1,4 +1,4 @@
-// The part of JobReader that reads objects of keys, and lists, those of guesses above all.
+// The functions of JobReader that read objects and lists, especially guesses.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ std::string alternatives(const std::vector<std::string>& words) {
   return text;
 }
 
-/// "oracle 0.1", "oracle 0.1 smooth": the name and those parameters that are not swept, words only if not the default.
+/// "oracle 0.1", "oracle 0.1 smooth": the name and the unswept parameters, without words that are defaults.
 std::string default_label(const std::string& name, const Json& parameters) {
   std::string label = name;
   const std::vector<Key>& keys = find_key(guess_keys(), name)->keys;
@@ -49,7 +49,7 @@ std::string default_label(const std::string& name, const Json& parameters) {
   return label;
 }
 
-/// "previous | oracle 0.1": everything that a guess which varies over the tasks can be.
+/// "previous | oracle 0.1": all options of a guess that varies over the tasks.
 std::string varying_label(const Json& guess) {
   const std::string word = sweep_word(guess);
   if (word.empty()) return default_label(guess.begin().key(), guess.begin().value());
@@ -58,7 +58,7 @@ std::string varying_label(const Json& guess) {
   return label;
 }
 
-/// Some value that the key takes: the one given, if it does.
+/// A valid value for the key: `given` if valid.
 Json example_value(const Key& key, const Json& given) {
   switch (key.kind) {
     case Key::Kind::integer:
@@ -75,7 +75,7 @@ Json example_value(const Key& key, const Json& given) {
   }
 }
 
-/// How a guess is written with parameters: those that it must have, or the first of all with the value that was given.
+/// An example of a guess with its required parameters; if none is required, with its first one.
 Json guess_example(const Key& guess, const Json& given) {
   Json parameters = Json::object();
   for (const Key& key : guess.keys)
@@ -240,7 +240,7 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
   }
   const std::size_t before = mistakes_;
   Json parameters = read_object(keys, given, member(path, name));
-  const bool sound = mistakes_ == before;  // else parameters may be anything
+  const bool sound = mistakes_ == before;  // else the parameters may be invalid
   if (labelled && sound && !given.contains("label")) parameters["label"] = default_label(name, parameters);
   return Json{{name, std::move(parameters)}};
 }

@@ -55,7 +55,7 @@ class SchemaWriter {
   }
 
  private:
-  /// What may stand at a key: its value or, where it can be swept, a sweep of what may stand there.
+  /// The schema at a key: its value or, if sweepable, also a sweep.
   Json place(const Key& key, const std::string& path) {
     Json schema;
     if (key.kind == Key::Kind::guess) {
@@ -66,7 +66,7 @@ class SchemaWriter {
       define(path, key, path);
       schema = reference(path);
     }
-    // Beside a $ref draft-07 reads nothing.
+    // Draft-07 ignores all keys beside a $ref.
     if (schema.contains("$ref")) schema = Json{{"allOf", Json::array({schema})}};
     if (!schema.contains("description")) schema["description"] = description(key);
     if (key.preset && !key.preset->is_object()) schema["default"] = *key.preset;
@@ -96,7 +96,7 @@ class SchemaWriter {
     }
   }
 
-  /// A value itself, not a sweep.
+  /// The schema of a value without a sweep.
   Json value(const Key& key, const std::string& path) {
     if (key.or_list) {
       const Json item = value(item_key(key), path);
@@ -134,7 +134,7 @@ class SchemaWriter {
     return schema;
   }
 
-  /// Properties, what is required, and for every value of the tag the keys that belong to it and those that do not.
+  /// Properties, required keys and, for each value of the tag, the allowed and forbidden keys.
   Json object(const Key& key, const std::string& path) {
     Json properties = Json::object(), required = Json::array();
     std::map<std::string, Json> groups;
@@ -185,7 +185,7 @@ class SchemaWriter {
     rules.push_back({{"if", condition}, {"then", {{"required", required}, {"properties", properties}}}});
   }
 
-  /// The keys of other values of the tag, also those of objects within that have no tag of their own.
+  /// Forbids the keys of other values of the tag, also in nested objects without a tag.
   static Json refusals(const Key& key, const std::string& tag_value) {
     Json refused = Json::object();
     for (const Key& child : key.keys) {
@@ -205,8 +205,8 @@ class SchemaWriter {
     return schema;
   }
 
-  /// A name alone where no parameter is required, an object with that one key, or a sweep of those. Entries of the list
-  /// of guesses may have a label, a sweep beside its word; what is swept, and a guess within another, has none.
+  /// A name if no parameter is required, an object with the name as its only key, or a sweep of these. Entries of the
+  /// list of guesses may have a label, beside the word of a sweep; swept and inner guesses have none.
   Json guess(bool labelled) {
     const std::string name = labelled ? "guess" : "inner_guess";
     if (!definitions_.emplace(name, Json()).second) return reference(name);

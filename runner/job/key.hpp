@@ -1,5 +1,5 @@
-// One key of a job file, described once. Reading, defaults, refusals, the columns of the results file and help texts
-// all follow from these rows; job_keys.cpp begins the whole, key_table.hpp binds many of them to what they fill.
+// The description of one key of a job file. Reading, defaults, errors, columns of the results file and help texts are
+// derived from it. job_keys.cpp has the root; key_table.hpp binds keys to the members that they fill.
 #pragma once
 
 #include <limits>
@@ -13,24 +13,24 @@ namespace rodsweep {
 
 struct Key {
   enum class Kind {
-    object,   ///< `keys` are its members; or one of `choices`, a word that stands for none of them
+    object,   ///< with the members `keys`; or one of `choices`, a word that means no object
     integer,  ///< within [low, high]
     boolean,  ///< true or false
-    number,   ///< finite, within the bounds; or one of `choices`, a word that stands for a number
+    number,   ///< finite, within the bounds; or one of `choices`, a word instead of a number
     vector,   ///< three numbers, each within the bounds
-    text,     ///< 1 to `high` bytes of the form `text`
+    text,     ///< 1 to `high` bytes with the form `text`
     choice,   ///< one of `choices`
-    variant,  ///< an object with exactly one of `keys`, which says what kind of thing it is, and its members within
-    list,     ///< of values of the one key in `keys`, none or more
-    guess,    ///< a name of guess_keys(), or an object with that name as its one key and the guess's parameters within
-    guesses   ///< a list of guesses, each with a label of its own
+    variant,  ///< an object with exactly one of `keys`, which is its kind; the value is an object with its members
+    list,     ///< a list, maybe empty, of values of the single key in `keys`
+    guess,    ///< a name of guess_keys(), or an object with that name as its only key and the parameters as value
+    guesses   ///< a list of guesses with unique labels
   };
 
   enum class Text {
     any,       ///< may be empty
     line,      ///< no control characters
-    path,      ///< of a file that must be there, relative to the job file
-    file_name  ///< letters, digits, "_", "-" and ".", beginning with none of the latter two
+    path,      ///< of an existing file, relative to the job file
+    file_name  ///< letters, digits, "_", "-" and "."; does not begin with "-" or "."
   };
 
   /// Where the magnitudes of real things lie, or 0. A value outside is warned of, not refused.
@@ -41,7 +41,7 @@ struct Key {
 
   std::string name;
   Kind kind = Kind::object;
-  std::string unit;  ///< SI, "" where there is none
+  std::string unit;  ///< SI; may be empty
   std::string help;  ///< one line
 
   double low = -std::numeric_limits<double>::infinity();
@@ -50,24 +50,23 @@ struct Key {
   std::optional<Plausible> plausible;
   std::vector<std::string> choices;
   Text text = Text::any;
-  std::optional<nlohmann::ordered_json> preset;              ///< value if the key is absent; none: the key is required
-  std::map<std::string, nlohmann::ordered_json> preset_for;  ///< another one, for these values of the enclosing `tag`
-  bool labelled = true;                                      ///< of a guess: part of its label?
-  bool labelled_as_preset = true;                            ///< also where it has its preset value?
-  std::string label_word;                                    ///< what a label says before its value
-  bool sweepable = true;                                     ///< may its value be a sweep?
-  bool parameter = true;              ///< part of a task's parameters, not a setting of the whole job?
-  bool or_list = false;               ///< or a list of at least one such value
-  std::string no_sweep_advice;        ///< what to do instead of sweeping it
-  std::string alias;                  ///< another name that is accepted as the same, or ""
-  std::vector<std::string> synonyms;  ///< other words for it: suggested, never accepted
-  std::vector<std::string> only_for;  ///< the values of the enclosing `tag`, of its own object or one further out, that
-                                      ///< have this key; none: all have
-  std::string only_advice;            ///< what to do where the tag has another value
-  std::string alternative_group;      ///< exactly one of the keys with the same group must be given
+  std::optional<nlohmann::ordered_json> preset;              ///< default; none: the key is required
+  std::map<std::string, nlohmann::ordered_json> preset_for;  ///< other defaults, by value of the enclosing `tag`
+  bool labelled = true;                                      ///< guess parameter: whether it is part of the label
+  bool labelled_as_preset = true;                            ///< also if it has its default value
+  std::string label_word;                                    ///< the word before its value in a label
+  bool sweepable = true;                                     ///< whether its value may be a sweep
+  bool parameter = true;                                     ///< a parameter of tasks, not a setting of the whole job
+  bool or_list = false;                                      ///< also accepts a list of one or more such values
+  std::string no_sweep_advice;                               ///< advice if a user sweeps it
+  std::string alias;                                         ///< another accepted name, or ""
+  std::vector<std::string> synonyms;                         ///< suggested, but not accepted
+  std::vector<std::string> only_for;                         ///< values of the nearest `tag` with this key; empty: all
+  std::string only_advice;                                   ///< advice if the tag has another value
+  std::string alternative_group;  ///< exactly one of the keys with the same group must be given
 
-  std::string tag;        ///< object: the member whose value decides which `only_for` members apply
-  std::vector<Key> keys;  ///< object: its members; variant: the kinds; list: what each item is
+  std::string tag;        ///< object: the member whose value determines which `only_for` members apply
+  std::vector<Key> keys;  ///< object: its members; variant: the kinds; list: the key of an item
 
   Key& in(const char* si_unit);
   Key& above(double bound);
@@ -78,7 +77,7 @@ struct Key {
   Key& or_word(const char* word);
   Key& defaults_to(nlohmann::ordered_json value);
   Key& only(std::vector<std::string> tag_values, const char* advice = "");
-  Key& otherwise(const char* advice);  ///< only_advice, where a table of keys knows whose the key is
+  Key& otherwise(const char* advice);  ///< sets only_advice; a KeyTable sets only_for
   Key& one_of_group(const char* group);
   Key& of_form(Text form);
   Key& also_accepted_as(const char* name);
@@ -87,7 +86,7 @@ struct Key {
   Key& or_list_of_such();
   Key& unlabelled();
   Key& labelled_if_changed(const char* word = "");  ///< "word value"
-  Key& setting();  ///< concerns the whole job: neither swept nor a parameter of its tasks
+  Key& setting();                                   ///< of the whole job: neither swept nor a parameter of tasks
 };
 
 Key object_key(const char* name, const char* help, std::vector<Key> keys = {}, const char* tag = "");
@@ -96,20 +95,20 @@ Key boolean_key(const char* name, const char* help);
 Key number_key(const char* name, const char* help);
 Key vector_key(const char* name, const char* help);
 Key text_key(const char* name, const char* help);
-Key file_key(const char* name, const char* help);  ///< a file that the job reads
+Key file_key(const char* name, const char* help);  ///< an input file
 Key choice_key(const char* name, const char* help, std::vector<std::string> choices = {});
 Key variant_key(const char* name, const char* help, std::vector<Key> kinds);
 Key list_key(const char* name, const char* help, Key item);
 Key guess_key(const char* name, const char* help);
 Key guesses_key(const char* name, const char* help);
 
-/// The key of one value of a list, where `or_list` allows one.
+/// The key of one value of a list allowed by `or_list`.
 Key item_key(const Key& listed);
 
 /// The key of one component of a vector.
 Key component_key(const Key& vector);
 
-/// What a key takes, to follow "must be": "an integer from 1 to 1000000", "one of "none", "jacobi"".
+/// The allowed values, as text after "must be": "an integer from 1 to 1000000", "one of "none", "jacobi"".
 std::string allowed(const Key& key);
 
 /// "clamped length [m], a number above 0".
@@ -118,13 +117,13 @@ std::string describe(const Key& key);
 /// Member by name or alias, nullptr if there is none.
 const Key* find_key(const std::vector<Key>& keys, const std::string& name);
 
-/// Does a key belong to this value of the tag?
+/// Whether a key applies for this value of the tag.
 bool belongs(const Key& key, const std::string& tag_value);
 
-/// Its value where it is absent.
+/// The default value.
 std::optional<nlohmann::ordered_json> preset_of(const Key& key, const std::string& tag_value);
 
-/// As a job has it: 1 rather than 1.0.
+/// A number as written in a job: 1 instead of 1.0.
 nlohmann::ordered_json number(double value);
 
 /// "a", "b", "c"

@@ -1,17 +1,17 @@
-// Tables of keys, each with the member that it fills: what a job may say of a thing and how the thing is made of it.
+// Tables of keys with the members that they fill: the keys of a job for a type, and how to construct it from them.
 //
 //   KeyTable<WindParameters> table;
 //   table.required(vector_key("mean_m_s", "mean velocity"), &WindParameters::mean_m_s);
 //   table.optional(integer_key("seed", "which turbulence").at_least(0), &WindParameters::seed);
 //
-// The reader of jobs, the schema and help texts follow from keys(); fill() reads a parameter point. An optional key's
-// default is what its member is without it, for each kind of Owner. Between key and member stand the Words of an
-// enumeration, or the table of a part that is an object or the word that stands for none (std::optional). A member is
-// what std::invoke() takes with an Owner: a pointer to it, or a function that returns a reference. Bugs in a table
-// throw std::logic_error.
+// The job reader, the schema and help texts use keys(); fill() reads a parameter point. The default of an optional key
+// is its member's initial value, for each kind of Owner. The Words of an enumeration may be given between key and
+// member; so may the table of a std::optional part, which is an object or the word for none.
+// A member is anything that std::invoke() accepts with an Owner: a pointer to a member, or a function that returns a
+// reference. Bugs in a table throw std::logic_error.
 //
-// An Owner that is a std::variant is an object with a tag, whose value is the `name` of one of its structs: a key
-// belongs to those that have a member for it.
+// If Owner is a std::variant, the object has a tag. The tag's value is the `name` of one of its structs. A key applies
+// to the structs that have a member for it.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,7 @@ struct Place {
   Place of(const std::string& name) const { return {point, job, member(path, name)}; }
 };
 
-// How a value is read where its key has one. Types of their own have overloads of their own, beside their tables.
+// Reads the value of a key that is present. Overloads for other types are beside their tables.
 inline void read_value(const Place& at, double& value) { value = at.point.number(at.path); }
 inline void read_value(const Place& at, bool& value) { value = at.point.number(at.path) != 0; }
 inline void read_value(const Place& at, int& value) { value = static_cast<int>(at.point.integer(at.path)); }
@@ -59,7 +59,7 @@ inline void read_value(const Place& at, std::optional<double>& value) {
   if (!at.point.is_text(at.path)) value = at.point.number(at.path);
 }
 
-// How a value stands in a job, as the default of `key`.
+// A value as written in a job, for the default of `key`.
 template <class Value, class = std::enable_if_t<std::is_arithmetic_v<Value>>>
 nlohmann::ordered_json written(const Key&, Value value) {
   return number(static_cast<double>(value));
@@ -74,7 +74,7 @@ nlohmann::ordered_json written(const Key& key, const std::optional<Value>& value
   return key.choices.front();
 }
 
-/// The structs that an Owner may be.
+/// The alternatives of an Owner.
 template <class Owner>
 struct KindsOf {
   static constexpr bool tagged = false;
@@ -100,7 +100,7 @@ struct KindsOf<std::variant<Kind...>> {
   }
 };
 
-/// The member that a struct has, of several.
+/// The first of several members that the struct has.
 template <class Kind, class First, class... More>
 auto& member_of(Kind& kind, const First& first, const More&... more) {
   if constexpr (std::is_invocable_v<const First&, Kind&>)
@@ -112,7 +112,7 @@ auto& member_of(Kind& kind, const First& first, const More&... more) {
 template <class Owner>
 class KeyTable {
  public:
-  /// Of keys that are read by other means too.
+  /// Adds a key without a member: it is read elsewhere.
   void unbound(Key key) { keys_.push_back(std::move(key)); }
 
   template <class... Binding>
@@ -126,7 +126,7 @@ class KeyTable {
 
   const std::vector<Key>& keys() const { return keys_; }
 
-  /// With the values of the object at a place. Members without a value stay as they are.
+  /// Sets members from the object at a place. Members without a value are unchanged.
   void fill(Owner& owner, const Place& object) const {
     for (const auto& read : readers_) read(owner, object);
   }

@@ -1,9 +1,9 @@
-// What the value of a key that stands for many is called, in a column of the tasks over which it varies:
+// Labels of values of keys that contain other keys, for a column of the tasks if they vary:
 //
-//   "none"                                    a word in place of an object: itself
-//   "friction 0.3", "friction 0.6, sweeps 9"  an object: its members without a default or with another value, at least
-//                                             the first; not those that are swept, which have columns of their own
-//   "half_space, ball", "none"                a list: its items by their kinds; none
+//   "none"                                    a word instead of an object: the word
+//   "friction 0.3", "friction 0.6, sweeps 9"  an object: members without a default or with another value, at least
+//                                             the first; without swept members, which have their own columns
+//   "half_space, ball", "none"                a list: the kinds of its items; an empty list
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,10 +13,10 @@
 
 namespace rodsweep {
 
-/// Can values of `key` differ although no column of a member does?
+/// Whether values of `key` can differ although all columns of its members are equal.
 bool has_option_label(const Key& key);
 
-/// Of a validated job's value of such a key, with its defaults.
+/// The label of a value of such a key in a validated job, with defaults.
 std::string option_label(const Key& key, const nlohmann::ordered_json& value);
 
 }  // namespace rodsweep

@@ -1,5 +1,5 @@
-// The kinds of rows that datasets of a results file have, and where /tasks says which of them are a task's.
-// A kind is said here and sized in size_rows() (runner/plan/plan.cpp); plan, layout, writing and reading walk the array.
+// The kinds of rows in a results file, and the columns of /tasks with each task's row ranges.
+// A new kind is added here and in size_rows() (runner/plan/plan.cpp); plan, layout, writing and reading use the array.
 #pragma once
 
 #include <array>
@@ -8,23 +8,23 @@
 
 namespace rodsweep {
 
-/// What one row of a dataset stands for.
+/// What a row of a dataset describes.
 enum class Rows {
   task,
-  contact_task,  ///< as task, in files of jobs in any of whose tasks rods touch
+  contact_task,  ///< as task, in files where any task has contact
   step,
-  contact_step,   ///< as step, in the same files
-  solve,          ///< step-major, then Newton iterations, then rods; none in summaries
-  frame_segment,  ///< frame by frame
+  contact_step,   ///< as step, in these files
+  solve,          ///< by step, Newton iteration, rod; none in summaries
+  frame_segment,  ///< by frame, segment
   segment,        ///< of a trajectory
-  system,         ///< of a data set: step-major, then stored Newton iterations, then rods
+  system,         ///< of a data set: by step, stored Newton iteration, rod
   system_segment,
   system_joint,
-  balanced_segment  ///< as system_segment, in files of jobs in any of whose tasks steps keep the balance of momentum
+  balanced_segment  ///< as system_segment, in files where any task balances momentum in its steps
 };
 inline constexpr std::size_t row_kinds = static_cast<std::size_t>(Rows::balanced_segment) + 1;
 
-/// Columns of these rows are not in every file that could have them.
+/// Whether columns of these rows may be missing in a file that has their base kind.
 constexpr bool is_optional(Rows rows) {
   return rows == Rows::contact_task || rows == Rows::contact_step || rows == Rows::balanced_segment;
 }
@@ -34,7 +34,7 @@ struct RowRange {
   std::int64_t first = 0, count = 0;
 };
 
-/// A value for each kind of rows.
+/// One value per kind of rows.
 template <class T>
 struct PerRows : std::array<T, row_kinds> {
   using std::array<T, row_kinds>::operator[];
@@ -42,11 +42,11 @@ struct PerRows : std::array<T, row_kinds> {
   constexpr const T& operator[](Rows kind) const { return (*this)[static_cast<std::size_t>(kind)]; }
 };
 
-/// The columns of /tasks with a task's first row of a kind, and with how many it has.
+/// The columns of /tasks with a task's first row of a kind and its number of rows.
 struct RowPlace {
   Rows rows;
   const char *first, *first_meaning;
-  const char *count, *count_meaning;  ///< none: as many as the task has segments, if it has frames
+  const char *count, *count_meaning;  ///< null: as many as segments, if the task has frames
   Rows with;                          ///< only in files that have rows of this kind
 };
 inline constexpr std::array<RowPlace, 7> row_places{{

@@ -5,7 +5,7 @@
 
 namespace rodsweep {
 
-// Found by KeyTable among its overloads.
+// An overload used by KeyTable.
 static void read_value(const Place& at, std::shared_ptr<const Skeleton>& skeleton) {
   const InputFile& file = at.job.files.at(at.point.text(at.path));
   try {
@@ -20,7 +20,7 @@ namespace {
 using Table = KeyTable<SceneSpec>;
 using Rods = RodParameters;
 
-// Members of many scenes: of whichever has them, or a tree's shape.
+// Members that several scenes have, or a tree's shape.
 const auto segments = [](auto& scene) -> decltype((scene.segments)) { return scene.segments; };
 const auto tip_force_n = [](auto& scene) -> decltype((scene.tip_force_n)) { return scene.tip_force_n; };
 const auto length_m = [](auto& scene) -> decltype((scene.length_m)) { return scene.length_m; };

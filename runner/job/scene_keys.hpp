@@ -1,6 +1,6 @@
-// Scenes in a job: the keys of `scene`, a table for all scenes of the variant SceneSpec. A scene adds rows for what it
-// alone has; where it has the members of other scenes' rows, the names of scenes in refusals, defaults and the schema
-// follow.
+// The keys of `scene` in a job: one table for all scenes of the variant SceneSpec. A new scene adds rows only for its
+// own members. If it has members of existing rows, scene names in errors, defaults and the schema are derived
+// automatically.
 #pragma once
 
 #include "runner/job/key_table.hpp"

@@ -16,15 +16,15 @@ KeyTable<WindParameters> wind_keys();
 KeyTable<ContactSettings> contact_keys();
 Key obstacles_key();
 
-/// Throws JobError for a half-space without a direction.
+/// Throws JobError if a half-space has no direction.
 void read_value(const Place& list, std::vector<Obstacle>& obstacles);
 
 inline nlohmann::ordered_json written(const Key&, const std::vector<Obstacle>&) {
-  return nlohmann::ordered_json::array();  // none is the default
+  return nlohmann::ordered_json::array();  // default: none
 }
 
-/// Throws JobError for obstacles in a scene that nothing can touch: a validated job's scene, or a sweep of scenes.
-/// Where contact is swept they may stand, since "none" is then what contact is compared with.
+/// Throws JobError if a scene has obstacles without contact. `scene`: of a validated job, or a sweep of scenes.
+/// If contact is swept, obstacles are allowed: "none" is then the case to compare with.
 void check_obstacles(const nlohmann::ordered_json& scene, const std::string& path, const std::filesystem::path& file);
 
 }  // namespace rodsweep

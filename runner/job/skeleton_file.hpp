@@ -1,7 +1,7 @@
-// Skeletons of trees from SWC files, which tools that reconstruct trees (and neurons) write: text, a node a line,
+// Reads skeletons of trees from SWC files, as written by tools that reconstruct trees (and neurons). One node per line:
 //   id type x y z radius parent
-// `parent` the id of a line above, -1 of the first node alone. '#' begins a comment; the type is not looked at. As it
-// was meant (Cannon et al. 1998), a node's radius is that of the cylinder from its parent to it.
+// `parent`: the id of an earlier line, or -1 for the first node only. '#' begins a comment; the type is ignored. As in
+// the original format (Cannon et al. 1998), a node's radius is that of the cylinder from its parent.
 #pragma once
 
 #include <filesystem>
@@ -19,10 +19,10 @@ class SkeletonError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Strict: throws SkeletonError that names file, line, value and what is allowed.
+/// Strict: throws SkeletonError with file, line, value and the allowed values.
 Skeleton parse_skeleton(const std::string& text, const std::filesystem::path& file);
 
-/// Of a file whose content has this hash, read once a process.
+/// The skeleton of a file with this content hash; read once per process.
 std::shared_ptr<const Skeleton> shared_skeleton(const std::filesystem::path& file, const std::string& hash);
 
 }  // namespace rodsweep

@@ -15,8 +15,8 @@ std::size_t SobolSequence::most_dimensions() { return boost::random::default_sob
 SobolSequence::SobolSequence(std::size_t dimensions) : directions_(dimensions * index_bits) {
   if (dimensions > most_dimensions()) throw std::logic_error("SobolSequence: too many dimensions");
   if (dimensions == 0) return;
-  // Point i is the exclusive or of the direction numbers of the bits of i's Gray code; that of 2^(b+1) - 1 is bit b
-  // alone. Boost leaves the origin out, so its number n is point n + 1.
+  // Point i is the exclusive or of the direction numbers of the bits of i's Gray code. The Gray code of 2^(b+1) - 1 is
+  // only bit b. Boost skips the origin, so its number n is point n + 1.
   boost::random::sobol engine(dimensions);
   for (std::size_t bit = 0; bit < index_bits; ++bit) {
     engine.seed((std::uint64_t{2} << bit) - 2);

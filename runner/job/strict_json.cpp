@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t deepest = 64;      // bounds every recursion over a job
-constexpr std::size_t most_keys = 1000;  // of an object: they are searched one after the other
+constexpr std::size_t deepest = 64;      // limits all recursions over a job
+constexpr std::size_t most_keys = 1000;  // per object; their search is linear
 
 class StrictReader : public nlohmann::json_sax<Json> {
  public:
@@ -33,7 +33,7 @@ class StrictReader : public nlohmann::json_sax<Json> {
     return add(value);
   }
   bool string(string_t& value) override { return add(std::move(value)); }
-  bool binary(binary_t&) override { return false; }  // only the binary formats make these
+  bool binary(binary_t&) override { return false; }  // occurs only in binary formats
 
   bool start_object(std::size_t) override { return open(Json::object()); }
   bool start_array(std::size_t) override { return open(Json::array()); }
@@ -74,7 +74,7 @@ class StrictReader : public nlohmann::json_sax<Json> {
     std::string result;
     for (const Level& level : levels_) {
       if (level.container->is_array()) {
-        // An open element is in its array already; the innermost array is about to get its next one.
+        // An open element is already in its array; the innermost array gets its next element now.
         const std::size_t open = &level == &levels_.back() ? 0 : 1;
         result += fmt::format("[{}]", level.container->size() - open);
       } else {
@@ -125,7 +125,7 @@ class StrictReader : public nlohmann::json_sax<Json> {
 }  // namespace
 
 Json parse_strict_json(const std::string& text, const std::filesystem::path& file) {
-  // The parser takes a zero byte for the end of the text and would pass over what follows.
+  // The parser would stop at a zero byte and ignore the rest of the text.
   if (text.find('\0') != std::string::npos) throw job_error(file, "", "holds a zero byte, so it is not JSON text");
   StrictReader reader(text, file);
   Json::sax_parse(text, &reader);

@@ -1,7 +1,7 @@
-// JSON text to a value, refusing what a lenient parser lets through: a key given twice (nlohmann keeps the last one
-// silently), numbers that overflow, nesting beyond reason. Keys keep the order in which they stand.
-// Throws JobError (runner/job/job.hpp): for syntax with file, line, column and the line itself with a caret under the
-// place, for the rest with file and key path.
+// Strict JSON parser: duplicate keys (nlohmann silently keeps the last one), overflowing numbers and deep nesting are
+// errors. Keys keep their order.
+// Throws JobError (runner/job/job.hpp). Syntax errors contain file, line, column and the line with a caret; other
+// errors contain file and key path.
 #pragma once
 
 #include <filesystem>

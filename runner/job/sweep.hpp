@@ -1,4 +1,4 @@
-// How a sweep is recognised in a job: an object with exactly one key, one of the sweep words.
+// Recognises sweeps in a job: a sweep is an object whose only key is a sweep word.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,13 +10,13 @@ namespace rodsweep {
 /// "grid", "zip", "uniform", "log_uniform", "integer".
 const std::vector<std::string>& sweep_words();
 
-/// The sweep word among an object's keys, whatever else it holds; empty if there is none.
+/// The sweep word among an object's keys, also if it has other keys; empty if none.
 std::string sweep_word(const nlohmann::ordered_json& value);
 
-/// The label of an entry of a validated job's list of guesses.
+/// The label of a guess in a validated job.
 std::string guess_label(const nlohmann::ordered_json& guess);
 
-/// Do the values of this sweep stand in a list (grid, zip), rather than being drawn from a range?
+/// Whether this sweep has a list of values (grid, zip) instead of a range to draw from.
 bool is_listed(const std::string& sweep_word);
 
 }  // namespace rodsweep

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::int64_t most_points = 1000000000000000;  // counts saturate here, far beyond any sweep
+constexpr std::int64_t most_points = 1000000000000000;  // counts saturate here, far above any sweep
 
 std::int64_t saturated(double value) {
   return value >= static_cast<double>(most_points) ? most_points : static_cast<std::int64_t>(value);

@@ -1,16 +1,14 @@
-// A validated job's parameters with their sweeps, as a space of points that are computed on demand.
+// A validated job's parameters and sweeps, as a space of points that are computed on demand.
 //
-//   grid   one axis; its values may be anything that the key takes, whole objects included, and hold sweeps of their
-//   own,
-//          which belong to that value: the axis is the union of its values' spaces
-//   zip    all zips of the job (or of one grid value) form one joint axis, so they are equally long
-//   uniform, log_uniform, integer   no axis: drawn for every sample from (seed, sample, key path) alone, so that all
-//          grid points share draws; with sampling "sobol" from Sobol's sequence, a dimension for every key path in the
-//          order of the job, shifted at random by (seed, key path)
-// Axes are crossed in the order in which they stand in the job, the last varying fastest; the joint axis of the zips
-// stands where the first of them does.
+//   grid   one axis; its values may be any valid values, including objects that contain sweeps. Such a sweep belongs
+//          to that value: the axis is the union of its values' spaces
+//   zip    all zips of the job (or of one grid value) form one joint axis, so they have equal lengths
+//   uniform, log_uniform, integer   no axis: drawn for each sample only from (seed, sample, key path), so that all
+//          grid points share draws. With sampling "sobol", from Sobol's sequence: one dimension per key path in job
+//          order, with a random shift from (seed, key path)
+// Axes are crossed in job order, the last varying fastest. The joint axis of the zips is at the place of the first zip.
 //
-// Throws JobError for zips of different lengths and for more random keys than Sobol's sequence has dimensions.
+// Throws JobError if zips differ in length, or if there are more random keys than dimensions of Sobol's sequence.
 #pragma once
 
 #include <cstdint>
@@ -28,18 +26,18 @@
 
 namespace rodsweep {
 
-/// One parameter: a key of the job that holds a value, wherever it stands among the alternatives of a grid; or one that
-/// stands for many, whose value is its option_label().
+/// One parameter: a key of the job with a value, in any alternative of a grid; or a key that contains others, whose
+/// value is its option_label().
 struct Parameter {
-  std::string path;  ///< without the marks of sweeps: "scene.segments", "guesses[2].oracle.error"
+  std::string path;  ///< without sweep words: "scene.segments", "guesses[2].oracle.error"
   Key key;
 };
 
-/// The parameters at one point. Refers to the SweepSpace that filled it.
+/// The parameters at one point. References the SweepSpace that filled it.
 class Point {
  public:
   bool has(std::string_view path) const;
-  bool is_text(std::string_view path) const;  ///< also where a number key holds a word
+  bool is_text(std::string_view path) const;  ///< also if a number key has a word
   double number(std::string_view path) const;
   std::int64_t integer(std::string_view path) const;
   const std::string& text(std::string_view path) const;
@@ -47,11 +45,11 @@ class Point {
   struct Value {
     enum class State : std::uint8_t { absent, number, text };
     State state = State::absent;
-    double number[3] = {0, 0, 0};  ///< integers too, which are below 2^53; of a boolean 0 or 1
+    double number[3] = {0, 0, 0};  ///< also integers, which are below 2^53; a boolean: 0 or 1
     const std::string* text = nullptr;
   };
   const Value& operator[](std::size_t parameter) const { return values_[parameter]; }
-  const Value& at(std::string_view path) const;  ///< throws std::logic_error where it is absent
+  const Value& at(std::string_view path) const;  ///< throws std::logic_error if absent
   void set(std::size_t parameter, double value);
 
  private:
@@ -69,13 +67,13 @@ class SweepSpace {
   bool every_point_is_random() const { return root_.random; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
 
-  /// Index of every parameter, in the order of paths.
+  /// Index of every parameter, sorted by path.
   const std::map<std::string, int, std::less<>>& by_path() const { return index_; }
 
-  /// Index of a parameter, or -1 if the job has none of this path.
+  /// Index of a parameter, or -1 if not found.
   int find(std::string_view path) const;
 
-  /// Is `word` among the values that this text parameter can take?
+  /// Whether this text parameter can have the value `word`.
   bool can_be(std::string_view path, const std::string& word) const;
 
   void fill(Point& point, std::int64_t grid_point, std::uint64_t seed, std::int64_t sample) const;
@@ -91,13 +89,13 @@ class SweepSpace {
     Range range;
     double low, high;
     std::uint64_t stream;
-    std::size_t dimension;  ///< of the random keys, in the order of the job
+    std::size_t dimension;  ///< index among the random keys, in job order
   };
   struct Sample {
     std::uint64_t seed, number;
   };
   struct Axis;
-  /// What stands outside any grid or zip, or within one value of it.
+  /// The parameters outside any grid or zip, or within one value of it.
   struct Scope {
     std::vector<Fixed> fixed;
     std::vector<Draw> draws;
@@ -105,7 +103,7 @@ class SweepSpace {
     int zip_axis = -1;
     std::string zip_path;
     std::int64_t points = 1;
-    bool random = false;  ///< does every point of it draw something?
+    bool random = false;  ///< whether every point draws random values
   };
   struct Axis {
     std::vector<Scope> options;
@@ -126,7 +124,7 @@ class SweepSpace {
   std::filesystem::path file_;
   std::vector<Parameter> parameters_;
   std::map<std::string, int, std::less<>> index_;
-  std::map<std::string, std::size_t> dimensions_;  ///< of the random keys, by path
+  std::map<std::string, std::size_t> dimensions_;  ///< indices of the random keys, by path
   std::optional<SobolSequence> sobol_;
   Scope root_;
 };

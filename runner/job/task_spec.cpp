@@ -171,7 +171,7 @@ TimeSpec time_spec(const Point& point, const Job& job) {
   TimeSpec time;
   keys.fill(time, {point, job, "time"});
   if (!point.has("time.steps")) time.steps = whole_steps(point.number("time.duration_s"), time.step_s, job);
-  if (is_gauss_seidel(method(point))) {  // one of several methods has no defaults of its own
+  if (is_gauss_seidel(method(point))) {  // a swept method has no per-method default
     const bool given = point.has("solve.iterations");
     time.newton_iterations = given ? static_cast<int>(point.integer("solve.iterations")) : gauss_seidel_iterations;
   }
@@ -202,7 +202,7 @@ OutputSpec output_spec(const Job& job) {
   return spec;
 }
 
-/// What cg on motions, which solves for no multipliers, has not.
+/// Checks settings that are not available for CG on motions, which does not solve for multipliers.
 static void check_condensed(const Point& point, const Job& job) {
   if (method(point) != Method::cg || point.text("solve.preconditioner") != "condensed") return;
   constexpr const char* not_allowed = "not allowed with the preconditioner \"condensed\", whose unknowns are motions";

@@ -1,6 +1,5 @@
-// Time steps, solves and what is written of them in a job: the keys of `time` and `solve`, and what is made of them at
-// a parameter point. Values have been checked; what depends on several of them together is checked here. Throws
-// JobError.
+// The keys of `time` and `solve` in a job, and the specs constructed from them at a parameter point. Single values
+// are already validated; conditions on several values are checked here. Throws JobError.
 #pragma once
 
 #include "runner/job/job.hpp"
@@ -14,11 +13,11 @@ Key time_key();
 Key solve_key();
 
 TimeSpec time_spec(const Point& point, const Job& job);
-SolveSpec solve_spec(const Point& point, const Job& job);  ///< the direct solve where the job says nothing: a data set
-Evaluation evaluation(const Point& point);                 ///< paired where the job says nothing
+SolveSpec solve_spec(const Point& point, const Job& job);  ///< default: the direct solve (data sets)
+Evaluation evaluation(const Point& point);                 ///< default: paired
 OutputSpec output_spec(const Job& job);
 
-/// Refuses a method that advances trajectories of its own where they are to be shared.
+/// Throws JobError if the solve method conflicts with other settings, such as a paired evaluation.
 void check_method(const Point& point, const Job& job);
 
 }  // namespace rodsweep

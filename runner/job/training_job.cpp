@@ -38,7 +38,7 @@ TrainingSettings training_settings(const Json& values, std::uint64_t seed) {
   return settings;
 }
 
-/// A simulator's network is one of message passing, which learns accelerations from a mean squared error.
+/// Throws JobError unless a "state" network uses message passing and learns accelerations from a mean squared error.
 void check_state(const TrainingJob& training, const std::filesystem::path& file) {
   const auto want = [&](bool holds, const char* key, const std::string& value, const char* must) {
     if (!holds)

@@ -1,4 +1,4 @@
-// A job of kind "train": which data a network learns from, what it is made of, and how it is trained.
+// A job of kind "train": data sets, network and training settings.
 #pragma once
 
 #include <cstdint>
@@ -15,26 +15,26 @@
 namespace rodsweep {
 
 struct TrainingJob {
-  std::vector<std::filesystem::path> data;  ///< of the data sets
-  std::int64_t training_simulations = 0;    ///< of each set; 0: all but those for validation
+  std::vector<std::filesystem::path> data;  ///< paths of the data sets
+  std::int64_t training_simulations = 0;    ///< per set; 0: all but those for validation
   std::int64_t validation_simulations = 100;
   CopingNetSettings network;
   TrainingSettings training;
   bool first_iterations_only = false;
-  int turned_copies = 0;        ///< of every example to learn from
-  int noisy_copies = 0;         ///< state: likewise
-  double noise = 0.1;           ///< of theirs
-  int patience_epochs = 0;      ///< 0: no early end
-  int ratio_every_epochs = 10;  ///< 0: at the end only
+  int turned_copies = 0;        ///< per training example
+  int noisy_copies = 0;         ///< encoding "state": per training example
+  double noise = 0.1;           ///< of the noisy copies
+  int patience_epochs = 0;      ///< 0: no early stopping
+  int ratio_every_epochs = 10;  ///< 0: only at the end
   std::int64_t ratio_simulations = 50;
 
   Copies copies() const { return {turned_copies + noisy_copies, noise, training.seed}; }
 };
 
-/// Throws JobError for values that do not go together.
+/// Throws JobError if values conflict.
 TrainingJob training_job(const Job& job);
 
-/// The object `network` of a job, with every key that belongs to its processor, and back.
+/// Converts the object `network` of a job, with all keys of its processor, and back.
 CopingNetSettings network_settings(const nlohmann::ordered_json& values);
 nlohmann::ordered_json network_json(const CopingNetSettings& settings);
 

@@ -5,7 +5,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// With all that it holds.
+/// Applies to the key and all its members.
 Key never_swept(Key key) {
   key.setting().no_sweep_advice = "a job trains one model; write another job for another";
   for (Key& child : key.keys) child = never_swept(child);

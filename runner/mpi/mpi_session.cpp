@@ -18,9 +18,9 @@ void check_mpi(int code, const char* call) {
 }
 
 MpiSession::MpiSession() {
-  int provided = 0;  // a training has threads, of which the first alone speaks to others
+  int provided = 0;  // a training has threads; only the main thread calls MPI
   check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
-  // Set on the predefined communicators, so that those derived from them (HDF5's and PETSc's too) return their errors.
+  // Communicators derived from these, also those of HDF5 and PETSc, inherit the handler and return their errors.
   check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   check_mpi(MPI_Comm_set_errhandler(MPI_COMM_SELF, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   check_mpi(MPI_Comm_rank(MPI_COMM_WORLD, &rank_), "MPI_Comm_rank");
@@ -109,7 +109,7 @@ Placement placement(MPI_Comm comm, RankRoles roles) {
   check_mpi(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
   cpu_set_t mine, ours;
   CPU_ZERO(&mine);
-  if (sched_getaffinity(0, sizeof mine, &mine) != 0)  // mpirun may bind each rank to a core of its own
+  if (sched_getaffinity(0, sizeof mine, &mine) != 0)  // mpirun may bind each rank to one core
     for (unsigned core = 0; core < std::thread::hardware_concurrency() && core < CPU_SETSIZE; ++core)
       CPU_SET(core, &mine);
   check_mpi(MPI_Allreduce(&mine, &ours, sizeof mine, MPI_BYTE, MPI_BOR, host), "MPI_Allreduce");

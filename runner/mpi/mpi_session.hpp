@@ -1,7 +1,7 @@
-// MPI's lifetime and the few collective operations that set a sweep up. Exactly one session per process, in main():
-// whatever uses MPI, PETSc or the results file is destroyed before it.
+// The lifetime of MPI, and the collective operations that set up a run. Exactly one session per process, in main();
+// all users of MPI, PETSc and the results file are destroyed before it.
 //
-// Errors come back as codes and are thrown as MpiError with the name of the call; nothing here aborts.
+// MPI returns error codes; these are thrown as MpiError with the name of the call. Nothing here aborts.
 #pragma once
 
 #include <mpi.h>
@@ -17,13 +17,13 @@
 
 namespace rodsweep {
 
-/// A failing MPI call: its name and MPI's own text.
+/// A failed MPI call: its name and MPI's error text.
 class MpiError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Another rank (or this one) could not do its part of something that all must do. what() is the same on every rank.
+/// A collective operation failed on at least one rank. what() is the same on every rank.
 class CollectiveError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -46,15 +46,15 @@ class MpiSession {
   int rank_ = 0, size_ = 1;
 };
 
-/// Rank 0's text on every rank.
+/// Returns rank 0's text on every rank.
 std::string broadcast(std::string text, MPI_Comm comm);
 int broadcast(int value, MPI_Comm comm);
 void broadcast(void* data, std::size_t bytes, MPI_Comm comm);
 
-/// The least of all ranks' values, on every rank.
+/// The minimum over all ranks, on every rank.
 double least(double value, MPI_Comm comm);
 
-/// Rank 0's values, on every rank as many.
+/// Replaces `values` by rank 0's, and resizes it.
 template <class T>
 void broadcast(std::vector<T>& values, MPI_Comm comm) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -64,14 +64,14 @@ void broadcast(std::vector<T>& values, MPI_Comm comm) {
   broadcast(values.data(), size * sizeof(T), comm);
 }
 
-/// The short text of every rank, by rank, on every rank; cut after 255 bytes.
+/// All ranks' texts, indexed by rank, on every rank; each is truncated to 255 bytes.
 std::vector<std::string> everywhere(const std::string& text, MPI_Comm comm);
 
-/// Does `part` on every rank. If it throws anywhere, every rank throws a CollectiveError with the message of the lowest
-/// rank at fault (and that rank's number, if it is not 0), so that an error is reported once and nobody waits for it.
+/// Calls `part` on every rank. If it throws on any rank, all ranks throw a CollectiveError with the message of the
+/// lowest failed rank (and its number, if not 0). So an error is reported once, and no rank waits for a failed one.
 void collectively(MPI_Comm comm, const std::function<void()>& part);
 
-/// The same, returning what `part` makes.
+/// The same, for a `part` that returns a value.
 template <class Part, class Made = std::invoke_result_t<Part>, class = std::enable_if_t<!std::is_void_v<Made>>>
 Made collectively(MPI_Comm comm, const Part& part) {
   std::optional<Made> made;
@@ -79,17 +79,17 @@ Made collectively(MPI_Comm comm, const Part& part) {
   return std::move(*made);
 }
 
-/// Rank 0 does `part` for all; if it throws, every rank throws a CollectiveError with its message. Without ranks, this
-/// process does it.
+/// Calls `part` on rank 0. If it throws, all ranks throw a CollectiveError with its message. Without `ranks`, this
+/// process calls `part`.
 void by_rank_0(const std::optional<MPI_Comm>& ranks, const std::function<void()>& part);
 
-/// The ranks beside the cores that they may run on (their affinity masks put together), host by host.
+/// The numbers of ranks and of the cores that they may use (the union of the affinity masks on each host).
 struct Placement {
-  int workers = 1;              ///< ranks that compute: all, or in a sweep all but the master, or the one rank
-  int cores = 1;                ///< of all hosts
-  int threads = 1;              ///< this rank's share of its host's cores, at least one
-  int host_workers = 1;         ///< of this rank's host
-  bool oversubscribed = false;  ///< on some host more workers than cores; the master sleeps and is not counted
+  int workers = 1;              ///< ranks that compute: all but the master of a sweep; a single rank counts
+  int cores = 1;                ///< on all hosts
+  int threads = 1;              ///< this rank's share of its host's cores; at least 1
+  int host_workers = 1;         ///< on this rank's host
+  bool oversubscribed = false;  ///< some host has more workers than cores (the sleeping master is not counted)
 };
 enum class RankRoles { all_work, one_is_master };
 Placement placement(MPI_Comm comm, RankRoles roles = RankRoles::one_is_master);

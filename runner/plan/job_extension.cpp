@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Where two jobs differ; a null value is a key that is not there.
+/// A difference between two jobs; a null value is a missing key.
 struct Difference {
   std::string path;
   Json now, before;
@@ -72,7 +72,7 @@ std::string shown(const Json& value) {
   return text.size() <= longest ? text : text.substr(0, longest) + "...";
 }
 
-/// Names the files of the same bytes alike: a job that moved has other paths to them.
+/// Renames files with equal content to the paths in `as`, because a moved job has other paths.
 void rename(Json& value, const InputFiles& files, const InputFiles& as) {
   if (value.is_structured())
     for (Json& part : value) rename(part, files, as);

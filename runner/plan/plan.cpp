@@ -13,9 +13,9 @@ namespace rodsweep {
 namespace {
 
 constexpr std::int64_t most_tasks = 1000000;
-constexpr double most_rows = 1e15;  // of a dataset: far beyond any disk, far below overflow
+constexpr double most_rows = 1e15;  // of a dataset: far above any disk, far below overflow
 
-/// Where it is larger than most_rows, something larger.
+/// The product of `factors`, capped at 2 * most_rows.
 std::int64_t product(std::initializer_list<std::int64_t> factors) {
   double all = 1;
   for (const std::int64_t factor : factors) all *= static_cast<double>(factor);
@@ -27,7 +27,7 @@ JobError too_large(const Job& job) {
                    fmt::format("this job is too large: more than {} tasks or {} rows", most_tasks, most_rows));
 }
 
-/// Parameter points, if they are not too many.
+/// The number of parameter points. Throws JobError if too large.
 std::int64_t point_count(const SweepSpace& space, const Job& job) {
   const std::int64_t points = space.grid_points();
   if (static_cast<double>(points) * static_cast<double>(job.samples) <= most_tasks) return points * job.samples;
@@ -72,7 +72,7 @@ Plan::Plan(Job job)
   expand();
 }
 
-/// Checks every parameter point and makes its tasks.
+/// Checks every parameter point and adds its tasks.
 void Plan::expand() {
   const std::int64_t points = point_count(space_, job_);
   const OutputSpec output = output_spec(job_);

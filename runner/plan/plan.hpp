@@ -1,9 +1,9 @@
-// A job expanded into its tasks: the same list on every rank, so that the master needs to send task numbers only.
+// A job expanded into tasks. The list is the same on every rank, so that the master sends only task indices.
 //
-// Order of tasks: the grid (cross product of all `grid` axes and of the joint axis of the `zip`s, in the order in which
-// they stand in the job, the last varying fastest), within a grid point the samples, within a sample (closed loop with
-// cg) the guesses. Random values depend on (seed, sample, key path) only, so grid points share draws. Values that do
-// not fit together at some point are refused here, before anything runs. Throws JobError (runner/job/job.hpp).
+// Order of tasks: grid points, then samples, then guesses (closed loop with cg). The grid is the cross product of all
+// `grid` axes and the joint axis of the `zip`s, in job order, the last varying fastest. Random values depend only on
+// (seed, sample, key path), so grid points share draws. Throws JobError (runner/job/job.hpp) if values conflict at any
+// point.
 #pragma once
 
 #include <cstdint>
@@ -19,32 +19,32 @@
 
 namespace rodsweep {
 
-/// One column of /tasks: the value of a key (number, 3-vector or string) for every task, defaults included. Where a key
-/// does not apply (a helix's at a bending rod) it is NaN, -1 or "".
+/// One column of /tasks: the value of a key (number, 3-vector or string) for every task, including defaults. If the key
+/// does not apply to a task (such as a helix key), the value is NaN, -1 or "".
 struct ParameterColumn {
   std::string path;     ///< key path in the job, e.g. "scene.segments"
   std::string unit;     ///< "m", "Pa", "" ...
   std::string meaning;  ///< one line, from the key's description
-  bool swept = false;   ///< does it vary over the tasks to which it applies?
+  bool swept = false;   ///< whether it varies over the tasks to which it applies
   int width = 1;        ///< 3 for vectors
   std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>> values;  ///< tasks x width
 };
 
-/// All that a task's results depend on, as bytes that are the same in every plan that holds the task.
+/// All inputs of a task's results, as bytes that are equal in all plans with this task.
 struct TaskIdentity {
-  std::string trajectory;            ///< in a closed loop with the guess that advances it
-  std::vector<std::string> guesses;  ///< by place on the guess axis: name and parameters, not the label; empty without
-  std::string record;                ///< what of them the job writes
+  std::string trajectory;            ///< in a closed loop including the guess that advances it
+  std::vector<std::string> guesses;  ///< by index on the guess axis: name and parameters without label; empty if none
+  std::string record;                ///< settings of what is recorded
 };
 
 class Plan {
  public:
   explicit Plan(Job job);
 
-  /// One of this plan's tasks as a plan of its own, with a frame of the trajectory every so many steps. The task keeps
-  /// its point, sample and guess, and so its values and its results; its rows begin at 0.
+  /// A plan with one of this plan's tasks, and a trajectory frame every `trajectory_every` steps. The task keeps its
+  /// point, sample and guess, and so its values and results; its rows begin at 0.
   Plan alone(std::int64_t index, int trajectory_every) const;
-  const std::optional<std::int64_t>& task_alone() const { return task_alone_; }  ///< its number in the whole plan
+  const std::optional<std::int64_t>& task_alone() const { return task_alone_; }  ///< its index in the whole plan
 
   const Job& job() const { return job_; }
   std::int64_t size() const { return tasks_.size(); }
@@ -53,20 +53,20 @@ class Plan {
   const TaskList& tasks() const { return tasks_; }
   TaskSpec spec(std::int64_t index) const;  ///< built on demand: a plan of 100,000 tasks stays small
 
-  /// Of this start, in place of the job's; 0: none. What tasks that meet it result in does not depend on it.
+  /// Replaces the job's limit in this start; 0: none. Results of tasks within the limit do not depend on it.
   void set_task_time_limit(double seconds) { task_time_limit_s_ = seconds; }
 
   TaskIdentity identity(std::int64_t index) const;  ///< built on demand
 
   const std::vector<std::string>& guess_labels() const { return guess_labels_; }  ///< /axes/guess; empty without cg
 
-  /// Built on demand, in the order of the job: every key of scene, time, solve and evaluation that applies anywhere
-  /// (`steps` always, from `duration_s` if need be), and of the guesses what varies over the tasks: "guesses[2]" is
-  /// the name of the guess itself, "guesses[2].oracle.error" a parameter of it. Keys that stand for many, such as
-  /// "scene.contact", where they vary, by their option_label().
+  /// Built on demand, in job order: the keys of scene, time, solve and evaluation that apply to any task, and the keys
+  /// of guesses that vary. `steps` is always included, if necessary computed from `duration_s`. "guesses[2]" is the
+  /// guess's name, "guesses[2].oracle.error" a parameter. Keys that contain others, such as "scene.contact", are
+  /// included by their option_label() if they vary.
   std::vector<ParameterColumn> parameters() const;
 
-  /// Rows of all tasks; 0 of a kind that the job does not record.
+  /// Rows of all tasks; 0 for kinds that the job does not record.
   std::int64_t rows(Rows kind) const { return tasks_.rows()[kind]; }
   std::int64_t max_frames() const { return max_frames_; }
 
@@ -80,12 +80,12 @@ class Plan {
   TaskList tasks_;
   std::vector<std::string> guess_labels_;
   std::optional<std::int64_t> task_alone_;
-  std::vector<std::string> kept_;  ///< of a task alone: parameters that the whole plan has columns of
+  std::vector<std::string> kept_;  ///< task alone: parameters with columns in the whole plan
   std::int64_t max_frames_ = 0;
   double task_time_limit_s_;
 };
 
-/// Sets how many segments, joints, steps, frames and rows of every kind a task has.
+/// Sets the numbers of segments, joints, steps, frames and rows of every kind.
 void size_rows(Task& task, const SceneSpec& scene, const TimeSpec& time, const OutputSpec& output);
 
 /// The tolerances at which iterations are counted (/axes/tolerance), relative to ||b||.

@@ -1,4 +1,4 @@
-// What makes two tasks of two plans the same.
+// The identity of a task across plans.
 #include <fmt/format.h>
 
 #include "runner/job/option_label.hpp"
@@ -12,7 +12,7 @@ using State = Point::Value::State;
 
 constexpr std::string_view guesses = "guesses[";
 
-/// A parameter and its value, numbers to the last bit: -0 is another one than 0; of a file what is in it.
+/// Appends a parameter and its value: numbers bit by bit (-0 differs from 0), files by their content hash.
 void append(std::string& text, std::string_view path, const Point::Value& value, const Parameter& parameter,
             const Job& job) {
   text += path;

@@ -1,4 +1,4 @@
-// The columns of /tasks that say what each task was run with.
+// The columns of /tasks with each task's parameters.
 #include <algorithm>
 #include <limits>
 
@@ -44,7 +44,7 @@ void put(ParameterColumn& column, std::size_t task, const Point::Value& value) {
     (*integers)[task] = static_cast<std::int64_t>(value.number[0]);
   } else if (auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
     (*texts)[task] = *value.text;
-  } else if (value.state == State::number) {  // a word in a column of numbers stays NaN
+  } else if (value.state == State::number) {  // a word in a numeric column stays NaN
     const auto width = static_cast<std::size_t>(column.width);
     auto& numbers = std::get<std::vector<double>>(column.values);
     std::copy_n(value.number, width, numbers.begin() + static_cast<std::ptrdiff_t>(task * width));
@@ -74,7 +74,7 @@ std::vector<ParameterColumn> Plan::parameters() const {
     }
   }
 
-  // `steps` in every job, whichever of its two forms was given.
+  // Every job has `steps`, also if it has a duration instead.
   auto steps = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.path == "time.steps"; });
   if (steps == columns.end())
     steps = columns.insert(columns.end(), empty_column("time.steps", steps_key(), task_count));
@@ -84,9 +84,8 @@ std::vector<ParameterColumn> Plan::parameters() const {
     steps->swept = steps->swept || task.steps != step_counts.front();
   }
 
-  // A guess that is the same in all tasks is in its label already, and what stands for many keys in their columns. Of a
-  // guess that varies all parameters stay, also those that do not vary themselves: they say what it was where they
-  // apply.
+  // A constant guess is described by its label, and a key that contains others by the columns of these. A varying guess
+  // keeps all parameters, also constant ones, because they describe the guess in the tasks to which they apply.
   const auto is_option = [&](const ParameterColumn& c) {
     const int parameter = space_.find(c.path);
     return parameter >= 0 && has_option_label(parameters[static_cast<std::size_t>(parameter)].key);

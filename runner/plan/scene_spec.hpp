@@ -1,4 +1,4 @@
-// From the values of a job at one parameter point to the scene that they describe. Throws JobError.
+// Constructs the scene from a job's values at one parameter point. Throws JobError.
 #pragma once
 
 #include "runner/job/job.hpp"
@@ -9,7 +9,7 @@ namespace rodsweep {
 
 SceneSpec scene_spec(const Point& point, const Job& job);
 
-/// Refuses a scene that cannot be built, or in which nothing can be solved for.
+/// Throws JobError if the scene cannot be built or has nothing to solve for.
 void check_scene(const SceneSpec& scene, const Job& job);
 
 }  // namespace rodsweep

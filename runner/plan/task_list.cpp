@@ -21,7 +21,7 @@ void TaskList::add(const Task& task) {
 }
 
 void TaskList::drop(Rows kind) {
-  by_content_.clear();  // shapes may be alike now
+  by_content_.clear();  // shapes may now be equal
   for (Shape& shape : shapes_) shape.rows[kind] = 0;
   marks_.clear();
   rows_.fill(0);

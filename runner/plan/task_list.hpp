@@ -1,7 +1,7 @@
-// The tasks of a plan in a few bytes each, so that every rank of a sweep of a million tasks can hold them all.
+// The tasks of a plan in a few bytes each, so that every rank can store all tasks of a sweep of a million.
 //
-// Tasks that have as many segments, steps and rows share a shape; a task is its shape, its point and its guess. Where
-// its rows begin, after those of all tasks before it, is added up from the nearest mark before it.
+// Tasks with equal numbers of segments, steps and rows share a shape. A task is stored as shape, point and guess. Its
+// first rows are sums over all earlier tasks, computed from the nearest earlier mark.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ namespace rodsweep {
 
 class TaskList {
  public:
-  /// Appends a task; its index and first rows follow from its place. Points and samples are below 2^31.
+  /// Appends a task; its position determines its index and first rows. Points and samples are below 2^31.
   void add(const Task& task);
 
-  /// No task has rows of this kind any more.
+  /// Removes the rows of this kind from all tasks.
   void drop(Rows kind);
 
   std::int64_t size() const { return static_cast<std::int64_t>(places_.size()); }
@@ -49,13 +49,13 @@ class TaskList {
 
   const Shape& shape(std::int64_t index) const;
   void mark(std::int64_t index);
-  void pass(std::int64_t index, PerRows<std::int64_t>& first) const;  ///< from its first rows to the next one's
+  void pass(std::int64_t index, PerRows<std::int64_t>& first) const;  ///< advances `first` to the next task
   Task task(std::int64_t index, const PerRows<std::int64_t>& first) const;
 
   std::vector<Place> places_;
   std::vector<Shape> shapes_;
   std::map<std::array<double, 5 + row_kinds>, std::uint32_t> by_content_;  ///< indices of shapes
-  std::vector<PerRows<std::int64_t>> marks_;                               ///< first rows of every mark_every-th task
+  std::vector<PerRows<std::int64_t>> marks_;                               ///< first rows of each mark_every-th task
   PerRows<std::int64_t> rows_{};
 };
 

@@ -14,7 +14,7 @@ namespace rodsweep {
 
 namespace {
 
-/// mpirun reads each rank's stderr through a pipe; when it started this process here, its own stderr tells.
+/// mpirun reads each rank's stderr through a pipe. If mpirun is the parent process, checks its stderr instead.
 bool stderr_is_terminal() {
   if (isatty(STDERR_FILENO)) return true;
   if (std::getenv("OMPI_COMM_WORLD_RANK") == nullptr) return false;
@@ -45,7 +45,7 @@ void Console::raw_result(std::string_view text) {
 }
 
 int Console::close() {
-  if (std::fclose(stdout) != 0 && failure_ == 0) failure_ = errno;  // what a network file system could not store
+  if (std::fclose(stdout) != 0 && failure_ == 0) failure_ = errno;  // network file systems report errors here
   return failure_;
 }
 

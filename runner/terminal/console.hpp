@@ -1,7 +1,7 @@
-// Where the program speaks: results on stdout, progress and warnings on stderr. One rank speaks, the others are silent.
-// What does not reach stdout is remembered, and told by close(); nobody can be told what does not reach stderr.
-// Knows whether a person watches stderr, also through mpirun, which puts a pipe between the rank and the terminal;
-// honours NO_COLOR and TERM=dumb.
+// The program's output: results on stdout, progress and warnings on stderr. Only one rank prints.
+// close() returns the first error on stdout; errors on stderr are ignored.
+// Detects whether stderr is a terminal, also through mpirun's pipe between rank and terminal; respects NO_COLOR and
+// TERM=dumb.
 #pragma once
 
 #include <string_view>
@@ -13,16 +13,16 @@ class Console {
   explicit Console(bool speaks);
 
   void result(std::string_view text);           ///< a line on stdout
-  void raw_result(std::string_view text);       ///< as it is, on stdout
-  void raw_error(std::string_view text) const;  ///< as it is, on stderr
+  void raw_result(std::string_view text);       ///< unchanged, on stdout
+  void raw_error(std::string_view text) const;  ///< unchanged, on stderr
   void note(std::string_view text);             ///< "rodsweep: text" on stderr
   void warn(std::string_view text);             ///< "rodsweep: warning: text"
   void error(std::string_view text);            ///< "rodsweep: error: text"
   void status(std::string_view text);  ///< replaces the status line at the bottom of a live terminal; "" removes it
 
-  bool live() const { return live_; }  ///< stderr is a terminal: status() is of use
+  bool live() const { return live_; }  ///< stderr is a terminal, so status() has an effect
 
-  /// Closes stdout, for good. 0, or the errno of the first write that failed; nothing was written there after it.
+  /// Closes stdout. Returns 0 or the errno of the first failed write; later results were not written.
   int close();
 
  private:
@@ -30,7 +30,7 @@ class Console {
 
   bool speaks_, live_, colours_;
   bool status_shown_ = false;
-  int failure_ = 0;  ///< errno of a write to stdout
+  int failure_ = 0;  ///< errno of the first failed write to stdout
 };
 
 }  // namespace rodsweep

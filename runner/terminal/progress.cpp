@@ -35,7 +35,7 @@ std::optional<double> Progress::seconds_left(Clock::time_point now) const {
   if (done_ == 0 || done_cost_ <= 0) return std::nullopt;
   const double whole = busy_s_ / done_cost_ * work_.cost / work_.workers;
   const double left = whole - seconds(now - begin_);
-  if (left <= 0) return std::nullopt;  // the last tasks take longer than their cost said
+  if (left <= 0) return std::nullopt;  // the last tasks take longer than estimated
   return left;
 }
 

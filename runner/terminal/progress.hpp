@@ -1,7 +1,7 @@
-// How far a sweep is: done, failed, total, rate, time left. A bar on a terminal, a line now and then in a log.
+// The progress of a sweep: done, failed, total, rate, time left. Shown as a bar on a terminal, as lines in a log.
 //
-// Tasks are dispatched longest first, so the time left is judged by cost, not by number: with s seconds of work per
-// unit of cost seen so far and W busy workers, the whole takes s * cost / W.
+// Tasks are dispatched longest first, so the time left is estimated from cost, not from the number of tasks.
+// Total time = s * cost / W, with s the measured seconds per unit of cost and W the number of workers.
 #pragma once
 
 #include <chrono>
@@ -20,9 +20,9 @@ class Progress {
 
   struct Work {
     std::int64_t total = 0;        ///< tasks of the plan
-    std::int64_t done_before = 0;  ///< of these, in earlier runs
+    std::int64_t done_before = 0;  ///< in earlier runs
     std::int64_t failed_before = 0;
-    double cost = 0;  ///< of the tasks still to do
+    double cost = 0;  ///< of the tasks left
     int workers = 1;
   };
 
@@ -30,7 +30,7 @@ class Progress {
 
   void finished(TaskOutcome outcome, double cost, double busy_s);
   void uncount(TaskOutcome outcome, double cost, double busy_s);  ///< a finished task whose results were lost
-  void show(Clock::time_point now);                               ///< prints if it is time to; cheap
+  void show(Clock::time_point now);                               ///< prints if due; cheap
   void clear() { line_.clear(); }                                 ///< removes the bar
 
   /// "120 of 400 tasks (30 %), 2 failed, 31.0/s, 1 min 20 s left"

@@ -1,5 +1,5 @@
-// Where a run says how far it is: a bar at the bottom of a live terminal, a line now and then in a log, ever more
-// rarely, so that a log of hours stays readable.
+// Shows the progress of a run: a bar at the bottom of a terminal, or lines in a log at growing intervals, so that logs
+// of long runs stay short.
 #pragma once
 
 #include <chrono>
@@ -16,9 +16,9 @@ class ProgressLine {
   ProgressLine(Console& console, Clock::time_point now);
 
   bool due(Clock::time_point now) const { return now >= next_; }
-  /// To be called when it is due; `fraction`: how much is done.
+  /// Call when due. `fraction`: completed share of the work.
   void show(Clock::time_point now, double fraction, const std::string& text);
-  void clear();  ///< takes the bar away
+  void clear();  ///< removes the bar
 
  private:
   Console* console_;

@@ -1,4 +1,4 @@
-// Numbers and words for people: durations, sizes, command lines.
+// Formats durations, sizes and command lines for users.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 namespace rodsweep {
 
 std::string duration_text(double seconds);        ///< "850 ms", "12.3 s", "4 min 05 s", "2 h 03 min", "3 d 04 h"
-std::string short_duration_text(double seconds);  ///< to three digits: "12.3 us", "4.56 ms", "789 s"; NaN: "-"
+std::string short_duration_text(double seconds);  ///< three digits: "12.3 us", "4.56 ms", "789 s"; NaN: "-"
 std::string bytes_text(std::int64_t bytes);       ///< "512 B", "4.2 MB", in powers of 1000
 std::string counted(std::int64_t count, std::string_view noun);  ///< "1 task", "12 tasks"
-std::string shell_quoted(std::string_view word);  ///< as it must be typed in a POSIX shell; plain words stay plain
-std::string csv_text(std::string_view text);      ///< as a cell of CSV (RFC 4180)
-std::size_t characters(std::string_view text);    ///< how many, of UTF-8
+std::string shell_quoted(std::string_view word);                 ///< quoted for a POSIX shell if necessary
+std::string csv_text(std::string_view text);                     ///< quoted as a CSV cell if necessary (RFC 4180)
+std::size_t characters(std::string_view text);                   ///< number of UTF-8 characters
 
 }  // namespace rodsweep

@@ -1,6 +1,6 @@
-// A 64-bit checksum of a task's data: FNV-1a (Fowler, Noll, Vo) taken eight bytes at a time, so that it costs little
-// beside writing. Multiplication by an odd constant and exclusive or are one-to-one: any single changed word changes
-// the sum.
+// A 64-bit checksum of a task's data: FNV-1a (Fowler, Noll, Vo) on eight bytes at a time, which is cheap compared with
+// writing. Multiplication by an odd constant and exclusive or are bijective, so any single changed word changes the
+// sum.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ class Checksum {
  public:
   void add(const void* data, std::size_t bytes) {
     const auto* p = static_cast<const unsigned char*>(data);
-    mix(bytes);  // so that a block boundary cannot move unnoticed
+    mix(bytes);  // detects moved block boundaries
     for (; bytes >= sizeof(std::uint64_t); p += sizeof(std::uint64_t), bytes -= sizeof(std::uint64_t))
       mix(word(p, sizeof(std::uint64_t)));
     if (bytes > 0) mix(word(p, bytes));

@@ -1,4 +1,4 @@
-// How messages, columns and random streams name a place in a job: "scene.segments", "guesses[2].oracle.error".
+// Key paths in messages, columns and random streams: "scene.segments", "guesses[2].oracle.error".
 #pragma once
 
 #include <fmt/format.h>

@@ -30,7 +30,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
-  constexpr std::size_t longest = 64;  // nobody mistypes more; bounds the table above
+  constexpr std::size_t longest = 64;  // bounds the table above
   if (word.empty() || word.size() > longest) return {};
   const std::string typed = lower(word);
   const std::size_t limit = std::max<std::size_t>(1, typed.size() / 3);

@@ -1,5 +1,5 @@
-// The known word nearest to a mistyped one, for "did you mean". Distance: Damerau-Levenshtein (optimal string
-// alignment), ignoring case; a word that continues the mistyped one ("length" -> "length_m") is near too.
+// Finds the known word nearest to a mistyped one, for "did you mean". Distance: Damerau-Levenshtein (optimal string
+// alignment), ignoring case. A word that continues the mistyped one ("length" -> "length_m") is also near.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace rodsweep {
 
-/// Empty if none of `known` is near enough to be meant.
+/// Empty if none of `known` is near enough.
 std::string nearest(std::string_view word, const std::vector<std::string>& known);
 
-/// "; did you mean "length_m"?", or nothing.
+/// "; did you mean "length_m"?", or empty.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace rodsweep

@@ -11,9 +11,9 @@ namespace {
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
-/// The line of the text that holds place `at`, as far as a terminal shows it, with a caret under that place.
+/// The line around position `at`, shortened for a terminal, with a caret under `at`.
 std::string shown_line(const std::string& text, std::size_t begin, std::size_t at) {
-  constexpr std::size_t before = 60, after = 40;  // bytes of a long line
+  constexpr std::size_t before = 60, after = 40;  // bytes shown of a long line
   std::size_t first = at - begin > before ? at - before : begin;
   while (first > begin && continues_character(text[first])) --first;
   std::size_t end = std::min({text.find_first_of("\r\n", at), text.size(), at + after});
@@ -28,7 +28,7 @@ std::string shown_line(const std::string& text, std::size_t begin, std::size_t a
   return text.find_first_not_of(" \t\r\n") == std::string::npos ? "" : fmt::format("\n{}\n{}^", line, blanks);
 }
 
-/// "line 3, column 9: PROBLEM" and the line itself. Lines and columns, which are characters, count from 1.
+/// "line 3, column 9: PROBLEM" and the line itself. Lines and columns (characters) count from 1.
 std::string placed(const std::string& text, std::size_t at, const std::string& problem) {
   const std::size_t newline = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
   const std::size_t begin = newline == std::string::npos ? 0 : newline + 1;
@@ -38,7 +38,7 @@ std::string placed(const std::string& text, std::size_t at, const std::string& p
                      shown_line(text, begin, at));
 }
 
-/// Where the token begins whose last character is at `end`; `token` as far as the parser remembers it.
+/// The begin of the token whose last character is at `end`; `token`: as stored by the parser.
 std::size_t token_begin(const std::string& text, std::size_t end, const std::string& token) {
   if (text[end] == '"' && token.size() <= end + 1 && text.compare(end + 1 - token.size(), token.size(), token) == 0)
     return end + 1 - token.size();
@@ -49,7 +49,7 @@ std::size_t token_begin(const std::string& text, std::size_t end, const std::str
   return end;
 }
 
-/// Was the end of an object or list expected where another value or key stands?
+/// Whether a value or key follows where the end of an object or list is expected.
 bool lacks_comma(const std::string& problem) {
   const bool at_end =
       problem.find("expected '}'") != std::string::npos || problem.find("expected ']'") != std::string::npos;
@@ -65,14 +65,14 @@ bool expects(const std::string& problem, const char* token) {
   return problem.find(fmt::format("; expected '{}'", token)) != std::string::npos;
 }
 
-/// What is not closed at the end of the text, or before the other kind of bracket; "" where that is not what is wrong.
+/// The text for a list or object that is not closed; empty for other problems.
 std::string unclosed_text(const std::string& problem) {
   if (expects(problem, "]")) return "the list before this is not closed: ] is missing";
   if (expects(problem, "}")) return "the object before this is not closed: } is missing";
   return "";
 }
 
-/// What stands at the place instead of a value or key, in words of its own; else the parser's.
+/// An explanation of the wrong token at `at`; else the parser's message.
 std::string wrong_token_text(const std::string& text, std::size_t at, const std::string& problem) {
   const char c = text[at];
   if (c == '/' || c == '#') return "JSON has no comments: remove it, or put it into \"description\"";

@@ -1,6 +1,5 @@
-// What is wrong with a text that is no JSON, and where: the line, with a caret under the place. nlohmann's parser names
-// the token that it could not take; what its author did is mostly one token earlier, a comma that is missing or too
-// many.
+// Explains a JSON syntax error and shows its line with a caret. nlohmann's parser reports the unexpected token, but the
+// mistake is usually one token earlier: a missing or superfluous comma.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +7,9 @@
 
 namespace rodsweep {
 
-/// "line 2, column 9: a comma is missing here", and that line with a caret. `last` is the place of the last character
-/// of the token that the parser refused (the text's size at its end), `token` as far as it remembers it, `problem` its
-/// words.
+/// "line 2, column 9: a comma is missing here", and that line with a caret. `last`: the position of the last character
+/// of the unexpected token (the text's size at its end); `token`: the token as stored by the parser; `problem`: the
+/// parser's message.
 std::string syntax_error_text(const std::string& text, std::size_t last, const std::string& token,
                               const std::string& problem);
 

@@ -1,4 +1,4 @@
-// The words of a choice, and what each stands for.
+// The words of a choice and their values.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// All that must be kept of a training to go on exactly, beside the model kept and the epochs so far.
+// The state needed to resume a training exactly, in addition to the best model and the finished epochs.
 #pragma once
 
 #include "network/training/trainer.hpp"
@@ -8,8 +8,8 @@ namespace rodsweep {
 struct Checkpoint {
   AlignedVector<float> weights;
   Trainer::State optimiser;
-  double epoch_loss = 0;     ///< sum of the losses of the steps of the epoch that has begun
-  double epoch_seconds = 0;  ///< time spent on it
+  double epoch_loss = 0;     ///< sum of the losses of the current epoch's steps
+  double epoch_seconds = 0;  ///< time spent on the current epoch
 };
 
 }  // namespace rodsweep

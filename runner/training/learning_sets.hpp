@@ -1,7 +1,7 @@
-// The data sets of a training: which simulations are learned from and which are judged by.
+// The data sets of a training, split into training and validation simulations.
 //
-// The last `validation_simulations` of every set are for validation, in turns of one of each set, so that the first few
-// have something of all; of the others, set by set, all or the first `training_simulations` are learned from.
+// The last `validation_simulations` of each set are for validation, interleaved so that the first few include all sets.
+// The first `training_simulations` of each set, or all others if 0, are for training, in the order of the sets.
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@ class LearningSets {
     std::int64_t number;
   };
 
-  /// Throws JobError where a set is missing or too small, FileError for what is wrong with one. With ranks: of those
-  /// that read the sets together (runner/dataset/dataset_reader.hpp).
+  /// Throws JobError if a set is missing or too small, FileError if a set is invalid. `ranks`: read the sets
+  /// collectively (runner/dataset/dataset_reader.hpp).
   LearningSets(const TrainingJob& training, const Job& job, std::optional<MPI_Comm> ranks = std::nullopt);
   LearningSets(const LearningSets&) = delete;
   LearningSets& operator=(const LearningSets&) = delete;
@@ -28,9 +28,9 @@ class LearningSets {
   const std::vector<Simulation>& training() const { return training_; }
   const std::vector<Simulation>& validation() const { return validation_; }
 
-  /// Sixteen hexadecimal digits: the same for the same data.
+  /// A hash of the data: sixteen hexadecimal digits.
   const std::string& hash() const { return hash_; }
-  /// Which simulations failed and are left out; empty: none.
+  /// A text about failed simulations, which are left out; empty if none failed.
   const std::string& note() const { return note_; }
 
  private:
@@ -42,12 +42,12 @@ class LearningSets {
 inline StoredSimulation read(const LearningSets::Simulation& simulation) {
   return simulation.set->read(simulation.number);
 }
-/// The type of its scene.
+/// The type of the simulation's scene.
 std::string scene_of(const LearningSets::Simulation& simulation);
-/// How many linear systems it holds.
+/// The number of stored linear systems.
 std::int64_t systems_of(const LearningSets::Simulation& simulation);
 
-/// The paths as a text, for messages.
+/// The paths, joined for messages.
 std::string paths_of(const std::vector<std::filesystem::path>& sets);
 
 }  // namespace rodsweep

@@ -1,4 +1,4 @@
-// What is known of a model beside its weights: how it was trained, on what, and how well it does.
+// The metadata of a model: job, data sets, training history and quality.
 #pragma once
 
 #include <array>
@@ -23,20 +23,20 @@ struct Epoch {
 enum class Ending {
   none,      ///< the training can go on
   complete,  ///< all epochs
-  early,     ///< no better validation loss for as long as the job's patience
-  diverged   ///< a loss that is not finite
+  early,     ///< no better validation loss within the job's patience
+  diverged   ///< a loss is not finite
 };
 
 /// One start of the training.
 struct TrainingStart {
   Provenance provenance;
-  std::string end_utc;  ///< empty: runs still, or was killed
-  int exit_code = -1;   ///< -1 likewise
+  std::string end_utc;  ///< empty: still running or killed
+  int exit_code = -1;   ///< -1: still running or killed
 };
 
-/// CG ratios on the validation simulations of one kind of scene.
+/// CG ratios on the validation simulations of one scene type.
 struct SceneRatios {
-  std::string scene;  ///< its type
+  std::string scene;  ///< scene type
   ValidationRatio::Ratios cg_ratio, base_cg_ratio;
 };
 
@@ -48,19 +48,19 @@ struct ModelCard {
 
   std::int64_t planned_epochs = 0;
   std::vector<Epoch> epochs;
-  std::int64_t best_epoch = 0;  ///< whose weights the model has, from 1: of the least validation loss; 0: none yet
+  std::int64_t best_epoch = 0;  ///< epoch of the model's weights, from 1, with the least validation loss; 0: none yet
   Ending ending = Ending::none;
-  std::string message;  ///< about the end; empty: nothing
-  /// Means over `ratio_simulations` validation simulations, at ValidationRatio::tolerances(), of the model and of its
-  /// base guess alone.
+  std::string message;  ///< about the ending; may be empty
+  /// Means over `ratio_simulations` validation simulations at ValidationRatio::tolerances(): with the model, and with
+  /// its base guess alone.
   ValidationRatio::Ratios cg_ratio = ValidationRatio::unmeasured(), base_cg_ratio = ValidationRatio::unmeasured();
   std::int64_t ratio_simulations = 0;
-  std::vector<SceneRatios> scenes;  ///< the same of every kind of scene; empty where there is one
+  std::vector<SceneRatios> scenes;  ///< the same by scene type; empty if there is only one
 
   std::vector<TrainingStart> starts;
 };
 
-/// The epoch whose weights the model has; there is one.
+/// The epoch of the model's weights. Requires best_epoch > 0.
 inline const Epoch& best_epoch(const ModelCard& card) {
   return card.epochs.at(static_cast<std::size_t>(card.best_epoch) - 1);
 }

@@ -1,15 +1,15 @@
-// A model file (HDF5): a trained network, where it comes from, how it was trained, and how well it does.
+// A model file (HDF5): a trained network, with its provenance, training history and quality.
 //
 //   /               attributes program, schema_version, kind "model", title
 //   /job, /runs     the job as given; one row per start of the training, as in a results file
 //   /data           attributes: path and hash of the data set, its simulations and examples
 //   /model          attribute hash; settings (the job's `network` as JSON), weights/NAME [rows, columns],
-//                   scales/QUANTITY/mean and deviation where the encoding has any
-//   /axes/tolerance, /training, /validation   losses, rate and CG ratios by epoch; the CG ratio of the model kept
-//   /timing         seconds of every epoch
-//   /checkpoint     only while the training has not ended: all that it takes to go on exactly
-// The file is always whole: it is written anew under a temporary name and then takes the place of its earlier state.
-// Throws FileError for what is missing, foreign, damaged or of another schema version; Hdf5Error.
+//                   scales/QUANTITY/mean and deviation if the encoding has scales
+//   /axes/tolerance, /training, /validation   losses, rate and CG ratios by epoch; the CG ratio of the best model
+//   /timing         seconds of each epoch
+//   /checkpoint     only until the training ends: the state to resume it exactly
+// The file is always complete: each save writes a temporary file, which then replaces the old one.
+// Throws FileError if a file is missing, foreign, damaged or of another schema version; Hdf5Error.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +25,7 @@ namespace rodsweep {
 
 inline constexpr int model_schema_version = 1;
 
-/// Sixteen hexadecimal digits over settings, weights and scales: the same for models that say the same.
+/// A hash of settings, weights and scales: sixteen hexadecimal digits.
 std::string model_hash(const Model& model);
 
 struct StoredModel {
@@ -36,18 +36,18 @@ struct StoredModel {
 
 bool is_model_file(const std::filesystem::path& path);
 
-/// A model to use. Refuses one that no epoch of training has ended of.
+/// Reads a model for use. Throws FileError if no epoch of its training has ended.
 StoredModel read_model(const std::filesystem::path& path);
-/// As it is, however far its training came.
+/// Reads a model at any stage of its training.
 StoredModel read_training(const std::filesystem::path& path);
 
-/// The file of a training that runs.
+/// The file of a running training.
 class ModelFile {
  public:
-  /// Creates nothing. `continues`: the file is there, and what it holds goes on.
+  /// Does not create the file. `continues`: the file exists and its training is resumed.
   ModelFile(std::filesystem::path path, bool continues);
 
-  /// The first one takes the name, and refuses a file that has it.
+  /// The first save of a new training creates the file, and fails if it exists.
   void save(const ModelCard& card, const Model& model, const std::optional<Checkpoint>& checkpoint);
 
  private:

@@ -1,4 +1,4 @@
-// Where the numbers and words of a ModelCard stand in a model file: what writing and reading it walk.
+// The layout of a model file: tables of its attributes and datasets, used to write and read it.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ inline constexpr std::array<CountPlace, 7> count_places{{
     {"/validation", "simulations", &ModelCard::ratio_simulations},
 }};
 
-/// Columns of a row per epoch.
+/// Columns with one row per epoch.
 struct EpochPlace {
   const char *path, *unit, *meaning;
   double Epoch::*member;
@@ -38,7 +38,7 @@ inline constexpr std::array<EpochPlace, 4> epoch_places{{
 }};
 inline constexpr const char* epoch_ratio_path = "/training/cg_ratio";
 
-/// CG ratios of the model kept.
+/// CG ratios of the best model.
 struct RatioPlace {
   const char *path, *meaning;
   ValidationRatio::Ratios ModelCard::*member;
@@ -49,7 +49,7 @@ inline constexpr std::array<RatioPlace, 2> ratio_places{{
     {"/validation/base_cg_ratio", "the same of the model's base guess alone", &ModelCard::base_cg_ratio},
 }};
 
-/// Columns of a row per type of scene, in models that were judged by several.
+/// Columns with one row per scene type, if the validation simulations have several types.
 struct ScenePlace {
   const char *path, *meaning;
   ValidationRatio::Ratios SceneRatios::*member;
@@ -63,7 +63,7 @@ inline constexpr std::array<ScenePlace, 2> scene_places{{
     {"/validation/scenes/base_cg_ratio", "the same of the model's base guess alone", &SceneRatios::base_cg_ratio},
 }};
 
-/// Texts of a row per start.
+/// Text columns with one row per start.
 struct StartPlace {
   const char* path;
   std::string& (*of)(TrainingStart&);
@@ -79,11 +79,11 @@ inline constexpr std::array<StartPlace, 8> start_places{{
     {"/runs/petsc_options", [](TrainingStart& start) -> std::string& { return start.provenance.petsc_options; }},
 }};
 
-/// How an Ending is written.
+/// The names of the endings in the file.
 inline constexpr std::array<std::pair<Ending, const char*>, 4> endings{
     {{Ending::none, "none"}, {Ending::complete, "complete"}, {Ending::early, "early"}, {Ending::diverged, "diverged"}}};
 
-/// Scales of a quantity, and how many numbers they are (0: the encoding has none).
+/// Scales of a quantity, and their size (0: the encoding has none).
 struct ScalePlace {
   const char* folder;
   Normalisation FeatureScales::*member;

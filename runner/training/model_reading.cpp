@@ -1,4 +1,4 @@
-// The part of runner/training/model_file.hpp that reads.
+// The reading functions of runner/training/model_file.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All numbers of a dataset of that extent.
+/// Reads a whole dataset. Throws Damage if its extent differs.
 template <class T>
 std::vector<T> read(hid_t file, const std::string& path, const std::vector<hsize_t>& extent) {
   const std::vector<hsize_t> found = hdf5::extent(hdf5::open_dataset(file, path), path);

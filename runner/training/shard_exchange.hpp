@@ -1,6 +1,6 @@
-// What ranks that train together tell each other. Nobody is master: every rank computes its shards of a step, and gets
-// those of the others; sums are then formed in the order of shards on every rank, so that all have the same bits,
-// which are also those of one rank alone.
+// Exchanges gradients between the ranks of a training. There is no master: each rank computes its shards of a step and
+// receives the others. Every rank sums in the order of shards, so that all ranks get the same bits, as does a single
+// rank.
 #pragma once
 
 #include <mpi.h>
@@ -16,23 +16,23 @@ namespace rodsweep {
 
 class ShardExchange {
  public:
-  /// Collective. `size`: numbers of a shard.
+  /// Collective. `size`: number of values in a shard.
   ShardExchange(MPI_Comm comm, int shards, std::size_t size);
 
   int rank() const { return rank_; }
   int ranks() const { return ranks_; }
   bool is_mine(std::int64_t part) const {
     return part % ranks_ == rank_;
-  }  ///< a shard, or anything else that is shared
+  }  ///< for shards and any other distributed work
 
   using Compute = std::function<void(const std::vector<Trainer::Shard>& own)>;
 
   /// Collective: computes this rank's shards and gathers all. Returns whether any rank was given `stop`.
   bool gather(const Compute& compute, bool stop);
-  /// As gathered last, in order.
+  /// All shards of the last gather(), in order.
   const std::vector<const float*>& shards() const { return shards_; }
 
-  /// Collective: entries that one rank has set and the others left zero, on every rank.
+  /// Collective sum. Each entry is set on one rank and zero on the others.
   void share(std::vector<double>& values) const;
 
  private:
@@ -41,7 +41,7 @@ class ShardExchange {
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1, count_;
   std::size_t size_;
-  std::vector<int> first_, length_;  ///< each rank's part of `numbers_`: whether it stops, then its shards
+  std::vector<int> first_, length_;  ///< each rank's part of `numbers_`: stop flag, then its shards
   std::vector<float> numbers_;
   std::vector<const float*> shards_;
 };

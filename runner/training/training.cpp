@@ -105,7 +105,7 @@ void Training::diverge(const char* loss) {
                               card_.epochs.size() + 1);
 }
 
-/// Batches are shared among the ranks, and summed in their order.
+/// Batches are distributed over the ranks; their losses are summed in order.
 double Training::validation_loss() {
   std::vector<double> sums = trainer_.losses(data_.validation, [&](int batch) { return exchange_.is_mine(batch); });
   exchange_.share(sums);

@@ -1,8 +1,8 @@
-// Trains a network epoch by epoch on all ranks of a communicator: the same bits on any number of them, and the same
-// whether it went through or was interrupted and restored.
+// Trains a network on all ranks of a communicator. The result has the same bits for any number of ranks, and after any
+// interruptions.
 //
-// An epoch ends with the mean loss over the validation examples and, every so many epochs, with the CG ratio over
-// validation simulations. The model kept is that of the epoch with the least validation loss. Needs PETSc.
+// Each epoch ends with the mean loss over the validation examples; every `ratio_every_epochs`, also with the CG ratio
+// over validation simulations. Keeps the model of the epoch with the least validation loss. Needs PETSc.
 #pragma once
 
 #include <memory>
@@ -22,21 +22,21 @@ class Training {
   Training(const Job& job, const TrainingJob& settings, const TrainingData& data,
            std::vector<StoredSimulation> simulations, int threads, MPI_Comm comm);
 
-  /// Goes on from where a training with these settings was left.
+  /// Resumes a training with the same settings.
   void restore(const ModelCard& card, const Model& kept, const Checkpoint& checkpoint);
   Checkpoint checkpoint() const;
 
-  /// One step of the optimiser, and the end of the epoch if it was its last. Returns whether any rank wants to stop.
+  /// One step of the optimiser; the last one of an epoch also ends it. Returns whether `stop` is true on any rank.
   bool step(bool stop);
   bool at_epoch_begin() const { return trainer_.step() % trainer_.steps_per_epoch() == 0; }
   bool ended() const { return card_.ending != Ending::none; }
-  /// Measures the CG ratio of the model kept and of its base guess.
+  /// Measures the CG ratio of the best model and of its base guess.
   void end();
 
   const Trainer& trainer() const { return trainer_; }
-  /// All that is known of the model kept, but for the starts.
+  /// The metadata of the best model, without the starts.
   const ModelCard& card() const { return card_; }
-  /// The model of the best epoch; before the first has ended, as it was at the start.
+  /// The model of the best epoch; the initial model until the first epoch ends.
   const Model& kept() const { return *kept_; }
 
  private:
@@ -45,13 +45,13 @@ class Training {
   using SimulationRatios = std::vector<ValidationRatio::Ratios>;
   SimulationRatios ratios(const ValidationRatio::MakeGuess& make_guess) const;
   SimulationRatios ratios(const std::shared_ptr<const Model>& model) const;
-  /// Over all simulations, or those of one type of scene; NaN where nothing was measured.
+  /// Mean over all simulations, or over one scene type; NaN if nothing was measured.
   ValidationRatio::Ratios mean(const SimulationRatios& ratios, const std::string& scene = "") const;
   void diverge(const char* loss);
 
   const TrainingJob& settings_;
   const TrainingData& data_;
-  std::shared_ptr<Model> model_, kept_;  ///< as it is now, and of the best epoch
+  std::shared_ptr<Model> model_, kept_;  ///< current; of the best epoch
   Trainer trainer_;
   ShardExchange exchange_;
   ValidationRatio ratio_;

@@ -12,12 +12,12 @@ namespace rodsweep {
 
 namespace {
 
-/// The examples of simulations in their order, made by threads, a few simulations at a time.
+/// The examples of all simulations, in order. Threads process a few simulations at a time.
 std::vector<Example> examples_of(const TrainingJob& training, const std::vector<LearningSets::Simulation>& simulations,
                                  int threads, const Copies& copies = {}) {
   std::vector<Example> out;
   for (std::size_t begin = 0; begin < simulations.size(); begin += static_cast<std::size_t>(threads)) {
-    std::vector<StoredSimulation> read_now;  // by one thread: HDF5 is for one at a time
+    std::vector<StoredSimulation> read_now;  // by one thread: HDF5 is not thread-safe
     for (std::size_t i = begin; i < std::min(begin + static_cast<std::size_t>(threads), simulations.size()); ++i)
       read_now.push_back(read(simulations[i]));
     std::vector<std::vector<Example>> examples(read_now.size());

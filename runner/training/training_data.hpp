@@ -1,5 +1,5 @@
-// What a training reads of its data sets: examples to learn from, examples to judge by, and simulations to solve.
-// Scales are those of the training examples alone. The same on every rank.
+// The data of a training: training examples, validation examples, and simulations to measure CG ratios.
+// Scales come from the training examples only. The examples are the same on every rank.
 #pragma once
 
 #include <string>
@@ -16,15 +16,15 @@ struct TrainingData {
   std::vector<Example> training, validation;  ///< normalised
   FeatureScales scales;
   std::int64_t training_simulations = 0, validation_simulations = 0;
-  std::vector<std::string> validation_scenes;  ///< the type of each validation simulation's scene
+  std::vector<std::string> validation_scenes;  ///< scene type of each validation simulation
   std::string hash;                            ///< of the data sets
-  std::string note;                            ///< what is to be said about it; empty: nothing
+  std::string note;                            ///< a warning for the user; may be empty
 };
 
-/// Throws FileError where there are too few examples.
+/// Throws FileError if there are too few examples.
 TrainingData training_data(const TrainingJob& training, const LearningSets& sets, int threads);
 
-/// The validation simulations on which CG ratios are measured: those whose number leaves `part` of `parts`.
+/// The validation simulations i to measure CG ratios on, with i mod `parts` = `part`.
 std::vector<StoredSimulation> ratio_simulations(const TrainingJob& training, const LearningSets& sets, int part,
                                                 int parts);
 

@@ -9,7 +9,7 @@
 namespace rodsweep {
 namespace {
 
-/// What one rod is solved with.
+/// Solver and solution vector of one rod.
 struct RodSolver {
   ConjugateGradient cg;
   VectorX x;
@@ -66,7 +66,7 @@ ValidationRatio::Iterations ValidationRatio::count(const StoredSimulation& simul
       const CgReport report = of.cg.solve(system.rhs(), of.x, proposal.start(), tolerances().back(), reference);
       iterations_to(of.cg.history(), reference, tolerances(), reached.data());
       if (of.cg.history().empty())
-        sums.fill(std::numeric_limits<double>::infinity());  // its first residual is no number
+        sums.fill(std::numeric_limits<double>::infinity());  // the first residual is not a number
       for (std::size_t t = 0; t < tolerance_count; ++t) sums[t] += reached[t] >= 0 ? reached[t] : report.iterations;
     }
     guess->accept(stored.at, stored.solution);

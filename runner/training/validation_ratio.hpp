@@ -1,8 +1,8 @@
-// The CG ratio of a guess on stored simulations: how many iterations it saves, rather than how small its loss is.
+// The CG ratio of a guess on stored simulations: it measures the saved iterations, unlike the loss.
 //
-// Every stored system of a first Newton iteration is assembled again and solved with CG (jacobi, true residual), the
-// guess reading the exact history. Per simulation: the sum of iterations with the guess over the sum from zero, which
-// is what MeasuredSolve counts as a task's cg_ratio of the first Newton iteration. Needs PETSc.
+// Each stored system of a first Newton iteration is assembled again and solved with CG (jacobi, true residual). The
+// guess receives the exact history. Ratio per simulation = sum of iterations with the guess / sum from zero, which
+// equals the cg_ratio of MeasuredSolve for first Newton iterations. Needs PETSc.
 #pragma once
 
 #include <array>
@@ -19,13 +19,13 @@ class ValidationRatio {
  public:
   static constexpr std::size_t tolerance_count = 4;
   static const std::vector<double>& tolerances();  ///< 1e-1 ... 1e-4
-  /// NaN where CG from zero takes no iterations at all, infinite where it cannot start from a guess.
+  /// NaN if CG from zero takes no iterations; infinite if a guess has an invalid first residual.
   using Ratios = std::array<double, tolerance_count>;
   static Ratios unmeasured();  ///< NaN everywhere
-  /// Makes the guess for the simulation's scene, whose rods the solves move.
+  /// Constructs the guess for the simulation's scene; the replay moves the rods of this scene.
   using MakeGuess = std::function<std::unique_ptr<InitialGuess>(const Scene&, const StoredSimulation&)>;
 
-  /// Counts the iterations from zero.
+  /// Also counts the iterations from zero.
   explicit ValidationRatio(std::vector<StoredSimulation> simulations);
 
   std::size_t simulations() const { return simulations_.size(); }
