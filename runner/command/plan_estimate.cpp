@@ -31,10 +31,10 @@ Probe probe_task(const Plan& plan, std::int64_t index, const Evaluate& evaluate)
     truncate(task, spec, static_cast<int>(steps));
     record.prepare(task, sizes);
     evaluate(task, spec, record, [] { return false; });
-    const double seconds = record.elapsed_s.front();
+    const double seconds = record.timing.elapsed_s.front();
     if (seconds < enough_s && steps < whole.steps && record.outcome == TaskOutcome::ok) continue;
 
-    const auto done = static_cast<std::int64_t>(record.steps_done.front());
+    const auto done = static_cast<std::int64_t>(record.tasks.steps_done.front());
     const auto memory = static_cast<std::int64_t>(peak_memory());
     // A step cut off by the time limit counts as half a step, unless it was the first.
     const double cut = record.outcome == TaskOutcome::timed_out ? 0.5 : 0;

@@ -100,7 +100,12 @@ StoredSimulation DatasetReader::read(std::int64_t simulation) const {
   });
   if (ranks_)
     for (const Column& column : columns())
-      std::visit([this](auto* values) { broadcast(*values, *ranks_); }, column.values(record));
+      std::visit(
+          [this](auto* values) {
+            broadcast(*values, *ranks_);
+            broadcast(values->extent.data(), sizeof values->extent, *ranks_);
+          },
+          column.values(record));
   const TaskSpec spec = plan_->spec(index);
   StoredSimulation result;
   result.scene = build_scene(spec.scene);

@@ -27,38 +27,37 @@ SystemRows::Place SystemRows::place(const SolvePosition& at) const {
 
 void SystemStore::before(const Rod& rod, const SolvePosition& at, bool balanced) {
   const SystemRows::Place place = rows_.place(at);
-  record_.system_step[place.system] = at.step;
-  record_.system_newton[place.system] = static_cast<std::int16_t>(at.newton);
-  record_.system_rod[place.system] = narrow<std::int16_t>(at.rod);
-  store(rod.position, record_.system_position_m.data() + 3 * place.segment);
-  store(rod.orientation, record_.system_orientation.data() + 4 * place.segment);
-  store(rod.velocity, record_.system_velocity_m_s.data() + 3 * place.segment);
-  store(rod.angular_velocity, record_.system_angular_velocity_rad_s.data() + 3 * place.segment);
-  VectorX::Map(record_.system_lambda.data() + 6 * place.joint, rod.lambda.size()) = rod.lambda;
+  record_.systems.step[place.system] = at.step;
+  record_.systems.newton[place.system] = static_cast<std::int16_t>(at.newton);
+  record_.systems.rod[place.system] = narrow<std::int16_t>(at.rod);
+  store(rod.position, record_.systems.position_m.row(place.segment));
+  store(rod.orientation, record_.systems.orientation.row(place.segment));
+  store(rod.velocity, record_.systems.velocity_m_s.row(place.segment));
+  store(rod.angular_velocity, record_.systems.angular_velocity_rad_s.row(place.segment));
+  VectorX::Map(record_.systems.lambda.row(place.joint), rod.lambda.size()) = rod.lambda;
   if (!balanced) return;
-  store(rod.free_position, record_.system_free_position_m.data() + 3 * place.segment);
-  store(rod.free_orientation, record_.system_free_orientation.data() + 4 * place.segment);
+  store(rod.free_position, record_.systems.free_position_m.row(place.segment));
+  store(rod.free_orientation, record_.systems.free_orientation.row(place.segment));
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
     const Vector6 impulse = rod.contact_impulse.empty() ? Vector6::Zero() : rod.contact_impulse[s];
-    const std::size_t row = 3 * (place.segment + s);
-    Vector3::Map(record_.system_contact_force.data() + row) = impulse.head<3>();
-    Vector3::Map(record_.system_contact_torque.data() + row) = impulse.tail<3>();
+    Vector3::Map(record_.systems.contact_force.row(place.segment + s)) = impulse.head<3>();
+    Vector3::Map(record_.systems.contact_torque.row(place.segment + s)) = impulse.tail<3>();
   }
 }
 
 namespace {
 
 std::optional<StoredBalance> stored_balance(const TaskRecord& record, const Rod& rod, std::size_t first) {
-  const std::vector<double>& position = record.system_free_position_m;
-  if (position.empty() || std::isnan(position[3 * first])) return std::nullopt;
+  const Cells<double>& position = record.systems.free_position_m;
+  if (position.empty() || std::isnan(position(first))) return std::nullopt;
   StoredBalance out;
   out.free_position.resize(rod.segments.size());
   out.free_orientation.resize(rod.segments.size());
-  load(position.data() + 3 * first, out.free_position);
-  load(record.system_free_orientation.data() + 4 * first, out.free_orientation);
-  for (std::size_t row = 3 * first; row < 3 * (first + rod.segments.size()); row += 3)
-    out.contact_impulse.emplace_back() << Vector3::Map(record.system_contact_force.data() + row),
-        Vector3::Map(record.system_contact_torque.data() + row);
+  load(position.row(first), out.free_position);
+  load(record.systems.free_orientation.row(first), out.free_orientation);
+  for (std::size_t row = first; row < first + rod.segments.size(); ++row)
+    out.contact_impulse.emplace_back() << Vector3::Map(record.systems.contact_force.row(row)),
+        Vector3::Map(record.systems.contact_torque.row(row));
   return out;
 }
 
@@ -79,23 +78,23 @@ SolveOutcome StoringSolve::solve(const LinearSystem& system, const SolvePosition
 std::vector<StoredSystem> stored_systems(const TaskRecord& record, const Scene& scene, int iterations) {
   const SystemRows rows(scene, iterations);
   std::vector<StoredSystem> systems;
-  for (std::size_t row = 0; row < record.system_step.size(); ++row) {
-    if (record.system_step[row] < 0) continue;
+  for (std::size_t row = 0; row < record.systems.step.size(); ++row) {
+    if (record.systems.step[row] < 0) continue;
     StoredSystem system;
-    system.at = {record.system_step[row], record.system_newton[row], record.system_rod[row]};
+    system.at = {record.systems.step[row], record.systems.newton[row], record.systems.rod[row]};
     const Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
     const SystemRows::Place place = rows.place(system.at);
     system.position.resize(rod.segments.size());
     system.orientation.resize(rod.segments.size());
     system.velocity.resize(rod.segments.size());
     system.angular_velocity.resize(rod.segments.size());
-    load(record.system_position_m.data() + 3 * place.segment, system.position);
-    load(record.system_orientation.data() + 4 * place.segment, system.orientation);
-    load(record.system_velocity_m_s.data() + 3 * place.segment, system.velocity);
-    load(record.system_angular_velocity_rad_s.data() + 3 * place.segment, system.angular_velocity);
+    load(record.systems.position_m.row(place.segment), system.position);
+    load(record.systems.orientation.row(place.segment), system.orientation);
+    load(record.systems.velocity_m_s.row(place.segment), system.velocity);
+    load(record.systems.angular_velocity_rad_s.row(place.segment), system.angular_velocity);
     system.balance = stored_balance(record, rod, place.segment);
-    system.lambda = VectorX::Map(record.system_lambda.data() + 6 * place.joint, rod.lambda.size());
-    system.solution = VectorX::Map(record.system_solution.data() + 6 * place.joint, rod.lambda.size());
+    system.lambda = VectorX::Map(record.systems.lambda.row(place.joint), rod.lambda.size());
+    system.solution = VectorX::Map(record.systems.solution.row(place.joint), rod.lambda.size());
     systems.push_back(std::move(system));
   }
   return systems;

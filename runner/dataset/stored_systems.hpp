@@ -41,7 +41,7 @@ class SystemStore {
   void before(const Rod& rod, const SolvePosition& at, bool balanced);
 
   /// Where to write the solution: six numbers per joint.
-  double* solution(const SolvePosition& at) { return record_.system_solution.data() + 6 * rows_.place(at).joint; }
+  double* solution(const SolvePosition& at) { return record_.systems.solution.row(rows_.place(at).joint); }
 
  private:
   SystemRows rows_;

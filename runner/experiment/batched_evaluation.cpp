@@ -41,9 +41,9 @@ void log_before(const BatchedStepper& stepper, int lane, const SolvePosition& at
     const BatchedLinearization& linearization = stepper.system().linearization();
     const std::size_t row = solve_row(member.run.spec, 1, at);
     log_position(at, row, record);
-    record.newton_residual[row] = linearization.residual[lane];
-    record.solve_joint_gap[row] = std::sqrt(linearization.squared_gap[lane]);
-    record.rhs_norm[row] = std::sqrt(linearization.squared_norm[lane]);
+    record.solves.newton_residual[row] = linearization.residual[lane];
+    record.solves.joint_gap[row] = std::sqrt(linearization.squared_gap[lane]);
+    record.solves.rhs_norm[row] = std::sqrt(linearization.squared_norm[lane]);
   }
   if (!member.systems.holds(at)) return;
   stepper.write(lane, member.scene);
@@ -114,7 +114,7 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop) {
     const double share_s = step_watch.seconds() / static_cast<double>(left.size());
     keep([&](int lane, Member& member) {
       stepper.write(lane, member.scene);
-      member.run.record->rest_s[static_cast<std::size_t>(s)] = static_cast<float>(share_s);
+      member.run.record->timing.rest_s[static_cast<std::size_t>(s)] = static_cast<float>(share_s);
       return member.simulation.finish_step(s, member.scene, reports[static_cast<std::size_t>(lane)],
                                            constraint_dt(member.scene, time.step_s));
     });
@@ -161,7 +161,7 @@ bool evaluate_batch(const std::vector<TaskRun>& runs, const StopRequested& stop)
     finished = evaluate_at_once(
         {runs.begin() + static_cast<std::ptrdiff_t>(first), runs.begin() + static_cast<std::ptrdiff_t>(end)}, stop);
   }
-  for (const TaskRun& run : runs) run.record->elapsed_s[0] = watch.seconds() / static_cast<double>(runs.size());
+  for (const TaskRun& run : runs) run.record->timing.elapsed_s[0] = watch.seconds() / static_cast<double>(runs.size());
   return finished;
 }
 

@@ -40,7 +40,8 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
     solve.take_elapsed_s();
     const Stopwatch step_watch;
     const StepReport report = stepper.step(*projection);
-    record.rest_s[static_cast<std::size_t>(step)] = static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
+    record.timing.rest_s[static_cast<std::size_t>(step)] =
+        static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
     if (!simulation.finish_step(step, scene, report, stepper.constraint_dt())) break;
   }
   solve.finish();
@@ -70,7 +71,7 @@ bool evaluate_by_clock(TimeSource now, const Task& task, const TaskSpec& spec, T
     record.outcome = TaskOutcome::error;
     record.message = error.what();
   }
-  record.elapsed_s[0] = watch.seconds();
+  record.timing.elapsed_s[0] = watch.seconds();
   return finished;
 }
 

@@ -94,17 +94,15 @@ MeasuredSolve::MeasuredSolve(const Scene& scene, const TaskSpec& spec, TaskRecor
       guesses_.push_back({g, is_zero(spec.guesses[g]), TimedGuess(make_guess(spec.guesses[g], spec, scene))});
   const std::size_t tolerances = tolerance_ladder().size();
   for (const Guess& guess : guesses_) {
-    const auto reset = [&](auto& sums) {
-      std::fill_n(sums.begin() + static_cast<std::ptrdiff_t>(guess.column * tolerances), tolerances, 0);
-    };
-    for (CountSums* sums : {&record_.counted, &record_.counted_all}) {
+    const auto reset = [&](auto& sums) { std::fill_n(&sums(0, guess.column), tolerances, 0); };
+    for (CountSums* sums : {&record_.tasks.counted, &record_.tasks.counted_all}) {
       reset(sums->iterations);
       reset(sums->matvecs);
       reset(sums->unreached);
     }
     if (!has_other_norm(spec)) continue;
-    reset(record_.counted_other_norm.iterations);
-    reset(record_.counted_other_norm.unreached);
+    reset(record_.tasks.counted_other_norm.iterations);
+    reset(record_.tasks.counted_other_norm.unreached);
   }
 }
 
@@ -129,8 +127,8 @@ SolveOutcome MeasuredSolve::solve(const LinearSystem& system, const SolvePositio
   if (direct_) outcome = solve_directly(system, at, solvers);
   if (spec_.output.solves) {
     log_system(system, scene_.rods[static_cast<std::size_t>(at.rod)], at, row, record_);
-    record_.assemble_s[row] = static_cast<float>(assemble_s);
-    if (direct_) record_.direct_s[row] = static_cast<float>(median(solvers.direct_s));
+    record_.timing.assemble_s[row] = static_cast<float>(assemble_s);
+    if (direct_) record_.timing.direct_s[row] = static_cast<float>(median(solvers.direct_s));
   }
   if (outcome == SolveOutcome::converged && !guesses_.empty()) {
     const int kept = spec_.solve.kept_steps();
@@ -200,9 +198,9 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
     CgReport other;
     if (solvers.tight_other) other = tight_solve(*solvers.tight_other, reference_other, solvers.iterations_other);
     const CgReport report = tight_solve(*solvers.tight, solvers.reference, solvers.iterations);
-    const std::size_t column = guesses_[g].column, entry = row * spec_.guesses.size() + column;
+    const std::size_t column = guesses_[g].column;
     if (failure != SolveOutcome::not_run) {
-      if (spec_.output.solves) record_.solve_outcome[entry] = static_cast<std::int8_t>(failure);
+      if (spec_.output.solves) record_.solves.outcome(row, column) = static_cast<std::int8_t>(failure);
       unusable_ = spec_.guesses[column].label;
       return failure;
     }
@@ -211,20 +209,20 @@ SolveOutcome MeasuredSolve::count(const LinearSystem& system, const SolvePositio
       solvers.exact_outcome = report.outcome;
     }
     if (solvers.tight_other && at.newton == 0)
-      add(record_.counted_other_norm, column, solvers.iterations_other, other.iterations, start);
-    add(record_.counted_all, column, solvers.iterations, report.iterations, start);
-    if (at.newton == 0) add(record_.counted, column, solvers.iterations, report.iterations, start);
+      add(record_.tasks.counted_other_norm, column, solvers.iterations_other, other.iterations, start);
+    add(record_.tasks.counted_all, column, solvers.iterations, report.iterations, start);
+    if (at.newton == 0) add(record_.tasks.counted, column, solvers.iterations, report.iterations, start);
 
     if (!spec_.output.solves) continue;
-    record_.solve_outcome[entry] = static_cast<std::int8_t>(report.outcome);
-    record_.start_matvecs[entry] = static_cast<std::int16_t>(start);
-    record_.renewed[entry] = own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
-    std::copy(solvers.iterations.begin(), solvers.iterations.end(),
-              record_.iterations.begin() + static_cast<std::ptrdiff_t>(entry * ladder.size()));
+    record_.solves.outcome(row, column) = static_cast<std::int8_t>(report.outcome);
+    record_.solves.start_matvecs(row, column) = static_cast<std::int16_t>(start);
+    record_.solves.renewed(row, column) =
+        own.proposal.renewed || (spec_.solve.kept_steps() > 0 && solvers.renewed) ? 1 : 0;
+    std::copy(solvers.iterations.begin(), solvers.iterations.end(), &record_.solves.iterations(row, column));
     if (rounding) continue;
     system.multiply(solvers.x.data(), solvers.residual.data());
-    record_.initial_residual[entry] = solvers.tight->history().front() / solvers.reference;
-    record_.final_residual[entry] = (b - solvers.residual).norm() / b.norm();
+    record_.solves.initial_residual(row, column) = solvers.tight->history().front() / solvers.reference;
+    record_.solves.final_residual(row, column) = (b - solvers.residual).norm() / b.norm();
   }
   return SolveOutcome::converged;
 }
@@ -255,21 +253,19 @@ void MeasuredSolve::accept(const SolvePosition& at, std::size_t row, RodSolvers&
   for (std::size_t g = 0; g < guesses_.size(); ++g) {
     guesses_[g].guess.accept(at, solution);
     if (!spec_.output.solves) continue;
-    const std::size_t entry = row * spec_.guesses.size() + guesses_[g].column;
-    record_.guess_s[entry] = static_cast<float>(guesses_[g].guess.seconds());
-    record_.cg_s[entry] = static_cast<float>(median(solvers.guesses[g].cg_s));
+    record_.timing.guess_s(row, guesses_[g].column) = static_cast<float>(guesses_[g].guess.seconds());
+    record_.timing.cg_s(row, guesses_[g].column) = static_cast<float>(median(solvers.guesses[g].cg_s));
   }
 }
 
 void MeasuredSolve::add(CountSums& sums, std::size_t column, const std::vector<std::int16_t>& iterations, int used,
                         int start_matvecs) const {
   for (std::size_t t = 0; t < iterations.size(); ++t) {
-    const std::size_t to = column * iterations.size() + t;
     const bool reached = iterations[t] >= 0;
     const int spent = reached ? iterations[t] : used;
-    sums.iterations[to] += spent;
-    sums.unreached[to] += !reached;
-    if (!sums.matvecs.empty()) sums.matvecs[to] += spent + start_matvecs;
+    sums.iterations(0, column, t) += spent;
+    sums.unreached(0, column, t) += !reached;
+    if (!sums.matvecs.empty()) sums.matvecs(0, column, t) += spent + start_matvecs;
   }
 }
 
@@ -285,13 +281,12 @@ void set_cg_ratios(const TaskSpec& spec, TaskRecord& record) {
       static_cast<std::size_t>(std::find_if(spec.guesses.begin(), spec.guesses.end(), is_zero) - spec.guesses.begin());
   if (zero == spec.guesses.size()) return;
   const std::size_t tolerances = tolerance_ladder().size();
-  for (CountSums* sums : {&record.counted, &record.counted_all, &record.counted_other_norm})
+  for (CountSums* sums : {&record.tasks.counted, &record.tasks.counted_all, &record.tasks.counted_other_norm})
     for (std::size_t g = 0; g < spec.guesses.size(); ++g)
       for (std::size_t t = 0; t < tolerances; ++t) {
-        const std::int64_t own = sums->iterations[g * tolerances + t];
-        const std::int64_t of_zero = sums->iterations[zero * tolerances + t];
+        const std::int64_t own = sums->iterations(0, g, t), of_zero = sums->iterations(0, zero, t);
         if (own >= 0 && of_zero > 0)  // negative: not tried in this task
-          sums->cg_ratio[g * tolerances + t] = static_cast<double>(own) / static_cast<double>(of_zero);
+          sums->cg_ratio(0, g, t) = static_cast<double>(own) / static_cast<double>(of_zero);
       }
 }
 

@@ -47,7 +47,7 @@ class LoggedIterations : public Projection {
     if (!spec_.output.solves || report.outcome == SolveOutcome::not_run) return report;
     const std::size_t row = solve_row(spec_, rods_, at);
     log_position(at, row, record_);
-    record_.newton_residual[row] = report.newton_residual;
+    record_.solves.newton_residual[row] = report.newton_residual;
     return report;
   }
 

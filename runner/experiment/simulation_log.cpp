@@ -32,10 +32,10 @@ void log_segments(const Scene& scene, TaskRecord& record) {
   std::size_t row = 0;
   for (std::size_t rod = 0; rod < scene.rods.size(); ++rod) {
     for (const Segment& segment : scene.rods[rod].segments) {
-      record.segment_length_m[row] = segment.length_m;
-      record.segment_radius_m[row] = segment.radius_m;
-      record.segment_rod[row] = narrow<std::int16_t>(static_cast<std::int64_t>(rod));
-      record.segment_static[row] = segment.is_static ? 1 : 0;
+      record.trajectories.segments.length_m[row] = segment.length_m;
+      record.trajectories.segments.radius_m[row] = segment.radius_m;
+      record.trajectories.segments.rod[row] = narrow<std::int16_t>(static_cast<std::int64_t>(rod));
+      record.trajectories.segments.is_static[row] = segment.is_static ? 1 : 0;
       ++row;
     }
   }
@@ -44,7 +44,7 @@ void log_segments(const Scene& scene, TaskRecord& record) {
 }  // namespace
 
 void end_late(const TaskSpec& spec, TaskRecord& record) {
-  int& step = record.steps_done[0];
+  int& step = record.tasks.steps_done[0];
   step = std::max(step, 0);  // the negative fill value until the scene is built
   record.outcome = TaskOutcome::timed_out;
   record.message = fmt::format("step {}: the time limit of {:g} s has passed (task_time_limit_s or --task-time-limit)",
@@ -58,7 +58,7 @@ SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord&
     observed_.push_back({Linearization(rod), MomentumBalance(rod)});
   }
   record_.outcome = TaskOutcome::ok;
-  record_.steps_done[0] = 0;
+  record_.tasks.steps_done[0] = 0;
   if (spec_.output.trajectory_every > 0) {
     log_segments(scene, record_);
     log_frame(0, scene);
@@ -84,25 +84,25 @@ void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepRep
     momentum += linear_momentum(rod);
     spin += angular_momentum(rod);
   }
-  record_.time_s[step] = scene.time_s;
-  record_.length_drift[step] = length / initial_length_ - 1;
-  record_.joint_gap[step] = gap;
-  record_.kinetic_energy_j[step] = kinetic;
-  record_.potential_energy_j[step] = potential;
-  record_.elastic_energy_j[step] = elastic;
+  record_.steps.time_s[step] = scene.time_s;
+  record_.steps.length_drift[step] = length / initial_length_ - 1;
+  record_.steps.joint_gap[step] = gap;
+  record_.steps.kinetic_energy_j[step] = kinetic;
+  record_.steps.potential_energy_j[step] = potential;
+  record_.steps.elastic_energy_j[step] = elastic;
   for (std::size_t i = 0; i < 3; ++i) {
-    record_.momentum_kg_m_s[3 * step + i] = momentum[static_cast<Eigen::Index>(i)];
-    record_.angular_momentum_kg_m2_s[3 * step + i] = spin[static_cast<Eigen::Index>(i)];
+    record_.steps.momentum_kg_m_s(step, i) = momentum[static_cast<Eigen::Index>(i)];
+    record_.steps.angular_momentum_kg_m2_s(step, i) = spin[static_cast<Eigen::Index>(i)];
   }
-  record_.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
-  record_.step_newton_residual[step] = residual;
-  record_.momentum_residual[step] = imbalance;
-  record_.largest_momentum_residual[0] = std::fmax(record_.largest_momentum_residual[0], imbalance);
+  record_.steps.newton_iterations[step] = static_cast<std::int16_t>(report.newton_iterations);
+  record_.steps.newton_residual[step] = residual;
+  record_.steps.momentum_residual[step] = imbalance;
+  record_.tasks.momentum_residual[0] = std::fmax(record_.tasks.momentum_residual[0], imbalance);
   if (!scene.contact) return;
-  record_.contacts[step] = report.contacts;
-  record_.penetration[step] = report.penetration;
-  record_.contact_residual[step] = report.contact_residual;
-  record_.deepest_penetration[0] = std::fmax(record_.deepest_penetration[0], report.penetration);
+  record_.steps.contacts[step] = report.contacts;
+  record_.steps.penetration[step] = report.penetration;
+  record_.steps.contact_residual[step] = report.contact_residual;
+  record_.tasks.penetration[0] = std::fmax(record_.tasks.penetration[0], report.penetration);
 }
 
 bool SimulationLog::out_of_time(double elapsed_s) {
@@ -121,7 +121,7 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
   }
   const auto row = static_cast<std::size_t>(step);
   log_step(row, scene, report, constraint_dt);
-  record_.steps_done[0] = step + 1;
+  record_.tasks.steps_done[0] = step + 1;
   const int every = spec_.output.trajectory_every;
   if (every > 0 && (step + 1) % every == 0) log_frame(static_cast<std::size_t>((step + 1) / every), scene);
 
@@ -129,7 +129,7 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
     fail(TaskOutcome::not_a_number, step, "the rod's state is not finite");
     return false;
   }
-  if (const double gap = record_.joint_gap[row]; gap > whole_rod) {
+  if (const double gap = record_.steps.joint_gap[row]; gap > whole_rod) {
     fail(gap > meaningless_gap ? TaskOutcome::diverged : TaskOutcome::torn, step,
          "a joint is open by " + std::to_string(gap) + " joint lengths");
     return false;
@@ -144,12 +144,12 @@ void SimulationLog::fail(TaskOutcome outcome, int step, const std::string& why) 
 
 void SimulationLog::log_frame(std::size_t frame, const Scene& scene) {
   const std::size_t first = frame * static_cast<std::size_t>(task_.segments);
-  record_.first_row[frame] = task_.rows[Rows::frame_segment].first + static_cast<std::int64_t>(first);
-  record_.frame_time_s[frame] = scene.time_s;
+  record_.trajectories.first_row[frame] = task_.rows[Rows::frame_segment].first + static_cast<std::int64_t>(first);
+  record_.trajectories.time_s[frame] = scene.time_s;
   std::size_t row = first;
   for (const Rod& rod : scene.rods) {
-    store(rod.position, record_.position_m.data() + 3 * row);
-    store(rod.orientation, record_.orientation.data() + 4 * row);
+    store(rod.position, record_.trajectories.position_m.row(row));
+    store(rod.orientation, record_.trajectories.orientation.row(row));
     row += rod.segments.size();
   }
 }

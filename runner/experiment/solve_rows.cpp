@@ -13,17 +13,17 @@ std::size_t solve_row(const TaskSpec& spec, std::size_t rods, const SolvePositio
 }
 
 void log_position(const SolvePosition& at, std::size_t row, TaskRecord& record) {
-  record.step[row] = at.step;
-  record.newton[row] = static_cast<std::int16_t>(at.newton);
-  record.rod[row] = narrow<std::int16_t>(at.rod);
+  record.solves.step[row] = at.step;
+  record.solves.newton[row] = static_cast<std::int16_t>(at.newton);
+  record.solves.rod[row] = narrow<std::int16_t>(at.rod);
 }
 
 void log_system(const LinearSystem& system, const Rod& rod, const SolvePosition& at, std::size_t row,
                 TaskRecord& record) {
   log_position(at, row, record);
-  record.newton_residual[row] = system.newton_residual();
-  record.solve_joint_gap[row] = joint_gap(rod);
-  record.rhs_norm[row] = system.rhs().norm();
+  record.solves.newton_residual[row] = system.newton_residual();
+  record.solves.joint_gap[row] = joint_gap(rod);
+  record.solves.rhs_norm[row] = system.rhs().norm();
 }
 
 }  // namespace rodsweep

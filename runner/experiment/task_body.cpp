@@ -37,7 +37,7 @@ bool evaluate_alone(const TaskRun& run, const AxisSizes& sizes, const Evaluate& 
 bool complete_task(const Plan& plan, const Extension& extension, const Evaluate& evaluate, const StopRequested& stop,
                    const Task& task, const TaskRecord& taken, TaskRecord& record) {
   TaskSpec spec = plan.spec(task.index);
-  for (const std::int8_t copied : taken.copied_guess) spec.settled.push_back(copied == 1);
+  for (const std::int8_t copied : taken.timing.copied_guess) spec.settled.push_back(copied == 1);
   if (!evaluate(task, spec, record, stop)) return false;
   // These outcomes do not mean that the trajectory differs.
   if (record.outcome == TaskOutcome::timed_out || record.outcome == TaskOutcome::error) return true;

@@ -12,181 +12,213 @@
 namespace rodsweep {
 namespace {
 
-/// The vector reached through a chain of member pointers.
+/// The column reached through a chain of member pointers.
 template <auto... members>
-auto& vector_of(TaskRecord& record) {
+auto& cells_of(TaskRecord& record) {
   return (record.*....*members);
 }
 
 template <auto... members>
 Column column(const char* path, Rows rows, std::vector<Axis> axes, const char* unit, const char* meaning) {
-  using Vector = std::decay_t<decltype(vector_of<members...>(std::declval<TaskRecord&>()))>;
+  using Made = std::decay_t<decltype(cells_of<members...>(std::declval<TaskRecord&>()))>;
   return {path,
           rows,
           std::move(axes),
           unit,
           meaning,
-          hdf5::type_of<typename Vector::value_type>,
-          [](TaskRecord& record) -> Values { return &vector_of<members...>(record); }};
+          hdf5::type_of<typename Made::value_type>,
+          [](TaskRecord& record) -> Values { return &cells_of<members...>(record); }};
 }
 
 std::vector<Column> all_columns() {
   using R = TaskRecord;
+  using Tasks = R::Tasks;
   using Sums = CountSums;
+  using Solves = R::Solves;
+  using Steps = R::Steps;
+  using Trajectories = R::Trajectories;
+  using Segments = R::Segments;
+  using Systems = R::Systems;
+  using Timing = R::Timing;
   const std::vector<Axis> none, guess{Axis::guess}, ladder{Axis::guess, Axis::tolerance}, xyz{Axis::xyz},
       wxyz{Axis::wxyz}, six{Axis::constraint}, frame{Axis::frame};
   return {
-      column<&R::steps_done>("/tasks/steps_done", Rows::task, none, "1", "time steps completed"),
-      column<&R::deepest_penetration>(
+      column<&R::tasks, &Tasks::steps_done>("/tasks/steps_done", Rows::task, none, "1", "time steps completed"),
+      column<&R::tasks, &Tasks::penetration>(
           "/tasks/penetration", Rows::contact_task, none, "1",
           "deepest overlap of two bodies after any step, over the smaller radius; NaN without contact"),
-      column<&R::largest_momentum_residual>("/tasks/momentum_residual", Rows::task, none, "1",
-                                            "largest /steps/momentum_residual; NaN of rods stepped in batches"),
-      column<&R::counted, &Sums::iterations>(
+      column<&R::tasks, &Tasks::momentum_residual>("/tasks/momentum_residual", Rows::task, none, "1",
+                                                   "largest /steps/momentum_residual; NaN of rods stepped in batches"),
+      column<&R::tasks, &Tasks::counted, &Sums::iterations>(
           "/tasks/iterations_sum", Rows::task, ladder, "1",
           "CG iterations summed over the first Newton iteration of every step; solves that missed the tolerance count "
           "what they used"),
-      column<&R::counted_all, &Sums::iterations>("/tasks/iterations_sum_all", Rows::task, ladder, "1",
-                                                 "CG iterations summed over all Newton iterations"),
-      column<&R::counted_other_norm, &Sums::iterations>(
+      column<&R::tasks, &Tasks::counted_all, &Sums::iterations>("/tasks/iterations_sum_all", Rows::task, ladder, "1",
+                                                                "CG iterations summed over all Newton iterations"),
+      column<&R::tasks, &Tasks::counted_other_norm, &Sums::iterations>(
           "/tasks/iterations_sum_other_norm", Rows::task, ladder, "1",
           "iterations_sum with the residual test in the norm that the job doesn't use: natural for true_residual, and "
           "the other way round; -1 where record.norms is \"one\""),
-      column<&R::counted, &Sums::matvecs>(
+      column<&R::tasks, &Tasks::counted, &Sums::matvecs>(
           "/tasks/matvecs_sum", Rows::task, ladder, "1",
           "products with A in the solves of iterations_sum: iterations, residuals of nonzero guesses, and those that "
           "guesses take themselves"),
-      column<&R::counted_all, &Sums::matvecs>("/tasks/matvecs_sum_all", Rows::task, ladder, "1",
-                                              "matvecs_sum over all Newton iterations"),
-      column<&R::counted, &Sums::unreached>("/tasks/unreached", Rows::task, ladder, "1",
-                                            "solves in iterations_sum that missed the tolerance"),
-      column<&R::counted_all, &Sums::unreached>("/tasks/unreached_all", Rows::task, ladder, "1",
-                                                "solves in iterations_sum_all that missed the tolerance"),
-      column<&R::counted_other_norm, &Sums::unreached>("/tasks/unreached_other_norm", Rows::task, ladder, "1",
-                                                       "solves in iterations_sum_other_norm that missed the tolerance"),
-      column<&R::counted, &Sums::cg_ratio>(
+      column<&R::tasks, &Tasks::counted_all, &Sums::matvecs>("/tasks/matvecs_sum_all", Rows::task, ladder, "1",
+                                                             "matvecs_sum over all Newton iterations"),
+      column<&R::tasks, &Tasks::counted, &Sums::unreached>("/tasks/unreached", Rows::task, ladder, "1",
+                                                           "solves in iterations_sum that missed the tolerance"),
+      column<&R::tasks, &Tasks::counted_all, &Sums::unreached>(
+          "/tasks/unreached_all", Rows::task, ladder, "1", "solves in iterations_sum_all that missed the tolerance"),
+      column<&R::tasks, &Tasks::counted_other_norm, &Sums::unreached>(
+          "/tasks/unreached_other_norm", Rows::task, ladder, "1",
+          "solves in iterations_sum_other_norm that missed the tolerance"),
+      column<&R::tasks, &Tasks::counted, &Sums::cg_ratio>(
           "/tasks/cg_ratio", Rows::task, ladder, "1",
           "iterations_sum over that of the zero guess; NaN where there is no zero guess in the task"),
-      column<&R::counted_all, &Sums::cg_ratio>("/tasks/cg_ratio_all", Rows::task, ladder, "1",
-                                               "iterations_sum_all over that of the zero guess"),
-      column<&R::counted_other_norm, &Sums::cg_ratio>("/tasks/cg_ratio_other_norm", Rows::task, ladder, "1",
-                                                      "iterations_sum_other_norm over that of the zero guess"),
+      column<&R::tasks, &Tasks::counted_all, &Sums::cg_ratio>("/tasks/cg_ratio_all", Rows::task, ladder, "1",
+                                                              "iterations_sum_all over that of the zero guess"),
+      column<&R::tasks, &Tasks::counted_other_norm, &Sums::cg_ratio>(
+          "/tasks/cg_ratio_other_norm", Rows::task, ladder, "1",
+          "iterations_sum_other_norm over that of the zero guess"),
 
-      column<&R::step>("/solves/step", Rows::solve, none, "1", "time step, from 0"),
-      column<&R::newton>("/solves/newton", Rows::solve, none, "1",
-                         "Newton or Gauss-Seidel iteration within the step, from 0"),
-      column<&R::rod>("/solves/rod", Rows::solve, none, "1", "rod within the scene, from 0"),
-      column<&R::newton_residual>(
+      column<&R::solves, &Solves::step>("/solves/step", Rows::solve, none, "1", "time step, from 0"),
+      column<&R::solves, &Solves::newton>("/solves/newton", Rows::solve, none, "1",
+                                          "Newton or Gauss-Seidel iteration within the step, from 0"),
+      column<&R::solves, &Solves::rod>("/solves/rod", Rows::solve, none, "1", "rod within the scene, from 0"),
+      column<&R::solves, &Solves::newton_residual>(
           "/solves/newton_residual", Rows::solve, none, "1",
           "max |C + alpha~ lambda| before the solve; of Gauss-Seidel, that met by the iteration"),
-      column<&R::solve_joint_gap>(
+      column<&R::solves, &Solves::joint_gap>(
           "/solves/joint_gap", Rows::solve, none, "1",
           "largest distance between the two sides of a joint over the joint length, before the solve"),
-      column<&R::rhs_norm>("/solves/rhs_norm", Rows::solve, none, "1", "2-norm of b"),
-      column<&R::initial_residual>("/solves/initial_residual", Rows::solve, guess, "1",
-                                   "residual of the initial guess relative to the zero guess's, in the job's norm"),
-      column<&R::final_residual>("/solves/final_residual", Rows::solve, guess, "1",
-                                 "||b - A x||_2 / ||b||_2 recomputed after the tight solve"),
-      column<&R::solve_outcome>("/solves/outcome", Rows::solve, guess, "1",
-                                "outcome of the tight solve: 0 not run, 1 converged, 2 zero right-hand side, 3 "
-                                "iteration limit, 4 diverged, 5 indefinite, 6 not a number"),
-      column<&R::start_matvecs>("/solves/start_matvecs", Rows::solve, guess, "1",
-                                "products with A before the first iteration: those of the guess itself, and "
-                                "one for the residual if it is nonzero and its residual not known; -1 not run"),
-      column<&R::renewed>("/solves/renewed", Rows::solve, guess, "1",
-                          "1 where what lags was made anew for the solve, the preconditioner or a network's factors; "
-                          "else 0"),
-      column<&R::iterations>("/solves/iterations", Rows::solve, ladder, "1",
-                             "CG iterations to each tolerance; -1 not reached or not run"),
+      column<&R::solves, &Solves::rhs_norm>("/solves/rhs_norm", Rows::solve, none, "1", "2-norm of b"),
+      column<&R::solves, &Solves::initial_residual>(
+          "/solves/initial_residual", Rows::solve, guess, "1",
+          "residual of the initial guess relative to the zero guess's, in the job's norm"),
+      column<&R::solves, &Solves::final_residual>("/solves/final_residual", Rows::solve, guess, "1",
+                                                  "||b - A x||_2 / ||b||_2 recomputed after the tight solve"),
+      column<&R::solves, &Solves::outcome>(
+          "/solves/outcome", Rows::solve, guess, "1",
+          "outcome of the tight solve: 0 not run, 1 converged, 2 zero right-hand side, 3 "
+          "iteration limit, 4 diverged, 5 indefinite, 6 not a number"),
+      column<&R::solves, &Solves::start_matvecs>(
+          "/solves/start_matvecs", Rows::solve, guess, "1",
+          "products with A before the first iteration: those of the guess itself, and "
+          "one for the residual if it is nonzero and its residual not known; -1 not run"),
+      column<&R::solves, &Solves::renewed>(
+          "/solves/renewed", Rows::solve, guess, "1",
+          "1 where what lags was made anew for the solve, the preconditioner or a network's factors; "
+          "else 0"),
+      column<&R::solves, &Solves::iterations>("/solves/iterations", Rows::solve, ladder, "1",
+                                              "CG iterations to each tolerance; -1 not reached or not run"),
 
-      column<&R::time_s>("/steps/time_s", Rows::step, none, "s", "time at the end of the step"),
-      column<&R::length_drift>("/steps/length_drift", Rows::step, none, "1",
-                               "total length through the joint midpoints over its initial value, minus 1"),
-      column<&R::joint_gap>("/steps/joint_gap", Rows::step, none, "1",
-                            "largest distance between the two sides of a joint over the joint length"),
-      column<&R::kinetic_energy_j>("/steps/kinetic_energy_j", Rows::step, none, "J",
-                                   "kinetic energy, translation and rotation"),
-      column<&R::potential_energy_j>("/steps/potential_energy_j", Rows::step, none, "J",
-                                     "gravitational energy, zero at the origin"),
-      column<&R::elastic_energy_j>("/steps/elastic_energy_j", Rows::step, none, "J", "energy stored in the joints"),
-      column<&R::momentum_kg_m_s>("/steps/momentum_kg_m_s", Rows::step, xyz, "kg m/s",
-                                  "linear momentum of the dynamic segments"),
-      column<&R::angular_momentum_kg_m2_s>("/steps/angular_momentum_kg_m2_s", Rows::step, xyz, "kg m^2/s",
-                                           "angular momentum of the dynamic segments about the origin"),
-      column<&R::newton_iterations>("/steps/newton_iterations", Rows::step, none, "1",
-                                    "Newton (or Gauss-Seidel) iterations used"),
-      column<&R::step_newton_residual>("/steps/newton_residual", Rows::step, none, "1",
-                                       "max |C + alpha~ lambda| at the end of the step"),
-      column<&R::momentum_residual>("/steps/momentum_residual", Rows::step, none, "1",
-                                    "most that the forces on a segment lack at the end of the step, relative to the "
-                                    "greatest that a joint carries"),
-      column<&R::contacts>("/steps/contacts", Rows::contact_step, none, "1",
-                           "places where bodies are near each other in this step; -1 without contact"),
-      column<&R::penetration>(
+      column<&R::steps, &Steps::time_s>("/steps/time_s", Rows::step, none, "s", "time at the end of the step"),
+      column<&R::steps, &Steps::length_drift>(
+          "/steps/length_drift", Rows::step, none, "1",
+          "total length through the joint midpoints over its initial value, minus 1"),
+      column<&R::steps, &Steps::joint_gap>("/steps/joint_gap", Rows::step, none, "1",
+                                           "largest distance between the two sides of a joint over the joint length"),
+      column<&R::steps, &Steps::kinetic_energy_j>("/steps/kinetic_energy_j", Rows::step, none, "J",
+                                                  "kinetic energy, translation and rotation"),
+      column<&R::steps, &Steps::potential_energy_j>("/steps/potential_energy_j", Rows::step, none, "J",
+                                                    "gravitational energy, zero at the origin"),
+      column<&R::steps, &Steps::elastic_energy_j>("/steps/elastic_energy_j", Rows::step, none, "J",
+                                                  "energy stored in the joints"),
+      column<&R::steps, &Steps::momentum_kg_m_s>("/steps/momentum_kg_m_s", Rows::step, xyz, "kg m/s",
+                                                 "linear momentum of the dynamic segments"),
+      column<&R::steps, &Steps::angular_momentum_kg_m2_s>("/steps/angular_momentum_kg_m2_s", Rows::step, xyz,
+                                                          "kg m^2/s",
+                                                          "angular momentum of the dynamic segments about the origin"),
+      column<&R::steps, &Steps::newton_iterations>("/steps/newton_iterations", Rows::step, none, "1",
+                                                   "Newton (or Gauss-Seidel) iterations used"),
+      column<&R::steps, &Steps::newton_residual>("/steps/newton_residual", Rows::step, none, "1",
+                                                 "max |C + alpha~ lambda| at the end of the step"),
+      column<&R::steps, &Steps::momentum_residual>(
+          "/steps/momentum_residual", Rows::step, none, "1",
+          "most that the forces on a segment lack at the end of the step, relative to the "
+          "greatest that a joint carries"),
+      column<&R::steps, &Steps::contacts>("/steps/contacts", Rows::contact_step, none, "1",
+                                          "places where bodies are near each other in this step; -1 without contact"),
+      column<&R::steps, &Steps::penetration>(
           "/steps/penetration", Rows::contact_step, none, "1",
           "deepest overlap of two bodies after the step, over the smaller radius; NaN without contact"),
-      column<&R::contact_residual>(
+      column<&R::steps, &Steps::contact_residual>(
           "/steps/contact_residual", Rows::contact_step, none, "1",
           "farthest that a contact still wants to move its bodies after the step, over the smaller radius; those below "
           "contact.tolerance have converged; NaN without contact"),
 
-      column<&R::position_m>("/trajectories/position_m", Rows::frame_segment, xyz, "m", "segment centre"),
-      column<&R::orientation>("/trajectories/orientation", Rows::frame_segment, wxyz, "1",
-                              "segment orientation, unit quaternion (w, x, y, z), local z along the rod"),
-      column<&R::first_row>("/trajectories/first_row", Rows::task, frame, "1",
-                            "row of the frame's first segment; -1 none"),
-      column<&R::frame_time_s>("/trajectories/time_s", Rows::task, frame, "s", "time of the frame"),
-      column<&R::segment_length_m>("/trajectories/segments/length_m", Rows::segment, none, "m", "length; 0: a wall"),
-      column<&R::segment_radius_m>("/trajectories/segments/radius_m", Rows::segment, none, "m", "radius; 0: a wall"),
-      column<&R::segment_rod>("/trajectories/segments/rod", Rows::segment, none, "1", "rod within the scene, from 0"),
-      column<&R::segment_static>("/trajectories/segments/static", Rows::segment, none, "1",
-                                 "1: held, as its clamp says; 0: it moves freely"),
+      column<&R::trajectories, &Trajectories::position_m>("/trajectories/position_m", Rows::frame_segment, xyz, "m",
+                                                          "segment centre"),
+      column<&R::trajectories, &Trajectories::orientation>(
+          "/trajectories/orientation", Rows::frame_segment, wxyz, "1",
+          "segment orientation, unit quaternion (w, x, y, z), local z along the rod"),
+      column<&R::trajectories, &Trajectories::first_row>("/trajectories/first_row", Rows::task, frame, "1",
+                                                         "row of the frame's first segment; -1 none"),
+      column<&R::trajectories, &Trajectories::time_s>("/trajectories/time_s", Rows::task, frame, "s",
+                                                      "time of the frame"),
+      column<&R::trajectories, &Trajectories::segments, &Segments::length_m>(
+          "/trajectories/segments/length_m", Rows::segment, none, "m", "length; 0: a wall"),
+      column<&R::trajectories, &Trajectories::segments, &Segments::radius_m>(
+          "/trajectories/segments/radius_m", Rows::segment, none, "m", "radius; 0: a wall"),
+      column<&R::trajectories, &Trajectories::segments, &Segments::rod>("/trajectories/segments/rod", Rows::segment,
+                                                                        none, "1", "rod within the scene, from 0"),
+      column<&R::trajectories, &Trajectories::segments, &Segments::is_static>(
+          "/trajectories/segments/static", Rows::segment, none, "1", "1: held, as its clamp says; 0: it moves freely"),
 
-      column<&R::system_step>("/systems/step", Rows::system, none, "1",
-                              "time step, from 0; -1: a Newton iteration that was not needed"),
-      column<&R::system_newton>("/systems/newton", Rows::system, none, "1", "Newton iteration within the step, from 0"),
-      column<&R::system_rod>("/systems/rod", Rows::system, none, "1", "rod within the scene, from 0"),
-      column<&R::system_position_m>("/systems/segments/position_m", Rows::system_segment, xyz, "m",
-                                    "segment centre where the system was assembled"),
-      column<&R::system_orientation>("/systems/segments/orientation", Rows::system_segment, wxyz, "1",
-                                     "segment orientation there, unit quaternion (w, x, y, z), local z along the rod"),
-      column<&R::system_velocity_m_s>("/systems/segments/velocity_m_s", Rows::system_segment, xyz, "m/s",
-                                      "velocity at the start of the step"),
-      column<&R::system_angular_velocity_rad_s>("/systems/segments/angular_velocity_rad_s", Rows::system_segment, xyz,
-                                                "rad/s", "angular velocity at the start of the step, world frame"),
-      column<&R::system_free_position_m>(
+      column<&R::systems, &Systems::step>("/systems/step", Rows::system, none, "1",
+                                          "time step, from 0; -1: a Newton iteration that was not needed"),
+      column<&R::systems, &Systems::newton>("/systems/newton", Rows::system, none, "1",
+                                            "Newton iteration within the step, from 0"),
+      column<&R::systems, &Systems::rod>("/systems/rod", Rows::system, none, "1", "rod within the scene, from 0"),
+      column<&R::systems, &Systems::position_m>("/systems/segments/position_m", Rows::system_segment, xyz, "m",
+                                                "segment centre where the system was assembled"),
+      column<&R::systems, &Systems::orientation>(
+          "/systems/segments/orientation", Rows::system_segment, wxyz, "1",
+          "segment orientation there, unit quaternion (w, x, y, z), local z along the rod"),
+      column<&R::systems, &Systems::velocity_m_s>("/systems/segments/velocity_m_s", Rows::system_segment, xyz, "m/s",
+                                                  "velocity at the start of the step"),
+      column<&R::systems, &Systems::angular_velocity_rad_s>("/systems/segments/angular_velocity_rad_s",
+                                                            Rows::system_segment, xyz, "rad/s",
+                                                            "angular velocity at the start of the step, world frame"),
+      column<&R::systems, &Systems::free_position_m>(
           "/systems/segments/free_position_m", Rows::balanced_segment, xyz, "m",
           "segment centre where it would be without joints and contacts, which the balance of momentum measures from; "
           "NaN where it is not kept"),
-      column<&R::system_free_orientation>("/systems/segments/free_orientation", Rows::balanced_segment, wxyz, "1",
-                                          "segment orientation there"),
-      column<&R::system_contact_force>("/systems/segments/contact_force", Rows::balanced_segment, xyz, "kg m",
-                                       "contacts' force on the segment, times the square of the constraints' time "
-                                       "step, world frame"),
-      column<&R::system_contact_torque>("/systems/segments/contact_torque", Rows::balanced_segment, xyz, "kg m^2",
-                                        "their torque about its centre, times the same"),
-      column<&R::system_lambda>(
+      column<&R::systems, &Systems::free_orientation>("/systems/segments/free_orientation", Rows::balanced_segment,
+                                                      wxyz, "1", "segment orientation there"),
+      column<&R::systems, &Systems::contact_force>(
+          "/systems/segments/contact_force", Rows::balanced_segment, xyz, "kg m",
+          "contacts' force on the segment, times the square of the constraints' time "
+          "step, world frame"),
+      column<&R::systems, &Systems::contact_torque>("/systems/segments/contact_torque", Rows::balanced_segment, xyz,
+                                                    "kg m^2", "their torque about its centre, times the same"),
+      column<&R::systems, &Systems::lambda>(
           "/systems/joints/lambda", Rows::system_joint, six, "kg m^2",
           "Lagrange multipliers before the solve: stretch-shear (3), bend-twist (3), in the joint's frame"),
-      column<&R::system_solution>("/systems/joints/solution", Rows::system_joint, six, "kg m^2",
-                                  "their increment, which solves A dlambda = b: by the direct solve"),
+      column<&R::systems, &Systems::solution>("/systems/joints/solution", Rows::system_joint, six, "kg m^2",
+                                              "their increment, which solves A dlambda = b: by the direct solve"),
 
-      column<&R::assemble_s>("/timing/solves/assemble_s", Rows::solve, none, "s", "assembly of A and b"),
-      column<&R::direct_s>("/timing/solves/direct_s", Rows::solve, none, "s",
-                           "factorisation and solve of the same system; NaN where solve.reference is cg"),
-      column<&R::guess_s>(
+      column<&R::timing, &Timing::assemble_s>("/timing/solves/assemble_s", Rows::solve, none, "s",
+                                              "assembly of A and b"),
+      column<&R::timing, &Timing::direct_s>(
+          "/timing/solves/direct_s", Rows::solve, none, "s",
+          "factorisation and solve of the same system; NaN where solve.reference is cg"),
+      column<&R::timing, &Timing::guess_s>(
           "/timing/solves/guess_s", Rows::solve, guess, "s",
           "making the initial guess, median of solve.timing_repeats, and what the guess does once for a solve"),
-      column<&R::cg_s>("/timing/solves/cg_s", Rows::solve, guess, "s",
-                       "preconditioner set-up and CG to the job's tolerance; median of solve.timing_repeats"),
-      column<&R::rest_s>("/timing/steps/rest_s", Rows::step, none, "s",
-                         "the step without assembly, guesses and solves"),
-      column<&R::source_task>(
+      column<&R::timing, &Timing::cg_s>(
+          "/timing/solves/cg_s", Rows::solve, guess, "s",
+          "preconditioner set-up and CG to the job's tolerance; median of solve.timing_repeats"),
+      column<&R::timing, &Timing::rest_s>("/timing/steps/rest_s", Rows::step, none, "s",
+                                          "the step without assembly, guesses and solves"),
+      column<&R::timing, &Timing::source_task>(
           "/timing/tasks/source_task", Rows::task, none, "1",
           "task of the extended file that its rows, or some guesses' rows, were copied from; -1: none"),
-      column<&R::copied_guess>("/timing/tasks/copied_guess", Rows::task, guess, "1",
-                               "1: the guess's rows and times were copied from source_task; -1: they were not"),
-      column<&R::elapsed_s>("/timing/tasks/elapsed_s", Rows::task, none, "s", "wall time of the task, without writing"),
+      column<&R::timing, &Timing::copied_guess>(
+          "/timing/tasks/copied_guess", Rows::task, guess, "1",
+          "1: the guess's rows and times were copied from source_task; -1: they were not"),
+      column<&R::timing, &Timing::elapsed_s>("/timing/tasks/elapsed_s", Rows::task, none, "s",
+                                             "wall time of the task, without writing"),
   };
 }
 

@@ -17,8 +17,8 @@ namespace rodsweep {
 enum class Axis { guess, tolerance, xyz, wxyz, constraint, frame };
 
 /// The values of a column in a record: [row, axes ...].
-using Values = std::variant<std::vector<std::int8_t>*, std::vector<std::int16_t>*, std::vector<std::int32_t>*,
-                            std::vector<std::int64_t>*, std::vector<float>*, std::vector<double>*>;
+using Values = std::variant<Cells<std::int8_t>*, Cells<std::int16_t>*, Cells<std::int32_t>*, Cells<std::int64_t>*,
+                            Cells<float>*, Cells<double>*>;
 
 struct Column {
   const char* path;

@@ -150,10 +150,10 @@ bool Extension::take(std::int64_t index, TaskRecord& record) const {
                  {g, guesses.size()});
     }
   }
-  for (std::int64_t& row : record.first_row)
+  for (std::int64_t& row : record.trajectories.first_row)
     if (row >= 0) row += task.rows[Rows::frame_segment].first - from.rows[Rows::frame_segment].first;
-  record.source_task[0] = from.index;
-  for (std::size_t g = 0; g < guesses.size(); ++g) record.copied_guess[g] = guesses[g] < 0 ? -1 : 1;
+  record.timing.source_task[0] = from.index;
+  for (std::size_t g = 0; g < guesses.size(); ++g) record.timing.copied_guess[g] = guesses[g] < 0 ? -1 : 1;
   return true;
 }
 
@@ -170,13 +170,13 @@ std::string complete(const Task& task, TaskRecord& record, const TaskRecord& tak
     return fmt::format("{}, value {}, is {} and was {}", column.path, value, text_of(column, record, value),
                        text_of(column, taken, value));
   }
-  const std::size_t guesses = taken.copied_guess.size();
+  const std::size_t guesses = taken.timing.copied_guess.size();
   for (const Column& column : columns()) {
     if (!has_guesses(column)) continue;
     for (std::size_t g = 0; g < guesses; ++g)
-      if (taken.copied_guess[g] == 1) copy_guess(column, task, taken, {g, guesses}, record, {g, guesses});
+      if (taken.timing.copied_guess[g] == 1) copy_guess(column, task, taken, {g, guesses}, record, {g, guesses});
   }
-  record.source_task = taken.source_task;
+  record.timing.source_task = taken.timing.source_task;
   return {};
 }
 

@@ -36,7 +36,7 @@ class Extension {
   double cost(std::int64_t task) const;
 
   /// Fills `record`, prepared for the plan's task, from its source: all rows without guess axis, and the columns of the
-  /// guesses found there, marked 1 in record.copied_guess. Returns false, with `record` unchanged, if the source is
+  /// guesses found there, marked 1 in record.timing.copied_guess. Returns false, with `record` unchanged, if the source is
   /// damaged.
   bool take(std::int64_t task, TaskRecord& record) const;
 
@@ -65,7 +65,7 @@ class Extension {
 
 /// Compares a repeated record with the stored one, in rows without guess axis outside /timing. Returns the first
 /// difference: "/steps/joint_gap, value 3, is 1e-9 and was 2e-9". Returns empty if they are bitwise equal; then copies
-/// the columns of the guesses marked in taken.copied_guess to `record`.
+/// the columns of the guesses marked in taken.timing.copied_guess to `record`.
 std::string complete(const Task& task, TaskRecord& record, const TaskRecord& taken);
 
 }  // namespace rodsweep

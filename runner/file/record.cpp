@@ -19,15 +19,17 @@ void TaskRecord::prepare(const Task& task, const AxisSizes& sizes) {
   message.clear();
   for (const Column& column : columns()) {
     const auto size = static_cast<std::size_t>(task.rows[column.rows].count * row_width(column, sizes));
+    const std::vector<std::int64_t> extent = row_extent(column, sizes);
     std::visit(
         [&](auto* values) {
           using T = typename std::decay_t<decltype(*values)>::value_type;
           constexpr T sentinel = std::is_floating_point_v<T> ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(-1);
           values->assign(size, sentinel);
+          std::copy(extent.begin(), extent.end(), values->extent.begin());
         },
         column.values(*this));
   }
-  std::fill(solve_outcome.begin(), solve_outcome.end(), static_cast<std::int8_t>(SolveOutcome::not_run));
+  std::fill(solves.outcome.begin(), solves.outcome.end(), static_cast<std::int8_t>(SolveOutcome::not_run));
 }
 
 PerRows<std::int64_t> row_bytes(const AxisSizes& sizes) {

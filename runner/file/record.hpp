@@ -1,11 +1,14 @@
-// The results of one task in memory: evaluate() fills a TaskRecord, ResultsFile writes it. The columns of the file are
-// listed in runner/file/columns.hpp.
+// The results of one task in memory, a struct for each table of the file: evaluate() fills a TaskRecord, ResultsFile
+// writes it. runner/file/columns.hpp describes the columns.
 //
-// Before the task starts, every vector is sized and filled with its sentinel: -1 for counts, NaN for measurements,
+// Before the task starts, every column is sized and filled with its sentinel: -1 for counts, NaN for measurements,
 // not_run for outcomes. So rows not reached cannot be mistaken for results.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,67 +26,101 @@ struct AxisSizes {
 
 AxisSizes axis_sizes(const Plan& plan);
 
-/// Sums over the solves of a task: [guess, tolerance]. Solves that missed the tolerance count all their iterations.
+/// The values of a column, row by row: [row, axes ...], with at most two axes.
+template <class T>
+class Cells : public std::vector<T> {
+ public:
+  /// One value. Throws std::out_of_range.
+  T& operator()(std::size_t row, std::size_t i = 0, std::size_t j = 0) { return this->at(place(row, i, j)); }
+  const T& operator()(std::size_t row, std::size_t i = 0, std::size_t j = 0) const {
+    return this->at(place(row, i, j));
+  }
+
+  /// The values of a row, followed by those of later rows. Throws std::out_of_range.
+  T* row(std::size_t row) { return &(*this)(row); }
+  const T* row(std::size_t row) const { return &(*this)(row); }
+
+  std::array<std::size_t, 2> extent{1, 1};  ///< of the axes after the row
+
+ private:
+  std::size_t place(std::size_t row, std::size_t i, std::size_t j) const {
+    if (i >= extent[0] || j >= extent[1]) throw std::out_of_range("Cells: an index beyond an axis of its column");
+    return (row * extent[0] + i) * extent[1] + j;
+  }
+};
+
+/// Sums over the solves of a task: [1, guess, tolerance]. Solves that missed the tolerance count all their iterations.
 struct CountSums {
-  std::vector<std::int64_t> iterations, matvecs;
-  std::vector<std::int32_t> unreached;  ///< solves that missed the tolerance
-  std::vector<double> cg_ratio;         ///< iterations over the zero guess's; NaN without one
+  Cells<std::int64_t> iterations, matvecs;
+  Cells<std::int32_t> unreached;  ///< solves that missed the tolerance
+  Cells<double> cg_ratio;         ///< iterations over the zero guess's; NaN without one
 };
 
 struct TaskRecord {
-  // ---- /tasks [task ...]; state and checksum are ResultsFile's
   TaskOutcome outcome = TaskOutcome::pending;
   std::string message;  ///< for outcomes other than ok: the reason and the step
 
-  std::vector<std::int32_t> steps_done;                                ///< [1]
-  std::vector<double> deepest_penetration, largest_momentum_residual;  ///< [1]
-  CountSums counted, counted_all;                                      ///< first Newton iterations; all of them
-  CountSums counted_other_norm;                                        ///< first ones, without matvecs
+  struct Tasks {  // [1 ...]; state and checksum are ResultsFile's
+    Cells<std::int32_t> steps_done;
+    Cells<double> penetration, momentum_residual;  ///< the largest of all steps
+    CountSums counted, counted_all;                ///< first Newton iterations; all of them
+    CountSums counted_other_norm;                  ///< first ones, without matvecs
+  } tasks;
 
-  // ---- /solves [row ...]
-  std::vector<std::int32_t> step;
-  std::vector<std::int16_t> newton, rod;
-  std::vector<double> newton_residual, solve_joint_gap, rhs_norm;
-  std::vector<double> initial_residual, final_residual;  ///< [row, guess] relative to ||b||, in the job's norm
-  std::vector<std::int8_t> solve_outcome;                ///< [row, guess] SolveOutcome
-  std::vector<std::int16_t> start_matvecs;               ///< [row, guess]
-  std::vector<std::int8_t> renewed;                      ///< [row, guess]
-  std::vector<std::int16_t> iterations;                  ///< [row, guess, tolerance]
+  struct Solves {  // [solve ...]
+    Cells<std::int32_t> step;
+    Cells<std::int16_t> newton, rod;
+    Cells<double> newton_residual, joint_gap, rhs_norm;
+    Cells<double> initial_residual, final_residual;  ///< [.., guess] relative to ||b||, in the job's norm
+    Cells<std::int8_t> outcome;                      ///< [.., guess] SolveOutcome
+    Cells<std::int16_t> start_matvecs;               ///< [.., guess]
+    Cells<std::int8_t> renewed;                      ///< [.., guess]
+    Cells<std::int16_t> iterations;                  ///< [.., guess, tolerance]
+  } solves;
 
-  // ---- /steps [row ...]
-  std::vector<double> time_s, length_drift, joint_gap, kinetic_energy_j, potential_energy_j, elastic_energy_j;
-  std::vector<double> momentum_kg_m_s, angular_momentum_kg_m2_s;  ///< [row, 3]
-  std::vector<std::int16_t> newton_iterations;
-  std::vector<double> step_newton_residual, momentum_residual;
-  std::vector<std::int32_t> contacts;
-  std::vector<double> penetration, contact_residual;
+  struct Steps {  // [step ...]
+    Cells<double> time_s, length_drift, joint_gap, kinetic_energy_j, potential_energy_j, elastic_energy_j;
+    Cells<double> momentum_kg_m_s, angular_momentum_kg_m2_s;  ///< [.., 3]
+    Cells<std::int16_t> newton_iterations;
+    Cells<double> newton_residual, momentum_residual;
+    Cells<std::int32_t> contacts;
+    Cells<double> penetration, contact_residual;
+  } steps;
 
-  // ---- /trajectories
-  std::vector<double> position_m, orientation;             ///< [frame x segment, 3], [frame x segment, 4] (w, x, y, z)
-  std::vector<std::int64_t> first_row;                     ///< [frame] row of the frame in /trajectories
-  std::vector<double> frame_time_s;                        ///< [frame]
-  std::vector<double> segment_length_m, segment_radius_m;  ///< [segment]
-  std::vector<std::int16_t> segment_rod;                   ///< [segment]
-  std::vector<std::int8_t> segment_static;                 ///< [segment]
+  struct Segments {  // [segment]
+    Cells<double> length_m, radius_m;
+    Cells<std::int16_t> rod;
+    Cells<std::int8_t> is_static;
+  };
+  struct Trajectories {
+    Cells<double> position_m, orientation;  ///< [frame x segment, 3], [frame x segment, 4] (w, x, y, z)
+    Cells<std::int64_t> first_row;          ///< [1, frame] row of the frame in /trajectories
+    Cells<double> time_s;                   ///< [1, frame]
+    Segments segments;
+  } trajectories;
 
-  // ---- /systems: the linear systems of a data set (runner/dataset/stored_systems.hpp)
-  std::vector<std::int32_t> system_step;                      ///< [system]
-  std::vector<std::int16_t> system_newton, system_rod;        ///< [system]
-  std::vector<double> system_position_m, system_orientation;  ///< [system x segment, 3], [.., 4] (w, x, y, z)
-  std::vector<double> system_velocity_m_s, system_angular_velocity_rad_s;  ///< [system x segment, 3]
-  std::vector<double> system_free_position_m, system_free_orientation;     ///< [balanced_segment, 3], [.., 4]
-  std::vector<double> system_contact_force, system_contact_torque;         ///< [balanced_segment, 3]
-  std::vector<double> system_lambda, system_solution;                      ///< [system x joint, 6]
+  /// The linear systems of a data set (runner/dataset/stored_systems.hpp).
+  struct Systems {
+    Cells<std::int32_t> step;                            ///< [system]
+    Cells<std::int16_t> newton, rod;                     ///< [system]
+    Cells<double> position_m, orientation;               ///< [system x segment, 3], [.., 4] (w, x, y, z)
+    Cells<double> velocity_m_s, angular_velocity_rad_s;  ///< [system x segment, 3]
+    Cells<double> free_position_m, free_orientation;     ///< [balanced segment, 3], [.., 4]
+    Cells<double> contact_force, contact_torque;         ///< [balanced segment, 3]
+    Cells<double> lambda, solution;                      ///< [system x joint, 6]
+  } systems;
 
-  // ---- /timing: data that may differ between runs of the same job; ResultsFile adds rank, host, run, write_s, tries
-  std::vector<float> assemble_s, direct_s;  ///< [row]
-  std::vector<float> guess_s, cg_s;         ///< [row, guess]; cg_s includes the preconditioner's setup
-  std::vector<float> rest_s;                ///< [step row] time of the step without assembly and solves
-  std::vector<double> elapsed_s;            ///< [1]
-  std::vector<std::int64_t> source_task;    ///< [1] \ of an extended sweep
-  std::vector<std::int8_t> copied_guess;    ///< [guess] /
+  /// Data that may differ between runs of the same job; ResultsFile adds rank, host, run, write_s, tries.
+  struct Timing {
+    Cells<float> assemble_s, direct_s;  ///< [solve]
+    Cells<float> guess_s, cg_s;         ///< [solve, guess]; cg_s includes the preconditioner's setup
+    Cells<float> rest_s;                ///< [step] time of the step without assembly and solves
+    Cells<double> elapsed_s;            ///< [1]
+    Cells<std::int64_t> source_task;    ///< [1] \ of an extended sweep
+    Cells<std::int8_t> copied_guess;    ///< [1, guess] /
+  } timing;
 
-  /// Sizes all vectors for this task and fills them with sentinels. Reuses the memory of an earlier task.
+  /// Sizes all columns for this task and fills them with sentinels. Reuses the memory of an earlier task.
   void prepare(const Task& task, const AxisSizes& sizes);
 };
 

@@ -16,8 +16,8 @@ TaskRecord record_of(const Plan& plan, std::int64_t index) {
 
 std::vector<std::size_t> rows_run(const TaskRecord& record) {
   std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < record.newton.size(); ++row)
-    if (record.newton[row] >= 0) rows.push_back(row);
+  for (std::size_t row = 0; row < record.solves.newton.size(); ++row)
+    if (record.solves.newton[row] >= 0) rows.push_back(row);
   return rows;
 }
 

@@ -12,8 +12,8 @@ namespace test_plan_estimate {
 Evaluate taking(double seconds_per_cost) {
   return [=](const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
     record.outcome = TaskOutcome::ok;
-    record.steps_done[0] = spec.time.steps;
-    record.elapsed_s[0] = seconds_per_cost * task.segments * spec.time.steps * spec.time.newton_iterations;
+    record.tasks.steps_done[0] = spec.time.steps;
+    record.timing.elapsed_s[0] = seconds_per_cost * task.segments * spec.time.steps * spec.time.newton_iterations;
     return true;
   };
 }
@@ -67,8 +67,8 @@ TEST_CASE("a probe that fails says so and is extrapolated from the steps that it
   const auto probes = probe(plan, [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) {
     record.outcome = TaskOutcome::diverged;
     record.message = "joint gap 12";
-    record.steps_done[0] = 2;
-    record.elapsed_s[0] = 0.5;
+    record.tasks.steps_done[0] = 2;
+    record.timing.elapsed_s[0] = 0.5;
     return true;
   });
   CHECK(probes.at(0).outcome == TaskOutcome::diverged);

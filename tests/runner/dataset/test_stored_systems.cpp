@@ -50,10 +50,10 @@ TEST_CASE("a data set's record has the first system of every step, or all") {
   Json job = data_job();
   job["time"]["newton_tolerance"] = 0;  // so that all iterations are needed
   const TaskRecord first = evaluated(plan_of(job));
-  CHECK(first.system_step == std::vector<std::int32_t>{0, 1, 2, 3});
-  CHECK(first.system_newton == std::vector<std::int16_t>{0, 0, 0, 0});
-  CHECK(first.system_rod == std::vector<std::int16_t>{0, 0, 0, 0});
-  CHECK(first.system_velocity_m_s.front() == 0);  // at the start of the first step
+  CHECK(first.systems.step == std::vector<std::int32_t>{0, 1, 2, 3});
+  CHECK(first.systems.newton == std::vector<std::int16_t>{0, 0, 0, 0});
+  CHECK(first.systems.rod == std::vector<std::int16_t>{0, 0, 0, 0});
+  CHECK(first.systems.velocity_m_s.front() == 0);  // at the start of the first step
   job["record"] = {{"systems", "all"}};
   const TaskRecord all = evaluated(plan_of(job));
   REQUIRE(all.system_step.size() == 4 * 3);
@@ -62,7 +62,7 @@ TEST_CASE("a data set's record has the first system of every step, or all") {
   const std::size_t segments = 10;
   for (std::size_t step = 0; step < 4; ++step)
     for (std::size_t i = 0; i < 3 * segments; ++i)
-      CHECK(first.system_position_m[3 * segments * step + i] == all.system_position_m[9 * segments * step + i]);
+      CHECK(first.systems.position_m[3 * segments * step + i] == all.system_position_m[9 * segments * step + i]);
 }
 
 TEST_CASE("Newton iterations that were not needed stay marked and are not read") {
@@ -71,9 +71,9 @@ TEST_CASE("Newton iterations that were not needed stay marked and are not read")
   job["record"] = {{"systems", "all"}};
   const Plan plan = plan_of(job);
   const TaskRecord record = evaluated(plan);
-  CHECK(record.system_step == std::vector<std::int32_t>(4 * 3, -1));
-  CHECK(std::isnan(record.system_position_m.back()));
-  CHECK(std::isnan(record.system_solution.front()));
+  CHECK(record.systems.step == std::vector<std::int32_t>(4 * 3, -1));
+  CHECK(std::isnan(record.systems.position_m.back()));
+  CHECK(std::isnan(record.systems.solution.front()));
   CHECK(stored_systems(record, build_scene(plan.spec(0).scene), 3).empty());
 }
 

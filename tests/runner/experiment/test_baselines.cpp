@@ -62,9 +62,9 @@ TEST_CASE("nearest neighbours know the simulations of their own data set, the fi
   const TaskRecord record = evaluated(folder, job).front();
   REQUIRE(record.outcome == TaskOutcome::ok);
   for (const std::size_t t : {0, 1, 2, 3}) {
-    CHECK(record.counted.iterations[t] > 0);
-    CHECK(record.counted.cg_ratio[8 + t] == 0);
-    CHECK(record.counted.cg_ratio[16 + t] < 0.5);
+    CHECK(record.tasks.counted.iterations[t] > 0);
+    CHECK(record.tasks.counted.cg_ratio[8 + t] == 0);
+    CHECK(record.tasks.counted.cg_ratio[16 + t] < 0.5);
   }
   CHECK(shared_knn_set(folder / "data.h5", 0) == shared_knn_set(folder / "data.h5", 0));
   CHECK(shared_knn_set(folder / "data.h5", 1)->size(0) == data["time"]["steps"]);
@@ -85,15 +85,15 @@ TEST_CASE("a network that says nothing lets the rod fall apart, which is data: r
   job["time"]["steps"] = 5;
   const TaskRecord record = evaluated(folder, job).front();
   CHECK(record.outcome == TaskOutcome::ok);
-  CHECK(record.joint_gap.back() > record.joint_gap.front());
-  CHECK(record.joint_gap.front() > 0.001);
-  CHECK(record.step.front() == 0);
-  CHECK(record.newton.front() == 0);
-  CHECK(record.newton_residual.front() > 0);
-  CHECK(record.rhs_norm.front() > 0);
-  CHECK(record.iterations.empty());
-  CHECK(std::isnan(record.assemble_s.front()));
-  CHECK(record.rest_s.front() > 0);
+  CHECK(record.steps.joint_gap.back() > record.steps.joint_gap.front());
+  CHECK(record.steps.joint_gap.front() > 0.001);
+  CHECK(record.solves.step.front() == 0);
+  CHECK(record.solves.newton.front() == 0);
+  CHECK(record.solves.newton_residual.front() > 0);
+  CHECK(record.solves.rhs_norm.front() > 0);
+  CHECK(record.solves.iterations.empty());
+  CHECK(std::isnan(record.timing.assemble_s.front()));
+  CHECK(record.timing.rest_s.front() > 0);
   job["time"]["steps"] = 20;
   const TaskRecord torn = evaluated(folder, job).front();
   CHECK(torn.outcome == TaskOutcome::torn);
@@ -108,10 +108,10 @@ TEST_CASE("a simulator of states moves rods without any solve; its steps are dat
   job["time"]["steps"] = 5;
   const TaskRecord record = evaluated(folder, job).front();
   CHECK(record.outcome == TaskOutcome::ok);
-  CHECK(record.kinetic_energy_j.back() < 1e-20);  // it has not learned of gravity
-  CHECK(record.joint_gap.back() < 1e-12);
-  CHECK(std::isnan(record.newton_residual.front()));
-  CHECK(record.rest_s.front() > 0);
+  CHECK(record.steps.kinetic_energy_j.back() < 1e-20);  // it has not learned of gravity
+  CHECK(record.steps.joint_gap.back() < 1e-12);
+  CHECK(std::isnan(record.solves.newton_residual.front()));
+  CHECK(record.timing.rest_s.front() > 0);
   job["scene"] = forest_scene();
   CHECK(evaluated(folder, job).front().outcome == TaskOutcome::ok);
 }
@@ -141,10 +141,10 @@ TEST_CASE("a network moves every tree of a forest instead of the solve") {
   job["scene"] = forest_scene();
   const TaskRecord record = evaluated(folder, job).front();
   CHECK(record.outcome == TaskOutcome::ok);
-  CHECK(record.joint_gap.back() > record.joint_gap.front());
+  CHECK(record.steps.joint_gap.back() > record.steps.joint_gap.front());
   for (std::size_t rod = 0; rod < 2; ++rod) {
-    CHECK(record.rod[rod] == static_cast<int>(rod));
-    CHECK(record.newton_residual[rod] > 0);
+    CHECK(record.solves.rod[rod] == static_cast<int>(rod));
+    CHECK(record.solves.newton_residual[rod] > 0);
   }
 }
 

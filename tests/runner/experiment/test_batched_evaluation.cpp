@@ -98,16 +98,16 @@ TEST_CASE("records are those of the time step, to rounding") {
     CAPTURE(task);
     const TaskRecord &a = batch.records[task], &b = single.records[task];
     REQUIRE(b.outcome == TaskOutcome::ok);
-    CHECK(a.newton == b.newton);
-    CHECK(a.newton_iterations == b.newton_iterations);
-    CHECK(largest_difference(a.newton_residual, b.newton_residual) < 1e-10);
-    CHECK(largest_difference(a.momentum_residual, b.momentum_residual) < 1e-6);
-    CHECK(largest_difference(a.solve_joint_gap, b.solve_joint_gap) < 1e-10);
-    CHECK(largest_difference(a.rhs_norm, b.rhs_norm) < 1e-10);
-    CHECK(largest_difference(a.position_m, b.position_m) < 1e-10);
-    CHECK(largest_difference(a.orientation, b.orientation) < 1e-10);
-    CHECK(largest_difference(a.length_drift, b.length_drift) < 1e-10);
-    CHECK(a.frame_time_s == b.frame_time_s);
+    CHECK(a.solves.newton == b.solves.newton);
+    CHECK(a.steps.newton_iterations == b.steps.newton_iterations);
+    CHECK(largest_difference(a.solves.newton_residual, b.solves.newton_residual) < 1e-10);
+    CHECK(largest_difference(a.steps.momentum_residual, b.steps.momentum_residual) < 1e-6);
+    CHECK(largest_difference(a.solves.joint_gap, b.solves.joint_gap) < 1e-10);
+    CHECK(largest_difference(a.solves.rhs_norm, b.solves.rhs_norm) < 1e-10);
+    CHECK(largest_difference(a.trajectories.position_m, b.trajectories.position_m) < 1e-10);
+    CHECK(largest_difference(a.trajectories.orientation, b.trajectories.orientation) < 1e-10);
+    CHECK(largest_difference(a.steps.length_drift, b.steps.length_drift) < 1e-10);
+    CHECK(a.trajectories.time_s == b.trajectories.time_s);
   }
 }
 

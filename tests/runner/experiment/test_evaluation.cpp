@@ -64,9 +64,9 @@ TEST_CASE("a time limit and a stop are met in the middle of a solve") {
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
   int asked = 0;
-  const auto stop = [&] { return record.steps_done[0] == 0 && ++asked > 2; };  // once everything is built
+  const auto stop = [&] { return record.tasks.steps_done[0] == 0 && ++asked > 2; };  // once everything is built
   CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, stop));
-  CHECK(record.steps_done[0] == 0);
+  CHECK(record.tasks.steps_done[0] == 0);
 }
 
 TEST_CASE("a time limit and a stop are met while scene and systems are built") {
@@ -83,23 +83,23 @@ TEST_CASE("a time limit and a stop are met while scene and systems are built") {
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
   CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, [] { return true; }));
-  CHECK(record.steps_done[0] == -1);  // not so far as to log anything
+  CHECK(record.tasks.steps_done[0] == -1);  // not so far as to log anything
 }
 
 TEST_CASE("with CG as the reference the counts are those beside the direct solve, which is not run") {
   for (const char* guesses : {R"(["zero", "previous", "quadratic"])", R"(["previous", "zero"])"}) {
     const TaskRecord direct = evaluated(five_steps(guesses));
     const TaskRecord by_cg = evaluated(five_steps(guesses, R"({"reference": "cg"})"));
-    const std::size_t guess_count = by_cg.cg_s.size() / by_cg.newton.size();
-    CHECK(by_cg.newton == direct.newton);
-    CHECK(by_cg.counted.iterations.size() == direct.counted.iterations.size());
-    for (std::size_t i = 0; i < by_cg.counted_all.iterations.size(); ++i)
-      CHECK(std::abs(by_cg.counted_all.iterations[i] - direct.counted_all.iterations[i]) <=
-            2 + direct.counted_all.iterations[i] / 50);
-    for (std::size_t row = 0; row < by_cg.newton.size(); ++row) {
-      CHECK(std::isnan(by_cg.direct_s[row]));
-      CHECK(std::isnan(direct.direct_s[row]) == (direct.newton[row] < 0));
-      CHECK(std::isnan(by_cg.cg_s[row * guess_count]) == (by_cg.newton[row] < 0));
+    const std::size_t guess_count = by_cg.timing.cg_s.size() / by_cg.solves.newton.size();
+    CHECK(by_cg.solves.newton == direct.solves.newton);
+    CHECK(by_cg.tasks.counted.iterations.size() == direct.tasks.counted.iterations.size());
+    for (std::size_t i = 0; i < by_cg.tasks.counted_all.iterations.size(); ++i)
+      CHECK(std::abs(by_cg.tasks.counted_all.iterations[i] - direct.tasks.counted_all.iterations[i]) <=
+            2 + direct.tasks.counted_all.iterations[i] / 50);
+    for (std::size_t row = 0; row < by_cg.solves.newton.size(); ++row) {
+      CHECK(std::isnan(by_cg.timing.direct_s[row]));
+      CHECK(std::isnan(direct.timing.direct_s[row]) == (direct.solves.newton[row] < 0));
+      CHECK(std::isnan(by_cg.timing.cg_s[row * guess_count]) == (by_cg.solves.newton[row] < 0));
     }
   }
 }
@@ -110,10 +110,11 @@ TEST_CASE("with CG as the reference a closed loop is what it is beside the direc
   const TaskRecord direct = evaluated(job);
   job["solve"]["reference"] = "cg";
   const TaskRecord by_cg = evaluated(job);
-  CHECK(by_cg.iterations == direct.iterations);
-  CHECK(by_cg.newton == direct.newton);
-  for (const std::size_t row : rows_run(by_cg)) CHECK(by_cg.final_residual[row] == direct.final_residual[row]);
-  CHECK(std::all_of(by_cg.direct_s.begin(), by_cg.direct_s.end(), [](float s) { return std::isnan(s); }));
+  CHECK(by_cg.solves.iterations == direct.solves.iterations);
+  CHECK(by_cg.solves.newton == direct.solves.newton);
+  for (const std::size_t row : rows_run(by_cg))
+    CHECK(by_cg.solves.final_residual[row] == direct.solves.final_residual[row]);
+  CHECK(std::all_of(by_cg.timing.direct_s.begin(), by_cg.timing.direct_s.end(), [](float s) { return std::isnan(s); }));
 }
 
 TEST_CASE("a reference that runs out of iterations advances the rod all the same, and its task says so") {
@@ -160,9 +161,9 @@ TEST_CASE("without the other norm its columns are sentinels, and nothing else ch
   const TaskRecord both = evaluated(job);
   job["record"] = {{"norms", "one"}};
   const TaskRecord one = evaluated(job);
-  CHECK(one.counted.iterations == both.counted.iterations);
-  CHECK(one.iterations == both.iterations);
-  for (const std::int64_t count : one.counted_other_norm.iterations) CHECK(count == -1);
+  CHECK(one.tasks.counted.iterations == both.tasks.counted.iterations);
+  CHECK(one.solves.iterations == both.solves.iterations);
+  for (const std::int64_t count : one.tasks.counted_other_norm.iterations) CHECK(count == -1);
 }
 
 TEST_CASE("repeats of the timed solves change no count, and every time is there") {
@@ -235,9 +236,9 @@ TEST_CASE("a closed loop advances by its own guess's solution, at the job's tole
   const TaskRecord loose = evaluated(job);
   job["solve"]["tolerance"] = 1e-10;
   const TaskRecord tight = evaluated(job);
-  CHECK(loose.joint_gap[4] > 100 * paired.joint_gap[4]);
-  CHECK(tight.position_m == paired.position_m);
-  CHECK(tight.kinetic_energy_j[4] == Approx(paired.kinetic_energy_j[4]).epsilon(1e-6));
+  CHECK(loose.joint_gap[4] > 100 * paired.steps.joint_gap[4]);
+  CHECK(tight.trajectories.position_m == paired.trajectories.position_m);
+  CHECK(tight.steps.kinetic_energy_j[4] == Approx(paired.steps.kinetic_energy_j[4]).epsilon(1e-6));
 }
 
 TEST_CASE("a guess that no solve can start from fails the task by its name, and is not counted as zero iterations") {
@@ -255,14 +256,14 @@ TEST_CASE("a guess that no solve can start from fails the task by its name, and 
   CHECK(solve.solve(system, {0, 0, 0}, 0, delta_lambda) == SolveOutcome::not_a_number);
   solve.finish();
   CHECK(record.message == ": it cannot start from the guess \"oracle 1000000.0\"");
-  CHECK(record.solve_outcome[0] != static_cast<int>(SolveOutcome::not_a_number));
-  CHECK(record.solve_outcome[1] == static_cast<int>(SolveOutcome::not_a_number));
-  CHECK(record.solve_outcome[2] == static_cast<int>(SolveOutcome::not_run));
-  CHECK(std::isnan(record.initial_residual[1]));
+  CHECK(record.solves.outcome[0] != static_cast<int>(SolveOutcome::not_a_number));
+  CHECK(record.solves.outcome[1] == static_cast<int>(SolveOutcome::not_a_number));
+  CHECK(record.solves.outcome[2] == static_cast<int>(SolveOutcome::not_run));
+  CHECK(std::isnan(record.solves.initial_residual[1]));
   for (std::size_t t = 0; t < tolerances; ++t) {
-    CHECK(record.iterations[tolerances + t] == -1);
-    CHECK(record.counted.matvecs[t] > 0);
-    CHECK(record.counted.unreached[tolerances + t] == 0);
+    CHECK(record.solves.iterations[tolerances + t] == -1);
+    CHECK(record.tasks.counted.matvecs[t] > 0);
+    CHECK(record.tasks.counted.unreached[tolerances + t] == 0);
   }
 }
 

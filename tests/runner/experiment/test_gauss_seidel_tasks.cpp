@@ -17,20 +17,20 @@ TaskRecord evaluated(const std::string& solve, Json job = small_job()) {
 TEST_CASE("a task of xpbd holds the residual of every iteration, and the state and time of every step") {
   const TaskRecord record = evaluated(R"({"method": "xpbd", "iterations": 30})");
   REQUIRE(record.outcome == TaskOutcome::ok);
-  REQUIRE(record.newton_residual.size() == 10 * 30);
-  for (std::size_t row = 0; row < record.newton.size(); ++row) {
-    CHECK(record.step[row] == static_cast<int>(row) / 30);
-    CHECK(record.newton[row] == static_cast<int>(row) % 30);
+  REQUIRE(record.solves.newton_residual.size() == 10 * 30);
+  for (std::size_t row = 0; row < record.solves.newton.size(); ++row) {
+    CHECK(record.solves.step[row] == static_cast<int>(row) / 30);
+    CHECK(record.solves.newton[row] == static_cast<int>(row) % 30);
   }
   for (std::size_t step = 0; step < 10; ++step) {
-    CHECK(record.newton_residual[30 * step + 29] < record.newton_residual[30 * step]);
-    CHECK(record.newton_iterations[step] == 30);
-    CHECK(record.rest_s[step] > 0);
-    CHECK(record.joint_gap[step] > 0);
+    CHECK(record.solves.newton_residual[30 * step + 29] < record.solves.newton_residual[30 * step]);
+    CHECK(record.steps.newton_iterations[step] == 30);
+    CHECK(record.timing.rest_s[step] > 0);
+    CHECK(record.steps.joint_gap[step] > 0);
   }
-  CHECK(std::isnan(record.rhs_norm.front()));
-  CHECK(std::isnan(record.assemble_s.front()));
-  CHECK(record.iterations.empty());
+  CHECK(std::isnan(record.solves.rhs_norm.front()));
+  CHECK(std::isnan(record.timing.assemble_s.front()));
+  CHECK(record.solves.iterations.empty());
 }
 
 TEST_CASE("every tree of a forest takes the steps of the direct solve under xpbd, and sags under pbd too") {
@@ -44,7 +44,7 @@ TEST_CASE("every tree of a forest takes the steps of the direct solve under xpbd
   REQUIRE(xpbd.outcome == TaskOutcome::ok);
   REQUIRE(pbd.outcome == TaskOutcome::ok);
   for (std::size_t step = 0; step < 5; ++step) {
-    CHECK(xpbd.kinetic_energy_j[step] == Approx(direct.kinetic_energy_j[step]).epsilon(1e-3));
+    CHECK(xpbd.steps.kinetic_energy_j[step] == Approx(direct.steps.kinetic_energy_j[step]).epsilon(1e-3));
     CHECK(pbd.kinetic_energy_j[step] > 0);
     CHECK(pbd.joint_gap[step] < 1e-2);
   }
@@ -57,8 +57,8 @@ TEST_CASE("every tree of a forest takes the steps of the direct solve under xpbd
 TEST_CASE("summaries of Gauss-Seidel have steps and no rows of iterations") {
   const TaskRecord record = evaluated(R"({"method": "pbd"})", with("/record", R"({"solves": "summary"})"));
   CHECK(record.outcome == TaskOutcome::ok);
-  CHECK(record.newton_residual.empty());
-  CHECK(record.step_newton_residual.back() > 0);
+  CHECK(record.solves.newton_residual.empty());
+  CHECK(record.steps.newton_residual.back() > 0);
 }
 
 }  // namespace test_gauss_seidel_tasks

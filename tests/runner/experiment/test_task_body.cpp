@@ -25,7 +25,7 @@ TEST_CASE("a record that was filled is written and its outcome returned") {
       task_body(plan, into(written), [](const Task&, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
         record.outcome = TaskOutcome::diverged;
         record.message = "joint gap 12";
-        record.steps_done[0] = spec.time.steps;
+        record.tasks.steps_done[0] = spec.time.steps;
         return true;
       });
   const TaskResult result = body({0}, never).at(0);
@@ -41,7 +41,7 @@ TEST_CASE("a task that throws is an error with its message, written with sentine
   std::vector<TaskRecord> written;
   BatchBody body = task_body(plan, into(written),
                              [](const Task&, const TaskSpec&, TaskRecord& record, const StopRequested&) -> bool {
-                               record.steps_done[0] = 3;
+                               record.tasks.steps_done[0] = 3;
                                throw std::runtime_error("the matrix has no diagonal");
                              });
   CHECK(body({0}, never).at(0).outcome == TaskOutcome::error);

@@ -124,29 +124,31 @@ TEST_CASE("what is taken over stands at its new rows, and a simulation that diff
   taken.prepare(task, axis_sizes(plan));
   REQUIRE(extension.take(4, taken));
   const TaskRecord written = synthetic_record(before, 3);
-  CHECK(taken.joint_gap == written.joint_gap);
-  CHECK(taken.position_m == written.position_m);
-  CHECK(taken.segment_radius_m == written.segment_radius_m);
-  CHECK(taken.copied_guess == std::vector<std::int8_t>{-1, 1, 1});
+  CHECK(taken.steps.joint_gap == written.steps.joint_gap);
+  CHECK(taken.trajectories.position_m == written.trajectories.position_m);
+  CHECK(taken.trajectories.segments.radius_m == written.trajectories.segments.radius_m);
+  CHECK(taken.timing.copied_guess == std::vector<std::int8_t>{-1, 1, 1});
   const std::size_t tolerances = tolerance_ladder().size();
   for (std::size_t row = 0; row < 6; ++row)
     for (std::size_t t = 0; t < tolerances; ++t) {
-      CHECK(taken.iterations[(row * 3 + 0) * tolerances + t] == -1);
-      CHECK(taken.iterations[(row * 3 + 1) * tolerances + t] == written.iterations[(row * 2 + 1) * tolerances + t]);
-      CHECK(taken.iterations[(row * 3 + 2) * tolerances + t] == written.iterations[(row * 2 + 0) * tolerances + t]);
+      CHECK(taken.solves.iterations[(row * 3 + 0) * tolerances + t] == -1);
+      CHECK(taken.solves.iterations[(row * 3 + 1) * tolerances + t] ==
+            written.solves.iterations[(row * 2 + 1) * tolerances + t]);
+      CHECK(taken.solves.iterations[(row * 3 + 2) * tolerances + t] ==
+            written.solves.iterations[(row * 2 + 0) * tolerances + t]);
     }
-  CHECK(taken.first_row[0] ==
-        written.first_row[0] + task.rows[Rows::frame_segment].first - before.task(3).rows[Rows::frame_segment].first);
+  CHECK(taken.trajectories.first_row[0] == written.trajectories.first_row[0] + task.rows[Rows::frame_segment].first -
+                                               before.task(3).rows[Rows::frame_segment].first);
 
   TaskRecord record = taken;  // as if simulated again, with other guesses
-  for (auto& iterations : record.iterations) iterations = 7;
+  for (auto& iterations : record.solves.iterations) iterations = 7;
   CHECK(complete(task, record, taken) == "");
-  CHECK(record.iterations[0] == 7);
-  CHECK(record.iterations[tolerances] == taken.iterations[tolerances]);
-  CHECK(record.source_task[0] == 3);
+  CHECK(record.solves.iterations[0] == 7);
+  CHECK(record.solves.iterations[tolerances] == taken.solves.iterations[tolerances]);
+  CHECK(record.timing.source_task[0] == 3);
 
   TaskRecord other = taken;
-  other.kinetic_energy_j[2] = 0.5;
+  other.steps.kinetic_energy_j[2] = 0.5;
   CHECK_THAT(complete(task, other, taken), StartsWith("/steps/kinetic_energy_j, value 2, is 0.5 and was "));
   other = taken;
   other.outcome = TaskOutcome::diverged;
@@ -167,7 +169,7 @@ TEST_CASE(
   const Evaluate evaluate = [&](const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
     CHECK(spec.settled == std::vector<std::uint8_t>{0, 1, 1});
     extension.take(task.index, record);  // the same trajectory
-    record.joint_gap[1] += gap;
+    record.steps.joint_gap[1] += gap;
     return true;
   };
   int written = 0;

@@ -104,7 +104,7 @@ TEST_CASE("a task whose record cannot be written whole stays pending") {
   const Plan plan = plan_of(full_job());
   ResultsFile file = ResultsFile::create(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF);
   TaskRecord record = synthetic_record(plan, 2);
-  record.elapsed_s.push_back(1);  // one of the last columns
+  record.timing.elapsed_s.push_back(1);  // one of the last columns
   CHECK(message_of<std::logic_error>([&] { file.write(plan.task(2), record); }) ==
         "the record of task 2 holds 2 values for /timing/tasks/elapsed_s, not 1");
   CHECK(stored<std::uint8_t>(folder / "a.h5", "/tasks/state") == std::vector<std::uint8_t>(6, 0));
@@ -202,7 +202,7 @@ TEST_CASE("a file older than the columns of contact has the checksums that it ha
   for (const Column& column : columns())
     if (!is_optional(column.rows) && std::string(column.path).rfind("/timing/", 0) != 0) add(bytes_of(column, record));
   CHECK(task_checksum(2, record) == sum.value());
-  record.contacts = {3};
+  record.steps.contacts.assign(1, 3);
   CHECK(task_checksum(2, record) != sum.value());
 }
 

@@ -255,9 +255,9 @@ TEST_CASE("two records that differ in one value have different checksums") {
   };
   TaskRecord record = synthetic_record(plan, 0);
   const std::uint64_t first = checksum("a.h5", record);
-  record.elapsed_s[0] += 1;
+  record.timing.elapsed_s[0] += 1;
   CHECK(checksum("b.h5", record) == first);
-  record.length_drift[1] += 1e-16 + record.length_drift[1] * 1e-15;
+  record.steps.length_drift[1] += 1e-16 + record.steps.length_drift[1] * 1e-15;
   CHECK(checksum("c.h5", record) != first);
 }
 

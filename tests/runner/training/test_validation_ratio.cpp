@@ -39,7 +39,7 @@ TEST_CASE("the CG ratio of a guess on recorded simulations is that of a paired s
             static_cast<std::size_t>(task.index),
             [&](const Scene& scene, const StoredSimulation&) { return make_guess(spec.guesses[g], spec, scene); });
         for (std::size_t t = 0; t < ValidationRatio::tolerance_count; ++t)
-          CHECK(measured[t] == record.counted.cg_ratio[g * tolerance_ladder().size() + t]);
+          CHECK(measured[t] == record.tasks.counted.cg_ratio[g * tolerance_ladder().size() + t]);
         if (g > 0) CHECK(measured[1] < 1);
       }
     }
