@@ -1,4 +1,4 @@
-// What the validation tests share: a scene advanced by direct solves, and how it is brought to rest.
+// What tests share that advance a scene by direct solves: how it is stepped, and how it is brought to rest.
 #pragma once
 
 #include <algorithm>
@@ -20,14 +20,16 @@ inline Vector3 tip(const Rod& rod) {
 
 class Simulation {
  public:
-  /// Newton runs to its floor: the tolerance is that of rounding. With a tolerance on it, the balance of momentum is
-  /// kept.
-  Simulation(Scene initial, double dt, int newton_iterations = 12, std::optional<double> momentum_tolerance = {})
+  /// With a tolerance on it, the balance of momentum is kept.
+  Simulation(Scene initial, const StepSettings& settings, std::optional<double> momentum_tolerance = {})
       : scene(std::move(initial)),
-        dt_(dt),
+        dt_(settings.dt),
         direct_(scene),
         projection_(scene, direct_, momentum_tolerance),
-        stepper_(scene, {dt, newton_iterations, 1e-14}) {}
+        stepper_(scene, settings) {}
+  /// Newton runs to its floor: the tolerance is that of rounding.
+  Simulation(Scene initial, double dt, int newton_iterations = 12, std::optional<double> momentum_tolerance = {})
+      : Simulation(std::move(initial), StepSettings{dt, newton_iterations, 1e-14}, momentum_tolerance) {}
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -63,6 +65,7 @@ class Simulation {
   }
 
   Rod& rod() { return scene.rods.front(); }
+  double constraint_dt() const { return stepper_.constraint_dt(); }
 
   Scene scene;
 

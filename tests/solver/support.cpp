@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "solver/numbers/rotation.hpp"
-#include "solver/step/projection.hpp"
-#include "solver/step/time_step.hpp"
+#include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test {
 namespace {
@@ -82,6 +82,20 @@ int segments_of(const Edges& edges) {
   return most + 1;
 }
 
+std::vector<int> shuffled(int count, unsigned seed) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+  return order;
+}
+
+bool names_each_once(std::vector<int> numbers, int count) {
+  std::sort(numbers.begin(), numbers.end());
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  return numbers == all;
+}
+
 Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsigned seed) {
   Random random(seed);
   std::vector<SegmentSpec> segments;
@@ -114,6 +128,31 @@ Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsi
   return rod;
 }
 
+Scene scene_of(const Rod& rod) {
+  Scene scene;
+  scene.rods.push_back(rod);
+  return scene;
+}
+
+LinearSystem assembled(const Rod& rod, double dt) {
+  LinearSystem system(rod);
+  system.assemble(rod, dt);
+  return system;
+}
+
+VectorX constraint_of(const Rod& rod) {
+  Linearization at(rod);
+  linearize(rod, at);
+  return at.constraint;
+}
+
+void move_rigidly(Rod& rod, const Quaternion& turn, const Vector3& shift) {
+  for (int s = 0; s < rod.segment_count(); ++s) {
+    rod.position[s] = turn * rod.position[s] + shift;
+    rod.orientation[s] = turn * rod.orientation[s];
+  }
+}
+
 BendingRod bending_rod(int segments, Clamp clamp) {
   BendingRod rod;
   rod.segments = segments;
@@ -124,12 +163,9 @@ BendingRod bending_rod(int segments, Clamp clamp) {
 }
 
 Scene moving_scene(int segments, int steps) {
-  Scene scene = build_scene(bending_rod(segments));
-  DirectSolve direct(scene);
-  LinearProjection projection(scene, direct);
-  TimeStepper stepper(scene, {0.02, 6, 1e-9});
-  for (int i = 0; i < steps; ++i) stepper.step(projection);
-  return scene;
+  Simulation simulation(build_scene(bending_rod(segments)), StepSettings{});
+  simulation.run(steps);
+  return simulation.scene;
 }
 
 namespace {
@@ -216,6 +252,18 @@ BlockMatrix random_matrix(const Edges& joints_coupled, int block_rows, unsigned 
         }
     }
   return a;
+}
+
+std::vector<std::set<int>> later_neighbours(const BlockMatrix& pattern, const std::vector<int>& row) {
+  std::vector<int> place(row.size());
+  for (std::size_t k = 0; k < row.size(); ++k) place[row[k]] = static_cast<int>(k);
+  std::vector<std::set<int>> later(row.size());
+  for (int k = 0; k < static_cast<int>(row.size()); ++k)
+    for (int e = pattern.row_begin(row[k]); e < pattern.row_end(row[k]); ++e)
+      if (place[pattern.column(e)] > k) later[k].insert(place[pattern.column(e)]);
+  for (auto& column : later)
+    if (!column.empty()) later[*column.begin()].insert(std::next(column.begin()), column.end());
+  return later;
 }
 
 }  // namespace rodsweep::test

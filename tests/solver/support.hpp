@@ -5,10 +5,11 @@
 #pragma once
 
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
-#include "solver/linear/block_matrix.hpp"
+#include "solver/linear/linear_system.hpp"
 #include "solver/rod/rod.hpp"
 #include "solver/scene/scenes.hpp"
 #include "tests/solver/dense.hpp"
@@ -35,11 +36,19 @@ Edges tree(int depth, int branching);  ///< segment 0 the root, children numbere
 Edges ring(int segments);
 Edges net(int rows, int columns);
 int segments_of(const Edges& edges);
+std::vector<int> shuffled(int count, unsigned seed);        ///< the numbers from 0
+bool names_each_once(std::vector<int> numbers, int count);  ///< of the numbers from 0
 /// So many pairs of rows, any of them repeated or of a row with itself.
 Edges random_couplings(int rows, int count, unsigned seed);
 
 /// Random everything: poses, arms, rest rotations, sizes, compliances, multipliers. Its constraints are far from zero.
 Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsigned seed);
+
+Scene scene_of(const Rod& rod);
+LinearSystem assembled(const Rod& rod, double dt = 0.02);
+/// C of all joints as linearize() has it.
+VectorX constraint_of(const Rod& rod);
+void move_rigidly(Rod& rod, const Quaternion& turn, const Vector3& shift);
 
 /// A straight or bent rod whose constraints are zero, as the scenes build it.
 BendingRod bending_rod(int segments, Clamp clamp = Clamp::segment);
@@ -60,5 +69,8 @@ DenseSystem dense_system(const Rod& rod, double dt);
 
 /// The pattern of a graph's system, with random well-conditioned symmetric positive definite entries.
 BlockMatrix random_matrix(const Edges& joints_coupled, int block_rows, unsigned seed);
+
+/// Later neighbours of every column, fill included, of an elimination in the order of `row`.
+std::vector<std::set<int>> later_neighbours(const BlockMatrix& pattern, const std::vector<int>& row);
 
 }  // namespace rodsweep::test

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,7 +12,7 @@
 #include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
 #include "solver/step/observables.hpp"
-#include "solver/step/time_step.hpp"
+#include "tests/solver/simulation.hpp"
 
 namespace rodsweep::test {
 
@@ -45,35 +44,16 @@ inline Scene contact_scene(std::vector<Rod> rods, double friction = 0, const Vec
   return scene;
 }
 
-class Touching {
+class Touching : public Simulation {
  public:
   Touching(Scene initial, double dt, int newton_iterations = 10, std::optional<double> momentum_tolerance = {})
-      : scene(std::move(initial)),
-        direct_(scene),
-        projection_(scene, direct_, momentum_tolerance),
-        stepper_(scene, {dt, newton_iterations, 1e-9}) {}
-  Touching(const Touching&) = delete;
-  Touching& operator=(const Touching&) = delete;
-
-  StepReport step() {
-    const StepReport report = stepper_.step(projection_);
-    if (report.outcome != SolveOutcome::converged)
-      throw std::runtime_error(std::string("a step ended: ") + to_string(report.outcome));
-    return report;
-  }
+      : Simulation(std::move(initial), StepSettings{dt, newton_iterations, 1e-9}, momentum_tolerance) {}
   /// Returns the deepest penetration after any of the steps.
   double run(int steps) {
     double deepest = 0;
     for (int i = 0; i < steps; ++i) deepest = std::max(deepest, step().penetration);
     return deepest;
   }
-
-  Scene scene;
-
- private:
-  DirectSolve direct_;
-  LinearProjection projection_;
-  TimeStepper stepper_;
 };
 
 /// The least of |axis - axis| / R over all pairs that can touch: 1 where they do.

@@ -12,7 +12,7 @@ namespace rodsweep {
 namespace test_linearization {
 
 using test::MatrixX;
-using test::Random;
+using test::move_rigidly, test::Random;
 
 /// J of one joint as linearize() gives it, 6 x 12: u_a, phi_a, u_b, phi_b.
 MatrixX jacobian_of(const JointJacobian& j) {
@@ -43,13 +43,6 @@ Linearization linearized(const Rod& rod) {
   Linearization out(rod);
   linearize(rod, out);
   return out;
-}
-
-void move_rigidly(Rod& rod, const Quaternion& turn, const Vector3& shift) {
-  for (int s = 0; s < rod.segment_count(); ++s) {
-    rod.position[s] = turn * rod.position[s] + shift;
-    rod.orientation[s] = turn * rod.orientation[s];
-  }
 }
 
 TEST_CASE("constraints are the joint gap and the Darboux vector's change, both dimensionless") {

@@ -4,7 +4,7 @@
 
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/guess/initial_guess.hpp"
-#include "solver/step/time_step.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -12,11 +12,9 @@ namespace test_balance_by_cg {
 
 TEST_CASE("cg from a history reaches the direct solve's balanced steps") {
   const Scene start = build_scene(test::bending_rod(15));
-  Scene exact = start;
-  DirectSolve direct(exact);
-  LinearProjection by_direct(exact, direct, 1e-9);
-  TimeStepper direct_stepper(exact, {0.02, 20, 1e-12});
-  for (int step = 0; step < 20; ++step) direct_stepper.step(by_direct);
+  Simulation direct(start, {0.02, 20, 1e-12}, 1e-9);
+  direct.run(20);
+  const Scene& exact = direct.scene;
 
   Scene scene = start;
   struct CgSolve : LinearSolve {

@@ -16,7 +16,7 @@ Scene with_signs_flipped(Scene scene) {
   return scene;
 }
 
-/// Straight along +x, `held` at its first segment and, if asked, at its last one, with this stretch compliance.
+/// Straight along +x, held at its first segment and, if asked, at its last one, with this stretch compliance.
 Rod straight_rod(int n, bool both_ends, double stretch) {
   BendingRod p = test::bending_rod(n);
   p.initial_angle_deg = 0;
@@ -30,9 +30,7 @@ Rod straight_rod(int n, bool both_ends, double stretch) {
 }
 
 double condition_number(const Rod& rod, double dt) {
-  LinearSystem system(rod);
-  system.assemble(rod, dt);
-  const VectorX values = test::eigenvalues(system.matrix().dense());
+  const VectorX values = test::eigenvalues(test::assembled(rod, dt).matrix().dense());
   return values.maxCoeff() / values.minCoeff();
 }
 
@@ -70,20 +68,16 @@ TEST_CASE("moduli from 1 Pa to 1e15 Pa keep rods together and Newton converging"
       BendingRod p = test::bending_rod(12);
       p.youngs_modulus_pa = p.torsion_modulus_pa = modulus;
       p.stretch = stretch;
-      Scene scene = build_scene(p);
-      DirectSolve direct(scene);
-      LinearProjection projection(scene, direct);
-      TimeStepper stepper(scene, {0.02, 20, 1e-9});
+      Simulation simulation(build_scene(p), {0.02, 20, 1e-9});
       INFO("modulus " << modulus << (stretch == Stretch::physical ? ", physical" : ""));
       for (int i = 0; i < 100; ++i) {
-        const StepReport report = stepper.step(projection);
-        REQUIRE(report.outcome == SolveOutcome::converged);
-        REQUIRE(newton_residual(scene.rods.front(), stepper.constraint_dt()) < 1e-8);
+        simulation.step();
+        REQUIRE(newton_residual(simulation.rod(), simulation.constraint_dt()) < 1e-8);
       }
-      CHECK(is_finite(scene.rods.front()));
-      CHECK(joint_gap(scene.rods.front()) < 1e-4);
+      CHECK(is_finite(simulation.rod()));
+      CHECK(joint_gap(simulation.rod()) < 1e-4);
       if (modulus >= 1e12)  // all but rigid
-        CHECK((tip(scene.rods.front()) - tip(build_scene(p).rods.front())).norm() < 1e-4);
+        CHECK((tip(simulation.rod()) - tip(build_scene(p).rods.front())).norm() < 1e-4);
     }
 }
 
@@ -98,17 +92,13 @@ TEST_CASE(
 }
 
 TEST_CASE("a rod held at both ends is solved to rounding for its condition number, and sags") {
-  const Rod rod = straight_rod(20, true, 1e-9);
-  Scene scene;
-  scene.rods.push_back(rod);
+  Scene scene = test::scene_of(straight_rod(20, true, 1e-9));
   scene.damping_per_s = 20;
   Simulation simulation(scene, 0.02);
   simulation.run(200);
   CHECK(simulation.rod().position[10].y() < -1e-3);
-  LinearSystem system(simulation.rod());
-  simulation.rod().velocity[5] += Vector3(0.1, 0.2, 0.3);
   simulation.rod().position[5] += Vector3(1e-4, 2e-4, 0);
-  system.assemble(simulation.rod(), 0.02);
+  const LinearSystem system = test::assembled(simulation.rod());
   BlockFactor factor(system.matrix(), root_to_leaf_order(simulation.rod()));
   VectorX x(system.rhs().size());
   REQUIRE(factor.solve(system.matrix(), system.rhs(), x) == SolveOutcome::converged);

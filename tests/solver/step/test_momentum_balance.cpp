@@ -306,16 +306,13 @@ TEST_CASE("a step that is taken back finds contacts as the last step left them")
 
 TEST_CASE("with too few iterations to share, a step that is not in balance yet is no worse than the paper's") {
   for (const int iterations : {1, 3}) {
-    Scene scene = build_scene(test::bending_rod(20));
-    DirectSolve direct(scene);
-    LinearProjection projection(scene, direct, 1e-12);
-    TimeStepper stepper(scene, {0.02, iterations, 1e-9});
+    Simulation simulation(build_scene(test::bending_rod(20)), {0.02, iterations, 1e-9}, 1e-12);
     double gap = 0;
     for (int step = 0; step < 40; ++step) {
-      const StepReport report = stepper.step(projection);
+      const StepReport report = simulation.step();
       CHECK(report.balanced);
       CHECK(report.newton_iterations == iterations);
-      gap = std::max(gap, joint_gap(scene.rods[0]));
+      gap = std::max(gap, joint_gap(simulation.rod()));
     }
     CHECK(gap < (iterations == 1 ? 1e-1 : 1e-3));
   }

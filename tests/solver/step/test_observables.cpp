@@ -10,7 +10,7 @@
 namespace rodsweep {
 namespace test_observables {
 
-using test::Random;
+using test::move_rigidly, test::Random;
 
 /// Straight, of length 2, along +x.
 Rod straight(int segments, Clamp clamp) {
@@ -28,13 +28,6 @@ Rod bent(int segments, double angle) {
     rod.position[s] = rod.position[s - 1] + rod.orientation[s - 1] * joint.arm_a - rod.orientation[s] * joint.arm_b;
   }
   return rod;
-}
-
-void move_rigidly(Rod& rod, const Quaternion& turn, const Vector3& shift) {
-  for (int s = 0; s < rod.segment_count(); ++s) {
-    rod.position[s] = turn * rod.position[s] + shift;
-    rod.orientation[s] = turn * rod.orientation[s];
-  }
 }
 
 /// v and w of a rigid motion about the origin.

@@ -1,4 +1,4 @@
-// How a time step runs its solves: Newton's convergence, limits, failures, several rods, and what it refuses.
+// How a time step runs its solves: Newton's end, limits, failures, several rods, and what it refuses.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 
@@ -30,28 +31,6 @@ class Failing : public LinearSolve {
   SolvePosition where_;
   SolveOutcome outcome_;
 };
-
-TEST_CASE("Newton converges quadratically to its floor") {
-  Scene scene = test::moving_scene(10, 5);
-  for (Vector3& v : scene.rods[0].velocity) v *= 3;  // a hard step
-  DirectSolve direct(scene);
-  LinearProjection projection(scene, direct);
-  test::Recorder recorder(projection);
-  TimeStepper stepper(scene, {0.04, 12, 0});
-  stepper.step(recorder);
-  const std::vector<double> residual = recorder.residuals();
-  REQUIRE(residual.size() == 12);
-  CAPTURE(residual);
-  REQUIRE(residual.front() > 0.1);
-  CHECK(residual.back() < 1e-13);
-  int squared = 0;
-  for (std::size_t i = 0; i + 1 < residual.size(); ++i)
-    if (residual[i] < 0.3) {
-      CHECK(residual[i + 1] < 3 * residual[i] * residual[i] + 1e-13);
-      squared += residual[i] > 1e-7;  // where the square is above the floor
-    }
-  CHECK(squared >= 3);
-}
 
 TEST_CASE("Newton ends below its tolerance, and the step says how many solves that took") {
   Scene scene = test::moving_scene(10);
@@ -90,14 +69,9 @@ TEST_CASE("Newton ends at its limit") {
 TEST_CASE("a scene at rest needs no solve") {
   BendingRod spec = test::bending_rod(5);
   spec.gravity_m_s2.setZero();
-  Scene scene = build_scene(spec);
-  DirectSolve direct(scene);
-  LinearProjection projection(scene, direct);
-  TimeStepper stepper(scene, {0.02, 6, 1e-9});
-  const StepReport report = stepper.step(projection);
-  CHECK(report.outcome == SolveOutcome::converged);
-  CHECK(report.newton_iterations == 0);
-  CHECK(kinetic_energy(scene.rods[0]) < 1e-25);
+  Simulation simulation(build_scene(spec), StepSettings{});
+  CHECK(simulation.step().newton_iterations == 0);
+  CHECK(kinetic_energy(simulation.rod()) < 1e-25);
 }
 
 TEST_CASE("multipliers start from zero in every step and end as the forces that hold the joints") {
@@ -105,17 +79,14 @@ TEST_CASE("multipliers start from zero in every step and end as the forces that 
   BendingRod spec = test::bending_rod(6);
   spec.damping_per_s = 40;
   spec.youngs_modulus_pa = 1e8;
-  Scene scene = build_scene(spec);
-  DirectSolve direct(scene);
-  LinearProjection projection(scene, direct);
-  TimeStepper stepper(scene, {0.02, 8, 1e-12});
-  const double dt_c = stepper.constraint_dt();
-  for (int i = 0; i < 1000; ++i) stepper.step(projection);
-  const Rod& rod = scene.rods[0];
+  Simulation simulation(build_scene(spec), {0.02, 8, 1e-12});
+  simulation.run(1000);
+  const double dt_c = simulation.constraint_dt();
+  const Rod& rod = simulation.rod();
   REQUIRE(kinetic_energy(rod) < 1e-18);
   const Joint& joint = rod.joints[0];
   const Vector3 force = to_world(rod, joint, rod.lambda.head<3>()) / joint.length / (dt_c * dt_c);  // on a
-  const Vector3 weight = 5 * rod.segments[1].mass * scene.gravity_m_s2;
+  const Vector3 weight = 5 * rod.segments[1].mass * spec.gravity_m_s2;
   CHECK((force - weight).norm() < 1e-6 * weight.norm());
 }
 
@@ -123,15 +94,12 @@ TEST_CASE("a step leaves less than Newton's tolerance, with drag and without") {
   for (const double damping : {0.0, 30.0}) {
     BendingRod spec = test::bending_rod(6);
     spec.damping_per_s = damping;
-    Scene scene = build_scene(spec);
-    DirectSolve direct(scene);
-    LinearProjection projection(scene, direct);
-    TimeStepper stepper(scene, {0.02, 20, 1e-10});
+    Simulation simulation(build_scene(spec), {0.02, 20, 1e-10});
     for (int i = 0; i < 5; ++i) {
-      stepper.step(projection);
-      CHECK(newton_residual(scene.rods[0], stepper.constraint_dt()) < 1e-10);
+      simulation.step();
+      CHECK(newton_residual(simulation.rod(), simulation.constraint_dt()) < 1e-10);
     }
-    if (damping > 0) CHECK(newton_residual(scene.rods[0], 0.02) > 1e-4);
+    if (damping > 0) CHECK(newton_residual(simulation.rod(), 0.02) > 1e-4);
   }
 }
 
@@ -155,19 +123,16 @@ TEST_CASE("a failed solve ends the step and is reported") {
 }
 
 TEST_CASE("a solve that hits its iteration limit is applied and reported, and the step goes on") {
-  Scene scene = test::moving_scene(6), expected = scene;
+  Scene scene = test::moving_scene(6);
+  Simulation expected(scene, {0.02, 6, 0});
   Failing limited(scene, {0, 1, 0}, SolveOutcome::iteration_limit);
   LinearProjection projection(scene, limited);
   TimeStepper stepper(scene, {0.02, 6, 0});
   CHECK(stepper.step(projection).outcome == SolveOutcome::iteration_limit);
   CHECK(stepper.steps_taken() == 1);
   CHECK(stepper.step(projection).outcome == SolveOutcome::converged);
-
-  DirectSolve direct(expected);
-  LinearProjection direct_projection(expected, direct);
-  TimeStepper direct_stepper(expected, {0.02, 6, 0});
-  for (int i = 0; i < 2; ++i) direct_stepper.step(direct_projection);
-  CHECK(scene.rods[0].position == expected.rods[0].position);
+  expected.run(2);
+  CHECK(scene.rods[0].position == expected.rod().position);
 }
 
 TEST_CASE("a NaN in the state is reported by the step") {
@@ -186,18 +151,13 @@ TEST_CASE("rods of one scene move as each would alone") {
   second.initial_angle_deg = 70;
   Scene both = build_scene(first);
   both.rods.push_back(build_scene(second).rods.front());
-  const auto simulate = [](Scene& scene) {
-    DirectSolve direct(scene);
-    LinearProjection projection(scene, direct);
-    TimeStepper stepper(scene, {0.02, 6, 0});
-    for (int i = 0; i < 10; ++i) stepper.step(projection);
-  };
-  Scene alone[] = {build_scene(first), build_scene(second)};
-  simulate(both);
+  Simulation together(both, {0.02, 6, 0});
+  together.run(10);
   for (const int r : {0, 1}) {
-    simulate(alone[r]);
-    CHECK(both.rods[r].position == alone[r].rods[0].position);
-    CHECK(both.rods[r].velocity == alone[r].rods[0].velocity);
+    Simulation alone(build_scene(r == 0 ? first : second), {0.02, 6, 0});
+    alone.run(10);
+    CHECK(together.scene.rods[r].position == alone.rod().position);
+    CHECK(together.scene.rods[r].velocity == alone.rod().velocity);
   }
 }
 
@@ -208,14 +168,9 @@ TEST_CASE("the same scene gives the same bits every time") {
 }
 
 TEST_CASE("time is a multiple of the step, not a sum of steps") {
-  BendingRod spec = test::bending_rod(1, Clamp::free);
-  Scene scene = build_scene(spec);
-  DirectSolve direct(scene);
-  LinearProjection projection(scene, direct);
-  TimeStepper stepper(scene, {0.1, 1, 0});
-  for (int i = 0; i < 10; ++i) stepper.step(projection);
-  CHECK(scene.time_s == 10 * 0.1);
-  CHECK(stepper.steps_taken() == 10);
+  Simulation simulation(build_scene(test::bending_rod(1, Clamp::free)), {0.1, 1, 0});
+  simulation.run(10);
+  CHECK(simulation.scene.time_s == 10 * 0.1);
 }
 
 TEST_CASE("outcomes of solves keep the numbers and names that files hold") {
@@ -227,20 +182,19 @@ TEST_CASE("outcomes of solves keep the numbers and names that files hold") {
 TEST_CASE("loads and clamps on segments that do not exist, and clamps on free ones, are refused") {
   const Scene good = build_scene(test::bending_rod(4));
   const auto still = [](double) { return Pose{Vector3::Zero(), Quaternion::Identity()}; };
-  Scene scene = good;
-  scene.loads.push_back({0, 4, {}, {}, {}});
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), "a point load refers to segment 4 of rod 0, which the scene does not have");
-  scene = good;
-  scene.loads.push_back({1, 0, {}, {}, {}});
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), "a point load refers to segment 0 of rod 1, which the scene does not have");
-  scene = good;
-  scene.clamps.push_back({0, -1, still});
-  CHECK_THROWS_WITH(TimeStepper(scene, {}),
-                    "a moving clamp refers to segment -1 of rod 0, which the scene does not have");
-  scene = good;
-  scene.clamps.push_back({0, 2, still});
-  CHECK_THROWS_WITH(TimeStepper(scene, {}), "a moving clamp needs a static segment; segment 2 is free");
-  CHECK_THROWS_AS(TimeStepper(scene, {}), SceneError);
+  const auto refused = [](const Scene& with, const char* what) {
+    Scene scene = with;
+    CHECK_THROWS_MATCHES(TimeStepper(scene, {}), SceneError, Catch::Message(what));
+  };
+  Scene load = good, other_rod = good, clamp = good, free = good;
+  load.loads.push_back({0, 4, {}, {}, {}});
+  refused(load, "a point load refers to segment 4 of rod 0, which the scene does not have");
+  other_rod.loads.push_back({1, 0, {}, {}, {}});
+  refused(other_rod, "a point load refers to segment 0 of rod 1, which the scene does not have");
+  clamp.clamps.push_back({0, -1, still});
+  refused(clamp, "a moving clamp refers to segment -1 of rod 0, which the scene does not have");
+  free.clamps.push_back({0, 2, still});
+  refused(free, "a moving clamp needs a static segment; segment 2 is free");
 }
 
 }  // namespace test_stepping

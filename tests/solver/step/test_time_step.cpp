@@ -1,32 +1,14 @@
-// The time step's mechanics: free bodies and rods against closed forms, and measured orders.
-#include <algorithm>
+// The time step's mechanics: free bodies, loads and clamps against closed forms. Free fall, momenta and the order of a
+// rod's motion are in validation/test_validation_motion.cpp.
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "solver/numbers/rotation.hpp"
 #include "solver/step/observables.hpp"
-#include "solver/step/time_step.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
 namespace test_time_step {
-
-using test::Random;
-
-/// A scene advanced by direct solves.
-struct Simulation {
-  Scene scene;
-  DirectSolve direct;
-  LinearProjection projection;
-  TimeStepper stepper;
-
-  Simulation(const Scene& s, double dt, int newton_iterations = 8)
-      : scene(s), direct(scene), projection(scene, direct), stepper(scene, {dt, newton_iterations, 1e-13}) {}
-  Rod& rod() { return scene.rods.front(); }
-  void run(int steps) {
-    for (int i = 0; i < steps; ++i) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
-  }
-};
 
 /// One free cylinder without gravity.
 Scene free_body(double length = 0.4, double radius = 0.1) {
@@ -36,70 +18,9 @@ Scene free_body(double length = 0.4, double radius = 0.1) {
   s.length_m = length;
   s.radius_m = radius;
   s.density_kg_m3 = 800;
-  Scene scene;
+  Scene scene = test::scene_of(Rod({s}, {}));
   scene.gravity_m_s2.setZero();
-  scene.rods.push_back(Rod({s}, {}));
   return scene;
-}
-
-/// A free rod without gravity that bends, twists, flies and turns.
-Scene free_rod() {
-  BendingRod spec = test::bending_rod(10, Clamp::free);
-  spec.gravity_m_s2.setZero();
-  Scene scene = build_scene(spec);
-  Rod& rod = scene.rods.front();
-  for (int s = 0; s < rod.segment_count(); ++s) {
-    // A rigid motion and a bending one that is compatible with the joints to first order.
-    const Vector3 spin = Vector3(0.5, 1, -2) + 2 * std::sin(0.7 * s) * Vector3(0, 1, 1);
-    rod.angular_velocity[s] = spin;
-    rod.velocity[s] = Vector3(1, 2, 3) + Vector3(0.5, 1, -2).cross(rod.position[s]);
-  }
-  return scene;
-}
-
-TEST_CASE("free fall is -g dt^2 n (n + 1) / 2 after n steps") {
-  for (const int segments : {1, 5}) {
-    BendingRod spec = test::bending_rod(segments, Clamp::free);
-    spec.gravity_m_s2 = {1, -9.81, 2};
-    const double dt = 0.01;
-    Simulation sim(build_scene(spec), dt);
-    const std::vector<Vector3> start = sim.rod().position;
-    for (int n = 1; n <= 100; ++n) {
-      sim.run(1);
-      const Vector3 fall = spec.gravity_m_s2 * (dt * dt * n * (n + 1) / 2);
-      for (int s = 0; s < segments; ++s)
-        REQUIRE((sim.rod().position[s] - start[s] - fall).norm() <= 1e-12 * (fall.norm() + start[s].norm()));
-    }
-    CHECK((sim.rod().velocity[0] - spec.gravity_m_s2 * 100 * dt).norm() < 1e-11);
-    CHECK(sim.scene.time_s == Approx(1).epsilon(1e-14));
-  }
-}
-
-TEST_CASE("a free rod keeps its linear momentum") {
-  Simulation sim(free_rod(), 0.005);
-  const Vector3 before = linear_momentum(sim.rod());
-  double elastic = 0;
-  for (int i = 0; i < 100; ++i) {
-    sim.run(1);
-    elastic = std::max(elastic, elastic_energy(sim.rod()));
-  }
-  REQUIRE(elastic > 1e-3);  // it does bend
-  CHECK((linear_momentum(sim.rod()) - before).norm() < 1e-12 * before.norm());
-}
-
-TEST_CASE("a free rod's angular momentum drifts with the first order of the step") {
-  double drift[3];
-  for (int i = 0; i < 3; ++i) {
-    const int steps = 50 << i;
-    Simulation sim(free_rod(), 0.1 / steps);
-    const Vector3 before = angular_momentum(sim.rod());
-    sim.run(steps);
-    drift[i] = (angular_momentum(sim.rod()) - before).norm() / before.norm();
-  }
-  CAPTURE(drift[0], drift[1], drift[2]);
-  CHECK(drift[2] < 0.02);
-  CHECK(std::log2(drift[0] / drift[1]) == Approx(1).margin(0.2));
-  CHECK(std::log2(drift[1] / drift[2]) == Approx(1).margin(0.15));
 }
 
 TEST_CASE("a body spinning about a principal axis keeps its spin, whatever the step") {
@@ -139,21 +60,6 @@ TEST_CASE("a torque-free top precesses about its angular momentum at |L| / I_t, 
   CHECK(std::log2(error[1] / error[2]) == Approx(1).margin(0.1));
 }
 
-TEST_CASE("a bending rod's error is of first order in the step") {
-  Vector3 tip[4];
-  for (int i = 0; i < 4; ++i) {
-    const int steps = 40 << i;
-    Simulation sim(build_scene(test::bending_rod(10)), 0.2 / steps);
-    sim.run(steps);
-    tip[i] = sim.rod().position.back();
-  }
-  const double d0 = (tip[1] - tip[0]).norm(), d1 = (tip[2] - tip[1]).norm(), d2 = (tip[3] - tip[2]).norm();
-  CAPTURE(d0, d1, d2);
-  REQUIRE(d2 > 1e-8);
-  CHECK(std::log2(d0 / d1) == Approx(1).margin(0.1));
-  CHECK(std::log2(d1 / d2) == Approx(1).margin(0.1));
-}
-
 TEST_CASE("drag slows a free body by (1 + c dt)^-n, in flight and in spin") {
   Scene scene = free_body();
   scene.damping_per_s = 3;
@@ -168,22 +74,6 @@ TEST_CASE("drag slows a free body by (1 + c dt)^-n, in flight and in spin") {
     REQUIRE((sim.rod().velocity[0] - left * v0).norm() < 1e-12);
     REQUIRE((sim.rod().angular_velocity[0] - left * w0).norm() < 1e-12);
   }
-}
-
-TEST_CASE("drag does not shift where a rod comes to rest") {
-  Vector3 tip[2];
-  int i = 0;
-  for (const double damping : {5.0, 15.0}) {
-    BendingRod spec = test::bending_rod(6);
-    spec.youngs_modulus_pa = 5e7;
-    spec.damping_per_s = damping;
-    Simulation sim(build_scene(spec), 0.02);
-    sim.run(1500);
-    REQUIRE(kinetic_energy(sim.rod()) < 1e-14);
-    tip[i++] = sim.rod().position.back();
-  }
-  CHECK((tip[0] - tip[1]).norm() < 1e-9);
-  CHECK((tip[0] - build_scene(test::bending_rod(6)).rods[0].position.back()).norm() > 1e-4);
 }
 
 TEST_CASE("a force on a free body gives it F / m, and a torque I^-1 tau") {

@@ -6,6 +6,7 @@
 #include "solver/batch/batched_step.hpp"
 #include "solver/step/pbd_projection.hpp"
 #include "solver/step/xpbd_projection.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/turned.hpp"
 
 namespace rodsweep {
@@ -71,27 +72,37 @@ double apart_from_image(const Scene& start, Scene other, const Image& image, P p
 }
 
 template <class P>
-double apart_after_ten_steps(const Scene& start, const RigidMotion& motion, P project) {
+double apart_after_steps(const Scene& start, const RigidMotion& motion, P project) {
   return apart_from_image(start, moved(start, motion), motion, project);
+}
+
+// Ten steps.
+void directly(Scene& scene, std::optional<double> momentum_tolerance) {
+  Simulation simulation(scene, {0.01, 20, 1e-12}, momentum_tolerance);
+  simulation.run(10);
+  scene = simulation.scene;
+}
+void in_batch(Scene& scene, const StepSettings& settings, std::optional<double> momentum_tolerance = {}) {
+  BatchedStepper stepper({scene}, settings, momentum_tolerance);
+  for (int step = 0; step < 10; ++step) stepper.step();
+  stepper.write(0, scene);
+}
+void by(Projection&& projection, Scene& scene) {
+  TimeStepper stepper(scene, {0.01, 20, 0});
+  for (int step = 0; step < 10; ++step) stepper.step(projection);
 }
 
 TEST_CASE("mirrored scenes move alike in both kinds of step, alone and in batches") {
   for (const TurnedCase& each : test::turned_cases())
     for (const std::optional<double> momentum_tolerance : {std::optional<double>(), std::optional<double>(1e-9)}) {
       INFO(each.name << (momentum_tolerance ? ", in balance" : ""));
-      const auto image = [](const Vector3& x) { return test::mirrored(x); };
-      CHECK(apart_from_image(each.scene, test::mirrored(each.scene), image, [&](Scene& scene) {
-              DirectSolve direct(scene);
-              LinearProjection projection(scene, direct, momentum_tolerance);
-              TimeStepper stepper(scene, {0.01, 20, 1e-12});
-              for (int step = 0; step < 10; ++step) stepper.step(projection);
-            }) < 1e-9);
+      const auto apart = [&](const auto& project) {
+        const auto image = [](const Vector3& x) { return test::mirrored(x); };
+        return apart_from_image(each.scene, test::mirrored(each.scene), image, project);
+      };
+      CHECK(apart([&](Scene& scene) { directly(scene, momentum_tolerance); }) < 1e-9);
       if (!each.batched) continue;
-      CHECK(apart_from_image(each.scene, test::mirrored(each.scene), image, [&](Scene& scene) {
-              BatchedStepper stepper({scene}, {0.01, 20, 1e-12}, momentum_tolerance);
-              for (int step = 0; step < 10; ++step) stepper.step();
-              stepper.write(0, scene);
-            }) < 1e-9);
+      CHECK(apart([&](Scene& scene) { in_batch(scene, {0.01, 20, 1e-12}, momentum_tolerance); }) < 1e-9);
     }
 }
 
@@ -99,28 +110,11 @@ TEST_CASE("turned scenes move alike under every projection") {
   for (const TurnedCase& each : test::turned_cases())
     for (const RigidMotion& motion : test::motions) {
       INFO(each.name);
-      CHECK(apart_after_ten_steps(each.scene, motion, [](Scene& scene) {
-              XpbdProjection xpbd(scene);
-              TimeStepper stepper(scene, {0.01, 20, 0});
-              for (int step = 0; step < 10; ++step) stepper.step(xpbd);
-            }) < 1e-9);
-      CHECK(apart_after_ten_steps(each.scene, motion, [](Scene& scene) {
-              PbdProjection pbd(scene, {});
-              TimeStepper stepper(scene, {0.01, 20, 0});
-              for (int step = 0; step < 10; ++step) stepper.step(pbd);
-            }) < 1e-9);
-      CHECK(apart_after_ten_steps(each.scene, motion, [](Scene& scene) {
-              DirectSolve direct(scene);
-              LinearProjection balanced(scene, direct, 1e-9);
-              TimeStepper stepper(scene, {0.01, 20, 1e-12});
-              for (int step = 0; step < 10; ++step) stepper.step(balanced);
-            }) < 1e-9);
-      if (!each.batched) continue;
-      CHECK(apart_after_ten_steps(each.scene, motion, [](Scene& scene) {
-              BatchedStepper stepper({scene}, {0.02, 6, 1e-9});
-              for (int step = 0; step < 10; ++step) stepper.step();
-              stepper.write(0, scene);
-            }) < 1e-9);
+      const auto apart = [&](const auto& project) { return apart_after_steps(each.scene, motion, project); };
+      CHECK(apart([](Scene& scene) { by(XpbdProjection(scene), scene); }) < 1e-9);
+      CHECK(apart([](Scene& scene) { by(PbdProjection(scene, {}), scene); }) < 1e-9);
+      CHECK(apart([](Scene& scene) { directly(scene, 1e-9); }) < 1e-9);
+      if (each.batched) CHECK(apart([](Scene& scene) { in_batch(scene, {0.02, 6, 1e-9}); }) < 1e-9);
     }
 }
 
@@ -132,13 +126,12 @@ TEST_CASE("turned heaps of falling rods fall alike, contacts and friction includ
   const Scene start = build_scene(falling);
   REQUIRE(!start.obstacles.empty());
   for (const RigidMotion& motion : test::motions)
-    CHECK(apart_after_ten_steps(start, motion, [](Scene& scene) {
-            DirectSolve direct(scene);
-            LinearProjection projection(scene, direct);
-            TimeStepper stepper(scene, {0.01, 6, 1e-9});
+    CHECK(apart_after_steps(start, motion, [](Scene& scene) {
+            Simulation simulation(scene, {0.01, 6, 1e-9});
             int contacts = 0;
-            for (int step = 0; step < 60; ++step) contacts += stepper.step(projection).contacts;
+            for (int step = 0; step < 60; ++step) contacts += simulation.step().contacts;
             CHECK(contacts > 0);
+            scene = simulation.scene;
           }) < 1e-6);
 }
 

@@ -5,6 +5,7 @@
 
 #include "solver/step/observables.hpp"
 #include "solver/step/xpbd_projection.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 
@@ -16,12 +17,9 @@ Scene falling(double modulus_pa, std::optional<double> stretch_compliance_per_j 
   BendingRod spec = test::bending_rod(6);
   spec.youngs_modulus_pa = spec.torsion_modulus_pa = modulus_pa;
   spec.stretch_compliance_per_j = stretch_compliance_per_j;
-  Scene scene = build_scene(spec);
-  DirectSolve direct(scene);
-  LinearProjection projection(scene, direct);
-  TimeStepper stepper(scene, {1e-3, 20, 1e-14});
-  for (int step = 0; step < 100; ++step) stepper.step(projection);
-  return scene;
+  Simulation simulation(build_scene(spec), 1e-3, 20);
+  simulation.run(100);
+  return simulation.scene;
 }
 
 /// The order at which the distance of one step's outcome from Newton's falls as the step is halved, from each step on.
@@ -54,14 +52,12 @@ TEST_CASE("the residual falls in every XPBD iteration, to rounding") {
 TEST_CASE("with a single joint an XPBD iteration is a Newton iteration") {
   for (const int iterations : {1, 2, 3}) {
     const Scene start = test::moving_scene(2);
-    Scene newton = start;
-    DirectSolve direct(newton);
-    LinearProjection projection(newton, direct);
-    TimeStepper(newton, {0.02, iterations, 0}).step(projection);
+    Simulation newton(start, {0.02, iterations, 0});
+    newton.step();
     const Scene xpbd = test::after<XpbdProjection>(start, 0.02, iterations);
-    REQUIRE(test::distance(newton, start, &Rod::position) > 1e-3);
-    CHECK(test::distance(xpbd, newton, &Rod::position) < 1e-14);
-    CHECK((xpbd.rods[0].lambda - newton.rods[0].lambda).norm() < 1e-10 * newton.rods[0].lambda.norm());
+    REQUIRE(test::distance(newton.scene, start, &Rod::position) > 1e-3);
+    CHECK(test::distance(xpbd, newton.scene, &Rod::position) < 1e-14);
+    CHECK((xpbd.rods[0].lambda - newton.rod().lambda).norm() < 1e-10 * newton.rod().lambda.norm());
   }
 }
 
