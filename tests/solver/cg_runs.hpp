@@ -27,8 +27,7 @@ struct Case {
   LinearSystem system;
   VectorX exact;
 
-  explicit Case(const Rod& r, double dt = 0.02) : rod(r), system(rod), exact(VectorX::Zero(6 * rod.joint_count())) {
-    system.assemble(rod, dt);
+  explicit Case(const Rod& r) : rod(r), system(assembled(rod)), exact(VectorX::Zero(6 * rod.joint_count())) {
     BlockFactor factor(system.matrix(), root_to_leaf_order(rod));
     REQUIRE(factor.solve(system.matrix(), system.rhs(), exact) == SolveOutcome::converged);
   }
@@ -51,11 +50,12 @@ struct Run {
   std::vector<double> history;
 };
 
-inline Run run(ConjugateGradient& cg, const VectorX& b, double tolerance, const VectorX* guess = nullptr) {
-  Run out;
-  out.x = guess ? *guess : VectorX(VectorX::Zero(b.size()));
+/// From a guess, if one is given, whose residual may be known.
+inline Run run(CgSolver& cg, const VectorX& b, double tolerance, const VectorX* guess = nullptr,
+               const VectorX* residual = nullptr) {
+  Run out{{}, guess ? *guess : VectorX(VectorX::Zero(b.size())), {}};
   cg.keep_history(true);
-  out.report = cg.solve(b, out.x, guess != nullptr, tolerance, cg.norm_of(b));
+  out.report = cg.solve(b, out.x, {guess != nullptr, residual}, tolerance, cg.norm_of(b));
   out.history = cg.history();
   return out;
 }

@@ -67,6 +67,16 @@ struct DenseSystem {
 };
 DenseSystem dense_system(const Rod& rod, double dt);
 
+/// A tree's rod, its assembled system and the solution of that.
+struct OneRod {
+  Scene scene = scene_of(random_rod(tree(2, 3), {0}, 1));
+  LinearSystem system = assembled(scene.rods[0]);
+  MatrixX a = system.matrix().dense();
+  VectorX exact = dense_solve(a, system.rhs());
+
+  int size() const { return system.matrix().unknowns(); }
+};
+
 /// The pattern of a graph's system, with random well-conditioned symmetric positive definite entries.
 BlockMatrix random_matrix(const Edges& joints_coupled, int block_rows, unsigned seed);
 

@@ -8,7 +8,7 @@
 namespace rodsweep {
 namespace test_condensed_cg {
 
-using test::Case;
+using test::Case, test::Run, test::run;
 
 Case lattice(int nodes, double modulus, Lattice::Cell cell = Lattice::Cell::cubic) {
   Lattice p;
@@ -25,20 +25,12 @@ Case lattice(int nodes, double modulus, Lattice::Cell cell = Lattice::Cell::cubi
   return Case(rod);
 }
 
-struct Solved {
-  CgReport report;
-  VectorX x;
-  std::vector<double> history;
-};
-Solved solved(const Case& c, CgSolver& cg, double tolerance, const VectorX* start = nullptr,
-              const VectorX* residual = nullptr) {
-  Solved out{{}, start ? *start : VectorX(VectorX::Zero(c.b().size())), {}};
-  cg.keep_history(true);
+Run solved(const Case& c, CgSolver& cg, double tolerance, const VectorX* start = nullptr,
+           const VectorX* residual = nullptr) {
   cg.matrix_changed();
-  out.report = cg.solve(c.b(), out.x, {start != nullptr, residual}, tolerance, cg.norm_of(c.b()));
-  out.history = cg.history();
-  return out;
+  return run(cg, c.b(), tolerance, start, residual);
 }
+
 double residual(const Case& c, const VectorX& x) {
   VectorX product(x.size());
   c.a().multiply(x.data(), product.data());
@@ -50,13 +42,13 @@ TEST_CASE("condensed CG stops where the residual of all joints is small, and say
     const Case c = lattice(3, 1e6, cell);
     CondensedCg cg(c.rod, c.system);
     for (const double tolerance : {1e-1, 1e-3, 1e-8}) {
-      const Solved run = solved(c, cg, tolerance);
-      REQUIRE(run.report.outcome == SolveOutcome::converged);
-      CHECK(run.report.products == 0);
-      CHECK(static_cast<int>(run.history.size()) == run.report.iterations + 1);
-      CHECK(run.history.front() == Approx(c.b().norm()));
-      CHECK(residual(c, run.x) <= tolerance * (1 + 1e-6));
-      CHECK(residual(c, run.x) == Approx(run.history.back() / c.b().norm()).epsilon(1e-3).margin(1e-12));
+      const Run found = solved(c, cg, tolerance);
+      REQUIRE(found.report.outcome == SolveOutcome::converged);
+      CHECK(found.report.products == 0);
+      CHECK(static_cast<int>(found.history.size()) == found.report.iterations + 1);
+      CHECK(found.history.front() == Approx(c.b().norm()));
+      CHECK(residual(c, found.x) <= tolerance * (1 + 1e-6));
+      CHECK(residual(c, found.x) == Approx(found.history.back() / c.b().norm()).epsilon(1e-3).margin(1e-12));
     }
     CHECK((solved(c, cg, 1e-10).x - c.exact).norm() < 1e-6 * c.exact.norm());
   }
@@ -72,10 +64,10 @@ TEST_CASE("eliminating struts saves iterations") {
 TEST_CASE("a chain is solved in one iteration") {
   const Case c = test::moving_chain();
   CondensedCg cg(c.rod, c.system);
-  const Solved run = solved(c, cg, 1e-8);
-  CHECK(run.report.outcome == SolveOutcome::converged);
-  CHECK(run.report.iterations == 1);
-  CHECK(residual(c, run.x) < 1e-8);
+  const Run found = solved(c, cg, 1e-8);
+  CHECK(found.report.outcome == SolveOutcome::converged);
+  CHECK(found.report.iterations == 1);
+  CHECK(residual(c, found.x) < 1e-8);
 }
 
 TEST_CASE("condensed CG starts from a guess, whose residual costs a product unless it is known") {
@@ -87,13 +79,13 @@ TEST_CASE("condensed CG starts from a guess, whose residual costs a product unle
   VectorX left(start.size());
   c.system.multiply(start.data(), left.data());
   left = c.b() - left;
-  const Solved run = solved(c, cg, 1e-6, &start), known = solved(c, cg, 1e-6, &start, &left);
-  CHECK(run.report.products == 1);
+  const Run found = solved(c, cg, 1e-6, &start), known = solved(c, cg, 1e-6, &start, &left);
+  CHECK(found.report.products == 1);
   CHECK(known.report.products == 0);
-  CHECK(run.history.front() == Approx(left.norm()));
-  CHECK(run.x == known.x);
-  CHECK(residual(c, run.x) <= 1e-6);
-  const Solved exact = solved(c, cg, 1e-6, &c.exact);
+  CHECK(found.history.front() == Approx(left.norm()));
+  CHECK(found.x == known.x);
+  CHECK(residual(c, found.x) <= 1e-6);
+  const Run exact = solved(c, cg, 1e-6, &c.exact);
   CHECK(exact.report.iterations == 0);
   CHECK(exact.x == c.exact);
 }
@@ -116,7 +108,7 @@ TEST_CASE("a kept preconditioner serves a system that has changed, which is cond
 TEST_CASE("condensed CG has the same bits every time") {
   const Case c = lattice(3, 1e5);
   CondensedCg one(c.rod, c.system), other(c.rod, c.system);
-  const Solved first = solved(c, one, 1e-6);
+  const Run first = solved(c, one, 1e-6);
   CHECK(solved(c, one, 1e-6).x == first.x);
   CHECK(solved(c, other, 1e-6).x == first.x);
 }

@@ -14,25 +14,6 @@ using namespace test;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-TEST_CASE("the iteration limit is an outcome, and leaves the best iterate") {
-  const Case c = moving_chain();
-  const Run stopped = run(c.a(), {Preconditioner::jacobi, Norm::true_residual, 3}, c.b(), 1e-8);
-  CHECK(stopped.report.outcome == SolveOutcome::iteration_limit);
-  CHECK(stopped.report.iterations == 3);
-  CHECK(stopped.history.size() == 4);
-  CHECK(energy_error(c.a().dense(), stopped.x, c.exact) < 1);
-}
-
-TEST_CASE("products with the matrix are counted: one for each iteration, one for the residual of a nonzero guess") {
-  const Case c = moving_chain();
-  ConjugateGradient cg(c.a(), {});
-  const Run from_zero = run(cg, c.b(), 1e-4);
-  CHECK(from_zero.report.products == from_zero.report.iterations);
-  const VectorX guess = 0.5 * c.exact;
-  const Run from_guess = run(cg, c.b(), 1e-4, &guess);
-  CHECK(from_guess.report.products == from_guess.report.iterations + 1);
-}
-
 TEST_CASE("a guess whose residual is known saves the product, and is solved from in as many iterations") {
   const Case c = moving_chain();
   const VectorX guess = 0.9 * c.exact;
@@ -44,13 +25,12 @@ TEST_CASE("a guess whose residual is known saves the product, and is solved from
       INFO(name(p));
       ConjugateGradient cg(c.a(), {p, norm, 0});
       const Run computed = run(cg, c.b(), 1e-8, &guess);
-      VectorX x = guess;
-      const CgReport known = cg.solve(c.b(), x, {true, &residual}, 1e-8, cg.norm_of(c.b()));
-      CHECK(known.outcome == SolveOutcome::converged);
-      CHECK(std::abs(known.iterations - computed.report.iterations) <= 1);
-      CHECK(known.products == known.iterations);
+      const Run known = run(cg, c.b(), 1e-8, &guess, &residual);
+      CHECK(known.report.outcome == SolveOutcome::converged);
+      CHECK(std::abs(known.report.iterations - computed.report.iterations) <= 1);
+      CHECK(known.report.products == known.report.iterations);
       CHECK(computed.report.products == computed.report.iterations + 1);
-      CHECK((x - computed.x).norm() < 1e-6 * c.exact.norm());
+      CHECK((known.x - computed.x).norm() < 1e-6 * c.exact.norm());
     }
 }
 
@@ -77,15 +57,23 @@ TEST_CASE("a lagged factor solves the next matrix in fewer iterations than jacob
   CHECK(run(lagged, system.rhs(), 1e-8).report.iterations == 1);
 }
 
-TEST_CASE("a right-hand side of zero takes no iteration") {
+TEST_CASE("a right-hand side of zero takes no iteration, with a NaN in it or in the matrix none converges") {
   const Case c = moving_chain();
   const VectorX zero = VectorX::Zero(c.a().unknowns());
+  VectorX bad_b = c.b();
+  bad_b[7] = nan;
+  BlockMatrix bad_a = c.a();
+  bad_a.blocks[bad_a.diagonal(2)].column[1][1] = nan;
   for (const Preconditioner p : preconditioners)
     for (const Norm norm : norms) {
       const Run solved = run(c.a(), {p, norm, 0}, zero, 1e-8);
       CHECK(solved.report.outcome == SolveOutcome::converged);
       CHECK(solved.report.iterations == 0);
       CHECK(solved.x == zero);
+      CHECK(run(c.a(), {p, norm, 0}, bad_b, 1e-8).report.outcome == SolveOutcome::not_a_number);
+      const SolveOutcome outcome = run(bad_a, {p, norm, 0}, c.b(), 1e-8).report.outcome;
+      INFO(name(p) << ": " << to_string(outcome));
+      CHECK((outcome == SolveOutcome::not_a_number || outcome == SolveOutcome::indefinite));
     }
 }
 
@@ -105,17 +93,6 @@ TEST_CASE("without a guess, what x held does not matter") {
   CHECK(x == expected.x);
 }
 
-TEST_CASE("a NaN in b is an outcome") {
-  const Case c = moving_chain();
-  for (const Preconditioner p : preconditioners)
-    for (const Norm norm : norms) {
-      INFO(name(p));
-      VectorX b = c.b();
-      b[7] = nan;
-      CHECK(run(c.a(), {p, norm, 0}, b, 1e-8).report.outcome == SolveOutcome::not_a_number);
-    }
-}
-
 TEST_CASE("a guess whose residual is not finite is an outcome, without a history that could be read") {
   const Case c = moving_chain();
   for (const double entry :
@@ -130,18 +107,6 @@ TEST_CASE("a guess whose residual is not finite is an outcome, without a history
         CHECK(ended.report.iterations == 0);
         CHECK(ended.history.empty());
       }
-}
-
-TEST_CASE("a NaN in the matrix never converges") {
-  const Case c = moving_chain();
-  BlockMatrix bad = c.a();
-  bad.blocks[bad.diagonal(2)].column[1][1] = nan;
-  for (const Preconditioner p : preconditioners)
-    for (const Norm norm : norms) {
-      const SolveOutcome outcome = run(bad, {p, norm, 0}, c.b(), 1e-8).report.outcome;
-      INFO(name(p) << ": " << to_string(outcome));
-      CHECK((outcome == SolveOutcome::not_a_number || outcome == SolveOutcome::indefinite));
-    }
 }
 
 TEST_CASE("an indefinite matrix is called indefinite, unless the preconditioner solves it exactly") {
@@ -297,13 +262,6 @@ TEST_CASE("a PETSc session inside another leaves PETSc running when it ends") {
   const Case c = moving_chain();
   CHECK(run(c.a(), {}, c.b(), 1e-8).report.outcome == SolveOutcome::converged);
   CHECK_THAT(petsc_version(), Catch::Matches("[0-9]+\\.[0-9]+\\.[0-9]+"));
-}
-
-TEST_CASE("b is not written to") {
-  const Case c = moving_chain();
-  const VectorX b = c.b();
-  for (const Preconditioner p : preconditioners) run(c.a(), {p, Norm::natural, 0}, b, 1e-8);
-  CHECK(b == c.b());
 }
 
 }  // namespace test_conjugate_gradient_ends

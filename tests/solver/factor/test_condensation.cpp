@@ -120,8 +120,7 @@ TEST_CASE("a condensed system has the answer of the whole one") {
   constexpr double dt = 0.02;
   for (Rod rod : rods()) {
     rod = shaken(rod, 1);
-    LinearSystem system(rod);
-    system.assemble(rod, dt);
+    const LinearSystem system = test::assembled(rod, dt);
     Condensation condensation(rod);
     REQUIRE(condensation.assemble(rod, system.linearization(), dt));
     const VectorX r = test::Random(2).entries(system.matrix().unknowns());

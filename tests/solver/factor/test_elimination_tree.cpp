@@ -1,9 +1,7 @@
 // Elimination trees against an elimination by sets: parents, counts, postorders; what a plan makes of them.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <numeric>
 #include <set>
-#include <string>
 
 #include "solver/factor/block_factor.hpp"
 #include "solver/factor/elimination_order.hpp"
@@ -14,27 +12,7 @@
 namespace rodsweep {
 namespace test_elimination_tree {
 
-using test::Edges;
-
-std::vector<int> shuffled(int count, unsigned seed) {
-  std::vector<int> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), std::mt19937(seed));
-  return order;
-}
-
-/// Later neighbours of every column, fill included, of an elimination in the order of `row`.
-std::vector<std::set<int>> later_neighbours(const BlockMatrix& pattern, const std::vector<int>& row) {
-  std::vector<int> place(row.size());
-  for (std::size_t k = 0; k < row.size(); ++k) place[row[k]] = static_cast<int>(k);
-  std::vector<std::set<int>> later(row.size());
-  for (int k = 0; k < static_cast<int>(row.size()); ++k)
-    for (int e = pattern.row_begin(row[k]); e < pattern.row_end(row[k]); ++e)
-      if (place[pattern.column(e)] > k) later[k].insert(place[pattern.column(e)]);
-  for (auto& column : later)
-    if (!column.empty()) later[*column.begin()].insert(std::next(column.begin()), column.end());
-  return later;
-}
+using test::later_neighbours, test::shuffled;
 
 Lattice cubic(int nodes, int segments) {
   Lattice lattice;
@@ -87,9 +65,7 @@ TEST_CASE("supernodes hold every column once, parents after children, and no few
     const EliminationTree tree = elimination_tree(pattern, minimum_degree_order(pattern));
     AssemblyTree fronts(tree);
     fronts.find_rows(pattern);
-    std::vector<int> rows = fronts.row;
-    std::sort(rows.begin(), rows.end());
-    for (int k = 0; k < pattern.block_rows(); ++k) REQUIRE(rows[k] == k);
+    REQUIRE(test::names_each_once(fronts.row, pattern.block_rows()));
     CHECK(fronts.blocks >= tree.blocks());
     CHECK(static_cast<double>(fronts.blocks) < 1.5 * static_cast<double>(tree.blocks()));
     CHECK(fronts.supernodes.size() < fronts.row.size() / 2);
@@ -135,11 +111,10 @@ TEST_CASE(
 
 TEST_CASE("nested dissection names every row once and the same way every time") {
   const BlockMatrix pattern = system_of(cubic(4, 3));
-  std::vector<int> order = nested_dissection_order(pattern);
+  const std::vector<int> order = nested_dissection_order(pattern);
   if (order.empty()) return;  // built without METIS
   CHECK(nested_dissection_order(pattern) == order);
-  std::sort(order.begin(), order.end());
-  for (int k = 0; k < pattern.block_rows(); ++k) REQUIRE(order[k] == k);
+  CHECK(test::names_each_once(order, pattern.block_rows()));
   CHECK(nested_dissection_order(test::random_matrix({}, 3, 1)).empty());  // nothing to part
 }
 
@@ -148,9 +123,9 @@ TEST_CASE("a factor that would need too much memory is refused with its size, be
   plan.bytes = most_factor_bytes;
   CHECK_NOTHROW(refuse_too_large(plan));
   plan.bytes = 1.5 * most_factor_bytes;
-  CHECK_THROWS_AS(refuse_too_large(plan), FactorTooLarge);
-  CHECK_THROWS_WITH(refuse_too_large(plan),
-                    "a direct solve of 1000 joints would need 6 GiB for its factor; the most is 4 GiB");
+  CHECK_THROWS_MATCHES(
+      refuse_too_large(plan), FactorTooLarge,
+      Catch::Message("a direct solve of 1000 joints would need 6 GiB for its factor; the most is 4 GiB"));
   EliminationTree dense;  // 14,000 rows, all coupled to each other
   for (int k = 0; k < 14000; ++k) {
     dense.row.push_back(k);

@@ -28,12 +28,6 @@ MatrixX applied(IncompleteFactor& factor, int unknowns) {
   return out;
 }
 
-LinearSystem system_of(const Rod& rod) {
-  LinearSystem system(rod);
-  system.assemble(rod, 0.02);
-  return system;
-}
-
 /// How far P^-1 A is from the identity at its ends: its smallest and largest eigenvalue.
 std::pair<double, double> spectrum(IncompleteFactor& factor, const BlockMatrix& a) {
   const Eigen::VectorXcd values = (applied(factor, a.unknowns()) * a.dense()).eigenvalues();
@@ -49,7 +43,7 @@ TEST_CASE("the applied operator is symmetric and positive definite, and nearer t
   lattice.segments = 2;
   lattice.youngs_modulus_pa = 1e6;
   lattice.radius_m = 0.01;
-  const LinearSystem system = system_of(build_scene(lattice).rods.front());
+  const LinearSystem system = assembled(build_scene(lattice).rods.front());
   const BlockMatrix& a = system.matrix();
   double scattered = 1e30;  // ||P^-1 A - 1||^2
   for (const int levels : {0, 1, 3, 1000}) {
@@ -75,14 +69,14 @@ TEST_CASE("with all fill it is the inverse, in any order, and on chains and tree
     CHECK(largest < 1.05);
     return factor.off_diagonal_blocks();
   };
-  const LinearSystem on_net = system_of(random_rod(net(4, 4), {0}, 3));
+  const LinearSystem on_net = assembled(random_rod(net(4, 4), {0}, 3));
   const BlockMatrix& a = on_net.matrix();
   std::vector<int> given(static_cast<std::size_t>(a.block_rows()));
   std::iota(given.begin(), given.end(), 0);
   for (const std::vector<int>& order : {given, breadth_first_order(a), minimum_degree_order(a)})
     near_inverse(a, order, 1000);
   for (const Rod& rod : {random_rod(chain(12), {0}, 1), random_rod(tree(3, 3), {0}, 2)}) {
-    const LinearSystem open = system_of(rod);
+    const LinearSystem open = assembled(rod);
     const int blocks = near_inverse(open.matrix(), breadth_first_order(open.matrix()), 0);
     CHECK(2 * blocks + open.matrix().block_rows() == open.matrix().block_count());
   }
@@ -96,7 +90,7 @@ TEST_CASE("a factor that is not positive definite is raised until it is; of a ma
   octet.youngs_modulus_pa = 1e6;
   octet.torsion_modulus_pa = 4e5;
   octet.held = Held::side;
-  LinearSystem system = system_of(build_scene(octet).rods.front());
+  LinearSystem system = assembled(build_scene(octet).rods.front());
   BlockMatrix a = system.matrix();
   IncompleteFactor factor(a, breadth_first_order(a), 1);
   REQUIRE(factor.factorise(a));
@@ -118,7 +112,7 @@ TEST_CASE("a factor that is not positive definite is raised until it is; of a ma
 }
 
 TEST_CASE("the units of a matrix do not matter, far beyond the range of single precision") {
-  const LinearSystem system = system_of(random_rod(net(3, 3), {0}, 3));
+  const LinearSystem system = assembled(random_rod(net(3, 3), {0}, 3));
   BlockMatrix a = system.matrix();
   IncompleteFactor factor(a, breadth_first_order(a), 1);
   REQUIRE(factor.factorise(a));

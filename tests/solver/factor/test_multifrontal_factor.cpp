@@ -77,8 +77,7 @@ TEST_CASE("systems of lattices and nets are solved to rounding, with the same bi
   net.rows = net.columns = 6;
   for (const SceneSpec& spec : {SceneSpec(cubic), SceneSpec(octet), SceneSpec(net)}) {
     const Scene scene = build_scene(spec);
-    LinearSystem system(scene.rods.front());
-    system.assemble(scene.rods.front(), 0.02);
+    const LinearSystem system = test::assembled(scene.rods.front());
     const BlockMatrix& a = system.matrix();
     std::vector<std::vector<int>> orders{minimum_degree_order(a), root_to_leaf_order(scene.rods.front())};
     if (std::vector<int> dissection = nested_dissection_order(a); !dissection.empty()) orders.push_back(dissection);
@@ -136,8 +135,7 @@ TEST_CASE("a factor with fronts keeps what a factor promises") {
   Lattice lattice;
   lattice.nodes_x = 5;
   const Scene scene = build_scene(lattice);
-  LinearSystem system(scene.rods.front());
-  system.assemble(scene.rods.front(), 0.02);
+  const LinearSystem system = test::assembled(scene.rods.front());
   const BlockMatrix& a = system.matrix();
   BlockFactor factor(a, root_to_leaf_order(scene.rods.front()));
   REQUIRE(factor.has_fronts());

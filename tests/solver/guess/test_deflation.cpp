@@ -10,32 +10,16 @@
 namespace rodsweep {
 namespace test_deflation {
 
-using test::MatrixX;
+using test::MatrixX, test::OneRod;
 
 SubspaceGuess deflating(const Scene& scene, int size) {
   return SubspaceGuess(scene, 1, size, SubspaceGuess::Window::sliding, SubspaceGuess::Use::guess_and_deflation);
 }
 
-struct OneRod {
-  Scene scene;
-  LinearSystem system;
-  MatrixX a;
-
-  OneRod() : system(rod_of(scene)) {
-    system.assemble(scene.rods[0], 0.02);
-    a = system.matrix().dense();
-  }
-  static const Rod& rod_of(Scene& scene) {
-    scene.rods.push_back(test::random_rod(test::tree(2, 3), {0}, 1));
-    return scene.rods.front();
-  }
-  int size() const { return system.matrix().unknowns(); }
-  VectorX exact() const { return test::dense_solve(a, system.rhs()); }
-  CgReport solve(VectorX& x, bool nonzero, double tolerance, Deflation* deflation) const {
-    ConjugateGradient cg(system.matrix(), {});
-    return cg.solve(system.rhs(), x, nonzero, tolerance, system.rhs().norm(), deflation);
-  }
-};
+CgReport solve(const OneRod& one, VectorX& x, bool nonzero, double tolerance, Deflation* deflation) {
+  ConjugateGradient cg(one.system.matrix(), {});
+  return cg.solve(one.system.rhs(), x, nonzero, tolerance, one.system.rhs().norm(), deflation);
+}
 
 TEST_CASE("without history there is nothing to project out") {
   OneRod one;
@@ -54,7 +38,7 @@ TEST_CASE(
   SubspaceGuess subspace(one.scene, 1, 4, SubspaceGuess::Window::sliding);
   std::vector<VectorX> stored;
   for (int step = 0; step < 6; ++step) {  // the first two are forgotten
-    stored.push_back(one.exact() + 2 * random.entries(one.size()).cwiseProduct(one.exact()));
+    stored.push_back(one.exact + 2 * random.entries(one.size()).cwiseProduct(one.exact));
     guess.accept({step, 0, 0}, stored.back());
     subspace.accept({step, 0, 0}, stored.back());
   }
@@ -93,22 +77,22 @@ TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations,
   SubspaceGuess guess = deflating(one.scene, 12);
   for (int k = 0; k < 12; ++k) guess.accept({k, 0, 0}, s.cwiseProduct(modes.eigenvectors().col(k)));
   VectorX plain = VectorX::Zero(one.size()), x0(one.size());
-  const CgReport without = one.solve(plain, false, 1e-8, nullptr);
+  const CgReport without = solve(one, plain, false, 1e-8, nullptr);
   REQUIRE(guess.propose(one.system, {12, 0, 0}, x0).nonzero);
   VectorX deflated = x0, undeflated = x0;
-  const CgReport with = one.solve(deflated, true, 1e-8, guess.deflation());
+  const CgReport with = solve(one, deflated, true, 1e-8, guess.deflation());
   CHECK(with.outcome == SolveOutcome::converged);
   CHECK(with.iterations < 0.8 * without.iterations);
   CHECK((one.system.rhs() - one.a * deflated).norm() < 1e-7 * one.system.rhs().norm());
   // Without the projection it finds again, in rounding, what the guess has taken away already; one iteration more or
   // less is rounding itself.
-  CHECK(with.iterations <= one.solve(undeflated, true, 1e-8, nullptr).iterations + 1);
+  CHECK(with.iterations <= solve(one, undeflated, true, 1e-8, nullptr).iterations + 1);
 }
 
 TEST_CASE("deflated by solutions that are nearly the same, CG reaches what its residual says") {
   OneRod one;
   test::Random random(11);
-  const VectorX exact = one.exact();
+  const VectorX exact = one.exact;
   for (const double apart : {1e-2, 1e-4, 1e-6, 1e-8}) {
     INFO(apart);
     SubspaceGuess guess = deflating(one.scene, 10);
@@ -117,9 +101,9 @@ TEST_CASE("deflated by solutions that are nearly the same, CG reaches what its r
                    0.9 * exact + std::pow(apart, 1 + k % 3) * random.entries(one.size()).cwiseProduct(exact));
     VectorX x0(one.size()), plain = VectorX::Zero(one.size());
     REQUIRE(guess.propose(one.system, {10, 0, 0}, x0).nonzero);
-    const CgReport with = one.solve(x0, true, 1e-9, guess.deflation());
+    const CgReport with = solve(one, x0, true, 1e-9, guess.deflation());
     CHECK(with.outcome == SolveOutcome::converged);
-    CHECK(with.iterations <= one.solve(plain, false, 1e-9, nullptr).iterations);
+    CHECK(with.iterations <= solve(one, plain, false, 1e-9, nullptr).iterations);
     CHECK((one.system.rhs() - one.a * x0).norm() < 2e-9 * one.system.rhs().norm());
   }
 }

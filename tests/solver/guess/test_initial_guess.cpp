@@ -22,10 +22,7 @@ struct TwoRods {
 
   TwoRods() {
     scene.rods = {test::random_rod(test::chain(6), {0}, 1), test::random_rod(test::tree(2, 2), {0}, 2)};
-    for (const Rod& rod : scene.rods) {
-      systems.emplace_back(rod);
-      systems.back().assemble(rod, 0.02);
-    }
+    for (const Rod& rod : scene.rods) systems.push_back(test::assembled(rod));
   }
   int size(int rod) const { return systems[rod].matrix().unknowns(); }
   VectorX exact(int rod) {
@@ -79,7 +76,7 @@ TEST_CASE("previous, linear and quadratic reproduce sequences of their degree ex
   }
 }
 
-TEST_CASE("with less history than terms, fewer terms are used") {
+TEST_CASE("with less history than terms, fewer terms are used, and proposing changes nothing") {
   TwoRods rods;
   ExtrapolationGuess guess(rods.scene, 1, 3);
   const VectorX x[] = {polynomial(rods.size(0), 2, 0), polynomial(rods.size(0), 2, 1), polynomial(rods.size(0), 2, 2)};
@@ -88,7 +85,7 @@ TEST_CASE("with less history than terms, fewer terms are used") {
   guess.accept({1, 0, 0}, x[1]);
   CHECK(propose(guess, rods, {2, 0, 0}).x0 == 2 * x[1] - x[0]);
   guess.accept({2, 0, 0}, x[2]);
-  CHECK(propose(guess, rods, {3, 0, 0}).x0 == 3 * x[2] - 3 * x[1] + x[0]);
+  for (int again = 0; again < 2; ++again) CHECK(propose(guess, rods, {3, 0, 0}).x0 == 3 * x[2] - 3 * x[1] + x[0]);
 }
 
 TEST_CASE("a gap in the steps makes history start again") {
@@ -123,14 +120,6 @@ TEST_CASE("every Newton iteration of every rod has a history of its own") {
           CHECK(proposed.x0 == solution(step, newton, rod));
         guess.accept({step, newton, rod}, solution(step, newton, rod));
       }
-}
-
-TEST_CASE("proposing does not change what is proposed next") {
-  TwoRods rods;
-  ExtrapolationGuess guess(rods.scene, 1, 3);
-  for (int step = 0; step < 3; ++step) guess.accept({step, 0, 0}, polynomial(rods.size(0), 2, step));
-  const VectorX first = propose(guess, rods, {3, 0, 0}).x0;
-  CHECK(propose(guess, rods, {3, 0, 0}).x0 == first);
 }
 
 TEST_CASE("the oracle's error has the requested size in the energy norm") {
@@ -245,13 +234,18 @@ TEST_CASE("guarded passes a guess on just below its threshold and replaces it by
   CHECK(rejected.x0.isZero(0));
 }
 
-TEST_CASE("guarded rejects a guess that is not a number and passes a zero one on as zero") {
+TEST_CASE("guarded rejects a guess that is not a number, tells it the solution, and passes a zero one on as zero") {
   TwoRods rods;
   VectorX bad = rods.exact(0);
   bad[3] = std::numeric_limits<double>::quiet_NaN();
   GuardedGuess guard(rods.scene, std::make_unique<Fixed>(bad), 1e9);
   CHECK_FALSE(propose(guard, rods, {0, 0, 0}).nonzero);
   CHECK(propose(guard, rods, {0, 0, 0}).x0.isZero(0));
+  VectorX told;  // of a guess that was rejected too
+  GuardedGuess strict(rods.scene, std::make_unique<Fixed>(rods.exact(0), &told), 0);
+  CHECK_FALSE(propose(strict, rods, {0, 0, 0}).nonzero);
+  strict.accept({0, 0, 0}, rods.exact(0));
+  CHECK(told == rods.exact(0));
   GuardedGuess of_zero(rods.scene, std::make_unique<Fixed>(VectorX::Zero(rods.size(0))), 1e9);
   CHECK_FALSE(propose(of_zero, rods, {0, 0, 0}).nonzero);
 }
@@ -269,15 +263,6 @@ TEST_CASE("first asks and tells another guess at first Newton iterations alone")
   guess.accept({3, 1, 0}, rods.exact(0));
   CHECK(told.size() == 0);
   guess.accept({4, 0, 0}, rods.exact(0));
-  CHECK(told == rods.exact(0));
-}
-
-TEST_CASE("guarded tells its inner guess the solution, whether or not it was used") {
-  TwoRods rods;
-  VectorX told;
-  GuardedGuess guard(rods.scene, std::make_unique<Fixed>(rods.exact(0), &told), 0);
-  CHECK_FALSE(propose(guard, rods, {0, 0, 0}).nonzero);
-  guard.accept({0, 0, 0}, rods.exact(0));
   CHECK(told == rods.exact(0));
 }
 

@@ -12,19 +12,12 @@ namespace test_regression_guess {
 using test::MatrixX;
 
 /// Systems of one matrix: their right-hand sides -C - alpha~ lambda follow the multipliers.
-struct OneMatrix {
-  Scene scene;
-  LinearSystem system;
-  DirectSolve direct;
+struct OneMatrix : test::OneRod {
+  DirectSolve direct{scene};
+  test::Random random;
 
-  OneMatrix() : scene(scene_of(test::random_rod(test::tree(2, 3), {0}, 1))), system(scene.rods[0]), direct(scene) {}
-
-  static Scene scene_of(const Rod& rod) {
-    Scene scene;
-    scene.rods.push_back(rod);
-    return scene;
-  }
-  Eigen::Index size() const { return scene.rods[0].lambda.size(); }
+  explicit OneMatrix(unsigned seed = 0) : random(seed) {}
+  VectorX draw() { return random.entries(size()); }
 
   const LinearSystem& with(const VectorX& lambda) {
     scene.rods[0].lambda = lambda;
@@ -53,12 +46,11 @@ TEST_CASE("without history a regression is zero") {
 }
 
 TEST_CASE("a right-hand side that the last ones make up has its solution found, without a product with A") {
-  OneMatrix one;
-  test::Random random(3);
+  OneMatrix one(3);
   RegressionGuess guess(one.scene, 1, 3, 0);
   std::vector<VectorX> lambda;
   for (int step = 0; step < 5; ++step) {  // the first two are forgotten
-    lambda.push_back(random.entries(static_cast<int>(one.size())));
+    lambda.push_back(one.draw());
     one.pass(guess, step, lambda.back());
   }
   VectorX x0(one.size());
@@ -71,17 +63,15 @@ TEST_CASE("a right-hand side that the last ones make up has its solution found, 
 }
 
 TEST_CASE("what the last right-hand sides leave of today's is orthogonal to them, weighted by the diagonal of A") {
-  OneMatrix one;
-  test::Random random(5);
+  OneMatrix one(5);
   RegressionGuess guess(one.scene, 1, 4, 0);
-  const auto draw = [&] { return random.entries(static_cast<int>(one.size())); };
   std::vector<VectorX> stored;
   for (int step = 0; step < 4; ++step) {
-    one.pass(guess, step, draw());
+    one.pass(guess, step, one.draw());
     stored.push_back(one.system.rhs());
   }
   VectorX x0(one.size());
-  guess.propose(one.with(draw()), {4, 0, 0}, x0);
+  guess.propose(one.with(one.draw()), {4, 0, 0}, x0);
   const MatrixX a = one.system.matrix().dense();
   const VectorX left = (one.system.rhs() - a * x0).cwiseQuotient(a.diagonal());
   for (const VectorX& b : stored) CHECK(std::abs(left.dot(b)) < 1e-9 * left.norm() * b.norm());
@@ -89,16 +79,14 @@ TEST_CASE("what the last right-hand sides leave of today's is orthogonal to them
 }
 
 TEST_CASE("noise in the stored solutions is not blown up by coefficients of opposite signs") {
-  OneMatrix one;
-  test::Random random(7);
-  const auto draw = [&] { return random.entries(static_cast<int>(one.size())); };
+  OneMatrix one(7);
   const double noise = 1e-2;
   RegressionGuess trusting(one.scene, 1, 2, 0), damped(one.scene, 1, 2, noise);
-  const VectorX lambda = draw(), change = 1e-4 * draw();
+  const VectorX lambda = one.draw(), change = 1e-4 * one.draw();
   VectorX x0(one.size());
   for (int step = 0; step < 2; ++step) {
     one.with(lambda + step * change);
-    const VectorX exact = one.solution(), found = exact + noise * exact.norm() / std::sqrt(one.size()) * draw();
+    const VectorX exact = one.solution(), found = exact + noise * exact.norm() / std::sqrt(one.size()) * one.draw();
     for (RegressionGuess* guess : {&trusting, &damped}) {
       guess->propose(one.system, {step, 0, 0}, x0);
       guess->accept({step, 0, 0}, found);
@@ -113,13 +101,11 @@ TEST_CASE("noise in the stored solutions is not blown up by coefficients of oppo
 }
 
 TEST_CASE("a step without a solution starts a regression's history again") {
-  OneMatrix one;
-  test::Random random(9);
-  const auto draw = [&] { return random.entries(static_cast<int>(one.size())); };
+  OneMatrix one(9);
   RegressionGuess guess(one.scene, 2, 3, 0);
   VectorX x0(one.size());
-  for (const int step : {0, 1}) one.pass(guess, step, draw());
-  const VectorX newest = draw();
+  for (const int step : {0, 1}) one.pass(guess, step, one.draw());
+  const VectorX newest = one.draw();
   CHECK(guess.propose(one.with(newest), {2, 0, 0}, x0).nonzero);
   CHECK_FALSE(guess.propose(one.system, {2, 1, 0}, x0).nonzero);  // the other Newton iteration has had none
   CHECK_FALSE(guess.propose(one.system, {3, 0, 0}, x0).nonzero);

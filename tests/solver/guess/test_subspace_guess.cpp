@@ -10,36 +10,13 @@ namespace rodsweep {
 namespace test_subspace_guess {
 
 using Window = SubspaceGuess::Window;
-using test::MatrixX;
+using test::OneRod;
 
-Scene scene_of(const Rod& rod) {
-  Scene scene;
-  scene.rods.push_back(rod);
-  return scene;
+/// e^T A v / (|e|_A |v|_A) with e the error of x0.
+double error_along(const OneRod& one, const VectorX& x0, const VectorX& v) {
+  const VectorX e = x0 - one.exact;
+  return e.dot(one.a * v) / std::sqrt(e.dot(one.a * e) * v.dot(one.a * v));
 }
-
-/// One rod, and its assembled system.
-struct OneRod {
-  Scene scene;
-  LinearSystem system;
-
-  OneRod() : scene(scene_of(test::random_rod(test::tree(2, 3), {0}, 1))), system(scene.rods[0]) {
-    system.assemble(scene.rods[0], 0.02);
-  }
-  int size() const { return system.matrix().unknowns(); }
-  VectorX exact() const {
-    VectorX out = VectorX::Zero(size());
-    DirectSolve direct(scene);
-    REQUIRE(direct.solve(system, {}, 0, out) == SolveOutcome::converged);
-    return out;
-  }
-  /// e^T A v / (|e|_A |v|_A) with e the error of x0.
-  double error_along(const VectorX& x0, const VectorX& v) const {
-    const MatrixX a = system.matrix().dense();
-    const VectorX e = x0 - exact();
-    return e.dot(a * v) / std::sqrt(e.dot(a * e) * v.dot(a * v));
-  }
-};
 
 TEST_CASE("without history a projected guess is zero, at no cost") {
   OneRod one;
@@ -60,12 +37,12 @@ TEST_CASE(
     VectorX x0 = VectorX::Zero(one.size());
     std::vector<VectorX> stored;
     for (int step = 0; step < 4; ++step) {
-      stored.push_back(one.exact() + 3 * random.entries(one.size()).cwiseProduct(one.exact()));
+      stored.push_back(one.exact + 3 * random.entries(one.size()).cwiseProduct(one.exact));
       guess.accept({step, 0, 0}, stored.back());
       const Proposal proposal = guess.propose(one.system, {step + 1, 0, 0}, x0);
       CHECK(proposal.nonzero);
       CHECK(proposal.products == step + 1);
-      for (const VectorX& v : stored) CHECK(std::abs(one.error_along(x0, v)) < 1e-10);
+      for (const VectorX& v : stored) CHECK(std::abs(error_along(one, x0, v)) < 1e-10);
     }
   }
 }
@@ -75,11 +52,11 @@ TEST_CASE("a solution within the span is found, also where stored solutions are 
   SubspaceGuess guess(one.scene, 1, 3, Window::sliding);
   const VectorX other = test::Random(5).entries(one.size());
   VectorX x0 = VectorX::Zero(one.size());
-  guess.accept({0, 0, 0}, one.exact() + other);
+  guess.accept({0, 0, 0}, one.exact + other);
   guess.accept({1, 0, 0}, other);
   guess.accept({2, 0, 0}, other * (1 + 1e-15));
   REQUIRE(guess.propose(one.system, {3, 0, 0}, x0).nonzero);
-  CHECK(test::energy_error(one.system.matrix().dense(), x0, one.exact()) < 1e-6);
+  CHECK(test::energy_error(one.a, x0, one.exact) < 1e-6);
 }
 
 TEST_CASE("fischer starts again with the newest solution when full, subspace forgets the oldest") {
@@ -94,11 +71,11 @@ TEST_CASE("fischer starts again with the newest solution when full, subspace for
   }
   VectorX x0 = VectorX::Zero(one.size());
   CHECK(fischer.propose(one.system, {4, 0, 0}, x0).products == 1);
-  CHECK(std::abs(one.error_along(x0, stored[3])) < 1e-10);
-  CHECK(std::abs(one.error_along(x0, stored[2])) > 1e-6);
+  CHECK(std::abs(error_along(one, x0, stored[3])) < 1e-10);
+  CHECK(std::abs(error_along(one, x0, stored[2])) > 1e-6);
   CHECK(subspace.propose(one.system, {4, 0, 0}, x0).products == 3);
-  for (const int kept : {1, 2, 3}) CHECK(std::abs(one.error_along(x0, stored[kept])) < 1e-10);
-  CHECK(std::abs(one.error_along(x0, stored[0])) > 1e-6);
+  for (const int kept : {1, 2, 3}) CHECK(std::abs(error_along(one, x0, stored[kept])) < 1e-10);
+  CHECK(std::abs(error_along(one, x0, stored[0])) > 1e-6);
 }
 
 TEST_CASE("a step without a solution starts a projected guess's history again") {

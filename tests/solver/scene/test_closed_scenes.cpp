@@ -11,6 +11,8 @@
 namespace rodsweep {
 namespace test_closed_scenes {
 
+using test::constraint_of;
+
 Ring ring(int segments, double twist_deg = 0, Ring::RestShape shape = Ring::RestShape::straight) {
   Ring p;
   p.segments = segments;
@@ -18,12 +20,6 @@ Ring ring(int segments, double twist_deg = 0, Ring::RestShape shape = Ring::Rest
   p.twist_deg = twist_deg;
   p.rest_shape = shape;
   return p;
-}
-
-VectorX constraint_of(const Rod& rod) {
-  Linearization at(rod);
-  linearize(rod, at);
-  return at.constraint;
 }
 
 int held_segments(const Rod& rod) {
@@ -145,18 +141,6 @@ TEST_CASE("stretching the rods of a net makes it longer, a joint opened at a cro
   CHECK(joint_gap(rod) == Approx(0.1 / p.mesh_m).epsilon(1e-12));
   for (int s = 0; s < 5; ++s) rod.position[s].x() *= 1.01;  // the first rod along x
   CHECK(rod_length(rod) == Approx(length + 4 * 0.01 * p.mesh_m).epsilon(1e-12));
-}
-
-TEST_CASE("the counts of a scene are those of what is built") {
-  Net net;
-  net.segments = 3;
-  net.rows = 2;
-  for (const SceneSpec& spec :
-       {SceneSpec(test::bending_rod(5, Clamp::wall)), SceneSpec(Helix{}), SceneSpec(ring(7)), SceneSpec(net)}) {
-    const Rod rod = build_scene(spec).rods.front();
-    CHECK(segment_count(spec) == rod.segment_count());
-    CHECK(joint_count(spec) == rod.joint_count());
-  }
 }
 
 TEST_CASE("rings and nets that cannot be are refused by what is wrong with them") {

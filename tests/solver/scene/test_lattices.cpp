@@ -1,7 +1,6 @@
 // Lattices: nodes and rods against neighbours found by their distance, rest state, what is held and loaded, how nodes
 // turn, refusals.
 #include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -10,7 +9,7 @@
 #include "solver/linear/linear_system.hpp"
 #include "solver/numbers/rotation.hpp"
 #include "solver/step/observables.hpp"
-#include "tests/solver/dense.hpp"
+#include "tests/solver/lattice_nodes.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -18,12 +17,8 @@ namespace test_lattices {
 
 using Cell = Lattice::Cell;
 
-constexpr Cell cells[] = {Cell::cubic, Cell::body_centred, Cell::octet};
+using test::cells, test::constraint_of, test::is_crossing, test::nodes_of, test::Place, test::point;
 
-/// A place in halves of a cell's edge.
-using Place = std::array<int, 3>;
-
-Place moved(const Place& p, const Place& by) { return {p[0] + by[0], p[1] + by[1], p[2] + by[2]}; }
 Place opposite(const Place& p) { return {-p[0], -p[1], -p[2]}; }
 
 Lattice lattice(Cell cell, int x, int y, int z, int segments, Held held = Held::free) {
@@ -51,30 +46,6 @@ const std::vector<Lattice>& shapes() {
   return all;
 }
 
-/// Corners of cells, their centres, or the centres of their faces, and from each the ways to its nearest neighbours.
-std::map<Place, std::set<Place>> nodes_of(const Lattice& p) {
-  const Place last{2 * p.nodes_x - 2, 2 * (p.nodes_y ? p.nodes_y : p.nodes_x) - 2,
-                   2 * (p.nodes_z ? p.nodes_z : p.nodes_x) - 2};
-  std::vector<Place> within_cell{{0, 0, 0}};
-  if (p.cell == Cell::body_centred) within_cell.push_back({1, 1, 1});
-  if (p.cell == Cell::octet) within_cell.insert(within_cell.end(), {{1, 1, 0}, {1, 0, 1}, {0, 1, 1}});
-  std::map<Place, std::set<Place>> nodes;
-  for (int x = 0; x <= last[0]; x += 2)
-    for (int y = 0; y <= last[1]; y += 2)
-      for (int z = 0; z <= last[2]; z += 2)
-        for (const Place& in : within_cell) {
-          const Place at = moved({x, y, z}, in);
-          if (at[0] <= last[0] && at[1] <= last[1] && at[2] <= last[2]) nodes[at];
-        }
-  const int square = p.cell == Cell::cubic ? 4 : p.cell == Cell::body_centred ? 3 : 2;  // of the distance
-  for (auto& [at, ways] : nodes)
-    for (int x = -2; x <= 2; ++x)
-      for (int y = -2; y <= 2; ++y)
-        for (int z = -2; z <= 2; ++z)
-          if (x * x + y * y + z * z == square && nodes.count(moved(at, {x, y, z}))) ways.insert({x, y, z});
-  return nodes;
-}
-
 /// Rods through a node: ways that are opposite belong to one.
 int rods_through(const std::set<Place>& ways) {
   int rods = 0;
@@ -83,13 +54,11 @@ int rods_through(const std::set<Place>& ways) {
 }
 
 bool in_interior(const Lattice& p, const Place& at) {
-  const Place nodes{p.nodes_x, p.nodes_y ? p.nodes_y : p.nodes_x, p.nodes_z ? p.nodes_z : p.nodes_x};
+  const Place last = test::last_corner(p);
   for (std::size_t k = 0; k < 3; ++k)
-    if (at[k] == 0 || at[k] == 2 * nodes[k] - 2) return false;
+    if (at[k] == 0 || at[k] == last[k]) return false;
   return true;
 }
-
-Vector3 point(const Place& at, const Lattice& p) { return p.mesh_m / 2 * Vector3(at[0], at[1], at[2]); }
 
 /// Segments whose centres are within a millionth of a metre of a point.
 std::vector<int> segments_at(const Rod& rod, const Vector3& at) {
@@ -98,14 +67,6 @@ std::vector<int> segments_at(const Rod& rod, const Vector3& at) {
     if ((rod.position[s] - at).norm() < 1e-6) out.push_back(s);
   return out;
 }
-
-VectorX constraint_of(const Rod& rod) {
-  Linearization at(rod);
-  linearize(rod, at);
-  return at.constraint;
-}
-
-bool is_crossing(const Joint& joint) { return joint.arm_a.isZero(); }
 
 TEST_CASE("the nodes of a lattice are where its cell has them, with a rod for every pair of opposite neighbours") {
   for (const Lattice& p : shapes()) {
@@ -177,9 +138,8 @@ TEST_CASE("a lattice holds its nodes at x = 0, at its corners, or none, and join
       CHECK(joint_count(p) == rod.joint_count());
       std::set<int> expected;
       for (const auto& [at, ways] : nodes_of(p)) {
-        const bool corner = at[0] % (2 * p.nodes_x - 2) == 0 &&
-                            at[1] % (2 * (p.nodes_y ? p.nodes_y : p.nodes_x) - 2) == 0 &&
-                            at[2] % (2 * (p.nodes_z ? p.nodes_z : p.nodes_x) - 2) == 0;
+        const Place last = test::last_corner(p);
+        const bool corner = at[0] % last[0] == 0 && at[1] % last[1] == 0 && at[2] % last[2] == 0;
         if (held == Held::side ? at[0] == 0 : held == Held::corners && corner)
           for (const int s : segments_at(rod, point(at, p))) expected.insert(s);
       }

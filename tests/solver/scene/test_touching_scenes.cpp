@@ -235,11 +235,15 @@ TEST_CASE("the rods of a bundle swing together and touch") {
   CHECK(nearest < 1.001);
 }
 
-TEST_CASE("the counts of scenes of several rods are those of what is built") {
+TEST_CASE("the counts of a scene are those of what is built") {
   RingChain rings;
   rings.radius_m = 0.02;
+  Net net;
+  net.segments = 3;
+  net.rows = 2;
   for (const SceneSpec& spec :
-       {SceneSpec(FallingRods{}), SceneSpec(CoilingRod{}), SceneSpec(knot()), SceneSpec(rings), SceneSpec(Bundle{})}) {
+       {SceneSpec(FallingRods{}), SceneSpec(CoilingRod{}), SceneSpec(knot()), SceneSpec(rings), SceneSpec(Bundle{}),
+        SceneSpec(test::bending_rod(5, Clamp::wall)), SceneSpec(Helix{}), SceneSpec(Ring{}), SceneSpec(net)}) {
     const Scene scene = build_scene(spec);
     int segments = 0, joints = 0;
     for (const Rod& rod : scene.rods) {

@@ -2,17 +2,15 @@
 // their first bending frequency; exact states of strain; what a free lattice keeps; symmetric sag.
 //
 // A frame has the rods' half segments beyond the last nodes as beams of their own, so that its mass is the lattice's.
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdio>
 #include <map>
-#include <set>
 
-#include "solver/rod/linearization.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/solver/lattice_nodes.hpp"
 #include "tests/solver/oscillation.hpp"
 #include "tests/solver/simulation.hpp"
+#include "tests/solver/support.hpp"
 #include "tests/solver/timoshenko_frame.hpp"
 
 using namespace rodsweep;
@@ -20,40 +18,8 @@ using namespace rodsweep;
 namespace test_validation_lattices {
 
 using Cell = Lattice::Cell;
+using test::cells, test::constraint_of, test::is_crossing, test::moved, test::nodes_of, test::Place, test::point;
 using test::TimoshenkoFrame;
-
-/// A place in halves of a cell's edge.
-using Place = std::array<int, 3>;
-
-Place moved(const Place& p, const Place& by, int times = 1) {
-  return {p[0] + times * by[0], p[1] + times * by[1], p[2] + times * by[2]};
-}
-
-Vector3 point(const Place& at, const Lattice& p) { return p.mesh_m / 2 * Vector3(at[0], at[1], at[2]); }
-
-/// Corners of cells, their centres, or the centres of their faces.
-std::set<Place> nodes_of(const Lattice& p) {
-  std::set<Place> nodes;
-  for (int x = 0; x <= 2 * p.nodes_x - 2; ++x)
-    for (int y = 0; y <= 2 * p.nodes_y - 2; ++y)
-      for (int z = 0; z <= 2 * p.nodes_z - 2; ++z) {
-        const int odd = x % 2 + y % 2 + z % 2;
-        if (odd == 0 || (p.cell == Cell::body_centred && odd == 3) || (p.cell == Cell::octet && odd == 2))
-          nodes.insert({x, y, z});
-      }
-  return nodes;
-}
-
-/// Half of the ways to nearest neighbours, one of any two that are opposite.
-std::vector<Place> ways_of(Cell cell) {
-  const int square = cell == Cell::cubic ? 4 : cell == Cell::body_centred ? 3 : 2;
-  std::vector<Place> out;
-  for (int x = -2; x <= 2; ++x)
-    for (int y = -2; y <= 2; ++y)
-      for (int z = -2; z <= 2; ++z)
-        if (x * x + y * y + z * z == square && Place{x, y, z} > Place{0, 0, 0}) out.push_back({x, y, z});
-  return out;
-}
 
 /// Held at its side, of stiff nodes, weightless.
 Lattice cantilever(Cell cell, int nodes_x, int across, int segments) {
@@ -78,12 +44,13 @@ struct LatticeFrame {
 
   LatticeFrame(const Lattice& p, int beams_of_strut)
       : frame(test::round_beam(p.radius_m, p.density_kg_m3, p.youngs_modulus_pa, p.torsion_modulus_pa)) {
-    for (const Place& at : nodes_of(p)) {
+    for (const auto& [at, ways] : nodes_of(p)) {
       nodes[at] = frame.add_node(point(at, p));
       if (at[0] == 0) frame.hold(nodes[at]);
     }
     for (const auto& [at, node] : nodes)
-      for (const Place& way : ways_of(p.cell)) {
+      for (const Place& way : test::ways_of(p.cell)) {
+        if (way < Place{}) continue;  // of any two that are opposite, one
         const bool there = nodes.count(moved(at, way)), before = nodes.count(moved(at, way, -1));
         if (there) {
           int last = node;
@@ -120,7 +87,7 @@ struct End {
 template <class Shift>
 End end_of(const Lattice& p, const Shift& shift_of) {
   double count = 0, sinking = 0, height = 0, height_square = 0, along = 0, product = 0;
-  for (const Place& at : nodes_of(p)) {
+  for (const auto& [at, ways] : nodes_of(p)) {
     if (at[0] != 2 * p.nodes_x - 2) continue;
     const Vector3 shift = shift_of(at);
     const double y = point(at, p).y();
@@ -137,7 +104,7 @@ End end_of(const Lattice& p, const Shift& shift_of) {
 /// A segment at every node.
 std::map<Place, int> segments_at_nodes(const Lattice& p, const Rod& rod) {
   std::map<Place, int> out;
-  for (const Place& at : nodes_of(p))
+  for (const auto& [at, ways] : nodes_of(p))
     for (int s = 0; s < rod.segment_count(); ++s)
       if ((rod.position[static_cast<std::size_t>(s)] - point(at, p)).norm() < 1e-9) out[at] = s;
   return out;
@@ -197,14 +164,6 @@ double frequency_error(const Lattice& p) {
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 /// Of an error in 1 / N^2 and 1 / N^4, that for ever more segments.
 double limit(double coarse, double fine) { return (4 * fine - coarse) / 3; }
-
-VectorX constraint_of(const Rod& rod) {
-  Linearization at(rod);
-  linearize(rod, at);
-  return at.constraint;
-}
-
-bool is_crossing(const Joint& joint) { return joint.arm_a.isZero(); }
 
 /// Three nodes along every edge, free.
 Lattice block(Cell cell, int segments = 2) {
@@ -295,7 +254,7 @@ TEST_CASE("A slender beam of a frame swings as Euler and Bernoulli's, less Rayle
 }
 
 TEST_CASE("A cantilever of a lattice sinks and tilts as a frame of Timoshenko beams, with an error of second order") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+  for (const Cell cell : cells) {
     const End coarse = static_error(cantilever(cell, 4, 2, 8)), fine = static_error(cantilever(cell, 4, 2, 16));
     CAPTURE(cell, coarse.sinking, fine.sinking, coarse.slope, fine.slope);
     CHECK(std::abs(fine.sinking) < 4e-3);
@@ -308,7 +267,7 @@ TEST_CASE("A cantilever of a lattice sinks and tilts as a frame of Timoshenko be
 }
 
 TEST_CASE("A cantilever of a lattice swings as a frame of Timoshenko beams, with an error of second order") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+  for (const Cell cell : cells) {
     const double coarse = frequency_error(cantilever(cell, 4, 2, 8)),
                  fine = frequency_error(cantilever(cell, 4, 2, 16));
     CAPTURE(cell, coarse, fine);
@@ -319,7 +278,7 @@ TEST_CASE("A cantilever of a lattice swings as a frame of Timoshenko beams, with
 }
 
 TEST_CASE("A cantilever of two by two by four cells sinks, tilts and swings as a frame does", "[.long]") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+  for (const Cell cell : cells) {
     const Lattice p = cantilever(cell, 5, 3, 16);
     const End end = static_error(p);
     const double frequency = frequency_error(p);
@@ -369,7 +328,7 @@ TEST_CASE("A lattice pulled at both ends of its rods along x comes to rest stret
 }
 
 TEST_CASE("A lattice grown evenly in all directions has the same tension in all rods and nothing else anywhere") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+  for (const Cell cell : cells) {
     const Lattice p = block(cell);
     Rod rod = build_scene(p).rods.front();
     const double strain = 1e-3, axial = p.youngs_modulus_pa * pi * p.radius_m * p.radius_m;
@@ -382,20 +341,8 @@ TEST_CASE("A lattice grown evenly in all directions has the same tension in all 
   }
 }
 
-TEST_CASE("A lattice that is moved and turned as a whole has no strain") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
-    Rod rod = build_scene(block(cell)).rods.front();
-    const Quaternion turn(Eigen::AngleAxisd(2.5, a_turn.normalized()));
-    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-      rod.position[s] = turn * rod.position[s] + Vector3(3, -2, 1);
-      rod.orientation[s] = turn * rod.orientation[s];
-    }
-    CHECK(constraint_of(rod).lpNorm<Eigen::Infinity>() < 1e-13);
-  }
-}
-
 TEST_CASE("A thrown lattice keeps its linear momentum, and its angular momentum to the order of the step") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+  for (const Cell cell : cells) {
     const auto drift = [&](double dt) {
       Simulation simulation(thrown(block(cell)), dt);
       const Vector3 momentum = linear_momentum(simulation.rod()), turning = angular_momentum(simulation.rod());
@@ -411,7 +358,7 @@ TEST_CASE("A thrown lattice keeps its linear momentum, and its angular momentum 
 }
 
 TEST_CASE("The energy of a disturbed lattice never grows") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+  for (const Cell cell : cells) {
     Scene scene = build_scene(block(cell));
     Rod& rod = scene.rods.front();
     for (std::size_t s = 0; s < rod.segments.size(); ++s)
@@ -430,7 +377,7 @@ TEST_CASE("The energy of a disturbed lattice never grows") {
 }
 
 TEST_CASE("A free lattice falls as a stone does") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+  for (const Cell cell : cells) {
     Lattice p = block(cell);
     p.gravity_m_s2 = Vector3(0, -9.81, 0);
     Simulation simulation(build_scene(p), 0.01);
@@ -444,7 +391,7 @@ TEST_CASE("A free lattice falls as a stone does") {
 
 // Of stiff nodes: soft ones know which rod is the first, since any two others are joined by way of it.
 TEST_CASE("A lattice held at its corners sags symmetrically") {
-  for (const Cell cell : {Cell::cubic, Cell::body_centred, Cell::octet}) {
+  for (const Cell cell : cells) {
     Lattice p = block(cell);
     p.held = Held::corners;
     p.node_stiffness = 1e5;
