@@ -6,9 +6,10 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "solver/numbers/rotation.hpp"
-#include "solver/scene/scenes.hpp"
+#include "solver/scene/scene_parts.hpp"
 #include "solver/step/time_step.hpp"
 
 namespace rodsweep {
@@ -16,6 +17,14 @@ namespace rodsweep {
 /// Where a chain of segments ends.
 inline Vector3 tip(const Rod& rod) {
   return rod.position.back() + rod.segments.back().length_m / 2 * director(rod.orientation.back());
+}
+
+/// A straight rod along +x from the origin, whose first and last segments are held. `force_n`: see joint_between().
+inline Rod rod_held_at_both_ends(int segments, double length_m, const RodParameters& p, double force_n) {
+  const Vector3 end(length_m, 0, 0);
+  std::vector<SegmentSpec> specs = segments_through(straight_line(Vector3::Zero(), end, segments), p);
+  specs.front().is_static = specs.back().is_static = true;
+  return chain(specs, p, force_n);
 }
 
 class Simulation {

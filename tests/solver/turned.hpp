@@ -78,6 +78,19 @@ inline Scene mirrored(Scene scene) {
   return scene;
 }
 
+/// The same rod with all segments' frames rolled about their axes by one angle. (By angles of their own, joints would be
+/// twisted at rest, and a finite twist is not measured as a small one.)
+inline Rod rolled(Rod rod, double angle) {
+  const Quaternion roll(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
+  for (Quaternion& q : rod.orientation) q = q * roll;
+  for (Joint& joint : rod.joints) {
+    joint.arm_a = roll.conjugate() * joint.arm_a;
+    joint.arm_b = roll.conjugate() * joint.arm_b;
+    joint.rest = roll.conjugate() * joint.rest * roll;
+  }
+  return rod;
+}
+
 /// Moves the rods as the direct solve does; `look` sees every system.
 template <class Look>
 class Observer : public LinearSolve {

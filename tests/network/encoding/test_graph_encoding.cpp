@@ -17,8 +17,7 @@ struct Encoded {
 
 Encoded encoded(Encoding encoding, const Rod& rod, int newton = 0) {
   const GraphEncoding encode(encoding, rod);
-  LinearSystem system(rod);
-  system.assemble(rod, dt);
+  const LinearSystem system = test::assembled(rod, dt);
   Encoded out{Tensor<float>(GraphEncoding::node_features(encoding), rod.segment_count()),
               Tensor<float>(GraphEncoding::edge_features(encoding), rod.joint_count())};
   encode.encode(rod, system, newton, out.nodes, out.edges);
@@ -104,16 +103,6 @@ TEST_CASE("paper_residual: from the second Newton iteration on, edges have -C - 
   CHECK(e.edges(8, 1) == Approx(-(bend1 - rest1) - compliance * 1e-3));
 }
 
-/// The rod moved and turned about the vertical, y, velocities with it.
-Rod moved(Rod rod, const Vector3& shift, double angle) {
-  const Quaternion turn(Eigen::AngleAxisd(angle, Vector3::UnitY()));
-  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-    rod.position[s] = turn * rod.position[s] + shift;
-    rod.orientation[s] = turn * rod.orientation[s];
-  }
-  return rod;
-}
-
 /// Features that differ by more than rounding in some column.
 std::vector<int> changed(const Tensor<float>& a, const Tensor<float>& b) {
   std::vector<int> out;
@@ -122,21 +111,18 @@ std::vector<int> changed(const Tensor<float>& a, const Tensor<float>& b) {
   return out;
 }
 
-TEST_CASE("a shifted rod differs in positions only") {
+TEST_CASE("a shifted rod differs in positions only, one turned about the vertical in horizontal ones and rotations") {
   const Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
-  const Rod shifted = moved(rod, {1, -2, 3}, 0);
-  CHECK(changed(encoded(Encoding::paper_residual, rod, 1).nodes, encoded(Encoding::paper_residual, shifted, 1).nodes) ==
-        std::vector<int>{0, 1, 2});
-  CHECK(changed(encoded(Encoding::paper_residual, rod, 1).edges, encoded(Encoding::paper_residual, shifted, 1).edges)
-            .empty());
-}
-
-TEST_CASE("a rod turned about the vertical differs in horizontal positions and rotations, and in no joint") {
-  const Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
-  const Rod turned = moved(rod, {0, 0, 0}, 0.7);
-  CHECK(changed(encoded(Encoding::paper_residual, rod).nodes, encoded(Encoding::paper_residual, turned).nodes) ==
-        std::vector<int>{0, 2, 3, 4, 5, 6});
-  CHECK(changed(encoded(Encoding::paper_residual, rod).edges, encoded(Encoding::paper_residual, turned).edges).empty());
+  const Encoded here = encoded(Encoding::paper_residual, rod, 1);
+  Rod shifted = rod, turned = rod;
+  test::move_rigidly(shifted, Quaternion::Identity(), {1, -2, 3});
+  test::move_rigidly(turned, Quaternion(Eigen::AngleAxisd(0.7, Vector3::UnitY())), Vector3::Zero());
+  const Encoded there = encoded(Encoding::paper_residual, shifted, 1),
+                spun = encoded(Encoding::paper_residual, turned, 1);
+  CHECK(changed(here.nodes, there.nodes) == std::vector<int>{0, 1, 2});
+  CHECK(changed(here.nodes, spun.nodes) == std::vector<int>{0, 2, 3, 4, 5, 6});
+  CHECK(changed(here.edges, there.edges).empty());
+  CHECK(changed(here.edges, spun.edges).empty());
 }
 
 TEST_CASE("alpha and the flags count from the static segment, along branches and around loops") {

@@ -4,12 +4,12 @@
 
 #include "network/encoding/system_encoding.hpp"
 #include "network/training/energy_loss.hpp"
-#include "tests/solver/support.hpp"
+#include "tests/network/gradient_check.hpp"
 
 namespace rodsweep {
 namespace test_scaled_system {
 
-using Matrix = Tensor<double>;
+using test::Matrix;
 
 /// A random rod's system with a base guess, dense and scaled, both in the places of the forest.
 struct Case {
@@ -24,8 +24,8 @@ struct Case {
   explicit Case(const test::Edges& edges, unsigned seed, bool with_base = true)
       : rod(test::random_rod(edges, {0}, seed)),
         forest(joint_forest(rod)),
-        system(rod),
-        pattern((system.assemble(rod, 0.02), system_pattern(forest, system.matrix()))) {
+        system(test::assembled(rod)),
+        pattern(system_pattern(forest, system.matrix())) {
     const Eigen::MatrixXd dense = system.matrix().dense();
     solution = test::dense_solve(dense, system.rhs());
     test::Random random(seed + 7);
@@ -54,19 +54,12 @@ struct Case {
   }
 };
 
-Matrix random_output(int places, unsigned seed) {
-  test::Random random(seed);
-  Matrix out(6, places);
-  for (double& entry : out.reshaped()) entry = random.uniform(-1, 1);
-  return out;
-}
-
 TEST_CASE("the scaled matrix has a unit diagonal, its product is the dense one, its residual a unit mean square") {
   for (const test::Edges& edges : {test::chain(7), test::tree(2, 3)}) {
     const Case c(edges, 3);
     CHECK((c.a.diagonal().array() - 1).abs().maxCoeff() < 1e-12);
     CHECK(c.scaled.residual.array().square().mean() == Approx(1).epsilon(1e-6));
-    const Matrix x = random_output(c.forest.size(), 1);
+    const Matrix x = test::random_matrix(6, c.forest.size(), 1);
     Matrix y(6, x.cols());
     multiply<double>(side_by_side<double>({&c.scaled}), x, y);
     CHECK((y.reshaped() - c.a * x.reshaped()).norm() < 1e-6 * y.norm());
@@ -118,8 +111,7 @@ TEST_CASE("features do not change with the units of length, mass and time") {
   other.lambda = rod.lambda * kilogram * metre * metre;
 
   const auto features = [](const Rod& of) {
-    LinearSystem system(of);
-    system.assemble(of, 0.02);
+    const LinearSystem system = test::assembled(of);
     const SystemPattern pattern = system_pattern(joint_forest(of), system.matrix());
     Tensor<float> out(SystemEncoding::size, of.joint_count());
     SystemEncoding(pattern, Alignment::residual).encode(pattern, system.matrix(), system.rhs(), out);
@@ -149,7 +141,7 @@ TEST_CASE("the loss is the energy norm of what the best multiple and some steps 
   for (const int steps : {0, 1, 4}) {
     for (const bool with_base : {true, false}) {
       const Case c(test::tree(2, 2), 8, with_base);
-      const Matrix d = random_output(c.forest.size(), 2);
+      const Matrix d = test::random_matrix(6, c.forest.size(), 2);
       EnergyLoss<double> loss(steps);
       CHECK(loss(side_by_side<double>({&c.scaled}), d, nullptr) ==
             Approx(dense_loss(c, c.unscaled(d), steps)).epsilon(1e-4));
@@ -162,26 +154,20 @@ TEST_CASE("the loss is the energy norm of what the best multiple and some steps 
 TEST_CASE("the loss of several systems is the sum of theirs, its gradient that of central differences") {
   const Case one(test::chain(5), 1), two(test::tree(2, 2), 2, false);
   const ScaledSystem<double> both = side_by_side<double>({&one.scaled, &two.scaled});
-  Matrix d = random_output(one.forest.size() + two.forest.size(), 3);
+  const int places = one.forest.size() + two.forest.size();
+  std::vector<double> values(static_cast<std::size_t>(6 * places));
+  Eigen::Map<Matrix> d(values.data(), 6, places);
+  d = test::random_matrix(6, places, 3);
   for (const int steps : {0, 1, 3}) {
     EnergyLoss<double> loss(steps);
     const double together = loss(both, d, nullptr);
     CHECK(together == Approx(loss(side_by_side<double>({&one.scaled}), d.leftCols(one.forest.size()), nullptr) +
                              loss(side_by_side<double>({&two.scaled}), d.rightCols(two.forest.size()), nullptr))
                           .epsilon(1e-12));
-    Matrix gradient, ignored;
+    Matrix gradient;
     loss(both, d, &gradient);
-    double worst = 0;
-    for (Eigen::Index i = 0; i < d.size(); ++i) {
-      const double value = d(i), step = 1e-6;
-      d(i) = value + step;
-      const double above = loss(both, d, nullptr);
-      d(i) = value - step;
-      const double below = loss(both, d, nullptr);
-      d(i) = value;
-      worst = std::max(worst, std::abs((above - below) / (2 * step) - gradient(i)));
-    }
-    CHECK(worst < 1e-6 * gradient.cwiseAbs().maxCoeff());
+    CHECK(test::gradient_error(values, {gradient.data(), gradient.data() + gradient.size()},
+                               [&] { return loss(both, d, nullptr); }) < 1e-6);
   }
 }
 

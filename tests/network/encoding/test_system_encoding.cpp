@@ -10,18 +10,8 @@
 namespace rodsweep {
 namespace test_system_encoding {
 
-/// The same scene, in which all segments' frames are rolled about their axes by one angle. (By angles of their own,
-/// joints would be twisted at rest, and a finite twist is not measured as a small one.)
 Scene rolled(Scene scene) {
-  const Quaternion roll(Eigen::AngleAxisd(2.1, Vector3::UnitZ()));
-  for (Rod& rod : scene.rods) {
-    for (Quaternion& q : rod.orientation) q = q * roll;
-    for (Joint& joint : rod.joints) {
-      joint.arm_a = roll.conjugate() * joint.arm_a;
-      joint.arm_b = roll.conjugate() * joint.arm_b;
-      joint.rest = roll.conjugate() * joint.rest * roll;
-    }
-  }
+  for (Rod& rod : scene.rods) rod = test::rolled(rod, 2.1);
   return scene;
 }
 

@@ -8,29 +8,18 @@
 namespace rodsweep {
 namespace test_joint_forest {
 
-TEST_CASE("a chain held at its first segment has one joint a level, each hanging from the one before") {
-  const JointForest forest = joint_forest(test::random_rod(test::chain(5), {0}, 1));
-  CHECK(forest.order == std::vector<int>{0, 1, 2, 3});
-  CHECK(forest.parent == std::vector<int>{-1, 0, 1, 2});
-  CHECK(forest.level_begin == std::vector<int>{0, 1, 2, 3, 4});
-}
-
-TEST_CASE("a chain held at its last segment hangs the other way round") {
-  const JointForest forest = joint_forest(test::random_rod(test::chain(5), {4}, 1));
-  CHECK(forest.order == std::vector<int>{3, 2, 1, 0});
-  CHECK(forest.parent == std::vector<int>{-1, 0, 1, 2});
-}
-
-TEST_CASE("a chain held at both ends is one tree") {
-  const JointForest forest = joint_forest(test::random_rod(test::chain(5), {0, 4}, 1));
-  CHECK(forest.parent == std::vector<int>{-1, 0, 1, 2});
-}
-
-TEST_CASE("a chain held in the middle is two trees, since nothing couples through a static segment") {
-  const JointForest forest = joint_forest(test::random_rod(test::chain(5), {2}, 1));
-  CHECK(forest.levels() == 2);
-  CHECK(forest.order == std::vector<int>{1, 2, 0, 3});
-  CHECK(forest.parent == std::vector<int>{-1, -1, 0, 1});
+TEST_CASE("a chain hangs from its held end; held in the middle it is two trees, since nothing couples through that") {
+  const auto forest = [](const std::vector<int>& held) {
+    return joint_forest(test::random_rod(test::chain(5), held, 1));
+  };
+  CHECK(forest({0}).order == std::vector<int>{0, 1, 2, 3});
+  CHECK(forest({0}).level_begin == std::vector<int>{0, 1, 2, 3, 4});
+  CHECK(forest({4}).order == std::vector<int>{3, 2, 1, 0});
+  for (const std::vector<int>& held : {std::vector<int>{0}, std::vector<int>{4}, std::vector<int>{0, 4}})
+    CHECK(forest(held).parent == std::vector<int>{-1, 0, 1, 2});
+  CHECK(forest({2}).levels() == 2);
+  CHECK(forest({2}).order == std::vector<int>{1, 2, 0, 3});
+  CHECK(forest({2}).parent == std::vector<int>{-1, -1, 0, 1});
 }
 
 TEST_CASE("siblings share a parent, and a free tree hangs from its first joint") {

@@ -75,8 +75,7 @@ TEST_CASE("the weight of the rod hangs on its first joint, however it is divided
     for (Joint& joint : rod.joints) joint.rest = Quaternion::Identity();
     const double dt = 0.02;
     for (std::size_t s = 1; s < rod.segments.size(); ++s) rod.position[s] += dt * dt * gravity;  // a step's fall
-    LinearSystem system(rod);
-    system.assemble(rod, dt);
+    const LinearSystem system = test::assembled(rod, dt);
     VectorX solution(system.rhs().size());
     DirectSolve(scene).solve(system, {}, 0, solution);
     const ChainProfile profile(rod, gravity);
@@ -97,8 +96,7 @@ TEST_CASE("a rod that turns about its held end has the same state however it is 
       rod.velocity[s] = spin.cross(rod.position[s]);
       rod.angular_velocity[s] = spin;
     }
-    LinearSystem system(rod);
-    system.assemble(rod, 0.02);
+    const LinearSystem system = test::assembled(rod);
     const ChainProfile profile(rod, gravity);
     Tensor<float> state(ChainProfile::state_size, rod.joint_count());
     profile.state(rod, system, 0.02, state);

@@ -100,8 +100,7 @@ TEST_CASE("a right-hand side of zero is answered with zero") {
   scene.gravity_m_s2.setZero();
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
     CopingNetGuess guess(test::random_model(settings), scene, 1);
-    LinearSystem system(scene.rods.front());
-    system.assemble(scene.rods.front(), 0.02);
+    const LinearSystem system = test::assembled(scene.rods.front());
     VectorX x0(system.rhs().size());
     const Proposal proposal = guess.propose(system, {}, x0);
     CHECK(x0.allFinite());
@@ -111,10 +110,8 @@ TEST_CASE("a right-hand side of zero is answered with zero") {
 }
 
 TEST_CASE("where loops are cut a network proposes what lowers the residual, or nothing") {
-  Scene scene;
-  scene.rods.push_back(test::random_rod(test::ring(6), {}, 3));
-  LinearSystem system(scene.rods.front());
-  system.assemble(scene.rods.front(), 0.02);
+  const Scene scene = test::scene_of(test::random_rod(test::ring(6), {}, 3));
+  const LinearSystem system = test::assembled(scene.rods.front());
   VectorX x0(system.rhs().size()), residual(x0.size());
   int proposed = 0;
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
@@ -145,8 +142,7 @@ TEST_CASE("factors that lag are those of the first solve of every so many steps"
   Scene scene = build_scene(test::bending_rod(9));
   std::vector<LinearSystem> systems;
   for (int i = 0; i < 3; ++i) {
-    systems.emplace_back(scene.rods.front());
-    systems.back().assemble(scene.rods.front(), 0.02);
+    systems.push_back(test::assembled(scene.rods.front()));
     for (std::size_t s = 1; s < scene.rods.front().segments.size(); ++s) {
       const double bend = 0.02 * static_cast<double>(s * s);
       Quaternion& q = scene.rods.front().orientation[s];
@@ -174,8 +170,7 @@ TEST_CASE("factors that lag are those of the first solve of every so many steps"
 
 TEST_CASE("corrections stop where the residual is small enough") {
   Scene scene = build_scene(test::bending_rod(9));
-  LinearSystem system(scene.rods.front());
-  system.assemble(scene.rods.front(), 0.02);
+  const LinearSystem system = test::assembled(scene.rods.front());
   const auto left = [&](double stop_at, int corrections) {
     CopingNetGuess guess(test::random_model(with_factors()), scene, 1, {corrections, 0, stop_at});
     VectorX x0(system.rhs().size());
@@ -190,8 +185,7 @@ TEST_CASE("corrections stop where the residual is small enough") {
 
 TEST_CASE("corrections with factors are steps of conjugate gradients: each lowers the energy, all of them solve") {
   Scene scene = build_scene(test::bending_rod(9));
-  LinearSystem system(scene.rods.front());
-  system.assemble(scene.rods.front(), 0.02);
+  const LinearSystem system = test::assembled(scene.rods.front());
   VectorX exact = system.rhs(), error, scratch(exact.size());
   BlockFactor factor(system.matrix(), {0, 1, 2, 3, 4, 5, 6, 7});
   REQUIRE(factor.factorise(system.matrix()));
@@ -236,12 +230,9 @@ TEST_CASE("the joints' order does not matter") {
     if (has_all_couplings(settings)) continue;  // which of two siblings is eliminated first is theirs to say
     const auto model = test::random_model(settings);
     const auto guess_of = [&](const Rod& one) {
-      Scene scene;
-      scene.rods.push_back(one);
-      LinearSystem system(one);
-      system.assemble(one, 0.02);
+      const LinearSystem system = test::assembled(one);
       VectorX x0(system.rhs().size());
-      CopingNetGuess(model, scene, 1).propose(system, {}, x0);
+      CopingNetGuess(model, test::scene_of(one), 1).propose(system, {}, x0);
       return x0;
     };
     const VectorX x = guess_of(rod), y = guess_of(other);

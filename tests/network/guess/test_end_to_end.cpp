@@ -7,6 +7,7 @@
 #include "solver/step/observables.hpp"
 #include "solver/step/time_step.hpp"
 #include "tests/network/models.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -36,16 +37,16 @@ void fill(Model& model, float value) {
 }
 
 TEST_CASE("exact increments give the trajectory of the direct solve") {
-  Scene scene = build_scene(test::bending_rod(12)), reference = scene;
+  Scene scene = build_scene(test::bending_rod(12));
+  Simulation direct(scene, {0.02, 4, 1e-9});
   EndToEndProjection projection(scene, std::make_unique<ExactIncrements>(scene));
-  DirectSolve direct(reference);
-  LinearProjection solving(reference, direct);
-  TimeStepper stepper(scene, {0.02, 4, 1e-9}), other(reference, {0.02, 4, 1e-9});
+  TimeStepper stepper(scene, {0.02, 4, 1e-9});
   for (int step = 0; step < 20; ++step) {
-    const StepReport one = stepper.step(projection), two = other.step(solving);
-    CHECK(one.outcome == SolveOutcome::converged);
-    CHECK(one.newton_iterations == two.newton_iterations);
+    const StepReport report = stepper.step(projection);
+    CHECK(report.outcome == SolveOutcome::converged);
+    CHECK(report.newton_iterations == direct.step().newton_iterations);
   }
+  const Scene& reference = direct.scene;
   for (std::size_t s = 0; s < 12; ++s) {
     CHECK((scene.rods[0].position[s] - reference.rods[0].position[s]).norm() == 0);
     CHECK((scene.rods[0].orientation[s].coeffs() - reference.rods[0].orientation[s].coeffs()).norm() == 0);
@@ -97,8 +98,7 @@ TEST_CASE("predicted moves are in the units of the training set and leave static
   model->scales.moves.deviation << 0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F;
   model->scales.multipliers.deviation << 1, 2, 3, 4, 5, 6;
 
-  LinearSystem system(before);
-  system.assemble(before, 0.02);
+  const LinearSystem system = test::assembled(before);
   FeatureEncoder encoder(model->net.settings(), before, system.matrix());
   const VectorX none = VectorX::Zero(system.rhs().size());
   Tensor<float> nodes(node_features(model->net.settings()), 6), edges(edge_features(model->net.settings()), 5), y,

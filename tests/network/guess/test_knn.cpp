@@ -8,8 +8,9 @@
 namespace rodsweep {
 namespace test_knn {
 
-std::shared_ptr<const KnnSet> set_of(const std::vector<StoredSimulation>& simulations) {
-  auto set = std::make_shared<KnnSet>();
+std::shared_ptr<const KnnSet> set_of(const std::vector<StoredSimulation>& simulations,
+                                     KnnInputs inputs = KnnInputs::all) {
+  auto set = std::make_shared<KnnSet>(inputs);
   for (const StoredSimulation& simulation : simulations) set->add(simulation);
   set->finish();
   return set;
@@ -20,8 +21,7 @@ VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const St
                  double dt = 0.02, Proposal* proposal = nullptr) {
   Rod& rod = scene.rods[0];
   restore(where, rod);
-  LinearSystem system(rod);
-  system.assemble(rod, dt);
+  const LinearSystem system = test::assembled(rod, dt);
   VectorX x0(system.rhs().size());
   const Proposal made = KnnGuess(set, scene, dt, k).propose(system, where.at, x0);
   if (proposal) *proposal = made;
@@ -126,16 +126,12 @@ TEST_CASE("neighbours of shape alone see no velocities") {
   const Vector3 u(0.1, 0.2, -0.3);
   StoredSimulation simulation{scene, 0.02, 0.02, 1, {}};
   simulation.systems = {planted(scene.rods[0], Vector3::Zero(), slow), planted(scene.rods[0], 3 * u, fast)};
-  const auto shapes = std::make_shared<KnnSet>(KnnInputs::shape);
-  shapes->add(simulation);
-  shapes->finish();
+  const auto shapes = set_of({simulation}, KnnInputs::shape);
   const VectorX x0 = guess_at(shapes, scene, planted(scene.rods[0], 3 * u, fast), 2);
   CHECK((x0 - (slow + fast) / 2).norm() < 1e-5 * x0.norm());
   StoredSimulation bent = simulation;
   for (std::size_t s = 1; s < 5; ++s) bent.systems[1].position[s] += Vector3(0, 0.1 * static_cast<double>(s), 0);
-  const auto of_both = std::make_shared<KnnSet>(KnnInputs::shape);
-  of_both->add(bent);
-  of_both->finish();
+  const auto of_both = set_of({bent}, KnnInputs::shape);
   CHECK((guess_at(of_both, scene, bent.systems[1], 1) - fast).norm() < 1e-5 * fast.norm());
 }
 

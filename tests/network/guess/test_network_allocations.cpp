@@ -21,8 +21,7 @@ TEST_CASE("a guess allocates nothing on a rod seen before, whatever the network"
     CAPTURE(segments, static_cast<int>(settings.encoding), static_cast<int>(settings.processor),
             static_cast<int>(settings.base));
     const Scene scene = build_scene(test::bending_rod(segments));
-    LinearSystem system(scene.rods.front());
-    system.assemble(scene.rods.front(), 0.02);
+    const LinearSystem system = test::assembled(scene.rods.front());
     CopingNetGuess guess(test::random_model(settings), scene, 1);
     VectorX x0(system.rhs().size());
     long before = 0;
@@ -74,8 +73,7 @@ TEST_CASE("nearest neighbours allocate nothing") {
   set->add(test::stored_simulation(build_scene(test::bending_rod(12)), 30));
   set->finish();
   const Scene scene = build_scene(test::bending_rod(20));
-  LinearSystem system(scene.rods.front());
-  system.assemble(scene.rods.front(), 0.02);
+  const LinearSystem system = test::assembled(scene.rods.front());
   KnnGuess guess(set, scene, 0.02, 3);
   VectorX x0(system.rhs().size());
   long before = 0;

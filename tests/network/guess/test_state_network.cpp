@@ -7,6 +7,7 @@
 #include "solver/step/time_step.hpp"
 #include "tests/network/models.hpp"
 #include "tests/network/stored.hpp"
+#include "tests/solver/turned.hpp"
 
 namespace rodsweep {
 namespace test_state_network {
@@ -20,17 +21,6 @@ std::shared_ptr<Model> small_answers() {
   auto model = random_model(of_states());
   model->scales.moves.deviation *= 0.01F;
   return model;
-}
-
-/// Turned and shifted, with its gravity and clamps.
-Scene turned(Scene scene, const Quaternion& turn, const Vector3& shift) {
-  scene.gravity_m_s2 = turn * scene.gravity_m_s2;
-  for (Rod& rod : scene.rods)
-    for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-      rod.position[s] = turn * rod.position[s] + shift;
-      rod.orientation[s] = turn * rod.orientation[s];
-    }
-  return scene;
 }
 
 TEST_CASE("the velocities of a recorded simulation give back where it went") {
@@ -124,9 +114,8 @@ TEST_CASE("noise is a random walk: it grows from the first velocity to the last,
 
 TEST_CASE("a simulator sees no turn of the whole scene, and turned rods move as turned") {
   const Scene start = sample_scene(2);
-  const Quaternion turn(Eigen::AngleAxisd(1.2, Vector3(1, 2, -1).normalized()));
-  const Vector3 shift(3, -1, 2);
-  Scene here = start, there = turned(start, turn, shift);
+  const RigidMotion motion{Quaternion(Eigen::AngleAxisd(1.2, Vector3(1, 2, -1).normalized())), {3, -1, 2}};
+  Scene here = start, there = moved(start, motion);
   const auto model = small_answers();
   StateNetworkProjection one(here, model, 0.02), other(there, model, 0.02);
   TimeStepper stepper(here, {0.02, 2, 1e-9}), stepper_there(there, {0.02, 2, 1e-9});
@@ -136,23 +125,15 @@ TEST_CASE("a simulator sees no turn of the whole scene, and turned rods move as 
   }
   double moved = 0;
   for (std::size_t s = 0; s < here.rods[0].segments.size(); ++s) {
-    const Vector3 expected = turn * here.rods[0].position[s] + shift;
-    CHECK((there.rods[0].position[s] - expected).norm() < 1e-4);
+    CHECK((there.rods[0].position[s] - motion(here.rods[0].position[s])).norm() < 1e-4);
     moved = std::max(moved, (here.rods[0].position[s] - start.rods[0].position[s]).norm());
   }
   CHECK(moved > 1e-3);
 }
 
 TEST_CASE("rolled features are those of frames that are rolled") {
-  Rod rod = sample_scene(1).rods.front(), rolled_rod = rod;
+  const Rod rod = sample_scene(1).rods.front();
   const double angle = 0.7;
-  const Quaternion about_z(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
-  for (Quaternion& q : rolled_rod.orientation) q = q * about_z;
-  for (Joint& joint : rolled_rod.joints) {
-    joint.arm_a = about_z.conjugate() * joint.arm_a;
-    joint.arm_b = about_z.conjugate() * joint.arm_b;
-    joint.rest = about_z.conjugate() * joint.rest * about_z;
-  }
   const Vector3 gravity(1, -9, 2);
   const std::vector<Vector3> v(rod.segments.size(), {0.1, 0.2, 0.3}), w(rod.segments.size(), {0.5, -0.2, 0.1});
   const auto encoded = [&](const Rod& of) {
@@ -164,7 +145,7 @@ TEST_CASE("rolled features are those of frames that are rolled") {
     return out;
   };
   auto plain = encoded(rod);
-  const auto expected = encoded(rolled_rod);
+  const auto expected = encoded(rolled(rod, angle));
   roll(StateEncoding::node_groups(), angle, plain.first);
   roll(StateEncoding::edge_groups(), angle, plain.second);
   CHECK(plain.first.isApprox(expected.first, 1e-5F));

@@ -3,7 +3,6 @@
 #include <numeric>
 
 #include "network/processor/message_passing.hpp"
-#include "network/training/adam.hpp"
 #include "tests/network/gradient_check.hpp"
 
 namespace rodsweep {
@@ -39,6 +38,11 @@ struct Case {
     x_nodes = random_matrix(3, graph.nodes, 2);
     x_edges = random_matrix(4, graph.edges(), 3);
   }
+  Parameters<double> gradient(const Matrix& d_edges, const Matrix* d_nodes) {
+    Parameters<double> out = p.zeros();
+    net.backward(p, graph, x_nodes, x_edges, tape, d_edges, d_nodes, out);
+    return out;
+  }
   void run() { net.forward(p, graph, x_nodes, x_edges, tape, y_edges, net.sizes().node_out > 0 ? &y_nodes : nullptr); }
 };
 
@@ -56,8 +60,7 @@ TEST_CASE("the gradients of message passing are those of central differences") {
           return c.y_edges.cwiseProduct(d_edges).sum() + (node_out ? c.y_nodes.cwiseProduct(d_nodes).sum() : 0);
         };
         loss();
-        Parameters<double> gradient = c.p.zeros();
-        c.net.backward(c.p, c.graph, c.x_nodes, c.x_edges, c.tape, d_edges, node_out ? &d_nodes : nullptr, gradient);
+        const Parameters<double> gradient = c.gradient(d_edges, node_out ? &d_nodes : nullptr);
         CHECK(gradient_error(c.p.values(), gradient.values(), loss) < 1e-7);
       }
 }
@@ -69,10 +72,9 @@ TEST_CASE("every weight is used: none has a gradient of zero") {
       CAPTURE(has_globals, node_out, edge_out);
       Case c(some_graphs(), 3, node_out, has_globals, 5, 2, edge_out);
       c.run();
-      Parameters<double> gradient = c.p.zeros();
       const Matrix d_edges = random_matrix(edge_out, c.graph.edges(), 4),
                    d_nodes = random_matrix(node_out, c.graph.nodes, 5);
-      c.net.backward(c.p, c.graph, c.x_nodes, c.x_edges, c.tape, d_edges, node_out ? &d_nodes : nullptr, gradient);
+      Parameters<double> gradient = c.gradient(d_edges, node_out ? &d_nodes : nullptr);
       for (std::size_t i = 0; i < c.p.entries().size(); ++i) {
         CAPTURE(c.p.entries()[i].name);
         CHECK(gradient[static_cast<int>(i)].cwiseAbs().minCoeff() > 0);
@@ -88,10 +90,9 @@ TEST_CASE("edge outputs don't depend on whether nodes are decoded beside them") 
   CHECK((alone - c.y_edges).norm() < 1e-13);
   // And a tape that has held both gives the gradient of the edges alone.
   const Matrix d_edges = random_matrix(2, c.graph.edges(), 4), none = Matrix::Zero(2, c.graph.nodes);
-  Parameters<double> of_edges = c.p.zeros(), of_both = c.p.zeros();
-  c.net.backward(c.p, c.graph, c.x_nodes, c.x_edges, c.tape, d_edges, nullptr, of_edges);
+  const Parameters<double> of_edges = c.gradient(d_edges, nullptr);
   c.run();
-  c.net.backward(c.p, c.graph, c.x_nodes, c.x_edges, c.tape, d_edges, &none, of_both);
+  const Parameters<double> of_both = c.gradient(d_edges, &none);
   for (std::size_t i = 0; i < of_edges.values().size(); ++i)
     CHECK(of_edges.values()[i] == Approx(of_both.values()[i]).margin(1e-13));
 }
@@ -157,30 +158,6 @@ TEST_CASE("with K steps an output sees the nodes up to K hops away and no furthe
       CHECK(((c.y_edges.col(k) - edges.col(k)).norm() > 0) == (has_globals || hops <= steps));
     }
   }
-}
-
-TEST_CASE("one sample can be overfitted") {
-  const RodGraph graph = graph_of(tree(2, 3));
-  Parameters<float> p;
-  WeightSource source(1);
-  const MessagePassing<float> net(p, {3, 4, 16, 3, 6, 6, true}, source);
-  const Tensor<float> x_nodes = random_matrix(3, graph.nodes, 2).cast<float>();
-  const Tensor<float> x_edges = random_matrix(4, graph.edges(), 3).cast<float>();
-  const Tensor<float> edges = random_matrix(6, graph.edges(), 4).cast<float>();
-  const Tensor<float> nodes = random_matrix(6, graph.nodes, 5).cast<float>();
-  Adam adam(p.values().size(), {});
-  MessagePassing<float>::Tape tape;
-  Tensor<float> y_edges, y_nodes;
-  float error = 0;
-  for (int i = 0; i < 300; ++i) {
-    net.forward(p, graph, x_nodes, x_edges, tape, y_edges, &y_nodes);
-    const Tensor<float> d_edges = y_edges - edges, d_nodes = y_nodes - nodes;
-    error = d_edges.squaredNorm() + d_nodes.squaredNorm();
-    Parameters<float> gradient = p.zeros();
-    net.backward(p, graph, x_nodes, x_edges, tape, d_edges, &d_nodes, gradient);
-    adam.step(0.01 * (1 - i / 300.0), gradient.values(), p.values());
-  }
-  CHECK(error < 1e-3 * (edges.squaredNorm() + nodes.squaredNorm()));
 }
 
 }  // namespace test_message_passing

@@ -41,11 +41,16 @@ Scene helix_scene(int segments, int variant) {
   return build_scene(helix);
 }
 
-/// A scene with random everything; see random_rod().
-Scene random_scene(int segments, const std::vector<int>& held, unsigned seed) {
-  Scene scene;
-  scene.rods.push_back(test::random_rod(test::chain(segments), held, seed));
-  return scene;
+// One for each lane.
+std::vector<Scene> bending_scenes(int segments) {
+  std::vector<Scene> scenes;
+  for (int r = 0; r < lanes; ++r) scenes.push_back(bending_scene(segments, r));
+  return scenes;
+}
+std::vector<Scene> helix_scenes(int segments) {
+  std::vector<Scene> scenes;
+  for (int r = 0; r < lanes; ++r) scenes.push_back(helix_scene(segments, r));
+  return scenes;
 }
 
 /// The largest distance of positions [m], and of orientations as quaternions up to sign.
@@ -123,28 +128,15 @@ void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepS
   }
 }
 
-TEST_CASE("bending rods of different parameters step together as alone") {
-  std::vector<Scene> scenes;
-  for (int r = 0; r < lanes; ++r) scenes.push_back(bending_scene(30, r));
-  check_equal(scenes, 50, 1e-10);
-}
-
-TEST_CASE("helices of different parameters step together as alone") {
-  std::vector<Scene> scenes;
-  for (int r = 0; r < lanes; ++r) scenes.push_back(helix_scene(45, r));
-  check_equal(scenes, 50, 1e-10);
-}
-
-TEST_CASE("rods and helices that keep the balance of momentum step together as alone") {
-  const bool helices = GENERATE(false, true);
-  std::vector<Scene> scenes;
-  for (int r = 0; r < lanes; ++r) scenes.push_back(helices ? helix_scene(30, r) : bending_scene(20, r));
-  check_equal(scenes, 40, 1e-8, {0.02, 20, 1e-9}, 1e-4);
+TEST_CASE("rods and helices of different parameters step together as alone, also in the balance of momentum") {
+  check_equal(bending_scenes(30), 50, 1e-10);
+  check_equal(helix_scenes(45), 50, 1e-10);
+  check_equal(bending_scenes(20), 40, 1e-8, {0.02, 20, 1e-9}, 1e-4);
+  check_equal(helix_scenes(30), 40, 1e-8, {0.02, 20, 1e-9}, 1e-4);
 }
 
 TEST_CASE("rods of a batch that cannot be balanced are taken back, each for itself, as alone") {
-  std::vector<Scene> scenes;
-  for (int r = 0; r < lanes; ++r) scenes.push_back(bending_scene(10, r));
+  std::vector<Scene> scenes = bending_scenes(10);
   const StepSettings s{0.02, 12, 1e-9};
   const int wild = lanes / 2;
   Rod& rod = scenes[wild].rods.front();
@@ -185,15 +177,15 @@ TEST_CASE("any arms, rest rotations, compliances and held segments") {
   const std::vector<int> held = GENERATE(std::vector<int>{}, std::vector<int>{0}, std::vector<int>{6},
                                          std::vector<int>{0, 6}, std::vector<int>{3});
   std::vector<Scene> scenes;
-  for (unsigned r = 0; r < static_cast<unsigned>(lanes); ++r) scenes.push_back(random_scene(7, held, 10 + r));
+  for (unsigned r = 0; r < static_cast<unsigned>(lanes); ++r)
+    scenes.push_back(test::scene_of(test::random_rod(test::chain(7), held, 10 + r)));
   check_equal(scenes, 1, 1e-9, {1e-3, 3, 1e-9});  // metres of gap to close
 }
 
 TEST_CASE("a rod that has converged waits, unchanged, for those that have not") {
   // So coarse a tolerance that another iteration would show.
   const StepSettings coarse{0.02, 6, 1e-3};
-  std::vector<Scene> scenes;
-  for (int r = 0; r < lanes; ++r) scenes.push_back(bending_scene(10, r));
+  std::vector<Scene> scenes = bending_scenes(10);
   scenes.back().gravity_m_s2.setZero();
   check_equal(scenes, 10, 1e-11, coarse);
 
@@ -204,8 +196,7 @@ TEST_CASE("a rod that has converged waits, unchanged, for those that have not") 
 }
 
 TEST_CASE("a rod that blows up does not disturb the others, and stays where it failed") {
-  std::vector<Scene> scenes;
-  for (int r = 0; r < lanes; ++r) scenes.push_back(bending_scene(10, r));
+  std::vector<Scene> scenes = bending_scenes(10);
   BatchedStepper good(scenes, settings);
 
   const int bad = lanes / 2;
@@ -327,52 +318,39 @@ TEST_CASE("a rod that is abandoned stays where it is, the others go on") {
 }
 
 TEST_CASE("what a batch cannot hold is refused") {
-  std::vector<Scene> scenes{bending_scene(5, 0), bending_scene(5, 1)};
-  std::string expected;
-  SECTION("no scene") {
-    scenes.clear();
-    expected = "a batch of 0 scenes; must be from 1 to " + std::to_string(lanes);
+  using Scenes = std::vector<Scene>;
+  const std::string bound = " scenes; must be from 1 to " + std::to_string(lanes);
+  const std::pair<void (*)(Scenes&), std::string> refused[] = {
+      {[](Scenes& s) { s.clear(); }, "a batch of 0" + bound},
+      {[](Scenes& s) { s.assign(lanes + 1, bending_scene(5, 0)); }, "a batch of " + std::to_string(lanes + 1) + bound},
+      {[](Scenes& s) { s[1].rods.push_back(s[1].rods.front()); }, "scene 1 of a batch has 2 rods; must have one"},
+      {[](Scenes& s) {
+         s[0].clamps.push_back({0, 0, [](double) { return Pose{Vector3::Zero(), Quaternion::Identity()}; }});
+       },
+       "scene 0 of a batch has a moving clamp"},
+      {[](Scenes& s) {
+         s[1].loads.push_back({0, 4, {1, 0, 0}});
+       },
+       "scene 1 of a batch has a point load"},
+      {[](Scenes& s) { s[1] = bending_scene(6, 0); }, "scene 1 of a batch has 6 segments; the first one has 5"},
+      {[](Scenes& s) { s[1] = bending_scene(5, 0, Clamp::free); }, "scene 1 of a batch: segment 0 is free"},
+      {[](Scenes& s) { s[1].rods[0] = test::random_rod(test::ring(5), {0}, 1); },
+       "scene 1 of a batch has 5 joints for 5 segments; a chain has one less"},
+      {[](Scenes& s) {
+         s[1].rods[0] = test::random_rod({{0, 1}, {1, 2}, {1, 3}, {3, 4}}, {0}, 1);
+       },
+       "scene 1 of a batch: joint 2 joins segments 1 and 3; in a chain it joins 2 and 3"},
+      {[](Scenes& s) {
+         s[0].rods[0] = test::random_rod(test::chain(5), {1, 2}, 1);
+       },
+       "scene 0 of a batch: joint 1 joins two static segments"},
+  };
+  for (const auto& [change, what] : refused) {
+    Scenes scenes{bending_scene(5, 0), bending_scene(5, 1)};
+    change(scenes);
+    CHECK_THROWS_AS(BatchedStepper(scenes, settings), SceneError);
+    CHECK_THROWS_WITH(BatchedStepper(scenes, settings), Catch::StartsWith(what));
   }
-  SECTION("too many scenes") {
-    scenes.assign(lanes + 1, scenes.front());
-    expected = "a batch of " + std::to_string(lanes + 1) + " scenes; must be from 1 to " + std::to_string(lanes);
-  }
-  SECTION("two rods in a scene") {
-    scenes[1].rods.push_back(scenes[1].rods.front());
-    expected = "scene 1 of a batch has 2 rods; must have one";
-  }
-  SECTION("a moving clamp") {
-    const Rod& rod = scenes[0].rods[0];
-    const Pose pose{rod.position[0], rod.orientation[0]};
-    scenes[0].clamps.push_back({0, 0, [pose](double) { return pose; }});
-    expected = "scene 0 of a batch has a moving clamp; a batched step has no moving clamps";
-  }
-  SECTION("a point load") {
-    scenes[1].loads.push_back({0, 4, {1, 0, 0}});
-    expected = "scene 1 of a batch has a point load; a batched step has no point loads";
-  }
-  SECTION("different numbers of segments") {
-    scenes[1] = bending_scene(6, 0);
-    expected = "scene 1 of a batch has 6 segments; the first one has 5";
-  }
-  SECTION("different held segments") {
-    scenes[1] = bending_scene(5, 0, Clamp::free);
-    expected = "scene 1 of a batch: segment 0 is free; that of the first one is not";
-  }
-  SECTION("a loop") {
-    scenes[1].rods[0] = test::random_rod(test::ring(5), {0}, 1);
-    expected = "scene 1 of a batch has 5 joints for 5 segments; a chain has one less";
-  }
-  SECTION("a tree") {
-    scenes[1].rods[0] = test::random_rod({{0, 1}, {1, 2}, {1, 3}, {3, 4}}, {0}, 1);
-    expected = "scene 1 of a batch: joint 2 joins segments 1 and 3; in a chain it joins 2 and 3";
-  }
-  SECTION("a joint of two held segments") {
-    scenes[0].rods[0] = test::random_rod(test::chain(5), {1, 2}, 1);
-    expected = "scene 0 of a batch: joint 1 joins two static segments; remove it or free one of them";
-  }
-  CHECK_THROWS_WITH(BatchedStepper(scenes, settings), expected);
-  CHECK_THROWS_AS(BatchedStepper(scenes, settings), SceneError);
 }
 
 }  // namespace test_batched_step

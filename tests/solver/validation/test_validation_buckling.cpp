@@ -24,34 +24,18 @@ constexpr int settling_steps = 2000;
 
 Scene twisted_rod(int n) {
   const double l = length / n;
-  const Quaternion along_x = turn_between(Vector3::UnitZ(), Vector3::UnitX());
-  std::vector<SegmentSpec> segments;
-  std::vector<JointSpec> joints;
-  for (int i = 0; i < n; ++i) {
-    SegmentSpec s;
-    s.position_m = Vector3((i + 0.5) * l, 0, 0);
-    s.orientation = along_x;
-    s.length_m = l;
-    s.radius_m = radius;
-    s.density_kg_m3 = 1000;
-    s.is_static = i == 0 || i == n - 1;
-    segments.push_back(s);
-    if (i == 0) continue;
-    JointSpec j;
-    j.a = i - 1;
-    j.b = i;
-    j.arm_a_m = Vector3(0, 0, l / 2);
-    j.arm_b_m = -j.arm_a_m;
-    j.compliance_per_j = joint_compliance(l, radius, youngs_modulus, torsion_modulus, inextensible_compliance(l, 1000));
-    joints.push_back(j);
-  }
+  RodParameters p;
+  p.radius_m = radius;
+  p.youngs_modulus_pa = youngs_modulus;
+  p.torsion_modulus_pa = torsion_modulus;
   Scene scene;
   scene.gravity_m_s2.setZero();
-  scene.rods.emplace_back(segments, joints);
+  scene.rods.push_back(rod_held_at_both_ends(n, length, p, 1000));
+  const Vector3 end = scene.rods[0].position.back();
+  const Quaternion along_x = scene.rods[0].orientation.back();
   // The least disturbance says to which side and where it buckles.
   for (int i = 1; i < n - 1; ++i)
     scene.rods[0].position[static_cast<std::size_t>(i)].y() = 1e-4 * std::exp(-std::pow((i - n / 2) * l / 0.2, 2));
-  const Vector3 end = segments.back().position_m;
   scene.clamps.push_back({0, n - 1, [=](double time) {
                             const double part = std::min(1.0, time / loading_time);
                             return Pose{end - part * shortening * Vector3::UnitX(),

@@ -12,33 +12,15 @@ using namespace rodsweep;
 namespace test_validation_clamps {
 
 constexpr int count = 20;
-constexpr double segment_length = 0.1, radius = 0.05, youngs_modulus = 1e7, torsion_modulus = 4e6;
+constexpr double segment_length = 0.1, radius = 0.05, torsion_modulus = 4e6;
 constexpr double turning_time = 10, step = 0.5;
 
-/// Along +x, both end segments static.
-Rod rod_held_at_both_ends() {
-  std::vector<SegmentSpec> segments;
-  std::vector<JointSpec> joints;
-  for (int i = 0; i < count; ++i) {
-    SegmentSpec s;
-    s.position_m = Vector3((i + 0.5) * segment_length, 0, 0);
-    s.orientation = turn_between(Vector3::UnitZ(), Vector3::UnitX());
-    s.length_m = segment_length;
-    s.radius_m = radius;
-    s.density_kg_m3 = 1000;
-    s.is_static = i == 0 || i == count - 1;
-    segments.push_back(s);
-    if (i == 0) continue;
-    JointSpec j;
-    j.a = i - 1;
-    j.b = i;
-    j.arm_a_m = Vector3(0, 0, segment_length / 2);
-    j.arm_b_m = -j.arm_a_m;
-    j.compliance_per_j = joint_compliance(segment_length, radius, youngs_modulus, torsion_modulus,
-                                          inextensible_compliance(segment_length, 100));
-    joints.push_back(j);
-  }
-  return Rod(segments, joints);
+Rod held_rod() {
+  RodParameters p;
+  p.radius_m = radius;
+  p.youngs_modulus_pa = 1e7;
+  p.torsion_modulus_pa = torsion_modulus;
+  return rod_held_at_both_ends(count, count * segment_length, p, 100);
 }
 
 /// Turns the last segment as `pose_at` (of the angle) says, up to `angle`, and relaxes.
@@ -46,7 +28,7 @@ template <typename PoseAt>
 Rod turned(double angle, const PoseAt& pose_at) {
   Scene scene;
   scene.gravity_m_s2.setZero();
-  scene.rods.push_back(rod_held_at_both_ends());
+  scene.rods.push_back(held_rod());
   scene.clamps.push_back(
       {0, count - 1, [&](double time) { return pose_at(angle * std::min(1.0, time / turning_time)); }});
   Simulation simulation(std::move(scene), step);
@@ -84,7 +66,7 @@ TEST_CASE("A rod bent by its end turns by the same angle in every joint") {
 
 TEST_CASE("A rod twisted by its end has uniform twist and the torque of its joints") {
   const double angle = GENERATE(0.3, 2.0);
-  const Rod straight = rod_held_at_both_ends();
+  const Rod straight = held_rod();
   const auto twisted_end = [&](double total) {
     return Pose{straight.position.back(),
                 Quaternion(Eigen::AngleAxisd(total, Vector3::UnitX())) * straight.orientation.back()};
