@@ -1,46 +1,25 @@
 // Simulations with all that a data set would hold of them, and examples made of these.
 #pragma once
 
-#include <stdexcept>
-
 #include "network/training/example_builder.hpp"
-#include "solver/step/time_step.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test {
 
-/// Direct solves that are recorded as a data set records them.
-class Recorder : public LinearSolve {
- public:
-  explicit Recorder(const Scene& scene) : scene_(scene), direct_(scene) {}
-  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
-                     VectorX& delta_lambda) override {
-    const SolveOutcome outcome = direct_.solve(system, at, assemble_s, delta_lambda);
-    const Rod& rod = scene_.rods[static_cast<std::size_t>(at.rod)];
-    systems.push_back(
-        {at, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, delta_lambda});
-    return outcome;
-  }
-
-  std::vector<StoredSystem> systems;
-
- private:
-  const Scene& scene_;
-  DirectSolve direct_;
-};
-
+/// Direct solves, recorded as a data set records them.
 inline StoredSimulation stored_simulation(Scene scene, int steps, int newton_iterations = 2) {
   StoredSimulation out;
   out.scene = scene;
   out.step_s = 0.02;
   out.newton_iterations = newton_iterations;
-  Recorder recorder(scene);
-  LinearProjection projection(scene, recorder);
-  TimeStepper stepper(scene, {out.step_s, newton_iterations, 0});
-  out.constraint_dt_s = stepper.constraint_dt();
-  for (int step = 0; step < steps; ++step)
-    if (stepper.step(projection).outcome != SolveOutcome::converged) throw std::runtime_error("a step failed");
-  out.systems = std::move(recorder.systems);
+  out.constraint_dt_s = constraint_dt(scene, out.step_s);
+  observe(scene, {out.step_s, newton_iterations, 0}, steps,
+          [&](const LinearSystem&, const SolvePosition& at, const VectorX& solution) {
+            const Rod& rod = scene.rods[static_cast<std::size_t>(at.rod)];
+            out.systems.push_back(
+                {at, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, solution});
+          });
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/solver/dense.hpp"
+#include "tests/solver/simulation.hpp"
 
 namespace rodsweep {
 
@@ -28,6 +29,20 @@ inline std::complex<double> factor_per_step(const std::vector<double>& samples, 
   const double size = std::sqrt(fit[1]);
   return std::polar(std::pow(size, 1.0 / static_cast<double>(stride)),
                     std::acos(fit[0] / (2 * size)) / static_cast<double>(stride));
+}
+
+/// The same of a small free oscillation of a scene's rod, watched through the velocities that it starts with.
+inline std::complex<double> factor_per_step(Scene scene, double dt, int steps, std::size_t stride) {
+  const std::vector<Vector3> weight = scene.rods.front().velocity, rest = scene.rods.front().position;
+  Simulation simulation(std::move(scene), dt);
+  std::vector<double> samples;
+  for (int i = 0; i < steps; ++i) {
+    simulation.step();
+    double sum = 0;
+    for (std::size_t s = 0; s < rest.size(); ++s) sum += weight[s].dot(simulation.rod().position[s] - rest[s]);
+    samples.push_back(sum);
+  }
+  return factor_per_step(samples, stride);
 }
 
 }  // namespace rodsweep

@@ -85,4 +85,32 @@ class Simulation {
   TimeStepper stepper_;
 };
 
+/// A solve by a function of the system, its place and the solution that returns the outcome.
+template <class Function>
+class SolveBy : public LinearSolve {
+ public:
+  explicit SolveBy(const Function& function) : function_(function) {}
+  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& solution) override {
+    return function_(system, at, solution);
+  }
+
+ private:
+  Function function_;
+};
+
+/// Steps the scene by direct solves; `look` sees every system, its place and its solution.
+template <class Look>
+void observe(Scene& scene, const StepSettings& settings, int steps, const Look& look) {
+  DirectSolve direct(scene);
+  SolveBy solve([&](const LinearSystem& system, const SolvePosition& at, VectorX& solution) {
+    const SolveOutcome outcome = direct.solve(system, at, 0, solution);
+    look(system, at, solution);
+    return outcome;
+  });
+  LinearProjection projection(scene, solve);
+  TimeStepper stepper(scene, settings);
+  for (int step = 0; step < steps; ++step)
+    if (stepper.step(projection).outcome != SolveOutcome::converged) throw std::runtime_error("a step failed");
+}
+
 }  // namespace rodsweep

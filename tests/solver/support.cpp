@@ -162,6 +162,15 @@ BendingRod bending_rod(int segments, Clamp clamp) {
   return rod;
 }
 
+Lattice lattice_of(Lattice::Cell cell, int nodes, int segments, Held held) {
+  Lattice p;
+  p.cell = cell;
+  p.nodes_x = nodes;
+  p.segments = segments;
+  p.held = held;
+  return p;
+}
+
 Scene moving_scene(int segments, int steps) {
   Simulation simulation(build_scene(bending_rod(segments)), StepSettings{});
   simulation.run(steps);

@@ -52,7 +52,9 @@ void move_rigidly(Rod& rod, const Quaternion& turn, const Vector3& shift);
 
 /// A straight or bent rod whose constraints are zero, as the scenes build it.
 BendingRod bending_rod(int segments, Clamp clamp = Clamp::segment);
-/// The same, in the middle of its motion after some direct steps.
+/// As many nodes along every edge.
+Lattice lattice_of(Lattice::Cell cell, int nodes, int segments = 3, Held held = Held::corners);
+/// A bending rod in the middle of its motion after some direct steps.
 Scene moving_scene(int segments, int steps = 8);
 
 /// C of all joints, independently of linearize(), stretch-shear rows in these frames, one a joint.

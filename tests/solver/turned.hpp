@@ -1,12 +1,10 @@
 // Scenes to turn and shift as a whole, with all that acts on them, and their systems on the way.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <variant>
 #include <vector>
 
-#include "solver/step/projection.hpp"
-#include "solver/step/time_step.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test {
@@ -91,30 +89,11 @@ inline Rod rolled(Rod rod, double angle) {
   return rod;
 }
 
-/// Moves the rods as the direct solve does; `look` sees every system.
-template <class Look>
-class Observer : public LinearSolve {
- public:
-  Observer(const Scene& scene, const Look& look) : direct_(scene), look_(look) {}
-
-  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
-                     VectorX& delta_lambda) override {
-    look_(system);
-    return direct_.solve(system, at, assemble_s, delta_lambda);
-  }
-
- private:
-  DirectSolve direct_;
-  const Look& look_;
-};
-
-/// Six steps of three Newton iterations.
+/// Six steps of three Newton iterations; `look` sees every system.
 template <class Look>
 void observe(Scene& scene, const Look& look) {
-  Observer<Look> observer(scene, look);
-  LinearProjection projection(scene, observer);
-  TimeStepper stepper(scene, {0.02, 3, 0});
-  for (int step = 0; step < 6; ++step) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
+  rodsweep::observe(scene, {0.02, 3, 0}, 6,
+                    [&](const LinearSystem& system, const SolvePosition&, const VectorX&) { look(system); });
 }
 
 struct TurnedCase {
@@ -136,12 +115,7 @@ inline std::vector<TurnedCase> turned_cases() {
   Ring ring;
   ring.segments = 10;
   out.push_back({"ring", build_scene(ring)});
-  Lattice lattice;
-  lattice.cell = Lattice::Cell::body_centred;
-  lattice.nodes_x = 2;
-  lattice.segments = 1;
-  lattice.held = Held::side;
-  out.push_back({"lattice", build_scene(lattice)});
+  out.push_back({"lattice", build_scene(lattice_of(Lattice::Cell::body_centred, 2, 1, Held::side))});
   Tree tree;
   tree.shape.depth = 2;
   tree.youngs_modulus_pa = tree.torsion_modulus_pa = 1e7;

@@ -1,41 +1,16 @@
 // COPINGNet as an initial guess, in moving simulations: what it may never do, and what it costs.
 #include <catch2/catch.hpp>
-#include <functional>
 #include <limits>
 
 #include "network/guess/base_guess.hpp"
 #include "network/guess/coping_net_guess.hpp"
 #include "solver/factor/block_factor.hpp"
-#include "solver/step/time_step.hpp"
 #include "tests/network/models.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
 namespace test_coping_net_guess {
-
-/// Direct solves, with a look at every system before the guesses hear of its solution.
-class Watched : public LinearSolve {
- public:
-  using Look = std::function<void(const LinearSystem&, const SolvePosition&, const VectorX& solution)>;
-  Watched(const Scene& scene, Look look) : direct_(scene), look_(std::move(look)) {}
-  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
-                     VectorX& delta_lambda) override {
-    const SolveOutcome outcome = direct_.solve(system, at, assemble_s, delta_lambda);
-    look_(system, at, delta_lambda);
-    return outcome;
-  }
-
- private:
-  DirectSolve direct_;
-  Look look_;
-};
-
-void simulate(Scene& scene, int steps, const Watched::Look& look) {
-  Watched solve(scene, look);
-  LinearProjection projection(scene, solve);
-  TimeStepper stepper(scene, {0.02, 2, 0});
-  for (int step = 0; step < steps; ++step) REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
-}
 
 double energy_error(const LinearSystem& system, const VectorX& x, const VectorX& solution) {
   VectorX scratch(x.size());
@@ -49,7 +24,7 @@ TEST_CASE("with the best length what is left of the error is A-orthogonal to the
     CopingNetGuess guess(test::random_model(settings), scene, 2);
     const auto base = base_guess(settings, scene, 2);
     int corrected = 0;
-    simulate(scene, 4, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
+    observe(scene, {0.02, 2, 0}, 4, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
       VectorX x0(solution.size()), alone(solution.size());
       const Proposal without = base->propose(system, at, alone);
       const Proposal with = guess.propose(system, at, x0);
@@ -77,15 +52,14 @@ TEST_CASE("with the best length what is left of the error is A-orthogonal to the
 }
 
 TEST_CASE("weights that are not numbers leave the base guess") {
-  CopingNetSettings settings;
-  settings.latent = 16;
+  const CopingNetSettings settings;
   const auto model = test::random_model(settings);
   std::fill(model->net.parameters().values().begin(), model->net.parameters().values().end(),
             std::numeric_limits<float>::quiet_NaN());
   Scene scene = build_scene(test::bending_rod(6));
   CopingNetGuess guess(model, scene, 2);
   const auto base = base_guess(settings, scene, 2);
-  simulate(scene, 3, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
+  observe(scene, {0.02, 2, 0}, 3, [&](const LinearSystem& system, const SolvePosition& at, const VectorX& solution) {
     VectorX x0(solution.size()), alone(solution.size());
     base->propose(system, at, alone);
     guess.propose(system, at, x0);
@@ -130,10 +104,7 @@ TEST_CASE("where loops are cut a network proposes what lowers the residual, or n
 
 CopingNetSettings with_factors() {
   CopingNetSettings settings;
-  settings.encoding = Encoding::linear_system;
-  settings.processor = Processor::factors;
   settings.base = BaseGuess::none;
-  settings.latent = 16;
   return settings;
 }
 

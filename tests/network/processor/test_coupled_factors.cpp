@@ -22,11 +22,8 @@ using System = ScaledSystem<double>;
 
 /// The system of a rod as a network sees it, with a random residual.
 ScaledSystem<float> system_of(const Rod& rod, unsigned seed = 1) {
-  CopingNetSettings settings;
-  settings.encoding = Encoding::linear_system;
-  settings.processor = Processor::factors;
-  LinearSystem system(rod);
-  system.assemble(rod, 0.02);
+  const CopingNetSettings settings;
+  const LinearSystem system = assembled(rod);
   FeatureEncoder encoder(settings, rod, system.matrix());
   CanonicalFrames frames(encoder.pattern(), Alignment::matrix);
   const VectorX r = random_matrix(system.matrix().unknowns(), 1, seed).col(0);
@@ -35,9 +32,7 @@ ScaledSystem<float> system_of(const Rod& rod, unsigned seed = 1) {
 }
 
 Rod lattice(int nodes) {
-  Lattice p;
-  p.nodes_x = nodes;
-  p.segments = 2;
+  Lattice p = lattice_of(Lattice::Cell::cubic, nodes, 2);
   p.radius_m = 0.01;
   p.youngs_modulus_pa = 1e6;
   p.torsion_modulus_pa = 4e5;
@@ -236,14 +231,11 @@ TEST_CASE("untrained factors of all couplings are Jacobi's: the residual itself"
 
 TEST_CASE("inference of factors of all couplings gives the training code's answers, as exactly as its operands") {
   CopingNetSettings settings;
-  settings.encoding = Encoding::linear_system;
-  settings.processor = Processor::factors;
   settings.couplings = Couplings::all;
   for (const int latent : {16, 32})
     for (const Rod& rod :
          {random_rod(chain(20), {0}, 3), random_rod(tree(3, 2), {0}, 3), random_rod(net(3, 3), {0}, 3), lattice(3)}) {
-      LinearSystem system(rod);
-      system.assemble(rod, 0.02);
+      const LinearSystem system = assembled(rod);
       FeatureEncoder encoder(settings, rod, system.matrix());
       const SystemPattern& pattern = encoder.pattern();
       CanonicalFrames frames(pattern, Alignment::matrix);

@@ -123,14 +123,11 @@ TEST_CASE("a state that has grown too long is not carried on, and gradients stay
 }
 
 TEST_CASE("inference of factors gives the training code's answers, as exactly as its operands, to any residual") {
-  CopingNetSettings settings;
-  settings.encoding = Encoding::linear_system;
-  settings.processor = Processor::factors;
+  const CopingNetSettings settings;
   for (const int latent : {16, 32, 48})
     for (const Edges& edges : {chain(5), chain(20), tree(3, 2), ring(7)}) {
       const Rod rod = random_rod(edges, {0}, 3);
-      LinearSystem system(rod);
-      system.assemble(rod, 0.02);
+      const LinearSystem system = assembled(rod);
       FeatureEncoder encoder(settings, rod, system.matrix());
       const JointForest& forest = encoder.topology().forest;
       Net<float> net(latent);

@@ -11,13 +11,10 @@ namespace test_condensed_cg {
 using test::Case, test::Run, test::run;
 
 Case lattice(int nodes, double modulus, Lattice::Cell cell = Lattice::Cell::cubic) {
-  Lattice p;
-  p.cell = cell;
-  p.nodes_x = nodes;
+  Lattice p = test::lattice_of(cell, nodes, 3, Held::side);
   p.radius_m = 0.01;
   p.youngs_modulus_pa = modulus;
   p.torsion_modulus_pa = 0.4 * modulus;
-  p.held = Held::side;
   Rod rod = build_scene(p).rods.front();  // about to fall
   test::Random random(1);
   for (int s = 0; s < rod.segment_count(); ++s)

@@ -164,20 +164,14 @@ TEST_CASE("nothing in a lattice at rest touches, however thick its rods and howe
   for (const auto cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet})
     for (const int segments : {1, 2, 5, 8})
       for (const double radius : {0.01, 0.02, 0.03}) {
-        Lattice p;
-        p.cell = cell;
-        p.nodes_x = 2;
-        p.segments = segments;
+        Lattice p = test::lattice_of(cell, 2, segments, Held::free);
         p.radius_m = radius;
-        p.held = Held::free;
         CHECK(overlapping_pairs(build_scene(p)) == 0);
       }
 }
 
 TEST_CASE("which segments may touch does not depend on how the rods are bent") {
-  Lattice p;
-  p.cell = Lattice::Cell::octet;
-  p.nodes_x = 2;
+  Lattice p = test::lattice_of(Lattice::Cell::octet, 2);
   p.radius_m = 0.02;
   Scene scene = build_scene(p);
   const ContactBodies before(scene);

@@ -104,14 +104,11 @@ double contact_force(const Scene& scene, double middle, bool above, double step)
 
 TEST_CASE("a lattice between two plates is squeezed, and the plates press alike") {
   for (const auto cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet}) {
-    Lattice p;
-    p.cell = cell;
-    p.nodes_x = 2;
+    Lattice p = test::lattice_of(cell, 2, 3, Held::free);
     p.mesh_m = 0.2;
     p.radius_m = 0.02;
     p.youngs_modulus_pa = 1e6;
     p.torsion_modulus_pa = 4e5;
-    p.held = Held::free;
     p.damping_per_s = 20;
     p.gravity_m_s2.setZero();
     p.contact = ContactSettings{};

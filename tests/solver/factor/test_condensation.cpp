@@ -19,12 +19,8 @@ Rod rod_of(Scene p) {
 }
 
 Rod lattice(Lattice::Cell cell, int nodes, int segments, Held held) {
-  Lattice p;
-  p.cell = cell;
-  p.nodes_x = nodes;
+  Lattice p = test::lattice_of(cell, nodes, segments, held);
   p.nodes_z = nodes + 1;
-  p.segments = segments;
-  p.held = held;
   return rod_of(p);
 }
 

@@ -14,12 +14,7 @@ namespace test_elimination_tree {
 
 using test::later_neighbours, test::shuffled;
 
-Lattice cubic(int nodes, int segments) {
-  Lattice lattice;
-  lattice.nodes_x = nodes;
-  lattice.segments = segments;
-  return lattice;
-}
+Lattice cubic(int nodes, int segments) { return test::lattice_of(Lattice::Cell::cubic, nodes, segments); }
 
 BlockMatrix system_of(const SceneSpec& scene) { return LinearSystem(build_scene(scene).rods.front()).matrix(); }
 

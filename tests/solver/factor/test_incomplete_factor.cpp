@@ -37,10 +37,8 @@ std::pair<double, double> spectrum(IncompleteFactor& factor, const BlockMatrix& 
 double asymmetry(const MatrixX& m) { return (m - m.transpose()).norm() / m.norm(); }
 
 TEST_CASE("the applied operator is symmetric and positive definite, and nearer the inverse with more fill") {
-  Lattice lattice;
-  lattice.nodes_x = 3;
+  Lattice lattice = lattice_of(Lattice::Cell::cubic, 3, 2);
   lattice.nodes_y = lattice.nodes_z = 2;
-  lattice.segments = 2;
   lattice.youngs_modulus_pa = 1e6;
   lattice.radius_m = 0.01;
   const LinearSystem system = assembled(build_scene(lattice).rods.front());
@@ -83,13 +81,10 @@ TEST_CASE("with all fill it is the inverse, in any order, and on chains and tree
 }
 
 TEST_CASE("a factor that is not positive definite is raised until it is; of a matrix that is not, there is none") {
-  Lattice octet;
-  octet.cell = Lattice::Cell::octet;
-  octet.nodes_x = 3;
+  Lattice octet = lattice_of(Lattice::Cell::octet, 3, 3, Held::side);
   octet.radius_m = 0.01;
   octet.youngs_modulus_pa = 1e6;
   octet.torsion_modulus_pa = 4e5;
-  octet.held = Held::side;
   LinearSystem system = assembled(build_scene(octet).rods.front());
   BlockMatrix a = system.matrix();
   IncompleteFactor factor(a, breadth_first_order(a), 1);

@@ -68,11 +68,7 @@ TEST_CASE("fronts wider than everything that is done at once solve as a dense Ch
 }
 
 TEST_CASE("systems of lattices and nets are solved to rounding, with the same bits every time") {
-  Lattice cubic, octet;
-  cubic.nodes_x = 3;
-  cubic.segments = 2;
-  octet.nodes_x = 2;
-  octet.cell = Lattice::Cell::octet;
+  const Lattice cubic = test::lattice_of(Lattice::Cell::cubic, 3, 2), octet = test::lattice_of(Lattice::Cell::octet, 2);
   Net net;
   net.rows = net.columns = 6;
   for (const SceneSpec& spec : {SceneSpec(cubic), SceneSpec(octet), SceneSpec(net)}) {
@@ -132,9 +128,7 @@ TEST_CASE("what is not positive definite is refused, wherever its bad pivot is, 
 }
 
 TEST_CASE("a factor with fronts keeps what a factor promises") {
-  Lattice lattice;
-  lattice.nodes_x = 5;
-  const Scene scene = build_scene(lattice);
+  const Scene scene = build_scene(test::lattice_of(Lattice::Cell::cubic, 5));
   const LinearSystem system = test::assembled(scene.rods.front());
   const BlockMatrix& a = system.matrix();
   BlockFactor factor(a, root_to_leaf_order(scene.rods.front()));

@@ -34,9 +34,7 @@ TEST_CASE("J (M^-1 (J^T x)) + alpha~ x is A x on any graph, held or free, for ev
 }
 
 TEST_CASE("large systems multiply without their matrix, small ones with it, and both follow the positions") {
-  Lattice lattice;
-  lattice.nodes_x = 4;
-  Rod large = build_scene(lattice).rods.front();
+  Rod large = build_scene(lattice_of(Lattice::Cell::cubic, 4)).rods.front();
   const Rod small = random_rod(net(3, 3), {0}, 1);
   CHECK(LinearSystem(small).product() == nullptr);
   LinearSystem system(large);
@@ -51,9 +49,7 @@ TEST_CASE("large systems multiply without their matrix, small ones with it, and 
 }
 
 TEST_CASE("with the balance of momentum kept, the product knows the mobilities that geometric stiffness leaves") {
-  Lattice lattice;
-  lattice.nodes_x = 4;
-  Rod rod = build_scene(lattice).rods.front();
+  Rod rod = build_scene(lattice_of(Lattice::Cell::cubic, 4)).rods.front();
   Random random(1);
   rod.lambda = 1e-3 * random.entries(6 * rod.joint_count());
   LinearSystem system(rod);

@@ -147,14 +147,10 @@ TEST_CASE("falling rods heap up on the floor") {
 
 TEST_CASE("a lattice that falls on its edge comes to lie on the floor, whole") {
   for (const auto cell : {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet}) {
-    Lattice p;
-    p.cell = cell;
-    p.nodes_x = 2;
-    p.segments = 2;
+    Lattice p = test::lattice_of(cell, 2, 2, Held::free);
     p.radius_m = 0.02;
     p.youngs_modulus_pa = 2e7;
     p.torsion_modulus_pa = 8e6;
-    p.held = Held::free;
     p.initial_angle_deg = 30;
     p.damping_per_s = 3;
     p.contact = ContactSettings{};

@@ -125,9 +125,7 @@ TEST_CASE("a direct step allocates nothing, in the balance of momentum too, nor 
 }
 
 TEST_CASE("a step of a lattice, whose matrix is factorised in fronts, allocates nothing") {
-  Lattice lattice;
-  lattice.nodes_x = 5;
-  Scene scene = build_scene(lattice);
+  Scene scene = build_scene(test::lattice_of(Lattice::Cell::cubic, 5));
   DirectSolve direct(scene);
   REQUIRE(BlockFactor(LinearSystem(scene.rods[0]).matrix(), root_to_leaf_order(scene.rods[0])).has_fronts());
   CHECK(allocations_of(scene, direct) == 0);

@@ -17,19 +17,16 @@ TEST_CASE("cg from a history reaches the direct solve's balanced steps") {
   const Scene& exact = direct.scene;
 
   Scene scene = start;
-  struct CgSolve : LinearSolve {
-    explicit CgSolve(const Scene& scene) : guess(scene, 20, 3) {}
-    SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& x) override {
-      if (!cg) cg.emplace(system.matrix(), CgSettings{});
-      cg->matrix_changed();
-      const bool nonzero = guess.propose(system, at, x).nonzero;
-      const CgReport report = cg->solve(system.rhs(), x, nonzero, 1e-8, system.rhs().norm());
-      guess.accept(at, x);
-      return report.outcome;
-    }
-    ExtrapolationGuess guess;
-    std::optional<ConjugateGradient> cg;
-  } solve(scene);
+  ExtrapolationGuess guess(scene, 20, 3);
+  std::optional<ConjugateGradient> cg;
+  SolveBy solve([&](const LinearSystem& system, const SolvePosition& at, VectorX& x) {
+    if (!cg) cg.emplace(system.matrix(), CgSettings{});
+    cg->matrix_changed();
+    const bool nonzero = guess.propose(system, at, x).nonzero;
+    const CgReport report = cg->solve(system.rhs(), x, nonzero, 1e-8, system.rhs().norm());
+    guess.accept(at, x);
+    return report.outcome;
+  });
   LinearProjection by_cg(scene, solve, 1e-9);
   TimeStepper stepper(scene, {0.02, 20, 1e-12});
   for (int step = 0; step < 20; ++step) REQUIRE(stepper.step(by_cg).outcome == SolveOutcome::converged);

@@ -4,7 +4,7 @@
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/step/forcing_terms.hpp"
 #include "solver/step/observables.hpp"
-#include "solver/step/time_step.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -27,43 +27,35 @@ TEST_CASE("no solve does more than Newton's tolerance asks for") {
   CHECK(forcing.next(0, 2, 1e-6, 1e-7) == 0.1);           // nothing is left to do
 }
 
-/// CG from zero, to forcing terms or to one tolerance.
-class Forced : public LinearSolve {
- public:
-  Forced(double first, bool forced) : forcing_(1, first, 1e-9), first_(first), forced_(forced) {}
-  int iterations = 0, solves = 0;
-
-  SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda) override {
-    const double norm = system.rhs().norm();
-    const double eta = forced_ ? forcing_.next(at.rod, at.newton, norm, system.newton_residual()) : first_;
-    ConjugateGradient cg(system.matrix(), {});
-    const CgReport report = cg.solve(system.rhs(), delta_lambda.setZero(), false, eta, norm);
-    iterations += report.iterations;
-    ++solves;
-    return report.outcome;
-  }
-
- private:
-  ForcingTerms forcing_;
-  double first_;
-  bool forced_;
+struct Counts {
+  int solves = 0, iterations = 0;
 };
 
 TEST_CASE(
     "with forcing terms Newton converges in fewer iterations than to their first tolerance, with fewer of CG's "
     "than to a tight one") {
-  const auto run = [](double tolerance, bool forced) {
+  const auto run = [](double tolerance, bool forced) {  // by CG from zero, to forcing terms or to one tolerance
     Scene scene = build_scene(test::bending_rod(20));
-    Forced solve(tolerance, forced);
+    ForcingTerms forcing(1, tolerance, 1e-9);
+    Counts counts;
+    SolveBy solve([&](const LinearSystem& system, const SolvePosition& at, VectorX& x) {
+      const double norm = system.rhs().norm();
+      const double eta = forced ? forcing.next(at.rod, at.newton, norm, system.newton_residual()) : tolerance;
+      ConjugateGradient cg(system.matrix(), {});
+      const CgReport report = cg.solve(system.rhs(), x.setZero(), false, eta, norm);
+      counts.iterations += report.iterations;
+      ++counts.solves;
+      return report.outcome;
+    });
     LinearProjection projection(scene, solve);
     TimeStepper stepper(scene, {0.02, 40, 1e-9});
     for (int step = 0; step < 20; ++step) {
       REQUIRE(stepper.step(projection).outcome == SolveOutcome::converged);
       CHECK(newton_residual(scene.rods[0], 0.02) < 1e-9);
     }
-    return solve;
+    return counts;
   };
-  const Forced forced = run(0.1, true), loose = run(0.1, false), tight = run(1e-6, false);
+  const Counts forced = run(0.1, true), loose = run(0.1, false), tight = run(1e-6, false);
   CHECK(forced.solves < 0.7 * loose.solves);
   CHECK(forced.iterations < 0.95 * tight.iterations);
 }

@@ -30,17 +30,9 @@ std::complex<double> mode_factor(Scene scene, const VectorX& shape, const Vector
   const double amplitude = 1e-5;  // of the displacement [m]; small enough for linearity to 1e-9
   Rod& start = scene.rods.front();
   set_transverse_velocity(start, amplitude * frequency / shape.lpNorm<Eigen::Infinity>() * shape, direction);
-  const std::vector<Vector3> weight = start.velocity, rest = start.position;
-  Simulation simulation(std::move(scene), dt);
   const double period = 2 * pi / (frequency * dt);  // in steps
-  std::vector<double> samples;
-  for (int i = 0; i < static_cast<int>(cycles * period); ++i) {
-    simulation.step();
-    double sum = 0;
-    for (std::size_t s = 1; s < rest.size(); ++s) sum += weight[s].dot(simulation.rod().position[s] - rest[s]);
-    samples.push_back(sum);
-  }
-  return factor_per_step(samples, static_cast<std::size_t>(std::max(1.0, period / 5)));
+  return factor_per_step(std::move(scene), dt, static_cast<int>(cycles * period),
+                         static_cast<std::size_t>(std::max(1.0, period / 5)));
 }
 
 BendingRod beam(int segments) {
