@@ -76,8 +76,8 @@ inline Scene mirrored(Scene scene) {
   return scene;
 }
 
-/// The same rod with all segments' frames rolled about their axes by one angle. (By angles of their own, joints would be
-/// twisted at rest, and a finite twist is not measured as a small one.)
+/// The same rod with all segments' frames rolled about their axes by one angle. (By angles of their own, joints would
+/// be twisted at rest, and a finite twist is not measured as a small one.)
 inline Rod rolled(Rod rod, double angle) {
   const Quaternion roll(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
   for (Quaternion& q : rod.orientation) q = q * roll;

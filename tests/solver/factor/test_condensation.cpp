@@ -1,6 +1,5 @@
 // Struts and crossings of a rod, and the system that is left when struts are eliminated.
 #include <catch2/catch.hpp>
-#include <set>
 #include <vector>
 
 #include "solver/factor/condensation.hpp"
@@ -53,42 +52,6 @@ Rod shaken(Rod rod, unsigned seed) {
             .normalized();
   }
   return rod;
-}
-
-TEST_CASE("every segment that moves is a crossing or in one strut, every joint in one strut or a link") {
-  for (const Rod& rod : rods()) {
-    const StrutGraph graph = strut_graph(rod);
-    std::multiset<int> segments(graph.crossings.begin(), graph.crossings.end());
-    std::multiset<int> joints(graph.links.begin(), graph.links.end());
-    for (const Strut& strut : graph.struts) {
-      REQUIRE(strut.joints.size() == strut.segments.size() + 1);
-      segments.insert(strut.segments.begin(), strut.segments.end());
-      for (std::size_t i = 0; i < strut.joints.size(); ++i) {
-        const bool first = i == 0, last = i + 1 == strut.joints.size();
-        if (strut.joints[i] < 0) {
-          CHECK((first ? strut.begin : last ? strut.end : 0) == -1);
-          continue;
-        }
-        joints.insert(strut.joints[i]);
-        const Joint& joint = rod.joints[strut.joints[i]];
-        const auto is_end = [&](int segment, int place) {
-          return graph.place[segment] == place && (place >= 0 || rod.segments[segment].is_static);
-        };
-        const auto meets = [&](int a, int b) {
-          return (first ? is_end(a, strut.begin) : a == strut.segments[i - 1]) &&
-                 (last ? is_end(b, strut.end) : b == strut.segments[i]);
-        };
-        CHECK((meets(joint.a, joint.b) || meets(joint.b, joint.a)));
-      }
-    }
-    int moving = 0;
-    for (const Segment& s : rod.segments) moving += !s.is_static;
-    CHECK(static_cast<int>(segments.size()) == moving);
-    CHECK(std::set<int>(segments.begin(), segments.end()).size() == segments.size());
-    CHECK(static_cast<int>(joints.size()) == rod.joint_count());
-    CHECK(std::set<int>(joints.begin(), joints.end()).size() == joints.size());
-    for (int c = 0; c < static_cast<int>(graph.crossings.size()); ++c) CHECK(graph.place[graph.crossings[c]] == c);
-  }
 }
 
 TEST_CASE("a chain has no crossing, a ring one, a net as many as rods cross, by nodes") {

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "solver/guess/initial_guess.hpp"
+#include "solver/guess/regression_guess.hpp"
+#include "solver/guess/subspace_guess.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -120,6 +122,37 @@ TEST_CASE("every Newton iteration of every rod has a history of its own") {
           CHECK(proposed.x0 == solution(step, newton, rod));
         guess.accept({step, newton, rod}, solution(step, newton, rod));
       }
+}
+
+TEST_CASE("guesses from history are zero, at no cost, at an iteration without one and after a gap in the steps") {
+  const test::OneRod one;
+  std::vector<std::unique_ptr<InitialGuess>> guesses;
+  guesses.push_back(std::make_unique<ExtrapolationGuess>(one.scene, 2, 2));
+  guesses.push_back(std::make_unique<RegressionGuess>(one.scene, 2, 3, 0));
+  for (const auto window : {SubspaceGuess::Window::sliding, SubspaceGuess::Window::restarted})
+    guesses.push_back(std::make_unique<SubspaceGuess>(one.scene, 2, 3, window));
+  for (const auto& guess : guesses) {
+    VectorX x0(one.size());
+    int products = 0;
+    const auto proposed = [&](int step, int newton) {
+      x0.setOnes();
+      const Proposal proposal = guess->propose(one.system, {step, newton, 0}, x0);
+      products = proposal.products;
+      if (!proposal.nonzero) CHECK((x0.isZero(0) && products == 0));
+      return proposal.nonzero;
+    };
+    CHECK_FALSE(proposed(0, 1));
+    for (const int step : {0, 1}) {
+      guess->accept({step, 1, 0}, one.exact);
+      CHECK_FALSE(proposed(step + 1, 0));  // the other Newton iteration has had none
+      CHECK(proposed(step + 1, 1));
+    }
+    CHECK_FALSE(proposed(3, 1));
+    guess->accept({3, 1, 0}, one.exact);
+    CHECK(proposed(4, 1));
+    CHECK(products <= 1);  // a subspace's, of one solution
+    CHECK((x0 - one.exact).norm() < 1e-9 * x0.norm());
+  }
 }
 
 TEST_CASE("the oracle's error has the requested size in the energy norm") {

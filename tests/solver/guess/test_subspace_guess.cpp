@@ -18,16 +18,6 @@ double error_along(const OneRod& one, const VectorX& x0, const VectorX& v) {
   return e.dot(one.a * v) / std::sqrt(e.dot(one.a * e) * v.dot(one.a * v));
 }
 
-TEST_CASE("without history a projected guess is zero, at no cost") {
-  OneRod one;
-  SubspaceGuess guess(one.scene, 1, 3, Window::sliding);
-  VectorX x0 = VectorX::Ones(one.size());
-  const Proposal proposal = guess.propose(one.system, {0, 0, 0}, x0);
-  CHECK_FALSE(proposal.nonzero);
-  CHECK(proposal.products == 0);
-  CHECK(x0.isZero(0));
-}
-
 TEST_CASE(
     "the error of a projected guess is orthogonal in energy to every stored solution, whatever matrix they were of") {
   OneRod one;
@@ -76,18 +66,6 @@ TEST_CASE("fischer starts again with the newest solution when full, subspace for
   CHECK(subspace.propose(one.system, {4, 0, 0}, x0).products == 3);
   for (const int kept : {1, 2, 3}) CHECK(std::abs(error_along(one, x0, stored[kept])) < 1e-10);
   CHECK(std::abs(error_along(one, x0, stored[0])) > 1e-6);
-}
-
-TEST_CASE("a step without a solution starts a projected guess's history again") {
-  OneRod one;
-  SubspaceGuess guess(one.scene, 2, 3, Window::sliding);
-  VectorX x0 = VectorX::Zero(one.size());
-  for (const int step : {0, 1}) guess.accept({step, 1, 0}, VectorX::Ones(one.size()));
-  CHECK(guess.propose(one.system, {2, 1, 0}, x0).products == 2);
-  CHECK(guess.propose(one.system, {2, 0, 0}, x0).products == 0);  // the other Newton iteration has had none
-  CHECK(guess.propose(one.system, {3, 1, 0}, x0).products == 0);
-  guess.accept({3, 1, 0}, VectorX::Ones(one.size()));
-  CHECK(guess.propose(one.system, {4, 1, 0}, x0).products == 1);
 }
 
 TEST_CASE("fischer and subspace beat zero on a slowly changing rod, and subspace never loses to previous") {

@@ -244,13 +244,11 @@ TEST_CASE("lattices that cannot be are refused by what is wrong with them") {
   CHECK_THROWS_WITH(build_scene(lattice(Cell::cubic, 2, 1, 2, 1)), "nodes_y is 1; must be at least 2");
   CHECK_THROWS_WITH(build_scene(lattice(Cell::octet, 2, 0, 1, 1)), "nodes_z is 1; must be at least 2");
   CHECK_THROWS_WITH(build_scene(lattice(Cell::octet, 2, 2, 2, 0)), "segments is 0; must be at least 1");
-  CHECK_THROWS_WITH(
-      build_scene(lattice(Cell::cubic, 2, 2, 2, 1, Held::corners)),
-      "segments is 1; must be at least 2: between the held corners of a single cell nothing would be free");
+  CHECK_THROWS_WITH(build_scene(lattice(Cell::cubic, 2, 2, 2, 1, Held::corners)),
+                    Catch::StartsWith("segments is 1; must be at least 2: between the held corners"));
   CHECK_NOTHROW(build_scene(lattice(Cell::cubic, 2, 2, 2, 2, Held::corners)));
   CHECK_NOTHROW(build_scene(lattice(Cell::octet, 2, 2, 2, 1, Held::corners)));
-  CHECK_THROWS_WITH(validate(lattice(Cell::cubic, 1000, 1000, 1000, 1)),
-                    "a lattice of so many segments is too large; the most is 10000000");
+  CHECK_THROWS_WITH(validate(lattice(Cell::cubic, 1000, 1000, 1000, 1)), Catch::EndsWith("the most is 10000000"));
 }
 
 }  // namespace test_lattices
