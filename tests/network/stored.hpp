@@ -16,7 +16,7 @@ inline StoredSimulation stored_simulation(Scene scene, int steps, int newton_ite
   out.constraint_dt_s = constraint_dt(scene, out.step_s);
   observe(scene, {out.step_s, newton_iterations, 0}, steps,
           [&](const LinearSystem&, const SolvePosition& at, const VectorX& solution) {
-            const Rod& rod = scene.rods[static_cast<std::size_t>(at.rod)];
+            const Rod& rod = scene.rods[at.rod];
             out.systems.push_back(
                 {at, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, solution});
           });

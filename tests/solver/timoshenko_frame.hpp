@@ -51,7 +51,7 @@ class TimoshenkoFrame {
       if ((nodes_[i] - point).norm() < 1e-6) return static_cast<int>(i);
     throw std::runtime_error("the frame has no node there");
   }
-  void hold(int node) { held_[static_cast<std::size_t>(node)] = true; }
+  void hold(int node) { held_[node] = true; }
   void add_beam(int a, int b) { beams_.push_back({a, b}); }
 
   /// To be called when all is there.
@@ -75,9 +75,9 @@ class TimoshenkoFrame {
 
   VectorX no_load() const { return VectorX::Zero(k_.rows()); }
   /// The six entries of a free node in a vector over all free ones.
-  auto of(VectorX& all, int node) const { return all.segment<6>(freedom_[static_cast<std::size_t>(node)]); }
+  auto of(VectorX& all, int node) const { return all.segment<6>(freedom_[node]); }
   Vector6 at(const VectorX& all, int node) const {
-    const int first = freedom_[static_cast<std::size_t>(node)];
+    const int first = freedom_[node];
     return first < 0 ? Vector6::Zero() : Vector6(all.segment<6>(first));
   }
 
@@ -110,7 +110,7 @@ class TimoshenkoFrame {
 
   // Frame: columns across, across, along the beam; shift and turn of its ends in it.
   std::pair<Matrix12, Matrix12> matrices(const Beam& beam) const {
-    const Vector3 way = nodes_[static_cast<std::size_t>(beam.b)] - nodes_[static_cast<std::size_t>(beam.a)];
+    const Vector3 way = nodes_[beam.b] - nodes_[beam.a];
     const double length = way.norm();
     const Section& s = section_.stiffness;
     Vector6 rigidity, inertia;  // of strains: shear (2), stretch, bending (2), twist
@@ -172,7 +172,7 @@ class TimoshenkoFrame {
   }
 
   void add(const Beam& beam, const Matrix12& matrix, std::vector<Triplet>& to) const {
-    const int ends[] = {freedom_[static_cast<std::size_t>(beam.a)], freedom_[static_cast<std::size_t>(beam.b)]};
+    const int ends[] = {freedom_[beam.a], freedom_[beam.b]};
     for (int i = 0; i < 12; ++i)
       for (int j = 0; j < 12; ++j)
         if (ends[i / 6] >= 0 && ends[j / 6] >= 0)

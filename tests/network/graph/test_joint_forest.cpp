@@ -58,12 +58,12 @@ TEST_CASE("however many loops, every joint has one place, below a joint that sha
   REQUIRE(joints.size() == edges.size());
   int roots = 0;
   for (int i = 0; i < forest.size(); ++i) {
-    const int up = forest.parent[static_cast<std::size_t>(i)];
+    const int up = forest.parent[i];
     roots += up < 0;
     if (up < 0) continue;
     CHECK(up < i);
-    const auto [a, b] = edges[static_cast<std::size_t>(forest.order[static_cast<std::size_t>(i)])];
-    const auto [c, d] = edges[static_cast<std::size_t>(forest.order[static_cast<std::size_t>(up)])];
+    const auto [a, b] = edges[forest.order[i]];
+    const auto [c, d] = edges[forest.order[up]];
     CHECK((a == c || a == d || b == c || b == d));
   }
   CHECK(roots == 1);  // one of the joints of the corner that is held; the other is reached all round
@@ -76,10 +76,10 @@ TEST_CASE("side by side, forests keep their parents and share levels") {
   CHECK(both.size() == 9);
   CHECK(both.level_begin == std::vector<int>{0, 3, 8, 9});
   for (int i = 0; i < both.size(); ++i) {
-    const int joint = both.order[static_cast<std::size_t>(i)], up = both.parent[static_cast<std::size_t>(i)];
+    const int joint = both.order[i], up = both.parent[i];
     const JointForest& own = joint < 3 ? chain : tree;
-    const int first = joint < 3 ? 0 : 3, expected = own.parent[static_cast<std::size_t>(joint - first)];
-    CHECK((up < 0 ? -1 : both.order[static_cast<std::size_t>(up)]) == (expected < 0 ? -1 : expected + first));
+    const int first = joint < 3 ? 0 : 3, expected = own.parent[joint - first];
+    CHECK((up < 0 ? -1 : both.order[up]) == (expected < 0 ? -1 : expected + first));
   }
 }
 

@@ -28,10 +28,10 @@ TEST_CASE("joints lie on the free part of the rod, from the held end on") {
 TEST_CASE("a linear profile is resampled exactly, between the joints and beyond them") {
   const std::vector<float> from{.1F, .3F, .35F, .8F}, to{0, .1F, .2F, .5F, .8F, 1};
   Tensor<float> values(2, 4), out = Tensor<float>::Ones(2, 6);
-  for (Eigen::Index i = 0; i < 4; ++i) values.col(i) << 2 + 3 * from[static_cast<std::size_t>(i)], 1;
+  for (Eigen::Index i = 0; i < 4; ++i) values.col(i) << 2 + 3 * from[i], 1;
   add_resampled(from, values, to, .5F, out);
   for (Eigen::Index i = 0; i < 6; ++i) {
-    CHECK(out(0, i) == Approx(1 + .5 * (2 + 3 * to[static_cast<std::size_t>(i)])));
+    CHECK(out(0, i) == Approx(1 + .5 * (2 + 3 * to[i])));
     CHECK(out(1, i) == Approx(1.5));
   }
 }
@@ -82,7 +82,7 @@ TEST_CASE("the weight of the rod hangs on its first joint, however it is divided
     const Tensor<float> loads = loads_of(profile, solution, dt);
     CHECK(std::abs(loads(2, 0)) == Approx(1).epsilon(1e-3));  // along the rod
     for (Eigen::Index i = 0; i < loads.cols(); ++i)
-      CHECK(std::abs(loads(2, i)) == Approx(1 - profile.arc()[static_cast<std::size_t>(i)]).margin(1e-3));
+      CHECK(std::abs(loads(2, i)) == Approx(1 - profile.arc()[i]).margin(1e-3));
   }
 }
 

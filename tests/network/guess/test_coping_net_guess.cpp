@@ -123,7 +123,7 @@ TEST_CASE("factors that lag are those of the first solve of every so many steps"
   }
   const auto proposed = [&](CopingNetGuess& guess, int system, const SolvePosition& at) {
     VectorX x0(systems.front().rhs().size());
-    guess.propose(systems[static_cast<std::size_t>(system)], at, x0);
+    guess.propose(systems[system], at, x0);
     return x0;
   };
   CopingNetGuess lagging(model, scene, 1, {1, 3}), always(model, scene, 1);

@@ -122,7 +122,7 @@ TEST_CASE("predicted moves are in the units of the training set and leave static
     CHECK(after.orientation[s].angularDistance(before.orientation[s]) > 1e-4);
   }
   for (Eigen::Index place = 0; place < 5; ++place) {
-    const int joint = encoder.topology().joint[static_cast<std::size_t>(place)];
+    const int joint = encoder.topology().joint[place];
     const Vector6 expected = y.col(place).cast<double>().cwiseProduct(Vector6(1, 2, 3, 4, 5, 6));
     CHECK((after.lambda.segment<6>(6 * joint) - before.lambda.segment<6>(6 * joint) - expected).norm() <
           1e-6 * expected.norm());

@@ -78,7 +78,7 @@ TEST_CASE("twice as many segments in the same pose are given the same forces and
     VectorX out(6 * rod.joint_count());
     for (int k = 0; k < rod.joint_count(); ++k) {
       const double left = 1 - k * rod.segments[1].length_m / length, scale = step * step;
-      out.segment<3>(6 * k) = Vector3(1, 20 * left, 3) * scale * rod.joints[static_cast<std::size_t>(k)].length;
+      out.segment<3>(6 * k) = Vector3(1, 20 * left, 3) * scale * rod.joints[k].length;
       out.segment<3>(6 * k + 3) = Vector3(5 * left, 0, -left) * scale;
     }
     return out;

@@ -23,21 +23,24 @@ std::shared_ptr<Model> small_answers() {
   return model;
 }
 
+std::vector<const StoredSystem*> first_of_steps(const StoredSimulation& simulation) {
+  std::vector<const StoredSystem*> out;
+  for (const StoredSystem& stored : simulation.systems)
+    if (stored.at.newton == 0) out.push_back(&stored);
+  return out;
+}
+
 TEST_CASE("the velocities of a recorded simulation give back where it went") {
   const StoredSimulation simulation = stored_simulation(sample_scene(2), 12);
-  Scene scene = simulation.scene;
-  DirectSolve direct(scene);
-  LinearProjection projection(scene, direct);
-  TimeStepper stepper(scene, {simulation.step_s, simulation.newton_iterations, 0});
-  StateHistory history(scene.rods.front(), simulation.step_s);
-  for (const StoredSystem& stored : simulation.systems) {
-    if (stored.at.newton > 0) continue;
-    history.start_step(stored.velocity, stored.angular_velocity);
-    for (std::size_t s = 0; s < stored.velocity.size(); ++s) {
-      CHECK((history.position(s) - scene.rods[0].position[s]).norm() < 1e-13);
-      CHECK(history.orientation(s).angularDistance(scene.rods[0].orientation[s]) < 1e-7);
+  Simulation direct(simulation.scene, {simulation.step_s, simulation.newton_iterations, 0});
+  StateHistory history(direct.rod(), simulation.step_s);
+  for (const StoredSystem* stored : first_of_steps(simulation)) {
+    history.start_step(stored->velocity, stored->angular_velocity);
+    for (std::size_t s = 0; s < stored->velocity.size(); ++s) {
+      CHECK((history.position(s) - direct.rod().position[s]).norm() < 1e-13);
+      CHECK(history.orientation(s).angularDistance(direct.rod().orientation[s]) < 1e-7);
     }
-    stepper.step(projection);
+    direct.step();
   }
 }
 
@@ -46,9 +49,7 @@ TEST_CASE("examples hold what leads to the next velocities, whatever the noise i
   std::vector<Example> examples;
   add_examples(of_states(), simulation, examples, {2, 0.3, 7});
   REQUIRE(examples.size() == 3 * 7);
-  std::vector<const StoredSystem*> steps;
-  for (const StoredSystem& stored : simulation.systems)
-    if (stored.at.newton == 0) steps.push_back(&stored);
+  const std::vector<const StoredSystem*> steps = first_of_steps(simulation);
   for (std::size_t i = 0; i < examples.size(); ++i) {
     const Example& example = examples[i];
     const std::size_t n = i / 3;
@@ -56,7 +57,7 @@ TEST_CASE("examples hold what leads to the next velocities, whatever the noise i
     for (Eigen::Index s = 0; s < example.nodes.cols(); ++s) {
       // Lengths of vectors are the same in every frame.
       const Eigen::Vector3f next = example.nodes.col(s).head<3>() + example.node_target.col(s).head<3>();
-      const Vector3& recorded = steps[n + 1]->velocity[static_cast<std::size_t>(s)];
+      const Vector3& recorded = steps[n + 1]->velocity[s];
       if (s > 0) CHECK(next.norm() == Approx(recorded.norm()).margin(1e-5));
       if (s == 0) CHECK(example.node_target.col(s).isZero());
     }
@@ -69,9 +70,7 @@ TEST_CASE("an answer that is exact gives the recorded trajectory") {
   const Rod& rod = simulation.scene.rods.front();
   StateHistory history(rod, simulation.step_s);
   Tensor<float> answer(6, rod.segment_count());
-  std::vector<const StoredSystem*> steps;
-  for (const StoredSystem& stored : simulation.systems)
-    if (stored.at.newton == 0) steps.push_back(&stored);
+  const std::vector<const StoredSystem*> steps = first_of_steps(simulation);
   for (std::size_t n = 0; n + 1 < steps.size(); ++n) {
     history.start_step(steps[n]->velocity, steps[n]->angular_velocity);
     StateEncoding::answer(rod, history, steps[n + 1]->velocity, steps[n + 1]->angular_velocity, answer);
@@ -89,8 +88,8 @@ TEST_CASE("noise is a random walk: it grows from the first velocity to the last,
   const StoredSimulation simulation = stored_simulation(build_scene(bending_rod(40)), 7);
   const Rod& rod = simulation.scene.rods.front();
   StateHistory history(rod, simulation.step_s);
-  for (const StoredSystem& stored : simulation.systems)
-    if (stored.at.newton == 0) history.start_step(stored.velocity, stored.angular_velocity);
+  for (const StoredSystem* stored : first_of_steps(simulation))
+    history.start_step(stored->velocity, stored->angular_velocity);
   SplitMix random(3);
   constexpr double noise = 0.01;
   std::array<double, StateHistory::length> square{};

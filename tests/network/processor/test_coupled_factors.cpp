@@ -88,13 +88,12 @@ Incomplete incomplete(const System& a) {
   for (const auto& c : a.couplings) out.block[{c.row, c.column}] = coupling(a, c);
   out.pivot_inverse.resize(pivot.size());
   for (int k = static_cast<int>(pivot.size()) - 1; k >= 0; --k) {
-    const Matrix6 inverse = out.pivot_inverse[static_cast<std::size_t>(k)] =
-        pivot[static_cast<std::size_t>(k)].inverse();
+    const Matrix6 inverse = out.pivot_inverse[k] = pivot[k].inverse();
     for (auto i = out.block.lower_bound({k, 0}); i != out.block.end() && i->first.first == k; ++i)
       for (auto j = out.block.lower_bound({k, 0}); j != out.block.end() && j->first.first == k; ++j) {
         const int row = i->first.second, column = j->first.second;
         const Matrix6 less = i->second.transpose() * inverse * j->second;
-        if (row == column) pivot[static_cast<std::size_t>(row)] -= less;
+        if (row == column) pivot[row] -= less;
         if (const auto at = out.block.find({row, column}); at != out.block.end()) at->second -= less;
       }
   }
@@ -106,11 +105,10 @@ Matrix factors_of(const System& a, const Incomplete& cholesky) {
   Matrix out = Matrix::Zero(CoupledPasses<double>::size, a.diagonal.cols());
   for (Eigen::Index k = 0; k < out.cols(); ++k)
     for (int c = 0, to = 0; c < 6; ++c)
-      for (int r = c; r < 6; ++r) out(to++, k) = cholesky.pivot_inverse[static_cast<std::size_t>(k)](r, c);
+      for (int r = c; r < 6; ++r) out(to++, k) = cholesky.pivot_inverse[k](r, c);
   for (const auto& c : a.couplings)
-    Eigen::Map<Matrix6>(&out(21 + 36 * c.side, c.row)) = cholesky.pivot_inverse[static_cast<std::size_t>(c.row)] *
-                                                         cholesky.block.at({c.row, c.column}) *
-                                                         coupling(a, c).inverse();
+    Eigen::Map<Matrix6>(&out(21 + 36 * c.side, c.row)) =
+        cholesky.pivot_inverse[c.row] * cholesky.block.at({c.row, c.column}) * coupling(a, c).inverse();
   return out;
 }
 
@@ -121,8 +119,7 @@ TEST_CASE("two matrices a joint say all that incomplete Cholesky says, wherever 
     const Incomplete cholesky = incomplete(a);
     const Matrix factors = factors_of(a, cholesky);
     for (const auto& c : a.couplings) {
-      const Matrix6 expected =
-          cholesky.pivot_inverse[static_cast<std::size_t>(c.row)] * cholesky.block.at({c.row, c.column});
+      const Matrix6 expected = cholesky.pivot_inverse[c.row] * cholesky.block.at({c.row, c.column});
       const Matrix6 found = Eigen::Map<const Matrix6>(&factors(21 + 36 * c.side, c.row)) * coupling(a, c);
       CHECK((found - expected).norm() < 1e-3 * expected.norm());  // blocks come in single precision
     }
@@ -249,7 +246,7 @@ TEST_CASE("inference of factors of all couplings gives the training code's answe
       for (int place = 0; place < static_cast<int>(pattern.joint.size()); ++place) {
         Lane8 answer{};
         for (int row = 0; row < 6; ++row) answer[row] = y(row, place);
-        store6(expected.data() + 6 * pattern.joint[static_cast<std::size_t>(place)],
+        store6(expected.data() + 6 * pattern.joint[place],
                frames.rho() * frames.scale(place) * frames.frame(place).back(answer));
       }
       inference.factorise(frames, system.matrix());

@@ -65,10 +65,10 @@ TEST_CASE("a tree's factors are the same alone and beside others") {
   Net<double> net(6);
   const Matrix x = features(both, 4);
   Matrix ordered(x.rows(), x.cols());
-  for (int i = 0; i < both.size(); ++i) ordered.col(i) = x.col(both.order[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < both.size(); ++i) ordered.col(i) = x.col(both.order[i]);
   const Matrix together = net(both, ordered), expected = net(alone, x.rightCols(alone.size()));
   for (int i = 0; i < both.size(); ++i) {
-    const int place = both.order[static_cast<std::size_t>(i)] - other.size();
+    const int place = both.order[i] - other.size();
     if (place >= 0) CHECK((together.col(i) - expected.col(place)).norm() < 1e-14);
   }
 }
@@ -89,7 +89,7 @@ TEST_CASE("answers are linear in the residual and symmetric, and see the whole t
   x.topRows(6) = random_matrix(6, n, 5);
   CHECK((operators * x.topRows(6).reshaped() - net(forest, x).reshaped()).norm() < 1e-12 * operators.norm());
   const auto root_of = [&](int place) {
-    while (forest.parent[static_cast<std::size_t>(place)] >= 0) place = forest.parent[static_cast<std::size_t>(place)];
+    while (forest.parent[place] >= 0) place = forest.parent[place];
     return place;
   };
   for (int i = 0; i < n; ++i)
@@ -142,8 +142,7 @@ TEST_CASE("inference of factors gives the training code's answers, as exactly as
         for (int place = 0; place < forest.size(); ++place) {
           Lane8 answer{};
           for (int row = 0; row < 6; ++row) answer[row] = y(row, place);
-          store6(expected.data() + 6 * encoder.pattern().joint[static_cast<std::size_t>(place)],
-                 encoder.system()->from_unit(place, answer));
+          store6(expected.data() + 6 * encoder.pattern().joint[place], encoder.system()->from_unit(place, answer));
         }
         if (seed == 2) inference.factorise(x, encoder.system()->frames(), system.matrix());
         inference.solve(r, d);

@@ -106,19 +106,17 @@ TEST_CASE("renumbering nodes and edges renumbers the outputs") {
   std::shuffle(node.begin(), node.end(), engine);
   std::shuffle(edge.begin(), edge.end(), engine);
   Case other = c;
-  for (int i = 0; i < c.graph.nodes; ++i) other.x_nodes.col(node[static_cast<std::size_t>(i)]) = c.x_nodes.col(i);
+  for (int i = 0; i < c.graph.nodes; ++i) other.x_nodes.col(node[i]) = c.x_nodes.col(i);
   for (int k = 0; k < c.graph.edges(); ++k) {
     const auto from = static_cast<std::size_t>(k), to = static_cast<std::size_t>(edge[from]);
     other.x_edges.col(edge[from]) = c.x_edges.col(k);
-    other.graph.sender[to] = node[static_cast<std::size_t>(c.graph.sender[from])];
-    other.graph.receiver[to] = node[static_cast<std::size_t>(c.graph.receiver[from])];
+    other.graph.sender[to] = node[c.graph.sender[from]];
+    other.graph.receiver[to] = node[c.graph.receiver[from]];
   }
   c.run();
   other.run();
-  for (int i = 0; i < c.graph.nodes; ++i)
-    CHECK((other.y_nodes.col(node[static_cast<std::size_t>(i)]) - c.y_nodes.col(i)).norm() < 1e-13);
-  for (int k = 0; k < c.graph.edges(); ++k)
-    CHECK((other.y_edges.col(edge[static_cast<std::size_t>(k)]) - c.y_edges.col(k)).norm() < 1e-13);
+  for (int i = 0; i < c.graph.nodes; ++i) CHECK((other.y_nodes.col(node[i]) - c.y_nodes.col(i)).norm() < 1e-13);
+  for (int k = 0; k < c.graph.edges(); ++k) CHECK((other.y_edges.col(edge[k]) - c.y_edges.col(k)).norm() < 1e-13);
 }
 
 TEST_CASE("senders and receivers are told apart") {

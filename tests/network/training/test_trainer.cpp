@@ -35,7 +35,7 @@ double step(Trainer& trainer, int shards, int ranks = 1) {
   std::vector<std::vector<float>> contributions(static_cast<std::size_t>(shards));
   for (int rank = ranks - 1; rank >= 0; --rank)
     for (int shard = rank; shard < shards; shard += ranks) {
-      auto& out = contributions[static_cast<std::size_t>(shard)];
+      auto& out = contributions[shard];
       out.resize(trainer.shard_size());
       trainer.compute({{shard, out.data()}});
     }
@@ -146,7 +146,7 @@ TEST_CASE("work on threads is done once each, and what it throws arrives") {
   std::vector<int> done(50);
   const auto work = [&](int item, int thread) {
     if (thread < 0 || thread > 3) throw std::logic_error("no such thread");
-    ++done[static_cast<std::size_t>(item)];
+    ++done[item];
     if (item == 7) throw std::runtime_error("seven");
   };
   CHECK_THROWS_WITH(in_parallel(50, 4, work), "seven");

@@ -11,6 +11,7 @@
 
 #include "solver/batch/batched_step.hpp"
 #include "solver/step/observables.hpp"
+#include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep {
@@ -83,25 +84,11 @@ bool same_bits(const Rod& a, const Rod& b) {
          same(a.angular_velocity, b.angular_velocity) && same(a.lambda, b.lambda);
 }
 
-/// One scene stepped alone.
-struct Alone {
-  explicit Alone(const Scene& initial, const StepSettings& s = settings, std::optional<double> momentum_tolerance = {})
-      : scene(initial), direct(scene), projection(scene, direct, momentum_tolerance), stepper(scene, s) {}
-  Alone(const Alone&) = delete;
-  Alone& operator=(const Alone&) = delete;
-  StepReport step() { return stepper.step(projection); }
-
-  Scene scene;
-  DirectSolve direct;
-  LinearProjection projection;
-  TimeStepper stepper;
-};
-
 /// Steps the scenes together and alone; checks all reports, then states and times.
 void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepSettings& s = settings,
                  std::optional<double> momentum_tolerance = {}) {
-  std::vector<std::unique_ptr<Alone>> alone;
-  for (const Scene& scene : scenes) alone.push_back(std::make_unique<Alone>(scene, s, momentum_tolerance));
+  std::vector<std::unique_ptr<Simulation>> alone;
+  for (const Scene& scene : scenes) alone.push_back(std::make_unique<Simulation>(scene, s, momentum_tolerance));
   BatchedStepper batch(scenes, s, momentum_tolerance);
   for (int i = 0; i < steps; ++i) {
     const std::vector<StepReport>& reports = batch.step();
@@ -116,7 +103,7 @@ void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepS
   }
   for (std::size_t r = 0; r < scenes.size(); ++r) {
     CAPTURE(r);
-    const Rod& expected = alone[r]->scene.rods.front();
+    const Rod& expected = alone[r]->rod();
     batch.write(static_cast<int>(r), scenes[r]);
     const Rod& rod = scenes[r].rods.front();
     CHECK(distance(rod, expected) < bound);
@@ -205,7 +192,10 @@ TEST_CASE("a rod that blows up does not disturb the others, and stays where it f
   Rod& rod = scenes[bad].rods[0];
   (turning ? rod.angular_velocity : rod.velocity)[5].x() = infinite;
   const SolveOutcome expected = turning ? SolveOutcome::indefinite : SolveOutcome::not_a_number;
-  CHECK(Alone(scenes[bad]).step().outcome == expected);
+  Scene alone = scenes[bad];
+  DirectSolve direct(alone);
+  LinearProjection projection(alone, direct);
+  CHECK(TimeStepper(alone, settings).step(projection).outcome == expected);
 
   BatchedStepper batch(scenes, settings);
   for (int i = 0; i < 10; ++i) {
@@ -231,14 +221,14 @@ TEST_CASE("a rod that blows up does not disturb the others, and stays where it f
 TEST_CASE("a step goes on from whatever state and time a scene has") {
   Scene scene = test::moving_scene(10, 8);
   scene.time_s = 3;
-  Alone alone(scene);
+  Simulation alone(scene, settings);
   BatchedStepper batch({scene}, settings);
   for (int i = 0; i < 5; ++i) {
     alone.step();
     batch.step();
   }
   batch.write(0, scene);
-  CHECK(distance(scene.rods.front(), alone.scene.rods.front()) < 1e-12);
+  CHECK(distance(scene.rods.front(), alone.rod()) < 1e-12);
   CHECK(scene.time_s == alone.scene.time_s);
 }
 
@@ -249,7 +239,7 @@ TEST_CASE("a step in parts shows every rod's system as the linear system of it a
   for (int r = 0; r < rods; ++r) scenes.push_back(bending_scene(8, r));
   BatchedStepper batch(scenes, settings, momentum_tolerance), whole(scenes, settings, momentum_tolerance);
   const auto scene_of = [&](int rod) {
-    Scene scene = scenes[static_cast<std::size_t>(rod)];
+    Scene scene = scenes[rod];
     batch.write(rod, scene);
     return scene;
   };
@@ -271,14 +261,14 @@ TEST_CASE("a step in parts shows every rod's system as the linear system of it a
         CHECK(seen.residual[rod] == Approx(system.newton_residual()).margin(1e-14));
         CHECK(std::sqrt(seen.squared_norm[rod]) == Approx(system.rhs().norm()).margin(1e-14));
         CHECK(std::sqrt(seen.squared_gap[rod]) == Approx(joint_gap(scene.rods.front())).margin(1e-14));
-        exact[static_cast<std::size_t>(rod)].resize(system.rhs().size());
+        exact[rod].resize(system.rhs().size());
         BlockFactor(system.matrix(), root_to_leaf_order(scene.rods.front()))
-            .solve(system.matrix(), system.rhs(), exact[static_cast<std::size_t>(rod)]);
+            .solve(system.matrix(), system.rhs(), exact[rod]);
       }
       batch.solve();
       ++solves;
       for (int rod = 0; rod < rods; ++rod) {
-        VectorX& expected = exact[static_cast<std::size_t>(rod)];
+        VectorX& expected = exact[rod];
         if (!batch.iterates(rod) || expected.size() == 0) continue;
         VectorX solution(expected.size());
         batch.system().write_solution(rod, solution.data());
@@ -290,7 +280,7 @@ TEST_CASE("a step in parts shows every rod's system as the linear system of it a
     CHECK(solves > 1);
   }
   for (int rod = 0; rod < rods; ++rod) {
-    Scene expected = scenes[static_cast<std::size_t>(rod)];
+    Scene expected = scenes[rod];
     whole.write(rod, expected);
     CHECK(same_bits(scene_of(rod).rods.front(), expected.rods.front()));
   }

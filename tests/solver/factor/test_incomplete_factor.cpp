@@ -97,7 +97,7 @@ TEST_CASE("a factor that is not positive definite is raised until it is; of a ma
 
   for (const double scale : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     BlockMatrix bad = a;
-    for (Lane8& column : bad.blocks[static_cast<std::size_t>(bad.diagonal(7))].column) column *= broadcast(scale);
+    for (Lane8& column : bad.blocks[bad.diagonal(7)].column) column *= broadcast(scale);
     CHECK_FALSE(factor.factorise(bad));
   }
   VectorX again(z);

@@ -59,7 +59,7 @@ TEST_CASE(
     return std::abs(u.dot(one.a * v)) / std::sqrt(u.dot(one.a * u) * v.dot(one.a * v));
   };
   for (int step = 2; step < 6; ++step) {
-    const VectorX& v = stored[static_cast<std::size_t>(step)];
+    const VectorX& v = stored[step];
     CHECK(std::abs(v.dot(reduced)) < 1e-9 * v.norm() * r.norm());
     CHECK(v.dot(one.a * z - r) == Approx(0).margin(1e-9 * v.norm() * (one.a * z).norm()));  // V^T A z = V^T r
   }

@@ -53,13 +53,6 @@ TEST_CASE("the pattern holds each coupling once, both ways, sorted, and every di
   CHECK(a.find(2, 3) == -1);
 }
 
-TEST_CASE("a matrix without rows has no blocks") {
-  const BlockMatrix a(0, {});
-  CHECK(a.unknowns() == 0);
-  CHECK(a.block_count() == 0);
-  CHECK(a.dense().size() == 0);
-}
-
 TEST_CASE("the block product equals the dense one") {
   for (const int rows : {1, 2, 5, 17}) {
     BlockMatrix a(rows, rows > 4 ? test::ring(rows) : test::chain(rows));
@@ -72,14 +65,6 @@ TEST_CASE("the block product equals the dense one") {
     CHECK((y.head(a.unknowns()) - a.dense() * x).lpNorm<Eigen::Infinity>() < 1e-14);
     CHECK(y.tail(2) == VectorX::Constant(2, 99));
   }
-}
-
-TEST_CASE("dense() puts a block's columns into columns") {
-  BlockMatrix a(2, {{0, 1}});
-  a.blocks[a.find(0, 1)].column[4][2] = 5;
-  const test::MatrixX dense = a.dense();
-  CHECK(dense(2, 6 + 4) == 5);
-  CHECK(dense.cwiseAbs().sum() == 5);
 }
 
 TEST_CASE("the energy norm is x^T A x and leaves A x behind") {

@@ -1,4 +1,4 @@
-// The two rotation maps of the time step and the director.
+// The two rotation maps of the time step, and the turn between two directions.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -48,14 +48,6 @@ TEST_CASE("rotated() by nothing changes nothing, and a thousand updates leave a 
   CHECK((rotated(q, Vector3::Zero()).coeffs() - q.coeffs()).norm() < 3e-16);
   for (int i = 0; i < 1000; ++i) q = rotated(q, random.vector(0.5));
   CHECK(std::abs(q.norm() - 1) < 5e-16);
-}
-
-TEST_CASE("the director is the rotated z axis") {
-  Random random(5);
-  for (int i = 0; i < 50; ++i) {
-    const Quaternion q = random.quaternion();
-    CHECK((director(q) - q * Vector3::UnitZ()).norm() < 1e-15);
-  }
 }
 
 TEST_CASE("turn_between() takes one direction to the other by the shortest way, opposite ones too") {

@@ -31,14 +31,13 @@ double second_moment(double radius) { return pi * std::pow(radius, 4) / 4; }
 
 std::vector<std::vector<int>> children_of(const Skeleton& skeleton) {
   std::vector<std::vector<int>> children(skeleton.size());
-  for (int i = 1; i < static_cast<int>(skeleton.size()); ++i)
-    children[static_cast<std::size_t>(skeleton[static_cast<std::size_t>(i)].parent)].push_back(i);
+  for (int i = 1; i < static_cast<int>(skeleton.size()); ++i) children[skeleton[i].parent].push_back(i);
   return children;
 }
 
 Vector3 edge(const Skeleton& skeleton, int node) {
-  const SkeletonNode& at = skeleton[static_cast<std::size_t>(node)];
-  return at.position_m - skeleton[static_cast<std::size_t>(at.parent)].position_m;
+  const SkeletonNode& at = skeleton[node];
+  return at.position_m - skeleton[at.parent].position_m;
 }
 
 bool same_bits(const Skeleton& one, const Skeleton& other) {
@@ -85,8 +84,7 @@ TEST_CASE("the pipe model holds at every branching, for any exponent and taper")
       for (std::size_t i = 1; i < skeleton.size(); ++i) {
         if (children[i].size() < 2) continue;
         double sum = 0;
-        for (const int child : children[i])
-          sum += std::pow(skeleton[static_cast<std::size_t>(child)].radius_m, exponent);
+        for (const int child : children[i]) sum += std::pow(skeleton[child].radius_m, exponent);
         CHECK(sum == Approx(std::pow(skeleton[i].radius_m, exponent)).epsilon(1e-12));
         ++branchings;
       }
@@ -106,8 +104,8 @@ TEST_CASE("branches leave at the angle, are as long as they should be, and go ar
   const auto children = children_of(skeleton);
   CHECK((edge(skeleton, 1) - Vector3(0, 1, 0)).norm() < 1e-15);
   for (int i = 2; i < static_cast<int>(skeleton.size()); ++i) {
-    const bool leaves = children[static_cast<std::size_t>(skeleton[static_cast<std::size_t>(i)].parent)].size() > 1;
-    const Vector3 before = edge(skeleton, skeleton[static_cast<std::size_t>(i)].parent), after = edge(skeleton, i);
+    const bool leaves = children[skeleton[i].parent].size() > 1;
+    const Vector3 before = edge(skeleton, skeleton[i].parent), after = edge(skeleton, i);
     CHECK(after.norm() / before.norm() == Approx(leaves ? 0.7 : 1).epsilon(1e-12));
     CHECK(after.dot(before) / (after.norm() * before.norm()) ==
           Approx(std::cos(leaves ? 40 * pi / 180 : 0)).epsilon(1e-9));
@@ -140,8 +138,7 @@ TEST_CASE("a tree starts unstrained, and its joints are half of one edge behind 
   CHECK(test::constraint_of(rod).norm() < 1e-13);
   const auto modulus = [&](const Segment& s) { return 1e9 * std::sqrt(s.radius_m / p.radius_m); };
   for (const Joint& joint : rod.joints) {
-    const Segment &a = rod.segments[static_cast<std::size_t>(joint.a)],
-                  &b = rod.segments[static_cast<std::size_t>(joint.b)];
+    const Segment &a = rod.segments[joint.a], &b = rod.segments[joint.b];
     double bending = b.length_m / 2 / (modulus(b) * second_moment(b.radius_m));
     if (a.length_m > 0) bending += a.length_m / 2 / (modulus(a) * second_moment(a.radius_m));
     CHECK(joint.compliance[3] == Approx(bending).epsilon(1e-12));
@@ -228,11 +225,11 @@ TEST_CASE(
   CHECK(segment_count(p) == 6 * scene.rods[0].segment_count());
   CHECK(joint_count(p) == 6 * scene.rods[0].joint_count());
   for (int i = 0; i < 6; ++i) {
-    const Vector3 base = scene.rods[static_cast<std::size_t>(i)].position[0], place(4 * (i % 3), 0, 4 * (i / 3));
+    const Vector3 base = scene.rods[i].position[0], place(4 * (i % 3), 0, 4 * (i / 3));
     CHECK((base - place).cwiseAbs().maxCoeff() <= 0.3 * 4 / 2);
     CHECK(base.y() == 0);
     for (int j = 0; j < i; ++j) {
-      const Rod &one = scene.rods[static_cast<std::size_t>(i)], &other = scene.rods[static_cast<std::size_t>(j)];
+      const Rod &one = scene.rods[i], &other = scene.rods[j];
       CHECK((one.position.back() - one.position[0] - other.position.back() + other.position[0]).norm() > 1e-3);
     }
   }

@@ -34,8 +34,7 @@ Scene twisted_rod(int n) {
   const Vector3 end = scene.rods[0].position.back();
   const Quaternion along_x = scene.rods[0].orientation.back();
   // The least disturbance says to which side and where it buckles.
-  for (int i = 1; i < n - 1; ++i)
-    scene.rods[0].position[static_cast<std::size_t>(i)].y() = 1e-4 * std::exp(-std::pow((i - n / 2) * l / 0.2, 2));
+  for (int i = 1; i < n - 1; ++i) scene.rods[0].position[i].y() = 1e-4 * std::exp(-std::pow((i - n / 2) * l / 0.2, 2));
   scene.clamps.push_back({0, n - 1, [=](double time) {
                             const double part = std::min(1.0, time / loading_time);
                             return Pose{end - part * shortening * Vector3::UnitX(),

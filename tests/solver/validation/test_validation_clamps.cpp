@@ -39,8 +39,7 @@ Rod turned(double angle, const PoseAt& pose_at) {
 
 /// conj(q_a) q_b as a rotation vector, a's frame.
 Vector3 joint_turn(const Rod& rod, const Joint& j) {
-  const Eigen::AngleAxisd turn(rod.orientation[static_cast<std::size_t>(j.a)].conjugate() *
-                               rod.orientation[static_cast<std::size_t>(j.b)]);
+  const Eigen::AngleAxisd turn(rod.orientation[j.a].conjugate() * rod.orientation[j.b]);
   return turn.angle() * turn.axis();
 }
 
@@ -59,7 +58,7 @@ TEST_CASE("A rod bent by its end turns by the same angle in every joint") {
   };
   const Rod rod = turned(angle, end_of_polygon);
   for (const Joint& j : rod.joints) {
-    const Vector3 turn = rod.orientation[static_cast<std::size_t>(j.a)] * joint_turn(rod, j);
+    const Vector3 turn = rod.orientation[j.a] * joint_turn(rod, j);
     CHECK((turn - angle / (count - 1) * Vector3::UnitZ()).norm() < 1e-8);
   }
 }

@@ -102,7 +102,7 @@ std::map<Place, int> segments_at_nodes(const Lattice& p, const Rod& rod) {
   std::map<Place, int> out;
   for (const auto& [at, ways] : nodes_of(p))
     for (int s = 0; s < rod.segment_count(); ++s)
-      if ((rod.position[static_cast<std::size_t>(s)] - point(at, p)).norm() < 1e-9) out[at] = s;
+      if ((rod.position[s] - point(at, p)).norm() < 1e-9) out[at] = s;
   return out;
 }
 
@@ -169,7 +169,7 @@ Tension tension_of(const Rod& rod, const Lattice& p) {
   const VectorX c = constraint_of(rod);
   Tension out;
   for (int k = 0; k < rod.joint_count(); ++k) {
-    const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
+    const Joint& joint = rod.joints[k];
     Vector6 load = c.segment<6>(6 * k).cwiseQuotient(joint.compliance);
     load.head<3>() /= joint.length;
     load.tail<3>() /= p.radius_m;
@@ -307,8 +307,7 @@ TEST_CASE("A lattice grown evenly in all directions has the same tension in all 
     for (Vector3& x : rod.position) x *= 1 + strain;
     const Tension tension = tension_of(rod, p);
     for (int k = 0; k < rod.joint_count(); ++k)
-      if (!is_crossing(rod.joints[static_cast<std::size_t>(k)]))
-        CHECK(tension.along[static_cast<std::size_t>(k)] == Approx(strain * axial).epsilon(1e-9));
+      if (!is_crossing(rod.joints[k])) CHECK(tension.along[k] == Approx(strain * axial).epsilon(1e-9));
     CHECK(tension.other < 1e-9 * strain * axial);
   }
 }

@@ -37,8 +37,7 @@ double out_of_plane(const Rod& rod) {
 Scene disturbed_ring(int segments, double twist_deg, double amplitude) {
   Scene scene = build_scene(isotropic_ring(segments, twist_deg));
   Rod& rod = scene.rods.front();
-  for (int s = 0; s < segments; ++s)
-    rod.position[static_cast<std::size_t>(s)].z() = amplitude * std::cos(4 * pi * s / segments);
+  for (int s = 0; s < segments; ++s) rod.position[s].z() = amplitude * std::cos(4 * pi * s / segments);
   return scene;
 }
 
@@ -78,8 +77,8 @@ Vector3 force_on_held(const Rod& rod, double constraint_dt) {
     const Joint& joint = rod.joints[k];
     const Vector3 multiplier = rod.lambda.segment<3>(static_cast<Eigen::Index>(6 * k));
     const Vector3 force = to_world(rod, joint, multiplier) / joint.length;
-    if (rod.segments[static_cast<std::size_t>(joint.a)].is_static) total += force;
-    if (rod.segments[static_cast<std::size_t>(joint.b)].is_static) total -= force;
+    if (rod.segments[joint.a].is_static) total += force;
+    if (rod.segments[joint.b].is_static) total -= force;
   }
   return total / (constraint_dt * constraint_dt);
 }
@@ -190,9 +189,7 @@ TEST_CASE("A hanging ring and hanging nets settle, and what holds them carries t
 TEST_CASE("A net held at its corners sags symmetrically") {
   const std::unique_ptr<Simulation> settled = settle(build_scene(small_net()));
   // Rods along x, row by row: the crossing (row, column) of a net with one segment a mesh.
-  const auto height = [&](int row, int column) {
-    return settled->rod().position[static_cast<std::size_t>(5 * row + column)].y();
-  };
+  const auto height = [&](int row, int column) { return settled->rod().position[5 * row + column].y(); };
   CHECK(height(2, 2) < -1e-3);
   for (int r = 0; r < 5; ++r)
     for (int c = 0; c < 5; ++c) {
