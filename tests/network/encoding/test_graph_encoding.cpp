@@ -6,8 +6,7 @@
 #include "solver/numbers/rotation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_graph_encoding {
+namespace rodsweep::test_graph_encoding {
 
 constexpr double dt = 0.02;
 
@@ -161,5 +160,4 @@ TEST_CASE("encodings without features of graphs are refused") {
   CHECK_THROWS_AS(GraphEncoding(Encoding::linear_system, bent_rod()), std::invalid_argument);
 }
 
-}  // namespace test_graph_encoding
-}  // namespace rodsweep
+}  // namespace rodsweep::test_graph_encoding

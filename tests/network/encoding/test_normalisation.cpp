@@ -6,8 +6,7 @@
 #include "network/training/mse_loss.hpp"
 #include "tests/network/gradient_check.hpp"
 
-namespace rodsweep {
-namespace test_normalisation {
+namespace rodsweep::test_normalisation {
 
 using namespace test;
 
@@ -81,5 +80,4 @@ TEST_CASE("the mean squared error and its gradient, whole and in parts") {
   CHECK((dy.rightCols(3) - d_right).norm() == 0);
 }
 
-}  // namespace test_normalisation
-}  // namespace rodsweep
+}  // namespace rodsweep::test_normalisation

@@ -6,8 +6,7 @@
 #include "network/training/energy_loss.hpp"
 #include "tests/network/gradient_check.hpp"
 
-namespace rodsweep {
-namespace test_scaled_system {
+namespace rodsweep::test_scaled_system {
 
 using test::Matrix;
 
@@ -184,5 +183,4 @@ TEST_CASE("the exact solution leaves nothing") {
   CHECK(gradient.allFinite());
 }
 
-}  // namespace test_scaled_system
-}  // namespace rodsweep
+}  // namespace rodsweep::test_scaled_system

@@ -7,8 +7,7 @@
 #include "tests/network/models.hpp"
 #include "tests/solver/turned.hpp"
 
-namespace rodsweep {
-namespace test_system_encoding {
+namespace rodsweep::test_system_encoding {
 
 Scene rolled(Scene scene) {
   for (Rod& rod : scene.rods) rod = test::rolled(rod, 2.1);
@@ -92,5 +91,4 @@ TEST_CASE("frames are orthogonal, and units come back") {
   });
 }
 
-}  // namespace test_system_encoding
-}  // namespace rodsweep
+}  // namespace rodsweep::test_system_encoding

@@ -5,8 +5,7 @@
 #include "network/graph/joint_forest.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_joint_forest {
+namespace rodsweep::test_joint_forest {
 
 TEST_CASE("a chain hangs from its held end; held in the middle it is two trees, since nothing couples through that") {
   const auto forest = [](const std::vector<int>& held) {
@@ -83,5 +82,4 @@ TEST_CASE("side by side, forests keep their parents and share levels") {
   }
 }
 
-}  // namespace test_joint_forest
-}  // namespace rodsweep
+}  // namespace rodsweep::test_joint_forest

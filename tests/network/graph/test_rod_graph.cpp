@@ -4,8 +4,7 @@
 #include "network/graph/rod_graph.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_rod_graph {
+namespace rodsweep::test_rod_graph {
 
 TEST_CASE("an edge goes from a joint's segment a to its segment b, loops included") {
   const RodGraph graph = rod_graph(test::random_rod(test::ring(3), {0}, 1));
@@ -31,5 +30,4 @@ TEST_CASE("side by side, numbers go on and every rod knows its own") {
   CHECK(three.first_edge == std::vector<int>{0, 2, 2, 5});
 }
 
-}  // namespace test_rod_graph
-}  // namespace rodsweep
+}  // namespace rodsweep::test_rod_graph

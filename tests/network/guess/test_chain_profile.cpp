@@ -5,8 +5,7 @@
 #include "solver/numbers/rotation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_chain_profile {
+namespace rodsweep::test_chain_profile {
 
 const Vector3 gravity(0, -9.81, 0);
 
@@ -144,5 +143,4 @@ TEST_CASE("rods that are not a single chain are refused") {
   CHECK_THROWS_WITH(profile({{0, 1}, {2, 3}}), Catch::Contains("not connected"));
 }
 
-}  // namespace test_chain_profile
-}  // namespace rodsweep
+}  // namespace rodsweep::test_chain_profile

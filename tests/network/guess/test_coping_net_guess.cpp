@@ -9,8 +9,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_coping_net_guess {
+namespace rodsweep::test_coping_net_guess {
 
 double energy_error(const LinearSystem& system, const VectorX& x, const VectorX& solution) {
   VectorX scratch(x.size());
@@ -212,5 +211,4 @@ TEST_CASE("the joints' order does not matter") {
   }
 }
 
-}  // namespace test_coping_net_guess
-}  // namespace rodsweep
+}  // namespace rodsweep::test_coping_net_guess

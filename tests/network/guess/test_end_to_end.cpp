@@ -10,8 +10,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_end_to_end {
+namespace rodsweep::test_end_to_end {
 
 /// A network that always knows the answer.
 class ExactIncrements : public IncrementSource {
@@ -154,5 +153,4 @@ TEST_CASE("a rod whose residual is below the tolerance is left alone") {
   for (std::size_t s = 0; s < 5; ++s) CHECK(scene.rods[0].position[s] == before.position[s]);
 }
 
-}  // namespace test_end_to_end
-}  // namespace rodsweep
+}  // namespace rodsweep::test_end_to_end

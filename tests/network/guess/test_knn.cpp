@@ -5,8 +5,7 @@
 #include "tests/network/stored.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_knn {
+namespace rodsweep::test_knn {
 
 std::shared_ptr<const KnnSet> set_of(const std::vector<StoredSimulation>& simulations,
                                      KnnInputs inputs = KnnInputs::all) {
@@ -170,5 +169,4 @@ TEST_CASE("no neighbours is not a number of neighbours") {
   CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0.02, 0), std::invalid_argument);
 }
 
-}  // namespace test_knn
-}  // namespace rodsweep
+}  // namespace rodsweep::test_knn

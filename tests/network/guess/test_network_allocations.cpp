@@ -10,8 +10,7 @@
 #include "tests/solver/allocations.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_network_allocations {
+namespace rodsweep::test_network_allocations {
 
 TEST_CASE("a guess allocates nothing on a rod seen before, whatever the network") {
   const int segments = GENERATE(20, 400);
@@ -85,5 +84,4 @@ TEST_CASE("nearest neighbours allocate nothing") {
   CHECK(test::allocations() == before);
 }
 
-}  // namespace test_network_allocations
-}  // namespace rodsweep
+}  // namespace rodsweep::test_network_allocations

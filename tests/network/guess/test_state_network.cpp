@@ -9,8 +9,7 @@
 #include "tests/network/stored.hpp"
 #include "tests/solver/turned.hpp"
 
-namespace rodsweep {
-namespace test_state_network {
+namespace rodsweep::test_state_network {
 
 using namespace test;
 
@@ -198,5 +197,4 @@ TEST_CASE("training makes a simulator that errs less than one that says nothing"
   CHECK(last < 0.3 * first);
 }
 
-}  // namespace test_state_network
-}  // namespace rodsweep
+}  // namespace rodsweep::test_state_network

@@ -4,8 +4,7 @@
 #include "network/layers/mlp.hpp"
 #include "tests/network/gradient_check.hpp"
 
-namespace rodsweep {
-namespace test_gradients {
+namespace rodsweep::test_gradients {
 
 using namespace test;
 
@@ -35,5 +34,4 @@ TEST_CASE("the gradients of an MLP are those of central differences, for weights
   CHECK(gradient_error(inputs, std::vector<double>(dx.data(), dx.data() + dx.size()), loss) < 1e-8);
 }
 
-}  // namespace test_gradients
-}  // namespace rodsweep
+}  // namespace rodsweep::test_gradients

@@ -3,8 +3,7 @@
 #include "network/layers/product.hpp"
 #include "tests/network/gradient_check.hpp"
 
-namespace rodsweep {
-namespace test_product {
+namespace rodsweep::test_product {
 
 using namespace test;
 
@@ -60,5 +59,4 @@ TEST_CASE("a product of narrow operands is that of the rounded ones, however man
   CHECK_THROWS_WITH(NarrowMatrix(Tensor<float>::Zero(6, 4)), Catch::Contains("6 rows"));
 }
 
-}  // namespace test_product
-}  // namespace rodsweep
+}  // namespace rodsweep::test_product

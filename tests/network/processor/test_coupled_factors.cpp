@@ -13,8 +13,7 @@
 #include "tests/network/gradient_check.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_coupled_factors {
+namespace rodsweep::test_coupled_factors {
 
 using namespace test;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -261,5 +260,4 @@ TEST_CASE("a latent size without a kernel for factors of all couplings is refuse
   CHECK_THROWS_WITH(CoupledInference(net.factors, net.weights, pattern), Catch::Contains("24"));
 }
 
-}  // namespace test_coupled_factors
-}  // namespace rodsweep
+}  // namespace rodsweep::test_coupled_factors

@@ -6,8 +6,7 @@
 #include "tests/network/gradient_check.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_factor_sweeps {
+namespace rodsweep::test_factor_sweeps {
 
 using namespace test;
 
@@ -158,5 +157,4 @@ TEST_CASE("a latent size without a kernel for factors is refused") {
   CHECK_THROWS_WITH(FactorInference(net.sweeps, net.weights, forest, pattern), Catch::Contains("24"));
 }
 
-}  // namespace test_factor_sweeps
-}  // namespace rodsweep
+}  // namespace rodsweep::test_factor_sweeps

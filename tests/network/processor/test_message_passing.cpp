@@ -5,8 +5,7 @@
 #include "network/processor/message_passing.hpp"
 #include "tests/network/gradient_check.hpp"
 
-namespace rodsweep {
-namespace test_message_passing {
+namespace rodsweep::test_message_passing {
 
 using namespace test;
 using Net = MessagePassing<double>;
@@ -158,5 +157,4 @@ TEST_CASE("with K steps an output sees the nodes up to K hops away and no furthe
   }
 }
 
-}  // namespace test_message_passing
-}  // namespace rodsweep
+}  // namespace rodsweep::test_message_passing

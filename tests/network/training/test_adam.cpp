@@ -4,8 +4,7 @@
 
 #include "network/training/adam.hpp"
 
-namespace rodsweep {
-namespace test_adam {
+namespace rodsweep::test_adam {
 
 TEST_CASE("the first step is the rate times the gradient's sign, whatever its size") {
   AlignedVector<float> weights{1, 2, 3};
@@ -39,5 +38,4 @@ TEST_CASE("it finds the minimum of a badly scaled quadratic") {
   CHECK(weights[1] == Approx(2).margin(1e-2));
 }
 
-}  // namespace test_adam
-}  // namespace rodsweep
+}  // namespace rodsweep::test_adam

@@ -7,8 +7,7 @@
 #include "tests/network/models.hpp"
 #include "tests/network/stored.hpp"
 
-namespace rodsweep {
-namespace test_trainer {
+namespace rodsweep::test_trainer {
 
 using namespace test;
 
@@ -233,5 +232,4 @@ TEST_CASE("settings that make no sense are refused") {
                     Catch::Contains("8 examples") && Catch::Contains("batch of 12"));
 }
 
-}  // namespace test_trainer
-}  // namespace rodsweep
+}  // namespace rodsweep::test_trainer

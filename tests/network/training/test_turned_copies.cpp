@@ -4,8 +4,7 @@
 #include "network/training/turn.hpp"
 #include "tests/network/stored.hpp"
 
-namespace rodsweep {
-namespace test_turned_copies {
+namespace rodsweep::test_turned_copies {
 
 using namespace test;
 
@@ -73,5 +72,4 @@ TEST_CASE("examples may be those of first Newton iterations alone") {
     CHECK(first[i].edge_target == all[3 * i].edge_target);
 }
 
-}  // namespace test_turned_copies
-}  // namespace rodsweep
+}  // namespace rodsweep::test_turned_copies

@@ -14,8 +14,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_batched_step {
+namespace rodsweep::test_batched_step {
 
 const StepSettings settings{0.02, 6, 1e-9};
 constexpr int lanes = BatchedRods::lanes;
@@ -343,5 +342,4 @@ TEST_CASE("what a batch cannot hold is refused") {
   }
 }
 
-}  // namespace test_batched_step
-}  // namespace rodsweep
+}  // namespace rodsweep::test_batched_step

@@ -5,8 +5,7 @@
 #include "solver/cg/condensed_cg.hpp"
 #include "tests/solver/cg_runs.hpp"
 
-namespace rodsweep {
-namespace test_condensed_cg {
+namespace rodsweep::test_condensed_cg {
 
 using test::Case, test::Run, test::run;
 
@@ -121,5 +120,4 @@ TEST_CASE("condensed CG reports what is not a number and what takes too long") {
   CHECK(cg.solve(b, x, false, 1e-2, 1).outcome == SolveOutcome::not_a_number);
 }
 
-}  // namespace test_condensed_cg
-}  // namespace rodsweep
+}  // namespace rodsweep::test_condensed_cg

@@ -7,8 +7,7 @@
 #include "solver/scene/scenes.hpp"
 #include "tests/solver/cg_runs.hpp"
 
-namespace rodsweep {
-namespace test_conjugate_gradient {
+namespace rodsweep::test_conjugate_gradient {
 
 using namespace test;
 
@@ -172,5 +171,4 @@ TEST_CASE("the test stays relative to b with a guess, even one whose residual st
   }
 }
 
-}  // namespace test_conjugate_gradient
-}  // namespace rodsweep
+}  // namespace rodsweep::test_conjugate_gradient

@@ -7,8 +7,7 @@
 #include "solver/cg/petsc_session.hpp"
 #include "tests/solver/cg_runs.hpp"
 
-namespace rodsweep {
-namespace test_conjugate_gradient_ends {
+namespace rodsweep::test_conjugate_gradient_ends {
 
 using namespace test;
 
@@ -264,5 +263,4 @@ TEST_CASE("a PETSc session inside another leaves PETSc running when it ends") {
   CHECK_THAT(petsc_version(), Catch::Matches("[0-9]+\\.[0-9]+\\.[0-9]+"));
 }
 
-}  // namespace test_conjugate_gradient_ends
-}  // namespace rodsweep
+}  // namespace rodsweep::test_conjugate_gradient_ends

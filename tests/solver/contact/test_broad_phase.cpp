@@ -7,8 +7,7 @@
 #include "solver/scene/scene_parts.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_broad_phase {
+namespace rodsweep::test_broad_phase {
 
 std::vector<Box> random_boxes(int count, unsigned seed) {
   test::Random random(seed);
@@ -191,5 +190,4 @@ TEST_CASE("obstacles that are none are refused") {
   CHECK_THROWS_WITH(ContactBodies(scene), "an obstacle's place is not finite");
 }
 
-}  // namespace test_broad_phase
-}  // namespace rodsweep
+}  // namespace rodsweep::test_broad_phase

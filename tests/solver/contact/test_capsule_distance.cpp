@@ -6,8 +6,7 @@
 #include "solver/contact/capsule_distance.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_capsule_distance {
+namespace rodsweep::test_capsule_distance {
 
 /// The least distance over a fine grid of one axis, exact along the other.
 double searched_distance(const CapsuleAxis& a, const CapsuleAxis& b) {
@@ -92,5 +91,4 @@ TEST_CASE("a first touch is never later than a finely sampled one") {
   CHECK(touches > 20);
 }
 
-}  // namespace test_capsule_distance
-}  // namespace rodsweep
+}  // namespace rodsweep::test_capsule_distance

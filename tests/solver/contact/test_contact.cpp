@@ -6,8 +6,7 @@
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
 
-namespace rodsweep {
-namespace test_contact {
+namespace rodsweep::test_contact {
 
 using test::capsule;
 using test::contact_scene;
@@ -229,5 +228,4 @@ TEST_CASE("contact settings and half-spaces that are none are refused") {
   CHECK_THROWS_WITH(TimeStepper(scene, {}), Catch::Contains("the normal must not be zero"));
 }
 
-}  // namespace test_contact
-}  // namespace rodsweep
+}  // namespace rodsweep::test_contact

@@ -4,8 +4,7 @@
 
 #include "tests/solver/touching.hpp"
 
-namespace rodsweep {
-namespace test_contact_friction {
+namespace rodsweep::test_contact_friction {
 
 using test::capsule;
 using test::contact_scene;
@@ -103,5 +102,4 @@ TEST_CASE("a rope over half a drum holds a load of up to exp(mu pi) times the ot
   }
 }
 
-}  // namespace test_contact_friction
-}  // namespace rodsweep
+}  // namespace rodsweep::test_contact_friction

@@ -4,8 +4,7 @@
 
 #include "tests/solver/touching.hpp"
 
-namespace rodsweep {
-namespace test_contact_rest {
+namespace rodsweep::test_contact_rest {
 
 using test::contact_scene;
 using test::straight_rod;
@@ -102,5 +101,4 @@ TEST_CASE("a rod draped over a ball hangs on it") {
   CHECK(t.scene.rods[0].position[10].y() == Approx(0.32).epsilon(0.01));
 }
 
-}  // namespace test_contact_rest
-}  // namespace rodsweep
+}  // namespace rodsweep::test_contact_rest

@@ -4,8 +4,7 @@
 
 #include "tests/solver/touching.hpp"
 
-namespace rodsweep {
-namespace test_contact_steps {
+namespace rodsweep::test_contact_steps {
 
 using test::capsule;
 using test::contact_scene;
@@ -71,5 +70,4 @@ TEST_CASE("what is not finite ends the step before it can touch anything") {
   }
 }
 
-}  // namespace test_contact_steps
-}  // namespace rodsweep
+}  // namespace rodsweep::test_contact_steps

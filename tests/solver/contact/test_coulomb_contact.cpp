@@ -6,8 +6,7 @@
 #include "solver/contact/coulomb_contact.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_coulomb_contact {
+namespace rodsweep::test_coulomb_contact {
 
 /// Symmetric and positive definite, with the given stretches in random directions.
 Matrix3 mobility(test::Random& random, const Vector3& stretches) {
@@ -70,5 +69,4 @@ TEST_CASE("what is admissible stays, what is not loses friction or all") {
   CHECK(law.admissible({0.1, -1, 0}) == Vector3(0, 0, 0));
 }
 
-}  // namespace test_coulomb_contact
-}  // namespace rodsweep
+}  // namespace rodsweep::test_coulomb_contact

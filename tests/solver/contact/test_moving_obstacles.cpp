@@ -5,8 +5,7 @@
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
 
-namespace rodsweep {
-namespace test_moving_obstacles {
+namespace rodsweep::test_moving_obstacles {
 
 using test::capsule;
 using test::contact_scene;
@@ -134,5 +133,4 @@ TEST_CASE("obstacles of no finite velocity are refused") {
   }
 }
 
-}  // namespace test_moving_obstacles
-}  // namespace rodsweep
+}  // namespace rodsweep::test_moving_obstacles

@@ -4,8 +4,7 @@
 #include "solver/contact/rod_response.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_rod_response {
+namespace rodsweep::test_rod_response {
 
 using test::MatrixX;
 
@@ -72,5 +71,4 @@ TEST_CASE("a stiff rod gives way to an impulse like a rigid body, a limp one lik
   }
 }
 
-}  // namespace test_rod_response
-}  // namespace rodsweep
+}  // namespace rodsweep::test_rod_response

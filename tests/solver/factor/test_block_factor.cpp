@@ -7,8 +7,7 @@
 #include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_block_factor {
+namespace rodsweep::test_block_factor {
 
 using test::Edges;
 using test::MatrixX;
@@ -213,5 +212,4 @@ TEST_CASE("a rod without joints has an empty solution") {
   CHECK(solve(factor, a, VectorX(0)).outcome == SolveOutcome::converged);
 }
 
-}  // namespace test_block_factor
-}  // namespace rodsweep
+}  // namespace rodsweep::test_block_factor

@@ -6,8 +6,7 @@
 #include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_condensation {
+namespace rodsweep::test_condensation {
 
 using test::random_rod;
 
@@ -120,5 +119,4 @@ TEST_CASE("a condensed system follows the masses of an iteration that keeps the 
   CHECK((d - exact).norm() < 1e-8 * exact.norm());
 }
 
-}  // namespace test_condensation
-}  // namespace rodsweep
+}  // namespace rodsweep::test_condensation

@@ -6,8 +6,7 @@
 #include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_elimination_order {
+namespace rodsweep::test_elimination_order {
 
 using test::Edges;
 
@@ -97,5 +96,4 @@ TEST_CASE("breadth first: every row once, neighbours near each other, from an en
       CHECK(std::abs(place[row] - place[pattern.column(k)]) < pattern.block_rows() / 3);
 }
 
-}  // namespace test_elimination_order
-}  // namespace rodsweep
+}  // namespace rodsweep::test_elimination_order

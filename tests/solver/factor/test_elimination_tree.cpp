@@ -9,8 +9,7 @@
 #include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_elimination_tree {
+namespace rodsweep::test_elimination_tree {
 
 using test::later_neighbours, test::shuffled;
 
@@ -117,5 +116,4 @@ TEST_CASE("a factor that would need too much memory is refused with its size, be
   CHECK(AssemblyTree(dense).bytes() > most_factor_bytes);
 }
 
-}  // namespace test_elimination_tree
-}  // namespace rodsweep
+}  // namespace rodsweep::test_elimination_tree

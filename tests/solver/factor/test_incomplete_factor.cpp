@@ -12,8 +12,7 @@
 #include "tests/solver/dense.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_incomplete_factor {
+namespace rodsweep::test_incomplete_factor {
 
 using namespace test;
 
@@ -123,5 +122,4 @@ TEST_CASE("the units of a matrix do not matter, far beyond the range of single p
   }
 }
 
-}  // namespace test_incomplete_factor
-}  // namespace rodsweep
+}  // namespace rodsweep::test_incomplete_factor

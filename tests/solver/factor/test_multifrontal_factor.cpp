@@ -10,8 +10,7 @@
 #include "solver/linear/linear_system.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_multifrontal_factor {
+namespace rodsweep::test_multifrontal_factor {
 
 using test::Edges;
 
@@ -153,5 +152,4 @@ TEST_CASE("a factor with fronts keeps what a factor promises") {
   CHECK(kept == x);
 }
 
-}  // namespace test_multifrontal_factor
-}  // namespace rodsweep
+}  // namespace rodsweep::test_multifrontal_factor

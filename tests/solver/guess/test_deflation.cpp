@@ -7,8 +7,7 @@
 #include "solver/guess/subspace_guess.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_deflation {
+namespace rodsweep::test_deflation {
 
 using test::MatrixX, test::OneRod;
 
@@ -126,5 +125,4 @@ TEST_CASE("the same CG deflates one system and not the next") {
   CHECK(last == first);
 }
 
-}  // namespace test_deflation
-}  // namespace rodsweep
+}  // namespace rodsweep::test_deflation

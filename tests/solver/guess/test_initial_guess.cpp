@@ -10,8 +10,7 @@
 #include "solver/guess/subspace_guess.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_initial_guess {
+namespace rodsweep::test_initial_guess {
 
 using test::MatrixX;
 
@@ -299,5 +298,4 @@ TEST_CASE("first asks and tells another guess at first Newton iterations alone")
   CHECK(told == rods.exact(0));
 }
 
-}  // namespace test_initial_guess
-}  // namespace rodsweep
+}  // namespace rodsweep::test_initial_guess

@@ -5,8 +5,7 @@
 #include "solver/guess/normal_equations.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_normal_equations {
+namespace rodsweep::test_normal_equations {
 
 using test::MatrixX;
 
@@ -95,5 +94,4 @@ TEST_CASE("a vector whose products are not numbers is dropped alone") {
   CHECK((c - expected).norm() < 1e-9);
 }
 
-}  // namespace test_normal_equations
-}  // namespace rodsweep
+}  // namespace rodsweep::test_normal_equations

@@ -6,8 +6,7 @@
 #include "solver/step/projection.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_regression_guess {
+namespace rodsweep::test_regression_guess {
 
 using test::MatrixX;
 
@@ -92,5 +91,4 @@ TEST_CASE("noise in the stored solutions is not blown up by coefficients of oppo
   CHECK((x0 - exact).norm() < 2 * noise * exact.norm());
 }
 
-}  // namespace test_regression_guess
-}  // namespace rodsweep
+}  // namespace rodsweep::test_regression_guess

@@ -6,8 +6,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_subspace_guess {
+namespace rodsweep::test_subspace_guess {
 
 using Window = SubspaceGuess::Window;
 using test::OneRod;
@@ -99,5 +98,4 @@ TEST_CASE("fischer and subspace beat zero on a slowly changing rod, and subspace
   CHECK(of_subspace < of_fischer);
 }
 
-}  // namespace test_subspace_guess
-}  // namespace rodsweep
+}  // namespace rodsweep::test_subspace_guess

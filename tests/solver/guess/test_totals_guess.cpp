@@ -7,8 +7,7 @@
 #include "solver/guess/totals_guess.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_totals_guess {
+namespace rodsweep::test_totals_guess {
 
 struct Told {
   int step, newton, rod;
@@ -119,5 +118,4 @@ TEST_CASE("a regression combines totals as the first right-hand sides of their s
   CHECK((x0 - (3 * (first[0] + later[0]) - 2 * (first[1] + later[1]))).norm() < 1e-9 * x0.norm());
 }
 
-}  // namespace test_totals_guess
-}  // namespace rodsweep
+}  // namespace rodsweep::test_totals_guess

@@ -5,8 +5,7 @@
 #include "solver/linear/block_matrix.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_block_matrix {
+namespace rodsweep::test_block_matrix {
 
 using test::Random;
 
@@ -84,5 +83,4 @@ TEST_CASE("what Jacobi makes of a matrix follows from its diagonal") {
   CHECK(jacobi_norm_squared(a, r) == Approx(r.cwiseProduct(s).squaredNorm()).epsilon(1e-13));
 }
 
-}  // namespace test_block_matrix
-}  // namespace rodsweep
+}  // namespace rodsweep::test_block_matrix

@@ -5,8 +5,7 @@
 #include "solver/scene/scenes.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_constraint_product {
+namespace rodsweep::test_constraint_product {
 
 using namespace test;
 
@@ -57,5 +56,4 @@ TEST_CASE("with the balance of momentum kept, the product knows the mobilities t
   CHECK(difference(system, *system.product()) < 1e-14);
 }
 
-}  // namespace test_constraint_product
-}  // namespace rodsweep
+}  // namespace rodsweep::test_constraint_product

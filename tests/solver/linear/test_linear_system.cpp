@@ -7,8 +7,7 @@
 #include "solver/numbers/rotation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_linear_system {
+namespace rodsweep::test_linear_system {
 
 using test::DenseSystem;
 using test::Edges;
@@ -130,5 +129,4 @@ TEST_CASE("a joint between two static segments is refused by number") {
                        Catch::Message("joint 2 joins two static segments; remove it or free one of them"));
 }
 
-}  // namespace test_linear_system
-}  // namespace rodsweep
+}  // namespace rodsweep::test_linear_system

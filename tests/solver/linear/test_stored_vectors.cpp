@@ -4,8 +4,7 @@
 #include "solver/linear/stored_vectors.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_stored_vectors {
+namespace rodsweep::test_stored_vectors {
 
 using test::MatrixX;
 
@@ -42,5 +41,4 @@ TEST_CASE("vectors side by side project and combine as dense algebra does, also 
   }
 }
 
-}  // namespace test_stored_vectors
-}  // namespace rodsweep
+}  // namespace rodsweep::test_stored_vectors

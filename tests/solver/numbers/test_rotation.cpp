@@ -5,8 +5,7 @@
 #include "solver/numbers/rotation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_rotation {
+namespace rodsweep::test_rotation {
 
 using test::Random;
 
@@ -62,5 +61,4 @@ TEST_CASE("turn_between() takes one direction to the other by the shortest way, 
   }
 }
 
-}  // namespace test_rotation
-}  // namespace rodsweep
+}  // namespace rodsweep::test_rotation

@@ -8,8 +8,7 @@
 #include "solver/step/observables.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_linearization {
+namespace rodsweep::test_linearization {
 
 using test::MatrixX;
 using test::move_rigidly, test::Random;
@@ -148,5 +147,4 @@ TEST_CASE("a single segment has nothing to satisfy") {
   CHECK(newton_residual(rod, 0.01) == 0);
 }
 
-}  // namespace test_linearization
-}  // namespace rodsweep
+}  // namespace rodsweep::test_linearization

@@ -7,8 +7,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_physical_stretch {
+namespace rodsweep::test_physical_stretch {
 
 /// Weightless, held by a wall, along +x.
 BendingRod rod_of(int segments, double youngs_modulus, double torsion_modulus, Stretch stretch) {
@@ -137,5 +136,4 @@ TEST_CASE("xpbd stretches physically too: it leaves the residual of Newton's fix
   CHECK(joint_gap(scene.rods.front()) > 1e-4);
 }
 
-}  // namespace test_physical_stretch
-}  // namespace rodsweep
+}  // namespace rodsweep::test_physical_stretch

@@ -8,8 +8,7 @@
 #include "solver/step/observables.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_closed_scenes {
+namespace rodsweep::test_closed_scenes {
 
 using test::constraint_of;
 
@@ -166,5 +165,4 @@ TEST_CASE("rings and nets that cannot be are refused by what is wrong with them"
                     Catch::Contains("stretch is physical") && Catch::Contains("stretch_compliance_per_j"));
 }
 
-}  // namespace test_closed_scenes
-}  // namespace rodsweep
+}  // namespace rodsweep::test_closed_scenes

@@ -12,8 +12,7 @@
 #include "tests/solver/lattice_nodes.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_lattices {
+namespace rodsweep::test_lattices {
 
 using Cell = Lattice::Cell;
 
@@ -251,5 +250,4 @@ TEST_CASE("lattices that cannot be are refused by what is wrong with them") {
   CHECK_THROWS_WITH(validate(lattice(Cell::cubic, 1000, 1000, 1000, 1)), Catch::EndsWith("the most is 10000000"));
 }
 
-}  // namespace test_lattices
-}  // namespace rodsweep
+}  // namespace rodsweep::test_lattices

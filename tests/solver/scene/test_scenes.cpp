@@ -9,8 +9,7 @@
 #include "solver/step/observables.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_scenes {
+namespace rodsweep::test_scenes {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -261,5 +260,4 @@ TEST_CASE("a number that does not fit into its bits is a bug, not another number
   CHECK_THROWS_WITH(narrow<std::int16_t>(-32769), "-32769 does not fit into 16 bits");
 }
 
-}  // namespace test_scenes
-}  // namespace rodsweep
+}  // namespace rodsweep::test_scenes

@@ -7,8 +7,7 @@
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
 
-namespace rodsweep {
-namespace test_touching_scenes {
+namespace rodsweep::test_touching_scenes {
 
 /// The determinant of a knot, from the crossings of a closed polygon seen along z: 1 of the unknot, 3 of a trefoil. A
 /// row for every crossing: 2 for the arc above, -1 for the two that end below it; any one row and column left out.
@@ -269,5 +268,4 @@ TEST_CASE("scenes that could only start with rods inside each other are refused"
   CHECK_THROWS_WITH(build_scene(crossed), Catch::Contains("must be from 0 to 90 for a bundle"));
 }
 
-}  // namespace test_touching_scenes
-}  // namespace rodsweep
+}  // namespace rodsweep::test_touching_scenes

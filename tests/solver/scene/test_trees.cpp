@@ -6,8 +6,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_trees {
+namespace rodsweep::test_trees {
 
 constexpr double golden_angle_deg = 137.50776405003785;
 
@@ -252,5 +251,4 @@ TEST_CASE("trees that cannot grow are refused with quantity, value and bound") {
   CHECK(refusal(folded) == "node 1 of a skeleton: stands where its parent does; must be elsewhere");
 }
 
-}  // namespace test_trees
-}  // namespace rodsweep
+}  // namespace rodsweep::test_trees

@@ -8,8 +8,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_wind {
+namespace rodsweep::test_wind {
 
 WindParameters turbulence(int modes, std::uint64_t seed = 0) {
   WindParameters p;
@@ -222,5 +221,4 @@ TEST_CASE("invalid winds are refused, and wind in a batched step") {
   CHECK_THROWS_WITH(BatchedStepper({build_scene(rod)}, {}), Catch::StartsWith("scene 0 of a batch has wind"));
 }
 
-}  // namespace test_wind
-}  // namespace rodsweep
+}  // namespace rodsweep::test_wind

@@ -18,8 +18,7 @@
 #include "tests/solver/allocations.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_allocations {
+namespace rodsweep::test_allocations {
 
 /// CG from a guess, with its history recorded, as the paired evaluation and closed loops use it.
 class CgSolve : public LinearSolve {
@@ -219,5 +218,4 @@ TEST_CASE("icc costs PETSc's three work arrays per factorisation, and nothing of
   CHECK(test::allocations() - before <= 3 * solve.calls);
 }
 
-}  // namespace test_allocations
-}  // namespace rodsweep
+}  // namespace rodsweep::test_allocations

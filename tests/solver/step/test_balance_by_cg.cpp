@@ -7,8 +7,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_balance_by_cg {
+namespace rodsweep::test_balance_by_cg {
 
 TEST_CASE("cg from a history reaches the direct solve's balanced steps") {
   const Scene start = build_scene(test::bending_rod(15));
@@ -33,5 +32,4 @@ TEST_CASE("cg from a history reaches the direct solve's balanced steps") {
   for (int s = 0; s < 15; ++s) CHECK((scene.rods[0].position[s] - exact.rods[0].position[s]).norm() < 1e-7);
 }
 
-}  // namespace test_balance_by_cg
-}  // namespace rodsweep
+}  // namespace rodsweep::test_balance_by_cg

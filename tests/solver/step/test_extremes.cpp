@@ -6,8 +6,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_extremes {
+namespace rodsweep::test_extremes {
 
 /// The scene's rod built again with every second quaternion negated, which is the same orientation.
 Scene with_signs_flipped(Scene scene) {
@@ -105,5 +104,4 @@ TEST_CASE("a rod held at both ends is solved to rounding for its condition numbe
   CHECK((system.matrix().dense() * x - system.rhs()).norm() < 1e-9 * system.rhs().norm());
 }
 
-}  // namespace test_extremes
-}  // namespace rodsweep
+}  // namespace rodsweep::test_extremes

@@ -7,8 +7,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_forcing_terms {
+namespace rodsweep::test_forcing_terms {
 
 TEST_CASE("forcing terms follow the square of what the last iteration achieved, from the first one given") {
   ForcingTerms forcing(2, 0.5, 0);
@@ -60,5 +59,4 @@ TEST_CASE(
   CHECK(forced.iterations < 0.95 * tight.iterations);
 }
 
-}  // namespace test_forcing_terms
-}  // namespace rodsweep
+}  // namespace rodsweep::test_forcing_terms

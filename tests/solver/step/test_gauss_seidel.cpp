@@ -11,8 +11,7 @@
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_gauss_seidel {
+namespace rodsweep::test_gauss_seidel {
 
 std::unique_ptr<Projection> make(const std::string& name, const Scene& scene) {
   if (name == "xpbd") return std::make_unique<XpbdProjection>(scene);
@@ -116,5 +115,4 @@ TEST_CASE("Gauss-Seidel refuses a joint that nothing can move") {
     CHECK_THROWS_WITH(make(method, scene), "joint 1 joins two static segments; remove it or free one of them");
 }
 
-}  // namespace test_gauss_seidel
-}  // namespace rodsweep
+}  // namespace rodsweep::test_gauss_seidel

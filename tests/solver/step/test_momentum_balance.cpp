@@ -8,8 +8,7 @@
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
 
-namespace rodsweep {
-namespace test_momentum_balance {
+namespace rodsweep::test_momentum_balance {
 
 constexpr double tolerance = 1e-5;
 
@@ -309,5 +308,4 @@ TEST_CASE("with too few iterations to share, a step that is not in balance yet i
   }
 }
 
-}  // namespace test_momentum_balance
-}  // namespace rodsweep
+}  // namespace rodsweep::test_momentum_balance

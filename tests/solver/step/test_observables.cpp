@@ -7,8 +7,7 @@
 #include "solver/step/observables.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_observables {
+namespace rodsweep::test_observables {
 
 using test::move_rigidly, test::Random;
 
@@ -148,5 +147,4 @@ TEST_CASE("a state with a NaN or infinity anywhere is not finite") {
     }
 }
 
-}  // namespace test_observables
-}  // namespace rodsweep
+}  // namespace rodsweep::test_observables

@@ -10,8 +10,7 @@
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_pbd {
+namespace rodsweep::test_pbd {
 
 /// Two free coaxial segments of 0.2 m and radius 0.05 m, joined end to end, at rest.
 Scene pair() {
@@ -119,5 +118,4 @@ TEST_CASE("more iterations make a PBD rod stiffer") {
   }
 }
 
-}  // namespace test_pbd
-}  // namespace rodsweep
+}  // namespace rodsweep::test_pbd

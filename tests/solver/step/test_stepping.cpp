@@ -10,8 +10,7 @@
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_stepping {
+namespace rodsweep::test_stepping {
 
 /// Solves directly, but reports something else at one position.
 class Failing : public LinearSolve {
@@ -197,5 +196,4 @@ TEST_CASE("loads and clamps on segments that do not exist, and clamps on free on
   refused(free, "a moving clamp needs a static segment; segment 2 is free");
 }
 
-}  // namespace test_stepping
-}  // namespace rodsweep
+}  // namespace rodsweep::test_stepping

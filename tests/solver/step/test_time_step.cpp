@@ -7,8 +7,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_time_step {
+namespace rodsweep::test_time_step {
 
 /// One free cylinder without gravity.
 Scene free_body(double length = 0.4, double radius = 0.1) {
@@ -210,5 +209,4 @@ TEST_CASE("rods of one or two segments move under every clamp") {
     }
 }
 
-}  // namespace test_time_step
-}  // namespace rodsweep
+}  // namespace rodsweep::test_time_step

@@ -9,8 +9,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/turned.hpp"
 
-namespace rodsweep {
-namespace test_turned_scenes {
+namespace rodsweep::test_turned_scenes {
 
 using test::RigidMotion, test::TurnedCase;
 
@@ -135,5 +134,4 @@ TEST_CASE("turned heaps of falling rods fall alike, contacts and friction includ
           }) < 1e-6);
 }
 
-}  // namespace test_turned_scenes
-}  // namespace rodsweep
+}  // namespace rodsweep::test_turned_scenes

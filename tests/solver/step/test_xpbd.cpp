@@ -9,8 +9,7 @@
 #include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 
-namespace rodsweep {
-namespace test_xpbd {
+namespace rodsweep::test_xpbd {
 
 /// A rod of six segments that has fallen smoothly for 0.1 s.
 Scene falling(double modulus_pa, std::optional<double> stretch_compliance_per_j = std::nullopt) {
@@ -82,5 +81,4 @@ TEST_CASE("where steps do not resolve the stiffness, few XPBD iterations leave a
   for (const double order : orders(start, &Rod::position, 0.02, 4)) CHECK(order == Approx(2).margin(0.4));
 }
 
-}  // namespace test_xpbd
-}  // namespace rodsweep
+}  // namespace rodsweep::test_xpbd

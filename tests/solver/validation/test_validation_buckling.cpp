@@ -11,9 +11,7 @@
 #include "solver/rod/linearization.hpp"
 #include "tests/solver/simulation.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_buckling {
+namespace rodsweep::test_validation_buckling {
 
 constexpr double length = 4, radius = 0.01, youngs_modulus = 1e9, torsion_modulus = 5e9;  // GJ = 10 EI
 constexpr double shortening = 0.2, end_turn = 9.02;  // of phi0 near 60 degrees, s* = L / 20
@@ -88,4 +86,4 @@ TEST_CASE("A long twisted rod buckles into a localised helix, with an error of s
   CHECK(std::abs(fine.tension_error) < 2e-3);
 }
 
-}  // namespace test_validation_buckling
+}  // namespace rodsweep::test_validation_buckling

@@ -9,9 +9,7 @@
 #include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_budgets {
+namespace rodsweep::test_validation_budgets {
 
 double energy(const Scene& scene) {
   const Rod& rod = scene.rods.front();
@@ -122,4 +120,4 @@ TEST_CASE("Over ten seconds a free rod's angular momentum drifts in proportion t
   CHECK(std::log2(coarse / fine) == Approx(1).margin(0.25));
 }
 
-}  // namespace test_validation_budgets
+}  // namespace rodsweep::test_validation_budgets

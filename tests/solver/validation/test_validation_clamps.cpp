@@ -7,9 +7,7 @@
 #include "solver/rod/linearization.hpp"
 #include "tests/solver/simulation.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_clamps {
+namespace rodsweep::test_validation_clamps {
 
 constexpr int count = 20;
 constexpr double segment_length = 0.1, radius = 0.05, torsion_modulus = 4e6;
@@ -89,4 +87,4 @@ TEST_CASE("A rod twisted by its end has uniform twist and the torque of its join
   }
 }
 
-}  // namespace test_validation_clamps
+}  // namespace rodsweep::test_validation_clamps

@@ -13,9 +13,7 @@
 #include "tests/solver/support.hpp"
 #include "tests/solver/timoshenko_frame.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_lattices {
+namespace rodsweep::test_validation_lattices {
 
 using Cell = Lattice::Cell;
 using test::cells, test::constraint_of, test::is_crossing, test::moved, test::nodes_of, test::Place, test::point;
@@ -389,4 +387,4 @@ TEST_CASE("A lattice held at its corners sags symmetrically") {
   }
 }
 
-}  // namespace test_validation_lattices
+}  // namespace rodsweep::test_validation_lattices

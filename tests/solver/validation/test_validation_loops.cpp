@@ -7,9 +7,7 @@
 #include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_loops {
+namespace rodsweep::test_validation_loops {
 
 constexpr double michell_deg = 360 * 1.7320508075688772;  // 2 pi sqrt(3) of a total twist, where EI = GJ
 
@@ -198,4 +196,4 @@ TEST_CASE("A net held at its corners sags symmetrically") {
     }
 }
 
-}  // namespace test_validation_loops
+}  // namespace rodsweep::test_validation_loops

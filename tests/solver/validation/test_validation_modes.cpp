@@ -9,9 +9,7 @@
 #include "tests/solver/oscillation.hpp"
 #include "tests/solver/simulation.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_modes {
+namespace rodsweep::test_validation_modes {
 
 /// Gives a straight wall-clamped rod the transverse velocities `at_vertices` (in `direction`), segments moving rigidly.
 void set_transverse_velocity(Rod& rod, const VectorX& at_vertices, const Vector3& direction) {
@@ -146,4 +144,4 @@ TEST_CASE("A rod without bending stiffness swings as a hanging rope") {
   CHECK(std::arg(z) / dt == Approx(w).epsilon(5e-3));
 }
 
-}  // namespace test_validation_modes
+}  // namespace rodsweep::test_validation_modes

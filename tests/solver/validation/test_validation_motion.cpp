@@ -9,9 +9,7 @@
 #include "tests/solver/simulation.hpp"
 #include "tests/solver/stepping.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_motion {
+namespace rodsweep::test_validation_motion {
 
 /// As the bending rods of Shao et al. 2021: N = 20, 2 m, r = 0.05 m, held by its first segment, at 20 degrees at first.
 BendingRod deck_rod() {
@@ -130,4 +128,4 @@ TEST_CASE("Newton's residual falls quadratically to the floor of rounding") {
   CHECK(quadratic > 30);  // iterations that showed it, above the floor
 }
 
-}  // namespace test_validation_motion
+}  // namespace rodsweep::test_validation_motion

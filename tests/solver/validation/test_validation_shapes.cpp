@@ -5,9 +5,7 @@
 #include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_shapes {
+namespace rodsweep::test_validation_shapes {
 
 /// A wall-clamped straight rod of n segments along +x whose joints have this section and this rest turn for each length
 /// of a joint (radians per metre, local frame). Local x lies along `local_x`.
@@ -102,4 +100,4 @@ TEST_CASE("A cantilever whose axes are askew to its weight sags sideways too, as
   CHECK(tip(simulation.rod()).z() == Approx(expected.z()).epsilon(1e-3));
 }
 
-}  // namespace test_validation_shapes
+}  // namespace rodsweep::test_validation_shapes

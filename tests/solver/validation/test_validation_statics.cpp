@@ -5,9 +5,7 @@
 
 #include "tests/solver/simulation.hpp"
 
-using namespace rodsweep;
-
-namespace test_validation_statics {
+namespace rodsweep::test_validation_statics {
 
 constexpr double gravity = 9.81;
 
@@ -155,4 +153,4 @@ TEST_CASE("A finely divided hanging helix drops by Castigliano's value", "[.long
   CHECK(helix_drop(480, 0.01 * gravity) == Approx(1).epsilon(3e-5));
 }
 
-}  // namespace test_validation_statics
+}  // namespace rodsweep::test_validation_statics
