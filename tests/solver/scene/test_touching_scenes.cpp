@@ -62,17 +62,23 @@ std::vector<Vector3> closed_up(const Rod& rod) {
   return polygon;
 }
 
+template <class Spec>
+Spec touching(int segments, double radius_m, double youngs_modulus_pa) {
+  Spec p;
+  p.segments = segments;
+  p.radius_m = radius_m;
+  p.youngs_modulus_pa = youngs_modulus_pa;
+  p.contact = ContactSettings{};
+  return p;
+}
+
 Knot knot() {
-  Knot p;
-  p.segments = 60;
+  Knot p = touching<Knot>(60, 0.015, 1e5);
   p.length_m = 2;
-  p.radius_m = 0.015;
-  p.youngs_modulus_pa = 1e5;
   p.torsion_modulus_pa = 4e4;
   p.gravity_m_s2.setZero();
   p.damping_per_s = 5;
   p.pull_m_s = 0.5;
-  p.contact = ContactSettings{};
   return p;
 }
 
@@ -115,19 +121,16 @@ TEST_CASE("a knot that is pulled tightens and stays a knot, with contact alone")
     }
     CHECK(steps < 400);
     CHECK(knot_determinant(closed_up(t.scene.rods[0])) == (contact ? 3 : 1));
-    if (contact) CHECK(nearest > 0.99);
-    if (contact) CHECK(joint_gap(t.scene.rods[0]) < 1e-4);
-    if (contact) CHECK(nearest < 1.001);
+    if (!contact) continue;
+    CHECK(nearest > 0.99);
+    CHECK(nearest < 1.001);
+    CHECK(joint_gap(t.scene.rods[0]) < 1e-4);
   }
 }
 
 TEST_CASE("falling rods heap up on the floor") {
-  FallingRods p;
+  FallingRods p = touching<FallingRods>(5, 0.03, 1e6);
   p.rods = 4;
-  p.segments = 5;
-  p.radius_m = 0.03;
-  p.youngs_modulus_pa = 1e6;
-  p.contact = ContactSettings{};
   Scene start = build_scene(p);
   CHECK(start.rods.size() == 4);
   CHECK(start.rods[1].position[2].y() - start.rods[0].position[2].y() == Approx(0.2));
@@ -169,13 +172,9 @@ TEST_CASE("a lattice that falls on its edge comes to lie on the floor, whole") {
 }
 
 TEST_CASE("a rod fed onto the floor coils there") {
-  CoilingRod p;
-  p.segments = 30;
+  CoilingRod p = touching<CoilingRod>(30, 0.01, 1e5);
   p.length_m = 1;
-  p.radius_m = 0.01;
-  p.youngs_modulus_pa = 1e5;
   p.torsion_modulus_pa = 4e4;
-  p.contact = ContactSettings{};
   test::Touching t(build_scene(p), 0.005);
   CHECK(t.run(160) < 0.01);
   const Rod& rod = t.scene.rods[0];
@@ -191,13 +190,9 @@ TEST_CASE("a rod fed onto the floor coils there") {
 }
 
 TEST_CASE("the rings of a chain are linked, hang in each other and stay so") {
-  RingChain p;
+  RingChain p = touching<RingChain>(12, 0.02, 1e7);
   p.rings = 3;
   p.length_m = 1;
-  p.segments = 12;
-  p.radius_m = 0.02;
-  p.youngs_modulus_pa = 1e7;
-  p.contact = ContactSettings{};
   Scene start = build_scene(p);
   CHECK(test::nearest(start) > 1);
   CHECK(segment_count(p) == 36);
@@ -209,13 +204,9 @@ TEST_CASE("the rings of a chain are linked, hang in each other and stay so") {
 }
 
 TEST_CASE("the rods of a bundle swing together and touch") {
-  Bundle p;
+  Bundle p = touching<Bundle>(6, 0.02, 1e6);
   p.rods = 7;
-  p.segments = 6;
-  p.radius_m = 0.02;
   p.initial_angle_deg = 20;
-  p.youngs_modulus_pa = 1e6;
-  p.contact = ContactSettings{};
   Scene start = build_scene(p);
   CHECK(test::nearest(start) > 1.02);
   test::Touching t(start, 0.01);
