@@ -36,6 +36,11 @@ Edges tree(int depth, int branching);  ///< segment 0 the root, children numbere
 Edges ring(int segments);
 Edges net(int rows, int columns);
 int segments_of(const Edges& edges);
+struct Graph {
+  const char* name;
+  Edges edges;
+  std::vector<int> held;  ///< segments
+};
 std::vector<int> shuffled(int count, unsigned seed);        ///< the numbers from 0
 bool names_each_once(std::vector<int> numbers, int count);  ///< of the numbers from 0
 /// So many pairs of rows, any of them repeated or of a row with itself.

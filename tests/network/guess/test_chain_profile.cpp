@@ -24,7 +24,7 @@ TEST_CASE("joints lie on the free part of the rod, from the held end on") {
   CHECK_THAT(arc(Clamp::free), Catch::Approx(std::vector<float>{.2F, .4F, .6F, .8F}));
 }
 
-TEST_CASE("a linear profile is resampled exactly, between the joints and beyond them") {
+TEST_CASE("a linear profile is resampled exactly, between the joints and beyond them, and from one joint alone") {
   const std::vector<float> from{.1F, .3F, .35F, .8F}, to{0, .1F, .2F, .5F, .8F, 1};
   Tensor<float> values(2, 4), out = Tensor<float>::Ones(2, 6);
   for (Eigen::Index i = 0; i < 4; ++i) values.col(i) << 2 + 3 * from[i], 1;
@@ -33,13 +33,10 @@ TEST_CASE("a linear profile is resampled exactly, between the joints and beyond 
     CHECK(out(0, i) == Approx(1 + .5 * (2 + 3 * to[i])));
     CHECK(out(1, i) == Approx(1.5));
   }
-}
-
-TEST_CASE("one joint stands for the whole rod") {
-  Tensor<float> values(1, 1), out = Tensor<float>::Zero(1, 3);
-  values << 4;
-  add_resampled({.5F}, values, {0, .5F, 1}, 1, out);
-  CHECK((out.array() == 4).all());
+  Tensor<float> one(1, 1), everywhere = Tensor<float>::Zero(1, 3);
+  one << 4;
+  add_resampled({.5F}, one, {0, .5F, 1}, 1, everywhere);
+  CHECK((everywhere.array() == 4).all());
 }
 
 TEST_CASE("loads become multipliers again, forces and torques in their units") {

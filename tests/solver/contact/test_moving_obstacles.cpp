@@ -49,10 +49,7 @@ TEST_CASE("a plate that slides along a rod drags it by friction, at mu g until i
   CHECK(std::abs(smooth.scene.rods[0].velocity[0].x()) < 1e-12);
 }
 
-TEST_CASE("a rod on a belt that goes as fast stays on it, one on a belt across it rolls") {
-  Touching along(lying({2, 0, 0}, 0.4, plate({2, 0, 0})), dt);
-  along.run(50);
-  CHECK(along.scene.rods[0].velocity[0].x() == Approx(2).epsilon(1e-9));
+TEST_CASE("a rod on a belt across it rolls") {
   Touching across(lying({0, 0, 0}, 0.4, plate({0, 0, 0.3})), dt);
   across.run(100);
   const Rod& rod = across.scene.rods[0];  // it rolls on the belt: a third of its velocity, the rest is spin

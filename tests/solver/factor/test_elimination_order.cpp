@@ -68,13 +68,6 @@ TEST_CASE("the factor counts the fill of the order that it takes, and that of a 
   CHECK(factor.fill_in() < 0.4 * breadth_first);
 }
 
-TEST_CASE("an order that fills in gives way to a better one, one that does not is kept") {
-  const BlockMatrix chain = pattern_of(test::chain(9), {0});
-  const std::vector<int> bad = {0, 4, 2, 6, 1, 3, 5, 7};
-  REQUIRE(fill_of(chain, bad) > 0);
-  CHECK(BlockFactor(chain, bad).fill_in() == 0);
-}
-
 TEST_CASE("breadth first: every row once, neighbours near each other, from an end of what has ends; no fill there") {
   for (const Edges& edges : {test::chain(9), test::tree(3, 2), test::ring(8), test::net(4, 6)}) {
     const BlockMatrix pattern = pattern_of(edges, {0});

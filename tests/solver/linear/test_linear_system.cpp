@@ -9,15 +9,7 @@
 
 namespace rodsweep::test_linear_system {
 
-using test::DenseSystem;
-using test::Edges;
-using test::MatrixX;
-
-struct Graph {
-  const char* name;
-  Edges edges;
-  std::vector<int> held;
-};
+using test::DenseSystem, test::Graph, test::MatrixX;
 
 const std::vector<Graph>& graphs() {
   static const std::vector<Graph> all = {
