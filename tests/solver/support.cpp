@@ -153,6 +153,13 @@ void move_rigidly(Rod& rod, const Quaternion& turn, const Vector3& shift) {
   }
 }
 
+void set_rigid_velocity(Rod& rod, const Vector3& v, const Vector3& w) {
+  for (int s = 0; s < rod.segment_count(); ++s) {
+    rod.velocity[s] = v + w.cross(rod.position[s]);
+    rod.angular_velocity[s] = w;
+  }
+}
+
 BendingRod bending_rod(int segments, Clamp clamp) {
   BendingRod rod;
   rod.segments = segments;

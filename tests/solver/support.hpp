@@ -54,6 +54,8 @@ LinearSystem assembled(const Rod& rod, double dt = 0.02);
 /// C of all joints as linearize() has it.
 VectorX constraint_of(const Rod& rod);
 void move_rigidly(Rod& rod, const Quaternion& turn, const Vector3& shift);
+/// v and w of a rigid motion about the origin.
+void set_rigid_velocity(Rod& rod, const Vector3& v, const Vector3& w);
 
 /// A straight or bent rod whose constraints are zero, as the scenes build it.
 BendingRod bending_rod(int segments, Clamp clamp = Clamp::segment);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "network/encoding/graph_encoding.hpp"
-#include "solver/numbers/rotation.hpp"
+#include "solver/scene/scene_parts.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_graph_encoding {
@@ -29,30 +29,18 @@ Quaternion about_x(double angle) { return {std::cos(angle / 2), std::sin(angle /
 /// Three segments of 1 m, 1 m and 2 m along +z, hung by the first and bent about x by 0.3 and -0.2; the first joint is
 /// straight at rest, the second bent by 0.1. Y = 2e5 Pa, T = 3e6 Pa.
 Rod bent_rod() {
-  const double length[] = {1, 1, 2}, angle[] = {0, 0.3, 0.1};
-  std::vector<SegmentSpec> segments(3);
-  std::vector<JointSpec> joints(2);
-  Vector3 end(0, 5, 0);
-  for (int i = 0; i < 3; ++i) {
-    SegmentSpec& s = segments[std::size_t(i)];
-    s.orientation = about_x(angle[i]);
-    s.position_m = end + s.orientation * Vector3(0, 0, length[i] / 2);
-    end += s.orientation * Vector3(0, 0, length[i]);
-    s.length_m = length[i];
-    s.radius_m = 0.05;
-    s.density_kg_m3 = 1000;
-    s.is_static = i == 0;
-  }
-  for (int k = 0; k < 2; ++k) {
-    JointSpec& joint = joints[std::size_t(k)];
-    joint.a = k;
-    joint.b = k + 1;
-    joint.arm_a_m = {0, 0, length[k] / 2};
-    joint.arm_b_m = {0, 0, -length[k + 1] / 2};
-    joint.compliance_per_j = joint_compliance((length[k] + length[k + 1]) / 2, 0.05, 2e5, 3e6, 1e-6);
-    joint.rest = about_x(k == 0 ? 0 : 0.1);
-  }
-  Rod rod(segments, joints);
+  RodParameters p;
+  p.youngs_modulus_pa = 2e5;
+  p.torsion_modulus_pa = 3e6;
+  p.stretch_compliance_per_j = 1e-6;
+  std::vector<Vector3> ends{Vector3(0, 5, 0), Vector3(0, 5, 1)};
+  ends.push_back(ends[1] + about_x(0.3) * Vector3(0, 0, 1));
+  ends.push_back(ends[2] + about_x(0.1) * Vector3(0, 0, 2));
+  std::vector<SegmentSpec> segments = segments_through(ends, p);
+  segments[0].is_static = true;
+  Rod rod = chain(segments, p, 0);
+  rod.joints[0].rest = about_x(0);
+  rod.joints[1].rest = about_x(0.1);
   rod.orientation[1].coeffs() = -rod.orientation[1].coeffs();  // the same rotation, from the other hemisphere
   return rod;
 }

@@ -111,11 +111,7 @@ TEST_CASE(
     p.clamp = Clamp::free;
     Scene scene = build_scene(p);
     Rod& rod = scene.rods.front();
-    const Vector3 spin(0.3, 1, 2);
-    for (int s = 0; s < 10; ++s) {
-      rod.angular_velocity[s] = spin;
-      rod.velocity[s] = spin.cross(rod.position[s]) + Vector3(1, 2, 3);
-    }
+    test::set_rigid_velocity(rod, {1, 2, 3}, {0.3, 1, 2});
     const Vector3 momentum = linear_momentum(rod), turning = angular_momentum(rod);
     Simulation simulation(std::move(scene), 1e-3);
     simulation.run(500);

@@ -9,7 +9,7 @@
 
 namespace rodsweep::test_observables {
 
-using test::move_rigidly, test::Random;
+using test::move_rigidly, test::Random, test::set_rigid_velocity;
 
 /// Straight, of length 2, along +x.
 Rod straight(int segments, Clamp clamp) {
@@ -27,14 +27,6 @@ Rod bent(int segments, double angle) {
     rod.position[s] = rod.position[s - 1] + rod.orientation[s - 1] * joint.arm_a - rod.orientation[s] * joint.arm_b;
   }
   return rod;
-}
-
-/// v and w of a rigid motion about the origin.
-void set_rigid_velocity(Rod& rod, const Vector3& v, const Vector3& w) {
-  for (int s = 0; s < rod.segment_count(); ++s) {
-    rod.velocity[s] = v + w.cross(rod.position[s]);
-    rod.angular_velocity[s] = w;
-  }
 }
 
 TEST_CASE("a straight rod is as long as it was built, under every clamp and after rigid motion") {

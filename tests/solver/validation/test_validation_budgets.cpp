@@ -8,6 +8,7 @@
 
 #include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
+#include "tests/solver/support.hpp"
 
 namespace rodsweep::test_validation_budgets {
 
@@ -46,11 +47,9 @@ Scene tumbling(Scene scene) {
   scene.gravity_m_s2.setZero();
   Rod& rod = scene.rods.front();
   const Vector3 spin(0.4, -0.3, 1), centre = rod.position[rod.position.size() / 2];
-  for (std::size_t s = 0; s < rod.position.size(); ++s) {
-    rod.angular_velocity[s] = spin;
-    rod.velocity[s] = Vector3(0.1, 0.2, -0.3) + spin.cross(rod.position[s] - centre);
+  test::set_rigid_velocity(rod, Vector3(0.1, 0.2, -0.3) - spin.cross(centre), spin);
+  for (std::size_t s = 0; s < rod.position.size(); ++s)
     rod.velocity[s].z() += 0.3 * std::sin(0.9 * static_cast<double>(s));
-  }
   return scene;
 }
 

@@ -178,16 +178,10 @@ Tension tension_of(const Rod& rod, const Lattice& p) {
   return out;
 }
 
-const Vector3 a_turn(0.3, 1, 2);
-
 /// On its way, turning about its middle.
 Scene thrown(const Lattice& p) {
   Scene scene = build_scene(p);
-  Rod& rod = scene.rods.front();
-  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-    rod.angular_velocity[s] = a_turn;
-    rod.velocity[s] = a_turn.cross(rod.position[s]) + Vector3(1, 2, 3);
-  }
+  test::set_rigid_velocity(scene.rods.front(), {1, 2, 3}, {0.3, 1, 2});
   return scene;
 }
 

@@ -12,33 +12,20 @@ namespace rodsweep::test_validation_shapes {
 /// of a joint (radians per metre, local frame). Local x lies along `local_x`.
 Rod rod_with(int n, double length, const Section& section, const Vector3& rest_curvature,
              const Vector3& local_x = Vector3::UnitY()) {
+  BendingRod p;
+  p.segments = n;
+  p.length_m = length;
+  p.clamp = Clamp::wall;
+  Rod rod = build_scene(p).rods.front();
   Matrix3 frame;
   frame << local_x, Vector3::UnitX().cross(local_x), Vector3::UnitX();
-  std::vector<SegmentSpec> segments(1);
-  segments[0].orientation = Quaternion(frame);
-  segments[0].is_static = true;
-  std::vector<JointSpec> joints;
-  const double l = length / n;
-  for (int i = 0; i < n; ++i) {
-    SegmentSpec s;
-    s.position_m = Vector3((i + 0.5) * l, 0, 0);
-    s.orientation = Quaternion(frame);
-    s.length_m = l;
-    s.radius_m = 0.05;
-    s.density_kg_m3 = 1000;
-    segments.push_back(s);
-    JointSpec j;
-    j.a = i;
-    j.b = i + 1;
-    j.arm_a_m = Vector3(0, 0, i == 0 ? 0 : l / 2);
-    j.arm_b_m = Vector3(0, 0, -l / 2);
-    const double joint_length = i == 0 ? l / 2 : l;
-    j.compliance_per_j = joint_compliance(joint_length, section, inextensible_compliance(joint_length, 1000));
-    const double turn = rest_curvature.norm() * joint_length;
-    j.rest = turn > 0 ? Quaternion(Eigen::AngleAxisd(turn, rest_curvature.normalized())) : Quaternion::Identity();
-    joints.push_back(j);
+  for (Quaternion& q : rod.orientation) q = Quaternion(frame);
+  for (Joint& joint : rod.joints) {
+    joint.compliance = joint_compliance(joint.length, section, inextensible_compliance(joint.length, 1000));
+    const double turn = rest_curvature.norm() * joint.length;
+    joint.rest = turn > 0 ? Quaternion(Eigen::AngleAxisd(turn, rest_curvature.normalized())) : Quaternion::Identity();
   }
-  return Rod(segments, joints);
+  return rod;
 }
 
 Scene scene_of(const Rod& rod, const Vector3& gravity) {
