@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "solver/contact/contact_bodies.hpp"
-#include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
 #include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
@@ -18,14 +17,8 @@ namespace rodsweep::test {
 
 /// A straight rod from one point to another.
 inline Rod straight_rod(const Vector3& from, const Vector3& to, int segments, const RodParameters& p) {
-  const Vector3 along = (to - from) / segments;
-  const Quaternion orientation = turn_between(Vector3::UnitZ(), along);
-  std::vector<SegmentSpec> specs;
-  for (int i = 0; i < segments; ++i)
-    specs.push_back(segment_at(from + (i + 0.5) * along, orientation, along.norm(), p));
-  std::vector<JointSpec> joints;
-  for (int i = 1; i < segments; ++i) joints.push_back(joint_between(specs, i - 1, i, p, weight(specs, p)));
-  return Rod(specs, joints);
+  const std::vector<SegmentSpec> specs = segments_through(straight_line(from, to, segments), p);
+  return rodsweep::chain(specs, p, weight(specs, p));
 }
 
 /// A free rigid capsule on its way.

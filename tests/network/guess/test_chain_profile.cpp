@@ -1,5 +1,7 @@
 // Rods as functions of arc length: where joints are, what does not depend on division, what is refused.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "network/guess/knn.hpp"
 #include "solver/numbers/rotation.hpp"
@@ -104,23 +106,18 @@ TEST_CASE("a rod that turns about its held end has the same state however it is 
 
 TEST_CASE("joints in another order and direction are the same chain") {
   const Rod rod = test::moving_scene(6).rods[0];
-  std::vector<SegmentSpec> segments;
-  for (std::size_t s = 0; s < 6; ++s)
-    segments.push_back({rod.position[s], rod.orientation[s], rod.segments[s].length_m, rod.segments[s].radius_m,
-                        rod.segments[s].density_kg_m3, rod.segments[s].is_static});
-  std::vector<JointSpec> joints;
-  for (auto joint = rod.joints.rbegin(); joint != rod.joints.rend(); ++joint)
-    joints.push_back({joint->b, joint->a, joint->arm_b, joint->arm_a, joint->compliance, joint->rest.conjugate()});
-  Rod other(segments, joints);
-  other.velocity = rod.velocity;
-  other.angular_velocity = rod.angular_velocity;
+  Rod other = rod;
+  std::reverse(other.joints.begin(), other.joints.end());
+  for (Joint& joint : other.joints) {
+    std::swap(joint.a, joint.b);
+    std::swap(joint.arm_a, joint.arm_b);
+    joint.rest = joint.rest.conjugate();
+  }
   Tensor<float> state[2], loads[2];
   for (const int reversed : {0, 1}) {
-    Scene scene;
-    scene.rods.push_back(reversed ? other : rod);
-    LinearSystem system(scene.rods[0]);
+    Scene scene = test::scene_of(reversed ? other : rod);
     scene.rods[0].lambda.setZero();
-    system.assemble(scene.rods[0], 0.02);
+    const LinearSystem system = test::assembled(scene.rods[0]);
     VectorX solution(30);
     DirectSolve(scene).solve(system, {}, 0, solution);
     const ChainProfile profile(scene.rods[0], gravity);

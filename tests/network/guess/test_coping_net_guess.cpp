@@ -1,4 +1,5 @@
 // COPINGNet as an initial guess, in moving simulations: what it may never do, and what it costs.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -183,17 +184,9 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
 
 TEST_CASE("the joints' order does not matter") {
   // A tree whose joints are numbered otherwise: the same corrections, in the other order.
-  const test::Edges edges = test::tree(2, 2);
-  test::Edges reversed(edges.rbegin(), edges.rend());
-  const Rod rod = test::random_rod(edges, {0}, 5);
-  std::vector<SegmentSpec> segments;
-  for (std::size_t s = 0; s < rod.segments.size(); ++s)
-    segments.push_back({rod.position[s], rod.orientation[s], rod.segments[s].length_m, rod.segments[s].radius_m,
-                        rod.segments[s].density_kg_m3, rod.segments[s].is_static});
-  std::vector<JointSpec> joints;
-  for (auto joint = rod.joints.rbegin(); joint != rod.joints.rend(); ++joint)
-    joints.push_back({joint->a, joint->b, joint->arm_a, joint->arm_b, joint->compliance, joint->rest});
-  Rod other(segments, joints);
+  const Rod rod = test::random_rod(test::tree(2, 2), {0}, 5);
+  Rod other = rod;
+  std::reverse(other.joints.begin(), other.joints.end());
   const int count = rod.joint_count();
   for (int j = 0; j < count; ++j) other.lambda.segment<6>(6 * (count - 1 - j)) = rod.lambda.segment<6>(6 * j);
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {

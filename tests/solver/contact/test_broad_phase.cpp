@@ -1,5 +1,6 @@
 // Pairs of boxes against brute force, what is kept between steps, and which segments of a rod can touch.
 #include <catch2/catch.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -97,19 +98,10 @@ TEST_CASE("static pairs and segments without radius never touch; branches that l
   CHECK(bodies.matter(3, 11));
   CHECK(bodies.matter(2, 9));
 
-  std::vector<SegmentSpec> segments(3);
-  for (SegmentSpec& s : segments) {
-    s.length_m = 1;
-    s.radius_m = 0.05;
-    s.density_kg_m3 = 1000;
-  }
-  std::vector<JointSpec> joints(2);
-  for (int k = 0; k < 2; ++k) {
-    joints[k].a = 0;
-    joints[k].b = k + 1;
-    joints[k].arm_a_m = {0, 0, 0.5};
-    joints[k].arm_b_m = {0, 0, -0.5};
-  }
+  const std::vector<SegmentSpec> segments(3, segment_at(Vector3::Zero(), Quaternion::Identity(), 1, RodParameters{}));
+  std::vector<JointSpec> joints;
+  for (const int branch : {1, 2})
+    joints.push_back({0, branch, {0, 0, 0.5}, {0, 0, -0.5}, Vector6::Zero(), std::nullopt});
   Scene fork;
   fork.rods.emplace_back(segments, joints);
   CHECK_FALSE(ContactBodies(fork).matter(1, 2));

@@ -10,13 +10,8 @@
 namespace rodsweep::test_time_step {
 
 /// One free cylinder without gravity.
-Scene free_body(double length = 0.4, double radius = 0.1) {
-  SegmentSpec s;
-  s.position_m = {0.3, -0.2, 0.5};
-  s.orientation = Quaternion(0.4, 0.1, -0.7, 0.3).normalized();
-  s.length_m = length;
-  s.radius_m = radius;
-  s.density_kg_m3 = 800;
+Scene free_body() {
+  const SegmentSpec s{{0.3, -0.2, 0.5}, Quaternion(0.4, 0.1, -0.7, 0.3).normalized(), 0.4, 0.1, 800, false};
   Scene scene = test::scene_of(Rod({s}, {}));
   scene.gravity_m_s2.setZero();
   return scene;
