@@ -7,12 +7,7 @@ using namespace rodsweep;
 
 TEST_CASE("a recorded system puts its rod back to the state that it was assembled from") {
   const Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
-  StoredSystem system;
-  system.position = rod.position;
-  system.orientation = rod.orientation;
-  system.velocity = rod.velocity;
-  system.angular_velocity = rod.angular_velocity;
-  system.lambda = rod.lambda;
+  const StoredSystem system{{}, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, {}};
 
   Rod other = rod;
   for (std::size_t s = 0; s < other.segments.size(); ++s) {
@@ -28,9 +23,7 @@ TEST_CASE("a recorded system puts its rod back to the state that it was assemble
   CHECK(other.angular_velocity == rod.angular_velocity);
   CHECK(other.lambda == rod.lambda);
 
-  LinearSystem expected(rod), found(rod);
-  expected.assemble(rod, 0.02);
-  found.assemble(other, 0.02);
+  const LinearSystem expected = test::assembled(rod), found = test::assembled(other);
   CHECK(found.rhs() == expected.rhs());
   CHECK(found.matrix().dense() == expected.matrix().dense());
 }

@@ -1,5 +1,4 @@
-// Elimination trees against an elimination by sets: parents, counts, postorders; what a plan makes of them.
-#include <algorithm>
+// Elimination trees against an elimination by sets: parents, counts, costs; what a plan makes of them.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -34,19 +33,11 @@ TEST_CASE("parents and counts of an elimination tree are those of an elimination
   }
 }
 
-TEST_CASE("an elimination tree is numbered in a postorder, and costs what the given order does") {
+TEST_CASE("an elimination tree costs what the given order does, however it is numbered") {
   const BlockMatrix pattern = LinearSystem(test::random_rod(test::net(6, 7), {0}, 1)).matrix();
   for (unsigned seed = 0; seed < 5; ++seed) {
     const std::vector<int> order = shuffled(pattern.block_rows(), seed);
     const EliminationTree tree = elimination_tree(pattern, order);
-    std::vector<int> first(tree.columns());  // of the subtree, which is first .. k
-    for (int k = 0; k < tree.columns(); ++k) {
-      first[k] = k;
-      for (int c = 0; c < k; ++c)
-        if (tree.parent[c] == k) first[k] = std::min(first[k], first[c]);
-    }
-    for (int k = 0; k < tree.columns(); ++k)
-      for (int inside = first[k]; inside < k; ++inside) REQUIRE(tree.parent[inside] <= k);
     std::int64_t blocks = pattern.block_rows();
     for (const auto& column : later_neighbours(pattern, {order.rbegin(), order.rend()}))
       blocks += static_cast<std::int64_t>(column.size());
