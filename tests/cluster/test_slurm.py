@@ -105,7 +105,7 @@ class Slurmed(SlurmCase):
                                                                     check=False).stdout)
         shards = sorted(glob.glob(self.name + "-*of3.h5"))
         self.assertEqual(len(shards), 3)
-        self.assert_exit(rodsweep(0, "merge", *shards, "-o", self.path), ALL_DONE)
+        self.rodsweep(0, "merge", *shards, "-o", self.path)
         self.assert_as_undisturbed()
 
 

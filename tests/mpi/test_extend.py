@@ -5,6 +5,7 @@ Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
 """
 
 import os
+import re
 import shutil
 import signal
 import tempfile
@@ -12,7 +13,7 @@ import unittest
 
 import h5py
 import numpy as np
-from test_sweeps import ALL_DONE, SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, ranks_of, rodsweep, start, status, \
+from test_sweeps import SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, kill_all, rodsweep, start, status, \
     wait_for_tasks
 
 ROD = {"type": "bending_rod", "length_m": {"uniform": [1, 5]}, "radius_m": 0.05, "density_kg_m3": 1000,
@@ -28,28 +29,33 @@ class ExtendCase(SweepCase):
 
     def old(self, name="old", **changes):
         """A finished sweep of 4 tasks: its file."""
-        path = job(name, **{"samples": 2, "segments": (6, 9), "steps": 5, "guesses": OLD_GUESSES, **changes})
-        self.assert_exit(rodsweep(0, "run", path, "-o", f"{name}.h5"), ALL_DONE)
+        path = self.new(name, **changes)
+        self.rodsweep(0, "run", path, "-o", f"{name}.h5")
         return f"{name}.h5"
 
     def new(self, name="new", **changes):
         return job(name, **{"samples": 2, "segments": (6, 9), "steps": 5, "guesses": OLD_GUESSES, **changes})
 
-    def extend(self, path, old, says, ranks=(3,)):
-        """Extends `old` to the job and compares with a fresh run; the last file."""
+    def extend(self, path, old, shared, ranks=(3,)):
+        """Extends `old` to the job, which shares its tasks out so, and compares with a fresh run; the last file."""
         name = path.replace(".json", "")
-        self.assert_exit(rodsweep(0, "run", path, "-o", f"{name}-fresh.h5"), ALL_DONE)
+        self.rodsweep(0, "run", path, "-o", f"{name}-fresh.h5")
         before = checksum(old)
         for count in ranks:
             file = f"{name}-{count}.h5"
-            ran = rodsweep(count, "run", path, "-o", file, "--extend", old)
-            self.assert_exit(ran, ALL_DONE)
-            self.assertIn(says, ran.stderr)
+            ran = self.rodsweep(count, "run", path, "-o", file, "--extend", old)
+            self.assert_shared(ran, old, shared)
             self.assertNotIn("warning", ran.stderr)
             self.assert_same_results(f"{name}-fresh.h5", file)
             self.assert_whole(file)
         self.assertEqual(checksum(old), before)
         return file
+
+    def assert_shared(self, ran, old, shared):
+        """It says how many tasks there are, are copied, get their new guesses, and are run."""
+        said = re.search(rf"of (\d+) tasks (\d+) .*{re.escape(old)}, (\d+) .*, (\d+) ", ran.stderr)
+        self.assertIsNotNone(said, ran.stderr)
+        self.assertEqual(tuple(map(int, said.groups())), shared)
 
 
 class Extending(ExtendCase):
@@ -57,19 +63,16 @@ class Extending(ExtendCase):
         for sampling in ("random", "sobol"):
             with self.subTest(sampling=sampling):
                 old = self.old(f"old-{sampling}", sampling=sampling)
-                self.extend(self.new(f"samples-{sampling}", samples=5, sampling=sampling), old,
-                            "of 10 tasks 4 are copied from old-" + sampling + ".h5, 0 get their new guesses, 6 are run",
+                self.extend(self.new(f"samples-{sampling}", samples=5, sampling=sampling), old, (10, 4, 0, 6),
                             ranks=(0, 3) if sampling == "random" else (0,))
 
     def test_more_grid_values_inserted_and_a_plain_value_that_becomes_a_grid(self):
         path = self.new("values", segments=(12, 6, 7, 9), record={"trajectory_every": 2, "solves": "all"},
                         time={"step_s": {"grid": [0.01, 0.02]}, "steps": {"grid": [5, 11]}})
-        self.extend(path, self.old(), "of 32 tasks 4 are copied from old.h5, 0 get their new guesses, 28 are run",
-                    ranks=(0, 3))
+        self.extend(path, self.old(), (32, 4, 0, 28), ranks=(0, 3))
 
     def test_more_guesses_inserted_renamed_and_moved(self):
-        file = self.extend(self.new("guesses", guesses=NEW_GUESSES), self.old(),
-                           "of 4 tasks 0 are copied from old.h5, 4 get their new guesses, 0 are run", ranks=(0, 3))
+        file = self.extend(self.new("guesses", guesses=NEW_GUESSES), self.old(), (4, 0, 4, 0), ranks=(0, 3))
         with h5py.File(file) as h5:
             self.assertEqual(h5["timing/tasks/copied_guess"][:].tolist(), 4 * [[-1, 1, 1, -1, 1]])
             self.assertEqual(h5["timing/tasks/source_task"][:].tolist(), [0, 1, 2, 3])
@@ -83,9 +86,9 @@ class Extending(ExtendCase):
         record = {"solves": "summary", "trajectory_every": 1}
         old = self.old("short", record=record)
         more = self.new("more", record=record, samples=3, segments=(9, 6, 12), guesses=NEW_GUESSES)
-        file = self.extend(more, old, "of 9 tasks 0 are copied from short.h5, 4 get their new guesses, 5 are run")
+        file = self.extend(more, old, (9, 0, 4, 5))
         most = self.new("most", record=record, samples=4, segments=(9, 6, 12), guesses=NEW_GUESSES)
-        last = self.extend(most, file, f"of 12 tasks 9 are copied from {file}, 0 get their new guesses, 3 are run")
+        last = self.extend(most, file, (12, 9, 0, 3))
         starts = status(last)["starts"]
         self.assertEqual([s["source"] for s in starts], [old, file, ""])
         self.assertEqual([s["tasks"] for s in starts], [0, 9, 3])
@@ -97,38 +100,35 @@ class Extending(ExtendCase):
         varying = {"grid": ["previous", {"oracle": {"error": 0.1}}]}
         wider = {"grid": [{"oracle": {"error": 0.01}}, "previous", {"oracle": {"error": 0.1}}]}
         old = self.old("vary", guesses=["zero", varying])
-        self.extend(self.new("wider", guesses=["zero", {**wider, "label": "other"}]), old,
-                    "of 12 tasks 8 are copied from vary.h5, 4 get their new guesses, 0 are run", ranks=(0,))
+        self.extend(self.new("wider", guesses=["zero", {**wider, "label": "other"}]), old, (12, 8, 4, 0), ranks=(0,))
 
     def test_a_closed_loop_and_a_direct_simulation(self):
         method = {"method": {"grid": ["direct", "cg"]}}
         old = self.old("loop", evaluation="closed_loop", solve=method)
-        self.extend(self.new("longer", evaluation="closed_loop", solve=method, samples=3, guesses=NEW_GUESSES), old,
-                    "of 36 tasks 16 are copied from loop.h5, 0 get their new guesses, 20 are run")
+        longer = self.new("longer", evaluation="closed_loop", solve=method, samples=3, guesses=NEW_GUESSES)
+        self.extend(longer, old, (36, 16, 0, 20))
 
     def test_a_data_set_with_more_samples(self):
         small = {"segments": (6, 9), "steps": 5}
         path = data_job("few", samples=2, **small)
-        self.assert_exit(rodsweep(0, "run", path, "-o", "few.h5"), ALL_DONE)
-        self.extend(data_job("many", samples=4, **small), "few.h5",
-                    "of 8 tasks 4 are copied from few.h5, 0 get their new guesses, 4 are run")
+        self.rodsweep(0, "run", path, "-o", "few.h5")
+        self.extend(data_job("many", samples=4, **small), "few.h5", (8, 4, 0, 4))
 
     def test_an_unfinished_file_and_failures(self):
         solve = {"method": "cg", "preconditioner": "none", "tolerance": 1e-8, "max_iterations": 2}
         path = self.new("hard", evaluation="closed_loop", solve=solve)
-        self.assert_exit(rodsweep(0, "run", path, "-o", "hard.h5"), TASKS_FAILED)
+        self.rodsweep(0, "run", path, "-o", "hard.h5", code=TASKS_FAILED)
         with h5py.File("hard.h5", "r+") as h5:
             h5["tasks/state"][:2] = 0
             h5["tasks/outcome"][2] = b"timed_out"
-        ran = rodsweep(3, "run", path, "-o", "harder.h5", "--extend", "hard.h5")
-        self.assert_exit(ran, TASKS_FAILED)
-        self.assertIn("of 12 tasks 9 are copied from hard.h5, 0 get their new guesses, 3 are run", ran.stderr)
-        self.assert_exit(rodsweep(0, "run", path, "-o", "fresh.h5"), TASKS_FAILED)
+        ran = self.rodsweep(3, "run", path, "-o", "harder.h5", "--extend", "hard.h5", code=TASKS_FAILED)
+        self.assert_shared(ran, "hard.h5", (12, 9, 0, 3))
+        self.rodsweep(0, "run", path, "-o", "fresh.h5", code=TASKS_FAILED)
         self.assert_same_results("fresh.h5", "harder.h5")
 
     def test_provenance_is_kept(self):
         path = self.new("kept", samples=3)
-        self.extend(path, self.old(), "4 are copied", ranks=(0,))
+        self.extend(path, self.old(), (6, 4, 0, 2), ranks=(0,))
         first, second = status("kept-0.h5")["starts"]
         original, = status("old.h5")["starts"]
         self.assertEqual({**first, "source": ""}, original)
@@ -147,15 +147,13 @@ class Damage(ExtendCase):
             h5["steps/joint_gap"][int(h5["tasks/first_step"][2])] *= 1.5
         for name, changes in (("copied", {"samples": 3}), ("completed", {"guesses": NEW_GUESSES})):
             path = self.new(name, **changes)
-            self.assert_exit(rodsweep(0, "run", path, "-o", f"{name}-fresh.h5"), ALL_DONE)
+            self.rodsweep(0, "run", path, "-o", f"{name}-fresh.h5")
             for ranks in (0, 3) if name == "copied" else (3,):
                 file = f"{name}-{ranks}.h5"
-                ran = rodsweep(ranks, "run", path, "-o", file, "--extend", old)
-                self.assert_exit(ran, ALL_DONE)
+                ran = self.rodsweep(ranks, "run", path, "-o", file, "--extend", old)
                 self.assertEqual(ran.stderr.count("warning"), 2, ran.stderr)
                 for task in (1, 2):
-                    self.assertIn(f"task {task} of old.h5 is damaged: its data are not what was written (checksum); it "
-                                  "is run again as task", ran.stderr)
+                    self.assertIn(f"task {task} of old.h5 is damaged", ran.stderr)
                 self.assert_same_results(f"{name}-fresh.h5", file)
                 with h5py.File(file) as h5:
                     self.assertEqual(sorted(t for t in h5["timing/tasks/source_task"][:] if t >= 0), [0, 3])
@@ -164,14 +162,13 @@ class Damage(ExtendCase):
         changes = {"steps": 40, "samples": 12, "segments": (15, 30)}
         old = self.old("base", **changes)
         path = self.new("killed", **{**changes, "samples": 30, "guesses": NEW_GUESSES})
-        self.assert_exit(rodsweep(3, "run", path, "-o", "unkilled.h5"), ALL_DONE)
+        self.rodsweep(3, "run", path, "-o", "unkilled.h5")
         process = start(3, "run", path, "-o", "killed.h5", "--extend", old)
         wait_for_tasks(process, "killed.h5", 4)
-        for pid in [process.pid, *ranks_of(process).values()]:
-            os.kill(pid, signal.SIGKILL)
+        kill_all(process)
         process.communicate(timeout=30)
         self.assertGreater(status("killed.h5")["pending"], 0)
-        self.assert_exit(rodsweep(3, "run", path, "-o", "killed.h5", "--extend", old, "--resume"), ALL_DONE)
+        self.rodsweep(3, "run", path, "-o", "killed.h5", "--extend", old, "--resume")
         self.assert_same_results("unkilled.h5", "killed.h5")
         self.assert_whole("killed.h5")
         self.assertEqual([s["source"] for s in status("killed.h5")["starts"]], [old, "", ""])
@@ -198,13 +195,12 @@ class Elsewhere(ExtendCase):
         guesses = ["zero", {"copingnet": {"model": "models/net.h5"}}]
         for name, samples in (("old", 1), ("new", 2)):
             shutil.move(self.new(name, samples=samples, guesses=guesses), "jobs")
-        self.assert_exit(rodsweep(0, "run", "jobs/old.json", "-o", "far/away/old.h5"), ALL_DONE)
+        self.rodsweep(0, "run", "jobs/old.json", "-o", "far/away/old.h5")
 
     def assert_extended(self, path, ranks):
-        ran = rodsweep(ranks, "run", path, "-o", f"new-{ranks}.h5", "--extend", "far/away/old.h5")
-        self.assert_exit(ran, ALL_DONE)
-        self.assertIn("of 4 tasks 2 are copied from far/away/old.h5, 0 get their new guesses, 2 are run", ran.stderr)
-        self.assert_exit(rodsweep(0, "run", path, "-o", f"fresh-{ranks}.h5"), ALL_DONE)
+        ran = self.rodsweep(ranks, "run", path, "-o", f"new-{ranks}.h5", "--extend", "far/away/old.h5")
+        self.assert_shared(ran, "far/away/old.h5", (4, 2, 0, 2))
+        self.rodsweep(0, "run", path, "-o", f"fresh-{ranks}.h5")
         self.assert_same_results(f"fresh-{ranks}.h5", f"new-{ranks}.h5")
 
     def test_its_paths_begin_where_its_job_was_or_where_the_new_one_is(self):
@@ -223,60 +219,49 @@ class Elsewhere(ExtendCase):
             h5.attrs["remark"] = "not the same bytes"
         with open("adapted.json", "w", encoding="utf-8") as file:
             file.write(moved.replace("models/net.h5", "models/other.h5"))
-        refused = rodsweep(0, "run", "adapted.json", "-o", "no.h5", "--extend", "far/away/old.h5")
-        self.assert_exit(refused, USER_ERROR)
+        extending = ("-o", "no.h5", "--extend", "far/away/old.h5")
+        refused = self.rodsweep(0, "run", "adapted.json", *extending, code=USER_ERROR)
         self.assertIn("guesses", refused.stderr)
 
     def test_a_model_that_is_another_now_or_nowhere_is_no_reason_to_copy(self):
         with h5py.File("jobs/models/net.h5", "r+") as h5:
             h5.attrs["remark"] = "not the same bytes"
-        refused = rodsweep(0, "run", "jobs/new.json", "-o", "no.h5", "--extend", "far/away/old.h5")
-        self.assert_exit(refused, USER_ERROR)
-        self.assertIn("or the files that the job names have changed (/job, plan_hash)", refused.stderr)
+        extending = ("-o", "no.h5", "--extend", "far/away/old.h5")
+        refused = self.rodsweep(0, "run", "jobs/new.json", *extending, code=USER_ERROR)
+        self.assertIn("plan_hash", refused.stderr)
         os.remove("jobs/models/net.h5")
         for words in (("rerun", "far/away/old.h5", "0"), ("merge", "far/away/old.h5", "-o", "merged.h5")):
-            refused = rodsweep(0, *words)
-            self.assert_exit(refused, USER_ERROR)
-            self.assertIn("put the job's files back where they were:\n", refused.stderr)
+            refused = self.rodsweep(0, *words, code=USER_ERROR)
             self.assertIn("jobs/models/net.h5 is not there", refused.stderr)
 
     def test_rerun_and_merge_find_the_model_and_resume_takes_that_of_its_own_job(self):
         self.assertIn("identical", rodsweep(0, "rerun", "far/away/old.h5", "1").stdout)
-        self.assert_exit(rodsweep(0, "merge", "far/away/old.h5", "-o", "far/merged.h5"), ALL_DONE)
+        self.rodsweep(0, "merge", "far/away/old.h5", "-o", "far/merged.h5")
         self.assertIn("identical", rodsweep(0, "rerun", "far/merged.h5", "1").stdout)
         with h5py.File("far/away/old.h5", "r+") as h5:
             h5["tasks/state"][1] = 0
         shutil.move("jobs", "moved")
-        self.assert_exit(rodsweep(0, "run", "moved/old.json", "-o", "far/away/old.h5", "--resume"), ALL_DONE)
+        self.rodsweep(0, "run", "moved/old.json", "-o", "far/away/old.h5", "--resume")
 
 
 class Refusing(ExtendCase):
-    def assert_refused(self, words, *texts):
-        ran = rodsweep(3, "run", *words)
-        self.assert_exit(ran, USER_ERROR)
-        self.assertEqual(ran.stderr.count("rodsweep: error:"), 1, ran.stderr)
-        for text in texts:
-            self.assertIn(text, ran.stderr)
+    def assert_refused(self, job, output, old, *words, says):
+        self.assert_refused_once(3, "run", job, "-o", output, "--extend", old, *words, says=says)
 
     def test_jobs_that_differ_otherwise_and_wrong_files(self):
+        """The words of single refusals: tests/runner/file/test_extension.cpp."""
         old = self.old()
-        advice = "--extend takes the job of old.h5 (rodsweep info old.h5 --job) with more samples, more values in a grid, " \
-                 "more guesses or another time limit, and no other change; run this job without --extend"
-        for changes, *texts in (  # the words of single refusals: tests/runner/test_extension.cpp
-                ({"seed": 6}, "seed: 6 here, 5 in old.h5", advice),
-                ({"segments": (6, 7)}, 'scene.segments: {"grid":[6,7]} here, 9 in old.h5', advice)):
+        for changes, *says in (({"seed": 6}, "seed: 6 here, 5 in old.h5"),
+                               ({"segments": (6, 7)}, "scene.segments: ", "[6,7]", "9 in old.h5")):
             with self.subTest(changes=changes):
-                path = self.new("other", **changes)
-                self.assert_refused((path, "-o", "no.h5", "--extend", old), "other.json: ", *texts)
+                self.assert_refused(self.new("other", **changes), "no.h5", old, says=("other.json: ", "--extend", *says))
                 self.assertFalse(os.path.exists("no.h5"))
         path = self.new("fine", samples=3)
-        self.assert_refused((path, "-o", "no.h5", "--extend", "none.h5"), "none.h5: there is no such file")
-        self.assert_refused((path, "-o", "old.h5", "--extend", "old.h5"), "old.h5 is to be extended and cannot be the "
-                            "output too: name another file with -o FILE")
-        self.assert_exit(rodsweep(3, "run", path, "-o", "fine.h5"), ALL_DONE)
-        self.assert_refused((path, "-o", "fine.h5", "--extend", old), "fine.h5 exists already")
-        self.assert_refused((path, "-o", "fine.h5", "--extend", old, "--resume"), "fine.h5 was not begun with --extend "
-                            "old.h5, or that file was continued since; --resume it without --extend")
+        self.assert_refused(path, "no.h5", "none.h5", says="none.h5: there is no such file")
+        self.assert_refused(path, "old.h5", "old.h5", says=("old.h5", "-o FILE"))
+        self.rodsweep(3, "run", path, "-o", "fine.h5")
+        self.assert_refused(path, "fine.h5", old, says="fine.h5 exists already")
+        self.assert_refused(path, "fine.h5", old, "--resume", says="fine.h5 was not begun with --extend old.h5")
 
 
 if __name__ == "__main__":

@@ -115,8 +115,19 @@ def checksum(path):
 
 
 class SweepCase(unittest.TestCase):
-    def assert_exit(self, process, code):
+    def rodsweep(self, ranks, *words, code=ALL_DONE):
+        """Runs it to the end, which must be this exit code: the completed process."""
+        process = rodsweep(ranks, *words)
         self.assertEqual(process.returncode, code, f"{process.stdout}\n{process.stderr}")
+        return process
+
+    def assert_refused_once(self, ranks, *words, says):
+        process = self.rodsweep(ranks, *words, code=USER_ERROR)
+        self.assertEqual(process.stderr.count("rodsweep: error:"), 1, process.stderr)
+        self.assertNotIn("Primary job", process.stderr)  # nor does mpirun say it again, in twelve lines
+        self.assertEqual(process.stdout, "")
+        for text in (says,) if isinstance(says, str) else says:
+            self.assertIn(text, process.stderr)
 
     def assert_same_results(self, one, other):
         diff = subprocess.run(["h5diff", "--exclude-path", "/timing", "--exclude-path", "/runs", one, other],
@@ -132,25 +143,21 @@ class SweepCase(unittest.TestCase):
 class RankCounts(SweepCase):
     def test_results_are_the_same_on_1_2_and_5_ranks(self):
         path = job()
-        self.assert_exit(rodsweep(0, "run", path, "-o", "alone.h5"), ALL_DONE)
+        self.rodsweep(0, "run", path, "-o", "alone.h5")
         self.assert_whole("alone.h5")
         for ranks in (1, 2, 5):
             with self.subTest(ranks=ranks):
-                self.assert_exit(rodsweep(ranks, "run", path, "-o", f"{ranks}.h5"), ALL_DONE)
+                self.rodsweep(ranks, "run", path, "-o", f"{ranks}.h5")
                 self.assert_same_results("alone.h5", f"{ranks}.h5")
 
-    def test_results_are_the_same_in_a_closed_loop(self):
-        path = job("closed", evaluation="closed_loop")
-        for ranks in (1, 3):
-            self.assert_exit(rodsweep(ranks, "run", path, "-o", f"closed{ranks}.h5"), ALL_DONE)
-        self.assert_same_results("closed1.h5", "closed3.h5")
-
-    def test_a_data_set_is_the_same_on_1_2_and_3_ranks(self):
-        path = data_job()
-        for ranks in (1, 2, 3):
-            self.assert_exit(rodsweep(ranks, "run", path, "-o", f"data{ranks}.h5"), ALL_DONE)
-            self.assert_whole(f"data{ranks}.h5")
-            self.assert_same_results("data1.h5", f"data{ranks}.h5")
+    def test_closed_loops_and_data_sets_are_the_same_on_1_2_and_3_ranks(self):
+        for path in (job("closed", evaluation="closed_loop"), data_job()):
+            for ranks in (1, 2, 3):
+                with self.subTest(path=path, ranks=ranks):
+                    results = f"{ranks}-{path}.h5"
+                    self.rodsweep(ranks, "run", path, "-o", results)
+                    self.assert_whole(results)
+                    self.assert_same_results(f"1-{path}.h5", results)
 
 
 class InterruptedCase(SweepCase):
@@ -161,7 +168,7 @@ class InterruptedCase(SweepCase):
         """The job to interrupt, and what it gives when nothing interrupts it."""
         self.job, self.whole = path, path.replace(".json", "-whole.h5")
         if not os.path.exists(self.whole):
-            self.assert_exit(rodsweep(3, "run", path, "-o", self.whole), ALL_DONE)
+            self.rodsweep(3, "run", path, "-o", self.whole)
 
     def interrupt(self, path, ranks, hit):
         """Starts the sweep, calls hit(process) in the middle of it, and returns exit code and texts."""
@@ -175,7 +182,7 @@ class InterruptedCase(SweepCase):
         before = status(path)
         self.assertGreater(before["done"], 0)
         self.assertGreater(before["pending"], 0)
-        self.assert_exit(rodsweep(ranks, "run", self.job, "-o", path, "--resume"), ALL_DONE)
+        self.rodsweep(ranks, "run", self.job, "-o", path, "--resume")
         self.assert_same_results(self.whole, path)
         self.assert_whole(path)
         starts = status(path)["starts"]
@@ -211,9 +218,8 @@ class Interrupted(InterruptedCase):
             for name in preload:
                 del os.environ[name]
         self.assertEqual(code, STOPPED, stderr)
-        self.assertEqual(stderr.count("cannot go on: H5Dwrite failed"), 1, stderr)
+        self.assertEqual(stderr.count("H5Dwrite failed"), 1, stderr)
         self.assertIn("error: rank 2 on", stderr)
-        self.assertIn("what was finished is kept in the file; once the cause is gone, this continues: ", stderr)
         self.assertIn("-o full.h5 --resume", stderr)
         self.resume("full.h5", 3)
 
@@ -221,8 +227,8 @@ class Interrupted(InterruptedCase):
 class Signalled(InterruptedCase):
     def assert_stopped(self, code, stdout, stderr, path):
         self.assertEqual(code, STOPPED, stderr)
-        self.assertIn("left to do", stdout)
-        self.assertIn("nothing is lost. To continue:", stderr)
+        self.assertRegex(stdout, r"tasks: \d+ ok, \d+ left")
+        self.assertIn(f"-o {path} --resume", stderr)
         self.assertEqual(self.resume(path, 3)[0]["exit_code"], STOPPED)
 
     def test_after_a_signal_to_one_rank(self):
@@ -243,18 +249,15 @@ class Signalled(InterruptedCase):
             self.assertRegex(stderr, r"mpirun \(SIGTERM\).*--resume")
             self.resume(name, 3)  # mpirun may kill the ranks before they note how the run ended
 
-    def test_without_mpirun_ctrl_c_is_called_that(self):
-        result = self.interrupt("typed-alone.h5", 0, lambda p: p.send_signal(signal.SIGINT))
-        self.assert_stopped(*result, "typed-alone.h5")
-        self.assertIn("stopped early by Ctrl-C (SIGINT); nothing is lost", result[2])
-
-    def test_without_mpirun_and_with_a_second_signal_during_the_stop(self):
+    def test_without_mpirun_one_signal_or_a_second_one_during_the_stop(self):
         def twice(process):
             process.send_signal(signal.SIGINT)
             process.send_signal(signal.SIGTERM)
 
-        result = self.interrupt("alone.h5", 0, twice)
-        self.assert_stopped(*result, "alone.h5")
+        result = self.interrupt("typed-alone.h5", 0, lambda p: p.send_signal(signal.SIGINT))
+        self.assert_stopped(*result, "typed-alone.h5")
+        self.assertIn("Ctrl-C (SIGINT)", result[2])
+        self.assert_stopped(*self.interrupt("alone.h5", 0, twice), "alone.h5")
 
 
 class Killers(SweepCase):
@@ -265,7 +268,7 @@ class Killers(SweepCase):
         killer = 100
         path = job("killer", samples=1, segments=[20 + n // 50 for n in range(killer)] + [200], steps=40,
                    record={"solves": "summary", "norms": "one"})
-        self.assert_exit(rodsweep(3, "run", path, "-o", "undisturbed.h5"), ALL_DONE)
+        self.rodsweep(3, "run", path, "-o", "undisturbed.h5")
 
         done, accused = [], []
         for attempt in range(3):
@@ -281,17 +284,16 @@ class Killers(SweepCase):
         self.assertGreater(done[1], killer // 2)  # then last, perhaps beside the last of the others,
         self.assertEqual(list(accused[2]), [killer])  # then alone: no other task has lost a worker and is not done
 
-        last = rodsweep(3, "run", path, "-o", "killer.h5", "--resume")
-        self.assert_exit(last, TASKS_FAILED)
+        last = self.rodsweep(3, "run", path, "-o", "killer.h5", "--resume", code=TASKS_FAILED)
         after = status("killer.h5")
         self.assertEqual(after["outcomes"], {"ok": killer, "crashed": 1})
         self.assertEqual([(f["task"], f["outcome"]) for f in after["failures"]], [(killer, "crashed")])
-        self.assertIn("each of its 3 tries", after["failures"][0]["message"])
+        self.assertRegex(after["failures"][0]["message"], r"\b3\b")  # tries
         self.assertIn("--retry-failed", last.stdout)
         self.assert_whole("killer.h5")
 
         # Left alone it is a task like any other.
-        self.assert_exit(rodsweep(3, "run", path, "-o", "killer.h5", "--resume", "--retry-failed"), ALL_DONE)
+        self.rodsweep(3, "run", path, "-o", "killer.h5", "--resume", "--retry-failed")
         self.assert_same_results("undisturbed.h5", "killer.h5")
 
     def kill_who_runs(self, process, path, task):
@@ -324,8 +326,8 @@ class Watching(SweepCase):
         self.assertIn(len(now["running"]), (1, 2))
         self.assertEqual({r["host"] for r in now["running"]}, {os.uname().nodename})
         self.assertLessEqual({r["rank"] for r in now["running"]}, {1, 2})
-        self.assertRegex(rodsweep(0, "status", "watched.h5").stdout, r"tasks/s, .* left\n  task \d+ runs on .*, rank [12]\n"
-                         r"(.*\n)?start 0: .*; runs still, last sign of life \S+ m?s ago\n$")
+        self.assertRegex(rodsweep(0, "status", "watched.h5").stdout,
+                         r"tasks/s, .* left\n  task \d+ .*, rank [12]\n(.*\n)?start 0: .* \S+ m?s ago\n$")
 
         now = status("watched.h5")
         self.assertAlmostEqual(now["left_s"], now["pending"] / now["tasks_per_s"])
@@ -353,30 +355,22 @@ class Watching(SweepCase):
         for pid in [process.pid, *ranks.values()]:
             os.kill(pid, signal.SIGKILL)
         process.communicate(timeout=30)
-        self.assertRegex(said, r"runs still, but shows no sign of life for 3 min \d\d s: it may hang, or a disk does\n")
+        self.assertRegex(said, r"3 min \d\d s\b.*\n")
 
 
 class Refusals(SweepCase):
-    def assert_refused_once(self, process, text):
-        self.assert_exit(process, USER_ERROR)
-        self.assertEqual(process.stderr.count(text), 1, process.stderr)
-        self.assertEqual(process.stderr.count("rodsweep: error:"), 1, process.stderr)
-        self.assertNotIn("Primary job", process.stderr)  # nor does mpirun say it again, in twelve lines
-        self.assertEqual(process.stdout, "")
+    """Their words: tests/runner/file/test_file_refusals.cpp."""
 
-    def test_an_existing_file_stays_as_it_is(self):
-        path = job()
-        self.assert_exit(rodsweep(2, "run", path, "-o", "mine.h5"), ALL_DONE)
-        before = checksum("mine.h5")
-        self.assert_refused_once(rodsweep(3, "run", path, "-o", "mine.h5"), "mine.h5 exists already")
-        self.assertEqual(checksum("mine.h5"), before)
-
-    def test_a_file_of_another_job_is_not_continued(self):
-        self.assert_exit(rodsweep(2, "run", job("first"), "-o", "first.h5"), ALL_DONE)
-        before = checksum("first.h5")
-        self.assert_refused_once(rodsweep(3, "run", job("second", steps=7), "-o", "first.h5", "--resume"),
-                                 "first.h5 holds the results of another job")
-        self.assertEqual(checksum("first.h5"), before)
+    def test_what_is_there_stays_as_it_is(self):
+        path, other = job(), job("second", steps=7)
+        self.rodsweep(2, "run", path, "-o", "mine.h5")
+        with open("notes.h5", "w") as file:
+            file.write("not HDF5 at all")
+        before = [checksum(name) for name in ("mine.h5", "notes.h5")]
+        self.assert_refused_once(3, "run", path, "-o", "mine.h5", says="mine.h5 exists already")
+        self.assert_refused_once(3, "run", other, "-o", "mine.h5", "--resume", says="mine.h5 holds the results of another")
+        self.assert_refused_once(3, "run", path, "-o", "notes.h5", "--resume", says="notes.h5")
+        self.assertEqual([checksum(name) for name in ("mine.h5", "notes.h5")], before)
 
     def test_where_there_are_no_locks_a_file_that_is_being_written_is_known_by_its_time(self):
         os.environ.update({"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_LOCKS": "1"})
@@ -384,46 +378,35 @@ class Refusals(SweepCase):
         path = long_job("longer", 200)  # the second run is to find the first one at work
         first = start(3, "run", path, "-o", "unlocked.h5")
         wait_for_tasks(first, "unlocked.h5", 1)
-        self.assert_refused_once(rodsweep(2, "run", path, "-o", "unlocked.h5", "--resume"), "unlocked.h5 seems to be written by "
-                                 "another run, which showed a sign of life")
+        self.assert_refused_once(2, "run", path, "-o", "unlocked.h5", "--resume", says="unlocked.h5 seems to be written by")
         _, stderr = first.communicate(timeout=60)
-        self.assertEqual((first.returncode, stderr.count("is on a file system without locks")), (ALL_DONE, 1), stderr)
+        self.assertEqual((first.returncode, stderr.count("file system without locks")), (ALL_DONE, 1), stderr)
         with h5py.File("unlocked.h5", "r+") as file:
             file["runs/end"][0] = b""  # killed, then
         before = time.time() - 31
         os.utime("unlocked.h5", (before, before))
-        self.assert_exit(rodsweep(2, "run", path, "-o", "unlocked.h5", "--resume"), ALL_DONE)
-
-    def test_a_foreign_file_is_not_continued(self):
-        with open("notes.h5", "w") as file:
-            file.write("not HDF5 at all")
-        before = checksum("notes.h5")
-        self.assert_refused_once(rodsweep(3, "run", job(), "-o", "notes.h5", "--resume"), "notes.h5")
-        self.assertEqual(checksum("notes.h5"), before)
+        self.rodsweep(2, "run", path, "-o", "unlocked.h5", "--resume")
 
     def test_a_bad_job_is_refused_once_and_nothing_is_created(self):
         path = job("bad", time={"step_s": 0.02, "steps": -4})
-        self.assert_refused_once(rodsweep(3, "run", path, "-o", "bad.h5"), "time.steps")
+        self.assert_refused_once(3, "run", path, "-o", "bad.h5", says="time.steps")
         self.assertFalse(os.path.exists("bad.h5"))
 
-    def test_a_missing_job_is_refused_once(self):
-        self.assert_refused_once(rodsweep(3, "run", "nowhere.json"), "nowhere.json")
-        self.assertFalse(os.path.exists("results"))
-
-    def test_a_place_where_no_file_can_be_is_refused_once(self):
+    def test_paths_where_nothing_is_or_can_be_are_refused_once(self):
         path = job()
-        self.assert_refused_once(rodsweep(3, "run", path, "-o", path + "/out.h5"), path + "/out.h5 cannot be created")
+        self.assert_refused_once(3, "run", "nowhere.json", says="nowhere.json")
+        self.assert_refused_once(3, "run", path, "-o", path + "/out.h5", says=path + "/out.h5 cannot be created")
+        self.assertFalse(os.path.exists("results"))
 
 
 class Outcomes(SweepCase):
     def test_failed_tasks_are_data_and_make_exit_code_3_also_when_resumed(self):
         path = job("hard", evaluation="closed_loop",
                    solve={"method": "cg", "preconditioner": "none", "tolerance": 1e-8, "max_iterations": 2})
-        first = rodsweep(3, "run", path)
-        self.assert_exit(first, TASKS_FAILED)
+        first = self.rodsweep(3, "run", path, code=TASKS_FAILED)
         self.assertIn("iteration_limit", first.stdout)
         self.assertIn("and 19 more", first.stdout)
-        self.assert_exit(rodsweep(3, "run", path, "--resume"), TASKS_FAILED)
+        self.rodsweep(3, "run", path, "--resume", code=TASKS_FAILED)
         now = status("results/hard.h5")
         self.assertEqual((now["failed"], now["pending"]), (24, 0))
         self.assertEqual([s["exit_code"] for s in now["starts"]], [TASKS_FAILED, TASKS_FAILED])
@@ -431,100 +414,84 @@ class Outcomes(SweepCase):
     def test_a_limit_belongs_to_a_start_and_not_to_the_results(self):
         path = job("limited", samples=1, segments=[6, 3000], solve={"reference": "cg"}, guesses=["zero"],
                    time={"step_s": 0.02, "steps": 1, "newton_iterations": 1})
-        short = rodsweep(2, "run", path, "--task-time-limit", "0.1")
-        self.assert_exit(short, TASKS_FAILED)
-        self.assertIn("time limit of 0.1 s has passed", short.stdout)
+        short = self.rodsweep(2, "run", path, "--task-time-limit", "0.1", code=TASKS_FAILED)
+        self.assertIn("0.1 s", short.stdout)
         self.assertEqual(status("results/limited.h5")["outcomes"], {"ok": 1, "timed_out": 1})
-        self.assert_exit(rodsweep(2, "run", path, "--resume", "--retry-failed"), ALL_DONE)
-        self.assert_exit(rodsweep(2, "run", path, "-o", "unlimited.h5"), ALL_DONE)
+        self.rodsweep(2, "run", path, "--resume", "--retry-failed")
+        self.rodsweep(2, "run", path, "-o", "unlimited.h5")
         self.assert_same_results("unlimited.h5", "results/limited.h5")
 
     def test_a_task_that_no_start_has_time_for_is_named_and_ends_the_sweep_once_the_others_are_done(self):
         path = job("lengthy", samples=1, segments=[6, 8, 2000], guesses=["zero"], record={"solves": "summary"},
                    time={"step_s": 0.001, "steps": 1000})
         limit = ("--time-limit", "5")    # ten times what the short ones take
-        self.assert_exit(rodsweep(2, "run", path, *limit), STOPPED)  # it comes first, and nothing is known of it
-        second = rodsweep(2, "run", path, *limit, "--resume")
-        self.assert_exit(second, TOO_LONG)
+        self.rodsweep(2, "run", path, *limit, code=STOPPED)  # it comes first, and nothing is known of it
+        second = self.rodsweep(2, "run", path, *limit, "--resume", code=TOO_LONG)
         self.assertEqual(status("results/lengthy.h5")["outcomes"], {"ok": 2})
-        self.assertIn("no task that is left would end within a time limit of 5.0 s: task 2, the longest, would take about",
-                      second.stderr)
-        self.assertRegex(rodsweep(0, "status", "results/lengthy.h5").stdout, "what is left needs a longer time limit")
-        bounded = rodsweep(2, "run", path, *limit, "--resume", "--task-time-limit", "1")
-        self.assert_exit(bounded, TASKS_FAILED)
+        self.assertRegex(second.stderr, r"limit of 5\.0 s.*\btask 2\b")
+        self.assertIn("time limit", rodsweep(0, "status", "results/lengthy.h5").stdout)
+        self.rodsweep(2, "run", path, *limit, "--resume", "--task-time-limit", "1", code=TASKS_FAILED)
         self.assertEqual(status("results/lengthy.h5")["outcomes"], {"ok": 2, "timed_out": 1})
 
     def test_a_task_beyond_its_share_of_memory_is_an_error_and_no_death(self):
         path = job("large", samples=1, segments=[6, 300000], guesses=["zero"], record={"solves": "summary"},
                    time={"step_s": 0.02, "steps": 1, "newton_iterations": 1})
-        bounded = rodsweep(2, "run", path, "--memory-limit-gb", "0.4")
-        self.assert_exit(bounded, TASKS_FAILED)
+        bounded = self.rodsweep(2, "run", path, "--memory-limit-gb", "0.4", code=TASKS_FAILED)
         self.assertEqual(status("results/large.h5")["outcomes"], {"ok": 1, "error": 1})
-        self.assertIn("more than the 400 MB that this process may have", bounded.stdout)
-
-    def test_a_bound_on_memory_below_what_the_program_needs_is_refused(self):
-        refused = rodsweep(0, "run", job("tiny"), "--memory-limit-gb", "0.005")
-        self.assert_exit(refused, USER_ERROR)
+        self.assertIn("400 MB", bounded.stdout)
+        refused = self.rodsweep(0, "run", job("tiny"), "--memory-limit-gb", "0.005", code=USER_ERROR)
         self.assertIn("--memory-limit-gb", refused.stderr)
 
     def test_tasks_whose_results_do_not_fit_into_memory_are_left_out_and_named(self):
         path = job("record", samples=1, segments=[6, 4000], guesses=["zero"],
                    time={"step_s": 0.02, "steps": 2000, "newton_iterations": 1},
                    record={"solves": "summary", "trajectory_every": 1})  # of 460 MB, of which none is written
-        bounded = rodsweep(2, "run", path, "--memory-limit-gb", "0.3")
-        self.assert_exit(bounded, TOO_LONG)
-        self.assertRegex(bounded.stderr, r"task 1 keeps 4\d\d MB of results in memory until it ends, and a rank has "
-                                         r"2\d\d MB left: it is left out\. fewer ranks on a host leave each more")
-        self.assertIn("To continue with more: ", bounded.stderr)
+        bounded = self.rodsweep(2, "run", path, "--memory-limit-gb", "0.3", code=TOO_LONG)
+        self.assertRegex(bounded.stderr, r"task 1 .*\b4\d\d MB.*\b2\d\d MB")
+        self.assertIn("--resume", bounded.stderr)
         now = status("results/record.h5")
         self.assertEqual((now["outcomes"], now["pending"]), ({"ok": 1}, 1))
         plan = json.loads(rodsweep(0, "plan", path, "--json").stdout)
         self.assertGreater(plan["probes"][-1]["memory_bytes"], 448e6)
-        self.assertRegex(rodsweep(0, "plan", path).stdout, r"memory   [45]\d\d MB at most of the tasks tried, a process each; "
-                                                           r"this host has room for \d+\n")
+        self.assertRegex(rodsweep(0, "plan", path).stdout, r"memory +[45]\d\d MB .*\d+\n")
 
     def test_resume_starts_a_sweep_that_has_no_file_and_does_nothing_to_a_finished_one(self):
         path = job("fresh")
-        self.assert_exit(rodsweep(2, "run", path, "--resume"), ALL_DONE)
-        self.assert_exit(rodsweep(3, "run", path, "--resume"), ALL_DONE)
+        self.rodsweep(2, "run", path, "--resume")
+        self.rodsweep(3, "run", path, "--resume")
         self.assertEqual([s["tasks"] for s in status("results/fresh.h5")["starts"]], [6, 0])
 
     def test_more_workers_than_cores_are_warned_of_and_marked(self):
         ranks = len(os.sched_getaffinity(0)) + 2
-        crowded = rodsweep(ranks, "run", job("crowded"))
-        self.assert_exit(crowded, ALL_DONE)
+        crowded = self.rodsweep(ranks, "run", job("crowded"))
         self.assertEqual(crowded.stderr.count("warning"), 1, crowded.stderr)
         self.assertTrue(status("results/crowded.h5")["starts"][0]["oversubscribed"])
-        self.assert_exit(rodsweep(2, "run", job("roomy")), ALL_DONE)
+        self.rodsweep(2, "run", job("roomy"))
         self.assertFalse(status("results/roomy.h5")["starts"][0]["oversubscribed"])
 
 
 class Speaking(SweepCase):
-    def test_commands_that_need_no_ranks_speak_once_under_mpirun(self):
-        path = job()
-        for words, text in ((("validate", path), "sound, 6 tasks"), (("--version",), "Open MPI"),
-                            (("plan", path), "core-hours"), (("plan", path, "--no-probe"), "tasks    6"),
-                            (("run", "--help"), "Exit codes:")):
+    def speak_once(self, *rows):
+        for words, text in rows:
             with self.subTest(words=words):
-                said = rodsweep(3, *words)
-                self.assert_exit(said, 0)
+                said = self.rodsweep(3, *words)
                 self.assertEqual(said.stdout.count(text), 1, said.stdout)
 
+    def test_commands_that_need_no_ranks_speak_once_under_mpirun(self):
+        path = job()
+        self.speak_once((("validate", path), "6 tasks"), (("--version",), "Open MPI"), (("plan", path), "core-hours"),
+                        (("plan", path, "--no-probe"), "tasks    6"), (("run", "--help"), "Exit codes:"))
+
     def test_commands_on_files_work_and_speak_once_under_mpirun(self):
-        self.assert_exit(rodsweep(2, "run", job("files")), ALL_DONE)
+        self.rodsweep(2, "run", job("files"))
         path = "results/files.h5"
-        for words, text in ((("query", path), "cg_ratio.previous"), (("schema",), '"rodsweep job"'),
-                            (("pack", path), "6 finished tasks verified"), (("rerun", path, "3"), "identical to task 3")):
-            with self.subTest(words=words):
-                said = rodsweep(3, *words)
-                self.assert_exit(said, ALL_DONE)
-                self.assertEqual(said.stdout.count(text), 1, said.stdout)
+        self.speak_once((("query", path), "cg_ratio.previous"), (("schema",), '"rodsweep job"'),
+                        (("pack", path), "6 finished tasks"), (("rerun", path, "3"), "identical to task 3"))
         made = sorted(name for name in os.listdir("results") if name.startswith("files"))
         self.assertEqual(made, ["files-packed.h5", "files-task-3.h5", "files.h5"])
 
     def test_results_go_to_stdout_and_progress_to_stderr_without_colours(self):
-        ran = rodsweep(2, "run", job("said"))
-        self.assert_exit(ran, ALL_DONE)
+        ran = self.rodsweep(2, "run", job("said"))
         self.assertIn("6 tasks: 6 ok", ran.stdout)
         self.assertIn("next: ", ran.stdout)
         self.assertNotIn("\x1b", ran.stdout + ran.stderr)
@@ -534,7 +501,7 @@ class Speaking(SweepCase):
 class Alone(SweepCase):
     def test_the_job_comes_back_byte_for_byte(self):
         path = job("kept")
-        self.assert_exit(rodsweep(0, "run", path), ALL_DONE)
+        self.rodsweep(0, "run", path)
         with open(path) as file:
             self.assertEqual(rodsweep(0, "info", "results/kept.h5", "--job").stdout, file.read())
 
@@ -542,19 +509,9 @@ class Alone(SweepCase):
         plan = json.loads(rodsweep(0, "plan", job("planned"), "--json").stdout)
         self.assertEqual((plan["tasks"], plan["steps"]), (6, 36))
         self.assertGreater(plan["core_hours"], 0)
-        self.assert_exit(rodsweep(0, "run", "planned.json"), ALL_DONE)
+        self.rodsweep(0, "run", "planned.json")
         size = os.path.getsize("results/planned.h5")
         self.assertLess(abs(plan["file_bytes"] - size), 0.2 * size)
-
-    def test_a_plan_of_summaries_tells_their_smaller_size(self):
-        sizes = []
-        for solves in ("all", "summary"):
-            path = job(solves, steps=40, record={"solves": solves})
-            sizes.append(json.loads(rodsweep(0, "plan", path, "--json", "--no-probe").stdout)["file_bytes"])
-            self.assert_exit(rodsweep(0, "run", path), ALL_DONE)
-            size = os.path.getsize(f"results/{solves}.h5")
-            self.assertLess(abs(sizes[-1] - size), 0.2 * size)
-        self.assertLess(sizes[1], 0.6 * sizes[0])
 
 
 if __name__ == "__main__":

@@ -12,8 +12,7 @@ import unittest
 
 import h5py
 import numpy as np
-from test_sweeps import ALL_DONE, STOPPED, SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, kill_all, ranks_of, \
-    rodsweep, start, status
+from test_sweeps import STOPPED, SweepCase, TASKS_FAILED, checksum, data_job, kill_all, ranks_of, rodsweep, start, status
 
 
 def train_job(name="train", **changes):
@@ -30,8 +29,7 @@ def train_job(name="train", **changes):
 class TrainingCase(SweepCase):
     def setUp(self):
         if not os.path.exists("data.h5"):
-            self.assert_exit(rodsweep(0, "run", data_job(samples=12, steps=10, record={"systems": "first"}), "-o", "data.h5"),
-                             ALL_DONE)
+            self.rodsweep(0, "run", data_job(samples=12, steps=10, record={"systems": "first"}), "-o", "data.h5")
 
     def assert_finished(self, path):
         self.assertTrue(status(path)["ended"])
@@ -47,20 +45,17 @@ class Learning(TrainingCase):
                 ("hops", {"network": {"encoding": "paper_residual", "processor": "message_passing", "base": "none", "latent": 16,
                                       "steps": 2, "best_length": False, "moves": True}, "training": {"loss": "mse"}})):
             path = train_job(name, **changes)
-            alone = rodsweep(0, "run", path, "-o", f"{name}.h5")
-            self.assert_exit(alone, ALL_DONE)
-            self.assertIn("all 3 epochs; the model is that of epoch", alone.stdout)
-            self.assertIn("CG ratio on 5 validation simulations", alone.stdout)
+            alone = self.rodsweep(0, "run", path, "-o", f"{name}.h5")
+            self.assertRegex(alone.stdout, r"3 epochs.*epoch \d(.*\n)*.*\b5 validation simulations")
             for ranks in (2, 4, 6) if name == "factors" else (3,):
                 with self.subTest(name=name, ranks=ranks):
-                    ran = rodsweep(ranks, "run", path, "-o", f"{name}{ranks}.h5")
-                    self.assert_exit(ran, ALL_DONE)
+                    self.rodsweep(ranks, "run", path, "-o", f"{name}{ranks}.h5")
                     self.assert_same_results(f"{name}.h5", f"{name}{ranks}.h5")
                     self.assert_finished(f"{name}{ranks}.h5")
                     self.assertEqual(status(f"{name}{ranks}.h5")["starts"][0]["ranks"], ranks)
 
     def test_what_a_model_file_tells(self):
-        self.assert_exit(rodsweep(0, "run", train_job("told")), ALL_DONE)
+        self.rodsweep(0, "run", train_job("told"))
         with h5py.File("results/told.h5") as file:
             self.assertEqual(file.attrs["kind"], b"model")
             self.assertEqual(file["training/training_loss"].shape, (3,))
@@ -81,7 +76,7 @@ class Stopping(TrainingCase):
         super().setUp()
         self.job = train_job("long", training={"epochs": 600, "batch": 60, "ratio_every_epochs": 100})
         if not os.path.exists("whole.h5"):
-            self.assert_exit(rodsweep(2, "run", self.job, "-o", "whole.h5"), ALL_DONE)
+            self.rodsweep(2, "run", self.job, "-o", "whole.h5")
 
     def interrupt(self, path, ranks, hit):
         process = start(ranks, "run", self.job, "-o", path)
@@ -97,8 +92,7 @@ class Stopping(TrainingCase):
         return process.returncode, stdout, stderr
 
     def resume(self, path, ranks):
-        resumed = rodsweep(ranks, "run", self.job, "-o", path, "--resume")
-        self.assert_exit(resumed, ALL_DONE)
+        resumed = self.rodsweep(ranks, "run", self.job, "-o", path, "--resume")
         self.assertIn("continued after step", resumed.stderr)
         self.assert_same_results("whole.h5", path)
         self.assertTrue(status(path)["ended"])
@@ -111,7 +105,7 @@ class Stopping(TrainingCase):
                 code, stdout, stderr = self.interrupt(f"{name}.h5", ranks, hit)
                 self.assertEqual(code, STOPPED, stderr)
                 self.assertIn(" of 600 epochs", stdout)
-                self.assertIn("nothing is lost. To continue:", stderr)
+                self.assertIn(f"-o {name}.h5 --resume", stderr)
                 self.assertEqual(status(f"{name}.h5")["starts"][0]["exit_code"], STOPPED)
                 self.resume(f"{name}.h5", 3 if name == "one" else 1)
 
@@ -122,32 +116,25 @@ class Stopping(TrainingCase):
 
 
 class Refused(TrainingCase):
-    def assert_refused_once(self, process, text):
-        self.assert_exit(process, USER_ERROR)
-        self.assertEqual(process.stderr.count(text), 1, process.stderr)
-        self.assertEqual(process.stderr.count("rodsweep: error:"), 1, process.stderr)
-
     def test_what_a_training_does_not_touch(self):
         path = train_job("first")
-        self.assert_exit(rodsweep(0, "run", path, "-o", "first.h5"), ALL_DONE)
+        self.rodsweep(0, "run", path, "-o", "first.h5")
         before = checksum("first.h5")
         other = train_job("other", training={"rate": 0.01})
-        for number, (words, text) in enumerate((
-                ((path, "-o", "first.h5"), "first.h5 exists already"),
-                ((other, "-o", "first.h5", "--resume"),
-                 "first.h5 cannot be continued with other.json: training.rate was 0.002 and is 0.01"),
-                ((path, "-o", "new.h5", "--extend", "data.h5"), "a training extends nothing"),
-                ((train_job("lost", data="nowhere.h5"),), "lost.json: data: there is no file nowhere.h5"),
-                ((data_job("data"), "-o", "first.h5", "--resume"), "first.h5 holds a trained model"))):
-            with self.subTest(text=text):
-                self.assert_refused_once(rodsweep(2 if number < 2 else 0, "run", *words), text)
-        for words in (("query", "first.h5"), ("pack", "first.h5"), ("rerun", "first.h5", "0")):
+        for ranks, says, *words in (
+                (2, "first.h5 exists already", "run", path, "-o", "first.h5"),
+                (2, ("first.h5", "other.json", "training.rate was 0.002 and is 0.01"),
+                 "run", other, "-o", "first.h5", "--resume"),
+                (0, "--extend", "run", path, "-o", "new.h5", "--extend", "data.h5"),
+                (0, "lost.json: data: there is no file nowhere.h5", "run", train_job("lost", data="nowhere.h5")),
+                (0, "first.h5 holds a trained model", "run", data_job("data"), "-o", "first.h5", "--resume"),
+                (0, "first.h5", "query", "first.h5"), (0, "first.h5", "pack", "first.h5"),
+                (0, "first.h5", "rerun", "first.h5", "0")):
             with self.subTest(words=words):
-                self.assert_refused_once(rodsweep(0, *words), "first.h5")
+                self.assert_refused_once(ranks, *words, says=says)
         self.assertEqual(checksum("first.h5"), before)
-        again = rodsweep(2, "run", path, "-o", "first.h5", "--resume")
-        self.assert_exit(again, ALL_DONE)
-        self.assertIn("the training has ended already", again.stderr)
+        again = self.rodsweep(2, "run", path, "-o", "first.h5", "--resume")
+        self.assertIn("ended already", again.stderr)
         self.assertEqual(checksum("first.h5"), before)
         self.assertFalse(os.path.exists("results/lost.h5"))
 
@@ -166,19 +153,17 @@ class Refused(TrainingCase):
     def test_another_data_set_is_no_continuation(self):
         self.stopped_training("moved")
         other = data_job("other_data", samples=12, steps=10, seed=99, record={"systems": "first"})
-        self.assert_exit(rodsweep(0, "run", other, "-o", "other_data.h5"), ALL_DONE)
+        self.rodsweep(0, "run", other, "-o", "other_data.h5")
         path = train_job("moved", data="other_data.h5", training={"epochs": 1000000})
-        self.assert_refused_once(rodsweep(2, "run", path, "-o", "moved.h5", "--resume"),
-                                 "other_data.h5 is not the data set that it was begun with")
+        self.assert_refused_once(2, "run", path, "-o", "moved.h5", "--resume", says=("moved.h5", "other_data.h5"))
 
     def test_a_training_that_diverges_says_so_and_keeps_what_it_has(self):
         path = self.stopped_training("wild")
         kept = json.loads(rodsweep(0, "info", "wild.h5", "--json").stdout)
         with h5py.File("wild.h5", "r+") as file:
             file["checkpoint/weights"][:] *= np.float32(1e30)
-        ran = rodsweep(2, "run", path, "-o", "wild.h5", "--resume")
-        self.assert_exit(ran, TASKS_FAILED)
-        self.assertIn("loss is not finite any more", ran.stdout)
+        ran = self.rodsweep(2, "run", path, "-o", "wild.h5", "--resume", code=TASKS_FAILED)
+        self.assertIn("not finite", ran.stdout)
         now = json.loads(rodsweep(0, "info", "wild.h5", "--json").stdout)
         self.assertEqual((now["hash"], now["best_epoch"]), (kept["hash"], kept["best_epoch"]))
         self.assertEqual(now["starts"][1]["exit_code"], TASKS_FAILED)
@@ -192,7 +177,7 @@ class Refused(TrainingCase):
         self.assertNotIn("core_hours", json.loads(rodsweep(0, "plan", path, "--json", "--no-probe").stdout))
         said = rodsweep(3, "plan", path)
         self.assertEqual(said.stdout.count("parameters"), 1, said.stdout)
-        self.assertIn("planned.json: sound, trains a model", rodsweep(0, "validate", path).stdout)
+        self.assertIn("planned.json: ", self.rodsweep(0, "validate", path).stdout)
 
 
 if __name__ == "__main__":
