@@ -2,7 +2,11 @@
 
 import json
 import os
+import shutil
 import subprocess
+import unittest
+
+import h5py
 
 RODSWEEP = os.environ["RODSWEEP"]
 ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, OUTPUT_LOST = 0, 2, 3, 4, 7
@@ -22,15 +26,47 @@ def rodsweep(*words, **options):
                           **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options})
 
 
+def write_job(name, **changes):
+    """Path of JOB with changes, in jobs/. A change to None takes a key away."""
+    os.makedirs("jobs", exist_ok=True)
+    path = os.path.join("jobs", name + ".json")
+    with open(path, "w", encoding="utf-8") as file:
+        values = {**JOB, "name": name, **changes}
+        json.dump({key: value for key, value in values.items() if value is not None}, file)
+    return path
+
+
 def sweep(name="small", **changes):
-    """Path of the results of JOB with changes; made once. A change to None takes a key away."""
+    """Path of the results of JOB with changes; made once."""
     results = os.path.join("results", name + ".h5")
     if not os.path.exists(results):
-        os.makedirs("jobs", exist_ok=True)
-        job = os.path.join("jobs", name + ".json")
-        with open(job, "w", encoding="utf-8") as file:
-            values = {**JOB, "name": name, **changes}
-            json.dump({key: value for key, value in values.items() if value is not None}, file)
-        ran = rodsweep("run", job)
+        ran = rodsweep("run", write_job(name, **changes))
         assert ran.returncode in (ALL_DONE, TASKS_FAILED), ran.stderr
     return results
+
+
+def changed(path, change, name="small"):
+    """`path`, a copy of a sweep's file after change(its h5py.File)."""
+    shutil.copy(sweep(name), path)
+    with h5py.File(path, "r+") as h5:
+        change(h5)
+    return path
+
+
+class Case(unittest.TestCase):
+    def said(self, *words, code=ALL_DONE, **options):
+        """Runs the program to its end, which must be this exit code, and returns its standard output."""
+        done = rodsweep(*words, **options)
+        self.assertEqual(done.returncode, code, f"{done.stdout}\n{done.stderr}")
+        return done.stdout
+
+    def shown(self, *words):
+        """The value of what it prints as JSON."""
+        return json.loads(self.said(*words, "--json"))
+
+    def assert_refused(self, words, *texts):
+        """With these words among the errors, and nothing on standard output."""
+        done = rodsweep(*words)
+        self.assertEqual((done.returncode, done.stdout), (USER_ERROR, ""), done.stderr)
+        for text in texts:
+            self.assertIn(text, done.stderr)

@@ -9,8 +9,7 @@ import socket
 import subprocess
 import unittest
 
-import h5py
-from program import ALL_DONE, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, rodsweep, sweep
+from program import ALL_DONE, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, changed, rodsweep, sweep
 
 JOB = os.path.join("jobs", "small.json")
 
@@ -34,7 +33,7 @@ def with_room_for(size):
     return limit
 
 
-class Case(unittest.TestCase):
+class Plain(unittest.TestCase):
     def assert_plain(self, said, *codes):
         self.assertIn(said.returncode, codes, said.stderr)
         for word in ("std::", "json.exception", "bad_alloc", "Traceback"):
@@ -42,62 +41,57 @@ class Case(unittest.TestCase):
         if said.returncode == USER_ERROR:
             self.assertIn("error: ", said.stderr)
 
-    def assert_only(self, folder, *names):
-        self.assertEqual(sorted(os.listdir(folder)), sorted(names))
 
+class Damaged(Plain):
+    def flipped(self, draw, most, *words):
+        """What a command says on a copy of a sweep's file in which one bit among the first `most` bytes is flipped."""
+        contents = bytearray(contents_of(sweep()))
+        contents[draw.randrange(most or len(contents))] ^= 1 << draw.randrange(8)
+        write("flipped.h5", contents)
+        said = rodsweep(*words)
+        if os.path.exists("new.h5"):
+            os.remove("new.h5")
+        return said
 
-class Damaged(Case):
     def test_flipped_bits_end_no_command(self):
-        whole = contents_of(sweep())
         draw = random.Random(3)
-        commands = (("status",), ("info", "--verify"), ("query", "--csv"), ("pack", "-o", "packed.h5"))
+        commands = (("status",), ("info", "--verify"), ("query", "--csv"), ("pack", "-o", "new.h5"))
         for number in range(24):
-            contents = bytearray(whole)
-            contents[draw.randrange(12000 if number % 2 else len(whole))] ^= 1 << draw.randrange(8)
-            write("flipped.h5", contents)
             command, *rest = commands[number % len(commands)]
             with self.subTest(number=number, command=command):
-                self.assert_plain(rodsweep(command, "flipped.h5", *rest), ALL_DONE, USER_ERROR)
-            if os.path.exists("packed.h5"):
-                os.remove("packed.h5")
+                said = self.flipped(draw, 12000 if number % 2 else 0, command, "flipped.h5", *rest)
+                self.assert_plain(said, ALL_DONE, USER_ERROR)
 
     def test_commands_that_write_refuse_a_file_or_do_what_is_left(self):
-        whole = contents_of(sweep())
         draw = random.Random(4)
+        commands = (("run", JOB, "-o", "flipped.h5", "--resume"), ("rerun", "flipped.h5", 0, "-o", "new.h5"),
+                    ("merge", "flipped.h5", "-o", "new.h5"), ("run", JOB, "-o", "new.h5", "--extend", "flipped.h5"))
         for number in range(12):
-            contents = bytearray(whole)
-            contents[draw.randrange(12000)] ^= 1 << draw.randrange(8)
-            write("flipped.h5", contents)
-            words = (("run", JOB, "-o", "flipped.h5", "--resume"), ("rerun", "flipped.h5", 0, "-o", "new.h5"),
-                     ("merge", "flipped.h5", "-o", "new.h5"), ("run", JOB, "-o", "new.h5", "--extend", "flipped.h5"))[number % 4]
+            words = commands[number % len(commands)]
             with self.subTest(number=number, words=words):
-                self.assert_plain(rodsweep(*words), ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED)
-            if os.path.exists("new.h5"):
-                os.remove("new.h5")
+                self.assert_plain(self.flipped(draw, 12000, *words), ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED)
 
     def test_a_parameter_that_is_not_the_jobs_is_found(self):
-        self.assertIn("the parameters are those of the job", rodsweep("info", sweep(), "--verify").stdout)
+        self.assertIn("parameters", rodsweep("info", sweep(), "--verify").stdout)
         for column, value in (("tasks/parameters/scene.segments", 7), ("tasks/first_solve", 1), ("axes/tolerance", 0.3)):
+            def change(h5):
+                h5[column][1] = value
             with self.subTest(column=column):
-                write("changed.h5", contents_of(sweep()))
-                with h5py.File("changed.h5", "r+") as file:
-                    file[column][1] = value
-                said = rodsweep("info", "changed.h5", "--verify")
+                said = rodsweep("info", changed("changed.h5", change), "--verify")
                 self.assert_plain(said, USER_ERROR)
                 self.assertIn("changed.h5", said.stderr)
 
     def test_data_that_are_not_what_was_written_come_with_what_to_do(self):
-        write("changed.h5", contents_of(sweep()))
-        with h5py.File("changed.h5", "r+") as file:
-            file["steps/joint_gap"][0] = 0.5
-        said = rodsweep("info", "changed.h5", "--verify")
+        def change(h5):
+            h5["steps/joint_gap"][0] = 0.5
+        said = rodsweep("info", changed("changed.h5", change), "--verify")
         self.assert_plain(said, USER_ERROR)
-        self.assertIn("the data of task 0 are not what was written. Run its job again with --resume", said.stderr)
+        self.assertRegex(said.stderr, r"\btask 0\b.*--resume")
         self.assert_plain(rodsweep("run", JOB, "-o", "changed.h5", "--resume"), ALL_DONE)
         self.assertEqual(rodsweep("info", "changed.h5", "--verify").returncode, ALL_DONE)
 
 
-class Full(Case):
+class Full(Plain):
     """A disk that is full when a file is about half written."""
 
     def test_nothing_is_left_of_a_file_that_has_no_room(self):
@@ -112,16 +106,16 @@ class Full(Case):
                                 env={**os.environ, "PMIX_MCA_gds": "hash"})  # Open MPI needs room for files otherwise
                 self.assert_plain(said, USER_ERROR)
                 self.assertIn("a.h5", said.stderr)
-                self.assert_only("full")
+                self.assertEqual(os.listdir("full"), [])
 
     def test_text_that_has_no_room_is_an_error(self):
         with open("text", "w", encoding="utf-8") as text:
             said = rodsweep("schema", stdout=text, preexec_fn=with_room_for(100))
         self.assertEqual(said.returncode, OUTPUT_LOST)
-        self.assertIn("writing to standard output failed: File too large", said.stderr)
+        self.assertIn("File too large", said.stderr)
 
 
-class Left(Case):
+class Left(Plain):
     """X.h5.unfinished-HOST-PROCESS-RANDOM of a program that was killed while it made X.h5."""
 
     def test_what_a_killed_program_left_is_named(self):
@@ -129,13 +123,12 @@ class Left(Case):
         ended.wait()
         name = f"left.h5.unfinished-{socket.gethostname()}-{ended.pid}-0123abcd"
         write(name, b"half")
-        words = f"{name} was left by a program that was ended while it made left.h5: it can be deleted"
         said = rodsweep("status", "left.h5")
         self.assert_plain(said, USER_ERROR)
-        self.assertIn(f"left.h5: there is no such file; {words}", said.stderr)
+        self.assertRegex(said.stderr, f"left.h5: there is no such file; .*{name}")
         sweep()
-        self.assertIn(words, rodsweep("run", JOB, "-o", "left.h5").stderr)
-        self.assertIn(words, rodsweep("status", "left.h5").stderr)
+        self.assertIn(name, rodsweep("run", JOB, "-o", "left.h5").stderr)
+        self.assertIn(name, rodsweep("status", "left.h5").stderr)
         os.remove(name)
         self.assertNotIn("unfinished", rodsweep("status", "left.h5").stderr)
 
@@ -143,7 +136,7 @@ class Left(Case):
         write(f"made.h5.unfinished-{socket.gethostname()}-{os.getpid()}-0123abcd", b"half")
         self.assertNotIn("unfinished", rodsweep("status", "made.h5").stderr)
         write("made.h5.unfinished-elsewhere-1-0123abcd", b"half")
-        self.assertIn("unless that program still runs on the host in its name", rodsweep("status", "made.h5").stderr)
+        self.assertIn("made.h5.unfinished-elsewhere-1-0123abcd", rodsweep("status", "made.h5").stderr)
 
 
 if __name__ == "__main__":

@@ -6,113 +6,78 @@ import os
 import shutil
 import unittest
 
-from program import ALL_DONE, JOB, USER_ERROR, rodsweep, sweep
+from program import ALL_DONE, DATA, ROD, Case, rodsweep, sweep, write_job
 
 SOURCE_DIR = os.environ["SOURCE_DIR"]
 
 
-def job(name, **changes):
-    os.makedirs("jobs", exist_ok=True)
-    path = f"jobs/{name}.json"
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump({key: value for key, value in {**JOB, "name": name, **changes}.items() if value is not None}, file)
-    return path
-
-
-class Case(unittest.TestCase):
-    def assert_says(self, words, code, stdout, stderr):
-        said = rodsweep(*words)
-        self.assertEqual((said.returncode, said.stdout, said.stderr), (code, stdout, stderr))
-
-
 class Mistyped(Case):
     def test_a_command_or_option_that_is_none_is_answered_with_the_nearest(self):
-        more = "\nRun with --help for more information.\n"
-        for words, said in ((["valdate", "a.json"], 'rodsweep: there is no command "valdate", and no program rodsweep-valdate; did you mean "validate"?'),
-                            (["frobnicate"], 'rodsweep: there is no command "frobnicate", and no program rodsweep-frobnicate'),
-                            (["run", "a.json", "--resme"],
-                             'rodsweep run: there is no option --resme; did you mean "--resume"?'),
-                            (["run", "a.json", "--otput=x.h5"],
-                             'rodsweep run: there is no option --otput; did you mean "--output"?'),
-                            (["--verson"], 'rodsweep: there is no option --verson; did you mean "--version"?')):
+        for words, *texts in ((("valdate", "a.json"), '"valdate"', "rodsweep-valdate", 'did you mean "validate"?'),
+                              (("frobnicate",), '"frobnicate"', "rodsweep-frobnicate"),
+                              (("run", "a.json", "--resme"), "--resme", 'did you mean "--resume"?'),
+                              (("run", "a.json", "--otput=x.h5"), "--otput", 'did you mean "--output"?'),
+                              (("--verson",), "--verson", 'did you mean "--version"?')):
             with self.subTest(words=words):
-                self.assert_says(words, USER_ERROR, "", said + more)
-
-    def test_a_missing_comma_is_shown(self):
-        os.makedirs("jobs", exist_ok=True)
-        with open("jobs/comma.json", "w", encoding="utf-8") as file:
-            file.write('{"name": "comma",\n "kind": "sweep"\n "seed": 3}')
-        self.assert_says(["validate", "jobs/comma.json"], USER_ERROR, "",
-                         'rodsweep: error: jobs/comma.json: line 2, column 17: a comma is missing here\n'
-                         ' "kind": "sweep"\n'
-                         '                ^\n')
+                self.assert_refused(words, "--help", *texts)
+        self.assertNotIn("did you mean", rodsweep("frobnicate").stderr)
 
 
 class Validate(Case):
-    def data(self):
-        return job("few", kind="dataset", solve=None, guesses=None)
+    """Words on missing files and on JSON: tests/runner/job/test_input_files.cpp and test_job_refusals.cpp."""
 
-    def train(self):
-        path = "jobs/net.json"
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump({"name": "net", "kind": "train", "data": "../results/few.h5", "validation_simulations": 1}, file)
-        return path
-
-    def use(self):
-        return job("use", guesses=["zero", {"copingnet": {"model": "../results/net.h5"}}])
+    def validated(self, *words):
+        said = rodsweep("validate", *words)
+        self.assertEqual(said.returncode, ALL_DONE, said.stderr)
+        return said.stdout.splitlines(), said.stderr.splitlines()
 
     def test_a_file_that_is_not_there_is_refused_unless_a_job_beside_makes_it(self):
-        use = self.use()
-        missing = 'rodsweep: error: jobs/use.json: guesses[1].copingnet.model: "../results/net.h5" is not allowed: ' \
-                  "jobs/../results/net.h5 is not there; the path is relative to the job file's folder"
-        hint = "\njobs/use.json: what another job makes passes if that job is given too, or with --later\n"
-        self.assert_says(["validate", use], USER_ERROR, "", missing + hint)
-        os.makedirs("results", exist_ok=True)
-        open("results/nett.h5", "w", encoding="utf-8").close()
-        self.assert_says(["validate", use], USER_ERROR, "", missing + '; did you mean "../results/nett.h5"?' + hint)
-        os.remove("results/nett.h5")
-        all_three = [use, self.train(), self.data()]
-        self.assert_says(["validate", *all_three], ALL_DONE,
-                         "jobs/use.json: sound, 4 tasks\njobs/net.json: sound, trains a model\njobs/few.json: sound, 4 tasks\n",
-                         "rodsweep: jobs/use.json: guesses[1].copingnet.model: jobs/../results/net.h5 is not there yet; "
-                         "jobs/net.json makes it\n"
-                         "rodsweep: jobs/net.json: data: jobs/../results/few.h5 is not there yet; jobs/few.json makes it\n")
-        self.assert_says(["validate", "--later", use], ALL_DONE, "jobs/use.json: sound, 4 tasks\n",
-                         "rodsweep: jobs/use.json: guesses[1].copingnet.model: jobs/../results/net.h5 is not there yet\n")
+        use = write_job("use", guesses=["zero", {"copingnet": {"model": "../results/net.h5"}}])
+        data = write_job("few", **DATA)
+        train = "jobs/net.json"
+        with open(train, "w", encoding="utf-8") as file:
+            json.dump({"name": "net", "kind": "train", "data": "../results/few.h5", "validation_simulations": 1}, file)
+        key = "jobs/use.json: guesses[1].copingnet.model: "
+        self.assert_refused(("validate", use), key, '"../results/net.h5"', "jobs/../results/net.h5", "--later")
+        results, notes = self.validated(use, train, data)
+        self.assertEqual([line.split(": ")[0] for line in results], [use, train, data])
+        self.assertEqual(len(notes), 2)
+        for note, *texts in ((notes[0], key, "results/net.h5", train),
+                             (notes[1], "jobs/net.json: data: ", "results/few.h5", data)):
+            for text in texts:
+                self.assertIn(text, note)
+        results, notes = self.validated("--later", use)
+        self.assertEqual((len(results), len(notes)), (1, 1))
+        self.assertIn(key + "jobs/../results/net.h5", notes[0])
 
     def test_a_skeleton_that_is_not_there_is_refused_whatever_comes_later(self):
-        tree = job("tree", samples=1, scene={"type": "skeleton", "skeleton": "aple_tree.swc", "density_kg_m3": 800,
-                                  "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 4e8})
+        tree = write_job("tree", samples=1, scene={"type": "skeleton", "skeleton": "aple_tree.swc",
+                         "density_kg_m3": 800, "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 4e8})
         shutil.copy(os.path.join(SOURCE_DIR, "jobs", "apple_tree.swc"), "jobs")
-        said = rodsweep("validate", tree)
-        self.assertEqual(said.returncode, USER_ERROR)
-        self.assertIn('jobs/tree.json: scene.skeleton: "aple_tree.swc" is not allowed: jobs/aple_tree.swc is not there; '
-                      'the path is relative to the job file\'s folder; did you mean "apple_tree.swc"?', said.stderr)
-        self.assertEqual(rodsweep("validate", "--later", tree).returncode, USER_ERROR)
+        for options in ((), ("--later",)):
+            self.assert_refused(("validate", *options, tree), "jobs/tree.json: scene.skeleton: ", "jobs/aple_tree.swc",
+                                'did you mean "apple_tree.swc"?')
 
     def test_a_data_set_that_does_not_do_is_refused_as_run_refuses_it(self):
-        sweep("some", kind="dataset", solve=None, guesses=None)
+        sweep("some", **DATA)
         with open("jobs/greedy.json", "w", encoding="utf-8") as file:
             json.dump({"name": "greedy", "kind": "train", "data": "../results/some.h5"}, file)
-        said = rodsweep("validate", "jobs/greedy.json")
-        self.assertEqual(said.returncode, USER_ERROR)
-        self.assertIn("validation_simulations: 100 is not allowed, since results/some.h5 holds 4 simulations", said.stderr)
+        self.assert_refused(("validate", "jobs/greedy.json"), "validation_simulations: 100 ", "results/some.h5",
+                            "4 simulations")
 
     def test_every_job_of_the_project_validates_without_a_warning(self):
         folder = os.path.join(SOURCE_DIR, "jobs")
         jobs = sorted(os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".json"))
-        said = rodsweep("validate", "--later", *jobs)
-        self.assertEqual(said.returncode, ALL_DONE, said.stderr)
-        self.assertNotIn("warning", said.stderr)
-        self.assertEqual(len(said.stdout.splitlines()), len(jobs))
+        results, notes = self.validated("--later", *jobs)
+        self.assertEqual(len(results), len(jobs))
+        self.assertNotIn("warning", "\n".join(notes))
 
     def test_a_likely_slip_of_units_is_told_by_validate_and_run_and_stops_nothing(self):
-        thick = job("thick", samples=1, scene={**JOB["scene"], "segments": 5, "length_m": 2, "radius_m": 50},
-                    time={"step_s": 0.02, "steps": 1})
-        warning = "rodsweep: warning: jobs/thick.json: scene.radius_m: 50 m makes a rod thicker than long, where length_m " \
-                  "is 2 m; did you mean 50 mm, which is 0.05?\n"
-        self.assert_says(["validate", thick], ALL_DONE, "jobs/thick.json: sound, 1 task\n", warning)
-        self.assertEqual(rodsweep("run", thick, "-o", "thick.h5").stderr.count(warning), 1)
+        thick = write_job("thick", samples=1, scene={**ROD, "segments": 5, "length_m": 2, "radius_m": 50},
+                          time={"step_s": 0.02, "steps": 1})
+        (_, (warning,)), run = self.validated(thick), rodsweep("run", thick, "-o", "thick.h5")
+        self.assertRegex(warning, r"warning: jobs/thick\.json: scene\.radius_m: 50 m.*\b2 m\b.*\b50 mm.*\b0\.05\b")
+        self.assertEqual(run.stderr.count(warning), 1)
 
 
 if __name__ == "__main__":
