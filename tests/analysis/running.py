@@ -1,4 +1,4 @@
-"""Scripts of analysis/ as a user runs them, in this process, on planted files: the base of the tests of scripts."""
+"""Bases of the tests of analysis/: planted files in a folder of their own, and scripts run on them as a user does."""
 
 import contextlib
 import importlib
@@ -11,7 +11,9 @@ import unittest
 import unittest.mock
 
 import synthetic
-from rodsweep.reading import commandline
+import numpy as np
+from rodsweep.reading import commandline, measures
+from rodsweep.reading.sweepfile import SweepFile
 
 HEADS = {".pdf": b"%PDF", ".png": b"\x89PNG"}
 
@@ -48,11 +50,45 @@ def run(name, *arguments, files=False):
     return types.SimpleNamespace(stdout=said, stderr=error.getvalue(), code=code)
 
 
-class Scripts(unittest.TestCase):
+class Folder(unittest.TestCase):
+    file = None
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder, self.path = folder.name, os.path.join(folder.name, "sweep.h5")
+
+    def open(self, **settings):
+        """A planted sweep, until the next one is opened or this one is changed."""
+        self.close()
+        synthetic.Sweep(**settings).write(self.path)
+        return self.opened()
+
+    def changed(self, change):
+        """The open file after change(its h5py.File)."""
+        self.close()
+        with synthetic.h5py.File(self.path, "r+") as h5:
+            change(h5)
+        return self.opened()
+
+    def opened(self):
+        self.file = SweepFile(self.path)
+        self.addCleanup(self.file.h5.close)
+        return self.file
+
+    def close(self):
+        if self.file:
+            self.file.h5.close()
+
+    def simulations(self, **settings):
+        """A planted sweep and all its simulations that are complete."""
+        file = self.open(**settings)
+        return file, measures.simulations(file, np.ones(file.task_count, dtype=bool))
+
+
+class Scripts(Folder):
+    def setUp(self):
+        super().setUp()
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
 
@@ -66,7 +102,9 @@ class Scripts(unittest.TestCase):
         return done
 
     def refused(self, name, *arguments, words):
+        """In one line, with these words: the line."""
         error = self.run_script(name, *arguments, code=2).stderr
         self.assertEqual(error.count("\n"), 1, error)
         self.assertTrue(error.startswith(f"{name}: "), error)
         self.assertIn(words, error)
+        return error

@@ -1,26 +1,37 @@
 """--select, export.py --where and rodsweep.open() read conditions as tests/conditions.json says, of tasks and rows."""
 
+import json
 import os
-import tempfile
 import unittest
 
-import language
+import synthetic
 import numpy as np
 from rodsweep.reading import conditions, tidy
 from rodsweep.reading.errors import KeyNotFound
-from rodsweep.reading.sweepfile import SweepFile
+from running import Folder
+
+with open(os.path.join(synthetic.ANALYSIS, "..", "tests", "conditions.json"), encoding="utf-8") as text:
+    CASES = json.load(text)
 
 
-class Conditions(unittest.TestCase):
+class Conditions(Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.file = SweepFile(language.planted(os.path.join(folder.name, "sweep.h5")))
-        self.addCleanup(self.file.h5.close)
+        """Six tasks with the columns of the table among their parameters."""
+        def plant(h5):
+            for name, column in CASES["columns"].items():
+                (kind, values), = column.items()
+                dtype, absent = {"whole": (np.int64, -1), "real": (np.float64, np.nan), "text": ("S32", "")}[kind]
+                item = h5.create_dataset(f"tasks/parameters/{name}",
+                                         data=np.array([absent if v is None else v for v in values], dtype=dtype))
+                item.attrs.update({"unit": "", "meaning": f"the {name}", "swept": False})
+
+        super().setUp()
+        self.open(scenes=("helix",), samples=2, steps=1, newton=1)
+        self.changed(plant)
         self.table = tidy.Tidy(self.file, "steps", np.arange(6), [], [])
 
     def test_tasks_are_selected_as_the_table_says(self):
-        for text, tasks in language.CASES["met"].items():
+        for text, tasks in CASES["met"].items():
             with self.subTest(text):
                 if tasks:
                     self.assertEqual(np.flatnonzero(self.file.select([text])).tolist(), tasks)
@@ -29,13 +40,13 @@ class Conditions(unittest.TestCase):
                         self.file.select([text])
 
     def test_rows_are_selected_as_the_table_says(self):
-        for text, tasks in language.CASES["met"].items():
+        for text, tasks in CASES["met"].items():
             with self.subTest(text):
                 blocks = self.table.blocks(["task"], [self.table.condition(text)])
                 self.assertEqual([task for block in blocks for task in block["task"].array()], tasks)
 
     def test_what_cannot_be_asked_is_refused_with_the_words_of_the_table(self):
-        for text, words in language.CASES["refused"].items():
+        for text, words in CASES["refused"].items():
             for reader in (lambda: self.file.select([text]), lambda: self.table.condition(text)):
                 with self.subTest(text), self.assertRaises(KeyNotFound) as refused:
                     reader()
@@ -48,14 +59,13 @@ class Conditions(unittest.TestCase):
             conditions.parse("guess=zero,quadratc", columns)
 
     def test_a_vector_is_its_text_or_one_of_its_components(self):
-        self.file.h5.close()
-        with language.synthetic.h5py.File(self.file.path, "r+") as h5:
+        def plant(h5):
             item = h5.create_dataset("tasks/parameters/scene.gravity_m_s2", data=[[0, -9.81, 0]] * 5 + [[0, 0, 0]])
             item.attrs.update({"unit": "m/s^2", "meaning": "gravity", "swept": True})
-        with SweepFile(self.file.path) as file:
-            for text, count in (("scene.gravity_m_s2.y<0", 5), ("scene.gravity_m_s2.y=-9.81", 5),
-                                ("scene.gravity_m_s2=(0, -9.81, 0)", 5), ("scene.gravity_m_s2=(0, 0, 0)", 1)):
-                self.assertEqual(file.select([text]).sum(), count, text)
+        file = self.changed(plant)
+        for text, count in (("scene.gravity_m_s2.y<0", 5), ("scene.gravity_m_s2.y=-9.81", 5),
+                            ("scene.gravity_m_s2=(0, -9.81, 0)", 5), ("scene.gravity_m_s2=(0, 0, 0)", 1)):
+            self.assertEqual(file.select([text]).sum(), count, text)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 import argparse
 import itertools
-import os
 import tempfile
 import types
 import unittest
@@ -14,22 +13,21 @@ import spatial
 from rodsweep.drawing import figures, style
 from matplotlib import colors, pyplot
 from rodsweep.reading import texts, timings
-from rodsweep.reading.sweepfile import SweepFile
+from running import Folder
 
 
-class Drawn(unittest.TestCase):
+class Drawn(Folder):
     def study(self, width="174", newton="first", x="scene.segments", **settings):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
+        """Of a planted sweep, and its times."""
         self.addCleanup(pyplot.close, "all")
-        settings.setdefault("steps", 2)
-        file = SweepFile(synthetic.Sweep(**settings).write(os.path.join(folder.name, "sweep.h5")))
-        self.addCleanup(file.h5.close)
+        file = self.open(**{"steps": 2, **settings})
         options = argparse.Namespace(select=[], scene=None, guess=None, x=x, newton=newton, width=width)
-        return spatial.make_study(file, options)
+        study = spatial.make_study(file, options)
+        return study, timings.times(study.file, study.sims)
 
     def page_texts(self, page):
-        return " ".join(text.get_text() for text in page.figure.findobj(match=pyplot.Text))
+        """With single blanks."""
+        return " ".join(word for text in page.figure.findobj(match=pyplot.Text) for word in text.get_text().split())
 
     def line(self, axes, guess_style):
         """The drawn values of a guess: the errorbar's line, or its open markers."""
@@ -60,7 +58,7 @@ class Drawn(unittest.TestCase):
 
 class Values(Drawn):
     def test_ratios_are_drawn_where_they_were_planted_with_one_marked(self):
-        study = self.study()
+        study, _ = self.study()
         page = figures.ratio_figure(study, [0, 1])
         self.assertEqual(np.shape(page.axes), (2, 2))
         for axes in np.ravel(page.axes):
@@ -71,8 +69,8 @@ class Values(Drawn):
             self.assertEqual(axes.get_ylim()[0], 0)
 
     def test_an_overview_has_ratios_beside_times_of_guess_and_cg_per_segment(self):
-        study = self.study()
-        page = figures.overview_figure(study, timings.times(study.file, study.sims))
+        study, times = self.study()
+        page = figures.overview_figure(study, times)
         for ratio, time in page.axes:
             drawn, = self.line(ratio, study.styles["previous"])
             np.testing.assert_allclose(drawn.get_ydata(), 0.5, atol=0.01)
@@ -83,45 +81,43 @@ class Values(Drawn):
             self.assertTrue(any(np.allclose(other.get_ydata(), 1) for other in time.lines))
 
     def test_every_figure_says_what_it_is_of(self):
-        study = self.study(failed={0: "diverged"}, pending=(1,), guesses=("zero", "previous"), samples=7)
-        by_newton = timings.times(study.file, study.sims)
-        for page in (figures.ratio_figure(study, [1]), figures.speedup_figure(study, by_newton),
-                     figures.time_figure(study, by_newton), figures.overview_figure(study, by_newton)):
+        study, times = self.study(failed={0: "diverged"}, pending=(1,), guesses=("zero", "previous"), samples=7)
+        for page in (figures.ratio_figure(study, [1]), figures.speedup_figure(study, times),
+                     figures.time_figure(study, times), figures.overview_figure(study, times)):
             said = self.page_texts(page)
             for words in ("first Newton iteration (j = 0)", "‖b − Ax‖₂", "jacobi", "5–7 simulations per point",
                           "40 of 42 tasks ok, failed: 1 diverged, 1 pending", "95 %", "Bending rod", "Helix"):
-                self.assertIn(" ".join(words.split()), " ".join(said.split()))
-        for page in (figures.speedup_figure(study, by_newton), figures.time_figure(study, by_newton)):
-            self.assertIn("tolerance 1e-2", " ".join(self.page_texts(page).split()))
+                self.assertIn(words, said)
+        for page in (figures.speedup_figure(study, times), figures.time_figure(study, times)):
+            self.assertIn("tolerance 1e-2", self.page_texts(page))
 
     def test_points_with_unreached_solves_have_open_markers(self):
         plant = synthetic.Plant()
         plant.reached = lambda guess, tolerance, newton, segments, draw: segments < 40
-        study = self.study(plant=plant)
+        study, _ = self.study(plant=plant)
         page = figures.ratio_figure(study, [1])
         marks = [line for line in page.axes[0][0].lines if line.get_markerfacecolor() == "white"]
         self.assertEqual([len(mark.get_xdata()) for mark in marks], [1, 1, 1])
-        self.assertIn("missed the tolerance", " ".join(self.page_texts(page).split()))
+        self.assertIn("missed the tolerance", self.page_texts(page))
 
     def test_times_of_oversubscribed_runs_carry_a_warning(self):
         for oversubscribed in (False, True):
-            study = self.study(oversubscribed=oversubscribed, scenes=("helix",), guesses=("zero", "previous"))
-            by_newton = timings.times(study.file, study.sims)
-            for page in (figures.speedup_figure(study, by_newton), figures.time_figure(study, by_newton)):
+            study, times = self.study(oversubscribed=oversubscribed, scenes=("helix",), guesses=("zero", "previous"))
+            for page in (figures.speedup_figure(study, times), figures.time_figure(study, times)):
                 self.assertEqual("more MPI ranks than cores" in self.page_texts(page), oversubscribed)
             self.assertNotIn("more MPI ranks than cores", self.page_texts(figures.ratio_figure(study, [1])))
 
     def test_speedups_and_the_direct_solve_beside_them(self):
-        study = self.study(scenes=("helix",))
-        page = figures.speedup_figure(study, timings.times(study.file, study.sims))
+        study, times = self.study(scenes=("helix",))
+        page = figures.speedup_figure(study, times)
         line, = self.line(page.axes[0][0], study.styles["quadratic"])
         np.testing.assert_allclose(line.get_ydata(), 4, rtol=1e-5)
         direct, = self.line(page.axes[0][0], style.DIRECT)
         np.testing.assert_allclose(direct.get_ydata(), np.array([10, 20, 40]) / 8, rtol=1e-5)
 
     def test_bars_stack_to_the_whole_time_of_a_solve(self):
-        study = self.study(scenes=("helix",))
-        page = figures.time_figure(study, timings.times(study.file, study.sims))
+        study, times = self.study(scenes=("helix",))
+        page = figures.time_figure(study, times)
         bars = [(patch.get_y(), patch.get_height()) for patch in page.axes[0][1].patches]
         tops = sorted(y + height for y, height in bars)[-3:]
         assembly, guess, cg = 2 / 10, 0.1, 0.5  # of "previous" per segment at N = 10, where assembly weighs most
@@ -131,8 +127,9 @@ class Values(Drawn):
     def test_the_four_curves_of_a_learned_guess_and_of_no_other(self):
         plant = synthetic.Plant()
         plant.quality = {**plant.quality, "copingnet net": 0.2}
-        study = self.study(scenes=("helix",), plant=plant, guesses=("zero", "quadratic", "copingnet net"), newton="first")
-        page = figures.four_curves_figure(study, timings.times(study.file, study.sims))
+        guesses = ("zero", "quadratic", "copingnet net")
+        study, times = self.study(scenes=("helix",), plant=plant, guesses=guesses)
+        page = figures.four_curves_figure(study, times)
         self.assertEqual(np.shape(page.axes), (1, 1))
         drawn = {name: self.line(page.axes[0][0], look)[0].get_ydata() for name, look in style.FOUR_CURVES.items()}
         np.testing.assert_allclose(drawn["ratio"], 0.2, atol=0.01)
@@ -140,11 +137,11 @@ class Values(Drawn):
         np.testing.assert_allclose(drawn["guess_cg"], 1 / (0.1 + 0.2), rtol=1e-5)
         self.assertTrue((drawn["step"] < drawn["guess_cg"]).all())
         self.legible(page)
-        study = self.study(scenes=("helix",), guesses=("zero", "quadratic"))
-        self.assertIsNone(figures.four_curves_figure(study, timings.times(study.file, study.sims)))
+        study, times = self.study(scenes=("helix",), guesses=("zero", "quadratic"))
+        self.assertIsNone(figures.four_curves_figure(study, times))
 
     def test_figures_come_in_the_formats_asked_for_with_their_notes_or_without(self):
-        study = self.study(scenes=("helix",), guesses=("zero", "previous"))
+        study, _ = self.study(scenes=("helix",), guesses=("zero", "previous"))
         with tempfile.TemporaryDirectory() as folder:
             sizes = []
             for caption in (True, False):
@@ -160,11 +157,10 @@ class Legibility(Drawn):
 
     def test_on_a_page_and_in_a_column(self):
         for width, scenes in (("174", ("helix",)), ("84", ("bending_rod", "helix"))):
-            study = self.study(width=width, scenes=scenes, guesses=self.GUESSES, samples=2,
+            study, times = self.study(width=width, scenes=scenes, guesses=self.GUESSES, samples=2,
                                grid={"scene.segments": [10, 20, 30, 40, 55]})
-            by_newton = timings.times(study.file, study.sims)
-            for page in (figures.ratio_figure(study, range(4)), figures.speedup_figure(study, by_newton),
-                         figures.time_figure(study, by_newton)):
+            for page in (figures.ratio_figure(study, range(4)), figures.speedup_figure(study, times),
+                         figures.time_figure(study, times)):
                 self.assertAlmostEqual(page.figure.get_size_inches()[0] * 25.4, int(width))
                 self.legible(page)
 
@@ -173,23 +169,22 @@ class Legibility(Drawn):
                             ("scene.type", {"grid": {"scene.segments": [10]}}),
                             ("scene.youngs_modulus_pa", {"grid": {"scene.segments": [10]}, "samples": 16})):
             scenes = ("bending_rod", "helix") if x == "scene.type" else ("helix",)
-            study = self.study(x=x, **{"samples": 2, "scenes": scenes, **settings})
+            study, times = self.study(x=x, **{"samples": 2, "scenes": scenes, **settings})
             self.legible(figures.ratio_figure(study, range(4)))
-            self.legible(figures.time_figure(study, timings.times(study.file, study.sims)))
-            self.legible(figures.overview_figure(study, timings.times(study.file, study.sims)))
+            self.legible(figures.time_figure(study, times))
+            self.legible(figures.overview_figure(study, times))
 
     def test_a_grid_over_decades_has_a_logarithmic_axis_and_others_a_linear_one(self):
         for segments, scale in (([10, 55], "linear"), ([10, 100, 500], "log")):
-            study = self.study(grid={"scene.segments": segments}, samples=2)
+            study, _ = self.study(grid={"scene.segments": segments}, samples=2)
             self.assertEqual(figures.ratio_figure(study, [0]).axes[0][0].get_xscale(), scale)
 
     def test_one_draw_and_one_point_still_make_figures(self):
-        study = self.study(grid={"scene.segments": [10]}, samples=1, scenes=("helix",))
-        by_newton = timings.times(study.file, study.sims)
-        for page in (figures.ratio_figure(study, [0]), figures.speedup_figure(study, by_newton),
-                     figures.time_figure(study, by_newton)):
+        study, times = self.study(grid={"scene.segments": [10]}, samples=1, scenes=("helix",))
+        for page in (figures.ratio_figure(study, [0]), figures.speedup_figure(study, times),
+                     figures.time_figure(study, times)):
             self.legible(page)
-            said = " ".join(self.page_texts(page).split())
+            said = self.page_texts(page)
             self.assertIn("1 simulation per point; too few for intervals", said)
 
 

@@ -1,35 +1,13 @@
 """Derived numbers against planted ones: CG ratios, times, speedups, steps; paired and closed loop; what is left out."""
 
-import os
-import tempfile
 import unittest
 
 import synthetic
-import h5py
 import numpy as np
 from rodsweep.reading import measures, timings
-from rodsweep.reading.sweepfile import SweepFile
+from running import Folder
 
-
-class Tables(unittest.TestCase):
-    def open(self, **settings):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.sweep = synthetic.Sweep(**settings)
-        file = SweepFile(self.sweep.write(os.path.join(folder.name, "sweep.h5")))
-        self.addCleanup(file.h5.close)
-        everything = np.ones(file.task_count, dtype=bool)
-        return file, measures.simulations(file, everything), measures.census(file, everything)
-
-
-    def changed(self, file, change):
-        path = file.path
-        file.h5.close()
-        with h5py.File(path, "r+") as h5:
-            change(h5)
-        again = SweepFile(path)
-        self.addCleanup(again.h5.close)
-        return again
+ONE_SIZE = {"grid": {"scene.segments": [20]}, "scenes": ("helix",), "steps": 5, "newton": 3}
 
 
 class Varied(synthetic.Plant):
@@ -44,9 +22,9 @@ class Varied(synthetic.Plant):
         return (0.2 + 0.1 * draw) if newton == 0 else 0.8
 
 
-class Ratios(Tables):
+class Ratios(Folder):
     def test_planted_qualities_come_back_at_the_first_newton_iteration(self):
-        file, sims, _ = self.open()
+        file, sims = self.simulations()
         ratios = measures.cg_ratios(file, sims, "first")
         self.assertEqual(ratios.ratio.shape, (24, 4, 8))
         for g, quality in enumerate((1, 0.5, 0.25, 0.1)):
@@ -55,23 +33,22 @@ class Ratios(Tables):
         np.testing.assert_allclose(ratios.iterations_per_solve[ten_segments, 0, 0], 220)
 
     def test_all_newton_iterations_are_a_ratio_of_sums(self):
-        file, sims, _ = self.open(plant=Varied(), newton=3)
+        file, sims = self.simulations(plant=Varied(), newton=3)
         ratios = measures.cg_ratios(file, sims, "all")
         draws = sims.sample
         np.testing.assert_allclose(ratios.ratio[:, 1, 0], (0.2 + 0.1 * draws + 0.8 + 0.8) / 3)
         self.assertTrue(np.isnan(ratios.solves).all())
 
     def test_failed_and_pending_tasks_are_left_out_and_counted(self):
-        file, sims, census = self.open(pending=(0, 7), failed={1: "diverged", 2: "diverged", 9: "timed_out"})
+        file, sims = self.simulations(pending=(0, 7), failed={1: "diverged", 2: "diverged", 9: "timed_out"})
+        census = measures.census(file, np.ones(24, dtype=bool))
         self.assertEqual(len(sims), 24 - 5)
-        self.assertEqual((census.total, census.ok, census.pending), (24, 19, 2))
-        self.assertEqual(census.failed, {"diverged": 2, "timed_out": 1})
         self.assertEqual(census.text(), "19 of 24 tasks ok, failed: 2 diverged, 1 timed_out, 2 pending")
 
     def test_solves_that_missed_the_tolerance_are_counted(self):
         plant = synthetic.Plant()
         plant.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
-        file, sims, _ = self.open(plant=plant, steps=5, newton=3)
+        file, sims = self.simulations(plant=plant, steps=5, newton=3)
         first, every = (measures.cg_ratios(file, sims, newton).unreached for newton in ("first", "all"))
         np.testing.assert_array_equal(first[0, 1], [0, 0, 5, 5, 5, 5, 5, 5])
         np.testing.assert_array_equal(every[0, 1, 2], 15)
@@ -80,21 +57,21 @@ class Ratios(Tables):
     def test_a_zero_guess_without_iterations_makes_no_ratio(self):
         plant = synthetic.Plant()
         plant.zero_iterations = lambda segments, tolerance: 0 if segments == 10 else 50
-        file, sims, _ = self.open(plant=plant)
+        file, sims = self.simulations(plant=plant)
         ratio = measures.cg_ratios(file, sims, "first").ratio
         none = file.parameter("scene.segments").values[sims.any_task] == 10
         self.assertTrue(np.isnan(ratio[none]).all())
         self.assertTrue(np.isfinite(ratio[~none]).all())
 
     def test_summaries_without_rows_have_ratios_but_no_times(self):
-        file, sims, _ = self.open(solves=False)
+        file, sims = self.simulations(solves=False)
         self.assertFalse(timings.timed(file))
         np.testing.assert_allclose(measures.cg_ratios(file, sims, "first").ratio[:, 1], 0.5, rtol=5e-3)
 
 
-class ClosedLoop(Tables):
+class ClosedLoop(Folder):
     def test_guesses_are_paired_with_the_zero_task_of_their_point(self):
-        file, sims, _ = self.open(closed_loop=True, plant=Varied())
+        file, sims = self.simulations(closed_loop=True, plant=Varied())
         self.assertTrue(sims.closed_loop)
         self.assertEqual((len(sims), file.task_count), (24, 96))
         ratio = measures.cg_ratios(file, sims, "first").ratio
@@ -104,7 +81,7 @@ class ClosedLoop(Tables):
     def test_it_says_the_same_as_a_paired_sweep_of_the_same_numbers(self):
         found = []
         for closed_loop in (False, True):
-            file, sims, _ = self.open(closed_loop=closed_loop)
+            file, sims = self.simulations(closed_loop=closed_loop)
             by_newton = timings.times(file, sims)
             found.append([measures.cg_ratios(file, sims, "all").ratio, *timings.speedups(by_newton, "first").values(),
                           *timings.speedups(by_newton, "all", "direct").values()])
@@ -112,7 +89,7 @@ class ClosedLoop(Tables):
             np.testing.assert_allclose(closed, paired)
 
     def test_without_its_zero_task_a_point_has_no_ratio_and_without_one_guess_only_that_one_lacks(self):
-        file, sims, _ = self.open(closed_loop=True, failed={0: "diverged", 5: "diverged"})
+        file, sims = self.simulations(closed_loop=True, failed={0: "diverged", 5: "diverged"})
         ratio = measures.cg_ratios(file, sims, "first").ratio
         self.assertTrue(np.isnan(ratio[0]).all())
         np.testing.assert_array_equal(np.isnan(ratio[1, :, 0]), [False, True, False, False])
@@ -121,10 +98,11 @@ class ClosedLoop(Tables):
         np.testing.assert_array_equal(np.isnan(speedup), np.isnan(ratio[..., 0]))
 
 
-class Times(Tables):
+class Times(Folder):
     def setUp(self):
-        self.file, self.sims, _ = self.open(grid={"scene.segments": [20]}, steps=5, newton=3)
-        self.by_newton = timings.times(self.file, self.sims)
+        super().setUp()
+        file, self.sims = self.simulations(grid={"scene.segments": [20]}, steps=5, newton=3)
+        self.by_newton = timings.times(file, self.sims)
 
     def test_sums_over_the_first_newton_iteration(self):
         times = self.by_newton["first"]
@@ -163,46 +141,46 @@ class Times(Tables):
         self.assertFalse(np.allclose(first["guess_cg"][:, 1], every["guess_cg"][:, 1]))
 
 
-class Holes(Tables):
+class Changes(Folder):
+    """Times before and after a change of the rows of single solves."""
+
+    def times(self, change, **settings):
+        file, sims = self.simulations(**{**ONE_SIZE, **settings})
+        return timings.times(file, sims), timings.times(self.changed(change), sims), sims
+
+    @staticmethod
+    def punch(h5, rows, guesses):
+        """The solves that were not run."""
+        for name in ("guess_s", "cg_s"):
+            values = h5[f"timing/solves/{name}"][:]
+            values[rows, guesses] = np.nan
+            h5[f"timing/solves/{name}"][:] = values
+
+
+class Holes(Changes):
     def test_rows_that_were_not_run_count_for_nobody(self):
         """Newton converged early: NaN in the row of every guess."""
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
-        with_hole = self.punched(file, rows=slice(2, 15, 3), guesses=slice(None))
-        times = timings.times(with_hole, sims)["all"]
-        np.testing.assert_array_equal(times.solves[0], 10)
-        np.testing.assert_allclose(timings.speedups(timings.times(with_hole, sims), "all")["cg"][0, 1], 2, rtol=1e-5)
+        _, times, _ = self.times(lambda h5: self.punch(h5, slice(2, 15, 3), slice(None)))
+        np.testing.assert_array_equal(times["all"].solves[0], 10)
+        np.testing.assert_allclose(timings.speedups(times, "all")["cg"][0, 1], 2, rtol=1e-5)
 
     def test_a_row_without_one_guess_is_no_row_of_zero_for_it(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
-        times = timings.times(self.punched(file, rows=slice(0, 6, 3), guesses=1), sims)["first"]
-        np.testing.assert_array_equal(times.solves[0], [5, 3, 5, 5])
-        np.testing.assert_allclose(times.zero_cg_s[0], 20e-6 * np.array([5, 3, 5, 5]), rtol=1e-6)
-
-    def punched(self, file, rows, guesses):
-        def change(h5):
-            for name in ("guess_s", "cg_s"):
-                values = h5[f"timing/solves/{name}"][:]
-                values[rows, guesses] = np.nan
-                h5[f"timing/solves/{name}"][:] = values
-        return self.changed(file, change)
+        _, times, _ = self.times(lambda h5: self.punch(h5, slice(0, 6, 3), 1))
+        np.testing.assert_array_equal(times["first"].solves[0], [5, 3, 5, 5])
+        np.testing.assert_allclose(times["first"].zero_cg_s[0], 20e-6 * np.array([5, 3, 5, 5]), rtol=1e-6)
 
 
-class Interruptions(Tables):
+class Interruptions(Changes):
     def test_a_solve_that_the_system_interrupted_is_left_out_and_counted(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
-        before = timings.times(file, sims)
-
         def interrupt(h5):
             h5["timing/solves/cg_s"][3, 1] = 4e-3       # task 0
             h5["timing/solves/assemble_s"][20] = 2e-3   # task 1
             h5["timing/steps/rest_s"][7] = 3e-3         # task 1
 
-        after = timings.times(self.changed(file, interrupt), sims)
+        before, after, sims = self.times(interrupt)
         for newton in ("first", "all"):
             for against in ("zero", "direct"):
-                pairs = zip(timings.speedups(before, newton, against).values(),
-                            timings.speedups(after, newton, against).values())
-                for one, other in pairs:
+                for one, other in zip(*(timings.speedups(times, newton, against).values() for times in (before, after))):
                     np.testing.assert_allclose(other, one, rtol=1e-5)
         np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
         np.testing.assert_allclose(after["all"].rest_s, before["all"].rest_s, rtol=1e-6)
@@ -211,19 +189,15 @@ class Interruptions(Tables):
         self.assertIn("2 of 60 solves", timings.interruptions(after["all"], sims))
 
     def test_a_solve_that_needed_many_iterations_is_not_one(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
-
         def lengthen(h5):
             h5["timing/solves/cg_s"][0, 0] = 14 * 20e-6
             h5["solves/iterations"][0, 0] = 14 * (10 + timings.FIXED) - timings.FIXED
 
-        times = timings.times(self.changed(file, lengthen), sims)["first"]
+        times = self.times(lengthen)[1]["first"]
         self.assertEqual(times.interrupted.sum(), 0)
         np.testing.assert_allclose(times.cg_s[0, 0], (4 + 14) * 20e-6, rtol=1e-5)
 
     def test_a_solve_that_renews_a_lagged_factor_is_not_one(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3)
-
         def renew(h5):
             renewed = np.zeros(h5["timing/solves/cg_s"].shape, dtype="i1")
             renewed[[0, 6, 12]] = 1     # the first Newton iterations of steps 0, 2 and 4
@@ -231,29 +205,23 @@ class Interruptions(Tables):
             for row in (0, 6, 12, 9):   # and one of step 3
                 h5["timing/solves/cg_s"][row, 0] += 1e-3
 
-        times = timings.times(self.changed(file, renew), sims)["all"]
+        times = self.times(renew)[1]["all"]
         np.testing.assert_array_equal(times.interrupted[0], 1)
         np.testing.assert_allclose(times.cg_s[0, 0], (3e-3 + 4 * 20e-6) * 5 / 4 + 10 * 10e-6, rtol=1e-5)
 
     def test_a_guess_that_is_slow_at_the_first_newton_iteration_loses_nothing_there(self):
         """k nearest neighbours of a data set of first iterations: 40 times as long there as later."""
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=40, newton=3)
-        before = timings.times(file, sims)
-
         def slow(h5):
             h5["timing/solves/guess_s"][0::3, 2] *= 40
             h5["timing/solves/guess_s"][3, 2] = 4e-3  # interrupted as well
 
-        after = timings.times(self.changed(file, slow), sims)
+        before, after, sims = self.times(slow, steps=40)
         self.assertEqual(after["all"].interrupted[:, 0].sum(), 1)
         np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
         np.testing.assert_allclose(after["first"].guess_s[:, 2], 40 * before["first"].guess_s[:, 2], rtol=1e-6)
         self.assertNotIn("trusted", timings.interruptions(after["all"], sims))
 
     def test_a_guess_that_is_slow_where_its_factors_are_made_anew_loses_nothing_there(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=40, newton=3)
-        before = timings.times(file, sims)
-
         def slow(h5):
             renewed = np.zeros(h5["timing/solves/guess_s"].shape, dtype="i1")
             renewed[0:120:24, 2] = 1
@@ -262,37 +230,27 @@ class Interruptions(Tables):
             h5["timing/solves/guess_s"][3, 2] = 4e-3   # interrupted, where nothing is made anew
             h5["timing/solves/guess_s"][24, 2] = 40e-3  # and where it is
 
-        after = timings.times(self.changed(file, slow), sims)
+        before, after, _ = self.times(slow, steps=40)
         self.assertEqual(after["all"].interrupted[0, 0], 2)
         np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
         ratio = after["first"].guess_s[0, 2] / before["first"].guess_s[0, 2]
         np.testing.assert_allclose(ratio, (4 * 40 + 34) / 38, rtol=1e-6)  # scaled from 38 rows, 4 of which are slow
 
     def test_an_iteration_that_few_steps_reach_is_judged_by_the_one_before_it(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=20, newton=3)
-
         def change(h5):
-            for name in ("guess_s", "cg_s"):
-                values = h5[f"timing/solves/{name}"][:]
-                values[5:60:3] = np.nan  # of the first task, all third iterations but one
-                h5[f"timing/solves/{name}"][:] = values
+            self.punch(h5, slice(5, 60, 3), slice(None))    # of the first task, all third iterations but one
             h5["timing/solves/cg_s"][2, 1] = 4e-3
 
-        self.assertEqual(timings.times(self.changed(file, change), sims)["all"].interrupted[0, 0], 1)
+        self.assertEqual(self.times(change, steps=20)[1]["all"].interrupted[0, 0], 1)
 
     def test_more_than_a_twentieth_left_out_is_said_to_be_too_much(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=20, newton=3)
-
         def interrupt(h5):
             h5["timing/solves/cg_s"][::15, 0] = 4e-3
 
-        sentence = timings.interruptions(timings.times(self.changed(file, interrupt), sims)["all"], sims)
-        self.assertIn("16 of 240 solves", sentence)
-        self.assertIn("7% of them: these times are not to be trusted", sentence)
+        _, after, sims = self.times(interrupt, steps=20)
+        self.assertRegex(timings.interruptions(after["all"], sims), r"(?s)16 of 240 solves.* 7% .*trusted")
 
     def test_a_step_of_many_newton_iterations_is_not_an_interruption(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=20, newton=3)
-
         def lengthen(h5):
             h5["steps/newton_iterations"][::2] = 0
             h5["steps/newton_iterations"][1::4] = 9
@@ -300,24 +258,21 @@ class Interruptions(Tables):
             h5["timing/steps/rest_s"][:] = rest
             self.total = rest[:20].sum()
 
-        found = timings.times(self.changed(file, lengthen), sims)["all"]
-        np.testing.assert_allclose(found.rest_s[0, 0], self.total, rtol=1e-5)
+        _, after, _ = self.times(lengthen, steps=20)
+        np.testing.assert_allclose(after["all"].rest_s[0, 0], self.total, rtol=1e-5)
 
     def test_in_a_closed_loop_every_guess_loses_its_own_rows(self):
-        file, sims, _ = self.open(grid={"scene.segments": [20]}, scenes=("helix",), steps=5, newton=3, closed_loop=True)
-        before = timings.speedups(timings.times(file, sims), "first")["guess_cg"]
-
         def interrupt(h5):
             h5["timing/solves/cg_s"][15, 1] = 4e-3  # first solve of the second guess's task
 
-        after = timings.times(self.changed(file, interrupt), sims)
-        np.testing.assert_allclose(timings.speedups(after, "first")["guess_cg"], before, rtol=1e-5)
+        before, after, sims = self.times(interrupt, closed_loop=True)
+        np.testing.assert_allclose(*(timings.speedups(times, "first")["guess_cg"] for times in (after, before)), rtol=1e-5)
         self.assertIn("1 of 240 solves", timings.interruptions(after["all"], sims))
 
 
-class Steps(Tables):
+class Steps(Folder):
     def test_largest_drift_and_gap_and_mean_newton_iterations(self):
-        file, sims, _ = self.open(pending=(3,))
+        file, sims = self.simulations(pending=(3,))
         figures = measures.step_figures(file, sims)
         np.testing.assert_allclose(figures.length_drift, 1e-3)  # planted negative: magnitudes count
         np.testing.assert_allclose(figures.joint_gap, 2e-3)
@@ -328,18 +283,18 @@ class Steps(Tables):
     def test_penetration_of_the_simulations_that_have_contact(self):
         plant = synthetic.Plant()
         plant.penetration = 0.01
-        file, sims, _ = self.open(plant=plant)
+        file, sims = self.simulations(plant=plant)
 
         def pass_through(h5):
             h5["steps/penetration"][:5] = np.nan
 
-        file = self.changed(file, pass_through)
+        file = self.changed(pass_through)
         found = measures.step_figures(file, sims).penetration
         self.assertTrue(np.isnan(found[0]).all())
         np.testing.assert_allclose(found[1:], 0.01)
 
     def test_a_direct_simulation_has_steps_and_nothing_to_compare(self):
-        file, sims, _ = self.open(method="direct")
+        file, sims = self.simulations(method="direct")
         self.assertEqual(len(sims), 24)
         self.assertFalse(measures.has_guesses(file).any())
         np.testing.assert_allclose(measures.step_figures(file, sims).joint_gap, 2e-3)

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-import tempfile
 import unittest
 import unittest.mock
 
@@ -12,22 +11,17 @@ import numpy as np
 import pandas
 import rodsweep
 from rodsweep.reading import tidy
+from running import Folder
 
 PLANT = synthetic.Plant()
 PLANT.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
 
 
-class Opened(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
+class Opened(Folder):
     def open(self, **settings):
         self.path = os.path.join(self.folder, f"{len(os.listdir(self.folder))}.h5")    # the one before may be open
-        settings = {"plant": PLANT, "counts_in_rows": True, "failed": {3: "diverged"}, "pending": (4,), "steps": 2,
-                    **settings}
-        synthetic.Sweep(**settings).write(self.path)
+        synthetic.Sweep(**{"plant": PLANT, "counts_in_rows": True, "failed": {3: "diverged"}, "pending": (4,), "steps": 2,
+                           **settings}).write(self.path)
         with synthetic.h5py.File(self.path, "r+") as h5:
             h5["steps/length_drift"].attrs.update({"unit": "1", "meaning": "relative change of the length"})
             h5["solves/iterations"].attrs.update({"unit": "1", "meaning": "CG iterations"})

@@ -10,19 +10,17 @@ import heatmap
 import long_term
 import numpy as np
 import temporal
-from rodsweep.reading import along_time, envelopes, groups, heat, intervals, measures, newton_levels
-from rodsweep.reading.sweepfile import SweepFile
+from rodsweep.reading import along_time, envelopes, groups, heat, intervals, newton_levels
 from running import Scripts
 
 EVERYTHING = {"select": [], "scene": None, "guess": None, "tolerance": None, "newton": "first", "width": "174"}
 
 
 class Studies(Scripts):
-    def open(self, **settings):
-        self.write(**settings)
-        file = SweepFile(self.path)
-        self.addCleanup(file.h5.close)
-        return file, measures.simulations(file, np.ones(file.task_count, dtype=bool))
+    def table(self, *words):
+        """The rows that a script prints with --csv, by method."""
+        rows = csv.DictReader(io.StringIO(self.run_script(*words, "--csv").stdout))
+        return {row["method"]: row for row in rows}
 
     def options(self, **settings):
         return argparse.Namespace(**{**EVERYTHING, **settings})
@@ -45,11 +43,15 @@ class Temporal(Studies):
     TEMPORAL = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 20, "newton": 2, "samples": 4,
                 "counts_in_rows": True}
 
+    def windows(self, newton="first", width=1, tolerances=(0,), **settings):
+        """Of a planted sweep: file, simulations, windows, the estimate of the ratio."""
+        file, sims = self.simulations(**{**self.TEMPORAL, "plant": Fading(), **settings})
+        found = along_time.windows(file, sims, newton, [0, 1], list(tolerances), width)
+        return file, sims, found, temporal.estimate(sims, found, 0, relative=True)
+
     def test_the_curve_is_the_planted_ratio_of_sums_before_and_after_the_change(self):
         for closed_loop in (False, True):
-            file, sims = self.open(plant=Fading(), closed_loop=closed_loop, **{**self.TEMPORAL, "samples": 5})
-            found = along_time.windows(file, sims, "first", [0, 1], [0, 1], width=1)
-            e = temporal.estimate(sims, found, 0, relative=True)
+            _, _, found, e = self.windows(tolerances=(0, 1), closed_loop=closed_loop, samples=5)
             self.assertEqual((found.width, e.value.shape), (1, (20, 2, 2)))
             np.testing.assert_allclose(found.centre, np.arange(1, 21))
             np.testing.assert_allclose(e.value[:, 0], 1)
@@ -58,28 +60,23 @@ class Temporal(Studies):
             self.assertTrue((e.low[:, 1] < e.value[:, 1]).all() and (e.value[:, 1] < e.high[:, 1]).all())
             self.assertGreaterEqual(e.low[0, 1].min(), 0.2 - 1e-9)   # no draw is better or worse than this
             self.assertLessEqual(e.high[0, 1].max(), 0.6 + 1e-9)
-            file.h5.close()
 
     def test_all_newton_iterations_and_iterations_per_solve(self):
-        file, sims = self.open(plant=Fading(), **self.TEMPORAL)
-        found = along_time.windows(file, sims, "all", [0, 1], [0], width=1)
-        np.testing.assert_allclose(temporal.estimate(sims, found, 0, True).value[:10, 1, 0], (0.35 + 0.9) / 2)
+        _, sims, found, e = self.windows("all")
+        np.testing.assert_allclose(e.value[:10, 1, 0], (0.35 + 0.9) / 2)
         np.testing.assert_allclose(temporal.estimate(sims, found, 0, False).value[:, 0, 0], 100)
         np.testing.assert_array_equal(found.solves[:, :, 0], 2)
 
     def test_a_window_is_a_sum_over_its_steps(self):
-        file, sims = self.open(plant=Fading(), **self.TEMPORAL)
-        found = along_time.windows(file, sims, "first", [0, 1], [0], width=5)
-        ratio = temporal.estimate(sims, found, 0, True).value[:, 1, 0]
+        _, _, found, e = self.windows(width=5)
         self.assertEqual(found.width, 5)
-        np.testing.assert_allclose(ratio[10], 0.35 * (2 * 1 + 3 * 2) / 5)    # steps 8 … 12
+        np.testing.assert_allclose(e.value[10, 1, 0], 0.35 * (2 * 1 + 3 * 2) / 5)    # steps 8 … 12
         np.testing.assert_array_equal(found.solves[0, [0, 1, 2, 19], 0], [3, 4, 5, 3])
 
     def test_solves_that_missed_the_tolerance_count_what_they_used(self):
         plant = Fading()
         plant.reached = lambda guess, tolerance, newton, segments, draw: guess == "zero" or draw > 0
-        file, sims = self.open(plant=plant, **self.TEMPORAL)
-        found = along_time.windows(file, sims, "first", [0, 1], [0], width=1)
+        file, sims, found, _ = self.windows(plant=plant)
         sums = file.results("iterations_sum", sims.any_task)[:, 1, 0]
         np.testing.assert_allclose(found.iterations[:, :, 1, 0].sum(axis=1), sums)
         np.testing.assert_allclose(found.iterations[0, :, 1, 0], 0.2 * 100 * 1.5)  # the mean of 20 and 40
@@ -91,15 +88,12 @@ class Temporal(Studies):
                 wrong = draw == 1 and guess != "zero"
                 return 50.0 if wrong else super().ratio(guess, tolerance, newton, segments, draw)
 
-        file, sims = self.open(plant=OneBad(), failed={1: "diverged"}, pending=(3,), **self.TEMPORAL)
-        found = along_time.windows(file, sims, "first", [0, 1], [0], width=1)
-        e = temporal.estimate(sims, found, 0, True)
+        _, _, _, e = self.windows(plant=OneBad(), failed={1: "diverged"}, pending=(3,))
         np.testing.assert_allclose(e.value[0, 1, 0], (0.2 + 0.4) / 2)
         np.testing.assert_array_equal(e.count, 2)
 
     def test_long_runs_are_binned_and_keep_their_sums(self):
-        file, sims = self.open(plant=Fading(), **{**self.TEMPORAL, "steps": 1000, "samples": 2})
-        found = along_time.windows(file, sims, "first", [0, 1], [0], width=1)
+        file, sims, found, _ = self.windows(steps=1000, samples=2)
         self.assertLessEqual(len(found.centre), along_time.MOST_WINDOWS)
         whole = along_time.windows(file, sims, "first", [0, 1], [0], width=2000)
         np.testing.assert_allclose(whole.iterations[:, :, 0, 0], 100 * 1000)
@@ -126,59 +120,57 @@ class Cells(synthetic.Plant):
 
 
 class Heatmap(Studies):
-    HEAT = {"scenes": ("helix",), "samples": 5,
+    HEAT = {"scenes": ("helix",), "samples": 5, "steps": 2,
             "grid": {"scene.segments": [10, 40], "time.step_s": [0.01, 0.02, 0.04]}}
 
-    def planes(self, file, measure, x, y, **settings):
+    def planes(self, measure, x, y, **settings):
+        """Of the open file."""
         options = self.options(measure=measure, x=x, y=y, each=False, **settings)
-        shown, tolerances, guesses = heatmap.chosen(file, options)
-        return shown, heat.planes(shown, measure, x, y, guesses, tolerances)
+        shown, tolerances, guesses = heatmap.chosen(self.file, options)
+        return heat.planes(shown, measure, x, y, guesses, tolerances)
 
     def test_a_cell_has_the_best_guess_its_ratio_and_an_interval_that_covers_it(self):
-        file, _ = self.open(plant=Cells(), **self.HEAT)
-        _, (plane,) = self.planes(file, "ratio", "time.step_s", "scene.segments")
+        self.open(plant=Cells(), **self.HEAT)
+        plane, = self.planes("ratio", "time.step_s", "scene.segments")
         np.testing.assert_allclose(plane.cells.value, [[0.3] * 3, [0.5] * 3])
         self.assertEqual(plane.guess.tolist(), [[1] * 3, [2] * 3])   # the oracle takes no part
         self.assertTrue(((plane.cells.low <= plane.cells.value) & (plane.cells.value <= plane.cells.high)).all())
         self.assertTrue((plane.cells.high - plane.cells.low < 0.04).all())
         np.testing.assert_array_equal(plane.cells.count, 5)
-
-    def test_a_guess_that_is_named_is_the_one_shown(self):
-        file, _ = self.open(plant=Cells(), **self.HEAT)
-        _, (plane,) = self.planes(file, "ratio", "time.step_s", "scene.segments", guess="oracle(0.1)")
-        np.testing.assert_allclose(plane.cells.value, 0.1)
+        named, = self.planes("ratio", "time.step_s", "scene.segments", guess="oracle(0.1)")
+        np.testing.assert_allclose(named.cells.value, 0.1)
 
     def test_the_ladder_of_tolerances_is_an_axis(self):
-        file, _ = self.open(plant=Cells(), **{**self.HEAT, "grid": {"scene.segments": [10, 40]}})
-        shown, (plane,) = self.planes(file, "iterations", "scene.segments", "tolerance")
+        self.open(plant=Cells(), **{**self.HEAT, "grid": {"scene.segments": [10, 40]}})
+        plane, = self.planes("iterations", "scene.segments", "tolerance")
         self.assertEqual(plane.y.text, ["1e-4", "1e-3", "1e-2", "1e-1"])
         np.testing.assert_allclose(plane.cells.value[:, 0], [2000, 2000, 2000, 1000])
-        _, (ratio,) = self.planes(file, "ratio", "scene.segments", "tolerance")
+        ratio, = self.planes("ratio", "scene.segments", "tolerance")
         np.testing.assert_allclose(ratio.cells.value, [[0.3, 0.5]] * 4)
 
     def test_every_other_grid_is_a_panel(self):
-        file, _ = self.open(plant=Cells(), **self.HEAT)
-        _, planes = self.planes(file, "ratio", "scene.segments", "tolerance")
+        self.open(plant=Cells(), **self.HEAT)
+        planes = self.planes("ratio", "scene.segments", "tolerance")
         self.assertEqual([plane.panel.settings for plane in planes],
                          [{"time.step_s": text} for text in ("0.01", "0.02", "0.04")])
 
     def test_speedups_of_three_kinds_and_residuals(self):
-        file, _ = self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01, 0.02]}, scenes=("helix",))
+        self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01, 0.02]}, scenes=("helix",), steps=2)
         # us, j = 0 of N = 20: CG 20 from zero, 5 with quadratic; guess 2; step: 3 assemblies of 2, rest 3
         for measure, value in (("speedup-cg", 4), ("speedup-guess-cg", 20 / 7),
                                ("speedup-step", (6 + 40 + 3) / (6 + 6 + 10 + 3))):
-            _, (plane,) = self.planes(file, measure, "time.step_s", "scene.segments")
+            plane, = self.planes(measure, "time.step_s", "scene.segments")
             np.testing.assert_allclose(plane.cells.value[1], value, rtol=1e-5)
             self.assertEqual(plane.guess[1].tolist(), [2, 2])
-        _, (plane,) = self.planes(file, "newton-residual", "time.step_s", "scene.segments")
+        plane, = self.planes("newton-residual", "time.step_s", "scene.segments")
         np.testing.assert_allclose(plane.cells.value, 1e-10)
 
     def test_cells_without_a_simulation_are_empty_and_missed_tolerances_counted(self):
         plant = Cells()
         plant.reached = lambda guess, tolerance, newton, segments, draw: segments < 20 or guess != "quadratic"
         failed = {task: "diverged" for task in range(5)}    # all draws of the first cell
-        file, _ = self.open(plant=plant, failed=failed, pending=(5,), **self.HEAT)
-        _, (plane,) = self.planes(file, "ratio", "time.step_s", "scene.segments")
+        self.open(plant=plant, failed=failed, pending=(5,), **self.HEAT)
+        plane, = self.planes("ratio", "time.step_s", "scene.segments")
         self.assertTrue(np.isnan(plane.cells.value[0, 0]))
         self.assertEqual(plane.cells.count.tolist(), [[0, 4, 5], [5, 5, 5]])
         self.assertEqual(plane.unreached.tolist(), [[0, 0, 0], [20 // 10 * 5] * 3])   # 2 steps x 5 draws
@@ -189,11 +181,11 @@ class Heatmap(Studies):
         printed = self.run_script("heatmap.py", "sweep.h5", *where, files=True).stdout.split()
         self.assertEqual(printed[1], "figures/sweep-heatmap-ratio-step_s-segments-1e-2.png")
         self.run_script("heatmap.py", "sweep.h5", *where, "--measure", "speedup-step", "--each", "--width", "84")
-        self.refused("heatmap.py", "sweep.h5", "--x", "tolerance", "--y", "tolerance", words="two parameters")
-        self.refused("heatmap.py", "sweep.h5", *where[:2], "--y", "tolerance", "--measure", "speedup-cg",
-                     words="sweep solve.tolerance in the job")
-        self.refused("heatmap.py", "sweep.h5", *where[:2], "--y", "scene.segmnts", words="did you mean scene.segments?")
-        self.refused("heatmap.py", "sweep.h5", *where, "--tolerance", "1e-1,1e-2", words="a cell shows one tolerance")
+        for words, *arguments in (("two parameters", "--x", "tolerance", "--y", "tolerance"),
+                                  ("solve.tolerance", *where[:2], "--y", "tolerance", "--measure", "speedup-cg"),
+                                  ("did you mean scene.segments?", *where[:2], "--y", "scene.segmnts"),
+                                  ("one tolerance", *where, "--tolerance", "1e-1,1e-2")):
+            self.refused("heatmap.py", "sweep.h5", *arguments, words=words)
 
 
 class Drifting(synthetic.Plant):
@@ -212,7 +204,7 @@ class LongTerm(Studies):
     ONE = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 50}    # group of simulations
 
     def test_slopes_largest_and_final_values_are_the_planted_ones(self):
-        file, sims = self.open(plant=Drifting(), **self.LONG)
+        file, sims = self.simulations(plant=Drifting(), **self.LONG)
         found = envelopes.histories(file, sims.tasks())
         at = found.rows(sims.task[:, 0])
         np.testing.assert_allclose(found.slope[at], -1e-3 * (1 + 0.1 * sims.sample), rtol=1e-9)
@@ -225,16 +217,21 @@ class LongTerm(Studies):
         np.testing.assert_allclose(found.first["energy_j"], 3)
         np.testing.assert_allclose(found.final["energy_j"], 2.5)
 
+    def methods(self, file):
+        shown = long_term.make_study(file, self.options())
+        panel, = groups.panels(file, shown.sims, ("solve.method",))
+        return shown, long_term.methods(shown, panel)
+
     def test_the_fit_begins_where_it_is_told_to(self):
         class Transient(Drifting):
             def length_drift(self, step, steps, draw, guess):
                 return np.where(step < 100, 1.0, 1e-6 * step)
 
-        file, sims = self.open(plant=Transient(), **self.LONG)
+        file, sims = self.simulations(plant=Transient(), **self.LONG)
         np.testing.assert_allclose(envelopes.histories(file, sims.tasks(), begin=100).slope, 1e-3, rtol=1e-6)
 
     def test_tasks_of_several_blocks_of_rows_come_out_the_same(self):
-        file, sims = self.open(plant=Drifting(), **self.LONG)
+        file, sims = self.simulations(plant=Drifting(), **self.LONG)
         whole = envelopes.histories(file, sims.tasks())
         blocks = file.step_blocks
         file.step_blocks = lambda tasks, columns: blocks(tasks, columns, 500)
@@ -246,8 +243,7 @@ class LongTerm(Studies):
 
     def test_the_table_has_every_method_its_interval_and_its_failures(self):
         self.write(plant=Drifting(), failed={1: "diverged"}, pending=(3,), **{**self.LONG, "samples": 5})
-        rows = {row["method"]: row for row in csv.DictReader(
-            io.StringIO(self.run_script("long_term.py", "sweep.h5", "--csv", "--after", "0").stdout))}
+        rows = self.table("long_term.py", "sweep.h5", "--after", "0")
         self.assertEqual(list(rows), list(synthetic.GUESSES))
         self.assertEqual([int(row["simulations"]) for row in rows.values()], [5, 5, 5, 4])
         self.assertEqual([int(row["failed"]) for row in rows.values()], [0, 1, 0, 0])
@@ -266,17 +262,14 @@ class LongTerm(Studies):
 
         own = [t for t in range(12) if t % 4 == 1]
         self.write(plant=BlowingUp(), failed={t: "diverged" for t in own}, **self.LONG)
-        rows = {row["method"]: row for row in csv.DictReader(
-            io.StringIO(self.run_script("long_term.py", "sweep.h5", "--csv").stdout))}
+        rows = self.table("long_term.py", "sweep.h5")
         failed = rows["previous"]
         self.assertEqual((failed["simulations"], failed["failed"], failed["drift_per_1000_steps"]), ("3", "3", ""))
         self.assertAlmostEqual(float(failed["length_drift_final"]), -1.2e-6 * 301)
         self.assertEqual(rows["zero"]["failed_after_steps"], "")
-        file, sims = self.open(plant=BlowingUp(), failed={t: "diverged" for t in own}, **self.LONG)
-        shown = long_term.make_study(file, self.options())
+        file, sims = self.simulations(plant=BlowingUp(), failed={t: "diverged" for t in own}, **self.LONG)
+        _, methods = self.methods(file)
         found = envelopes.histories(file, np.array(own))
-        panel, = groups.panels(file, shown.sims, ("solve.method",))
-        methods = long_term.methods(shown, panel)
         self.assertIn("previous", methods)
         low, high, line = long_term._envelope(found, "length_drift", "previous", methods["previous"][1], {})
         self.assertTrue(np.isfinite(line[0]) and np.isnan(line[-1]))
@@ -291,24 +284,17 @@ class LongTerm(Studies):
         self.write(**{**self.LONG, "closed_loop": False, "steps": 50})
         self.assertIn("  direct", self.run_script("long_term.py", "sweep.h5").stdout)
 
-    def test_a_network_instead_of_the_solve_is_a_method_by_the_name_of_its_model(self):
-        self.write(method="end_to_end", model="../models/bending.h5", failed={1: "diverged"}, **self.ONE)
-        said = self.run_script("long_term.py", "sweep.h5").stdout
-        self.assertIn("  end_to_end bending ", said)
-        self.assertNotIn("direct", said)
-
-    def test_gauss_seidel_is_a_method_by_its_iterations(self):
-        self.write(**{**self.ONE, "method": "xpbd", "grid": {"solve.iterations": (20,)}})
-        said = self.run_script("long_term.py", "sweep.h5").stdout
-        self.assertIn("  xpbd 20 ", said)
-        self.assertNotIn("direct", said)
+    def test_networks_are_methods_by_the_names_of_their_models_and_gauss_seidel_by_its_iterations(self):
+        for method, settings in (("end_to_end bending", {"model": "../models/bending.h5", "failed": {1: "diverged"}}),
+                                 ("xpbd 20", {"grid": {"solve.iterations": (20,)}})):
+            self.write(**{**self.ONE, "method": method.split()[0], **settings})
+            said = self.run_script("long_term.py", "sweep.h5").stdout
+            self.assertIn(f"  {method} ", said)
+            self.assertNotIn("direct", said)
 
     def test_energies_are_relative_to_the_first_step_and_the_largest_kinetic_energy(self):
-        file, sims = self.open(plant=Drifting(), **self.LONG)
-        options = self.options()
-        shown = long_term.make_study(file, options)
-        panel, = groups.panels(file, shown.sims, ("solve.method",))
-        methods = long_term.methods(shown, panel)
+        file, sims = self.simulations(plant=Drifting(), **self.LONG)
+        shown, methods = self.methods(file)
         found = envelopes.histories(file, sims.tasks())
         scales = long_term._scales(found, methods, shown)
         low, high, line = long_term._envelope(found, "energy_j", "zero", methods["zero"][1], scales)
@@ -329,7 +315,7 @@ class Newton(Studies):
     NEWTON = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "newton": 3, "samples": 3, "steps": 4}
 
     def test_levels_are_the_planted_ones_and_the_last_is_the_end_of_the_step(self):
-        file, sims = self.open(plant=Converging(), failed={1: "diverged"}, **self.NEWTON)
+        file, sims = self.simulations(plant=Converging(), failed={1: "diverged"}, **self.NEWTON)
         found = newton_levels.levels(file, sims.tasks())
         self.assertEqual(found.tasks.tolist(), [0, 2])
         for row, draw in enumerate((0, 2)):
@@ -340,15 +326,12 @@ class Newton(Studies):
         np.testing.assert_allclose(found.share, 1)
 
     def test_quartiles_and_the_largest_over_steps(self):
-        file, sims = self.open(plant=Converging(), **self.NEWTON)
-        path = file.path
-        file.h5.close()
-        with synthetic.h5py.File(path, "r+") as h5:
+        def change(h5):
             h5["solves/newton_residual"][:12:3] = [1, 2, 3, 4]   # j = 0 of task 0
             h5["solves/newton"][3 * 3 + 2], h5["solves/newton_residual"][3 * 3 + 2] = -1, np.nan  # never reached
             h5["steps/newton_iterations"][3], h5["steps/newton_residual"][3] = 2, 9
-        with SweepFile(path) as file:
-            found = newton_levels.levels(file, [0])
+        self.open(plant=Converging(), **self.NEWTON)
+        found = newton_levels.levels(self.changed(change), [0])
         np.testing.assert_allclose(found.values["newton_residual"][0, 0], [1.75, 2.5, 3.25, 4])
         np.testing.assert_allclose(found.share[0], [1, 1, 1, 0.75])
         for level in (2, 3):    # a step that ended early stays with what it ended with
