@@ -5,7 +5,7 @@ import os
 import types
 import unittest
 
-import synthetic
+import synthetic  # noqa: F401  (makes analysis/ importable)
 import h5py
 import loss
 import numpy as np

@@ -5,28 +5,23 @@ import stat
 import unittest
 import unittest.mock
 
-import synthetic
+import synthetic  # noqa: F401  (makes analysis/ importable)
 import numpy as np
 
 import trajectories
 from rodsweep.drawing import povray, staging, surfaces, tints
 from rodsweep.reading import obstacles, trajectory
 from rodsweep.reading.sweepfile import SweepFile
-from running import Scripts
 from test_pictures import drawn
+from trajectories import obstacle
 
 UP = np.array([0.0, 1, 0])
 NONE = [np.nan] * 3
 
 
-class Obstacles(Scripts):
+class Obstacles(trajectories.Planted):
     def plant(self, columns, scene="net", **settings):
-        """Three tasks with these parameters."""
-        self.write(scenes=(scene,), grid={"scene.segments": [6]}, samples=3, solves=False)
-        trajectories.plant(self.path, **settings)
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            for name, values in {"contact.friction": [0.3] * 3, **columns}.items():
-                h5[f"tasks/parameters/scene.{name}"] = np.array(values, dtype=float)
+        super().plant({"contact.friction": 0.3, **columns}, scene, **settings)
 
     def of(self, task):
         with SweepFile(self.path) as file:
@@ -38,13 +33,10 @@ class Obstacles(Scripts):
                                   touched=obstacles.of_task(file, 0))
 
     def test_a_task_has_those_of_its_own_columns(self):
-        self.plant({"obstacles[0].ball.centre_m": [[0, -1, 0], [0, -2, 0], NONE],
-                    "obstacles[0].ball.radius_m": [0.2, 0.4, np.nan],
-                    "obstacles[0].half_space.point_m": [NONE, NONE, [0, -3, 0]],
-                    "obstacles[0].half_space.normal": [NONE, NONE, [0, 3, 4]],
-                    "obstacles[1].capsule.from_m": [NONE, [0, 0, 0], NONE],
-                    "obstacles[1].capsule.to_m": [NONE, [1, 0, 0], NONE],
-                    "obstacles[1].capsule.radius_m": [np.nan, 0.1, np.nan]})
+        self.plant({**obstacle(0, "ball", centre_m=[(0, -1, 0), (0, -2, 0), NONE], radius_m=[0.2, 0.4, np.nan]),
+                    **obstacle(0, "half_space", point_m=[NONE, NONE, (0, -3, 0)], normal=[NONE, NONE, (0, 3, 4)]),
+                    **obstacle(1, "capsule", from_m=[NONE, (0, 0, 0), NONE], to_m=[NONE, (1, 0, 0), NONE],
+                               radius_m=[np.nan, 0.1, np.nan])})
         ball, = self.of(0)
         self.assertEqual((*ball.start, *ball.end, ball.radius), (0, -1, 0, 0, -1, 0, 0.2))
         ball, capsule = self.of(1)
@@ -54,7 +46,7 @@ class Obstacles(Scripts):
         np.testing.assert_allclose((*slope.point, *slope.normal), (0, -3, 0, 0, 0.6, 0.8))
 
     def test_without_contact_there_are_none_and_two_scenes_have_a_floor(self):
-        ball = {"obstacles[0].ball.centre_m": [[0, -1, 0]] * 3, "obstacles[0].ball.radius_m": [1] * 3}
+        ball = obstacle(0, "ball", centre_m=(0, -1, 0), radius_m=1)
         for scene, expected in (("coiling_rod", 2), ("falling_rods", 2), ("net", 1)):
             self.plant({**ball, "contact.friction": [0.3, np.nan, 0]}, scene=scene)
             self.assertEqual([len(self.of(task)) for task in range(3)], [expected, 0, expected])
@@ -62,24 +54,18 @@ class Obstacles(Scripts):
         self.assertEqual(self.of(0), [])
 
     def test_the_highest_level_plane_is_the_floor(self):
-        self.plant({"obstacles[0].half_space.point_m": [[5, -2, 0]] * 3,
-                    "obstacles[0].half_space.normal": [[0, 2, 0]] * 3,
-                    "obstacles[1].half_space.point_m": [[0, 3, 0]] * 3,
-                    "obstacles[1].half_space.normal": [[0, -1, 0]] * 3})
+        self.plant({**obstacle(0, "half_space", point_m=(5, -2, 0), normal=(0, 2, 0)),
+                    **obstacle(1, "half_space", point_m=(0, 3, 0), normal=(0, -1, 0))})
         stage = self.staged()
         self.assertEqual((stage.floor, len(stage.slopes)), (-2, 1))
         self.plant({}, scene="falling_rods")
         self.assertEqual(self.staged().floor, 0)
 
     def test_what_moves_is_drawn_where_it_is_at_the_time_and_is_no_floor(self):
-        self.plant({"obstacles[0].half_space.point_m": [[0, -1, 0]] * 3,
-                    "obstacles[0].half_space.normal": [[0, 1, 0]] * 3,
-                    "obstacles[0].half_space.velocity_m_s": [[0, 2, 0]] * 3,
-                    "obstacles[1].half_space.point_m": [[0, -3, 0]] * 3,
-                    "obstacles[1].half_space.normal": [[0, 1, 0]] * 3,
-                    "obstacles[1].half_space.velocity_m_s": [[0, 0, 0]] * 3,
-                    "obstacles[2].ball.centre_m": [[0.3, 1, 0]] * 3, "obstacles[2].ball.radius_m": [0.1] * 3,
-                    "obstacles[2].ball.velocity_m_s": [[0, 0, 5]] * 3})
+        level = {"normal": (0, 1, 0)}
+        self.plant({**obstacle(0, "half_space", point_m=(0, -1, 0), velocity_m_s=(0, 2, 0), **level),
+                    **obstacle(1, "half_space", point_m=(0, -3, 0), velocity_m_s=(0, 0, 0), **level),
+                    **obstacle(2, "ball", centre_m=(0.3, 1, 0), radius_m=0.1, velocity_m_s=(0, 0, 5))})
         plate, _, ball = (obstacle.at(0.5) for obstacle in self.of(0))
         np.testing.assert_array_equal(plate.point, (0, 0, 0))
         np.testing.assert_array_equal((ball.start, ball.end), [(0.3, 1, 2.5)] * 2)
@@ -101,10 +87,8 @@ class Obstacles(Scripts):
         self.assertLess(self.staged().floor, 0.9)
 
     def test_the_camera_sees_solids_near_the_rods_and_slopes(self):
-        self.plant({"obstacles[0].capsule.from_m": [[0, 0, 0]] * 3, "obstacles[0].capsule.to_m": [[0.5, 0.2, 0]] * 3,
-                    "obstacles[0].capsule.radius_m": [0.2] * 3,
-                    "obstacles[1].half_space.point_m": [[0, 0.5, 0]] * 3,
-                    "obstacles[1].half_space.normal": [[0.5, 1, 0]] * 3})
+        self.plant({**obstacle(0, "capsule", from_m=(0, 0, 0), to_m=(0.5, 0.2, 0), radius_m=0.2),
+                    **obstacle(1, "half_space", point_m=(0, 0.5, 0), normal=(0.5, 1, 0))})
         stage = self.staged()
         solid, slope = stage.solids[0], stage.slopes[0]
         rim = staging.rim(slope, stage.centre, stage.extent)
@@ -121,15 +105,15 @@ class Obstacles(Scripts):
     def test_what_is_far_or_huge_does_not_move_the_camera(self):
         self.plant({})
         alone = self.staged()
-        self.plant({"obstacles[0].ball.centre_m": [[0, -200, 0]] * 3, "obstacles[0].ball.radius_m": [200] * 3,
-                    "obstacles[1].ball.centre_m": [[50, 0, 0]] * 3, "obstacles[1].ball.radius_m": [0.5] * 3})
+        self.plant({**obstacle(0, "ball", centre_m=(0, -200, 0), radius_m=200),
+                    **obstacle(1, "ball", centre_m=(50, 0, 0), radius_m=0.5)})
         beside = self.staged()
         np.testing.assert_array_equal(beside.camera.eye, alone.camera.eye)
         self.assertEqual(beside.floor, alone.floor)
         self.assertEqual(povray.obstacles(beside).count("sphere{"), 2)
 
     def test_a_ball_is_drawn_as_large_as_it_is_and_a_slope_is_glass_from_behind(self):
-        self.plant({"obstacles[0].ball.centre_m": [[0.1, 0.4, 0]] * 3, "obstacles[0].ball.radius_m": [0.3] * 3}, rods=1)
+        self.plant(obstacle(0, "ball", centre_m=(0.1, 0.4, 0), radius_m=0.3), rods=1)
         stage = self.staged(view="front")
         with SweepFile(self.path) as file:
             picture, = drawn(trajectory.of_task(file, 0), stage)
@@ -138,8 +122,7 @@ class Obstacles(Scripts):
         self.assertLess(abs(row.sum() / 2 - (right[0] - centre[0])), 2.5)
         red, green, blue = picture[int((centre[1] + top[1]) / 2), int(centre[0])]
         self.assertTrue(red > green > blue)   # stone
-        self.plant({"obstacles[0].half_space.point_m": [[0, 0.5, 0]] * 3,
-                    "obstacles[0].half_space.normal": [[0.1, 1, 0]] * 3})
+        self.plant(obstacle(0, "half_space", point_m=(0, 0.5, 0), normal=(0.1, 1, 0)))
         self.assertIn(povray.STONE, povray.obstacles(self.staged(view=(0, 20))))
         below = self.staged(view=(0, -30))
         self.assertIn(povray.GLASS, povray.obstacles(below))

@@ -11,14 +11,12 @@ import numpy as np
 import trajectories
 from rodsweep.reading import joints, trajectory
 from rodsweep.reading.sweepfile import SweepFile
-from running import Scripts
+from trajectories import obstacle
+
+BALL = {"centre_m": (1, 2, 3), "radius_m": 0.25}
 
 
-class Paraview(Scripts):
-    def plant(self, **settings):
-        self.write(scenes=("helix",), grid={"scene.segments": [6]}, samples=3, solves=False)
-        trajectories.plant(self.path, **settings)
-
+class Paraview(trajectories.Planted):
     def document(self, *arguments, name="sweep-task0.xdmf"):
         """The root element of what the script writes."""
         self.assertEqual(self.run_script("paraview.py", "sweep.h5", *arguments).stdout, name + "\n")
@@ -91,12 +89,8 @@ class Paraview(Scripts):
         np.testing.assert_array_equal(lines.find("DataItem").text.split(), [str(k) for k in range(6)])
 
     def test_obstacles_are_a_grid_that_stands_still(self):
-        self.plant()
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            for name, value in {"contact.friction": 0.3, "obstacles[0].ball.centre_m": (1, 2, 3),
-                                "obstacles[0].ball.radius_m": 0.25, "obstacles[1].half_space.point_m": (0, -1, 0),
-                                "obstacles[1].half_space.normal": (0, 1, 0)}.items():
-                h5[f"tasks/parameters/scene.{name}"] = np.array([value] * 3, dtype=float)
+        self.plant({"contact.friction": 0.3, **obstacle(0, "ball", **BALL),
+                    **obstacle(1, "half_space", point_m=(0, -1, 0), normal=(0, 1, 0))})
         root = self.document()
         self.assertEqual(len(root.findall("Domain/Grid/Grid")), 4)
         grid, = (grid for grid in root.findall("Domain/Grid") if grid.get("Name") == "obstacles")
@@ -108,12 +102,7 @@ class Paraview(Scripts):
         self.assertTrue(on_ball.any() and (~on_ball).any() and np.isclose(points[~on_ball, 1], -1).all())
 
     def test_obstacles_that_move_are_a_grid_a_frame(self):
-        self.plant()
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            for name, value in {"contact.friction": 0.3, "obstacles[0].ball.centre_m": (1, 2, 3),
-                                "obstacles[0].ball.radius_m": 0.25,
-                                "obstacles[0].ball.velocity_m_s": (0, 10, 0)}.items():
-                h5[f"tasks/parameters/scene.{name}"] = np.array([value] * 3, dtype=float)
+        self.plant({"contact.friction": 0.3, **obstacle(0, "ball", **BALL, velocity_m_s=(0, 10, 0))})
         series, = (grid for grid in self.document().findall("Domain/Grid") if grid.get("Name") == "obstacles")
         self.assertEqual(len(series.findall("Grid")), 4)
         for grid in series.findall("Grid"):

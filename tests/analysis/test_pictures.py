@@ -1,6 +1,5 @@
 """render.py: what POV-Ray is given, what the camera sees, what comes out; films; mistakes."""
 
-import contextlib
 import hashlib
 import io
 import os
@@ -19,8 +18,6 @@ from PIL import Image
 import trajectories
 from rodsweep.drawing import camera, movie, povray, staging, tints
 from rodsweep.reading import trajectory
-from rodsweep.reading.sweepfile import SweepFile
-from running import Scripts
 
 NUMBER = r"-?[\d.]+(?:e[-+]?\d+)?"
 
@@ -48,18 +45,7 @@ def plain_pictures(picture=plain_picture):
     return unittest.mock.patch.object(povray, "picture", picture)
 
 
-class Planted(Scripts):
-    def plant(self, **settings):
-        self.write(scenes=("helix",), grid={"scene.segments": [6]}, samples=3, solves=False)
-        trajectories.plant(self.path, **settings)
-
-    @contextlib.contextmanager
-    def shown(self, **settings):
-        """The first task's Trajectory, while its file is open."""
-        self.plant(**settings)
-        with SweepFile(self.path) as file:
-            yield trajectory.of_task(file, 0)
-
+class Planted(trajectories.Planted):
     def stage(self, shown, frames=(0,), view=None, size=(240, 180), floor="auto"):
         return staging.staged(shown, list(frames), np.array([0.0, 1, 0]), view, size, floor)
 
@@ -76,36 +62,36 @@ class Geometry(Planted):
         np.testing.assert_allclose(trajectory.axis(turn), rotated, atol=1e-14)
 
     def test_tubes_are_the_capsules_of_a_known_pose(self):
-        with self.shown() as shown:
-            text = povray.tubes(shown, *tints.colours(shown, "rod"), frame=2)
-            found = np.array([[float(v) for v in re.findall(NUMBER, line)] for line in text.splitlines()
-                              if line.startswith("cylinder")])
-            found = found[np.lexsort((found[:, 0], found[:, 2]))]
-            start = np.tile([-0.3, -0.1, 0.1], 2)
-            expected = np.column_stack([start, np.full(6, 1.2), np.repeat([0, 0.5], 3), start + 0.2, np.full(6, 1.2),
-                                        np.repeat([0, 0.5], 3), np.full(6, 0.05)])
-            np.testing.assert_allclose(found, expected, atol=1e-6)
-            spheres = [line for line in text.splitlines() if line.startswith("sphere")]
-            self.assertEqual(len(spheres), 12)
-            self.assertTrue(all(line.endswith(",0.05}") for line in spheres))
+        shown = self.shown()
+        text = povray.tubes(shown, *tints.colours(shown, "rod"), frame=2)
+        found = np.array([[float(v) for v in re.findall(NUMBER, line)] for line in text.splitlines()
+                          if line.startswith("cylinder")])
+        found = found[np.lexsort((found[:, 0], found[:, 2]))]
+        start = np.tile([-0.3, -0.1, 0.1], 2)
+        expected = np.column_stack([start, np.full(6, 1.2), np.repeat([0, 0.5], 3), start + 0.2, np.full(6, 1.2),
+                                    np.repeat([0, 0.5], 3), np.full(6, 0.05)])
+        np.testing.assert_allclose(found, expected, atol=1e-6)
+        spheres = [line for line in text.splitlines() if line.startswith("sphere")]
+        self.assertEqual(len(spheres), 12)
+        self.assertTrue(all(line.endswith(",0.05}") for line in spheres))
 
     def test_a_wall_is_a_plate_behind_the_rod(self):
-        with self.shown(walls=1, rods=1) as shown:
-            text = povray.tubes(shown, *tints.colours(shown, "rod"), frame=0)
-            cylinders = [[float(v) for v in re.findall(NUMBER, line)] for line in text.splitlines()
-                         if line.startswith("cylinder")]
-            plate = [c for c in cylinders if c[6] > 0.06]
-            self.assertEqual((len(cylinders), len(plate)), (6, 1))
-            self.assertLess(plate[0][0], plate[0][3])   # thick towards -x, where no rod is
-            reach = staging.WALL_RADII * 0.05
-            self.assertAlmostEqual(plate[0][6] ** 2 + (plate[0][3] - plate[0][0]) ** 2, reach ** 2, places=6)
+        shown = self.shown(walls=1, rods=1)
+        text = povray.tubes(shown, *tints.colours(shown, "rod"), frame=0)
+        cylinders = [[float(v) for v in re.findall(NUMBER, line)] for line in text.splitlines()
+                     if line.startswith("cylinder")]
+        plate = [c for c in cylinders if c[6] > 0.06]
+        self.assertEqual((len(cylinders), len(plate)), (6, 1))
+        self.assertLess(plate[0][0], plate[0][3])   # thick towards -x, where no rod is
+        reach = staging.WALL_RADII * 0.05
+        self.assertAlmostEqual(plate[0][6] ** 2 + (plate[0][3] - plate[0][0]) ** 2, reach ** 2, places=6)
 
     def test_colours_tell_rods_places_and_radii_and_held_segments_are_grey(self):
-        with self.shown() as shown:
-            for by, different in (("rod", 2), ("along", 2), ("radius", 1)):
-                palette, number = tints.colours(shown, by)
-                self.assertTrue((number[[0, 3]] == len(palette) - 1).all())
-                self.assertEqual(len(set(number[[1, 2, 4, 5]])), different, by)
+        shown = self.shown()
+        for by, different in (("rod", 2), ("along", 2), ("radius", 1)):
+            palette, number = tints.colours(shown, by)
+            self.assertTrue((number[[0, 3]] == len(palette) - 1).all())
+            self.assertEqual(len(set(number[[1, 2, 4, 5]])), different, by)
 
 
 class Camera(Planted):
@@ -130,8 +116,8 @@ class Camera(Planted):
                 self.assertLess(min(slack[0] + slack[2], slack[1] + slack[3]), 0.05)
 
     def test_the_middle_of_the_picture_is_on_the_line_of_sight_and_up_is_up(self):
-        with self.shown() as shown:
-            seen = self.stage(shown, view="front").camera
+        shown = self.shown()
+        seen = self.stage(shown, view="front").camera
         ahead = seen.eye + 2 * seen.forward
         (middle, above, right), depth = seen.project([ahead, ahead + 0.1 * seen.up, ahead + 0.1 * seen.right])
         np.testing.assert_allclose(middle, (120, 90))
@@ -140,75 +126,72 @@ class Camera(Planted):
         np.testing.assert_allclose(seen.right, (1, 0, 0), atol=1e-12)
 
     def test_gravity_says_where_up_is(self):
-        self.plant()
-        with synthetic.h5py.File(self.path, "r+") as h5:
-            h5["tasks/parameters/scene.gravity_m_s2"] = np.tile([0.3, 0, -9.8], (3, 1))
-        with SweepFile(self.path) as file:
-            np.testing.assert_array_equal(staging.upwards(file, 0), (0, 0, 1))
+        self.plant({"gravity_m_s2": (0.3, 0, -9.8)})
+        np.testing.assert_array_equal(staging.upwards(self.opened(), 0), (0, 0, 1))
 
     def test_a_broad_scene_is_seen_from_its_broad_side(self):
         for along, broad in (("x", 0), ("z", 90)):
-            with self.shown(rods=1, along=along) as shown:
-                seen = self.stage(shown).camera
-                azimuth = np.degrees(np.arctan2(-seen.forward[0], -seen.forward[2]))
-                self.assertAlmostEqual(abs((azimuth - broad + 90) % 180 - 90), staging.TURN_DEG, places=6)
+            shown = self.shown(rods=1, along=along)
+            seen = self.stage(shown).camera
+            azimuth = np.degrees(np.arctan2(-seen.forward[0], -seen.forward[2]))
+            self.assertAlmostEqual(abs((azimuth - broad + 90) % 180 - 90), staging.TURN_DEG, places=6)
 
     def test_the_floor_is_under_the_lowest_point_of_all_frames(self):
-        with self.shown() as shown:
-            stage = self.stage(shown, range(4))
-            self.assertTrue(0.9 < stage.floor < 0.95)
-            self.assertIsNone(self.stage(shown, floor="none").floor)
-            self.assertEqual(self.stage(shown, floor=-2.0).floor, -2)
-            self.assertNotIn("plane", povray.surroundings(self.stage(shown, floor="none")))
+        shown = self.shown()
+        stage = self.stage(shown, range(4))
+        self.assertTrue(0.9 < stage.floor < 0.95)
+        self.assertIsNone(self.stage(shown, floor="none").floor)
+        self.assertEqual(self.stage(shown, floor=-2.0).floor, -2)
+        self.assertNotIn("plane", povray.surroundings(self.stage(shown, floor="none")))
 
 
 class Pictures(Planted):
     def test_a_picture_is_not_blank_and_a_tube_is_as_wide_as_it_is(self):
-        with self.shown(rods=1) as shown:
-            stage = self.stage(shown, view="front", floor="none")
-            picture, = drawn(shown, stage)
-            self.assertEqual(picture.shape, (180, 240, 3))
-            tube = picture.min(axis=-1) < 200
-            self.assertTrue((picture[~tube] > 200).all())
-            self.assertTrue(0.01 < tube.mean() < 0.5)
-            centre, depth = stage.camera.project([[0.1, 1, 0], [0.1, 1 + 0.05, 0]])
-            column = tube[:, int(centre[0, 0])]
-            focal = 240 / (2 * stage.camera.tangents[0])
-            self.assertAlmostEqual(column.sum() / 2, 0.05 * focal / depth[0], delta=1)
-            self.assertAlmostEqual(np.flatnonzero(column).mean() + 0.5, centre[0, 1], delta=1)
-            ends = stage.camera.project([[-0.65, 1, 0], [0.65, 1, 0]])[0][:, 0]
-            found = np.flatnonzero(tube.any(axis=0))
-            np.testing.assert_allclose((found[0], found[-1] + 1), ends, atol=1.5)
+        shown = self.shown(rods=1)
+        stage = self.stage(shown, view="front", floor="none")
+        picture, = drawn(shown, stage)
+        self.assertEqual(picture.shape, (180, 240, 3))
+        tube = picture.min(axis=-1) < 200
+        self.assertTrue((picture[~tube] > 200).all())
+        self.assertTrue(0.01 < tube.mean() < 0.5)
+        centre, depth = stage.camera.project([[0.1, 1, 0], [0.1, 1 + 0.05, 0]])
+        column = tube[:, int(centre[0, 0])]
+        focal = 240 / (2 * stage.camera.tangents[0])
+        self.assertAlmostEqual(column.sum() / 2, 0.05 * focal / depth[0], delta=1)
+        self.assertAlmostEqual(np.flatnonzero(column).mean() + 0.5, centre[0, 1], delta=1)
+        ends = stage.camera.project([[-0.65, 1, 0], [0.65, 1, 0]])[0][:, 0]
+        found = np.flatnonzero(tube.any(axis=0))
+        np.testing.assert_allclose((found[0], found[-1] + 1), ends, atol=1.5)
 
     def test_fine_pictures_have_the_rods_that_are_thinner_than_a_pixel(self):
-        with self.shown(rods=1, radius=0.001) as shown:
-            stage = self.stage(shown, view=(20, 10), floor="none")
-            text = povray.scene(shown, stage, tints.colours(shown, "rod"), 0)
-            ends = stage.camera.project(np.concatenate(shown.ends(0)))[0][:, 0]
-            columns = slice(int(ends.min()) + 2, int(ends.max()) - 2)
-            with ThreadPoolExecutor(2) as pool:
-                drawings = [pool.submit(povray.picture, text, (240, 180), fine=fine) for fine in (False, True)]
-            pictures = [opened_picture(drawing.result()) for drawing in drawings]
-            found = [(picture.min(axis=(0, 2))[columns] < 250).mean() for picture in pictures]
-            self.assertGreater(found[1], max(0.95, found[0]))
+        shown = self.shown(rods=1, radius=0.001)
+        stage = self.stage(shown, view=(20, 10), floor="none")
+        text = povray.scene(shown, stage, tints.colours(shown, "rod"), 0)
+        ends = stage.camera.project(np.concatenate(shown.ends(0)))[0][:, 0]
+        columns = slice(int(ends.min()) + 2, int(ends.max()) - 2)
+        with ThreadPoolExecutor(2) as pool:
+            drawings = [pool.submit(povray.picture, text, (240, 180), fine=fine) for fine in (False, True)]
+        pictures = [opened_picture(drawing.result()) for drawing in drawings]
+        found = [(picture.min(axis=(0, 2))[columns] < 250).mean() for picture in pictures]
+        self.assertGreater(found[1], max(0.95, found[0]))
 
     def test_handedness_x_is_to_the_right_from_the_front_and_z_is_near(self):
-        with self.shown() as shown:  # rods at z = 0 and, nearer, at 0.5
-            stage = self.stage(shown, view=(0, 30), floor="none")
-            picture, = drawn(shown, stage)
-            for segment, rod in ((2, 0), (5, 1)):
-                (x, y), _ = stage.camera.project(shown.centres(0)[segment])
-                red, _, blue = picture[int(y), int(x)]
-                self.assertEqual(red > blue, rod == 1, (segment, picture[int(y), int(x)]))   # blue, then red
-            rows = stage.camera.project(shown.centres(0)[[2, 5]])[0][:, 1]
-            self.assertGreater(rows[1], rows[0])
+        shown = self.shown()  # rods at z = 0 and, nearer, at 0.5
+        stage = self.stage(shown, view=(0, 30), floor="none")
+        picture, = drawn(shown, stage)
+        for segment, rod in ((2, 0), (5, 1)):
+            (x, y), _ = stage.camera.project(shown.centres(0)[segment])
+            red, _, blue = picture[int(y), int(x)]
+            self.assertEqual(red > blue, rod == 1, (segment, picture[int(y), int(x)]))   # blue, then red
+        rows = stage.camera.project(shown.centres(0)[[2, 5]])[0][:, 1]
+        self.assertGreater(rows[1], rows[0])
 
     def test_the_floor_takes_a_shadow(self):
-        with self.shown() as shown:
-            stages = [self.stage(shown, view=(20, 40), floor=floor) for floor in ("auto", "none")]
-            grey = [(np.ptp(picture, axis=-1) < 12) & (picture[..., 0] > 110) & (picture[..., 0] < 225)
-                    for picture in drawn(shown, *stages)]
-            self.assertGreater(grey[0].mean(), 3 * grey[1].mean())   # held segments are grey too
+        shown = self.shown()
+        stages = [self.stage(shown, view=(20, 40), floor=floor) for floor in ("auto", "none")]
+        grey = [(np.ptp(picture, axis=-1) < 12) & (picture[..., 0] > 110) & (picture[..., 0] < 225)
+                for picture in drawn(shown, *stages)]
+        self.assertGreater(grey[0].mean(), 3 * grey[1].mean())   # held segments are grey too
 
     @plain_pictures()
     def test_stills_have_names_and_are_not_replaced_unasked(self):
@@ -222,24 +205,23 @@ class Pictures(Planted):
         self.refused("render.py", "sweep.h5", *size, words="sweep-task0-frame0003.png is there already")
         self.refused("render.py", "sweep.h5", *size, "-o", "sweep.h5", "--force", words="is there already")
         self.run_script("render.py", "sweep.h5", *size, "--force")
-        with open(os.path.join(self.folder, "figures/sweep-task0-frame0003.png"), "rb") as a, \
-                open(os.path.join(self.folder, "some/sweep-task0-frame0003.png"), "rb") as b:
+        with open("figures/sweep-task0-frame0003.png", "rb") as a, open("some/sweep-task0-frame0003.png", "rb") as b:
             self.assertNotEqual(a.read(), b.read())   # seen from another place: two frames must fit
         self.assertEqual(sorted(os.listdir(self.folder)), ["figures", "out", "some", "sweep.h5"])
 
 
 class Films(Planted):
     def test_a_gif_has_all_frames_their_time_and_their_pixels(self):
-        with self.shown() as shown:
-            self.run_script("render.py", "sweep.h5", "--movie", "gif", "--size", "120x90", "--rate", "20", "-j", "4",
-                            "-o", "a.gif")
-            stage = self.stage(shown, range(4), size=(120, 90))
-            with Image.open(os.path.join(self.folder, "a.gif")) as film:
-                self.assertEqual((film.n_frames, film.size), (4, (120, 90)))
-                self.assertEqual((film.info["loop"], film.info["duration"]), (0, 50))
-                for frame, exact in enumerate(drawn(shown, stage, frames=range(4))):
-                    film.seek(frame)
-                    self.assertLess(np.abs(np.asarray(film.convert("RGB")).astype(int) - exact).mean(), 2)
+        shown = self.shown()
+        self.run_script("render.py", "sweep.h5", "--movie", "gif", "--size", "120x90", "--rate", "20", "-j", "4",
+                        "-o", "a.gif")
+        stage = self.stage(shown, range(4), size=(120, 90))
+        with Image.open("a.gif") as film:
+            self.assertEqual((film.n_frames, film.size), (4, (120, 90)))
+            self.assertEqual((film.info["loop"], film.info["duration"]), (0, 50))
+            for frame, exact in enumerate(drawn(shown, stage, frames=range(4))):
+                film.seek(frame)
+                self.assertLess(np.abs(np.asarray(film.convert("RGB")).astype(int) - exact).mean(), 2)
 
     def test_the_order_of_frames_does_not_depend_on_how_many_are_drawn_at_a_time(self):
         def slower_at_first(text, size, threads=1, fine=False):
@@ -253,7 +235,7 @@ class Films(Planted):
             with plain_pictures(slower_at_first):
                 self.run_script("render.py", "sweep.h5", "--movie", "gif", "--size", "60x40", "-j", jobs, "-o",
                                 f"{jobs}.gif")
-            with open(os.path.join(self.folder, f"{jobs}.gif"), "rb") as film:
+            with open(f"{jobs}.gif", "rb") as film:
                 films.append(film.read())
         self.assertEqual(*films)
         with Image.open("3.gif") as film:
@@ -267,7 +249,7 @@ class Films(Planted):
             image.save(out, "PNG")
             return out.getvalue()
         pictures = [png("red"), png("red"), png("blue")]
-        path = os.path.join(self.folder, "still.gif")
+        path = "still.gif"
         movie.write_gif(path, iter(pictures), 10, pictures)
         with Image.open(path) as film:
             self.assertEqual(film.n_frames, 3)
@@ -292,7 +274,7 @@ class Films(Planted):
         self.plant()
         with self.with_programs(ffmpeg='for last; do :; done\n/bin/cat >"$last"\n'):
             self.run_script("render.py", "sweep.h5", "--movie", "mp4", "--size", "60x40", "--every", "2", "-o", "a.mp4")
-        with open(os.path.join(self.folder, "a.mp4"), "rb") as film:
+        with open("a.mp4", "rb") as film:
             self.assertEqual(film.read().count(b"\x89PNG"), 2)
 
     @plain_pictures()
@@ -306,21 +288,22 @@ class Films(Planted):
     def test_programs_that_are_missing_are_named(self):
         self.plant()
         with self.with_programs():
-            self.refused("render.py", "sweep.h5", "--movie", "mp4", words="install the Debian package ffmpeg")
+            self.refused("render.py", "sweep.h5", "--movie", "mp4", words="package ffmpeg")
         with unittest.mock.patch.dict(os.environ, {"PATH": self.folder}):
-            self.refused("render.py", "sweep.h5", words="install the Debian package povray")
+            self.refused("render.py", "sweep.h5", words="package povray")
 
 
 class Mistakes(Planted):
     def test_they_are_one_line_and_exit_code_2(self):
         self.write(scenes=("helix",), solves=False)
-        self.refused("render.py", "sweep.h5", words="ask for them with record.trajectory_every")
+        self.refused("render.py", "sweep.h5", words="record.trajectory_every")
         self.plant(last=2)
-        self.refused("render.py", "sweep.h5", "--frame", "2", words="task 0 has frames 0 to 1, not 2")
-        self.refused("render.py", "sweep.h5", "--task", "9", words="has tasks 0 to 2, not 9")
-        self.refused("render.py", "sweep.h5", "--movie", "gif", "--frame", "1", words="remove --frame")
-        self.refused("render.py", "sweep.h5", "--movie", "mp4", "--size", "61x40", words="must be even")
-        self.refused("render.py", "sweep.h5", "--scene", "net", words="scene 'net' is not in the file")
+        for words, *arguments in (("task 0 has frames 0 to 1, not 2", "--frame", "2"),
+                                  ("has tasks 0 to 2, not 9", "--task", "9"),
+                                  ("remove --frame", "--movie", "gif", "--frame", "1"),
+                                  ("must be even", "--movie", "mp4", "--size", "61x40"),
+                                  ("scene 'net' is not in the file", "--scene", "net")):
+            self.refused("render.py", "sweep.h5", *arguments, words=words)
         with synthetic.h5py.File(self.path, "r+") as h5:
             h5["trajectories/position_m"][0] = np.nan
         self.refused("render.py", "sweep.h5", "--frame", "0", words="positions that are not numbers")

@@ -15,8 +15,6 @@ import trajectories
 from running import Scripts
 from rodsweep.report import page
 
-GUESSES = ("zero", "previous", "quadratic", "oracle(0.1)")
-
 
 class Tables(html.parser.HTMLParser):
     """The rows of all tables of a page as lists of texts, and all text outside scripts and styles."""
@@ -59,7 +57,7 @@ class Report(Scripts):
         return self.made(*arguments)
 
     def made(self, *arguments):
-        self.run_script("report.py", self.path, "-o", "page.html", "--force", *arguments)
+        self.run_script("report.py", self.path, *arguments, "-o", "page.html", "--force")
         with open("page.html", encoding="utf-8") as file:
             text = file.read()
         data = re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S).group(1)
@@ -92,12 +90,12 @@ class Numbers(Report):
         _, (data, ) = self.report(samples=7)
         family, = data["families"]
         labels = [line["label"] for line in family["lines"]]
-        self.assertEqual(labels, [*GUESSES, "direct"])
+        self.assertEqual(labels, [*synthetic.GUESSES, "direct"])
         axis = next(axis for axis in family["axes"] if axis["key"] == "scene.segments")
         self.assertEqual([(panel["scene"], panel["x"]) for panel in axis["panels"]],
                          [("bending_rod", [10, 20, 40]), ("helix", [10, 20, 40])])
         value, low, high, count = (np.array(part, dtype=float) for part in axis["panels"][0]["values"]["ratio"])
-        shape = (2, 3, len(GUESSES), len(data["tolerances"]))     # Newton iterations, points, guesses, tolerances
+        shape = (2, 3, 4, len(data["tolerances"]))     # Newton iterations, points, guesses, tolerances
         for number, quality in enumerate((1, 0.5, 0.25, 0.1)):
             np.testing.assert_allclose(value.reshape(shape)[0, :, number], quality, atol=0.01)
         later = (0.5 + 2 * 0.9) / 3
@@ -106,10 +104,7 @@ class Numbers(Report):
         speed = np.array(axis["panels"][1]["values"]["speedup_cg"][0], dtype=float).reshape(2, 3, len(labels))
         np.testing.assert_allclose(speed[0, :, 2], 4, rtol=1e-3)
         np.testing.assert_allclose(speed[0, :, -1], np.array([10, 20, 40]) / 8, rtol=1e-3)
-
-    def test_measures_that_the_choice_does_not_concern_are_there_once(self):
-        _, (data, ) = self.report()
-        newton = {measure["name"]: measure["newton"] for measure in data["families"][0]["measures"]}
+        newton = {measure["name"]: measure["newton"] for measure in family["measures"]}    # once where it is no choice
         self.assertEqual((newton["ratio"], newton["iterations"], newton["speedup_step"]), (["first", "all"], [""], [""]))
 
     def test_of_simulations_without_guesses_there_are_steps_and_the_direct_solve(self):
@@ -145,36 +140,29 @@ class Honesty(Report):
     def said(self, *arguments, **settings):
         return Tables(self.report(*arguments, **settings)[0]).text()
 
-    def test_half_finished_files_say_so(self):
-        self.assertIn("Half finished. 2 of 24 tasks are not done yet", self.said(pending=(1, 2)))
-        self.assertNotIn("Half finished", self.said())
-
-    def test_failures_are_listed_with_their_messages(self):
-        said = self.said(failed={0: "diverged", 5: "timed_out"})
-        for words in ("2 tasks, which are left out", "task 0: diverged – planted", "task 5: timed_out – planted"):
-            self.assertIn(words, said)
-
-    def test_times_of_too_many_ranks_win_nothing(self):
-        said = self.said(oversubscribed=True)
-        self.assertIn("more MPI ranks than cores", said)
-        self.assertIn("Nothing is said about the clock", said)
-        self.assertNotIn("the fastest guess", said)
+    def test_what_is_unfinished_failed_unsound_or_of_no_use_is_said(self):
+        useless = synthetic.Plant()
+        useless.quality = {"zero": 1.0, "previous": 1.5}
+        for settings, words, *absent in (
+                ({}, [], "Half finished"),
+                ({"pending": (1, 2)}, ["Half finished. 2 of 24 tasks"]),
+                ({"pending": range(24)}, ["No simulation is complete yet"]),
+                ({"failed": {0: "diverged", 5: "timed_out"}},
+                 ["2 tasks, which are left out", "task 0: diverged – planted", "task 5: timed_out – planted"]),
+                ({"oversubscribed": True}, ["more MPI ranks than cores", "Nothing is said about the clock"], "fastest"),
+                ({"plant": useless, "guesses": ("zero", "previous")}, ["no guess saves any", "no guess wins time"]),
+                ({"guesses": ("previous", "quadratic")}, ["no zero guess"])):
+            with self.subTest(words=words):
+                said = self.said(**settings)
+                for one in words:
+                    self.assertIn(one, said)
+                for one in absent:
+                    self.assertNotIn(one, said)
 
     def test_without_times_there_are_none(self):
         text, (data, ) = self.report(solves=False)
         self.assertIn("nothing is said about the clock", Tables(text).text())
         self.assertEqual({measure["unit"] for measure in data["families"][0]["measures"]}, {"ratio", "count"})
-
-    def test_where_no_guess_saves_the_page_says_no(self):
-        plant = synthetic.Plant()
-        plant.quality = {"zero": 1.0, "previous": 1.5}
-        said = self.said(plant=plant, guesses=("zero", "previous"))
-        self.assertIn("no guess saves any", said)
-        self.assertIn("no guess wins time", said)
-
-    def test_a_file_without_a_simulation_or_a_zero_guess_is_a_page_too(self):
-        self.assertIn("No simulation is complete yet", self.said(pending=range(24)))
-        self.assertIn("no zero guess", self.said(guesses=("previous", "quadratic")))
 
     def test_the_first_lines_say_how_guesses_were_tried(self):
         same, timed = "Each guess was tried on the same systems and its iterations", "and time were measured"
@@ -187,10 +175,9 @@ class Honesty(Report):
             self.assertIn(words, self.said(**settings))
         synthetic.Sweep(scenes=("helix",), steps=2).write("paired.h5")
         self.write(closed_loop=True, plant=undirected)
-        self.run_script("report.py", "paired.h5", self.path, "-o", "both.html")
-        with open("both.html", encoding="utf-8") as file:
-            self.assertIn("on the same systems, or in closed loops led simulations of its own, and its iterations "
-                          f"{timed}, in part with a direct solve beside it.", Tables(file.read()).text())
+        text, _ = self.made("paired.h5")
+        self.assertIn("on the same systems, or in closed loops led simulations of its own, and its iterations "
+                      f"{timed}, in part with a direct solve beside it.", Tables(text).text())
 
     def test_many_settings_are_folded_behind_the_first_ones(self):
         for values, more in (([0.01, 0.02], 0), ([0.005, 0.01, 0.02, 0.04], 2)):
@@ -247,13 +234,10 @@ class Page(Report):
             self.assertEqual(self.made()[1][0]["animations"], [])
 
 
-
-
 class Commands(Report):
     def test_it_lies_beside_its_file_and_is_replaced_only_if_asked(self):
         self.write()
-        done = self.run_script("report.py", "sweep.h5")
-        self.assertEqual(done.stdout, "sweep.html\n")
+        self.assertEqual(self.run_script("report.py", "sweep.h5").stdout, "sweep.html\n")
         self.refused("report.py", "sweep.h5", words="is there already")
         self.refused("report.py", "sweep.h5", "-o", "sweep.h5", "--force", words="give another name")
         self.run_script("report.py", "sweep.h5", "--force")
@@ -261,9 +245,7 @@ class Commands(Report):
     def test_several_files_are_one_page_with_a_table_of_all(self):
         self.write()
         synthetic.Sweep(scenes=("helix",), steps=2).write("other.h5")
-        self.run_script("report.py", "sweep.h5", "other.h5", "-o", "both.html")
-        with open("both.html", encoding="utf-8") as file:
-            rows = Tables(file.read()).tables[0]
+        rows = Tables(self.made("other.h5")[0]).tables[0]
         self.assertEqual([row[1] for row in rows[1:]], ["Bending rod", "Helix", "Helix"])
         self.assertEqual([row[3] for row in rows[1:]], ["quadratic"] * 3)
 

@@ -38,11 +38,17 @@ class Frames(Opened):
         self.assertEqual(sorted(set(tasks.task)), [t for t in range(24) if t != 4])
         self.assertEqual(set(tasks.outcome[tasks.task == 3]), {"diverged"})
         one = tasks[(tasks.task == 8) & (tasks.guess == "previous") & (tasks.tolerance == 0.01)]
-        self.assertEqual(one.iterations_sum.tolist(), [2 * 404])
+        self.assertEqual(one[["iterations_sum", "scene.segments", "scene.type", "sample"]].values.tolist(),
+                         [[2 * 404, 40, "bending_rod", 0]])
+        self.assertNotIn("solve.norm", tasks)    # the same for every task
         self.assertEqual(tasks.guess.cat.categories.tolist(), sorted(results.guesses))
 
     def test_what_was_not_reached_is_nan_and_what_has_no_meaning_too(self):
-        solves = self.open().solves(where="scene.type=helix")
+        solves = self.open(failed={}, pending=()).solves(where="scene.type=helix")
+        self.assertEqual(len(solves), 12 * 2 * 3 * 4)
+        zero = solves[(solves.guess == "zero") & (solves["scene.segments"] == 10)]
+        self.assertEqual(set(zero["iterations_1e-2"]), {202})
+        self.assertAlmostEqual(solves.direct_s.iloc[0], 8e-6)
         self.assertEqual(set(solves.guess[solves["iterations_1e-4"].isna()]), {"previous"})
         self.assertTrue(solves["scene.length_m"].isna().all())
         self.assertEqual(solves.newton.dtype.kind, "i")
@@ -50,6 +56,8 @@ class Frames(Opened):
     def test_units_meanings_and_what_is_missing_stay(self):
         results = self.open()
         steps = results.steps()
+        self.assertEqual([steps[f"momentum_kg_m_s_{k}"].iloc[0] for k in "xyz"], [3, 0, 4])
+        self.assertAlmostEqual(steps.length_drift.min(), -1e-3)
         self.assertEqual(steps.attrs["unit"]["scene.youngs_modulus_pa"], "Pa")
         self.assertEqual(steps.attrs["meaning"]["length_drift"], "relative change of the length")
         self.assertEqual(steps.attrs["missing"], "1 pending, 1 diverged of 24 tasks")

@@ -35,9 +35,6 @@ class Spatial(Scripts):
         printed = self.run_script("spatial.py", "sweep.h5", files=True).stdout.split()
         self.assertEqual(printed, [f"figures/sweep-{name}.{ending}" for name in ("cg-ratio", "speedup", "time")
                                    for ending in ("pdf", "png")])
-
-    def test_an_overview_is_the_only_figure(self):
-        self.write(scenes=("helix",), guesses=("zero", "previous"))
         printed = self.run_script("spatial.py", "sweep.h5", "--overview", "--format", "png", files=True).stdout
         self.assertEqual(printed, "figures/sweep-overview.png\n")
 
@@ -60,43 +57,39 @@ class Spatial(Scripts):
 
     def test_mistakes_are_one_line_and_exit_code_2(self):
         self.refused("spatial.py", "none.h5", words="none.h5: there is no such file")
-        with open(os.path.join(self.folder, "notes.txt"), "w") as notes:
+        with open("notes.txt", "w") as notes:
             notes.write("hello")
         self.refused("spatial.py", "notes.txt", words="not an HDF5 file")
         self.write()
-        self.refused("spatial.py", "sweep.h5", "--x", "segmnts", words="did you mean scene.segments?")
-        self.refused("spatial.py", "sweep.h5", "--scene", "helx", words="did you mean helix?")
-        self.refused("spatial.py", "sweep.h5", "--tolerance", "0.5", words="tolerance '0.5' is not in the file")
-        self.refused("spatial.py", "sweep.h5", "--guess", "zero", words="only the zero guess is left")
-        self.write(guesses=("previous", "quadratic"))
-        self.refused("spatial.py", "sweep.h5", words="no zero guess")
-        self.write(method="direct")
-        self.refused("spatial.py", "sweep.h5", words="no guesses to compare")
-        self.write(pending=range(24))
-        self.refused("spatial.py", "sweep.h5",
-                     words="no simulation to show yet: 0 of 24 tasks ok, none failed, 24 pending")
+        for words, *arguments in (("did you mean scene.segments?", "--x", "segmnts"),
+                                  ("did you mean helix?", "--scene", "helx"), ("'0.5'", "--tolerance", "0.5"),
+                                  ("only the zero guess", "--guess", "zero")):
+            self.refused("spatial.py", "sweep.h5", *arguments, words=words)
+        for words, settings in (("no zero guess", {"guesses": ("previous", "quadratic")}),
+                                ("no guesses", {"method": "direct"}),
+                                ("0 of 24 tasks ok, none failed, 24 pending", {"pending": range(24)})):
+            self.write(**settings)
+            self.refused("spatial.py", "sweep.h5", words=words)
 
     def test_help_shows_examples(self):
         command = [os.path.join(synthetic.ANALYSIS, "spatial.py"), "--help"]
         said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=self.folder).stdout
-        for words in ("--tolerance", "--x", "--scene", "-o", "analysis/spatial.py results/demo.h5"):
-            self.assertIn(words, said)
+        self.assertIn("analysis/spatial.py results/demo.h5", said)
 
 
 class Summary(Scripts):
+    def summary(self, *arguments):
+        return self.run_script("summary.py", "sweep.h5", *arguments).stdout
+
     def test_the_table_has_the_planted_numbers(self):
         self.write(scenes=("helix",), failed={3: "diverged"}, pending=(4,))
-        said = self.run_script("summary.py", "sweep.h5").stdout
-        for words in ("10 of 12 tasks ok, failed: 1 diverged, 1 pending", "task 3: diverged: planted",
-                      "paired evaluation; preconditioner jacobi; residual test: ‖b − Ax‖₂", "Helix, n = 10",
-                      "first Newton iteration (j = 0)", "Solved to tolerance 1e-2"):
+        said = self.summary()
+        for words in ("10 of 12 tasks ok, failed: 1 diverged, 1 pending", "task 3: diverged: planted", "paired",
+                      "jacobi", "‖b − Ax‖₂", "Helix, n = 10", "(j = 0)", "tolerance 1e-2"):
             self.assertIn(words, said)
         rows = {line.split()[0]: line.split() for line in said.splitlines() if line.startswith("  previous")}
         self.assertIn("2.00", rows["previous"])
-
-    def test_columns_are_aligned(self):
-        self.write(scenes=("helix",))
-        table = self.run_script("summary.py", "sweep.h5").stdout.split("\n\n")[2].splitlines()
+        table = said.split("\n\n")[2].splitlines()    # whose columns are aligned
         beside = next(k for k, line in enumerate(table) if line.startswith("  the same"))
         for part in (table[:beside], table[beside:]):
             self.assertEqual(len({len(line) for line in part}), 1, part)
@@ -108,7 +101,7 @@ class Summary(Scripts):
                 spent = h5[f"tasks/iterations_sum{which}"][:]
                 spent[:, 2] += spent[:, 0]      # quadratic's own products are as many as CG from zero takes
                 h5[f"tasks/matvecs_sum{which}"] = spent
-        lines = self.run_script("summary.py", "sweep.h5").stdout.splitlines()
+        lines = self.summary().splitlines()
         begin = next(k for k, line in enumerate(lines) if line.startswith("  the same"))
         self.assertEqual(lines[begin].split()[3:9], ["1e-1", "products", "1e-1", "all", "j", "1e-1"])
         quadratic = lines[begin + 2].split()
@@ -117,8 +110,8 @@ class Summary(Scripts):
 
     def test_csv_and_json_hold_the_same_numbers(self):
         self.write(failed={3: "diverged"}, samples=5)
-        rows = list(csv.DictReader(io.StringIO(self.run_script("summary.py", "sweep.h5", "--csv").stdout)))
-        whole = json.loads(self.run_script("summary.py", "sweep.h5", "--json").stdout)
+        rows = list(csv.DictReader(io.StringIO(self.summary("--csv"))))
+        whole = json.loads(self.summary("--json"))
         counts = {row["quantity"]: float(row["value"]) for row in rows if row["quantity"].startswith("tasks")}
         self.assertEqual(counts, {"tasks": 30, "tasks_ok": 29, "tasks_pending": 0, "tasks_diverged": 1,
                                   "tasks_timed_oversubscribed": 0})
@@ -135,24 +128,32 @@ class Summary(Scripts):
         self.assertAlmostEqual(found["helix", "speedup_over_direct_cg", "oracle(0.1)", None]["value"], 8 / 2, places=4)
         self.assertAlmostEqual(found["helix", "length_drift_largest", None, None]["value"], 1e-3)
 
-    def test_a_block_for_every_value_of_a_key(self):
-        self.write(scenes=("helix",))
-        said = self.run_script("summary.py", "sweep.h5", "--by", "scene.segments").stdout
-        for segments in (10, 20, 40):
-            self.assertIn(f"Helix, scene.segments = {segments}, n = 4", said)
+    def test_what_is_said_of_other_sweeps(self):
+        blocks = [f"Helix, scene.segments = {segments}, n = 4" for segments in (10, 20, 40)]
+        for settings, arguments, words, *absent in (
+                ({"scenes": ("helix",)}, ("--by", "scene.segments"), blocks),
+                ({"scenes": ("helix",), "oversubscribed": True}, (), ["WARNING"]),
+                ({"scenes": ("helix",), "closed_loop": True}, (), ["closed-loop evaluation", "Helix, quadratic"]),
+                ({"method": "direct"}, (), ["direct solve, no guesses", "length drift"], "CG ratio"),
+                ({"pending": range(24)}, (), ["No simulation is complete yet"])):
+            with self.subTest(words=words):
+                self.write(**settings)
+                said = self.summary(*arguments)
+                for one in words:
+                    self.assertIn(one, said)
+                for one in absent:
+                    self.assertNotIn(one, said)
+        self.summary("--csv")    # of nothing
+        self.summary("--json")
 
     def test_unreached_tolerances_are_marked_and_counted(self):
         plant = synthetic.Plant()
         plant.reached = lambda guess, tolerance, newton, segments, draw: guess != "previous" or tolerance > 1e-3
         self.write(scenes=("helix",), plant=plant, steps=2, samples=5)
-        said = self.run_script("summary.py", "sweep.h5").stdout
+        said = self.summary()
         self.assertIn("0.50]*", said)
         self.assertIn("at 1e-3: previous 30", said)
         self.assertNotIn("at 1e-2", said)
-
-    def test_oversubscribed_times_are_warned_of(self):
-        self.write(scenes=("helix",), oversubscribed=True)
-        self.assertIn("WARNING: Not valid as timings", self.run_script("summary.py", "sweep.h5").stdout)
 
     def test_a_reader_that_closes_its_end_of_a_pipe_is_no_error(self):
         self.write(scenes=("helix",), solves=False)
@@ -161,31 +162,13 @@ class Summary(Scripts):
                               capture_output=True, check=True, cwd=self.folder)
         self.assertEqual((done.stdout, done.stderr), ("0\n", ""))
 
-    def test_a_direct_only_file_has_its_steps(self):
-        self.write(method="direct")
-        said = self.run_script("summary.py", "sweep.h5").stdout
-        self.assertIn("advanced by the direct solve, no guesses", said)
-        self.assertIn("length drift", said)
-        self.assertNotIn("CG ratio", said)
-
-    def test_a_sweep_that_has_just_begun(self):
-        self.write(pending=range(24))
-        self.assertIn("No simulation is complete yet.", self.run_script("summary.py", "sweep.h5").stdout)
-        self.run_script("summary.py", "sweep.h5", "--csv")
-        self.run_script("summary.py", "sweep.h5", "--json")
-
-    def test_a_closed_loop_has_the_drift_of_every_guess(self):
-        self.write(scenes=("helix",), closed_loop=True)
-        said = self.run_script("summary.py", "sweep.h5").stdout
-        self.assertIn("closed-loop evaluation", said)
-        self.assertIn("Helix, quadratic", said)
-
     def test_mistakes_are_one_line_and_exit_code_2(self):
         self.refused("summary.py", "none.h5", words="there is no such file")
         self.write()
-        self.refused("summary.py", "sweep.h5", "--by", "scene.length", words="did you mean scene.length_m?")
-        self.refused("summary.py", "sweep.h5", "--select", "scene.segments=7", words="known: 10, 20, 40")
-        self.refused("summary.py", "sweep.h5", "--tolerance", "x", words="--tolerance x: write numbers")
+        for words, *arguments in (("did you mean scene.length_m?", "--by", "scene.length"),
+                                  ("known: 10, 20, 40", "--select", "scene.segments=7"),
+                                  ("--tolerance x: ", "--tolerance", "x")):
+            self.refused("summary.py", "sweep.h5", *arguments, words=words)
 
 
 if __name__ == "__main__":

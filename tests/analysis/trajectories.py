@@ -3,6 +3,9 @@
 import h5py
 import numpy as np
 
+from running import Scripts
+from rodsweep.reading import trajectory
+
 HALF = np.sqrt(0.5)
 AXES = {"x": (HALF, 0, HALF, 0), "y": (HALF, -HALF, 0, 0), "z": (1, 0, 0, 0)}   # w, x, y, z
 
@@ -35,3 +38,25 @@ def plant(path, segments=6, frames=4, radius=0.05, length=0.2, rods=2, walls=0, 
                    "static": (np.arange(segments) % each == 0).astype(np.int8)}
         for name, values in columns.items():
             h5[f"trajectories/segments/{name}"] = np.tile(values, tasks)
+
+
+def obstacle(number, kind, **values):
+    """The columns of an obstacle."""
+    return {f"obstacles[{number}].{kind}.{name}": value for name, value in values.items()}
+
+
+class Planted(Scripts):
+    def plant(self, columns=None, scene="helix", **settings):
+        """Three tasks with trajectories and these parameters of the scene: a list of their values, or one for all."""
+        self.close()
+        self.write(scenes=(scene,), grid={"scene.segments": [6]}, samples=3, solves=False)
+        plant(self.path, **settings)
+        with h5py.File(self.path, "r+") as h5:
+            for name, values in (columns or {}).items():
+                values = values if isinstance(values, list) else 3 * [values]
+                h5[f"tasks/parameters/scene.{name}"] = np.array(values, dtype=float)
+
+    def shown(self, columns=None, **settings):
+        """The first task's Trajectory."""
+        self.plant(columns, **settings)
+        return trajectory.of_task(self.opened(), 0)
