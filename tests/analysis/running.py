@@ -46,7 +46,7 @@ def run(name, *arguments, files=False):
         for path in paths:
             with open(path, "rb") as figure:
                 assert figure.read(4) == HEADS[path[-4:]] and os.path.getsize(path) > 5000, path
-        assert paths, said
+        assert paths, said + error.getvalue()
     return types.SimpleNamespace(stdout=said, stderr=error.getvalue(), code=code)
 
 

@@ -218,54 +218,38 @@ class Sweep:
         found["timing/steps/rest_s"][span] = plant.rest_s
 
 
-def write_large(path, tasks, steps, newton, closed_loop=False, guesses=GUESSES, blocks_of=1 << 16):
-    """A packed file of tasks x steps x newton rows of /solves, all planted alike: a guess takes its quality's share of
-    100 iterations, the drift is -1e-6 per step."""
-    samples = tasks // (len(guesses) if closed_loop else 1)
-    sweep = Sweep(scenes=("helix",), grid={"scene.segments": [10]}, samples=samples, guesses=guesses, steps=1,
-                  newton=newton, closed_loop=closed_loop, solves=False,
-                  random={"scene.youngs_modulus_pa": ("Pa", lambda draw: 1e4 + draw)})
-    sweep.write(path)
-    tasks, rows_per_task = len(sweep.tasks()), steps * newton
-    counts = np.rint(100 * np.array([Plant.quality[g] for g in guesses]))[:, None] * np.ones(len(TOLERANCES))
-    with h5py.File(path, "r+") as h5:
-        for name, each in (("steps", steps), ("solves", rows_per_task)):
-            h5[f"tasks/{name}"][:] = each
-            h5[f"tasks/first_{name[:-1]}"][:] = np.arange(tasks) * each
-        mine = np.ones((tasks, len(guesses)), dtype=bool)
-        if closed_loop:
-            mine = h5["tasks/own_guess"][:][:, None] == np.arange(len(guesses))
-        for name, solves in (("iterations_sum", steps), ("iterations_sum_all", rows_per_task)):
-            h5[f"tasks/{name}"][:] = np.where(mine[..., None], counts * solves, -1)
-        h5["tasks/steps_done"][:] = steps
-        step = np.arange(steps)
-        along = {f"steps/{name}": getattr(Plant(), name)(step, steps, 0, "") for name in ALONG[1:]}
-        along.update({"steps/length_drift": -1e-6 * step, "steps/time_s": 0.02 * (step + 1),
-                      "steps/joint_gap": np.full(steps, 1e-3), "steps/newton_residual": np.full(steps, 1e-9),
-                      "steps/momentum_kg_m_s": np.tile([3.0, 0, 4], (steps, 1)),
-                      "steps/newton_iterations": np.full(steps, newton, dtype=np.int16),
-                      "timing/steps/rest_s": np.full(steps, 3e-6, dtype=np.float32)})
-        j, at = np.tile(np.arange(newton, dtype=np.int16), steps), np.repeat(step.astype(np.int32), newton)
-        solved = {"solves/newton": j, "solves/step": at, "solves/newton_residual": 0.1 ** (1.0 + j),
-                  "solves/joint_gap": 0.1 ** (1.0 + j), "timing/solves/assemble_s": np.full(len(j), 2e-6, np.float32),
-                  "timing/solves/direct_s": np.full(len(j), 8e-6, np.float32)}
-        of_guess = {"timing/solves/guess_s": np.full((len(j), len(guesses)), 1e-6, np.float32),
-                    "timing/solves/cg_s": np.tile((1e-6 * (counts[:, 0] + 4)).astype(np.float32), (len(j), 1)),
-                    "solves/iterations": np.tile(counts.astype(np.int16), (len(j), 1, 1)),
-                    "solves/start_matvecs": np.zeros((len(j), len(guesses)), dtype=np.int16)}
-        for name, values in {**along, **solved, **of_guess}.items():
-            if name in h5:
-                del h5[name]
-            item = h5.create_dataset(name, (tasks * len(values),) + values.shape[1:], values.dtype, compression="gzip",
-                                     compression_opts=1, shuffle=True, chunks=(4096,) + values.shape[1:])
-            at_once = max(1, blocks_of // len(values))
-            for first in range(0, tasks, at_once):
-                some = range(first, min(tasks, first + at_once))
-                if name in of_guess and closed_loop:
-                    blank = -1 if values.dtype.kind == "i" else np.nan
-                    shape = (1, len(guesses)) + (1,) * (values.ndim - 2)
-                    block = [np.where(mine[t].reshape(shape), values, blank).astype(values.dtype) for t in some]
-                else:
-                    block = [values] * len(some)
-                item[some[0] * len(values):(some[-1] + 1) * len(values)] = np.concatenate(block)
+def write_large(path, tasks, steps, newton, closed_loop=False):
+    """A packed file of about so many tasks: copies of those of one draw, which differ in their random parameter."""
+    Sweep(scenes=("helix",), grid={"scene.segments": [10]}, samples=1, steps=steps, newton=newton, closed_loop=closed_loop,
+          counts_in_rows=True).write(path + ".one")
+    with h5py.File(path + ".one") as one, h5py.File(path, "w") as h5:
+        mine = len(one["tasks/state"])
+        copies = tasks // mine
+        h5.attrs.update(one.attrs)
+
+        def copy(name, item):
+            if not isinstance(item, h5py.Dataset):
+                return
+            values, rows = item[()], name.split("/")[-2] in ("steps", "solves")
+            if name.startswith(("tasks/", "timing/tasks/")):
+                made = h5.create_dataset(name, data=np.concatenate(copies * [values]))
+            elif rows:
+                made = h5.create_dataset(name, (copies * len(values),) + values.shape[1:], values.dtype, shuffle=True,
+                                         compression="gzip", compression_opts=1, chunks=(4096,) + values.shape[1:])
+                some = max(1, (1 << 16) // len(values))    # copies at once
+                for first in range(0, copies, some):
+                    block = np.concatenate(min(some, copies - first) * [values])
+                    made[first * len(values):first * len(values) + len(block)] = block
+            else:
+                made = h5.create_dataset(name, data=values)
+            made.attrs.update(item.attrs)
+
+        one.visititems(copy)
+        draw = np.repeat(np.arange(copies), mine)
+        for name, values in (("first_step", np.arange(len(draw)) * steps), ("sample", draw), ("point", draw),
+                             ("first_solve", np.arange(len(draw)) * steps * newton),
+                             ("parameters/scene.youngs_modulus_pa", 1e4 + draw)):
+            h5[f"tasks/{name}"][:] = values
+        h5["tasks/parameters/scene.youngs_modulus_pa"].attrs["swept"] = True
+    os.remove(path + ".one")
     return path

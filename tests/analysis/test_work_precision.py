@@ -60,11 +60,6 @@ class WorkPrecision(ways.Planted):
         self.assertEqual(guesses[1:], (["direct", "xpbd", "pbd", "zero", "zero", "previous", "previous"],
                                        ["direct", "zero", "previous"]))
 
-    def test_files_without_a_reference_are_refused(self):
-        self.write()
-        self.refused("work_precision.py", "sweep.h5", "--select", "solve.method=cg",
-                     words="no task of the direct solve")
-
 
 if __name__ == "__main__":
     unittest.main()
