@@ -29,13 +29,13 @@ class Balance(running.Scripts):
             lacking = np.tile([1.0, 0.2, 0.3, 0.1], count)    # that of the first step does not count
             h5["steps/momentum_residual"] = lacking
 
-    def table(self, *arguments):
-        said = running.run("balance.py", "sweep.h5", *arguments, files=True).stdout
+    def table(self, **files):
+        said = self.run_script("balance.py", "sweep.h5", **files).stdout
         return [" ".join(line.split()) for line in said.split("\n\n")[0].splitlines()]
 
     def test_errors_are_those_of_the_end_against_the_finest_step_in_balance(self):
         self.write()
-        self.assertEqual(self.table()[1:], ["helix 0.02 the paper's step 0.3 0.15 3 0.3",
+        self.assertEqual(self.table(files=True)[1:], ["helix 0.02 the paper's step 0.3 0.15 3 0.3",
                                             "in balance 0.2 0.15 3 0.3",
                                             "0.01 the paper's step 0.1 0.3 3 0.3",
                                             "in balance reference 0.3 3 0.3"])

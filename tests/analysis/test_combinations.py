@@ -26,9 +26,9 @@ class Combinations(running.Scripts):
                 values[rows] = values[rows] / 2
                 h5[path][...] = values
 
-    def blocks(self, *arguments):
+    def blocks(self, *arguments, files=False):
         """{joints: lines with single blanks}"""
-        said = running.run("combinations.py", self.path, "--x", "scene.segments", *arguments, files=True)
+        said = self.run_script("combinations.py", self.path, "--x", "scene.segments", *arguments, files=files)
         self.assertEqual(said.stderr, "")
         found, lines = {}, []
         for line in said.stdout.splitlines():
@@ -39,7 +39,7 @@ class Combinations(running.Scripts):
 
     def test_the_cheapest_of_each_kind_and_its_speedups_over_those_of_the_others(self):
         self.write()
-        found = self.blocks()
+        found = self.blocks(files=True)
         self.assertEqual(list(found), [60, 240])
         # at 10 segments: zero 10 us with Jacobi and 5 with icc, quadratic 2.5 / 1.25 and a guess of 1, direct 8
         lines = {line.split(" [")[0] for line in found[60]}

@@ -1,29 +1,41 @@
 """analysis/example.ipynb runs as it stands, on a planted file, and shows what was planted; it has no outputs."""
 
+import ast
 import json
 import os
-import tempfile
 import unittest
 
 import synthetic
 import matplotlib
-import notebook
+from running import Scripts
 
 PATH = os.path.join(synthetic.ANALYSIS, "example.ipynb")
 
 
-class Notebook(unittest.TestCase):
+class Notebook(Scripts):
+    def setUp(self):
+        super().setUp()
+        with open(PATH, encoding="utf-8") as file:
+            self.whole = json.load(file)
+
+    def shown(self):
+        """Runs the cells of code, in this process and without Jupyter: what each shows, None for nothing."""
+        names, values = {"__name__": "__main__"}, []
+        for cell in self.whole["cells"]:
+            if cell["cell_type"] == "code":
+                tree = ast.parse("".join(cell["source"]))
+                last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
+                exec(compile(tree, PATH, "exec"), names)
+                values.append(eval(compile(ast.Expression(last.value), PATH, "eval"), names) if last else None)
+        return values
+
     def test_all_cells_run_and_show_the_planted_numbers(self):
         matplotlib.use("agg")
-        self.addCleanup(os.chdir, os.getcwd())
-        with tempfile.TemporaryDirectory() as folder:
-            os.chdir(folder)
-            os.mkdir("results")
-            synthetic.Sweep(steps=2, samples=6, pending=(2,), counts_in_rows=True).write("results/demo.h5")
-            with synthetic.h5py.File("results/demo.h5", "r+") as h5:
-                h5["tasks/iterations_sum"].attrs["meaning"] = "planted"
-            opened, missing, tasks, units, ratio, figure, means, blocks, _ = notebook.shown(PATH)
-            os.chdir("/")
+        os.mkdir("results")
+        synthetic.Sweep(steps=2, samples=6, pending=(2,), counts_in_rows=True).write("results/demo.h5")
+        with synthetic.h5py.File("results/demo.h5", "r+") as h5:
+            h5["tasks/iterations_sum"].attrs["meaning"] = "planted"
+        opened, missing, tasks, units, ratio, figure, means, blocks, _ = self.shown()
         self.assertIn("35 of 36 tasks ok", repr(opened))
         self.assertEqual(missing, "1 pending of 36 tasks")
         self.assertEqual(len(tasks), 5)
@@ -41,8 +53,7 @@ class Notebook(unittest.TestCase):
         self.assertAlmostEqual(blocks["quadratic"][0] / blocks["zero"][0], 0.25, delta=0.01)
 
     def test_it_is_a_notebook_without_outputs(self):
-        with open(PATH, encoding="utf-8") as file:
-            whole = json.load(file)
+        whole = self.whole
         self.assertEqual((whole["nbformat"], whole["metadata"]["kernelspec"]["name"]), (4, "python3"))
         self.assertEqual(len({cell["id"] for cell in whole["cells"]}), len(whole["cells"]))
         self.assertIn("`pip install 'analysis/[frames]'`", "".join(whole["cells"][0]["source"]))    # pandas and xarray too

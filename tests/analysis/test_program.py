@@ -26,21 +26,29 @@ JOB = {"name": "analysis", "kind": "sweep", "seed": 3, "samples": 2, "scene": {"
        "guesses": ["zero", "previous", "quadratic", {"oracle": {"error": 0.1}}]}
 
 
+def program(*words):
+    """What it prints."""
+    return subprocess.run([os.environ["RODSWEEP"], *words], check=True, capture_output=True, stdin=subprocess.DEVNULL).stdout
+
+
+def everything(file):
+    return measures.simulations(file, np.ones(file.task_count, dtype=bool))
+
+
 class Program(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
 
-    def run_job(self, name, **changes):
-        """Path of the results of JOB with changes; a change to None takes a key away."""
+    def run_job(self, name, *options, **changes):
+        """Path of the results of JOB with changes, made once; a change to None takes a key away."""
         job, results = (os.path.join(self.folder.name, name + ending) for ending in (".json", ".h5"))
         if not os.path.exists(results):
             with open(job, "w", encoding="utf-8") as text:
                 values = {**JOB, "name": name, **changes}
                 json.dump({key: value for key, value in values.items() if value is not None}, text)
-            subprocess.run([os.environ["RODSWEEP"], "run", job, "-o", results], check=True, capture_output=True,
-                           stdin=subprocess.DEVNULL)
+            program("run", job, "-o", results, *options)
         return results
 
     def script(self, name, *arguments):
@@ -81,13 +89,12 @@ class Program(unittest.TestCase):
         source = os.environ["SOURCE_DIR"]
         with open(os.path.join(source, "docs", "python.md"), encoding="utf-8") as page:
             shown = re.search(r"# \.\.\. (\d+) of (\d+) tasks ok", page.read())
-        plan = subprocess.run([os.environ["RODSWEEP"], "plan", os.path.join(source, "jobs", "demo.json"), "--no-probe",
-                               "--json"], check=True, capture_output=True, stdin=subprocess.DEVNULL)
-        self.assertEqual({int(shown[1]), int(shown[2])}, {json.loads(plan.stdout)["tasks"]})
+        plan = json.loads(program("plan", os.path.join(source, "jobs", "demo.json"), "--no-probe", "--json"))
+        self.assertEqual({int(shown[1]), int(shown[2])}, {plan["tasks"]})
 
     def test_ratios_are_those_of_the_rows_and_of_the_file(self):
         with SweepFile(self.run_job("paired")) as file:
-            sims = measures.simulations(file, np.ones(file.task_count, dtype=bool))
+            sims = everything(file)
             found = {newton: measures.cg_ratios(file, sims, newton).ratio for newton in ("first", "all")}
             iterations, newton = file.h5["solves/iterations"][:].astype(float), file.h5["solves/newton"][:]
             for task in range(file.task_count):
@@ -105,7 +112,7 @@ class Program(unittest.TestCase):
 
     def test_times_are_sums_of_the_rows(self):
         with SweepFile(self.run_job("paired")) as file, unittest.mock.patch.object(timings, "INTERRUPTED", np.inf):
-            sims = measures.simulations(file, np.ones(file.task_count, dtype=bool))
+            sims = everything(file)
             times = timings.times(file, sims)["all"]
             rows = slice(file.first_solve[2], file.first_solve[2] + file.solves[2])
             for name in ("cg_s", "guess_s"):
@@ -120,15 +127,14 @@ class Program(unittest.TestCase):
         path = self.run_job("paired")
         self.assertEqual(len(self.script("spatial.py", path).split()), 6)
         said = self.script("summary.py", path)
-        for words in ("6 of 6 tasks ok, none failed", "Bending rod, n = 4", "Helix, n = 2", "oracle",
-                      "preconditioner jacobi", "Solved to tolerance 1e-2", "joint gap/length"):
+        for words in ("6 of 6 tasks ok", "Bending rod, n = 4", "Helix, n = 2", "oracle", "jacobi", "1e-2", "joint gap"):
             self.assertIn(words, said)
 
     def test_a_closed_loop_pairs_every_guess_with_zero(self):
         path = self.run_job("closed", evaluation="closed_loop")
         with SweepFile(path) as file:
             self.assertEqual(file.task_count, 24)
-            sims = measures.simulations(file, np.ones(file.task_count, dtype=bool))
+            sims = everything(file)
             self.assertTrue(sims.closed_loop)
             self.assertEqual(sims.task.shape, (6, 4))
             ratio = measures.cg_ratios(file, sims, "first").ratio
@@ -174,16 +180,12 @@ class Program(unittest.TestCase):
         path = self.run_job("direct", solve={"method": "direct"}, guesses=[])
         with SweepFile(path) as file:
             self.assertEqual((file.guesses, file.zero), ([], None))
-        said = self.script("summary.py", path)
-        self.assertIn("advanced by the direct solve, no guesses", said)
-        self.assertIn("Newton its/step", said)
-        self.assertNotIn("CG ratio", said)
+        self.assertIn("Newton its/step", self.script("summary.py", path))
 
     def test_a_summary_has_the_ratios_of_the_full_record(self):
         with SweepFile(self.run_job("paired")) as full, \
                 SweepFile(self.run_job("short", record={"solves": "summary"})) as short:
-            ratios = [measures.cg_ratios(file, measures.simulations(file, file.ok), "first").ratio
-                      for file in (full, short)]
+            ratios = [measures.cg_ratios(file, everything(file), "first").ratio for file in (full, short)]
             np.testing.assert_array_equal(*ratios)
             self.assertFalse(timings.timed(short))
         self.assertEqual(len(self.script("spatial.py", short.path).split()), 2)
@@ -191,15 +193,9 @@ class Program(unittest.TestCase):
 
     def test_times_of_an_extended_sweep_say_that_they_are_of_two_runs(self):
         old = self.run_job("base", scene=ROD, guesses=["zero", "previous"])
-        job, path = (os.path.join(self.folder.name, "extended" + ending) for ending in (".json", ".h5"))
-        for guesses, apart in ((["zero", "previous", "linear"], 4), (["previous", "zero"], 0)):
-            with open(job, "w", encoding="utf-8") as text:
-                json.dump({**JOB, "name": "extended", "scene": ROD, "guesses": guesses}, text)
-            subprocess.run([os.environ["RODSWEEP"], "run", job, "-o", path, "--extend", old], check=True,
-                           capture_output=True, stdin=subprocess.DEVNULL)
-            said = self.script("summary.py", path)
-            os.remove(path)
-            self.assertEqual("Of 4 tasks some guesses were timed in another run" in said, apart > 0)
+        for name, guesses, apart in (("more", ["zero", "previous", "linear"], True), ("turned", ["previous", "zero"], False)):
+            said = self.script("summary.py", self.run_job(name, "--extend", old, scene=ROD, guesses=guesses))
+            self.assertEqual("Of 4 tasks some guesses were timed in another run" in said, apart)
             self.assertNotIn("WARNING", said)
 
     def test_the_curve_along_the_time_is_that_of_the_rows(self):
@@ -294,8 +290,7 @@ class Program(unittest.TestCase):
         with h5py.File(path, "r+") as h5:
             h5["tasks/state"][:2] = 0
         with SweepFile(path) as file:
-            census = measures.census(file, np.ones(file.task_count, dtype=bool))
-            self.assertEqual((census.ok, census.pending), (4, 2))
+            self.assertEqual(len(everything(file)), 4)
         self.assertIn("4 of 6 tasks ok, none failed, 2 pending", self.script("summary.py", path))
 
 

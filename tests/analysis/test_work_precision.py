@@ -15,10 +15,10 @@ ICC = ("CG icc from previous to 1e-1, Newton 1", "CG icc from previous to 1e-2, 
 
 
 class WorkPrecision(ways.Planted):
-    def table(self, *arguments, **settings):
+    def table(self, *arguments, files=False, **settings):
         """Its rows, with single blanks."""
         self.write(**settings)
-        said = self.run_script("work_precision.py", "sweep.h5", *arguments, files=True).stdout
+        said = self.run_script("work_precision.py", "sweep.h5", *arguments, files=files).stdout
         self.assertTrue(said.rstrip().endswith("sweep-work-precision.png"))
         return [" ".join(line.split()) for line in said.split("\n\n")[0].splitlines()]
 
@@ -33,7 +33,7 @@ class WorkPrecision(ways.Planted):
                     for title, name, looks in work_precision.choices(shown, points)]
 
     def test_every_error_has_its_cheapest_way_and_what_cg_costs_beside_the_direct_solve(self):
-        found = self.table()
+        found = self.table(files=True)
         self.assertEqual(found[1:], [f"bending rod 0.01 xpbd 50 10 {ICC[0]} 30 1.5",
                                      f"0.001 xpbd 50 10 {ICC[1]} 40 2",
                                      f"0.0001 direct, Newton 2 20 {ICC[1]} 40 2",
