@@ -193,9 +193,10 @@ class Program(unittest.TestCase):
 
     def test_times_of_an_extended_sweep_say_that_they_are_of_two_runs(self):
         old = self.run_job("base", scene=ROD, guesses=["zero", "previous"])
-        for name, guesses, apart in (("more", ["zero", "previous", "linear"], True), ("turned", ["previous", "zero"], False)):
+        for name, guesses, apart in (("more", ["zero", "previous", "linear"], True),
+                                     ("turned", ["previous", "zero"], False)):
             said = self.script("summary.py", self.run_job(name, "--extend", old, scene=ROD, guesses=guesses))
-            self.assertEqual("Of 4 tasks some guesses were timed in another run" in said, apart)
+            self.assertEqual("guesses were timed in another run" in said, apart)
             self.assertNotIn("WARNING", said)
 
     def test_the_curve_along_the_time_is_that_of_the_rows(self):

@@ -12,12 +12,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "mpi"))
 
 import h5py  # noqa: E402
-from test_sweeps import ALL_DONE, MPIRUN, RODSWEEP, command  # noqa: E402
+from test_sweeps import ALL_DONE, MPIRUN, RODSWEEP, rank_of, rodsweep  # noqa: E402
 
 
 def run_undisturbed(job, path, ranks=5):
-    done = subprocess.run(command(ranks, "run", job, "-o", path), stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          timeout=900, check=False)
+    done = rodsweep(ranks, "run", job, "-o", path, timeout=900)
     assert done.returncode == ALL_DONE, done.stderr
 
 
@@ -39,12 +38,10 @@ def ranks_on(host):
     ranks = {}
     for pid in processes_on(host, "rodsweep"):
         try:
-            with open(f"/proc/{pid}/environ", encoding="utf-8", errors="replace") as file:
-                found = re.search(r"\0OMPI_COMM_WORLD_RANK=(\d+)\0", "\0" + file.read())
+            ranks[rank_of(pid)] = pid
         except (FileNotFoundError, ProcessLookupError):
             continue
-        if found:
-            ranks[int(found.group(1))] = pid
+    ranks.pop(None, None)
     return ranks
 
 

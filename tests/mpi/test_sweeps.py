@@ -7,6 +7,7 @@ Run by CTest in an empty folder, with RODSWEEP, MPIRUN and FAILING_DISK in the e
 import hashlib
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -55,9 +56,10 @@ def command(ranks, *words):
     return ([MPIRUN, "-n", str(ranks)] if ranks else []) + [RODSWEEP, *words]
 
 
-def rodsweep(ranks, *words):
+def rodsweep(ranks, *words, timeout=60):
     """Runs to the end: the completed process with its texts. ranks 0: without mpirun."""
-    return subprocess.run(command(ranks, *words), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
+    return subprocess.run(command(ranks, *words), stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=timeout)
 
 
 def start(ranks, *words):
@@ -93,15 +95,19 @@ def ranks_of(mpirun):
         try:
             with open(f"/proc/{entry}/stat") as file:
                 parent = int(file.read().rsplit(")", 1)[1].split()[1])
-            if parent != mpirun.pid:
-                continue
-            with open(f"/proc/{entry}/environ") as file:
-                for variable in file.read().split("\0"):
-                    if variable.startswith("OMPI_COMM_WORLD_RANK="):
-                        ranks[int(variable.split("=")[1])] = int(entry)
+            if parent == mpirun.pid:
+                ranks[rank_of(entry)] = int(entry)
         except (FileNotFoundError, ProcessLookupError, PermissionError):
             continue
+    ranks.pop(None, None)
     return ranks
+
+
+def rank_of(pid):
+    """Its rank under mpirun, or None."""
+    with open(f"/proc/{pid}/environ", encoding="utf-8", errors="replace") as file:
+        found = re.search(r"\0OMPI_COMM_WORLD_RANK=(\d+)\0", "\0" + file.read())
+    return int(found[1]) if found else None
 
 
 def kill_all(mpirun):
