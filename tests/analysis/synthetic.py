@@ -152,70 +152,57 @@ class Sweep:
             item.attrs.update({"unit": unit, "meaning": f"the {key}", "swept": len(set(values)) > 1})
 
     def _results(self, tasks, guesses, done, rows_per_task):
-        """All datasets of results; rows of pending tasks stay zero, as the file's unwritten bytes do."""
-        count, plant, steps, newton = len(tasks), self.plant, self.steps, self.newton
-        shape, rows = (count, len(guesses), len(TOLERANCES)), count * rows_per_task
-        found = {f"tasks/{name}{which}": np.zeros(shape, dtype=np.int64)
-                 for name in ("iterations_sum", "unreached") for which in ("", "_all")}
-        found.update({f"timing/solves/{name}": np.zeros((rows, len(guesses)), dtype=np.float32)
-                      for name in ("guess_s", "cg_s")})
-        found.update({f"timing/solves/{name}": np.zeros(rows, dtype=np.float32) for name in ("assemble_s", "direct_s")})
-        found["solves/iterations"] = np.zeros((rows,) + shape[1:], dtype=np.int16)
-        found["solves/start_matvecs"] = np.zeros((rows, shape[1]), dtype=np.int16)
-        found.update({f"solves/{name}": np.zeros(rows, dtype=np.int32) for name in ("step", "newton")})
-        found.update({f"solves/{name}": np.zeros(rows) for name in LEVELS})
-        found.update({f"steps/{name}": np.zeros(count * steps) for name in (*LEVELS, *ALONG, "time_s")})
-        found["steps/momentum_kg_m_s"] = np.zeros((count * steps, 3))
-        if self.plant.penetration is not None:
-            found["steps/penetration"] = np.full(count * steps, self.plant.penetration)
-        found["steps/newton_iterations"] = np.zeros(count * steps, dtype=np.int16)
-        found["timing/steps/rest_s"] = np.zeros(count * steps, dtype=np.float32)
-        for t in np.flatnonzero(done):
-            _, values, draw, own, _ = tasks[t]
-            n, guess_of_task = values.get("scene.segments", 10), guesses[own] if own >= 0 else ""
-            mine = range(len(guesses)) if own < 0 else [own]
-            span, step = slice(t * steps, (t + 1) * steps), np.arange(steps)
-            self._task_steps(found, span, plant, step, draw, guess_of_task)
-            for name in ("iterations_sum", "iterations_sum_all", "unreached", "unreached_all"):
-                found[f"tasks/{name}"][t] = -1
-            j, at = np.tile(np.arange(newton), steps), np.repeat(step, newton)
-            counts = np.full((len(j),) + shape[1:], -1)
-            for g, (k, tolerance) in itertools.product(mine, enumerate(TOLERANCES)):
-                by_newton = np.array([plant.zero_iterations(n, tolerance) *
-                                      plant.ratio(guesses[g], tolerance, i, n, draw) for i in range(newton)])
-                used = np.rint(by_newton[j] * plant.at_step(guesses[g], at)).astype(int)
-                reached = np.array([plant.reached(guesses[g], tolerance, i, n, draw) for i in range(newton)])[j]
-                for which, counted in (("", j == 0), ("_all", j >= 0)):
-                    found[f"tasks/iterations_sum{which}"][t, g, k] = used[counted].sum()
-                    found[f"tasks/unreached{which}"][t, g, k] = (counted & ~reached).sum()
-                counts[:, g, k] = np.where(reached, used, -1) if self.counts_in_rows else 10
-            if not rows_per_task:
-                continue
-            block = slice(t * rows_per_task, (t + 1) * rows_per_task)
-            found["solves/iterations"][block], found["solves/step"][block] = counts, at
-            found["solves/newton"][block] = j
-            for name in LEVELS:
-                found[f"solves/{name}"][block] = plant.level(name, j, draw, guess_of_task)
-            for name in ("assemble_s", "direct_s"):
-                found[f"timing/solves/{name}"][block] = getattr(plant, name)
-            for name in ("guess_s", "cg_s"):
-                times = np.full((newton, len(guesses)), np.nan)
-                for g in mine:
-                    times[:, g] = [getattr(plant, name)(guesses[g], i, n, draw) for i in range(newton)]
-                found[f"timing/solves/{name}"][block] = times[j]
-        found["tasks/steps_done"] = np.where(done, steps, 0).astype(np.int32)
-        found["timing/tasks/run"] = np.zeros(count, dtype=np.int32)
+        """All datasets of results; rows of pending tasks are zero, as the file's unwritten bytes are."""
+        parts = []
+        for t, (_, values, draw, own, _) in enumerate(tasks):
+            mine, leading = (range(len(guesses)), "") if own < 0 else ([own], guesses[own])
+            part = {**self._steps(draw, leading),
+                    **self._solves(guesses, mine, values.get("scene.segments", 10), draw, leading, rows_per_task > 0)}
+            parts.append(part if done[t] else {name: np.zeros_like(rows) for name, rows in part.items()})
+        found = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        found["tasks/steps_done"] = np.where(done, self.steps, 0).astype(np.int32)
+        found["timing/tasks/run"] = np.zeros(len(tasks), dtype=np.int32)
         return found
 
-    def _task_steps(self, found, span, plant, step, draw, guess):
-        found["steps/time_s"][span] = 0.02 * (step + 1)
-        for name in ALONG:
-            found[f"steps/{name}"][span] = getattr(plant, name)(step, self.steps, draw, guess)
-        found["steps/joint_gap"][span] = plant.gap
-        found["steps/newton_residual"][span] = plant.level("newton_residual", np.array([self.newton]), draw, guess)
-        found["steps/momentum_kg_m_s"][span] = [3, 0, 4]
-        found["steps/newton_iterations"][span] = self.newton
-        found["timing/steps/rest_s"][span] = plant.rest_s
+    def _steps(self, draw, guess):
+        """The rows of /steps of a task."""
+        plant, step = self.plant, np.arange(self.steps)
+        end = plant.level("newton_residual", np.array([self.newton]), draw, guess)
+        found = {"time_s": 0.02 * (step + 1), "joint_gap": np.full(len(step), plant.gap),
+                 "newton_residual": end * np.ones(len(step)), "momentum_kg_m_s": np.tile([3.0, 0, 4], (len(step), 1)),
+                 "newton_iterations": np.full(len(step), self.newton, dtype=np.int16),
+                 **{name: getattr(plant, name)(step, self.steps, draw, guess) for name in ALONG}}
+        if plant.penetration is not None:
+            found["penetration"] = np.full(len(step), plant.penetration)
+        return {**{f"steps/{name}": values for name, values in found.items()},
+                "timing/steps/rest_s": np.full(len(step), plant.rest_s, dtype=np.float32)}
+
+    def _solves(self, guesses, mine, segments, draw, leading, with_rows):
+        """The sums and, with_rows, the rows of /solves of a task that tries the guesses `mine`."""
+        plant, shape = self.plant, (len(guesses), len(TOLERANCES))
+        j, at = np.tile(np.arange(self.newton), self.steps), np.repeat(np.arange(self.steps), self.newton)
+        sums = {f"tasks/{name}{which}": np.full((1,) + shape, -1, dtype=np.int64)
+                for name in ("iterations_sum", "unreached") for which in ("", "_all")}
+        counts = np.full((len(j),) + shape, -1, dtype=np.int16)
+        for g, (k, tolerance) in itertools.product(mine, enumerate(TOLERANCES)):
+            by_newton = np.array([plant.zero_iterations(segments, tolerance) *
+                                  plant.ratio(guesses[g], tolerance, i, segments, draw) for i in range(self.newton)])
+            used = np.rint(by_newton[j] * plant.at_step(guesses[g], at)).astype(int)
+            reached = np.array([plant.reached(guesses[g], tolerance, i, segments, draw) for i in range(self.newton)])[j]
+            for which, counted in (("", j == 0), ("_all", j >= 0)):
+                sums[f"tasks/iterations_sum{which}"][0, g, k] = used[counted].sum()
+                sums[f"tasks/unreached{which}"][0, g, k] = (counted & ~reached).sum()
+            counts[:, g, k] = np.where(reached, used, -1) if self.counts_in_rows else 10
+        times = np.full((2, self.newton, len(guesses)), np.nan, dtype=np.float32)
+        for g, i in itertools.product(mine, range(self.newton)):
+            times[:, i, g] = [take(guesses[g], i, segments, draw) for take in (plant.guess_s, plant.cg_s)]
+        rows = {"solves/iterations": counts, "solves/start_matvecs": np.zeros(counts.shape[:2], dtype=np.int16),
+                "solves/step": at.astype(np.int32), "solves/newton": j.astype(np.int32),
+                **{f"solves/{name}": plant.level(name, j, draw, leading) for name in LEVELS},
+                "timing/solves/guess_s": times[0, j], "timing/solves/cg_s": times[1, j],
+                **{f"timing/solves/{name}": np.full(len(j), getattr(plant, name), dtype=np.float32)
+                   for name in ("assemble_s", "direct_s")}}
+        return {**sums, **{name: values if with_rows else values[:0] for name, values in rows.items()}}
 
 
 def write_large(path, tasks, steps, newton, closed_loop=False):

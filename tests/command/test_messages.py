@@ -65,13 +65,6 @@ class Validate(Case):
         self.assert_refused(("validate", "jobs/greedy.json"), "validation_simulations: 100 ", "results/some.h5",
                             "4 simulations")
 
-    def test_every_job_of_the_project_validates_without_a_warning(self):
-        folder = os.path.join(SOURCE_DIR, "jobs")
-        jobs = sorted(os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".json"))
-        results, notes = self.validated("--later", *jobs)
-        self.assertEqual(len(results), len(jobs))
-        self.assertNotIn("warning", "\n".join(notes))
-
     def test_a_likely_slip_of_units_is_told_by_validate_and_run_and_stops_nothing(self):
         thick = write_job("thick", samples=1, scene={**ROD, "segments": 5, "length_m": 2, "radius_m": 50},
                           time={"step_s": 0.02, "steps": 1})

@@ -15,7 +15,7 @@ import threading
 import time
 import unittest
 
-from test_sweeps import ALL_DONE, h5py, job, kill_all, rodsweep, start, wait_for_tasks
+from test_sweeps import ALL_DONE, SweepCase, h5py, job, kill_all, rodsweep, start, wait_for_tasks
 
 EXT4_IOC_SHUTDOWN, NO_LOG_FLUSH = 0x8004587D, 2
 
@@ -66,7 +66,7 @@ def datasets(path):
     return found
 
 
-class PowerCut(unittest.TestCase):
+class PowerCut(SweepCase):
     @classmethod
     def setUpClass(cls):
         try:
@@ -96,8 +96,7 @@ class PowerCut(unittest.TestCase):
         with h5py.File(path) as file:
             kept = int((file["tasks/state"][:] != 0).sum())
         self.assertGreaterEqual(kept, 1)
-        resumed = rodsweep(3, "run", self.job, "-o", path, "--resume")
-        self.assertEqual(resumed.returncode, ALL_DONE, resumed.stderr)
+        resumed = self.rodsweep(3, "run", self.job, "-o", path, "--resume")
         self.assertNotIn("checksum", resumed.stderr)   # what was said to be done was done
         self.assertEqual(datasets(path), self.whole)
         os.remove(path)
@@ -109,7 +108,7 @@ class PowerCut(unittest.TestCase):
 
     def test_a_sweep_that_has_just_ended_is_there_after_a_cut(self):
         path = os.path.join(self.disk.folder, "ended.h5")
-        self.assertEqual(rodsweep(3, "run", self.job, "-o", path).returncode, ALL_DONE)
+        self.rodsweep(3, "run", self.job, "-o", path)
         self.disk.cut()
         self.disk.unmount()
         self.disk.mount()
