@@ -12,6 +12,7 @@ import signal
 import subprocess
 import time
 import unittest
+import unittest.mock
 
 import h5py
 import numpy as np
@@ -216,13 +217,9 @@ class Interrupted(InterruptedCase):
         self.resume("killed_data.h5", 2)
 
     def test_after_a_worker_finds_the_disk_full(self):
-        preload = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_RANK": "2", "FAIL_FILE": os.path.abspath("full")}
-        os.environ.update(preload)
-        try:
+        failing = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_RANK": "2", "FAIL_FILE": os.path.abspath("full")}
+        with unittest.mock.patch.dict(os.environ, failing):
             code, _, stderr = self.interrupt("full.h5", 3, lambda p: open("full", "w").close())
-        finally:
-            for name in preload:
-                del os.environ[name]
         self.assertEqual(code, STOPPED, stderr)
         self.assertEqual(stderr.count("H5Dwrite failed"), 1, stderr)
         self.assertIn("error: rank 2 on", stderr)
@@ -231,22 +228,22 @@ class Interrupted(InterruptedCase):
 
 
 class Signalled(InterruptedCase):
-    def assert_stopped(self, code, stdout, stderr, path):
+    def assert_stopped(self, name, ranks, hit):
+        path = f"{name}.h5"
+        code, stdout, stderr = self.interrupt(path, ranks, hit)
         self.assertEqual(code, STOPPED, stderr)
         self.assertRegex(stdout, r"tasks: \d+ ok, \d+ left")
         self.assertIn(f"-o {path} --resume", stderr)
         self.assertEqual(self.resume(path, 3)[0]["exit_code"], STOPPED)
+        return stderr
 
     def test_after_a_signal_to_one_rank(self):
         for rank, number in ((0, signal.SIGTERM), (1, signal.SIGUSR1)):
             with self.subTest(rank=rank):
-                path = f"rank{rank}.h5"
-                result = self.interrupt(path, 3, lambda p: os.kill(ranks_of(p)[rank], number))
-                self.assert_stopped(*result, path)
+                self.assert_stopped(f"rank{rank}", 3, lambda p: os.kill(ranks_of(p)[rank], number))
 
     def test_after_a_signal_that_mpirun_forwards(self):
-        result = self.interrupt("forwarded.h5", 3, lambda p: p.send_signal(signal.SIGUSR1))
-        self.assert_stopped(*result, "forwarded.h5")
+        self.assert_stopped("forwarded", 3, lambda p: p.send_signal(signal.SIGUSR1))
 
     def test_after_sigterm_to_mpirun_which_kills_soon_after(self):
         self.sweep(long_job("longer", 100))  # mpirun takes a second to pass it on
@@ -260,10 +257,9 @@ class Signalled(InterruptedCase):
             process.send_signal(signal.SIGINT)
             process.send_signal(signal.SIGTERM)
 
-        result = self.interrupt("typed-alone.h5", 0, lambda p: p.send_signal(signal.SIGINT))
-        self.assert_stopped(*result, "typed-alone.h5")
-        self.assertIn("Ctrl-C (SIGINT)", result[2])
-        self.assert_stopped(*self.interrupt("alone.h5", 0, twice), "alone.h5")
+        stderr = self.assert_stopped("typed-alone", 0, lambda p: p.send_signal(signal.SIGINT))
+        self.assertIn("Ctrl-C (SIGINT)", stderr)
+        self.assert_stopped("alone", 0, twice)
 
 
 class Killers(SweepCase):
@@ -379,8 +375,8 @@ class Refusals(SweepCase):
         self.assertEqual([checksum(name) for name in ("mine.h5", "notes.h5")], before)
 
     def test_where_there_are_no_locks_a_file_that_is_being_written_is_known_by_its_time(self):
-        os.environ.update({"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_LOCKS": "1"})
-        self.addCleanup(lambda: [os.environ.pop(name) for name in ("LD_PRELOAD", "FAIL_LOCKS")])
+        failing = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_LOCKS": "1"}
+        self.enterContext(unittest.mock.patch.dict(os.environ, failing))
         path = long_job("longer", 200)  # the second run is to find the first one at work
         first = start(3, "run", path, "-o", "unlocked.h5")
         wait_for_tasks(first, "unlocked.h5", 1)

@@ -31,6 +31,16 @@ class TrainingCase(SweepCase):
         if not os.path.exists("data.h5"):
             self.rodsweep(0, "run", data_job(samples=12, steps=10, record={"systems": "first"}), "-o", "data.h5")
 
+    def start(self, ranks, path, results, epochs):
+        """A training that has ended so many epochs."""
+        process = start(ranks, "run", path, "-o", results)
+        for _ in range(600):
+            if os.path.exists(results) and status(results)["epochs"] >= epochs:
+                return process
+            self.assertIsNone(process.poll())
+            time.sleep(0.02)
+        self.fail(f"{results} never got {epochs} epochs")
+
     def assert_finished(self, path):
         self.assertTrue(status(path)["ended"])
         with h5py.File(path) as file:
@@ -79,16 +89,10 @@ class Stopping(TrainingCase):
             self.rodsweep(2, "run", self.job, "-o", "whole.h5")
 
     def interrupt(self, path, ranks, hit):
-        process = start(ranks, "run", self.job, "-o", path)
-        for _ in range(600):
-            if os.path.exists(path) and status(path)["epochs"] >= 3:
-                break
-            self.assertIsNone(process.poll())
-            time.sleep(0.02)
+        process = self.start(ranks, self.job, path, 3)
         hit(process)
         stdout, stderr = process.communicate(timeout=30)
-        now = status(path)
-        self.assertFalse(now["ended"], "the training is too short to be interrupted")
+        self.assertFalse(status(path)["ended"], "the training is too short to be interrupted")
         return process.returncode, stdout, stderr
 
     def resume(self, path, ranks):
@@ -141,10 +145,7 @@ class Refused(TrainingCase):
     def stopped_training(self, name):
         """A training that has not ended, in NAME.h5: its job."""
         path = train_job(name, training={"epochs": 1000000})
-        process = start(0, "run", path, "-o", f"{name}.h5")
-        while not (os.path.exists(f"{name}.h5") and status(f"{name}.h5")["epochs"]):
-            self.assertIsNone(process.poll())
-            time.sleep(0.02)
+        process = self.start(0, path, f"{name}.h5", 1)
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, STOPPED)
