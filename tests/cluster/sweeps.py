@@ -12,7 +12,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "mpi"))
 
 import h5py  # noqa: E402
-from test_sweeps import ALL_DONE, MPIRUN, RODSWEEP, rank_of, rodsweep  # noqa: E402
+from program import ALL_DONE, MPIRUN, RODSWEEP, rank_of, rodsweep  # noqa: E402
 
 
 def run_undisturbed(job, path, ranks=5):

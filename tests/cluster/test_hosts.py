@@ -10,7 +10,7 @@ import unittest
 
 from hosts import Hosts
 from sweeps import HostSweep, ranks_on, run_undisturbed
-from test_sweeps import ALL_DONE, SweepCase, job, status
+from program import ALL_DONE, SweepCase, job, status
 
 TIMEOUT_S = 3   # of a worker; two minutes unless told
 # Open MPI notices a dead connection by TCP's keep-alive, here within 7 s.

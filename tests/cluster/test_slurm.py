@@ -14,7 +14,7 @@ import unittest
 
 from slurm import Slurm, wait_until
 from sweeps import processes_on, ranks_on, run_undisturbed, states
-from test_sweeps import ALL_DONE, SweepCase, TASKS_FAILED, TOO_LONG, job, status
+from program import ALL_DONE, SweepCase, TASKS_FAILED, TOO_LONG, job, status
 
 SCRIPT = os.path.join(os.environ["SOURCE_DIR"], "jobs", "slurm", "sweep.sbatch")
 

@@ -13,7 +13,7 @@ import unittest
 
 import h5py
 import numpy as np
-from test_sweeps import SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, kill_all, rodsweep, start, status, \
+from program import SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, kill_all, rodsweep, start, status, \
     wait_for_tasks
 
 ROD = {"type": "bending_rod", "length_m": {"uniform": [1, 5]}, "radius_m": 0.05, "density_kg_m3": 1000,

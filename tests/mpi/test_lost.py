@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from test_sweeps import ALL_DONE, LOST, STOPPED, SweepCase, command, long_job, ranks_of, start, status, wait_for_tasks
+from program import ALL_DONE, LOST, STOPPED, SweepCase, command, long_job, ranks_of, start, status, wait_for_tasks
 
 
 class LostCase(SweepCase):

@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 import h5py
-from test_sweeps import STOPPED, SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, status
+from program import STOPPED, SweepCase, TASKS_FAILED, USER_ERROR, checksum, data_job, job, status
 
 
 class Merging(SweepCase):

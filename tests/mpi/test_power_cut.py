@@ -15,7 +15,8 @@ import threading
 import time
 import unittest
 
-from test_sweeps import ALL_DONE, SweepCase, h5py, job, kill_all, rodsweep, start, wait_for_tasks
+import h5py
+from program import ALL_DONE, SweepCase, job, kill_all, rodsweep, start, wait_for_tasks
 
 EXT4_IOC_SHUTDOWN, NO_LOG_FLUSH = 0x8004587D, 2
 

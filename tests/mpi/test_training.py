@@ -12,7 +12,7 @@ import unittest
 
 import h5py
 import numpy as np
-from test_sweeps import STOPPED, SweepCase, TASKS_FAILED, checksum, data_job, kill_all, ranks_of, rodsweep, start, status
+from program import STOPPED, SweepCase, TASKS_FAILED, checksum, data_job, kill_all, ranks_of, rodsweep, start, status
 
 
 def train_job(name="train", **changes):
