@@ -227,7 +227,7 @@ class Watching(SweepCase):
         for pid in [process.pid, *ranks.values()]:
             os.kill(pid, signal.SIGKILL)
         process.communicate(timeout=30)
-        self.assertRegex(said, r"3 min \d\d s\b.*\n")
+        self.assertRegex(said, r"start 0: .* still.*\b3 min \d\d s\b")
 
 
 class Refusals(SweepCase):
