@@ -95,7 +95,7 @@ class Browser:
             self.send("Input.dispatchKeyEvent", type=kind, key=name)
         self.settle()
 
-    def paper(self, path):
+    def paper(self):
+        """What is printed: the bytes of a PDF."""
         printed = self.send("Page.printToPDF", printBackground=True, preferCSSPageSize=True)
-        with open(path, "wb") as out:
-            out.write(base64.b64decode(printed["data"]))
+        return base64.b64decode(printed["data"])

@@ -207,8 +207,8 @@ class Sweep:
 
 def write_large(path, tasks, steps, newton, closed_loop=False):
     """A packed file of about so many tasks: copies of those of one draw, which differ in their random parameter."""
-    Sweep(scenes=("helix",), grid={"scene.segments": [10]}, samples=1, steps=steps, newton=newton, closed_loop=closed_loop,
-          counts_in_rows=True).write(path + ".one")
+    Sweep(scenes=("helix",), grid={"scene.segments": [10]}, samples=1, steps=steps, newton=newton,
+          closed_loop=closed_loop, counts_in_rows=True).write(path + ".one")
     with h5py.File(path + ".one") as one, h5py.File(path, "w") as h5:
         mine = len(one["tasks/state"])
         copies = tasks // mine

@@ -2,7 +2,6 @@
 
 import argparse
 import itertools
-import tempfile
 import types
 import unittest
 
@@ -107,16 +106,13 @@ class Values(Drawn):
                 self.assertEqual("more MPI ranks than cores" in self.page_texts(page), oversubscribed)
             self.assertNotIn("more MPI ranks than cores", self.page_texts(figures.ratio_figure(study, [1])))
 
-    def test_speedups_and_the_direct_solve_beside_them(self):
+    def test_speedups_with_the_direct_solve_beside_them_and_bars_that_stack_to_the_time_of_a_solve(self):
         study, times = self.study(scenes=("helix",))
         page = figures.speedup_figure(study, times)
         line, = self.line(page.axes[0][0], study.styles["quadratic"])
         np.testing.assert_allclose(line.get_ydata(), 4, rtol=1e-5)
         direct, = self.line(page.axes[0][0], style.DIRECT)
         np.testing.assert_allclose(direct.get_ydata(), np.array([10, 20, 40]) / 8, rtol=1e-5)
-
-    def test_bars_stack_to_the_whole_time_of_a_solve(self):
-        study, times = self.study(scenes=("helix",))
         page = figures.time_figure(study, times)
         bars = [(patch.get_y(), patch.get_height()) for patch in page.axes[0][1].patches]
         tops = sorted(y + height for y, height in bars)[-3:]
@@ -142,13 +138,12 @@ class Values(Drawn):
 
     def test_figures_come_in_the_formats_asked_for_with_their_notes_or_without(self):
         study, _ = self.study(scenes=("helix",), guesses=("zero", "previous"))
-        with tempfile.TemporaryDirectory() as folder:
-            sizes = []
-            for caption in (True, False):
-                path, = figures.ratio_figure(study, [1]).save(folder, f"figure{caption}", ("svg",), caption)
-                with open(path, encoding="utf-8") as file:
-                    head = next(line for line in file if line.startswith("<svg"))
-                sizes.append(float(head.split('height="')[1].split("pt")[0]))
+        sizes = []
+        for caption in (True, False):
+            path, = figures.ratio_figure(study, [1]).save(self.folder, f"figure{caption}", ("svg",), caption)
+            with open(path, encoding="utf-8") as file:
+                head = next(line for line in file if line.startswith("<svg"))
+            sizes.append(float(head.split('height="')[1].split("pt")[0]))
         self.assertGreater(sizes[0] - sizes[1], 10)
 
 
@@ -242,10 +237,9 @@ class Styles(unittest.TestCase):
 
     def test_names_of_parameters_with_their_units(self):
         for name, unit, label in (("scene.youngs_modulus_pa", "Pa", "Young's modulus (Pa)"),
-                                  ("scene.torsion_modulus_pa", "Pa", "torsion modulus (Pa)"),
                                   ("time.step_s", "s", "time step (s)"),
                                   ("scene.density_kg_m3", "kg/m^3", "density (kg/m^3)"),
-                                  ("scene.damping_per_s", "1/s", "damping (1/s)"), ("scene.windings", "", "windings"),
+                                  ("scene.damping_per_s", "1/s", "damping (1/s)"),
                                   ("scene.segments", "", "number of segments N")):
             self.assertEqual(texts.parameter_label(name, unit), label)
 

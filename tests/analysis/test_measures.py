@@ -180,7 +180,8 @@ class Interruptions(Changes):
         before, after, sims = self.times(interrupt)
         for newton in ("first", "all"):
             for against in ("zero", "direct"):
-                for one, other in zip(*(timings.speedups(times, newton, against).values() for times in (before, after))):
+                found = (timings.speedups(times, newton, against).values() for times in (before, after))
+                for one, other in zip(*found):
                     np.testing.assert_allclose(other, one, rtol=1e-5)
         np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
         np.testing.assert_allclose(after["all"].rest_s, before["all"].rest_s, rtol=1e-6)
@@ -266,7 +267,8 @@ class Interruptions(Changes):
             h5["timing/solves/cg_s"][15, 1] = 4e-3  # first solve of the second guess's task
 
         before, after, sims = self.times(interrupt, closed_loop=True)
-        np.testing.assert_allclose(*(timings.speedups(times, "first")["guess_cg"] for times in (after, before)), rtol=1e-5)
+        found = [timings.speedups(times, "first")["guess_cg"] for times in (after, before)]
+        np.testing.assert_allclose(*found, rtol=1e-5)
         self.assertIn("1 of 240 solves", timings.interruptions(after["all"], sims))
 
 

@@ -1,9 +1,6 @@
 """Obstacles: which ones a task has, where they are in pictures, their surfaces; floors that belong to a scene."""
 
-import os
-import stat
 import unittest
-import unittest.mock
 
 import synthetic  # noqa: F401  (makes analysis/ importable)
 import numpy as np
@@ -145,15 +142,6 @@ class Obstacles(trajectories.Planted):
         a, b, c = (points[triangles[:, k]] for k in range(3))
         area = np.cross(b - a, c - a) @ slope.normal / 2
         self.assertAlmostEqual(area.sum() / (2 * np.pi * (4 * obstacles.DISC) ** 2), 1, delta=0.01)
-
-    def test_a_machine_that_is_too_busy_for_povray_is_asked_again(self):
-        script = os.path.join(self.folder, "povray")
-        with open(script, "w") as out:
-            out.write(f'#!/bin/sh\nif [ -e {self.folder}/asked ]; then printf "\\211PNG"; exit 0; fi\n'
-                      f': >{self.folder}/asked\necho "{povray.BUSY.decode()}" >&2\nexit 1\n')
-        os.chmod(script, os.stat(script).st_mode | stat.S_IXUSR)
-        with unittest.mock.patch.dict(os.environ, {"PATH": self.folder}):
-            self.assertEqual(povray.picture("", (3, 2)), b"\x89PNG")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ import io
 import os
 import re
 import shutil
-import stat
 import time
 import unittest
 import unittest.mock
@@ -258,16 +257,20 @@ class Films(Planted):
                 np.testing.assert_array_equal(np.asarray(film.convert("RGB")), opened_picture(picture))
 
     def with_programs(self, **scripts):
-        """A PATH with povray and stand-ins for other programs."""
-        folder = os.path.join(self.folder, "programs")
-        os.makedirs(folder)
-        os.symlink(shutil.which("povray"), os.path.join(folder, "povray"))
+        """A PATH with stand-ins for programs, and with povray."""
+        os.makedirs("programs")
+        if "povray" not in scripts:
+            os.symlink(shutil.which("povray"), "programs/povray")
         for name, lines in scripts.items():
-            path = os.path.join(folder, name)
-            with open(path, "w") as script:
+            with open(f"programs/{name}", "w", opener=lambda path, flags: os.open(path, flags, 0o755)) as script:
                 script.write("#!/bin/sh\n" + lines)
-            os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
-        return unittest.mock.patch.dict(os.environ, {"PATH": folder})
+        return unittest.mock.patch.dict(os.environ, {"PATH": os.path.abspath("programs")})
+
+    def test_a_machine_that_is_too_busy_for_povray_is_asked_again(self):
+        asked = os.path.join(self.folder, "asked")
+        with self.with_programs(povray=f'if [ -e {asked} ]; then printf "\\211PNG"; exit 0; fi\n: >{asked}\n'
+                                       f'echo "{povray.BUSY.decode()}" >&2\nexit 1\n'):
+            self.assertEqual(povray.picture("", (3, 2)), b"\x89PNG")
 
     @plain_pictures()
     def test_an_mp4_is_what_ffmpeg_makes_of_the_pictures_in_order(self):

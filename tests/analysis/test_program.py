@@ -28,7 +28,8 @@ JOB = {"name": "analysis", "kind": "sweep", "seed": 3, "samples": 2, "scene": {"
 
 def program(*words):
     """What it prints."""
-    return subprocess.run([os.environ["RODSWEEP"], *words], check=True, capture_output=True, stdin=subprocess.DEVNULL).stdout
+    return subprocess.run([os.environ["RODSWEEP"], *words], check=True, capture_output=True,
+                          stdin=subprocess.DEVNULL).stdout
 
 
 def everything(file):

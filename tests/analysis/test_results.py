@@ -20,8 +20,8 @@ PLANT.reached = lambda guess, tolerance, newton, segments, draw: guess != "previ
 class Opened(Folder):
     def open(self, **settings):
         self.path = os.path.join(self.folder, f"{len(os.listdir(self.folder))}.h5")    # the one before may be open
-        synthetic.Sweep(**{"plant": PLANT, "counts_in_rows": True, "failed": {3: "diverged"}, "pending": (4,), "steps": 2,
-                           **settings}).write(self.path)
+        usual = {"plant": PLANT, "counts_in_rows": True, "failed": {3: "diverged"}, "pending": (4,), "steps": 2}
+        synthetic.Sweep(**{**usual, **settings}).write(self.path)
         with synthetic.h5py.File(self.path, "r+") as h5:
             h5["steps/length_drift"].attrs.update({"unit": "1", "meaning": "relative change of the length"})
             h5["solves/iterations"].attrs.update({"unit": "1", "meaning": "CG iterations"})

@@ -47,7 +47,8 @@ class Refusals(Folder):
     def test_columns_that_are_missing_or_do_not_fit_together(self):
         for column, values, words in (("first_solve", None, "/tasks/first_solve is missing"),
                                       ("outcome", np.array([b"ok"] * 3), "is damaged"),
-                                      ("outcome", np.float64(1), "is damaged"), ("state", np.zeros((2, 2)), "is damaged")):
+                                      ("outcome", np.float64(1), "is damaged"),
+                                      ("state", np.zeros((2, 2)), "is damaged")):
             synthetic.Sweep().write(self.path)
             with h5py.File(self.path, "r+") as h5:
                 del h5[f"tasks/{column}"]

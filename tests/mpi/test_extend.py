@@ -254,7 +254,8 @@ class Refusing(ExtendCase):
         for changes, *says in (({"seed": 6}, "seed: 6 here, 5 in old.h5"),
                                ({"segments": (6, 7)}, "scene.segments: ", "[6,7]", "9 in old.h5")):
             with self.subTest(changes=changes):
-                self.assert_refused(self.new("other", **changes), "no.h5", old, says=("other.json: ", "--extend", *says))
+                says = ("other.json: ", "--extend", *says)
+                self.assert_refused(self.new("other", **changes), "no.h5", old, says=says)
                 self.assertFalse(os.path.exists("no.h5"))
         path = self.new("fine", samples=3)
         self.assert_refused(path, "no.h5", "none.h5", says="none.h5: there is no such file")
