@@ -18,9 +18,11 @@ class Damaged(running.Scripts):
         with open(self.path, "rb") as whole:
             self.whole = whole.read()
 
-    def assert_plain(self, contents, script, *arguments):
+    def plant(self, contents):
         with open(self.path, "wb") as damaged:
             damaged.write(contents)
+
+    def assert_plain(self, script, *arguments):
         done = running.run(script, self.path, *arguments)
         if done.code:
             self.assertEqual(done.code, 2, done.stderr)
@@ -31,7 +33,8 @@ class Damaged(running.Scripts):
     def test_a_file_that_was_cut_short(self):
         for part in range(16):
             with self.subTest(part=part):
-                self.assertEqual(self.assert_plain(self.whole[:len(self.whole) * part // 16], *SCRIPTS[part % len(SCRIPTS)]), 2)
+                self.plant(self.whole[:len(self.whole) * part // 16])
+                self.assertEqual(self.assert_plain(*SCRIPTS[part % len(SCRIPTS)]), 2)
 
     def test_datasets_that_are_missing_or_of_another_shape_or_kind(self):
         paths = []
@@ -41,8 +44,7 @@ class Damaged(running.Scripts):
         for number, path in enumerate(draw.sample(paths, 24)):
             script = SCRIPTS[number % len(SCRIPTS)]
             with self.subTest(path=path, script=script):
-                with open(self.path, "wb") as file:
-                    file.write(self.whole)
+                self.plant(self.whole)
                 with h5py.File(self.path, "a") as file:
                     values = file[path][()]
                     del file[path]
@@ -52,8 +54,7 @@ class Damaged(running.Scripts):
                         file[path] = "text"
                     elif number % 4 == 3:
                         file.create_group(path)
-                with open(self.path, "rb") as file:
-                    self.assert_plain(file.read(), *script)
+                self.assert_plain(*script)
 
 
 if __name__ == "__main__":

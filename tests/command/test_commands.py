@@ -27,11 +27,7 @@ def unfinished():
 
 
 class Query(Case):
-    def test_the_table_shows_what_is_swept_the_outcome_and_the_ratios(self):
-        lines = self.said("query", sweep()).splitlines()
-        self.assertEqual(lines[0].split(), ["task", "scene.length_m", "scene.segments", "scene.youngs_modulus_pa",
-                                            "outcome", "cg_ratio.previous", "cg_ratio.oracle", "0.1"])
-        self.assertEqual(len(lines), 5)
+    """Its choices: tests/analysis/test_query.py."""
 
     def test_csv_holds_what_the_file_holds(self):
         words = ("--columns", "task,scene.segments,scene.length_m", "--columns", "cg_ratio.oracle 0.1@1e-3")
@@ -44,32 +40,7 @@ class Query(Case):
             self.assertEqual([float(row["cg_ratio.oracle 0.1@1e-3"]) for row in rows], list(ratio))
             self.assertEqual([float(row["scene.length_m"]) for row in rows],
                              list(file.parameter("scene.length_m").values[tasks]))
-
-    def test_json_is_sorted_and_limited(self):
-        words = ("--sort", "scene.length_m", "--descending", "--limit", "2", "--json")
-        rows = json.loads(self.said("query", sweep(), *words))
-        with SweepFile(sweep()) as file:
-            order = np.argsort(-file.parameter("scene.length_m").values, kind="stable")
-        self.assertEqual([row["task"] for row in rows], list(order[:2]))
-
-    def test_conditions_are_all_met_however_they_are_given(self):
-        words = ("scene.segments>=8", "--where", "task<3", "--columns", "task", "--csv")
-        self.assertEqual(self.said("query", sweep(), *words), "task\n2\n")
-        self.assertEqual(self.shown("query", sweep(), "outcome=diverged"), [])    # is no error
-
-    def test_pending_tasks_show_no_results(self):
-        path = unfinished()
-        rows = self.shown("query", path)
-        self.assertEqual([row["outcome"] for row in rows], ["ok", "pending", "pending", "pending"])
-        self.assertIsNotNone(rows[0]["cg_ratio.previous"])
-        self.assertTrue(all(row["cg_ratio.previous"] is None for row in rows[1:]))
-        self.assertIn("1 of 4 tasks", rodsweep("query", path, "state=done").stderr)
-
-    def test_closed_loops_show_whose_guess_advances_the_rods_and_jobs_without_guesses_their_tasks(self):
-        rows = self.shown("query", sweep("closed", evaluation="closed_loop"), "own_guess=oracle 0.1")
-        self.assertEqual([row["task"] for row in rows], [2, 5, 8, 11])
-        self.assertEqual(rows[0]["steps_done"], 6)
-        self.assertEqual(len(self.shown("query", sweep("direct", solve={"method": "direct"}, guesses=[]))), 4)
+        self.assert_refused(("query", sweep(), "scene.segmant=3"), "did you mean scene.segments?")
 
     def test_a_file_that_is_not_what_its_key_says_is_refused_before_anything_runs(self):
         path = sweep()
@@ -79,17 +50,6 @@ class Query(Case):
             for command in ("run", "plan", "validate"):
                 self.assert_refused((command, "jobs/wrong.json"), f"guesses[1].{key}", words)
             self.assertFalse(os.path.exists("results/wrong.h5"))
-
-    def test_all_columns_are_listed_with_meaning_and_unit(self):
-        said = self.said("query", sweep(), "--columns", "help")
-        self.assertRegex(said, r"scene\.length_m .*\[m\]")
-        self.assertRegex(said, r"(?s)cg_ratio\.GUESS\[@TOLERANCE\].*zero, previous, oracle 0\.1.* 1e-2")
-
-    def test_mistakes_are_refused_before_anything_is_shown(self):
-        self.assert_refused(("query", sweep(), "scene.segmant=3"), "did you mean scene.segments?")
-        self.assert_refused(("query", sweep(), "--columns", "task,outcom"), "did you mean outcome?")
-        self.assert_refused(("query", sweep(), "--sort", "lenght_m"), "lenght_m")
-        self.assert_refused(("query", "nowhere.h5"), "nowhere.h5")
 
     def test_it_reads_while_a_sweep_writes(self):
         path, job = "live.h5", write_job("live", samples=100, time={"step_s": 0.02, "steps": 40})
