@@ -9,7 +9,7 @@ import unittest
 import h5py
 
 RODSWEEP = os.environ["RODSWEEP"]
-ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, OUTPUT_LOST = 0, 2, 3, 4, 7
+ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, OUTPUT_LOST, DIFFER, DAMAGED = 0, 2, 3, 4, 7, 8, 10
 
 ROD = {"type": "bending_rod", "segments": {"grid": [5, 8]}, "length_m": {"uniform": [1, 5]}, "radius_m": 0.05,
        "density_kg_m3": 1000, "youngs_modulus_pa": {"log_uniform": [1e4, 1e6]}, "torsion_modulus_pa": 1e6}

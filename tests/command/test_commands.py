@@ -13,7 +13,7 @@ import unittest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "analysis"))
 import h5py
 import numpy as np
-from program import ALL_DONE, DATA, OUTPUT_LOST, ROD, RODSWEEP, STOPPED, TASKS_FAILED, USER_ERROR, Case, changed, \
+from program import ALL_DONE, DATA, DIFFER, OUTPUT_LOST, ROD, RODSWEEP, STOPPED, TASKS_FAILED, USER_ERROR, Case, changed, \
     rodsweep, sweep, write_job
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -101,7 +101,7 @@ class Rerun(Case):
         with h5py.File(path, "r+") as h5:
             row = h5["tasks/first_frame_row"][1] + 3 * h5["tasks/segments"][1]  # in the frame of step 6
             h5["trajectories/position_m"][row, 0] += 1e-12
-        said = self.said("rerun", path, 1, "--trajectory-every", 3, "-o", "third.h5", code=TASKS_FAILED)
+        said = self.said("rerun", path, 1, "--trajectory-every", 3, "-o", "third.h5", code=DIFFER)
         self.assertIn("/trajectories/position_m", said)
         # No frame of step 6: step 0 alone is in both.
         self.said("rerun", path, 1, "--trajectory-every", 5, "-o", "fifth.h5")
@@ -110,7 +110,7 @@ class Rerun(Case):
         def change(h5):
             h5["steps/joint_gap"][h5["tasks/first_step"][1] + 2] = 0.5
             h5["tasks/cg_ratio"][1, 0, 3] = 7
-        said = self.said("rerun", changed("changed.h5", change), 1, code=TASKS_FAILED)
+        said = self.said("rerun", changed("changed.h5", change), 1, code=DIFFER)
         self.assertRegex(said, r"\b2 of .*task 1 of changed\.h5:\n  /tasks/cg_ratio\n  /steps/joint_gap\n")
 
     def test_a_pending_task_has_nothing_to_be_compared_with(self):

@@ -10,7 +10,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "analysis"))
 import numpy as np
-from program import ALL_DONE, DATA, ROD, TASKS_FAILED, USER_ERROR, Case, changed, rodsweep, sweep
+from program import ALL_DONE, DATA, DIFFER, ROD, USER_ERROR, Case, changed, rodsweep, sweep
 from rodsweep.reading import intervals
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -30,7 +30,7 @@ class Compare(Case):
 
     def by_parameters(self, a, b, *words):
         """In which tasks differ."""
-        return self.compare(a, b, "--by", "parameters", *words, code=TASKS_FAILED)
+        return self.compare(a, b, "--by", "parameters", *words, code=DIFFER)
 
     def test_a_sweep_is_the_same_as_itself_made_again(self):
         sweep()

@@ -9,7 +9,7 @@ import socket
 import subprocess
 import unittest
 
-from program import ALL_DONE, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, changed, rodsweep, sweep
+from program import ALL_DONE, DAMAGED, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, changed, rodsweep, sweep
 
 JOB = os.path.join("jobs", "small.json")
 
@@ -60,7 +60,7 @@ class Damaged(Plain):
             command, *rest = commands[number % len(commands)]
             with self.subTest(number=number, command=command):
                 said = self.flipped(draw, 12000 if number % 2 else 0, command, "flipped.h5", *rest)
-                self.assert_plain(said, ALL_DONE, USER_ERROR)
+                self.assert_plain(said, ALL_DONE, USER_ERROR, DAMAGED)
 
     def test_commands_that_write_refuse_a_file_or_do_what_is_left(self):
         draw = random.Random(4)
@@ -85,7 +85,7 @@ class Damaged(Plain):
         def change(h5):
             h5["steps/joint_gap"][0] = 0.5
         said = rodsweep("info", changed("changed.h5", change), "--verify")
-        self.assert_plain(said, USER_ERROR)
+        self.assert_plain(said, DAMAGED)
         self.assertRegex(said.stderr, r"\btask 0\b.*--resume")
         self.assert_plain(rodsweep("run", JOB, "-o", "changed.h5", "--resume"), ALL_DONE)
         self.assertEqual(rodsweep("info", "changed.h5", "--verify").returncode, ALL_DONE)

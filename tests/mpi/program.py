@@ -13,7 +13,7 @@ import h5py
 
 RODSWEEP = os.environ["RODSWEEP"]
 MPIRUN = os.environ.get("MPIRUN", "mpirun")
-ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, TOO_LONG, LOST = 0, 2, 3, 4, 5, 6
+ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, TOO_LONG, LOST, DIVERGED = 0, 2, 3, 4, 5, 6, 9
 
 
 def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):

@@ -12,7 +12,7 @@ import unittest
 
 import h5py
 import numpy as np
-from program import STOPPED, SweepCase, TASKS_FAILED, checksum, data_job, kill_all, ranks_of, rodsweep, start, status
+from program import DIVERGED, STOPPED, SweepCase, checksum, data_job, kill_all, ranks_of, rodsweep, start, status
 
 
 def train_job(name="train", **changes):
@@ -163,11 +163,11 @@ class Refused(TrainingCase):
         kept = json.loads(rodsweep(0, "info", "wild.h5", "--json").stdout)
         with h5py.File("wild.h5", "r+") as file:
             file["checkpoint/weights"][:] *= np.float32(1e30)
-        ran = self.rodsweep(2, "run", path, "-o", "wild.h5", "--resume", code=TASKS_FAILED)
+        ran = self.rodsweep(2, "run", path, "-o", "wild.h5", "--resume", code=DIVERGED)
         self.assertIn("not finite", ran.stdout)
         now = json.loads(rodsweep(0, "info", "wild.h5", "--json").stdout)
         self.assertEqual((now["hash"], now["best_epoch"]), (kept["hash"], kept["best_epoch"]))
-        self.assertEqual(now["starts"][1]["exit_code"], TASKS_FAILED)
+        self.assertEqual(now["starts"][1]["exit_code"], DIVERGED)
 
     def test_plan_and_validate(self):
         path = train_job("planned")
