@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-double allowed = unlimited;  // bytes, of this process
+double bytes_allowed = unlimited;  // bytes, of this process
 
 /// A value of /proc/self/status in bytes; 0 if missing.
 double of_status(const std::string& key) {
@@ -73,20 +73,20 @@ void limit_memory(double bytes) {
   // RLIMIT_DATA counts address space; much of that of thread stacks and library buffers is never touched.
   const double untouched = std::max(0.0, of_status("VmData:") - of_status("RssAnon:"));
   const double most = std::min(static_cast<double>(limit.rlim_cur), 1e18);
-  allowed = bytes;
+  bytes_allowed = bytes;
   limit.rlim_cur = static_cast<rlim_t>(std::min(bytes + untouched, most));
   setrlimit(RLIMIT_DATA, &limit);
 #endif
 }
 
-double memory_left() { return allowed - of_status("RssAnon:"); }
+double memory_left() { return bytes_allowed - of_status("RssAnon:"); }
 
 const char* const more_memory_text = "fewer ranks on a host leave each more, --memory-limit-gb sets it";
 
 std::string out_of_memory_text() {
-  if (allowed == unlimited) return "out of memory";
+  if (bytes_allowed == unlimited) return "out of memory";
   return fmt::format("out of memory: it wants more than the {} that this process may have; {}",
-                     bytes_text(static_cast<std::int64_t>(allowed)), more_memory_text);
+                     bytes_text(static_cast<std::int64_t>(bytes_allowed)), more_memory_text);
 }
 
 double peak_memory() { return of_status("VmHWM:"); }

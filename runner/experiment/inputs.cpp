@@ -11,7 +11,7 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-void open(const InputFile& file) {
+void open_input(const InputFile& file) {
   if (ends_with(file.key_path, "model"))
     shared_model(file.path);
   else if (!ends_with(file.key_path, "skeleton"))  // the plan reads skeletons
@@ -24,7 +24,7 @@ void check_inputs(const Job& job) {
   for (const auto& [written, file] : job.files) {
     if (file.hash.empty()) continue;
     try {
-      open(file);
+      open_input(file);
     } catch (const FileError& error) {
       throw job_error(job.path, file.key_path, error.what());
     }

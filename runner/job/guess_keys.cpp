@@ -121,34 +121,36 @@ Kind kind(const char* help, const KeyTable<Guess>& table = {}) {
 
 /// In the order in which help texts and the schema list them.
 const std::vector<Kind>& kinds() {
-  using namespace guess;
   static const std::vector<Kind> kinds{
-      kind<Zero>("no guess: the denominator of every ratio"),
-      kind<Previous>("the solution of the same Newton iteration of the last step"),
-      kind<Linear>("linear extrapolation in time"),
-      kind<Quadratic>("quadratic extrapolation in time"),
-      kind<Fischer>("best approximation within the last solutions, collected until there are `size`, then from one "
-                    "again",
-                    subspace_keys<Fischer>()),
-      kind<Subspace>("best approximation within the last `size` solutions", subspace_keys<Subspace>()),
-      kind<Deflation>("as subspace, and the last `size` solutions are projected out of all of CG's residuals too "
-                      "(deflated CG)",
-                      subspace_keys<Deflation>()),
-      kind<Regression>("the last `size` solutions, combined by the coefficients that combine their right-hand "
-                       "sides to the current one: no product with A",
-                       regression_keys()),
-      kind<CopingNet>("a learned guess: a network's correction of the guess that it was trained with",
-                      copingnet_keys()),
-      kind<Knn>("the solutions of the most similar systems of a data set, resampled by arc length and averaged",
-                knn_keys()),
-      kind<Oracle>("the exact solution plus a random error", oracle_keys()),
-      kind<Guarded>("another guess, used only where its residual is small", guarded_keys()),
-      kind<Totals>("another guess, whose history of first Newton iterations holds the sum of a step's increments: "
-                   "for closed loops",
-                   keys_of_another<Totals>("the guess that is given these sums")),
-      kind<First>("another guess at the first Newton iteration of a step, zero at the others: for networks that "
-                  "were trained on first iterations alone",
-                  keys_of_another<First>("the guess for first Newton iterations")),
+      kind<guess::Zero>("no guess: the denominator of every ratio"),
+      kind<guess::Previous>("the solution of the same Newton iteration of the last step"),
+      kind<guess::Linear>("linear extrapolation in time"),
+      kind<guess::Quadratic>("quadratic extrapolation in time"),
+      kind<guess::Fischer>(
+          "best approximation within the last solutions, collected until there are `size`, then from one "
+          "again",
+          subspace_keys<guess::Fischer>()),
+      kind<guess::Subspace>("best approximation within the last `size` solutions", subspace_keys<guess::Subspace>()),
+      kind<guess::Deflation>(
+          "as subspace, and the last `size` solutions are projected out of all of CG's residuals too "
+          "(deflated CG)",
+          subspace_keys<guess::Deflation>()),
+      kind<guess::Regression>("the last `size` solutions, combined by the coefficients that combine their right-hand "
+                              "sides to the current one: no product with A",
+                              regression_keys()),
+      kind<guess::CopingNet>("a learned guess: a network's correction of the guess that it was trained with",
+                             copingnet_keys()),
+      kind<guess::Knn>("the solutions of the most similar systems of a data set, resampled by arc length and averaged",
+                       knn_keys()),
+      kind<guess::Oracle>("the exact solution plus a random error", oracle_keys()),
+      kind<guess::Guarded>("another guess, used only where its residual is small", guarded_keys()),
+      kind<guess::Totals>(
+          "another guess, whose history of first Newton iterations holds the sum of a step's increments: "
+          "for closed loops",
+          keys_of_another<guess::Totals>("the guess that is given these sums")),
+      kind<guess::First>("another guess at the first Newton iteration of a step, zero at the others: for networks that "
+                         "were trained on first iterations alone",
+                         keys_of_another<guess::First>("the guess for first Newton iterations")),
   };
   return kinds;
 }
