@@ -87,7 +87,7 @@ BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
     std::vector<TaskResult> results(tasks.size());
     if (runs.size() == 1 ? !evaluate_alone(runs.front(), sizes, evaluate, stop) : !evaluate_batch(runs, stop)) {
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        results[i].share = records[i].steps_done[0] / static_cast<double>(runs[i].task.steps);
+        results[i].share = records[i].tasks.steps_done[0] / static_cast<double>(runs[i].task.steps);
       return results;
     }
     for (std::size_t i = 0; i < tasks.size(); ++i) {

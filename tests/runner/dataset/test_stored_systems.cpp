@@ -56,13 +56,13 @@ TEST_CASE("a data set's record has the first system of every step, or all") {
   CHECK(first.systems.velocity_m_s.front() == 0);  // at the start of the first step
   job["record"] = {{"systems", "all"}};
   const TaskRecord all = evaluated(plan_of(job));
-  REQUIRE(all.system_step.size() == 4 * 3);
-  CHECK(all.system_step[5] == 1);
-  CHECK(all.system_newton[5] == 2);
+  REQUIRE(all.systems.step.size() == 4 * 3);
+  CHECK(all.systems.step[5] == 1);
+  CHECK(all.systems.newton[5] == 2);
   const std::size_t segments = 10;
   for (std::size_t step = 0; step < 4; ++step)
     for (std::size_t i = 0; i < 3 * segments; ++i)
-      CHECK(first.systems.position_m[3 * segments * step + i] == all.system_position_m[9 * segments * step + i]);
+      CHECK(first.systems.position_m[3 * segments * step + i] == all.systems.position_m[9 * segments * step + i]);
 }
 
 TEST_CASE("Newton iterations that were not needed stay marked and are not read") {

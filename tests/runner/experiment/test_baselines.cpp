@@ -97,7 +97,7 @@ TEST_CASE("a network that says nothing lets the rod fall apart, which is data: r
   job["time"]["steps"] = 20;
   const TaskRecord torn = evaluated(folder, job).front();
   CHECK(torn.outcome == TaskOutcome::torn);
-  CHECK(torn.joint_gap[static_cast<std::size_t>(torn.steps_done[0] - 1)] > 1);
+  CHECK(torn.steps.joint_gap[static_cast<std::size_t>(torn.tasks.steps_done[0] - 1)] > 1);
 }
 
 TEST_CASE("a simulator of states moves rods without any solve; its steps are data, its rows of solves empty") {
@@ -156,7 +156,7 @@ TEST_CASE("a network whose answer is no number ends its task, and only that") {
   const std::vector<TaskRecord> records = evaluated(folder, job);
   CHECK(records[0].outcome == TaskOutcome::not_a_number);
   CHECK_THAT(records[0].message, Catch::Contains("step 0: the network's answer is"));
-  CHECK(records[0].steps_done.front() == 0);
+  CHECK(records[0].tasks.steps_done.front() == 0);
   CHECK(records[1].outcome == TaskOutcome::ok);
 }
 

@@ -141,10 +141,10 @@ TEST_CASE("a member that fails ends alone, with its reason") {
   REQUIRE(together.together({0, 1, 2}));
   CHECK(together.records[0].outcome == TaskOutcome::ok);
   CHECK(together.records[1].outcome == TaskOutcome::diverged);
-  CHECK(together.records[1].steps_done[0] < 4);
+  CHECK(together.records[1].tasks.steps_done[0] < 4);
   CHECK(together.records[1].message.find("joint lengths") != std::string::npos);
   CHECK(together.records[2].outcome == TaskOutcome::ok);
-  CHECK(together.records[2].steps_done[0] == 4);
+  CHECK(together.records[2].tasks.steps_done[0] == 4);
   for (std::size_t task = 0; task < 3; ++task) CHECK(differing(alone.records[task], together.records[task]).empty());
 }
 
@@ -167,7 +167,7 @@ TEST_CASE("a time limit ends every member, a request all of them") {
   REQUIRE(limited.together({0, 1}));
   for (std::size_t task = 0; task < 2; ++task) {
     CHECK(limited.records[task].outcome == TaskOutcome::timed_out);
-    CHECK(limited.records[task].steps_done[0] == 0);
+    CHECK(limited.records[task].tasks.steps_done[0] == 0);
   }
   Evaluated stopped(random_data());
   int asked = 0;

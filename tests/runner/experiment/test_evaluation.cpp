@@ -32,14 +32,14 @@ std::int64_t solves_of(const TaskRecord& r) { return static_cast<std::int64_t>(r
 TEST_CASE("an exact guess takes no iteration, one product with the matrix for each solve, and has ratio 0") {
   const TaskRecord r = evaluated(five_steps(R"(["zero", {"oracle": {"error": 0}}])"));
   for (std::size_t t = 0; t < tolerances; ++t) {
-    CHECK(r.counted.cg_ratio[t] == 1);
-    CHECK(r.counted_all.matvecs[t] == r.counted_all.iterations[t]);  // from zero, b is the first residual
-    CHECK(r.counted_all.iterations[t] > 0);
+    CHECK(r.tasks.counted.cg_ratio[t] == 1);
+    CHECK(r.tasks.counted_all.matvecs[t] == r.tasks.counted_all.iterations[t]);  // from zero, b is the first residual
+    CHECK(r.tasks.counted_all.iterations[t] > 0);
   }
   for (std::size_t t = 0; t < 7; ++t) {  // the tightest, 1e-8, is where rounding may need an iteration
-    CHECK(r.counted_all.cg_ratio[tolerances + t] == 0);
-    CHECK(r.counted_other_norm.cg_ratio[tolerances + t] == 0);
-    CHECK(r.counted_all.matvecs[tolerances + t] == solves_of(r));
+    CHECK(r.tasks.counted_all.cg_ratio[tolerances + t] == 0);
+    CHECK(r.tasks.counted_other_norm.cg_ratio[tolerances + t] == 0);
+    CHECK(r.tasks.counted_all.matvecs[tolerances + t] == solves_of(r));
   }
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("a time limit and a stop are met in the middle of a solve") {
   test::HandClock::set_tick(std::chrono::seconds(1));
   job["task_time_limit_s"] = looks_of_one_step() - 3;
   const TaskRecord late = evaluated(job, TaskOutcome::timed_out, test::HandClock::ticking);
-  CHECK(late.steps_done[0] == 0);
+  CHECK(late.tasks.steps_done[0] == 0);
   CHECK_THAT(late.message, Catch::StartsWith("step 0: the time limit of"));
 
   job["task_time_limit_s"] = 0;
@@ -74,9 +74,9 @@ TEST_CASE("a time limit and a stop are met while scene and systems are built") {
   job["task_time_limit_s"] = 0.5;
   test::HandClock::set_tick(std::chrono::seconds(1));
   const TaskRecord late = evaluated(job, TaskOutcome::timed_out, test::HandClock::ticking);
-  CHECK(late.steps_done[0] == 0);
+  CHECK(late.tasks.steps_done[0] == 0);
   CHECK_THAT(late.message, Catch::StartsWith("step 0: the time limit of 0.5 s"));
-  CHECK(std::isnan(late.length_drift[0]));
+  CHECK(std::isnan(late.steps.length_drift[0]));
 
   job["task_time_limit_s"] = 0;
   const Plan plan = plan_of(job);
@@ -120,8 +120,8 @@ TEST_CASE("with CG as the reference a closed loop is what it is beside the direc
 TEST_CASE("a reference that runs out of iterations advances the rod all the same, and its task says so") {
   const TaskRecord r = evaluated(five_steps(R"(["zero"])", R"({"reference": "cg", "max_iterations": 12})"),
                                  TaskOutcome::iteration_limit);
-  CHECK(r.counted_all.unreached.back() > 0);
-  CHECK(r.steps_done.front() == 5);
+  CHECK(r.tasks.counted_all.unreached.back() > 0);
+  CHECK(r.tasks.steps_done.front() == 5);
 }
 
 TEST_CASE("sums are those of the rows, of first Newton iterations and of all") {
@@ -132,15 +132,15 @@ TEST_CASE("sums are those of the rows, of first Newton iterations and of all") {
     for (std::size_t t = 0; t < tolerances; ++t) {
       std::int64_t first = 0, all = 0, matvecs = 0;
       for (const std::size_t row : rows_run(r)) {
-        const int iterations = r.iterations[(3 * row + g) * tolerances + t];
+        const int iterations = r.solves.iterations[(3 * row + g) * tolerances + t];
         REQUIRE(iterations >= 0);
         all += iterations;
-        matvecs += iterations + r.start_matvecs[3 * row + g];
-        if (r.newton[row] == 0) first += iterations;
+        matvecs += iterations + r.solves.start_matvecs[3 * row + g];
+        if (r.solves.newton[row] == 0) first += iterations;
       }
-      CHECK(r.counted.iterations[g * tolerances + t] == first);
-      CHECK(r.counted_all.iterations[g * tolerances + t] == all);
-      CHECK(r.counted_all.matvecs[g * tolerances + t] == matvecs);
+      CHECK(r.tasks.counted.iterations[g * tolerances + t] == first);
+      CHECK(r.tasks.counted_all.iterations[g * tolerances + t] == all);
+      CHECK(r.tasks.counted_all.matvecs[g * tolerances + t] == matvecs);
     }
 }
 
@@ -148,12 +148,12 @@ TEST_CASE("the other norm's counts are those of a job in that norm") {
   const std::string guesses = R"(["zero", "previous", {"subspace": {"size": 3}}])";
   const TaskRecord in_2_norm = evaluated(five_steps(guesses));
   const TaskRecord in_natural = evaluated(five_steps(guesses, R"({"norm": "natural"})"));
-  CHECK(in_2_norm.counted_other_norm.iterations == in_natural.counted.iterations);
-  CHECK(in_natural.counted_other_norm.iterations == in_2_norm.counted.iterations);
-  CHECK(in_2_norm.counted.iterations != in_natural.counted.iterations);
+  CHECK(in_2_norm.tasks.counted_other_norm.iterations == in_natural.tasks.counted.iterations);
+  CHECK(in_natural.tasks.counted_other_norm.iterations == in_2_norm.tasks.counted.iterations);
+  CHECK(in_2_norm.tasks.counted.iterations != in_natural.tasks.counted.iterations);
   const TaskRecord bare = evaluated(five_steps(guesses, R"({"preconditioner": "none", "max_iterations": 2000})"));
   for (std::size_t t = 0; t < 2; ++t)  // without P the norms are one; later, rounding makes unpreconditioned CG erratic
-    CHECK(bare.counted_other_norm.iterations[t] == bare.counted.iterations[t]);
+    CHECK(bare.tasks.counted_other_norm.iterations[t] == bare.tasks.counted.iterations[t]);
 }
 
 TEST_CASE("without the other norm its columns are sentinels, and nothing else changes") {
@@ -170,9 +170,10 @@ TEST_CASE("repeats of the timed solves change no count, and every time is there"
   const std::string guesses = R"(["zero", {"fischer": {"size": 2}}])";
   const TaskRecord once = evaluated(five_steps(guesses));
   const TaskRecord thrice = evaluated(five_steps(guesses, R"({"timing_repeats": 3})"));
-  CHECK(once.iterations == thrice.iterations);
-  CHECK(once.length_drift == thrice.length_drift);
-  for (const std::size_t row : rows_run(thrice)) CHECK((thrice.cg_s[2 * row] > 0 && thrice.guess_s[2 * row + 1] > 0));
+  CHECK(once.solves.iterations == thrice.solves.iterations);
+  CHECK(once.steps.length_drift == thrice.steps.length_drift);
+  for (const std::size_t row : rows_run(thrice))
+    CHECK((thrice.timing.cg_s[2 * row] > 0 && thrice.timing.guess_s[2 * row + 1] > 0));
 }
 
 TEST_CASE("a lagged factor is exact where it is made, and better than jacobi where it is not") {
@@ -181,11 +182,11 @@ TEST_CASE("a lagged factor is exact where it is made, and better than jacobi whe
   const TaskRecord jacobi = evaluated(five_steps(R"(["zero"])"));
   bool older = false;
   for (const std::size_t row : rows_run(lagged)) {
-    const bool fresh = lagged.newton[row] == 0 && lagged.step[row] % 2 == 0;
-    const int iterations = lagged.iterations[row * tolerances + 5];
+    const bool fresh = lagged.solves.newton[row] == 0 && lagged.solves.step[row] % 2 == 0;
+    const int iterations = lagged.solves.iterations[row * tolerances + 5];
     if (fresh) CHECK(iterations <= 1);
     if (!fresh && iterations > 1) older = true;
-    CHECK(iterations < jacobi.iterations[row * tolerances + 5]);
+    CHECK(iterations < jacobi.solves.iterations[row * tolerances + 5]);
   }
   CHECK(older);
 }
@@ -197,15 +198,16 @@ TEST_CASE("a condensed system is solved to the job's tolerances, in its one norm
   const TaskRecord condensed = evaluated(job);
   job["solve"]["preconditioner"] = "jacobi";
   const TaskRecord jacobi = evaluated(job);
-  CHECK(condensed.position_m == jacobi.position_m);
+  CHECK(condensed.trajectories.position_m == jacobi.trajectories.position_m);
   for (const std::size_t row : rows_run(condensed)) {
     for (std::size_t t = 0; t < 4; ++t)
-      CHECK(condensed.iterations[2 * row * tolerances + t] <= jacobi.iterations[2 * row * tolerances + t]);
-    CHECK(condensed.final_residual[2 * row] < 1e-8);
-    CHECK(condensed.initial_residual[2 * row + 1] == Approx(jacobi.initial_residual[2 * row + 1]));
+      CHECK(condensed.solves.iterations[2 * row * tolerances + t] <=
+            jacobi.solves.iterations[2 * row * tolerances + t]);
+    CHECK(condensed.solves.final_residual[2 * row] < 1e-8);
+    CHECK(condensed.solves.initial_residual[2 * row + 1] == Approx(jacobi.solves.initial_residual[2 * row + 1]));
   }
-  CHECK(jacobi.counted_other_norm.iterations[0] > 0);
-  CHECK(condensed.counted_other_norm.iterations[0] < 0);
+  CHECK(jacobi.tasks.counted_other_norm.iterations[0] > 0);
+  CHECK(condensed.tasks.counted_other_norm.iterations[0] < 0);
 }
 
 TEST_CASE("lag_steps keeps any preconditioner: set up for every system, a step, or some of them") {
@@ -215,16 +217,16 @@ TEST_CASE("lag_steps keeps any preconditioner: set up for every system, a step, 
   };
   const TaskRecord anew = at(0), a_step = at(1), two = at(2);
   for (const std::size_t row : rows_run(anew)) {
-    const int first = anew.newton[row] == 0, even = anew.step[row] % 2 == 0;
-    CHECK(anew.renewed[row] == 0);
-    CHECK(a_step.renewed[row] == first);
-    CHECK(two.renewed[row] == (first && even));
-    const auto iterations = [&](const TaskRecord& r) { return r.iterations[row * tolerances + 2]; };
+    const int first = anew.solves.newton[row] == 0, even = anew.solves.step[row] % 2 == 0;
+    CHECK(anew.solves.renewed[row] == 0);
+    CHECK(a_step.solves.renewed[row] == first);
+    CHECK(two.solves.renewed[row] == (first && even));
+    const auto iterations = [&](const TaskRecord& r) { return r.solves.iterations[row * tolerances + 2]; };
     CHECK(iterations(anew) <= 1);
     if (first) CHECK(iterations(a_step) == iterations(anew));
     if (first && even) CHECK(iterations(two) == iterations(anew));
   }
-  const auto all = [](const TaskRecord& r) { return r.counted_all.iterations[2]; };
+  const auto all = [](const TaskRecord& r) { return r.tasks.counted_all.iterations[2]; };
   CHECK(all(anew) < all(a_step));
   CHECK(all(a_step) < all(two));
 }
@@ -236,7 +238,7 @@ TEST_CASE("a closed loop advances by its own guess's solution, at the job's tole
   const TaskRecord loose = evaluated(job);
   job["solve"]["tolerance"] = 1e-10;
   const TaskRecord tight = evaluated(job);
-  CHECK(loose.joint_gap[4] > 100 * paired.steps.joint_gap[4]);
+  CHECK(loose.steps.joint_gap[4] > 100 * paired.steps.joint_gap[4]);
   CHECK(tight.trajectories.position_m == paired.trajectories.position_m);
   CHECK(tight.steps.kinetic_energy_j[4] == Approx(paired.steps.kinetic_energy_j[4]).epsilon(1e-6));
 }
@@ -269,9 +271,9 @@ TEST_CASE("a guess that no solve can start from fails the task by its name, and 
 
 TEST_CASE("the joint gap before a step's first solve is not that of the step before: the rod has moved by itself") {
   const TaskRecord r = evaluated(five_steps(R"(["zero"])"));
-  for (std::size_t row = 0; row < r.newton.size(); ++row)
-    if (r.newton[row] > 0) CHECK(r.solve_joint_gap[row] < 0.5 * r.solve_joint_gap[row - 1]);
-  CHECK(r.solve_joint_gap[0] > 1e-6);
+  for (std::size_t row = 0; row < r.solves.newton.size(); ++row)
+    if (r.solves.newton[row] > 0) CHECK(r.solves.joint_gap[row] < 0.5 * r.solves.joint_gap[row - 1]);
+  CHECK(r.solves.joint_gap[0] > 1e-6);
 }
 
 }  // namespace test_evaluation

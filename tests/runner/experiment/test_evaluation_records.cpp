@@ -17,13 +17,13 @@ TEST_CASE("a guess with a history starts from the steps before, from the second 
   const TaskRecord r = evaluated(five_steps(R"(["zero", "previous"])"));
   int with_history = 0;
   for (const std::size_t row : rows_run(r)) {
-    CHECK(r.initial_residual[2 * row] == Approx(1));
-    if (r.step[row] == 0) {
-      CHECK(r.initial_residual[2 * row + 1] == Approx(1));
-      CHECK(r.start_matvecs[2 * row + 1] == 0);
-    } else if (r.newton[row] == 0) {
-      CHECK(std::abs(r.initial_residual[2 * row + 1] - 1) > 1e-6);
-      CHECK(r.start_matvecs[2 * row + 1] == 1);
+    CHECK(r.solves.initial_residual[2 * row] == Approx(1));
+    if (r.solves.step[row] == 0) {
+      CHECK(r.solves.initial_residual[2 * row + 1] == Approx(1));
+      CHECK(r.solves.start_matvecs[2 * row + 1] == 0);
+    } else if (r.solves.newton[row] == 0) {
+      CHECK(std::abs(r.solves.initial_residual[2 * row + 1] - 1) > 1e-6);
+      CHECK(r.solves.start_matvecs[2 * row + 1] == 1);
       ++with_history;
     }
   }
@@ -35,14 +35,14 @@ TEST_CASE("a solve that misses a tolerance counts the iterations that it spent, 
   CHECK(r.outcome == TaskOutcome::ok);  // the direct solve advances the rod
   const auto solves = static_cast<std::int64_t>(rows_run(r).size());
   for (const std::size_t row : rows_run(r)) {
-    CHECK(r.solve_outcome[row] == static_cast<std::int8_t>(SolveOutcome::iteration_limit));
-    CHECK(r.iterations[row * tolerances + tolerances - 1] == -1);
+    CHECK(r.solves.outcome[row] == static_cast<std::int8_t>(SolveOutcome::iteration_limit));
+    CHECK(r.solves.iterations[row * tolerances + tolerances - 1] == -1);
   }
-  CHECK(r.counted_all.iterations.back() == 2 * solves);
-  CHECK(r.counted_all.unreached.back() == solves);
-  CHECK(r.counted.iterations.back() == 2 * steps);
-  CHECK(r.counted.unreached.back() == steps);
-  CHECK(evaluated(five_steps(R"(["zero"])")).counted_all.unreached.back() == 0);
+  CHECK(r.tasks.counted_all.iterations.back() == 2 * solves);
+  CHECK(r.tasks.counted_all.unreached.back() == solves);
+  CHECK(r.tasks.counted.iterations.back() == 2 * steps);
+  CHECK(r.tasks.counted.unreached.back() == steps);
+  CHECK(evaluated(five_steps(R"(["zero"])")).tasks.counted_all.unreached.back() == 0);
 }
 
 TEST_CASE("a system that is solved to rounding already takes no iteration, and is recorded as such") {
@@ -50,11 +50,11 @@ TEST_CASE("a system that is solved to rounding already takes no iteration, and i
   job["scene"]["gravity_m_s2"] = {0, 0, 0};
   job["time"]["newton_tolerance"] = 0;
   const TaskRecord r = evaluated(job);
-  CHECK(r.newton[0] == 0);
+  CHECK(r.solves.newton[0] == 0);
   for (std::size_t guess = 0; guess < 2; ++guess) {
-    CHECK(r.solve_outcome[guess] == static_cast<std::int8_t>(SolveOutcome::zero_rhs));
-    CHECK(r.iterations[guess * tolerances + tolerances - 1] == 0);
-    CHECK(std::isnan(r.counted_all.cg_ratio[guess * tolerances]));
+    CHECK(r.solves.outcome[guess] == static_cast<std::int8_t>(SolveOutcome::zero_rhs));
+    CHECK(r.solves.iterations[guess * tolerances + tolerances - 1] == 0);
+    CHECK(std::isnan(r.tasks.counted_all.cg_ratio[guess * tolerances]));
   }
 }
 
@@ -65,9 +65,10 @@ TEST_CASE("every step tells what its forces lack, and steps that keep the balanc
     job["time"]["momentum_tolerance"] = 1e-5;
     job["time"]["newton_iterations"] = 20;
     const TaskRecord r = evaluated(job);
-    REQUIRE(r.momentum_residual.size() == steps);
-    for (const double lacking : r.momentum_residual) CHECK((lacking < 1e-5) == balance);
-    CHECK(r.largest_momentum_residual[0] == *std::max_element(r.momentum_residual.begin(), r.momentum_residual.end()));
+    REQUIRE(r.steps.momentum_residual.size() == steps);
+    for (const double lacking : r.steps.momentum_residual) CHECK((lacking < 1e-5) == balance);
+    CHECK(r.tasks.momentum_residual[0] ==
+          *std::max_element(r.steps.momentum_residual.begin(), r.steps.momentum_residual.end()));
   }
 }
 
@@ -75,43 +76,44 @@ TEST_CASE("steps and frames of a falling rod have its times, energies, length an
   Json job = five_steps(R"(["zero"])");
   job["record"] = {{"trajectory_every", 2}};
   const TaskRecord r = evaluated(job);
-  CHECK(r.steps_done[0] == steps);
+  CHECK(r.tasks.steps_done[0] == steps);
   for (std::size_t step = 0; step < steps; ++step) {
-    CHECK(r.time_s[step] == Approx(0.02 * static_cast<double>(step + 1)));
-    CHECK(std::abs(r.length_drift[step]) < 1e-3);
-    CHECK(r.kinetic_energy_j[step] > 0);
-    CHECK(r.elastic_energy_j[step] > 0);
-    CHECK(r.potential_energy_j[step] < 0);
-    CHECK(r.step_newton_residual[step] > 0);
-    CHECK(r.step_newton_residual[step] < 1e-9);
-    CHECK(r.momentum_kg_m_s[3 * step + 1] < 0);
-    CHECK(std::abs(r.momentum_kg_m_s[3 * step + 2]) < 1e-9);
-    CHECK(r.angular_momentum_kg_m2_s[3 * step + 2] < 0);
+    CHECK(r.steps.time_s[step] == Approx(0.02 * static_cast<double>(step + 1)));
+    CHECK(std::abs(r.steps.length_drift[step]) < 1e-3);
+    CHECK(r.steps.kinetic_energy_j[step] > 0);
+    CHECK(r.steps.elastic_energy_j[step] > 0);
+    CHECK(r.steps.potential_energy_j[step] < 0);
+    CHECK(r.steps.newton_residual[step] > 0);
+    CHECK(r.steps.newton_residual[step] < 1e-9);
+    CHECK(r.steps.momentum_kg_m_s[3 * step + 1] < 0);
+    CHECK(std::abs(r.steps.momentum_kg_m_s[3 * step + 2]) < 1e-9);
+    CHECK(r.steps.angular_momentum_kg_m2_s[3 * step + 2] < 0);
   }
-  CHECK(r.frame_time_s == std::vector<double>{0, 0.04, 0.08});
-  CHECK(r.first_row == std::vector<std::int64_t>{0, 10, 20});
+  CHECK(r.trajectories.time_s == std::vector<double>{0, 0.04, 0.08});
+  CHECK(r.trajectories.first_row == std::vector<std::int64_t>{0, 10, 20});
   const double half = std::sqrt(0.5);  // local z along x: a quarter turn about y, (w, x, y, z)
   const double along_x[] = {half, 0, half, 0};
-  for (std::size_t i = 0; i < 4; ++i) CHECK(r.orientation[i] == Approx(along_x[i]).margin(1e-12));
-  CHECK(r.position_m[3 * 9] == Approx(1.9));  // the last of ten segments of a rod of 2 m
-  CHECK(r.position_m[3 * 29 + 1] < r.position_m[3 * 19 + 1]);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(r.trajectories.orientation[i] == Approx(along_x[i]).margin(1e-12));
+  CHECK(r.trajectories.position_m[3 * 9] == Approx(1.9));  // the last of ten segments of a rod of 2 m
+  CHECK(r.trajectories.position_m[3 * 29 + 1] < r.trajectories.position_m[3 * 19 + 1]);
 }
 
 TEST_CASE("a recorded trajectory says how long, thick and free its segments are, rod after rod") {
   Json job = five_steps(R"(["zero"])");
   job["scene"]["clamp"] = "wall";
-  CHECK(evaluated(job).segment_radius_m.empty());
+  CHECK(evaluated(job).trajectories.segments.radius_m.empty());
   job["record"] = {{"trajectory_every", 2}};
   const TaskRecord r = evaluated(job);
   std::vector<double> lengths(11, 0.2), radii(11, 0.05);  // a rod of 2 m, ten segments
   lengths[0] = radii[0] = 0;                              // and its wall
-  REQUIRE(r.segment_length_m.size() == lengths.size());
-  for (std::size_t i = 0; i < lengths.size(); ++i) CHECK(r.segment_length_m[i] == Approx(lengths[i]).margin(1e-15));
-  CHECK(r.segment_radius_m == radii);
-  CHECK(r.segment_rod == std::vector<std::int16_t>(11, 0));
+  REQUIRE(r.trajectories.segments.length_m.size() == lengths.size());
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    CHECK(r.trajectories.segments.length_m[i] == Approx(lengths[i]).margin(1e-15));
+  CHECK(r.trajectories.segments.radius_m == radii);
+  CHECK(r.trajectories.segments.rod == std::vector<std::int16_t>(11, 0));
   std::vector<std::int8_t> held(11, 0);
   held[0] = 1;
-  CHECK(r.segment_static == held);
+  CHECK(r.trajectories.segments.is_static == held);
 }
 
 TEST_CASE("contacts and the deepest penetration are recorded where rods touch, and are not there where they cannot") {
@@ -121,19 +123,20 @@ TEST_CASE("contacts and the deepest penetration are recorded where rods touch, a
                                  "torsion_modulus_pa": 1e6, "contact": {"grid": ["none", {}]}})");
   job["time"]["steps"] = 10;  // 6 cm of air take 0.11 s
   const TaskRecord none = evaluated(job, 0), touching = evaluated(job, 1);
-  CHECK(none.contacts == std::vector<std::int32_t>(10, -1));
-  CHECK(std::isnan(none.penetration.back()));
-  CHECK(std::isnan(none.deepest_penetration[0]));
-  CHECK(std::isnan(none.contact_residual.back()));
-  CHECK(touching.contacts.front() == 0);
-  CHECK(touching.penetration.front() == 0);
-  CHECK(touching.contacts.back() > 0);
-  CHECK(touching.deepest_penetration[0] == *std::max_element(touching.penetration.begin(), touching.penetration.end()));
-  CHECK(touching.deepest_penetration[0] < 1e-2);
-  CHECK(touching.contact_residual.front() == 0);
-  CHECK(touching.contact_residual.back() < 1e-2);
+  CHECK(none.steps.contacts == std::vector<std::int32_t>(10, -1));
+  CHECK(std::isnan(none.steps.penetration.back()));
+  CHECK(std::isnan(none.tasks.penetration[0]));
+  CHECK(std::isnan(none.steps.contact_residual.back()));
+  CHECK(touching.steps.contacts.front() == 0);
+  CHECK(touching.steps.penetration.front() == 0);
+  CHECK(touching.steps.contacts.back() > 0);
+  CHECK(touching.tasks.penetration[0] ==
+        *std::max_element(touching.steps.penetration.begin(), touching.steps.penetration.end()));
+  CHECK(touching.tasks.penetration[0] < 1e-2);
+  CHECK(touching.steps.contact_residual.front() == 0);
+  CHECK(touching.steps.contact_residual.back() < 1e-2);
   job["scene"]["contact"] = "none";
-  CHECK(evaluated(job).contacts.empty());
+  CHECK(evaluated(job).steps.contacts.empty());
 }
 
 TEST_CASE("a rod that blows up or is torn and a task out of time end with what was done") {
@@ -143,22 +146,22 @@ TEST_CASE("a rod that blows up or is torn and a task out of time end with what w
   const TaskRecord blown = evaluated(wild);
   CHECK(blown.outcome == TaskOutcome::diverged);
   CHECK_THAT(blown.message, Catch::Matchers::Contains("step 0: a joint is open by"));
-  CHECK(blown.steps_done[0] == 1);
-  CHECK(std::isnan(blown.time_s[1]));
+  CHECK(blown.tasks.steps_done[0] == 1);
+  CHECK(std::isnan(blown.steps.time_s[1]));
 
   Json pulled = wild;
   pulled["scene"]["tip_force_n"] = {0, 1e5, 0};
   const TaskRecord torn = evaluated(pulled);
   CHECK(torn.outcome == TaskOutcome::torn);
   CHECK_THAT(torn.message, Catch::Matchers::Contains("a joint is open by"));
-  CHECK(torn.joint_gap[static_cast<std::size_t>(torn.steps_done[0] - 1)] > 1);
+  CHECK(torn.steps.joint_gap[static_cast<std::size_t>(torn.tasks.steps_done[0] - 1)] > 1);
 
   Json slow = five_steps(R"(["zero"])");
   slow["task_time_limit_s"] = 1e-9;
   const TaskRecord late = evaluated(slow);
   CHECK(late.outcome == TaskOutcome::timed_out);
   CHECK_THAT(late.message, Catch::Matchers::Contains("task_time_limit_s"));
-  CHECK(late.steps_done[0] == 0);
+  CHECK(late.tasks.steps_done[0] == 0);
 }
 
 }  // namespace test_evaluation_records

@@ -45,12 +45,12 @@ TEST_CASE("every tree of a forest takes the steps of the direct solve under xpbd
   REQUIRE(pbd.outcome == TaskOutcome::ok);
   for (std::size_t step = 0; step < 5; ++step) {
     CHECK(xpbd.steps.kinetic_energy_j[step] == Approx(direct.steps.kinetic_energy_j[step]).epsilon(1e-3));
-    CHECK(pbd.kinetic_energy_j[step] > 0);
-    CHECK(pbd.joint_gap[step] < 1e-2);
+    CHECK(pbd.steps.kinetic_energy_j[step] > 0);
+    CHECK(pbd.steps.joint_gap[step] < 1e-2);
   }
   for (std::size_t rod = 0; rod < 2; ++rod) {
-    CHECK(pbd.rod[rod] == static_cast<int>(rod));
-    CHECK(pbd.newton_residual[rod] > 0);
+    CHECK(pbd.solves.rod[rod] == static_cast<int>(rod));
+    CHECK(pbd.solves.newton_residual[rod] > 0);
   }
 }
 

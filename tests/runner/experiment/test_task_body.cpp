@@ -33,7 +33,7 @@ TEST_CASE("a record that was filled is written and its outcome returned") {
   CHECK(result.message == "joint gap 12");
   REQUIRE(written.size() == 1);
   CHECK(written[0].outcome == TaskOutcome::diverged);
-  CHECK(written[0].steps_done[0] == 10);
+  CHECK(written[0].tasks.steps_done[0] == 10);
 }
 
 TEST_CASE("a task that throws is an error with its message, written with sentinels") {
@@ -48,7 +48,7 @@ TEST_CASE("a task that throws is an error with its message, written with sentine
   REQUIRE(written.size() == 1);
   CHECK(written[0].outcome == TaskOutcome::error);
   CHECK(written[0].message == "the matrix has no diagonal");
-  CHECK(written[0].steps_done[0] == -1);
+  CHECK(written[0].tasks.steps_done[0] == -1);
 }
 
 TEST_CASE("an abandoned task is not written") {

@@ -176,7 +176,7 @@ TEST_CASE("status can be read while the sweep writes") {
   TaskRecord failed = synthetic_record(plan, 4);
   failed.outcome = TaskOutcome::diverged;
   failed.message = "joint gap of 3 lengths at step 2";
-  failed.elapsed_s = {std::numeric_limits<double>::quiet_NaN()};
+  failed.timing.elapsed_s.assign(1, std::numeric_limits<double>::quiet_NaN());
   file.write(plan.task(4), failed);
   file.end_run("2025-01-02T03:04:05Z", 4);
   CHECK(inspect(folder / "a.h5").done == 1);  // the first was brought to disk at once, the second waits for others
@@ -195,7 +195,7 @@ TEST_CASE("status can be read while the sweep writes") {
   CHECK(run.end_utc == "2025-01-02T03:04:05Z");
   CHECK(run.exit_code == 4);
   CHECK(run.tasks == 2);
-  CHECK(run.task_seconds == synthetic_record(plan, 0).elapsed_s.at(0));
+  CHECK(run.task_seconds == synthetic_record(plan, 0).timing.elapsed_s.at(0));
   CHECK(run.provenance.ranks == 2);
   CHECK(run.provenance.host == host_name());
   CHECK(run.provenance.user_command == "rodsweep run job.json");

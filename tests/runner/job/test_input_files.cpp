@@ -19,7 +19,8 @@ TEST_CASE("a model is found beside the job, whatever the current folder, and nam
   folder.write("models/bending.h5", "weights");
   const Plan plan(folder.job(learned("models/bending.h5")));
   CHECK(plan.guess_labels().back() == "copingnet bending");
-  CHECK(fs::equivalent(plan.spec(0).guesses.back().model, folder.path() / "models/bending.h5"));
+  CHECK(fs::equivalent(std::get<guess::CopingNet>(plan.spec(0).guesses.back().kind).model,
+                       folder.path() / "models/bending.h5"));
 }
 
 TEST_CASE("a file that cannot be read is refused with key, path and reason") {
@@ -91,8 +92,8 @@ TEST_CASE("models can be swept") {
   const Plan plan(folder.job(
       with("/guesses", R"(["zero", {"copingnet": {"model": {"grid": ["a.h5", "b.h5"]}, "label": "learned"}}])")));
   REQUIRE(plan.size() == 2);
-  CHECK(plan.spec(0).guesses[1].model.filename() == "a.h5");
-  CHECK(plan.spec(1).guesses[1].model.filename() == "b.h5");
+  CHECK(std::get<guess::CopingNet>(plan.spec(0).guesses[1].kind).model.filename() == "a.h5");
+  CHECK(std::get<guess::CopingNet>(plan.spec(1).guesses[1].kind).model.filename() == "b.h5");
 }
 
 }  // namespace test_input_files
