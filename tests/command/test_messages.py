@@ -54,9 +54,9 @@ class Validate(Case):
         tree = write_job("tree", samples=1, scene={"type": "skeleton", "skeleton": "aple_tree.swc",
                          "density_kg_m3": 800, "youngs_modulus_pa": 1e9, "torsion_modulus_pa": 4e8})
         shutil.copy(os.path.join(SOURCE_DIR, "jobs", "apple_tree.swc"), "jobs")
-        for options in ((), ("--later",)):
-            self.assert_refused(("validate", *options, tree), "jobs/tree.json: scene.skeleton: ", "jobs/aple_tree.swc",
-                                'did you mean "apple_tree.swc"?')
+        self.assert_refused(("validate", tree), "jobs/tree.json: scene.skeleton: ", "jobs/aple_tree.swc",
+                            'did you mean "apple_tree.swc"?')
+        self.assert_refused(("validate", "--later", tree), "jobs/tree.json: scene.skeleton: ", "jobs/aple_tree.swc")
 
     def test_a_data_set_that_does_not_do_is_refused_as_run_refuses_it(self):
         sweep("some", **DATA)
@@ -66,10 +66,10 @@ class Validate(Case):
                             "4 simulations")
 
     def test_a_likely_slip_of_units_is_told_by_validate_and_run_and_stops_nothing(self):
-        thick = write_job("thick", samples=1, scene={**ROD, "segments": 5, "length_m": 2, "radius_m": 50},
+        thick = write_job("thick", samples=1, scene={**ROD, "segments": 5, "length_m": 2, "radius_m": 5},
                           time={"step_s": 0.02, "steps": 1})
         (_, (warning,)), run = self.validated(thick), rodsweep("run", thick, "-o", "thick.h5")
-        self.assertRegex(warning, r"warning: jobs/thick\.json: scene\.radius_m: 50 m.*\b2 m\b.*\b50 mm.*\b0\.05\b")
+        self.assertRegex(warning, r"warning: jobs/thick\.json: scene\.radius_m: 5 m.*\b2 m\b.*\b5 mm.*\b0\.005\b")
         self.assertEqual(run.stderr.count(warning), 1)
 
 
