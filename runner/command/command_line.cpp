@@ -16,35 +16,37 @@ namespace rodsweep {
 namespace {
 
 constexpr const char* about =
-    "rodsweep: how much does an initial guess save the conjugate-gradient solve of a Cosserat rod simulation?\n"
-    "Sweeps of simulations over MPI, one HDF5 file of results per sweep.";
+    "rodsweep measures how many conjugate-gradient iterations an initial guess saves in Cosserat rod simulations.\n"
+    "It runs sweeps of simulations over MPI, with one HDF5 results file per sweep.";
 
 constexpr const char* exit_codes =
     "Exit codes:\n"
-    "  0  all done\n"
-    "  2  an error in the command line, a job or a file; nothing was changed\n"
-    "  3  the sweep is complete, some of its tasks failed; or a training diverged\n"
+    "  0  success\n"
+    "  2  error in the command line, a job or a file; nothing was changed\n"
+    "  3  the sweep is complete, but some tasks failed\n"
     "  4  stopped early; --resume continues\n"
-    "  5  likewise, but what is left needs a longer --time-limit\n"
-    "  6  no worker was left; --resume continues\n"
-    "  7  standard output could not be written; all else went well";
+    "  5  stopped early; the remaining tasks need a longer --time-limit or more memory\n"
+    "  6  all workers were lost; --resume continues\n"
+    "  7  standard output could not be written; everything else succeeded\n"
+    "  8  rerun, compare: the results differ\n"
+    "  9  the training diverged; its best model is kept\n"
+    "  10 info --verify: results in the file are damaged";
 
 constexpr const char* main_help =
     "Examples:\n"
-    "  rodsweep validate jobs/demo.json         is this job sound?\n"
-    "  rodsweep plan jobs/demo.json             how many tasks, bytes, core-hours?\n"
-    "  mpirun -n 9 rodsweep run jobs/demo.json  8 workers and a master, which sleeps\n"
-    "  rodsweep status results/demo.h5          how far is it? (also while it runs)\n"
-    "  rodsweep query results/demo.h5           its tasks as a table, CSV or JSON\n"
-    "'rodsweep COMMAND --help' explains a command.\n\n"
-    "Every script of analysis/ is a command too: rodsweep NAME starts rodsweep-NAME, which needs Python.\n"
+    "  rodsweep validate jobs/demo.json         check a job\n"
+    "  rodsweep plan jobs/demo.json             estimate tasks, bytes and core-hours\n"
+    "  mpirun -n 9 rodsweep run jobs/demo.json  run a job with 8 workers and a sleeping master\n"
+    "  rodsweep status results/demo.h5          show the progress, also during the run\n"
+    "  rodsweep query results/demo.h5           list the tasks as a table, CSV or JSON\n"
+    "'rodsweep COMMAND --help' shows the help of a command.\n\n"
+    "The scripts in analysis/ are commands too: rodsweep NAME starts rodsweep-NAME. They need Python.\n"
     "  query    tasks as a table            compare  two sweeps            summary  the main numbers\n"
-    "  report   a page of HTML              spatial  figures               export   CSV of all rows";
+    "  report   an HTML page                spatial  figures               export   CSV of all rows";
 
 constexpr const char* schema_help =
-    "For completion and checks while you type; `rodsweep validate` has the last word. Put the file beside your jobs "
-    "and\n"
-    "name it in each: \"$schema\": \"schema.json\".\n\n"
+    "Editors use the schema for completion and checks; `rodsweep validate` checks more. Put the file into the\n"
+    "folder of your jobs and name it in each job: \"$schema\": \"schema.json\".\n\n"
     "Example:\n"
     "  rodsweep schema >schema.json";
 
@@ -73,17 +75,17 @@ CLI::Validator number_check(bool zero, const char* bound) {
         constexpr double most = 1e9;  // also rejects infinity and NaN
         const bool good =
             CLI::detail::lexical_cast(text, value) && value <= most && (value > 0 || (zero && value == 0));
-        return good ? std::string() : fmt::format("{} is not a number {}", text, bound);
+        return good ? std::string() : fmt::format("{} is not allowed; must be a number {}", text, bound);
       },
       "");
 }
-CLI::Validator above_zero() { return number_check(false, "above 0 and up to 1e9"); }
+CLI::Validator above_zero() { return number_check(false, "above 0 and at most 1e9"); }
 CLI::Validator not_negative() { return number_check(true, "from 0 to 1e9"); }
 
 // Each function adds a command whose arguments fill the given options.
 
 CLI::App* add(CLI::App& app, RunOptions& run) {
-  CLI::App* command = app.add_subcommand("run", "Runs a job, or goes on with it");
+  CLI::App* command = app.add_subcommand("run", "Runs a job or continues it");
   command->footer(with_exit_codes(run_help));
   command->add_option("JOB", run.job, "Job file (JSON)")->required();
   command->add_option("-o,--output", run.output, "Results file; never overwritten [results/NAME.h5]")
@@ -91,21 +93,21 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
   CLI::Option* resume = command->add_flag("--resume", run.resume, "Continue the results file if it exists");
   command
       ->add_flag("--retry-failed", run.retry_failed,
-                 "With --resume: run tasks again that ended in an error, timed out or crashed")
+                 "With --resume: repeat tasks that ended in an error, timed out or crashed")
       ->needs(resume);
   command
       ->add_option("--task-time-limit", run.task_time_limit_s,
-                   "Give up tasks that take longer, whatever the job says; 0: no limit")
+                   "Stop tasks that take longer; overrides the job; 0: no limit")
       ->check(not_negative())
       ->type_name("SECONDS");
   command
       ->add_option("--time-limit", run.time_limit_s,
-                   "Be done by then: begin no task that would take longer, abandon what runs")
+                   "End within this time: start no task that would take longer, abandon running tasks")
       ->check(above_zero())
       ->type_name("SECONDS");
   command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
-                   "Memory of a rank; a task that needs more is an error [90 % of the host's, divided by its ranks]")
+                   "Memory per rank; a task that needs more ends in an error [90 % of the host's / its ranks]")
       ->check(CLI::Range(0.1, 1e9))  // the program itself needs most of 0.1 GB
       ->type_name("GB");
   command->add_option("--max-crashes", run.max_crashes, "Mark a task as crashed after this many worker deaths [3]")
@@ -113,7 +115,7 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->type_name("N");
   command
       ->add_option("--worker-timeout", run.worker_timeout_s,
-                   "Continue without a worker that sends no heartbeat for so long; 0: wait for ever [120]")
+                   "Reassign tasks of a worker without heartbeat for this time; 0: no timeout [120]")
       ->check(not_negative())
       ->type_name("SECONDS");
   command
@@ -121,24 +123,25 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
           "--shard",
           [&run](const std::string& text) {
             run.shard = shard_of(text);
-            if (!run.shard) throw CLI::ValidationError("--shard", text + " is no I/N with 1 <= I <= N");
+            if (!run.shard)
+              throw CLI::ValidationError("--shard", text + " is not allowed; must be I/N with 1 <= I <= N");
           },
-          "Run the I-th of N parts of the tasks, into a file of its own, for `merge`")
+          "Run part I of N of the tasks into a separate file, for `merge`")
       ->type_name("I/N");
-  command->add_option("--extend", run.extend, "Take over what these results of a smaller job hold")->type_name("OLD");
+  command->add_option("--extend", run.extend, "Reuse the results of a smaller job")->type_name("OLD");
   return command;
 }
 
 CLI::App* add(CLI::App& app, PlanOptions& plan) {
-  CLI::App* command = app.add_subcommand("plan", "Says what a job takes: tasks, bytes, core-hours");
+  CLI::App* command = app.add_subcommand("plan", "Estimates tasks, bytes and core-hours of a job");
   command->footer(with_exit_codes(plan_help));
   command->add_option("JOB", plan.job, "Job file (JSON)")->required();
   command->add_flag_callback(
-      "--no-probe", [&plan] { plan.probe = false; }, "Run nothing, so tell no core-hours");
-  command->add_option("--workers", plan.workers, "Tell the time for so many workers [one for each core here]")
+      "--no-probe", [&plan] { plan.probe = false; }, "Run no tasks, estimate no core-hours");
+  command->add_option("--workers", plan.workers, "Estimate the time with N workers [one per core of this host]")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
-  command->add_flag("--json", plan.json, "For programs");
+  command->add_flag("--json", plan.json, "Print JSON");
   return command;
 }
 
@@ -146,16 +149,16 @@ CLI::App* add(CLI::App& app, ValidateOptions& validate) {
   CLI::App* command = app.add_subcommand("validate", "Checks jobs without running them");
   command->footer(with_exit_codes(validate_help));
   command->add_option("JOB", validate.jobs, "Job files (JSON)")->required();
-  command->add_flag("--later", validate.later, "Pass models and data sets that are not there yet");
+  command->add_flag("--later", validate.later, "Accept missing models and data sets");
   return command;
 }
 
 CLI::App* add(CLI::App& app, StatusOptions& status) {
-  CLI::App* command = app.add_subcommand("status", "Says how far a sweep is");
+  CLI::App* command = app.add_subcommand("status", "Shows the progress of a sweep or training");
   command->footer(with_exit_codes(status_help));
   command->add_option("FILE", status.file, "Results file (HDF5)")->required();
-  command->add_flag("--json", status.json, "For programs");
-  command->add_option("--watch", status.watch_s, "Say it again every so many seconds, until the sweep ends")
+  command->add_flag("--json", status.json, "Print JSON");
+  command->add_option("--watch", status.watch_s, "Repeat at this interval until the sweep ends")
       ->expected(0, 1)
       ->default_str("5")
       ->check(above_zero())
@@ -164,49 +167,49 @@ CLI::App* add(CLI::App& app, StatusOptions& status) {
 }
 
 CLI::App* add(CLI::App& app, InfoOptions& info) {
-  CLI::App* command = app.add_subcommand("info", "Says where results come from, and checks them");
+  CLI::App* command = app.add_subcommand("info", "Shows the origin of results, and verifies them");
   command->footer(with_exit_codes(info_help));
   command->add_option("FILE", info.file, "Results file (HDF5)")->required();
   CLI::Option* verify = command->add_flag("--verify", info.verify, "Compare every finished task with its checksum");
-  CLI::Option* job = command->add_flag("--job", info.job, "Print the job alone, byte for byte");
-  CLI::Option* json = command->add_flag("--json", info.json, "For programs");
+  CLI::Option* job = command->add_flag("--job", info.job, "Print only the job, byte for byte");
+  CLI::Option* json = command->add_flag("--json", info.json, "Print JSON");
   job->excludes(verify)->excludes(json);
   return command;
 }
 
 CLI::App* add(CLI::App& app, RerunOptions& rerun) {
-  CLI::App* command = app.add_subcommand("rerun", "Runs one task of a sweep again, with its trajectory");
+  CLI::App* command = app.add_subcommand("rerun", "Repeats one task of a sweep and records its trajectory");
   command->footer(rerun_help);
   command->add_option("FILE", rerun.file, "Results file (HDF5)")->required();
   command->add_option("TASK", rerun.task, "Number of the task, from 0")->required();
   command->add_option("-o,--output", rerun.output, "Results file; never overwritten [FILE-task-TASK.h5]")
       ->type_name("FILE");
-  command->add_option("--trajectory-every", rerun.trajectory_every, "A frame every K steps [1]")
+  command->add_option("--trajectory-every", rerun.trajectory_every, "Record a frame every K steps [1]")
       ->check(above_zero())
       ->type_name("K");
   return command;
 }
 
 CLI::App* add(CLI::App& app, PackOptions& pack) {
-  CLI::App* command = app.add_subcommand("pack", "Makes a compressed copy of a results file");
+  CLI::App* command = app.add_subcommand("pack", "Writes a compressed copy of a results file");
   command->footer(pack_help);
   command->add_option("FILE", pack.file, "Results file (HDF5)")->required();
-  command->add_option("-o,--output", pack.output, "The copy; never overwritten [FILE-packed.h5]")->type_name("FILE");
+  command->add_option("-o,--output", pack.output, "Copy; never overwritten [FILE-packed.h5]")->type_name("FILE");
   return command;
 }
 
 CLI::App* add(CLI::App& app, MergeOptions& merge) {
-  CLI::App* command = app.add_subcommand("merge", "Makes one results file of several of the same job");
+  CLI::App* command = app.add_subcommand("merge", "Merges results files of the same job");
   command->footer(with_exit_codes(merge_help));
   command->add_option("FILE", merge.files, "Results files (HDF5)")->required();
-  command->add_option("-o,--output", merge.output, "The file of all; never overwritten")->type_name("FILE")->required();
+  command->add_option("-o,--output", merge.output, "Merged file; never overwritten")->type_name("FILE")->required();
   return command;
 }
 
 std::string unknown_command_text(const CLI::App& app, const std::string& word) {
   std::vector<std::string> known{"query", "compare", "summary", "report"};
   for (const CLI::App* offered : app.get_subcommands({})) known.push_back(offered->get_name());
-  return fmt::format("rodsweep: there is no command \"{}\", and no program rodsweep-{}{}{}", word, word,
+  return fmt::format("rodsweep: unknown command \"{}\"; no program rodsweep-{} was found{}{}", word, word,
                      did_you_mean(word, known), help_line);
 }
 
@@ -224,7 +227,7 @@ std::string complaint_text(const CLI::App* app, const CLI::Error& error) {
     for (const CLI::Option* offered : command.get_options())
       for (const std::string& name : offered->get_lnames()) known.push_back("--" + name);
     const std::string typed = option->substr(0, option->find('='));
-    return fmt::format("rodsweep{}: there is no option {}{}{}", chosen.empty() ? "" : " " + command.get_name(), typed,
+    return fmt::format("rodsweep{}: unknown option {}{}{}", chosen.empty() ? "" : " " + command.get_name(), typed,
                        did_you_mean(typed, known), help_line);
   }
   if (!chosen.empty()) return CLI::FailureMessage::simple(app, error);
@@ -240,7 +243,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   app.get_formatter()->column_width(28);
   app.failure_message(complaint_text);
   bool version = false;
-  app.add_flag("--version", version, "Version, revision and libraries");
+  app.add_flag("--version", version, "Print version, revision and libraries");
 
   RunOptions run;
   PlanOptions plan;

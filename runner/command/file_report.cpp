@@ -26,20 +26,20 @@ constexpr double hung_s = 60;  // a run without activity for this long may hang
 std::string life_text(const FileSummary& file) {
   const std::string silence = duration_text(std::round(file.silent_s));
   if (!is_alive(file))
-    return file.being_written ? "was killed" : fmt::format("was killed, or hangs: no sign of life for {}", silence);
+    return file.being_written ? "was killed" : fmt::format("was killed or hangs: no activity for {}", silence);
   if (file.silent_s > hung_s)
-    return fmt::format("runs still, but shows no sign of life for {}: it may hang, or a disk does", silence);
-  return fmt::format("runs still, last sign of life {} ago", silence);
+    return fmt::format("running, but no activity for {}: the program or a disk may hang", silence);
+  return fmt::format("running, last activity {} ago", silence);
 }
 
 std::string ending(const RunRow& run, bool is_last, const FileSummary& file) {
   if (run.end_utc.empty()) return is_last ? life_text(file) : "was killed";
   switch (static_cast<ExitCode>(run.exit_code)) {
     case ExitCode::ok: return "all done";
-    case ExitCode::tasks_failed: return "complete, some tasks failed";
+    case ExitCode::tasks_failed: return "complete, but some tasks failed";
     case ExitCode::stopped: return "stopped early";
-    case ExitCode::too_long: return "stopped early: what is left needs a longer time limit, or more memory";
-    case ExitCode::lost: return "no worker was left";
+    case ExitCode::too_long: return "stopped early: the remaining tasks need a longer time limit or more memory";
+    case ExitCode::lost: return "all workers were lost";
     default: return fmt::format("exit code {}", run.exit_code);
   }
 }
@@ -50,9 +50,9 @@ std::string start_text(const FileSummary& file, std::size_t index) {
   const RunRow& run = file.runs.at(index);
   const Provenance& p = run.provenance;
   return fmt::format("start {}{}: {} to {} on {}, {}{}: {} in {} of work; {}\n", index,
-                     run.source.empty() ? "" : fmt::format(" (of {}, extended here)", run.source), p.begin_utc,
+                     run.source.empty() ? "" : fmt::format(" (copied from {})", run.source), p.begin_utc,
                      run.end_utc.empty() ? "?" : run.end_utc, p.host, counted(p.ranks, "rank"),
-                     p.oversubscribed ? " (more than cores: times are worthless)" : "", counted(run.tasks, "task"),
+                     p.oversubscribed ? " (more than cores: times are not valid)" : "", counted(run.tasks, "task"),
                      duration_text(run.task_seconds), ending(run, index + 1 == file.runs.size(), file));
 }
 

@@ -22,11 +22,12 @@ std::string provenance_text(const FileSummary& file) {
       fmt::format("file     {}, {}, schema {}\njob      {} ({})\nplan     {}, hash {}\n", file.path.native(),
                   bytes_text(static_cast<std::int64_t>(file.bytes)), file.schema_version, file.job_name, file.job_kind,
                   counted(file.tasks, "task"), file.plan_hash);
-  if (file.rerun_of_task) text += fmt::format("holds    task {} of the job alone, run again\n", *file.rerun_of_task);
+  if (file.rerun_of_task)
+    text += fmt::format("holds    only task {} of the job, from `rodsweep rerun`\n", *file.rerun_of_task);
   if (!file.guesses.empty()) text += fmt::format("guesses  {}\n", fmt::join(file.guesses, ", "));
   text += fmt::format("done     {} of {}: {}\n", file.done, counted(file.tasks, "task"), outcomes_text(file));
   if (file.momentum_residual)
-    text += fmt::format("momentum in a step, forces on a segment lack at most {:.2g} of the greatest of a joint\n",
+    text += fmt::format("momentum residual of a segment: at most {:.2g} of the greatest joint force in a step\n",
                         *file.momentum_residual);
   for (std::size_t i = 0; i < file.runs.size(); ++i) {
     const Provenance& p = file.runs[i].provenance;
@@ -46,7 +47,7 @@ ExitCode show_model(const InfoOptions& options, Console& console) {
     console.result(to_json(stored, options.file).dump(2));
   } else {
     console.result(training_summary(stored.card, options.file) + '\n' + provenance_text(stored));
-    if (options.verify) console.result("verified: the model is as it was written");  // reading it checks this
+    if (options.verify) console.result("verified: the model is intact");  // reading it checks this
   }
   return ExitCode::ok;
 }
@@ -59,7 +60,7 @@ bool verify_plan(const FileSummary& file) {
   try {
     const Job job = parse_job(file.job_text, stored_job_path(file), MissingFiles::accepted);
     if (!job.files.empty()) return false;  // they may have changed
-    check_same_plan(file.path, Plan(job), "This is that revision, so the file is damaged: make it again");
+    check_same_plan(file.path, Plan(job), "This is that revision, so the file is damaged: create it again");
     return true;
   } catch (const JobError& error) {
     throw damaged_error(file.path, error.what());
@@ -93,15 +94,15 @@ ExitCode execute(const InfoOptions& options, Console& console) {
   } else {
     console.result(provenance_text(file));
     if (options.verify)
-      console.result(fmt::format(
-          "verified {} finished tasks: {}{}", verified.checked,
-          verified.damaged.empty() ? "all as they were written" : fmt::format("{} differ", verified.damaged.size()),
-          plan_verified ? "; the parameters are those of the job" : ""));
+      console.result(
+          fmt::format("verified {} finished tasks: {}{}", verified.checked,
+                      verified.damaged.empty() ? "all intact" : fmt::format("{} damaged", verified.damaged.size()),
+                      plan_verified ? "; the parameters match the job" : ""));
   }
   if (verified.damaged.empty()) return ExitCode::ok;
   console.error(
-      fmt::format("{} is damaged: the data of task{} {} are not what was written. Run its job again with "
-                  "--resume, which does such tasks again; of a packed copy, pack the original again",
+      fmt::format("{} is damaged: wrong checksum of task{} {}. Run its job with --resume to repeat damaged tasks; for "
+                  "a packed copy, pack the original again",
                   options.file.native(), verified.damaged.size() == 1 ? "" : "s", fmt::join(verified.damaged, ", ")));
   return ExitCode::damaged;
 }

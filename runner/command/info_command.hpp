@@ -17,9 +17,9 @@ struct InfoOptions {
 
 inline constexpr const char* info_help =
     "Examples:\n"
-    "  rodsweep info results/demo.h5                     job, axes, and every start with its versions\n"
-    "  rodsweep info results/demo.h5 --verify            are the data still what was written? (checksums)\n"
-    "  rodsweep info results/demo.h5 --job > again.json  the job, as it was given";
+    "  rodsweep info results/demo.h5                     job, axes, and all starts with versions\n"
+    "  rodsweep info results/demo.h5 --verify            compares the data with their checksums\n"
+    "  rodsweep info results/demo.h5 --job > again.json  writes the job of the results";
 
 ExitCode execute(const InfoOptions& options, Console& console);
 

@@ -96,10 +96,10 @@ ExitCode start(const RunOptions& options, Console& console) {
     console.error(error.what());
     return ExitCode::user_error;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "rodsweep: error: rank {} on {} cannot go on: {}\n", mpi.rank(), host_name(), error.what());
+    fmt::print(stderr, "rodsweep: error: rank {} on {} failed: {}\n", mpi.rank(), host_name(), error.what());
     RunOptions again = options;
     again.resume = true;
-    fmt::print(stderr, "rodsweep: what was finished is kept in the file; once the cause is gone, this continues: {}\n",
+    fmt::print(stderr, "rodsweep: the file keeps all finished work. Fix the cause, then continue with: {}\n",
                run_line(again, mpi.size()));
     std::fflush(nullptr);
     MPI_Abort(mpi.world(), static_cast<int>(ExitCode::stopped));

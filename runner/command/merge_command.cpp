@@ -39,7 +39,7 @@ struct Part {
 
 std::string these(const std::vector<std::int64_t>& tasks) {
   return tasks.size() == 1 ? fmt::format("task {}", tasks.front())
-                           : fmt::format("{} tasks, the first being {},", tasks.size(), tasks.front());
+                           : fmt::format("{} tasks (first: {})", tasks.size(), tasks.front());
 }
 
 std::vector<Part> open_parts(const std::vector<fs::path>& files, const FileSummary& first, const Plan& plan) {
@@ -48,8 +48,8 @@ std::vector<Part> open_parts(const std::vector<fs::path>& files, const FileSumma
   for (const fs::path& path : files) {
     const FileSummary file = inspect(path);
     if (file.job_text != first.job_text || file.rerun_of_task != first.rerun_of_task)
-      throw FileError(fmt::format("{} is of another job than {}: only files of the very same job can be merged",
-                                  path.native(), first.path.native()));
+      throw FileError(
+          fmt::format("{} and {} are of different jobs: must be of the same job", path.native(), first.path.native()));
     check_same_plan(path, plan, "Merge with that revision");
     parts.push_back({path, TaskReader(path), runs});
     runs += static_cast<int>(file.runs.size());
@@ -97,15 +97,16 @@ ExitCode execute(const MergeOptions& options, Console& console) {
   merged.close();
 
   if (!damaged.empty())
-    console.warn(fmt::format("{} not what was written (checksum), and left to do: {}",
+    console.warn(fmt::format("{} damaged (wrong checksum) and left to do: {}",
                              damaged.size() == 1 ? "one task is" : "some tasks are", these(damaged)));
   if (!different.empty())
-    console.warn(fmt::format("{} differ between files (other machines round differently); the first file's are taken",
-                             these(different)));
+    console.warn(fmt::format(
+        "results differ between files for {} (machines round differently); the first file's results are used",
+        these(different)));
   console.result(fmt::format("{}: {} of {} of {} from {}{}", options.output.native(), done,
                              counted(plan.size(), "task"), first.job_name,
                              counted(static_cast<std::int64_t>(parts.size()), "file"),
-                             done == plan.size() ? "" : "; run the job with this output and --resume for the rest"));
+                             done == plan.size() ? "" : "; run the job with this output and --resume to complete it"));
   return code;
 }
 

@@ -18,14 +18,13 @@ struct MergeOptions {
 };
 
 inline constexpr const char* merge_help =
-    "The files are of one job, and each holds what was finished of it: shards of a job array, say. The new file holds\n"
-    "all that any of them does, bit for bit what a single run would have written, and remembers who ran what, when\n"
-    "and where. Tasks are compared with their checksums: a damaged one is left to do. What two files hold is taken\n"
-    "from the first, with a warning where their results differ. What nobody finished is pending, and\n"
-    "`rodsweep run JOB -o OUTPUT --resume` goes on there.\n\n"
+    "The files hold finished tasks of one job, for example shards of a job array. The new file holds all of them,\n"
+    "bit for bit as a single run would write them. It also records which run computed each task. Damaged tasks\n"
+    "(wrong checksum) are left to do. If several files hold a task, the first is used; a warning is printed if the\n"
+    "results differ. All other tasks are pending: `rodsweep run JOB -o OUTPUT --resume` runs them.\n\n"
     "Examples:\n"
-    "  rodsweep run job.json --shard 1/2                results/NAME-1of2.h5, here\n"
-    "  rodsweep run job.json --shard 2/2                results/NAME-2of2.h5, there\n"
+    "  rodsweep run job.json --shard 1/2                results/NAME-1of2.h5, on one host\n"
+    "  rodsweep run job.json --shard 2/2                results/NAME-2of2.h5, on another host\n"
     "  rodsweep merge results/NAME-*of2.h5 -o results/NAME.h5\n"
     "  sbatch --array=1-16 jobs/slurm/sweep.sbatch job.json";
 

@@ -48,7 +48,7 @@ std::string run_line(const RunOptions& options, int ranks) {
 
 std::string stopped_text(int signal, RunOptions options, int ranks) {
   options.resume = true;
-  return fmt::format("stopped early by {}; nothing is lost. To continue: {}", signal_cause(signal),
+  return fmt::format("stopped early by {}; finished work is kept. To continue: {}", signal_cause(signal),
                      run_line(options, ranks));
 }
 

@@ -14,8 +14,8 @@ ExitCode execute(const PackOptions& options, Console& console) {
   const Packing packing = pack_results(options.file, output);
   if (packing.verified < packing.tasks)
     console.warn(
-        fmt::format("{} of {} tasks are pending, and a packed file cannot be continued: keep {} until the sweep is "
-                    "complete, then pack it again",
+        fmt::format("{} of {} tasks are pending, and a packed file cannot be resumed: keep {}, complete the sweep, "
+                    "then pack it again",
                     packing.tasks - packing.verified, packing.tasks, options.file.native()));
   const auto before = static_cast<std::int64_t>(packing.bytes_before);
   const auto after = static_cast<std::int64_t>(packing.bytes_after);

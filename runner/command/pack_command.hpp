@@ -15,16 +15,15 @@ struct PackOptions {
 };
 
 inline constexpr const char* pack_help =
-    "Every reader takes the copy for the original, but a sweep cannot be continued in it: keep the original of one "
-    "that\n"
-    "is not complete. Finished tasks are compared with their checksums before and after. Nothing is overwritten, and\n"
-    "the copy gets its name when it is whole.\n\n"
+    "All commands can read the copy, but it cannot be resumed: keep the original of an incomplete sweep. Finished\n"
+    "tasks are compared with their checksums before and after. Nothing is overwritten. The copy gets its name when\n"
+    "it is complete.\n\n"
     "Examples:\n"
     "  rodsweep pack results/demo.h5                                   results/demo-packed.h5\n"
     "  rodsweep pack results/demo.h5 -o /archive/demo.h5\n\n"
     "Exit codes:\n"
     "  0  packed\n"
-    "  2  the command line or the file is at fault; nothing was written";
+    "  2  error in the command line or the file; nothing was written";
 
 ExitCode execute(const PackOptions& options, Console& console);
 

@@ -66,8 +66,8 @@ std::string slurm_time(double seconds) {
 std::string slurm_text(const Estimate& needs, const PlanOptions& options) {
   const int workers = workers_of(options);
   return fmt::format(
-      "slurm    sbatch --ntasks={} --time={} jobs/slurm/sweep.sbatch {} does it at once; --time={} is the least, "
-      "for task {}, the longest, of about {}\n",
+      "slurm    sbatch --ntasks={} --time={} jobs/slurm/sweep.sbatch {} runs it in one job; at least --time={}: task "
+      "{}, the longest, takes about {}\n",
       workers, slurm_time(time_limit_for(needs.wall_s(workers))), shell_quoted(options.job.native()),
       slurm_time(time_limit_for(needs.longest_s)), needs.longest, duration_text(needs.longest_s));
 }
@@ -78,8 +78,8 @@ std::string master_text(const Estimate& needs, int workers) {
   const int shards = shards_for(wanted);
   if (shards == 1) return "";
   return fmt::format(
-      "master   {} workers take {:.0f} tasks a second, one master hands out about {:.0f}: divide them among {} shards "
-      "(run --shard, then merge)\n",
+      "master   {} workers need {:.0f} tasks/s, one master sends about {:.0f}: use {} shards (run --shard, then "
+      "merge)\n",
       workers, wanted, master_tasks_per_s, shards);
 }
 
@@ -153,11 +153,11 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
                       })->memory_bytes;
     if (most > 0)
       text +=
-          fmt::format("memory   {} at most of the tasks tried, a process each; this host has room for {:.0f}\n",
+          fmt::format("memory   at most {} for each tried task; this host has memory for {:.0f} processes\n",
                       bytes_text(most), std::floor((1 - memory_reserve) * host_memory() / static_cast<double>(most)));
     for (const Probe& p : probes)
       if (p.outcome == TaskOutcome::timed_out && p.steps == 0)
-        text += fmt::format("warning  task {}: not one step in {}; the time above is a lower bound\n", p.task,
+        text += fmt::format("warning  task {}: no step finished in {}; the time above is a lower bound\n", p.task,
                             duration_text(p.seconds / static_cast<double>(p.of_steps)));
       else if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
         text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);

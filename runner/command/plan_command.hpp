@@ -18,11 +18,11 @@ struct PlanOptions {
 };
 
 inline constexpr const char* plan_help =
-    "Up to three tasks (cheapest, median, dearest), or some steps of a training, are really run for a moment, unless\n"
-    "--no-probe is given. A training's data set must be there.\n\n"
+    "Runs parts of up to three tasks (cheapest, median, most expensive), or some steps of a training, unless\n"
+    "--no-probe is given. The data set of a training must exist.\n\n"
     "Examples:\n"
     "  rodsweep plan jobs/spatial_bending.json\n"
-    "  rodsweep plan jobs/spatial_bending.json --workers 64      what to ask Slurm for";
+    "  rodsweep plan jobs/spatial_bending.json --workers 64      resources to request from Slurm";
 
 ExitCode execute(const PlanOptions& options, Console& console);
 

@@ -21,11 +21,11 @@ namespace fs = std::filesystem;
 /// Throws FileError, with advice, if the file does not have this task or is itself a rerun.
 void check_task(const RerunOptions& options, const FileSummary& file) {
   if (file.rerun_of_task)
-    throw FileError(fmt::format("{} holds task {} of a sweep, made by `rodsweep rerun`: rerun it from the sweep's file",
+    throw FileError(fmt::format("{} holds only task {} of a sweep, from `rodsweep rerun`: use the file of the sweep",
                                 file.path.native(), *file.rerun_of_task));
   if (options.task < 0 || options.task >= file.tasks)
     throw FileError(
-        fmt::format("{} has no task {}: they are numbered 0 to {}", file.path.native(), options.task, file.tasks - 1));
+        fmt::format("{} has no task {}: must be from 0 to {}", file.path.native(), options.task, file.tasks - 1));
 }
 
 ExitCode compare(const RerunOptions& options, const fs::path& output, const Plan& whole, Console& console) {
@@ -78,8 +78,8 @@ ExitCode execute(const RerunOptions& options, Console& console) {
   std::string outcome = to_string(TaskOutcome::pending);
   if (read_states(file, options.file).at(index) == 1) outcome = hdf5::read_texts(file.id(), "/tasks/outcome").at(index);
   if (!may_change(outcome_called(outcome).value_or(TaskOutcome::ok))) return compare(options, output, whole, console);
-  console.result(fmt::format("task {} is {} in {}: there is nothing to compare it with", options.task, outcome,
-                             options.file.native()));
+  console.result(
+      fmt::format("task {} is {} in {}: nothing to compare with", options.task, outcome, options.file.native()));
   return result.outcome == TaskOutcome::ok ? ExitCode::ok : ExitCode::tasks_failed;
 }
 

@@ -22,19 +22,18 @@ struct RerunOptions {
 };
 
 inline constexpr const char* rerun_help =
-    "The job comes from FILE, so its own file need not be there; relative paths in it begin where it was. The new "
-    "file\n"
-    "holds one task and is read like any other. Everything that the task wrote outside /timing is compared, bit for "
-    "bit.\n"
-    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 end it, within seconds; then nothing is written.\n\n"
+    "The job is read from FILE, not from its job file. Relative paths start at the folder of the job file. The new\n"
+    "file holds one task; all commands can read it. All results outside /timing are compared, bit for bit.\n"
+    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop it within seconds; then nothing is written.\n\n"
     "Examples:\n"
     "  rodsweep rerun results/demo.h5 12                               every step into results/demo-task-12.h5\n"
     "  rodsweep rerun results/long.h5 3 --trajectory-every 100 -o three.h5\n\n"
     "Exit codes:\n"
-    "  0  identical, or there was nothing to compare with\n"
-    "  2  the command line or the file is at fault; nothing was written\n"
-    "  3  the results differ; or the task failed, and was pending in FILE\n"
-    "  4  stopped early; nothing was written";
+    "  0  identical, or nothing to compare with\n"
+    "  2  error in the command line or the file; nothing was written\n"
+    "  3  the task failed, and FILE has nothing to compare with\n"
+    "  4  stopped early; nothing was written\n"
+    "  8  the results differ";
 
 /// Returns tasks_failed if the results differ from those in the file, or if the file has none to compare with and the
 /// task fails. Returns stopped after a signal; then nothing is written.

@@ -32,32 +32,29 @@ struct RunOptions {
 };
 
 inline constexpr const char* run_help =
-    "One rank runs the tasks itself; of more, rank 0 hands them out and sleeps, so C cores want C+1 ranks.\n"
-    "Open MPI refuses more ranks than cores unless told --oversubscribe; inside containers as root it also\n"
-    "wants --allow-run-as-root.\n"
-    "A training (kind \"train\") has no master: one rank works on all its cores, at most training.shards of them,\n"
-    "or on as many as OMP_NUM_THREADS says; ranks are for several hosts, one on each.\n\n"
-    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop the sweep, within seconds: running tasks are abandoned, in the\n"
-    "middle of a solve too, finished ones are in the file. mpirun hands SIGUSR1 on to all ranks and then exits 4 as "
-    "well. On SIGTERM and\n"
-    "SIGINT it kills what still runs a second later, and itself exits 1. However a sweep ended, it can be resumed.\n"
-    "A training stops between two steps and goes on from there, to the same bits.\n\n"
+    "A single rank runs the tasks itself. With more ranks, rank 0 only sends tasks and sleeps: use C+1 ranks for C\n"
+    "cores. Open MPI needs --oversubscribe for more ranks than cores, and --allow-run-as-root for root.\n"
+    "A training (kind \"train\") has no master. One rank uses all its cores, up to training.shards and\n"
+    "OMP_NUM_THREADS. On several hosts, use one rank per host.\n\n"
+    "SIGTERM, SIGINT (Ctrl-C) and SIGUSR1 stop the sweep within seconds. Running tasks are abandoned, also within a\n"
+    "solve; finished tasks are kept. mpirun passes SIGUSR1 to all ranks and exits with 4. On SIGTERM and SIGINT it\n"
+    "kills ranks that still run a second later, and exits with 1. Every stopped sweep can be resumed.\n"
+    "A training stops between two steps; --resume continues it with bitwise equal results.\n\n"
     "Examples:\n"
     "  rodsweep run jobs/smoke.json                        one core, results/smoke.h5\n"
     "  mpirun --oversubscribe -n 5 rodsweep run job.json   4 cores\n"
     "  mpirun -n 5 rodsweep run job.json -o out.h5 --resume\n"
-    "                                                      continues out.h5, or starts it: for batch scripts\n"
+    "                                                      continues or creates out.h5: for batch scripts\n"
     "  rodsweep run job.json -o out.h5 --resume --retry-failed\n"
-    "                                                      and tasks again that ended in an error, timed out or "
-    "crashed\n"
+    "                                                      also repeats errors, timeouts and crashes\n"
     "  rodsweep run job.json -o out.h5 --resume --retry-failed --task-time-limit 3600\n"
-    "                                                      and give each an hour, whatever the job says\n"
+    "                                                      the same, with an hour for each task\n"
     "  mpirun -n 3 rodsweep run job.json --memory-limit-gb 20\n"
-    "                                                      in place of an equal share for each worker\n"
-    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more values in a\n"
-    "                                                      grid, or more guesses. Copies what out.h5 holds, tries\n"
-    "                                                      new guesses alone on its trajectories, runs the rest.\n"
-    "                                                      out.h5 is read only; more.h5 is as if run from scratch.";
+    "                                                      instead of an equal share for each worker\n"
+    "  rodsweep run more.json -o more.h5 --extend out.h5   more.json: job.json with more samples, more grid values\n"
+    "                                                      or more guesses. Copies the results of out.h5, runs new\n"
+    "                                                      guesses on its trajectories, and runs the other tasks.\n"
+    "                                                      out.h5 stays unchanged; more.h5 equals a full new run.";
 
 /// Starts PETSc. All ranks return the same result. Throws CollectiveError on all ranks if the run cannot start (a job
 /// or file error). Any other exception concerns one rank only; the caller must abort, because the others wait for it.

@@ -16,10 +16,9 @@ struct StatusOptions {
 };
 
 inline constexpr const char* status_help =
-    "Reads only, also while the sweep writes. The exit code is 0 whatever the state: scripts read --json.\n"
-    "Whether a sweep runs is known by its lock on the file, which dies with it, or where there are no locks by its\n"
-    "heartbeat: it renews the file's time every 5 seconds. The time left is for tasks as long as those so far: long\n"
-    "ones come first.\n\n"
+    "Only reads the file, also during a run. The exit code is 0 in every state: scripts can read --json. A running\n"
+    "sweep locks the file. Without file locks, it counts as running while it updates the time of the file (every 5\n"
+    "seconds). The remaining time assumes that tasks take as long as those so far, but long tasks run first.\n\n"
     "Examples:\n"
     "  rodsweep status results/demo.h5 --json | jq .pending\n"
     "  rodsweep status results/demo.h5 --watch           a line every 5 seconds until it ends";

@@ -42,7 +42,7 @@ std::optional<Extension> open_extension(const RunOptions& options, const fs::pat
   if (!options.extend) return std::nullopt;
   std::error_code error;
   if (fs::equivalent(*options.extend, path, error)) {
-    throw FileError(fmt::format("{} is to be extended and cannot be the output too: name another file with -o FILE",
+    throw FileError(fmt::format("{} is the file to extend and cannot be the output: name another file with -o FILE",
                                 path.native()));
   }
   return Extension(*options.extend, plan);
@@ -50,7 +50,7 @@ std::optional<Extension> open_extension(const RunOptions& options, const fs::pat
 
 std::string extension_text(const Extension& extension, std::int64_t total) {
   using Use = Extension::Use;
-  return fmt::format("of {} {} are copied from {}, {} get their new guesses, {} are run", counted(total, "task"),
+  return fmt::format("{}: {} are copied from {}, {} run only new guesses, {} run in full", counted(total, "task"),
                      extension.count(Use::copy), extension.path().native(), extension.count(Use::complete),
                      extension.count(Use::run));
 }
@@ -67,11 +67,12 @@ std::string store_as_crashed(const Task& task, int crashes, const Plan& plan, Re
   TaskRecord record;
   record.prepare(task, axis_sizes(plan));
   record.outcome = TaskOutcome::crashed;
-  record.message = crashes == 1 ? "its worker, or the whole sweep, crashed or hung in its only try"
-                                : fmt::format(
-                                      "its worker, or the whole sweep, crashed or hung in each of its {} tries, in "
-                                      "the last with no other task beside it",
-                                      crashes);
+  record.message =
+      crashes == 1
+          ? "the worker or the sweep crashed or hung in the only try"
+          : fmt::format(
+                "the worker or the sweep crashed or hung in each of its {} tries; in the last try the task ran alone",
+                crashes);
   file.write(task, record);
   return record.message;
 }
@@ -97,20 +98,19 @@ std::string begin_text(const std::string& name, const std::optional<Shard>& shar
 
 std::string too_large_text(const TooLarge& found, double memory) {
   return fmt::format(
-      "task {} keeps {} of results in memory until it ends, and a rank has {} left: {} left out. {}; \"record\" of the "
-      "job says what is kept",
+      "task {} needs {} of memory for its results, but a rank has {} left: {} left out; {}, or record less (\"record\" "
+      "in the job)",
       found.task, bytes_text(found.bytes), bytes_text(static_cast<std::int64_t>(memory)),
       found.tasks == 1 ? "it is" : counted(found.tasks, "such task") + " are", more_memory_text);
 }
 
 void advise(Console& console, const RunOptions& options, const Placement& where, std::size_t pending) {
   if (where.oversubscribed)
-    console.warn(
-        fmt::format("{} workers share {} cores: the times measured are worthless, and the file is marked so "
-                    "(/runs/oversubscribed)",
-                    where.workers, where.cores));
+    console.warn(fmt::format(
+        "{} workers share {} cores: the measured times are not valid; the file records this in /runs/oversubscribed",
+        where.workers, where.cores));
   else if (where.workers < where.cores && static_cast<std::size_t>(where.workers) < pending)
-    console.note(fmt::format("{} of {} cores will work; for all of them: {}", where.workers, where.cores,
+    console.note(fmt::format("{} of {} cores are used; to use all: {}", where.workers, where.cores,
                              run_line(options, ranks_for(where.cores))));
 }
 
@@ -224,20 +224,18 @@ std::string ended_text(const Dispatch& dispatch, std::int64_t too_large, const R
   if (dispatch.too_long) {
     again.time_limit_s.reset();
     return fmt::format(
-        "no task that is left would end within a time limit of {}: task {}, the longest, would take {} {}. "
-        "To continue, give more time (--time-limit, under Slurm sbatch --time), or with --task-time-limit a bound "
-        "after "
-        "which tasks are given up: {}",
+        "no remaining task fits into the time limit of {}: task {}, the longest, would take {} {}. To continue, raise "
+        "--time-limit (under Slurm sbatch --time), or stop long tasks with --task-time-limit: {}",
         duration_text(*options.time_limit_s), dispatch.too_long->index,
         dispatch.too_long_s > dispatch.too_long->tried_s ? "about" : "more than", duration_text(dispatch.too_long_s),
         run_line(again, ranks));
   }
   if (dispatch.signal != 0) return stopped_text(dispatch.signal, again, ranks);
   if (dispatch.left == too_large)
-    return fmt::format("what is left does not fit into memory, as said above. To continue with more: {}",
+    return fmt::format("the remaining tasks do not fit into memory (see above). To continue with more memory: {}",
                        run_line(again, ranks));
-  return fmt::format("{}; nothing is lost that was finished. To continue: {}",
-                     dispatch.late ? "there is no time left for the rest" : "no worker is left",
+  return fmt::format("{}; finished tasks are kept. To continue: {}",
+                     dispatch.late ? "no time is left for the remaining tasks" : "all workers were lost",
                      run_line(again, ranks));
 }
 
@@ -277,7 +275,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   if (!opened) {
     Dispatch none;
     none.left = plan.size(), none.signal = signal.received(), none.late = true;
-    console.note("stopped while what is there was verified: " + ended_text(none, 0, options, mpi.size()));
+    console.note("stopped during the verification of the file: " + ended_text(none, 0, options, mpi.size()));
     return ExitCode::stopped;
   }
   ResultsFile& file = *opened;
@@ -345,7 +343,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   };
   if (dispatch.ranks_lost) {
     const ExitCode code = end(exit_code(summary));
-    console.note("some ranks were lost; Open MPI ends the others");
+    console.note("some ranks were lost; Open MPI stops the others");
     console.close();
     exit_master(mpi, code);
   }

@@ -69,7 +69,7 @@ std::string summary_text(const SweepSummary& summary) {
   for (const TaskOutcome outcome : {TaskOutcome::error, TaskOutcome::timed_out, TaskOutcome::crashed})
     again += counts[to_string(outcome)];
   if (again > 0 && dispatch.left == 0)
-    text += fmt::format("--resume --retry-failed runs the {} again that ended in an error, timed out or crashed\n",
+    text += fmt::format("--resume --retry-failed repeats the {} that ended in an error, timed out or crashed\n",
                         again == 1 ? "task" : counted(again, "task"));
   text += "results: " + summary.path.native();
   if (dispatch.left > 0) return text;

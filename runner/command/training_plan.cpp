@@ -151,7 +151,7 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
   run.program = options.program;
   std::string text = fmt::format("job       {} ({})\n", job.name, job.path.native());
   text += fmt::format("data      {}\n", paths_of(training.data));
-  text += fmt::format("examples  {} of {} simulations to learn from, {} of {} to validate with, at most\n",
+  text += fmt::format("examples  at most {} from {} simulations for training, {} from {} for validation\n",
                       extent.training_examples, extent.training_simulations, extent.validation_examples,
                       extent.validation_simulations);
   text += fmt::format("network   {} parameters\n", extent.parameters);
@@ -159,8 +159,7 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
                       training.training.epochs);
   if (probe) {
     const double seconds = probe->reading_s + (probe->training_s + probe->validation_s) / threads;
-    text += fmt::format("memory    about {}, once for all threads of a rank\n",
-                        bytes_text(static_cast<std::int64_t>(probe->bytes)));
+    text += fmt::format("memory    about {} per rank\n", bytes_text(static_cast<std::int64_t>(probe->bytes)));
     text += fmt::format("time      about {} on {} here\n", duration_text(seconds), counted(threads, "core"));
   }
   return text + "next      " + run_line(run, 1);

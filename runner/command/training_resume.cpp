@@ -43,7 +43,7 @@ std::optional<StoredModel> earlier_training(const RunOptions& options, const Job
   StoredModel earlier = read_training(path);
   check_same_job(job, earlier.card.job_text, path);
   if (earlier.card.ending == Ending::none && !earlier.checkpoint)
-    throw FileError(fmt::format("{} is of a training that has not ended, but holds no checkpoint", path.native()));
+    throw FileError(fmt::format("{} holds an unfinished training without a checkpoint", path.native()));
   return earlier;
 }
 

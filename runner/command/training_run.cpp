@@ -81,8 +81,8 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   collectively(mpi_.world(), [&] {
     const LearningSets sets(training_job_, job_, mpi_.world());
     if (earlier && earlier->card.data_hash != sets.hash())
-      throw FileError(fmt::format("{} cannot be continued: {} is not the data set that it was begun with",
-                                  path_.native(), paths_of(training_job_.data)));
+      throw FileError(fmt::format("{} cannot be continued: the data set {} has changed", path_.native(),
+                                  paths_of(training_job_.data)));
     data_ = training_data(training_job_, sets, threads_);
     simulations = ratio_simulations(training_job_, sets, mpi_.rank(), mpi_.size());
   });
@@ -107,21 +107,21 @@ void TrainingRun::advise() {
   if (!data_.note.empty()) console_.warn(data_.note);
   const int shards = training_job_.training.shards;
   if (where_.oversubscribed) {
-    console_.warn(fmt::format("{} ranks share {} cores and wait for each other: use as many ranks as cores",
+    console_.warn(fmt::format("{} ranks share {} cores and wait for each other: use at most one rank per core",
                               mpi_.size(), where_.cores));
   } else if (mpi_.size() > shards) {
-    console_.note(fmt::format("a step has {} shards (training.shards): {} of {} ranks have nothing to do", shards,
+    console_.note(fmt::format("a step has {} shards (training.shards): {} of {} ranks are idle", shards,
                               mpi_.size() - shards, mpi_.size()));
   } else if (const int working = mpi_.size() * threads_; working < std::min(where_.cores, shards)) {
     console_.note(
-        fmt::format("{} of {} cores will work: see OMP_NUM_THREADS, and mpirun's --bind-to", working, where_.cores));
+        fmt::format("{} of {} cores are used: check OMP_NUM_THREADS and mpirun --bind-to", working, where_.cores));
   }
   const Trainer& trainer = training_->trainer();
   const ModelCard& card = training_->card();
-  console_.note(fmt::format(
-      "{}: {} parameters learn from {} examples of {} simulations, {} steps in each of {} epochs{}", card.name,
-      trainer.shard_size() - 1, card.training_examples, card.training_simulations, trainer.steps_per_epoch(),
-      card.planned_epochs, first_step_ > 0 ? fmt::format("; continued after step {}", first_step_) : ""));
+  console_.note(fmt::format("{}: {} parameters, {} examples from {} simulations, {} steps in each of {} epochs{}",
+                            card.name, trainer.shard_size() - 1, card.training_examples, card.training_simulations,
+                            trainer.steps_per_epoch(), card.planned_epochs,
+                            first_step_ > 0 ? fmt::format("; continued after step {}", first_step_) : ""));
 }
 
 ExitCode TrainingRun::run(const StopSignal& signal) {
@@ -191,14 +191,14 @@ ExitCode run_training(const RunOptions& options, const Job& job, const MpiSessio
   const fs::path path = output_of(options, job.name);
   if (const std::string left = unfinished_text(path); !left.empty()) console.warn(left);
   const auto earlier = collectively(mpi.world(), [&] {
-    if (options.extend) throw job_error(job.path, "kind", "a training extends nothing: remove --extend");
+    if (options.extend) throw job_error(job.path, "kind", "a training cannot extend results: remove --extend");
     if (options.task_time_limit_s || options.time_limit_s || options.memory_limit_gb || options.shard)
       throw job_error(job.path, "kind",
                       "a training has no tasks: remove --shard, --time-limit, --task-time-limit and --memory-limit-gb");
     return earlier_training(options, job, path);
   });
   if (earlier && earlier->card.ending != Ending::none) {
-    console.note("the training has ended already");
+    console.note("the training has already ended");
     console.result(training_summary(earlier->card, path));
     return exit_code_of(earlier->card.ending);
   }

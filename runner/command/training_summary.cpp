@@ -32,7 +32,7 @@ std::string ending_text(const ModelCard& card) {
     case Ending::diverged:
       return fmt::format("ended after {} of {} epochs: {}", done, card.planned_epochs, card.message);
   }
-  throw std::logic_error("an ending without words");
+  throw std::logic_error("an ending without a text");
 }
 
 std::string ratio_table(const ModelCard& card) {
@@ -75,7 +75,7 @@ std::string progress_text(const ModelCard& card, double seconds_left) {
 std::string training_summary(const ModelCard& card, const std::filesystem::path& path) {
   std::string text = fmt::format("{}: {}", card.name, ending_text(card));
   if (card.best_epoch > 0)
-    text += fmt::format("; the model is that of epoch {}, validation loss {:.4g}", card.best_epoch,
+    text += fmt::format("; the model is from epoch {}, validation loss {:.4g}", card.best_epoch,
                         best_epoch(card).validation_loss);
   text += '\n' + ratio_table(card);
   double seconds = 0;

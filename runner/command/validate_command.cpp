@@ -71,7 +71,7 @@ class Validation {
     const std::vector<std::string> notes = check_missing(job);
     check_inputs(job);
     check_data(job);
-    console_.result(fmt::format("{}: sound, {}", path.native(), extent_text(job)));
+    console_.result(fmt::format("{}: valid, {}", path.native(), extent_text(job)));
     for (const std::string& note : notes) console_.note(note);
     for (const std::string& warning : job.warnings) console_.warn(warning);
   }
@@ -85,13 +85,13 @@ class Validation {
       const auto maker = makers_.find(file.path.stem().native());
       const bool made = maker != makers_.end() && maker->second != job.path;
       if (made || options_.later)
-        notes.push_back(fmt::format("{}: {}: {} is not there yet{}", job.path.native(), file.key_path,
+        notes.push_back(fmt::format("{}: {}: {} does not exist yet{}", job.path.native(), file.key_path,
                                     file.path.native(), made ? "; " + maker->second.native() + " makes it" : ""));
       else
         mistakes += (mistakes.empty() ? "" : "\n") + missing_file_text(job.path, file);
     }
     if (!mistakes.empty())
-      throw JobError(fmt::format("{}\n{}: what another job makes passes if that job is given too, or with --later",
+      throw JobError(fmt::format("{}\n{}: to accept a file that another job makes, also give that job, or use --later",
                                  mistakes, job.path.native()));
     return notes;
   }

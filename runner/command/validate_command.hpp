@@ -15,14 +15,13 @@ struct ValidateOptions {
 };
 
 inline constexpr const char* validate_help =
-    "Every job is expanded in full, so what passes here is accepted by run. Nothing is computed or written.\n"
-    "A model or data set that a job names must be there, or be made by another of the jobs given: results/NAME.h5 by "
-    "the\n"
-    "one whose name is NAME. Values in what may be the wrong unit are warned of.\n\n"
+    "Every job is expanded in full: `run` accepts jobs that pass. Nothing is computed or written. Models and data\n"
+    "sets of a job must exist, or another given job must make them (the job named NAME makes results/NAME.h5). A\n"
+    "warning is printed for values that may be in the wrong unit.\n\n"
     "Examples:\n"
     "  rodsweep validate my.json\n"
-    "  rodsweep validate data.json train.json use.json     the first makes what the second learns from, and so on\n"
-    "  rodsweep validate --later jobs/*.json               whatever is missing will be made";
+    "  rodsweep validate data.json train.json use.json     each job uses the file of the one before\n"
+    "  rodsweep validate --later jobs/*.json               accepts missing models and data sets";
 
 /// Reports whether each job is valid; continues after an invalid one. A missing file is an error unless another given
 /// job makes it, or `later` is set.

@@ -28,8 +28,8 @@ void check_usable(const FileSummary& file) {
                     file.job_kind));
   }
   if (file.rerun_of_task) {
-    throw FileError(
-        fmt::format("{} holds one task of a data set, made by `rodsweep rerun`: give the file of the data set", path));
+    throw FileError(fmt::format(
+        "{} holds only one task of a data set, from `rodsweep rerun`: give the file of the data set", path));
   }
   if (file.pending > 0) {
     throw FileError(
@@ -38,8 +38,8 @@ void check_usable(const FileSummary& file) {
                     path, file.pending, file.tasks, shell_quoted(stored_job_path(file).native()), shell_quoted(path)));
   }
   if (file.failed == file.tasks) {
-    throw FileError(fmt::format("{} holds no simulation that can be used: all {} failed (rodsweep status {})", path,
-                                file.tasks, shell_quoted(path)));
+    throw FileError(fmt::format("{} holds no usable simulation: all {} failed (rodsweep status {})", path, file.tasks,
+                                shell_quoted(path)));
   }
 }
 
@@ -95,8 +95,8 @@ StoredSimulation DatasetReader::read(std::int64_t simulation) const {
   TaskRecord record;
   by_rank_0(ranks_, [&] {
     if (reader_->read_intact(index, record)) return;
-    throw FileError(fmt::format("{} is damaged: the data of task {} are not what was written; make the data set again",
-                                path_.native(), index));
+    throw FileError(
+        fmt::format("{} is damaged: wrong checksum of task {}; make the data set again", path_.native(), index));
   });
   if (ranks_)
     for (const Column& column : columns())

@@ -13,7 +13,7 @@ Report::Report(std::int64_t task_index, TaskOutcome task_outcome, double seconds
 }
 
 void Channel::unexpected(const Envelope& envelope) const {
-  throw ProtocolError(fmt::format("rank {} did not expect a message of tag {} and {} bytes from rank {}", rank(),
+  throw ProtocolError(fmt::format("rank {} received an unexpected message of tag {} and {} bytes from rank {}", rank(),
                                   static_cast<int>(envelope.tag), envelope.bytes, envelope.source));
 }
 

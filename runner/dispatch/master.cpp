@@ -112,7 +112,7 @@ void Master::report(int rank, const Report& report) {
   const auto had = std::find_if(sender.tasks.begin(), sender.tasks.end(),
                                 [&](const PendingTask& task) { return task.index == report.task; });
   if (had == sender.tasks.end())
-    throw ProtocolError(fmt::format("rank {} reports task {}, which it does not have", rank, report.task));
+    throw ProtocolError(fmt::format("rank {} reports task {}, which is not assigned to it", rank, report.task));
   PendingTask task = *had;
   sender.tasks.erase(had);
   --in_flight_;

@@ -48,7 +48,7 @@ const char* signal_name(int signal) {
 std::string signal_cause(int signal) {
   if (signal == SIGINT) return "Ctrl-C (SIGINT)";
   if (signal == SIGTERM && from_parent != 0 && is_under_mpirun())
-    return "mpirun (SIGTERM), which got Ctrl-C or a signal, or lost a rank";
+    return "mpirun (SIGTERM), after Ctrl-C, a signal or the loss of a rank";
   return signal_name(signal);
 }
 

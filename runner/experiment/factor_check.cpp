@@ -20,7 +20,7 @@ struct Need {
 };
 Need need(const TaskSpec& spec) {
   if (spec.solve.is_direct())
-    return {"solve", "a smaller scene, or method \"cg\" with \"reference\": \"cg\", which factorises nothing"};
+    return {"solve", "a smaller scene, or method \"cg\" with \"reference\": \"cg\" (no factorisation)"};
   if (rod_parameters(spec.scene).contact) return {"scene.contact", "a smaller scene, or one without contact"};
   if (std::any_of(spec.guesses.begin(), spec.guesses.end(), is_oracle))
     return {"guesses", "a smaller scene, or no \"oracle\""};

@@ -23,15 +23,13 @@ bool branches(const SceneSpec& scene) {
 void check_model(const Plan& plan, const std::string& key, const std::filesystem::path& model, bool of_states) {
   if (is_guess(shared_model(model)->net.settings()) != of_states) return;
   const std::string name = model.filename().string();
-  throw job_error(
-      plan.job().path, key,
-      of_states
-          ? fmt::format("{} is not allowed: it corrects linear systems; must be a model of the encoding \"state\", "
-                        "or solve.method \"end_to_end\"",
-                        name)
-          : fmt::format("{} is not allowed: it is of the encoding \"state\" and knows no linear systems; must be "
-                        "another model, or solve.method \"state_network\"",
-                        name));
+  throw job_error(plan.job().path, key,
+                  of_states ? fmt::format("{} is not allowed: its encoding is not \"state\"; must be a model with "
+                                          "encoding \"state\", or use solve.method \"end_to_end\"",
+                                          name)
+                            : fmt::format("{} is not allowed: its encoding is \"state\"; must be a model with another "
+                                          "encoding, or use solve.method \"state_network\"",
+                                          name));
 }
 
 /// A rod along one arc length has neither loops nor branches.
@@ -41,7 +39,7 @@ void check_knn(const Plan& plan, const Task& task, const TaskSpec& spec, const s
   throw job_error(plan.job().path, key,
                   fmt::format("\"knn\" is not allowed on rods {}; must be another guess; the joints of the {} segments "
                               "of task {} {}",
-                              loops ? "with loops" : "that branch", task.segments, task.index,
+                              loops ? "with loops" : "with branches", task.segments, task.index,
                               loops ? "close a loop" : "form a tree"));
 }
 

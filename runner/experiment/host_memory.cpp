@@ -81,11 +81,11 @@ void limit_memory(double bytes) {
 
 double memory_left() { return bytes_allowed - of_status("RssAnon:"); }
 
-const char* const more_memory_text = "fewer ranks on a host leave each more, --memory-limit-gb sets it";
+const char* const more_memory_text = "use fewer ranks per host, or raise --memory-limit-gb";
 
 std::string out_of_memory_text() {
   if (bytes_allowed == unlimited) return "out of memory";
-  return fmt::format("out of memory: it wants more than the {} that this process may have; {}",
+  return fmt::format("out of memory: the task needs more than the limit of this process, {}; {}",
                      bytes_text(static_cast<std::int64_t>(bytes_allowed)), more_memory_text);
 }
 

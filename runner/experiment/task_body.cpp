@@ -44,11 +44,11 @@ bool complete_task(const Plan& plan, const Extension& extension, const Evaluate&
   const std::string difference = complete(task, record, taken);
   if (!difference.empty()) {
     const std::string earlier = extension.path().native();
-    throw FileError(fmt::format(
-        "task {}, simulated again for its new guesses, is not what {} holds as task {}: {}. That file is of "
-        "another machine or revision, and its guesses cannot stand beside new ones; --resume without "
-        "--extend runs what is left in full",
-        task.index, earlier, extension.source(task.index), difference));
+    throw FileError(
+        fmt::format("task {}, repeated for its new guesses, differs from {}, task {}: {}. That file is from another "
+                    "machine or revision, and its results cannot be combined with new ones; use --resume without "
+                    "--extend to run the remaining tasks in full",
+                    task.index, earlier, extension.source(task.index), difference));
   }
   set_cg_ratios(spec, record);
   return true;
@@ -79,8 +79,8 @@ BatchBody task_body(const Plan& plan, WriteRecord write, Evaluate evaluate) {
       try {
         records[i].prepare(task, sizes);
       } catch (const std::bad_alloc&) {
-        throw std::runtime_error(fmt::format("the results of task {} alone do not fit: {}", task.index,
-                                             out_of_memory_text() + "; \"record\" of the job says what is kept"));
+        throw std::runtime_error(fmt::format("the results of task {} do not fit: {}", task.index,
+                                             out_of_memory_text() + ", or record less (\"record\" in the job)"));
       }
       runs.push_back({task, plan.spec(tasks[i]), &records[i]});
     }
@@ -108,9 +108,8 @@ BatchBody extending_body(const Plan& plan, const Extension& extension, WriteReco
     if (use == Extension::Use::run) return run({index}, stop).front();
     taken.prepare(task, sizes);
     if (!extension.take(index, taken)) {
-      warn(fmt::format(
-          "task {} of {} is damaged: its data are not what was written (checksum); it is run again as task {}",
-          extension.source(index), extension.path().native(), index));
+      warn(fmt::format("task {} of {} is damaged (wrong checksum); it is run again as task {}", extension.source(index),
+                       extension.path().native(), index));
       return run({index}, stop).front();
     }
     if (use == Extension::Use::copy) {

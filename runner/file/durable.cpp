@@ -15,8 +15,7 @@ namespace {
 
 FileError sync_error(const std::filesystem::path& path, int code) {
   return FileError(
-      fmt::format("{} cannot be brought to disk: {}: see to the disk, then continue with --resume; tasks that are done "
-                  "are kept",
+      fmt::format("{} cannot be synced to disk: {}: fix the disk, then continue with --resume; finished tasks are kept",
                   path.native(), std::system_category().message(code)));
 }
 

@@ -46,8 +46,8 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
     const FileSummary file = inspect(path);
     const std::string revision = file.runs.empty() ? "" : file.runs.back().provenance.revision;
     if (revision != source_revision()) {
-      note_ = fmt::format("{} was made by revision {}, and this is {}: what is copied is the former's", path.native(),
-                          revision, source_revision());
+      note_ = fmt::format("{} was made by revision {}, and this is {}: copied results are from the former",
+                          path.native(), revision, source_revision());
     }
     Job before = stored_job(file, plan.job().path);
     before.path = path;  // for messages
@@ -55,7 +55,7 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
     before_.emplace(std::move(before));
     if (file.rerun_of_task)
       throw FileError(fmt::format(
-          "{} holds one task of a sweep, made by `rodsweep rerun`: extend the file of the sweep", path.native()));
+          "{} holds only one task of a sweep, from `rodsweep rerun`: extend the file of the sweep", path.native()));
   }
   check_same_plan(path, *before_, "Extend it with that revision, or run the whole job without --extend");
   reader_.emplace(path);
@@ -115,10 +115,9 @@ void Extension::check_started(const fs::path& path) const {
   };
   if (here.empty() || here.front().source.empty() || here.size() < there.size() ||
       !std::equal(there.begin(), there.end(), here.begin(), same_begin)) {
-    throw FileError(
-        fmt::format("{} was not begun with --extend {}, or that file was continued since; --resume it "
-                    "without --extend",
-                    path.native(), path_.native()));
+    throw FileError(fmt::format(
+        "{} was not started with --extend {}, or that file was resumed since; use --resume without --extend",
+        path.native(), path_.native()));
   }
 }
 
@@ -159,7 +158,7 @@ bool Extension::take(std::int64_t index, TaskRecord& record) const {
 
 std::string complete(const Task& task, TaskRecord& record, const TaskRecord& taken) {
   if (record.outcome != taken.outcome || record.message != taken.message) {
-    return fmt::format("it ended as {} ({}) and had ended as {} ({})", to_string(record.outcome), record.message,
+    return fmt::format("it ended as {} ({}), before as {} ({})", to_string(record.outcome), record.message,
                        to_string(taken.outcome), taken.message);
   }
   for (const Column& column : columns()) {

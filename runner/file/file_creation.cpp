@@ -112,8 +112,9 @@ void reserve_blocks(const fs::path& file, const fs::path& path) {
   const Descriptor descriptor(open(file.c_str(), O_RDWR | O_CLOEXEC));
   if (!descriptor) throw creation_error(path, system_text(errno));
   const int error = fallocate(descriptor.number(), 0, 0, bytes) == 0 ? 0 : errno;
-  if (error == ENOSPC || error == EDQUOT) throw space_error(path, bytes, "the disk says: " + system_text(error));
-  if (error == EFBIG) throw space_error(path, bytes, "a file cannot be that large there");
+  if (error == ENOSPC || error == EDQUOT)
+    throw space_error(path, bytes, "the file system reports: " + system_text(error));
+  if (error == EFBIG) throw space_error(path, bytes, "the file system does not allow files of this size");
 }
 
 }  // namespace

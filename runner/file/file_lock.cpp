@@ -35,8 +35,7 @@ FileLock::FileLock(const std::filesystem::path& path) : descriptor_(open(path.c_
   held_ = fcntl(descriptor_.number(), F_OFD_SETLK, &byte) == 0;
   if (held_ || (errno != EAGAIN && errno != EACCES)) return;
   throw FileError(fmt::format(
-      "{} is being written by another run: wait until it ends, or stop it (`rodsweep info {}` says where it "
-      "was started)",
+      "{} is being written by another run: wait until it ends, or stop it (`rodsweep info {}` shows its host)",
       path.native(), path.native()));
 }
 

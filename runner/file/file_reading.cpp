@@ -26,15 +26,15 @@ bool has_hdf5_signature(const fs::path& path) {
 }  // namespace
 
 FileError damaged_error(const fs::path& path, const std::string& reason) {
-  return FileError(fmt::format("{} is damaged or incomplete: {}. Use a copy of it if there is one, or make it again",
-                               path.native(), reason));
+  return FileError(
+      fmt::format("{} is damaged or incomplete: {}. Use a copy, or create it again", path.native(), reason));
 }
 
 std::string damage_text(const std::exception& failure) {
   const bool told = dynamic_cast<const Hdf5Error*>(&failure) != nullptr ||
                     dynamic_cast<const Damage*>(&failure) != nullptr ||
                     dynamic_cast<const JobError*>(&failure) != nullptr;
-  return told ? failure.what() : "what it holds does not fit together";
+  return told ? failure.what() : "its contents are inconsistent";
 }
 
 hdf5::File open_own(const fs::path& path, const char* what) {
@@ -42,7 +42,7 @@ hdf5::File open_own(const fs::path& path, const char* what) {
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
     const std::string left = unfinished_text(path);
-    throw FileError(fmt::format("{}: there is no such file{}{}", path.native(), left.empty() ? "" : "; ", left));
+    throw FileError(fmt::format("{}: file not found{}{}", path.native(), left.empty() ? "" : "; ", left));
   }
   if (!fs::is_regular_file(status)) throw FileError(fmt::format("{} is not a file", path.native()));
   if (!std::ifstream(path)) throw FileError(fmt::format("{} cannot be read: no permission", path.native()));
@@ -51,7 +51,7 @@ hdf5::File open_own(const fs::path& path, const char* what) {
     hdf5::File file = hdf5::open_file(path, H5F_ACC_RDONLY);
     if (!hdf5::has_attribute(file.id(), "/", "program") ||
         hdf5::read_text_attribute(file.id(), "/", "program") != "rodsweep") {
-      throw FileError(fmt::format("{} is an HDF5 file, but not one of rodsweep's {}", path.native(), what));
+      throw FileError(fmt::format("{} is an HDF5 file, but does not hold rodsweep {}", path.native(), what));
     }
     return file;
   } catch (const Hdf5Error& failure) {
@@ -68,8 +68,8 @@ void check_version(const hdf5::File& file, const fs::path& path, int known) {
   const int version = hdf5::read_int_attribute(file.id(), "/", "schema_version");
   if (version == known) return;
   throw FileError(
-      fmt::format("{} has schema version {}, and this rodsweep knows version {} only: use the rodsweep that "
-                  "wrote it (/runs/revision in the file)",
+      fmt::format("{} has schema version {}, but this rodsweep reads only version {}: use the revision that wrote it "
+                  "(/runs/revision in the file)",
                   path.native(), version, known));
 }
 
@@ -78,8 +78,8 @@ void mark_frame(hid_t file) { hdf5::write_attribute(file, frame_attribute, "join
 void check_frame(const hdf5::File& file, const fs::path& path, const char* advice) {
   if (hdf5::has_attribute(file.id(), "/", frame_attribute)) return;
   throw FileError(
-      fmt::format("{} was made by an earlier rodsweep (revision {}), which measured stretch and shear in the world; "
-                  "this one does so in the joints' own frames, where multipliers are others. {}",
+      fmt::format("{} was made by an earlier rodsweep (revision {}), with multipliers in the world frame instead of "
+                  "the joints' frames. {}",
                   path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), advice));
 }
 
@@ -102,8 +102,8 @@ std::vector<std::uint8_t> read_states(const hdf5::File& file, const fs::path& pa
   const auto odd = std::find_if(states.begin(), states.end(), [](std::uint8_t state) { return state > 1; });
   if (odd != states.end()) {
     throw FileError(
-        fmt::format("{} is damaged: /tasks/state of task {} is {}, neither 0 nor 1. Its job, run into this file with "
-                    "--resume, verifies all tasks, and runs those again that are not what was written",
+        fmt::format("{} is damaged: /tasks/state of task {} is {}; must be 0 or 1. Run its job with --resume to verify "
+                    "all tasks and repeat damaged ones",
                     path.native(), odd - states.begin(), *odd));
   }
   return states;

@@ -44,9 +44,9 @@ void check_sizes(const std::vector<Field>& fields, const Plan& plan) {
     all += std::accumulate(field.extent.begin(), field.extent.end(), static_cast<double>(element), std::multiplies<>());
     if (all <= most_bytes) continue;
     throw FileError(
-        fmt::format("{}: the results file would be too large: {} has {} values of {} bytes, with which it exceeds {} "
+        fmt::format("{}: the results file would be too large: {} has {} values of {} bytes, and the file exceeds {} "
                     "bytes; record less (record.solves: \"summary\", record.systems: \"first\", a larger "
-                    "record.trajectory_every), or make several jobs of this one",
+                    "record.trajectory_every), or split the job",
                     plan.job().path.native(), field.path, fmt::join(field.extent, " x "), element, most_bytes));
   }
 }
@@ -59,10 +59,9 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(text_field("/job/text", std::max<std::int64_t>(1, static_cast<std::int64_t>(plan.job().text.size())),
                               {}, "the job file, byte for byte"));
   for (Field& field : run_fields()) fields.push_back(std::move(field));
-  fields.push_back(
-      text_field("/axes/guess", longest(plan.guess_labels()), {sizes.guesses},
-                 "initial guesses, in the order of the guess axes; what varies of guess i over the tasks is in "
-                 "/tasks/parameters/guesses[i]..."));
+  fields.push_back(text_field("/axes/guess", longest(plan.guess_labels()), {sizes.guesses},
+                              "initial guesses, in the order of the guess axes; parameters of guess i that vary are in "
+                              "/tasks/parameters/guesses[i]..."));
   fields.push_back(number_field<double>("/axes/tolerance", {sizes.tolerances}, "1",
                                         "tolerances at which iterations are counted, relative to ||b||"));
   append_parameters(fields, plan, parameters);
@@ -73,10 +72,9 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(number_field<std::uint8_t>("/tasks/state", {plan.size()}, "1",
                                               "1: complete, all of its rows are valid; 0: pending, ignore its rows"));
   fields.push_back(text_field("/tasks/outcome", outcome_bytes, {plan.size()}, "how the task ended"));
-  fields.push_back(
-      text_field("/tasks/message", message_bytes, {plan.size()}, "what happened where the outcome is not ok"));
+  fields.push_back(text_field("/tasks/message", message_bytes, {plan.size()}, "details if the outcome is not ok"));
   fields.push_back(number_field<std::uint64_t>("/tasks/checksum", {plan.size()}, "1",
-                                               "over everything that the task wrote outside /timing"));
+                                               "checksum of all data of the task outside /timing"));
   for (const Column& column : columns()) {
     std::vector<std::int64_t> extent = row_extent(column, sizes);
     extent.insert(extent.begin(), plan.rows(column.rows));
@@ -86,11 +84,13 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
       number_field<double>("/timing/tasks/write_s", {plan.size()}, "s", "wall time of writing its results"));
   fields.push_back(number_field<std::int32_t>("/timing/tasks/rank", {plan.size()}, "1", "MPI rank that ran it"));
   fields.push_back(text_field("/timing/tasks/host", host_bytes, {plan.size()}, "host of that rank"));
-  fields.push_back(number_field<std::int32_t>("/timing/tasks/run", {plan.size()}, "1", "row of /runs in which it ran"));
-  fields.push_back(number_field<std::uint8_t>("/timing/tasks/tries", {plan.size()}, "1",
-                                              "workers that began it and ended without saying what came of it"));
+  fields.push_back(
+      number_field<std::int32_t>("/timing/tasks/run", {plan.size()}, "1", "row in /runs of the run that computed it"));
+  fields.push_back(
+      number_field<std::uint8_t>("/timing/tasks/tries", {plan.size()}, "1",
+                                 "tries without a result: the worker crashed, hung or still runs the task"));
   fields.push_back(number_field<double>("/timing/tasks/tried_s", {plan.size()}, "s",
-                                        "the longest that a start ran it and gave it up; 0: never"));
+                                        "longest time that a run spent on the task before abandoning it; 0: never"));
   fields.push_back(
       number_field<std::int32_t>("/timing/tasks/tried_steps", {plan.size()}, "1", "time steps completed in that time"));
   check_sizes(fields, plan);

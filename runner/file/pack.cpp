@@ -114,7 +114,7 @@ void copy_group(const hdf5::File& source, const hdf5::File& target, const std::s
 
 void refuse_damaged(const fs::path& path, const Verification& verified, const char* what_now) {
   if (verified.damaged.empty()) return;
-  throw FileError(fmt::format("{} is damaged: the data of task{} {} are not what was written; {}", path.native(),
+  throw FileError(fmt::format("{} is damaged: wrong checksum of task{} {}; {}", path.native(),
                               verified.damaged.size() == 1 ? "" : "s", fmt::join(verified.damaged, ", "), what_now));
 }
 
@@ -148,7 +148,7 @@ Packing pack_results(const fs::path& source_path, const fs::path& target_path) {
     throw writing_error(target_path, failure.what());
   }
   const Verification verified = verify(unfinished.path());
-  refuse_damaged(unfinished.path(), verified, "the copy was thrown away, and the original is as it was");
+  refuse_damaged(unfinished.path(), verified, "the copy was deleted, and the original is unchanged");
   packing.tasks = static_cast<std::int64_t>(states.size());
   packing.verified = verified.checked;
   packing.bytes_before = fs::file_size(source_path);

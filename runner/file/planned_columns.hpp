@@ -15,12 +15,13 @@ namespace rodsweep {
 template <class Holds, class Visit>
 void visit_planned_columns(Holds&& holds, Visit&& visit) {
   visit(
-      "/tasks/point", "parameter point; tasks of a closed loop that differ in their guess alone share it",
+      "/tasks/point", "parameter point; closed-loop tasks that differ only in their guess share it",
       [](auto& task) -> auto& { return task.point; });
   visit(
-      "/tasks/sample", "which draw of the random parameters, from 0", [](auto& task) -> auto& { return task.sample; });
+      "/tasks/sample", "number of the draw of the random parameters, from 0",
+      [](auto& task) -> auto& { return task.sample; });
   visit(
-      "/tasks/own_guess", "index into /axes/guess of the guess that advances the rods; -1 solve.reference does",
+      "/tasks/own_guess", "index into /axes/guess of the guess that advances the rods; -1: solve.reference",
       [](auto& task) -> auto& { return task.own_guess; });
   visit(
       "/tasks/segments", "segments of the scene", [](auto& task) -> auto& { return task.segments; });

@@ -56,8 +56,8 @@ void check_path(const fs::path& path) {
   constexpr std::size_t most = 230;
   if (path.native().size() > most)
     throw FileError(
-        fmt::format("{}: this path has {} bytes, and {} is the most that MPI-IO takes: name a shorter one "
-                    "with -o FILE, for example from within its folder",
+        fmt::format("{}: the path has {} bytes; must be at most {} for MPI-IO: name a shorter path with -o FILE, for "
+                    "example from its folder",
                     path.native(), path.native().size(), most));
 }
 
@@ -86,8 +86,8 @@ void refuse_living(const fs::path& path) {
   const double silent_s = silent_seconds(path);
   if (runs.empty() || !runs.back().end_utc.empty() || silent_s > alive_s) return;
   throw FileError(
-      fmt::format("{} seems to be written by another run, which showed a sign of life {:.0f} s ago (there are no locks "
-                  "on this file system): wait until it ends, or, where it was killed, until that is {:.0f} s ago",
+      fmt::format("{} seems to be in use by another run: its last activity was {:.0f} s ago (this file system has no "
+                  "locks); wait until it ends, or, if it was killed, for {:.0f} s without activity",
                   path.native(), silent_s, alive_s));
 }
 
@@ -95,8 +95,8 @@ bool intact(const TaskReader& reader, std::int64_t task, TaskRecord& record, con
   return reader.read_intact(task, record);
 } catch (const std::bad_alloc&) {
   throw FileError(
-      fmt::format("{}: the results of task {} are more than this process may have of memory, and cannot be verified: "
-                  "use fewer ranks on a host, or --memory-limit-gb",
+      fmt::format("{}: the results of task {} exceed the memory limit of this process and cannot be verified: use "
+                  "fewer ranks per host, or raise --memory-limit-gb",
                   path.native(), task));
 }
 
@@ -140,7 +140,7 @@ std::string these_tasks(const std::vector<std::uint8_t>& again, Again why) {
   const auto count = std::count(again.begin(), again.end(), why);
   if (count == 0) return "";
   const auto first = std::find(again.begin(), again.end(), why) - again.begin();
-  return count == 1 ? fmt::format("task {} is", first) : fmt::format("{} tasks, the first being {}, are", count, first);
+  return count == 1 ? fmt::format("task {} is", first) : fmt::format("{} tasks (first: {}) are", count, first);
 }
 
 constexpr double shortest_pause_s = 0.05, busy_share = 0.02;  // share of the time for syncs
@@ -161,7 +161,7 @@ struct ResultsFile::Open {
     if (written.empty()) return;
     const auto begin = Clock::now();
     // The kernel reports a failed write only once; a second sync would succeed.
-    if (std::exchange(sync_failed, true)) throw FileError(fmt::format("{} could not be synced before", path.native()));
+    if (std::exchange(sync_failed, true)) throw FileError(fmt::format("{}: an earlier sync failed", path.native()));
     synced.sync();
     sync_failed = false;
     for (const std::int64_t task : written) set_state(task, 1);
@@ -256,9 +256,8 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
       tries_(std::move(tries)),
       run_index_(std::min(runs, run_rows - 1)) {
   if (runs >= run_rows) {
-    note_ = fmt::format(
-        "{} was started {} times before and remembers no more: this start takes the place of the last one in /runs",
-        path.native(), run_rows);
+    note_ = fmt::format("{} already has {} rows in /runs, the maximum: this start overwrites the last one",
+                        path.native(), run_rows);
   }
   collectively(comm, [&] {
     const hdf5::PropertyList access(hdf5::check(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"));
@@ -284,7 +283,8 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
     for (const Column& column : columns()) open_->columns.push_back(open_rows(column.path));
   });
   if (open_->own_rank == 0 && !open_->lock.held())
-    add_note(path.native() + " is on a file system without locks: a second run is only kept away by its time");
+    add_note(path.native() +
+             " is on a file system without locks: a second run is detected only by the time of the file");
   open_->run.provenance = provenance;
   open_->run.provenance.host = host_names(comm);
   on_first_rank(comm, [&] { write_run(open_->file, static_cast<std::size_t>(run_index_), open_->run); });
@@ -305,8 +305,8 @@ void ResultsFile::take_back(const std::vector<std::uint8_t>& again, MPI_Comm com
     const std::string tasks = these_tasks(again, why);
     if (!tasks.empty()) add_note(fmt::format("{}: {} run again, {}", open_->path.native(), tasks, text));
   };
-  note(damaged, "since the data there are not what was written (checksum)");
-  note(failed, "after an error, for want of time or after a crash");
+  note(damaged, "because of a wrong checksum");
+  note(failed, "after an error, a timeout or a crash");
 }
 
 void ResultsFile::add_note(const std::string& text) { note_ += (note_.empty() ? "" : "; ") + text; }

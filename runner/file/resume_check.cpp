@@ -49,18 +49,19 @@ void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
   if (text == plan.job().text) return;
   const Line line = first_difference(plan.job().text, text);
   throw FileError(
-      fmt::format("{} holds the results of another job than {}; they differ first in line {}:\n  {}: {}\n  {}: {}\n"
-                  "Resume with the job that the file was made from (it is in /job/text), or run this one into "
-                  "another file with -o FILE; a time limit alone can be changed with --task-time-limit",
+      fmt::format("{} holds the results of another job than {}; the first difference is in line {}:\n"
+                  "  {}: {}\n"
+                  "  {}: {}\n"
+                  "Resume with the original job (in /job/text), or run this one into another file with -o FILE; to "
+                  "change only the time limit, use --task-time-limit",
                   path.native(), plan.job().path.native(), line.number, plan.job().path.native(), line.here,
                   path.native(), line.in_file));
 }
 
 FileError other_program(const hdf5::File& file, const fs::path& path, const std::string& difference,
                         const char* advice) {
-  return FileError(
-      fmt::format("{} was made from its job by a rodsweep that expands it differently (revision {}): {}. {}",
-                  path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference, advice));
+  return FileError(fmt::format("{} was made by a rodsweep that expands the job differently (revision {}): {}. {}",
+                               path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), difference, advice));
 }
 
 /// The error for a different expansion of the job in the file. If the revision is the same, the file is damaged.
@@ -68,7 +69,7 @@ FileError other_value(const hdf5::File& file, const fs::path& path, const std::s
   const std::string own = source_revision();
   const bool is_known = own != "unknown" && own.find("-dirty") == std::string::npos;
   if (is_known && hdf5::read_text_row(file.id(), "/runs/revision", 0) == own)
-    return damaged_error(path, difference + ", though this very revision made it");
+    return damaged_error(path, difference + ", although the revision is the same");
   return other_program(file, path, difference, advice);
 }
 
@@ -94,8 +95,7 @@ bool same(double a, double b) {
 void check_hash(const hdf5::File& file, const fs::path& path, const Plan& plan,
                 const std::vector<ParameterColumn>& parameters, const char* advice) {
   if (hdf5::read_text_attribute(file.id(), "/job", "plan_hash") != plan_hash(plan, parameters)) {
-    throw other_program(file, path,
-                        "its list of tasks is another, or the files that the job names have changed (/job, plan_hash)",
+    throw other_program(file, path, "its tasks differ, or input files of the job have changed (/job, plan_hash)",
                         advice);
   }
 }
@@ -103,9 +103,9 @@ void check_hash(const hdf5::File& file, const fs::path& path, const Plan& plan,
 void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& plan,
                       const std::vector<ParameterColumn>& parameters, const char* advice) {
   if (!plan.guess_labels().empty() && hdf5::read_texts(file.id(), "/axes/guess") != plan.guess_labels())
-    throw other_program(file, path, "the labels of its guesses are others (/axes/guess)", advice);
+    throw other_program(file, path, "the labels of its guesses differ (/axes/guess)", advice);
   if (hdf5::read_all<double>(file.id(), "/axes/tolerance") != tolerance_ladder())
-    throw other_value(file, path, "its tolerances are others (/axes/tolerance)", advice);
+    throw other_value(file, path, "its tolerances differ (/axes/tolerance)", advice);
   const auto compare = [&](const std::string& name, int width, const auto& here, const auto& there, const auto& equal) {
     const auto [a, b] = std::mismatch(here.begin(), here.end(), there.begin(), there.end(), equal);
     if (a == here.end() && b == there.end()) return;
@@ -142,15 +142,14 @@ void check_plan(const hdf5::File& file, const fs::path& path, const Plan& plan, 
 
 void refuse_copies(const hdf5::File& file, const fs::path& path) {
   if (is_packed(file)) {
-    throw FileError(
-        fmt::format("{} is a packed copy, which cannot be written: resume the file that it was made from, or run into "
-                    "another file with -o FILE",
-                    path.native()));
+    throw FileError(fmt::format(
+        "{} is a packed copy, which cannot be resumed: resume the original, or run into another file with -o FILE",
+        path.native()));
   }
   if (hdf5::has_attribute(file.id(), "/job", "rerun_of_task")) {
     throw FileError(
-        fmt::format("{} holds one task of a sweep, made by `rodsweep rerun`, and is complete: resume the file of the "
-                    "sweep, or run into another file with -o FILE",
+        fmt::format("{} holds only one task of a sweep, from `rodsweep rerun`: resume the file of the sweep, or run "
+                    "into another file with -o FILE",
                     path.native()));
   }
 }

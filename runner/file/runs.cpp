@@ -17,13 +17,13 @@ struct RunColumn {
 
 constexpr std::array<RunColumn, 14> run_columns{{
     {"/runs/begin", [](RunRow& run) -> std::string& { return run.provenance.begin_utc; }, 24,
-     "when this run began (UTC); empty: an unused row"},
+     "start of the run (UTC); empty: unused row"},
     {"/runs/end", [](RunRow& run) -> std::string& { return run.end_utc; }, 24,
-     "when it ended (UTC); empty: it still runs, or was killed"},
+     "end of the run (UTC); empty: it still runs, or was killed"},
     {"/runs/host", [](RunRow& run) -> std::string& { return run.provenance.host; }, 512, "hosts of its ranks"},
     {"/runs/command", [](RunRow& run) -> std::string& { return run.provenance.user_command; }, 1024, "command line"},
     {"/runs/job", [](RunRow& run) -> std::string& { return run.provenance.job; }, 1024,
-     "path of the job file; relative paths in the job begin in its folder"},
+     "path of the job file; relative paths in the job start at its folder"},
     {"/runs/revision", [](RunRow& run) -> std::string& { return run.provenance.revision; }, 64,
      "git revision of the program"},
     {"/runs/versions", [](RunRow& run) -> std::string& { return run.provenance.versions; }, 256,
@@ -31,15 +31,16 @@ constexpr std::array<RunColumn, 14> run_columns{{
     {"/runs/petsc_options", [](RunRow& run) -> std::string& { return run.provenance.petsc_options; }, 1024,
      "PETSC_OPTIONS of the environment"},
     {"/runs/source", [](RunRow& run) -> std::string& { return run.source; }, 512,
-     "the file that this sweep extends and that this row was copied from; empty: a run of this sweep"},
+     "file that this row was copied from (merge, --extend); empty: a run of this sweep"},
     {"/runs/ranks", [](RunRow& run) -> int& { return run.provenance.ranks; }, 0, "MPI ranks"},
     {"/runs/shard", [](RunRow& run) -> int& { return run.provenance.shard; }, 0,
-     "number of the part of the sweep that it ran, from 1; 0: the whole sweep"},
-    {"/runs/shards", [](RunRow& run) -> int& { return run.provenance.shards; }, 0, "parts of the sweep; 0: the whole"},
+     "number of the shard, from 1; 0: the whole sweep"},
+    {"/runs/shards", [](RunRow& run) -> int& { return run.provenance.shards; }, 0,
+     "number of shards; 0: the whole sweep"},
     {"/runs/exit_code", [](RunRow& run) -> int& { return run.exit_code; }, 0,
      "exit code of the program; -1: it still runs, or was killed"},
     {"/runs/oversubscribed", [](RunRow& run) -> bool& { return run.provenance.oversubscribed; }, 0,
-     "1: more ranks than cores, so its times mean nothing"},
+     "1: more ranks than cores; times are not valid"},
 }};
 
 /// The type in the file of a RunRow's number.

@@ -10,8 +10,9 @@ namespace fs = std::filesystem;
 FileError not_accepted(const FileSummary& file, const JobError& error) {
   const std::string revision = file.runs.empty() ? "unknown" : file.runs.front().provenance.revision;
   return FileError(
-      fmt::format("{} holds a job that this rodsweep does not accept; use the one that wrote it (revision {}), or put "
-                  "the job's files back where they were:\n{}",
+      fmt::format("{} holds a job that this rodsweep does not accept; use the revision that wrote it ({}), or restore "
+                  "the input files of the job:\n"
+                  "{}",
                   file.path.native(), revision, error.what()));
 }
 

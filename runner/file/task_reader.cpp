@@ -81,7 +81,7 @@ TaskOutcome TaskReader::outcome(std::int64_t task) const {
   if (!done(task)) return TaskOutcome::pending;
   const std::string& text = outcomes_[static_cast<std::size_t>(task)];
   if (const auto outcome = outcome_called(text)) return *outcome;
-  throw damaged_error(path_, "\"" + text + "\" is no outcome of a task");
+  throw damaged_error(path_, "\"" + text + "\" is not an outcome of a task");
 }
 
 bool TaskReader::read(std::int64_t index, TaskRecord& record) const {

@@ -53,7 +53,7 @@ FileError creation_error(const fs::path& path, const std::string& reason) {
 
 FileError writing_error(const fs::path& path, const std::string& reason) {
   return creation_error(
-      path, reason + ". Nothing of it is left: free some space, or name a file on another disk with -o FILE");
+      path, reason + ". The incomplete file was removed: free some space, or name a file on another disk with -o FILE");
 }
 
 void refuse_existing(const fs::path& path) {
@@ -68,13 +68,13 @@ fs::path file_beside(const fs::path& file, const std::string& ending) {
 void make_folder_of(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path.has_parent_path() ? path.parent_path() : fs::path("."), error);
-  if (error) throw creation_error(path, "its folder cannot be made: " + error.message());
+  if (error) throw creation_error(path, "its folder cannot be created: " + error.message());
 }
 
 FileIdentity identity_of(const fs::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0)
-    throw FileError(fmt::format("{} cannot be found again: {}", path.native(), std::system_category().message(errno)));
+    throw FileError(fmt::format("{} cannot be found: {}", path.native(), std::system_category().message(errno)));
   return {status.st_dev, status.st_ino};
 }
 
@@ -99,7 +99,7 @@ std::string unfinished_text(const fs::path& path) {
   }
   if (left.empty()) return "";
   std::sort(left.begin(), left.end());
-  return fmt::format("{} {} left by a program that was ended while it made {}: it can be deleted{}",
+  return fmt::format("{} {} left by a program that ended while it wrote {}: it can be deleted{}",
                      fmt::join(left, " and "), left.size() == 1 ? "was" : "were", path.native(),
                      elsewhere ? ", unless that program still runs on the host in its name" : "");
 }
@@ -129,7 +129,7 @@ void UnfinishedFile::publish() const {
 
 void UnfinishedFile::replace(const FileIdentity& earlier) const {
   if (!(identity_of(path_) == earlier))
-    throw FileError(fmt::format("{} was replaced by another program meanwhile, and is left as it is", path_.native()));
+    throw FileError(fmt::format("{} was replaced by another program and is not overwritten", path_.native()));
   SyncedFile(temporary_).sync();
   if (rename(temporary_.c_str(), path_.c_str()) != 0)
     throw creation_error(path_, std::system_category().message(errno));

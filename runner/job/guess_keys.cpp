@@ -23,14 +23,16 @@ namespace {
 template <class Guess>
 KeyTable<Guess> subspace_keys() {
   KeyTable<Guess> table;
-  table.optional(integer_key("size", "most solutions that span the subspace; each costs a product with A").from(1, 200),
-                 &Guess::size);
+  table.optional(
+      integer_key("size", "maximum dimension of the subspace; each dimension costs a product with A").from(1, 200),
+      &Guess::size);
   return table;
 }
 
 KeyTable<guess::Regression> regression_keys() {
   KeyTable<guess::Regression> table;
-  table.optional(integer_key("size", "most systems to regress on").from(1, 200), &guess::Regression::size);
+  table.optional(integer_key("size", "maximum number of systems in the regression").from(1, 200),
+                 &guess::Regression::size);
   return table;
 }
 
@@ -38,23 +40,22 @@ KeyTable<guess::CopingNet> copingnet_keys() {
   using guess::CopingNet;
   KeyTable<CopingNet> table;
   table.required(file_key("model", "model file of a train job"), &CopingNet::model);
-  table.optional(integer_key("corrections",
-                             "models with factors: number of corrections, each of the residual of the one before; "
-                             "each further one costs a product with A")
-                     .from(1, 100)
-                     .labelled_if_changed(),
-                 &CopingNet::corrections);
-  table.optional(integer_key("lag_steps",
-                             "models with factors: for how many time steps predicted factors are used; 0: for one "
-                             "solve")
-                     .from(0, 1000000)
-                     .labelled_if_changed("lag"),
-                 &CopingNet::lag_steps);
   table.optional(
-      number_key("stop_at", "models with factors: no correction once the residual is at most this, relative to ||b||")
-          .from(0, 1)
-          .labelled_if_changed("to"),
-      &CopingNet::stop_at);
+      integer_key("corrections",
+                  "models with factors: number of successive corrections; each after the first costs a product with A")
+          .from(1, 100)
+          .labelled_if_changed(),
+      &CopingNet::corrections);
+  table.optional(
+      integer_key("lag_steps",
+                  "models with factors: number of time steps that use the same predicted factors; 0: one solve")
+          .from(0, 1000000)
+          .labelled_if_changed("lag"),
+      &CopingNet::lag_steps);
+  table.optional(number_key("stop_at", "models with factors: corrections stop at this residual, relative to ||b||")
+                     .from(0, 1)
+                     .labelled_if_changed("to"),
+                 &CopingNet::stop_at);
   return table;
 }
 
@@ -63,13 +64,13 @@ KeyTable<guess::Knn> knn_keys() {
   KeyTable<Knn> table;
   table.optional(integer_key("k", "number of neighbours").from(1, 1000).also_called({"neighbours"}), &Knn::neighbours);
   table.required(file_key("data", "data set: the file of a job of kind \"dataset\"").unlabelled(), &Knn::data);
-  table.optional(integer_key("simulations", "how many simulations of the data set are used, from the first; 0: all")
+  table.optional(integer_key("simulations", "number of simulations of the data set to use, from the first; 0: all")
                      .from(0, 1000000)
                      .unlabelled(),
                  &Knn::simulations);
   table.optional(choice_key("inputs",
-                            "what neighbours are compared by. all: shape, gaps of the joints and velocities; shape: "
-                            "what the paper's network sees")
+                            "features that define similarity. all: shape, joint gaps and velocities; shape: the inputs "
+                            "of the paper's network")
                      .labelled_if_changed(""),
                  Words<KnnInputs>{{"all", KnnInputs::all}, {"shape", KnnInputs::shape}}, &Knn::inputs);
   return table;
@@ -79,8 +80,9 @@ KeyTable<guess::Oracle> oracle_keys() {
   using guess::Oracle;
   using Error = OracleGuess::Error;
   KeyTable<Oracle> table;
-  table.optional(number_key("error", "A-norm of the error relative to the solution's").from(0, 1e6), &Oracle::error);
-  table.optional(choice_key("errors", "white: independent in every entry; smooth: of the modes that CG finds last"),
+  table.optional(number_key("error", "A-norm of the error, relative to that of the solution").from(0, 1e6),
+                 &Oracle::error);
+  table.optional(choice_key("errors", "white: independent in every entry; smooth: in the modes that CG finds last"),
                  Words<Error>{{"white", Error::white}, {"smooth", Error::smooth}}, &Oracle::kind);
   return table;
 }
@@ -88,11 +90,12 @@ KeyTable<guess::Oracle> oracle_keys() {
 KeyTable<guess::Guarded> guarded_keys() {
   using guess::Guarded;
   KeyTable<Guarded> table;
-  table.required(guess_key("guess", "the guess that is guarded"), &Guarded::guess);
-  table.required(number_key("threshold", "the guess is used where the natural norm of b - A x0 is below this times b's")
-                     .above(0)
-                     .at_most(1e6),
-                 &Guarded::threshold);
+  table.required(guess_key("guess", "the guarded guess"), &Guarded::guess);
+  table.required(
+      number_key("threshold", "the guess is used if the natural norm of b - A x0 is below this times that of b")
+          .above(0)
+          .at_most(1e6),
+      &Guarded::threshold);
   return table;
 }
 
@@ -123,34 +126,35 @@ Kind kind(const char* help, const KeyTable<Guess>& table = {}) {
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> kinds{
       kind<guess::Zero>("no guess: the denominator of every ratio"),
-      kind<guess::Previous>("the solution of the same Newton iteration of the last step"),
+      kind<guess::Previous>("the solution of the same Newton iteration in the last step"),
       kind<guess::Linear>("linear extrapolation in time"),
       kind<guess::Quadratic>("quadratic extrapolation in time"),
       kind<guess::Fischer>(
-          "best approximation within the last solutions, collected until there are `size`, then from one "
-          "again",
+          "best approximation in the span of the last solutions; restarts with one solution after `size`",
           subspace_keys<guess::Fischer>()),
-      kind<guess::Subspace>("best approximation within the last `size` solutions", subspace_keys<guess::Subspace>()),
+      kind<guess::Subspace>("best approximation in the span of the last `size` solutions",
+                            subspace_keys<guess::Subspace>()),
       kind<guess::Deflation>(
-          "as subspace, and the last `size` solutions are projected out of all of CG's residuals too "
-          "(deflated CG)",
+          "as subspace; CG also projects the last `size` solutions out of all residuals (deflated CG)",
           subspace_keys<guess::Deflation>()),
-      kind<guess::Regression>("the last `size` solutions, combined by the coefficients that combine their right-hand "
-                              "sides to the current one: no product with A",
-                              regression_keys()),
-      kind<guess::CopingNet>("a learned guess: a network's correction of the guess that it was trained with",
+      kind<guess::Regression>(
+          "combination of the last `size` solutions, with the coefficients that fit their right-hand "
+          "sides to b: no product with A",
+          regression_keys()),
+      kind<guess::CopingNet>("learned guess: a network corrects the base guess that it was trained with",
                              copingnet_keys()),
       kind<guess::Knn>("the solutions of the most similar systems of a data set, resampled by arc length and averaged",
                        knn_keys()),
       kind<guess::Oracle>("the exact solution plus a random error", oracle_keys()),
-      kind<guess::Guarded>("another guess, used only where its residual is small", guarded_keys()),
+      kind<guess::Guarded>("another guess, used only if its residual is small", guarded_keys()),
       kind<guess::Totals>(
-          "another guess, whose history of first Newton iterations holds the sum of a step's increments: "
-          "for closed loops",
-          keys_of_another<guess::Totals>("the guess that is given these sums")),
-      kind<guess::First>("another guess at the first Newton iteration of a step, zero at the others: for networks that "
-                         "were trained on first iterations alone",
-                         keys_of_another<guess::First>("the guess for first Newton iterations")),
+          "another guess; its history of first Newton iterations holds the sum of a step's increments (for "
+          "closed loops)",
+          keys_of_another<guess::Totals>("the guess that uses these sums")),
+      kind<guess::First>(
+          "another guess at the first Newton iteration of a step, zero at the others: for networks trained "
+          "only on first iterations",
+          keys_of_another<guess::First>("the guess for first Newton iterations")),
   };
   return kinds;
 }

@@ -55,12 +55,12 @@ std::string missing_file_text(const fs::path& job, const MissingFile& file) {
   std::error_code error;
   std::string advice;
   if (fs::exists(maker, error))
-    advice = fmt::format("; does {} make it? Then run that first", maker.native());
+    advice = fmt::format("; if {} makes it, run that job first", maker.native());
   else if (const std::string near = nearest_name(file); !near.empty())
     advice = fmt::format("; did you mean \"{}\"?", near);
   return job_error(
              job, file.key_path,
-             fmt::format("\"{}\" is not allowed: {} is not there; the path is relative to the job file's folder{}",
+             fmt::format("\"{}\" is not allowed: {} was not found; the path is relative to the job file's folder{}",
                          file.written, file.path.native(), advice))
       .what();
 }

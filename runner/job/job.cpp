@@ -39,11 +39,10 @@ void check_guesses(const Job& job, const SweepSpace& space) {
 
 void check_samples(const Job& job, const SweepSpace& space) {
   if (job.samples == 1 || space.every_point_is_random()) return;
-  throw job_error(
-      job.path, "samples",
-      fmt::format("{} is not allowed, since there are grid points at which nothing is random and all samples "
-                  "would be equal; make a value random there, such as {{\"uniform\": [a, b]}}, or use 1",
-                  job.samples));
+  throw job_error(job.path, "samples",
+                  fmt::format("{} is not allowed: at some grid points nothing is random, and all samples are equal; "
+                              "must be 1, or make a value random there, such as {{\"uniform\": [a, b]}}",
+                              job.samples));
 }
 
 /// `look(written, key_path)` returns an input file.
@@ -108,8 +107,8 @@ std::string read_job_text(const std::filesystem::path& path) {
   }
   if (text.size() > most_bytes)
     throw job_error(path, "",
-                    fmt::format("is larger than a job may be, {} MB: let `samples` draw from ranges, such as "
-                                "{{\"uniform\": [a, b]}}, in the place of lists, or make several jobs of it",
+                    fmt::format("is too large; must be at most {} MB: replace lists by `samples` of ranges, such as "
+                                "{{\"uniform\": [a, b]}}, or split the job",
                                 most_bytes >> 20));
   if (!in.eof()) throw job_error(path, "", fmt::format("cannot be read: {}", std::strerror(errno ? errno : EIO)));
   return text;

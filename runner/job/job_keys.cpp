@@ -18,19 +18,18 @@ Key record() {
                  choice_key("solves", "a row for every solve, or only sums for every task", {"all", "summary"})
                      .defaults_to("all")
                      .setting(),
-                 choice_key("norms", "count iterations in both norms, or only in the one that the job tests (faster)",
-                            {"both", "one"})
+                 choice_key("norms", "count iterations in both norms, or only in solve.norm (faster)", {"both", "one"})
                      .defaults_to("both")
                      .only({"sweep"}, no_guesses)
                      .setting(),
                  choice_key("systems",
-                            "of which linear systems the rods, the multipliers and the solution are stored: those of "
-                            "the first Newton iteration of every step, or all",
+                            "linear systems that are stored, with rods, multipliers and solution: those of the first "
+                            "Newton iteration of every step, or all",
                             {"first", "all"})
                      .defaults_to("first")
-                     .only({"dataset"}, "make the simulations a job of that kind")
+                     .only({"dataset"}, "use a job of kind \"dataset\"")
                      .setting(),
-                 integer_key("trajectory_every", "a frame of all segments every so many steps; 0: none")
+                 integer_key("trajectory_every", "steps from one frame of all segments to the next; 0: no frames")
                      .from(0, 10000000)
                      .defaults_to(0)
                      .setting(),
@@ -42,15 +41,13 @@ Key record() {
 std::vector<Key> keys_of_all() {
   return {
       text_key("name", "name of the job and of its results file").at_most(100).of_form(Key::Text::file_name).setting(),
-      text_key("description", "a remark for the reader")
+      text_key("description", "comment for readers")
           .defaults_to("")
           .also_called({"comment", "//", "_comment", "note", "#"})
           .setting(),
       choice_key("kind", "kind of job", {"sweep", "dataset", "train"}).setting(),
       integer_key("seed", "seed of all random values").from(0, 9007199254740991).defaults_to(0).setting(),
-      text_key("$schema", "the JSON Schema by which an editor helps (jobs/schema.json); not read here")
-          .defaults_to("")
-          .setting(),
+      text_key("$schema", "JSON Schema for editors (jobs/schema.json); ignored by rodsweep").defaults_to("").setting(),
   };
 }
 
@@ -61,12 +58,12 @@ std::vector<Key> keys_of_simulations() {
           .defaults_to(1)
           .setting(),
       choice_key("sampling",
-                 "how random values are drawn: independently, or by Sobol's sequence, which covers their "
-                 "ranges more evenly (best for a power of two of samples)",
+                 "random values: independent, or from the Sobol sequence, which covers ranges more evenly (best with a "
+                 "power of two samples)",
                  {"random", "sobol"})
           .defaults_to("random")
           .setting(),
-      choice_key("evaluation", "all guesses on the systems of one trajectory, or each on a trajectory of its own",
+      choice_key("evaluation", "all guesses on the systems of one trajectory, or each guess on its own trajectory",
                  {"paired", "closed_loop"})
           .defaults_to("paired")
           .only({"sweep"}, no_guesses),
@@ -76,7 +73,7 @@ std::vector<Key> keys_of_simulations() {
       guesses_key("guesses", "initial guesses of cg")
           .defaults_to(Json::array())
           .only({"sweep"}, no_guesses)
-          .unswept("all tasks share one list of guesses; put every guess in it, or a sweep in place of a guess"),
+          .unswept("all tasks share one list of guesses; list every guess, or sweep one guess of the list"),
       record(),
       number_key("task_time_limit_s", "a task that takes longer is recorded as timed out; 0: no limit")
           .in("s")
@@ -86,7 +83,7 @@ std::vector<Key> keys_of_simulations() {
   };
   for (Key& key : keys)
     if (key.only_for.empty())
-      key.only({"sweep", "dataset"}, "a training learns from the simulations in \"data\": remove this key");
+      key.only({"sweep", "dataset"}, "a training uses the simulations in \"data\": remove this key");
   return keys;
 }
 
@@ -94,7 +91,7 @@ Key job() {
   std::vector<Key> keys = keys_of_all();
   for (std::vector<Key> more : {keys_of_simulations(), training_keys()})
     keys.insert(keys.end(), more.begin(), more.end());
-  return object_key("job", "a job", keys, "kind").unswept("put the sweep in place of a value");
+  return object_key("job", "a job", keys, "kind").unswept("sweep a value instead");
 }
 
 }  // namespace

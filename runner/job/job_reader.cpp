@@ -110,10 +110,9 @@ void JobReader::warn_if_implausible(const Key& key, double value, const std::str
   if (!key.plausible || is_plausible(key, value)) return;
   const auto& [least, most, known] = *key.plausible;
   warnings_.emplace_back(
-      job_error(
-          file_, path,
-          fmt::format("{:g} {} is outside of what is plausible, {:g} to {:g} {}{}{}", value, key.unit, least, most,
-                      key.unit, known.empty() ? "" : fmt::format(" ({})", known), other_unit(key, value, most)))
+      job_error(file_, path,
+                fmt::format("{:g} {} is outside the plausible range, {:g} to {:g} {}{}{}", value, key.unit, least, most,
+                            key.unit, known.empty() ? "" : fmt::format(" ({})", known), other_unit(key, value, most)))
           .what());
 }
 
@@ -132,11 +131,10 @@ void JobReader::warn_if_thick(const Key& scene_key, const Json& scene, const std
       visit_numbers(scene[across], "",
                     [&](double number, const std::string&) { shortest = std::min(shortest, number); });
     if (2 * thickest > shortest)
-      warnings_.emplace_back(
-          job_error(file_, place,
-                    fmt::format("{:g} m makes a rod thicker than long, where {} is {:g} m{}", thickest, across,
-                                shortest, other_unit(*radius, thickest, shortest / 2)))
-              .what());
+      warnings_.emplace_back(job_error(file_, place,
+                                       fmt::format("{:g} m makes a rod thicker than long: {} is {:g} m{}", thickest,
+                                                   across, shortest, other_unit(*radius, thickest, shortest / 2)))
+                                 .what());
   }
 }
 
@@ -184,7 +182,7 @@ Json JobReader::read_sweep(const Key& key, const Json& value, const std::string&
     return value;
   }
   if (value.size() != 1) {
-    mistake(path, fmt::format("{} is not allowed; a sweep has no other key beside \"{}\"", written(value), word));
+    mistake(path, fmt::format("{} is not allowed; a sweep must have no key other than \"{}\"", written(value), word));
     return value;
   }
   if (!is_listed(word)) return Json{{word, read_range(key, word, content, member(path, word))}};
@@ -203,7 +201,7 @@ Json JobReader::read_sweep(const Key& key, const Json& value, const std::string&
 Json JobReader::read_range(const Key& key, const std::string& word, const Json& ends, const std::string& path) {
   const bool whole = word == "integer";
   if (key.kind == Key::Kind::integer && !whole) {
-    mistake(path, fmt::format("{} draws numbers that are not whole; use {{\"integer\": [a, b]}} here", word));
+    mistake(path, fmt::format("{} draws fractional numbers; use {{\"integer\": [a, b]}} here", word));
     return ends;
   }
   if (key.kind != Key::Kind::integer && key.kind != Key::Kind::number) {
@@ -224,7 +222,7 @@ Json JobReader::read_range(const Key& key, const std::string& word, const Json& 
     if (sweep_word(ends[i]).empty()) {
       result.push_back(read_number(end_key, ends[i], element(path, i)));
     } else {
-      refuse(end_key, ends[i], element(path, i), "; a range's ends are not swept");
+      refuse(end_key, ends[i], element(path, i), "; the ends of a range cannot be swept");
     }
   }
   if (mistakes_ != before) return ends;

@@ -122,7 +122,7 @@ Json JobReader::read_object(const Key& key, const Json& value, const std::string
       refuse_unknown(key, name, path);
     else if (result.contains(child_key->name))
       mistake(member(path, name),
-              fmt::format("\"{}\" and \"{}\" are the same key; give one of them", child_key->name, child_key->alias));
+              fmt::format("\"{}\" and \"{}\" are the same key; give only one", child_key->name, child_key->alias));
     else
       result[child_key->name] = read(*child_key, child, member(path, name));
   }
@@ -222,7 +222,7 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
     given = value.begin().value();
   } else {
     const bool label_outside = value.is_object() && value.contains("label");
-    refuse(key, value, path, label_outside ? "; the label stands within: {\"previous\": {\"label\": \"...\"}}" : "");
+    refuse(key, value, path, label_outside ? "; put the label inside: {\"previous\": {\"label\": \"...\"}}" : "");
     return value;
   }
   const Key* guess = find_key(guess_keys(), name);
@@ -234,7 +234,7 @@ Json JobReader::read_guess(const Key& key, const Json& value, const std::string&
   if (labelled) keys.keys.push_back(Key(guess_label_key()).defaults_to(name));
   if (!given.is_object()) {
     refuse(keys, given, member(path, name),
-           guess->keys.empty() ? fmt::format("; \"{}\" has no parameters: write it alone", name)
+           guess->keys.empty() ? fmt::format("; \"{}\" has no parameters: write only its name", name)
                                : " with its parameters; for example " + spaced(guess_example(*guess, given)));
     return value;
   }
@@ -282,7 +282,7 @@ Json JobReader::read_guesses(const Json& value, const std::string& path) {
     const auto [first, is_new] = labels.emplace(label, i);
     if (!is_new) {
       mistake(element(path, i),
-              fmt::format("its label \"{}\" is also that of {}; give one of them a \"label\" of its own", label,
+              fmt::format("its label \"{}\" is also the label of {}; give one of them another \"label\"", label,
                           element(path, first->second)));
     }
   }

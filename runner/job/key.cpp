@@ -165,7 +165,7 @@ std::string quoted_list(const std::vector<std::string>& words) {
 }
 
 std::string allowed(const Key& key) {
-  if (key.or_list) return allowed(item_key(key)) + ", or a list of at least one such";
+  if (key.or_list) return allowed(item_key(key)) + ", or a non-empty list of these";
   switch (key.kind) {
     case Key::Kind::object: return "an object {...}" + (key.choices.empty() ? "" : ", or " + quoted_list(key.choices));
     case Key::Kind::integer: return "an integer" + bounds(key);
@@ -174,9 +174,9 @@ std::string allowed(const Key& key) {
       return "a number" + bounds(key) + (key.choices.empty() ? "" : ", or " + quoted_list(key.choices));
     case Key::Kind::vector: return "three numbers [x, y, z], each" + (bounds(key).empty() ? " finite" : bounds(key));
     case Key::Kind::text:
-      if (key.text == Key::Text::any) return "a text";
+      if (key.text == Key::Text::any) return "a string";
       if (key.text == Key::Text::path) return "the path of a file";
-      if (key.text == Key::Text::line) return fmt::format("a text of 1 to {} characters on one line", key.high);
+      if (key.text == Key::Text::line) return fmt::format("a string of 1 to {} characters on one line", key.high);
       return fmt::format(
           "a file name of 1 to {} letters, digits, \"_\", \"-\" or \".\", not beginning with \"-\" or \".\"", key.high);
     case Key::Kind::choice: return (key.choices.size() > 1 ? "one of " : "") + quoted_list(key.choices);
@@ -185,7 +185,7 @@ std::string allowed(const Key& key) {
       for (const Key& kind : key.keys) kinds.push_back(kind.name);
       return "an object {...} with one of " + quoted_list(kinds);
     }
-    case Key::Kind::list: return "a list [...], of which each is " + allowed(key.keys.front());
+    case Key::Kind::list: return "a list [...], where each item is " + allowed(key.keys.front());
     case Key::Kind::guess: {
       std::vector<std::string> names;
       for (const Key& guess : guess_keys()) names.push_back(guess.name);

@@ -40,31 +40,29 @@ Key angle_key(const char* name, const char* help, double least, double most) {
 
 void add_shapes(Table& table) {
   table.optional(
-      choice_key("clamp", "how the first end is held: its segment, an exact wall (not of a ring), or not at all")
-          .otherwise("a net is \"held\", trees stand on the ground"),
+      choice_key("clamp", "how the first end is held: by its segment, by an exact wall (not for rings), or not at all")
+          .otherwise("use \"held\" for nets and lattices; trees are fixed to the ground"),
       Words<Clamp>{{"segment", Clamp::segment}, {"wall", Clamp::wall}, {"free", Clamp::free}}, &OpenRod::clamp,
       &Ring::clamp);
-  table.optional(choice_key("held",
-                            "what is held, of a net: the first segments of all its rods along z (side), the end "
-                            "segments of the outermost two of them (corners), or nothing; of a lattice: the nodes of "
-                            "the least x (side), its eight corners, or nothing")
-                     .otherwise("a rod's end has a \"clamp\""),
-                 Words<Held>{{"side", Held::side}, {"corners", Held::corners}, {"free", Held::free}}, &Net::held,
-                 &Lattice::held);
-  table.required(
-      integer_key("segments",
-                  "number of segments of the rod, or of each of them, without a wall's static one; of nets and "
-                  "lattices from one crossing to the next; of a tree's trunk and of each of its branches")
-          .from(1, 1000000)
-          .also_called({"n", "number_of_segments", "elements"})
-          .otherwise("a skeleton has one for every edge"),
-      segments, shape(&TreeShape::segments));
-  table.required(length_key("length_m", "length of the rod; of a tree's trunk").plausibly(1e-4, 1e3), length_m,
-                 shape(&TreeShape::length_m));
   table.optional(
-      angle_key("twist_deg", "total angle by which a ring was twisted before its ends were joined", -1e6, 1e6),
-      &Ring::twist_deg);
-  table.optional(choice_key("rest_shape", "what the rod of a ring would be without load, cut open"),
+      choice_key(
+          "held",
+          "what is held. Nets: the first segments of all rods along z (side), the end segments of the outermost two "
+          "(corners), or nothing; lattices: the nodes with the least x (side), the eight corners, or nothing")
+          .otherwise("use \"clamp\" for the end of a rod"),
+      Words<Held>{{"side", Held::side}, {"corners", Held::corners}, {"free", Held::free}}, &Net::held, &Lattice::held);
+  table.required(integer_key("segments",
+                             "segments per rod, without a wall's static one; in nets and lattices from one crossing to "
+                             "the next; in trees of the trunk and of each branch")
+                     .from(1, 1000000)
+                     .also_called({"n", "number_of_segments", "elements"})
+                     .otherwise("a skeleton has one segment per edge"),
+                 segments, shape(&TreeShape::segments));
+  table.required(length_key("length_m", "length of the rod or of a tree's trunk").plausibly(1e-4, 1e3), length_m,
+                 shape(&TreeShape::length_m));
+  table.optional(angle_key("twist_deg", "total twist of a ring before its ends are joined", -1e6, 1e6),
+                 &Ring::twist_deg);
+  table.optional(choice_key("rest_shape", "rest shape of a ring's rod if it is cut open"),
                  Words<Ring::RestShape>{{"straight", Ring::RestShape::straight}, {"circle", Ring::RestShape::circle}},
                  &Ring::rest_shape);
   table.required(integer_key("rows", "rods of a net along x; rows of a forest").from(1, 1000), &Net::rows,
@@ -72,25 +70,25 @@ void add_shapes(Table& table) {
   table.required(integer_key("columns", "rods of a net along z; trees in a row of a forest").from(1, 1000),
                  &Net::columns, &Forest::columns);
   table.required(
-      length_key("mesh_m", "distance of neighbouring rods of a net; edge of a lattice's cell").plausibly(1e-5, 1e2),
+      length_key("mesh_m", "distance between neighbouring rods of a net; edge of a lattice cell").plausibly(1e-5, 1e2),
       &Net::mesh_m, &Lattice::mesh_m);
-  table.optional(choice_key("cell",
-                            "where the rods of a lattice run: along the edges of its cells, along their "
-                            "diagonals, or along the diagonals of their faces"),
-                 Words<Lattice::Cell>{{"cubic", Lattice::Cell::cubic},
-                                      {"body_centred", Lattice::Cell::body_centred},
-                                      {"octet", Lattice::Cell::octet}},
-                 &Lattice::cell);
-  table.required(integer_key("nodes_x", "corners of a lattice's cells along x").from(2, 1000), &Lattice::nodes_x);
-  table.optional(integer_key("nodes_y", "corners of a lattice's cells along y; 0: as many as along x").from(0, 1000),
-                 &Lattice::nodes_y);
-  table.optional(integer_key("nodes_z", "corners of a lattice's cells along z; 0: as many as along x").from(0, 1000),
-                 &Lattice::nodes_z);
   table.optional(
-      number_key("node_stiffness", "how stiff the joints of a lattice's nodes are, over a piece of rod two radii long")
-          .above(0)
-          .at_most(1e9),
-      &Lattice::node_stiffness);
+      choice_key("cell",
+                 "rods of a lattice: along the edges of its cells, their diagonals, or the diagonals of their faces"),
+      Words<Lattice::Cell>{{"cubic", Lattice::Cell::cubic},
+                           {"body_centred", Lattice::Cell::body_centred},
+                           {"octet", Lattice::Cell::octet}},
+      &Lattice::cell);
+  table.required(integer_key("nodes_x", "corners of lattice cells along x").from(2, 1000), &Lattice::nodes_x);
+  table.optional(integer_key("nodes_y", "corners of lattice cells along y; 0: as many as along x").from(0, 1000),
+                 &Lattice::nodes_y);
+  table.optional(integer_key("nodes_z", "corners of lattice cells along z; 0: as many as along x").from(0, 1000),
+                 &Lattice::nodes_z);
+  table.optional(number_key("node_stiffness",
+                            "stiffness of the joints at lattice nodes, relative to a piece of rod two radii long")
+                     .above(0)
+                     .at_most(1e9),
+                 &Lattice::node_stiffness);
   table.required(length_key("helix_radius_m", "radius of the helix").plausibly(1e-5, 1e2), &Helix::helix_radius_m);
   table.required(length_key("helix_height_m", "height of the helix").plausibly(1e-5, 1e3), &Helix::helix_height_m);
   table.required(number_key("windings", "turns of the helix").above(0).at_most(1e6).also_called({"turns"}),
@@ -98,7 +96,7 @@ void add_shapes(Table& table) {
 }
 
 void add_rods(Table& table) {
-  table.required(number_key("radius_m", "radius of the rod's cross-section; of a tree's trunk at the ground")
+  table.required(number_key("radius_m", "radius of the rod, or of a tree's trunk at the ground")
                      .in("m")
                      .above(0)
                      .at_most(1e3)
@@ -129,7 +127,7 @@ void add_rods(Table& table) {
                  &Rods::torsion_modulus_pa);
   table.optional(
       angle_key("initial_angle_deg",
-                "angle from the horizontal at the start; of a bundle's outermost rods from the vertical", -360, 360),
+                "initial angle from the horizontal; bundles: of the outermost rods from the vertical", -360, 360),
       &BendingRod::initial_angle_deg, &Bundle::initial_angle_deg, &Lattice::initial_angle_deg);
   table.optional(vector_key("gravity_m_s2", "acceleration of gravity")
                      .in("m/s^2")
@@ -139,82 +137,79 @@ void add_rods(Table& table) {
   table.optional(number_key("damping_per_s", "viscous damping: velocities decay at this rate").in("1/s").from(0, 1e6),
                  &Rods::damping_per_s);
   table.optional(vector_key("tip_force_n",
-                            "constant force at the free end; on the nodes of a lattice with the greatest x together")
+                            "constant force on the free end; lattices: total force on the nodes with the greatest x")
                      .in("N")
                      .from(-1e12, 1e12),
                  tip_force_n);
   table.optional(choice_key("stretch",
-                            "stretching and shearing: held back by a stiffness chosen from the expected forces, or by "
-                            "EA and kappa G A (Timoshenko's coefficient of a circle)"),
+                            "stiffness against stretch and shear: chosen from the expected forces, or EA and kappa G A "
+                            "(Timoshenko's coefficient of a circle)"),
                  Words<Stretch>{{"inextensible", Stretch::inextensible}, {"physical", Stretch::physical}},
                  &Rods::stretch);
   table.optional(number_key("stretch_compliance_per_j",
-                            "compliance of the stretch and shear constraints, or the one that \"stretch\" means")
+                            "compliance of the stretch and shear constraints; \"from_stretch\": as set by \"stretch\"")
                      .in("1/J")
                      .from(0, 1e6)
                      .or_word("from_stretch"),
                  &Rods::stretch_compliance_per_j);
-  table.optional(
-      object_key("wind", "what the air around the rods does; segments have quadratic drag in it").or_word("none"),
-      wind_keys(), &Rods::wind);
+  table.optional(object_key("wind", "motion of the air around the rods; segments have quadratic drag").or_word("none"),
+                 wind_keys(), &Rods::wind);
   table.optional(obstacles_key(), &Rods::obstacles);
 }
 
 void add_trees(Table& table) {
   using Shape = TreeShape;
-  table.required(integer_key("depth", "branchings of a tree between the ground and a twig").from(0, 100),
-                 shape(&Shape::depth));
-  table.required(integer_key("branches", "new branches at the end of each branch of a tree").from(1, 100),
+  table.required(integer_key("depth", "levels of branching of a tree").from(0, 100), shape(&Shape::depth));
+  table.required(integer_key("branches", "new branches at the end of each branch").from(1, 100),
                  shape(&Shape::branches));
+  table.optional(number_key("length_ratio", "length of a branch over that of its parent").above(0).at_most(10),
+                 shape(&Shape::length_ratio));
   table.optional(
-      number_key("length_ratio", "length of a tree's branch over that of the one it grows from").above(0).at_most(10),
-      shape(&Shape::length_ratio));
-  table.optional(
-      number_key("taper", "radius of a tree's branch where it ends over that where it begins; 1: the pipe model's own")
-          .above(0)
-          .at_most(1),
+      number_key("taper", "end radius of a branch over its start radius; 1: only the pipe model").above(0).at_most(1),
       shape(&Shape::taper));
   table.optional(
       number_key("pipe_exponent", "e of the pipe model r^e = r_1^e + r_2^e + ... at every branching of a tree")
           .from(0.5, 10),
       shape(&Shape::pipe_exponent));
-  table.optional(angle_key("branching_angle_deg", "angle between a tree's branch and the one it grows from", 0, 150),
+  table.optional(angle_key("branching_angle_deg", "angle between a branch and its parent", 0, 150),
                  shape(&Shape::branching_angle_deg));
-  table.optional(angle_key("angle_spread_deg", "by how much at most the branching angles differ from that", 0, 150),
+  table.optional(angle_key("angle_spread_deg", "maximum deviation from branching_angle_deg", 0, 150),
                  shape(&Shape::angle_spread_deg));
   table.optional(
-      choice_key("phyllotaxis", "how branches go around: by the golden angle from one to the next, or at random"),
+      choice_key("phyllotaxis",
+                 "direction of branches around their parent: by the golden angle from one to the next, or random"),
       Words<Shape::Phyllotaxis>{{"golden", Shape::Phyllotaxis::golden}, {"random", Shape::Phyllotaxis::random}},
       shape(&Shape::phyllotaxis));
-  table.optional(integer_key("tree_seed", "which tree of all those of this shape; which forest").from(0, 1e15),
+  table.optional(integer_key("tree_seed", "seed of the random parts of a tree or forest").from(0, 1e15),
                  shape(&Shape::seed));
-  table.optional(
-      number_key("modulus_exponent", "both moduli of a tree's branch grow with its radius to this power").from(-4, 4),
-      &Tree::modulus_exponent, &SkeletonTree::modulus_exponent);
-  table.required(length_key("spacing_m", "distance of neighbouring trees of a forest"), &Forest::spacing_m);
-  table.optional(
-      number_key("jitter", "how much of the spacing the places of a forest's trees are spread over").from(0, 1),
-      &Forest::jitter);
+  table.optional(number_key("modulus_exponent", "both moduli of a branch are proportional to its radius to this power")
+                     .from(-4, 4),
+                 &Tree::modulus_exponent, &SkeletonTree::modulus_exponent);
+  table.required(length_key("spacing_m", "distance between neighbouring trees of a forest"), &Forest::spacing_m);
+  table.optional(number_key("jitter", "range of the random displacement of a tree, relative to the spacing").from(0, 1),
+                 &Forest::jitter);
   table.required(file_key("skeleton", "SWC file of a tree: id, type, x, y, z, radius, parent"),
                  &SkeletonTree::skeleton);
-  table.optional(length_key("skeleton_unit_m", "size of the skeleton file's unit"), &SkeletonTree::unit_m);
-  table.optional(choice_key("skeleton_up", "which axis of the skeleton file points up"),
+  table.optional(length_key("skeleton_unit_m", "length unit of the skeleton file"), &SkeletonTree::unit_m);
+  table.optional(choice_key("skeleton_up", "axis of the skeleton file that points up"),
                  Words<Up>{{"y", Up::y}, {"z", Up::z}}, &SkeletonTree::up);
 }
 
 void add_touching(Table& table) {
-  table.optional(
-      object_key("contact", "rods touch each other, themselves and the floor, without rebound").or_word("none"),
-      contact_keys(), &Rods::contact);
+  table.optional(object_key("contact", "contact of rods with each other, themselves and the floor, without rebound")
+                     .or_word("none"),
+                 contact_keys(), &Rods::contact);
   table.required(integer_key("rods", "number of rods").from(1, 30000), &FallingRods::rods, &Bundle::rods);
   table.required(integer_key("rings", "number of rings of a chain").from(1, 30000), &RingChain::rings);
   table.required(
-      length_key("height_m", "from one falling rod to the next and to the floor; of a coiling rod's end above it"),
+      length_key("height_m",
+                 "distance between falling rods and to the floor; height of a coiling rod's end above the floor"),
       &FallingRods::height_m, &CoilingRod::height_m);
-  table.optional(angle_key("turn_deg", "of each falling rod against the one below", -360, 360), &FallingRods::turn_deg);
-  table.required(number_key("feed_m_s", "how fast the held end of a coiling rod goes down").in("m/s").from(0, 1e3),
+  table.optional(angle_key("turn_deg", "angle of each falling rod relative to the one below", -360, 360),
+                 &FallingRods::turn_deg);
+  table.required(number_key("feed_m_s", "downward speed of the held end of a coiling rod").in("m/s").from(0, 1e3),
                  &CoilingRod::feed_m_s);
-  table.required(number_key("pull_m_s", "how fast each end of a knot is pulled away").in("m/s").from(0, 1e3),
+  table.required(number_key("pull_m_s", "speed at which each end of a knot is pulled").in("m/s").from(0, 1e3),
                  &Knot::pull_m_s);
 }
 
@@ -233,9 +228,9 @@ const KeyTable<SceneSpec>& scene_keys() {
 }
 
 Key scene_key() {
-  Key type = choice_key("type", "which scene")
+  Key type = choice_key("type", "type of the scene")
                  .unswept(
-                     "to sweep over scenes, list whole ones: \"scene\": {\"grid\": [{\"type\": \"bending_rod\", "
+                     "to sweep over scenes, list complete scenes: \"scene\": {\"grid\": [{\"type\": \"bending_rod\", "
                      "...}, {\"type\": \"helix\", ...}]}");
   KindsOf<SceneSpec>::each([&](const auto& scene) { type.choices.emplace_back(scene.name); });
   std::vector<Key> keys{type};

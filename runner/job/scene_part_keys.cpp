@@ -18,20 +18,20 @@ struct Kind {
 };
 
 Key place(const char* name, const char* help) { return vector_key(name, help).in("m").from(-1e6, 1e6); }
-Key velocity() { return vector_key("velocity_m_s", "its velocity, from the start").in("m/s").from(-1e6, 1e6); }
+Key velocity() { return vector_key("velocity_m_s", "constant velocity").in("m/s").from(-1e6, 1e6); }
 Key radius() { return number_key("radius_m", "radius").in("m").above(0).at_most(1e6); }
 
 KeyTable<HalfSpace> half_space_keys() {
   KeyTable<HalfSpace> table;
   table.optional(place("point_m", "a point of the plane"), &HalfSpace::point_m);
-  table.optional(vector_key("normal", "direction out of the solid, of any length").from(-1e6, 1e6), &HalfSpace::normal);
+  table.optional(vector_key("normal", "outward direction, of any length").from(-1e6, 1e6), &HalfSpace::normal);
   table.optional(velocity(), &HalfSpace::velocity_m_s);
   return table;
 }
 
 KeyTable<Ball> ball_keys() {
   KeyTable<Ball> table;
-  table.required(place("centre_m", "its centre"), &Ball::centre_m);
+  table.required(place("centre_m", "centre"), &Ball::centre_m);
   table.required(radius(), &Ball::radius_m);
   table.optional(velocity(), &Ball::velocity_m_s);
   return table;
@@ -48,9 +48,9 @@ KeyTable<Capsule> capsule_keys() {
 
 const auto& kinds() {
   static const std::tuple kinds{
-      Kind<HalfSpace>{"half_space", "all that is below a plane", half_space_keys()},
+      Kind<HalfSpace>{"half_space", "everything below a plane", half_space_keys()},
       Kind<Ball>{"ball", "a ball", ball_keys()},
-      Kind<Capsule>{"capsule", "all that is nearer than a radius to a line from one point to another", capsule_keys()}};
+      Kind<Capsule>{"capsule", "everything within a radius of a line between two points", capsule_keys()}};
   return kinds;
 }
 
@@ -80,10 +80,9 @@ KeyTable<WindParameters> wind_keys() {
                      .from(-1e3, 1e3)
                      .plausibly(0, 120, "a hurricane has 33 and more"),
                  &Air::mean_m_s);
-  table.optional(number_key("gust_strength", "by how much of itself the mean swells and ebbs").from(0, 10),
+  table.optional(number_key("gust_strength", "strength of gusts, relative to the mean velocity").from(0, 10),
                  &Air::gust_strength);
-  table.optional(number_key("gust_period_s", "from one gust to the next").in("s").above(0).at_most(1e6),
-                 &Air::gust_period_s);
+  table.optional(number_key("gust_period_s", "period of the gusts").in("s").above(0).at_most(1e6), &Air::gust_period_s);
   table.optional(
       number_key("turbulence_m_s", "root mean square of each component of the turbulence").in("m/s").from(0, 1e3),
       &Air::turbulence_m_s);
@@ -92,21 +91,20 @@ KeyTable<WindParameters> wind_keys() {
                      .above(0)
                      .at_most(1e6),
                  &Air::turbulence_length_m);
-  table.optional(integer_key("turbulence_modes", "waves that make up the turbulence").from(1, 10000),
+  table.optional(integer_key("turbulence_modes", "number of waves in the turbulence").from(1, 10000),
                  &Air::turbulence_modes);
-  table.optional(integer_key("seed", "which turbulence").from(0, 1e15), &Air::seed);
+  table.optional(integer_key("seed", "seed of the turbulence").from(0, 1e15), &Air::seed);
   table.optional(
-      number_key("profile_exponent", "p of the mean's growth (height / reference_height_m)^p; 0: none").from(0, 2),
+      number_key("profile_exponent", "p of the mean profile (height / reference_height_m)^p; 0: uniform").from(0, 2),
       &Air::profile_exponent);
-  table.optional(
-      number_key("reference_height_m", "height at which the mean wind is as given").in("m").above(0).at_most(1e6),
-      &Air::reference_height_m);
+  table.optional(number_key("reference_height_m", "height at which mean_m_s applies").in("m").above(0).at_most(1e6),
+                 &Air::reference_height_m);
   table.optional(number_key("air_density_kg_m3", "density of the air").in("kg/m^3").from(0, 1e4),
                  &Air::air_density_kg_m3);
   table.optional(
-      number_key("drag_coefficient", "of a segment across the flow, by its length times diameter").from(0, 1e3),
+      number_key("drag_coefficient", "for flow across a segment, based on length times diameter").from(0, 1e3),
       &Air::drag_coefficient);
-  table.optional(number_key("friction_coefficient", "of a segment along the flow, by its surface").from(0, 1e3),
+  table.optional(number_key("friction_coefficient", "for flow along a segment, based on its surface").from(0, 1e3),
                  &Air::friction_coefficient);
   return table;
 }
@@ -114,18 +112,18 @@ KeyTable<WindParameters> wind_keys() {
 KeyTable<ContactSettings> contact_keys() {
   using Settings = ContactSettings;
   KeyTable<Settings> table;
-  table.optional(number_key("friction", "Coulomb's coefficient, at rest and sliding").from(0, 100),
+  table.optional(number_key("friction", "Coulomb friction coefficient, static and sliding").from(0, 100),
                  &Settings::friction);
   table.optional(
-      number_key("tolerance", "contacts have converged where none wants to move a segment by more, in its radii")
+      number_key("tolerance", "contacts have converged if no correction of a segment is larger than this, in its radii")
           .above(0)
           .at_most(1),
       &Settings::tolerance);
-  table.optional(integer_key("sweeps", "over all contacts after a projection of the rods, at most").from(1, 10000),
-                 &Settings::sweeps);
+  table.optional(
+      integer_key("sweeps", "maximum number of sweeps over all contacts after a projection of the rods").from(1, 10000),
+      &Settings::sweeps);
   table.optional(number_key("recovery",
-                            "share of a penetration, left by earlier steps, that a step takes back, within 1 % of a "
-                            "radius")
+                            "fraction of a penetration from earlier steps that a step removes, at most 1 % of a radius")
                      .from(0, 1),
                  &Settings::recovery);
   return table;
@@ -135,8 +133,8 @@ Key obstacles_key() {
   const auto keys = [](const auto&... kind) {
     return std::vector<Key>{object_key(kind.name, kind.help, kind.table.keys())...};
   };
-  return list_key("obstacles", "what rods with \"contact\" touch besides each other and the scene's own floor",
-                  variant_key("obstacle", "a solid that rests or moves evenly", std::apply(keys, kinds())));
+  return list_key("obstacles", "solids that rods with \"contact\" touch, besides each other and the floor of the scene",
+                  variant_key("obstacle", "a solid at rest or with constant velocity", std::apply(keys, kinds())));
 }
 
 void read_value(const Place& list, std::vector<Obstacle>& obstacles) {
@@ -154,8 +152,8 @@ void check_obstacles(const Json& scene, const std::string& path, const std::file
       check_obstacles(scene[word][i], element(member(path, word), i), file);
   } else if (scene["contact"] == "none" && !scene["obstacles"].empty()) {
     throw job_error(file, member(path, "obstacles"),
-                    "rods pass through all obstacles without \"contact\"; give the scene \"contact\": "
-                    "{\"friction\": 0.3}, or remove this key");
+                    "rods without \"contact\" pass through obstacles; give the scene \"contact\": {\"friction\": 0.3}, "
+                    "or remove this key");
   }
 }
 

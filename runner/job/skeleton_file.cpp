@@ -58,10 +58,10 @@ class Reader {
     if (!skeleton_.empty()) {
       const auto found = nodes_.find(parent);
       if (found == nodes_.end() || parent == id)
-        refuse(fmt::format("parent is {}; must be the id of a line above, or -1 of the first node alone", parent));
+        refuse(fmt::format("parent is {}; must be the id of a line above, or -1 for the first node only", parent));
       node.parent = found->second;
     } else if (parent != -1) {
-      refuse(fmt::format("parent is {}; must be -1, since this is the first node", parent));
+      refuse(fmt::format("parent is {}; must be -1 for the first node", parent));
     }
     for (int i = 0; i < 3; ++i) node.position_m[i] = number<double>(words, 2 + static_cast<std::size_t>(i));
     node.radius_m = number<double>(words, 5);

@@ -60,11 +60,10 @@ SweepSpace::SweepSpace(const Json& values, const std::filesystem::path& file) : 
   count(root_);
   if (values["sampling"] != "sobol") return;
   if (dimensions_.size() > SobolSequence::most_dimensions()) {
-    throw job_error(
-        file_, "sampling",
-        fmt::format("\"sobol\" is not allowed, since this job draws {} values a sample and Sobol's sequence "
-                    "has {} dimensions; use \"random\"",
-                    dimensions_.size(), SobolSequence::most_dimensions()));
+    throw job_error(file_, "sampling",
+                    fmt::format("\"sobol\" is not allowed: this job draws {} values per sample, and the Sobol sequence "
+                                "has at most {} dimensions; use \"random\"",
+                                dimensions_.size(), SobolSequence::most_dimensions()));
   }
   sobol_.emplace(dimensions_.size());
 }
@@ -159,8 +158,7 @@ void SweepSpace::read_sweep(const Key& key, const Json& value, const std::string
   const std::size_t length = scope.axes[axis].options.size();
   if (content.size() != length) {
     throw job_error(file_, path,
-                    fmt::format("this zip has {} values and that of {} has {}; all zips run in step, so they must be "
-                                "equally long",
+                    fmt::format("this zip has {} values, but {} has {}; all zips must have the same length",
                                 content.size(), scope.zip_path, length));
   }
   for (std::size_t i = 0; i < length; ++i) read(key, content[i], path, component, scope.axes[axis].options[i]);

@@ -31,15 +31,14 @@ int whole_steps(double duration_s, double step_s, const Job& job) {
   const double ratio = duration_s / step_s, steps = std::round(ratio);
   if (steps < 1 || std::abs(ratio - steps) > tolerance * steps) {
     const double below = std::max(1.0, std::floor(ratio));
-    throw job_error(
-        job.path, "time.duration_s",
-        fmt::format("{} is not allowed with step_s {}: it is {:.8g} steps; must be a whole number of them, such "
-                    "as {:.8g}, or give \"steps\" instead",
-                    duration_s, step_s, ratio, below * step_s));
+    throw job_error(job.path, "time.duration_s",
+                    fmt::format("{} is not allowed with step_s {}: it is {:.8g} steps; must be a whole number of "
+                                "steps, such as {:.8g}, or give \"steps\" instead",
+                                duration_s, step_s, ratio, below * step_s));
   }
   if (steps > most) {
     throw job_error(job.path, "time.duration_s",
-                    fmt::format("{} is not allowed with step_s {}: it is {:.8g} steps, and {} is the most", duration_s,
+                    fmt::format("{} is not allowed with step_s {}: it is {:.8g} steps; must be at most {}", duration_s,
                                 step_s, ratio, most));
   }
   return static_cast<int>(steps);
@@ -61,24 +60,26 @@ KeyTable<TimeSpec> time_keys() {
                     .above(0)
                     .at_most(1e9)
                     .one_of_group(run));
+  table.optional(integer_key("newton_iterations",
+                             "maximum number of Newton iterations per step; xpbd and pbd use solve.iterations")
+                     .from(1, 1000),
+                 &TimeSpec::newton_iterations);
   table.optional(
-      integer_key("newton_iterations", "most Newton iterations in a step; not of xpbd and pbd, which have their own")
-          .from(1, 1000),
-      &TimeSpec::newton_iterations);
-  table.optional(
-      number_key("newton_tolerance", "a step's iterations end when max |C + alpha~ lambda| is below it").from(0, 1),
+      number_key("newton_tolerance", "Newton iterations of a step end when max |C + alpha~ lambda| is below this")
+          .from(0, 1),
       &TimeSpec::newton_tolerance);
-  table.optional(boolean_key("balance",
-                             "false: the paper's step; true: Newton goes on until momentum is in balance as well, from "
-                             "the last step's multipliers, so that equilibria do not depend on the step; helices want "
-                             "newton_iterations of 20 (direct and cg)"),
-                 &TimeSpec::balance);
-  table.optional(number_key("momentum_tolerance",
-                            "with `balance`: what the forces on a segment may lack, relative to the greatest force "
-                            "of a joint")
-                     .above(0)
-                     .at_most(1),
-                 &TimeSpec::momentum_tolerance);
+  table.optional(
+      boolean_key(
+          "balance",
+          "false: the paper's step; true: Newton starts from the last step's multipliers and also balances momentum, "
+          "so equilibria do not depend on the step; helices need newton_iterations of 20 (direct and cg)"),
+      &TimeSpec::balance);
+  table.optional(
+      number_key("momentum_tolerance",
+                 "with `balance`: allowed momentum residual of a segment, relative to the greatest joint force")
+          .above(0)
+          .at_most(1),
+      &TimeSpec::momentum_tolerance);
   return table;
 }
 
@@ -87,72 +88,70 @@ KeyTable<SolveSpec> solve_keys() {
   const auto bending = [](SolveSpec& solve) -> double& { return solve.stiffness.bending; };
   KeyTable<SolveSpec> table;
   table.optional(
-      choice_key("method",
-                 "conjugate gradients with counted iterations, the direct solve alone, or in a closed loop what does "
-                 "without linear systems: a network's increments (end_to_end) or, without any constraint, its "
-                 "accelerations (state_network), or Gauss-Seidel over the joints, with compliances (xpbd) or without "
-                 "(pbd)"),
+      choice_key(
+          "method",
+          "cg: conjugate gradients with counted iterations; direct: only the direct solve; in closed loops, without "
+          "linear systems: end_to_end: a network's increments; state_network: a network's accelerations, without "
+          "constraints; xpbd, pbd: Gauss-Seidel over the joints, with and without compliances"),
       methods, &SolveSpec::method);
   table.required(file_key("model", "model file of a train job")
-                     .only({"end_to_end", "state_network"}, "a model that starts cg is a guess, \"copingnet\""),
+                     .only({"end_to_end", "state_network"}, "for a model that starts cg use the guess \"copingnet\""),
                  &SolveSpec::model);
-  table.unbound(integer_key("iterations", "most Gauss-Seidel iterations in a step")
+  table.unbound(integer_key("iterations", "maximum number of Gauss-Seidel iterations per step")
                     .from(1, 10000)
                     .defaults_to(gauss_seidel_iterations)
-                    .only({"xpbd", "pbd"}, "cg has max_iterations, Newton time.newton_iterations"));
-  table.optional(number_key("stretch_stiffness", "share of a stretch or shear that one correction takes away")
+                    .only({"xpbd", "pbd"}, "use max_iterations for cg, time.newton_iterations for Newton"));
+  table.optional(number_key("stretch_stiffness", "fraction of a stretch or shear that one correction removes")
                      .from(0, 1)
-                     .only({"pbd"}, "moduli and stretch_compliance_per_j of the scene say how stiff a rod is"),
+                     .only({"pbd"}, "the moduli and stretch_compliance_per_j of the scene set the stiffness"),
                  stretch);
-  table.optional(number_key("bending_stiffness", "share of a bend or twist that one correction takes away")
+  table.optional(number_key("bending_stiffness", "fraction of a bend or twist that one correction removes")
                      .from(0, 1)
-                     .only({"pbd"}, "moduli of the scene say how stiff a rod is"),
+                     .only({"pbd"}, "the moduli of the scene set the stiffness"),
                  bending);
-  table.optional(
-      choice_key("preconditioner",
-                 "preconditioner of cg; of those that factorise, icc keeps no fill, block_icc some levels "
-                 "of it, cholesky all; lagged_cholesky is cholesky kept for some steps; condensed: cg on the "
-                 "motions of the segments where rods cross, all others eliminated, with block_icc"),
-      Words<Preconditioner>{{"none", Preconditioner::none},
-                            {"jacobi", Preconditioner::jacobi},
-                            {"point_block_jacobi", Preconditioner::point_block_jacobi},
-                            {"icc", Preconditioner::icc},
-                            {"block_icc", Preconditioner::block_icc},
-                            {"cholesky", Preconditioner::cholesky},
-                            {"lagged_cholesky", Preconditioner::lagged_cholesky},
-                            {"condensed", Preconditioner::condensed}},
-      &SolveSpec::preconditioner);
-  table.optional(integer_key("fill_levels", "block_icc: levels of fill that it keeps").from(0, 100),
-                 &SolveSpec::fill_levels);
+  table.optional(choice_key("preconditioner",
+                            "preconditioner of cg. icc: no fill; block_icc: some levels of fill; cholesky: all fill; "
+                            "lagged_cholesky: cholesky, reused for some steps; condensed: cg with block_icc on the "
+                            "motions of the segments where rods cross, all others eliminated"),
+                 Words<Preconditioner>{{"none", Preconditioner::none},
+                                       {"jacobi", Preconditioner::jacobi},
+                                       {"point_block_jacobi", Preconditioner::point_block_jacobi},
+                                       {"icc", Preconditioner::icc},
+                                       {"block_icc", Preconditioner::block_icc},
+                                       {"cholesky", Preconditioner::cholesky},
+                                       {"lagged_cholesky", Preconditioner::lagged_cholesky},
+                                       {"condensed", Preconditioner::condensed}},
+                 &SolveSpec::preconditioner);
+  table.optional(integer_key("fill_levels", "block_icc: levels of fill").from(0, 100), &SolveSpec::fill_levels);
   table.optional(integer_key("lag_steps",
-                             "time steps from one set-up of the preconditioner, of the first Newton iteration's "
-                             "matrix, to the next; 0: anew for every system, or 10 with lagged_cholesky")
+                             "time steps between set-ups of the preconditioner, from the first Newton iteration's "
+                             "matrix; 0: set-up for every system, or 10 with lagged_cholesky")
                      .from(0, 1000000),
                  &SolveSpec::lag_steps);
   table.optional(choice_key("norm", "residual norm of the stopping test of cg"),
                  Words<Norm>{{"true_residual", Norm::true_residual}, {"natural", Norm::natural}}, &SolveSpec::norm);
   table.optional(choice_key("reference",
-                            "what advances the rods in a paired evaluation of cg. direct: the direct solve, timed "
-                            "beside cg in every evaluation; cg: the solution from zero to the tightest tolerance, and "
-                            "no direct solve at all, for large nets and lattices"),
+                            "solve that advances the rods in a paired evaluation of cg. direct: the direct solve, "
+                            "timed in every evaluation; cg: cg from zero to the tightest tolerance, without any direct "
+                            "solve, for large nets and lattices"),
                  Words<Reference>{{"direct", Reference::direct}, {"cg", Reference::cg}}, &SolveSpec::reference);
-  table.optional(number_key("tolerance",
-                            "tolerance of the timed solves, relative to ||b||; in a closed loop also of those that "
-                            "advance the rod")
-                     .above(0)
-                     .at_most(1),
-                 &SolveSpec::tolerance);
+  table.optional(
+      number_key(
+          "tolerance",
+          "tolerance of the timed solves, relative to ||b||; in a closed loop also of the solves that advance the rod")
+          .above(0)
+          .at_most(1),
+      &SolveSpec::tolerance);
   table.optional(choice_key("forcing",
-                            "fixed: every solve to `tolerance`; eisenstat_walker: the first of a step, and the next as "
-                            "exactly as the Newton iteration that it serves pays for (closed loops)"),
+                            "fixed: every solve to `tolerance`; eisenstat_walker: the first solve of a step to "
+                            "`tolerance`, later ones to a tolerance from the convergence of Newton (closed loops)"),
                  Words<Forcing>{{"fixed", Forcing::fixed}, {"eisenstat_walker", Forcing::eisenstat_walker}},
                  &SolveSpec::forcing);
   table.optional(
       integer_key("max_iterations", "limit on cg iterations; 0: ten times the number of unknowns").from(0, 32767),
       &SolveSpec::max_iterations);
-  table.optional(
-      integer_key("timing_repeats", "times are medians over so many repeats of guess and solve").from(1, 1000),
-      &SolveSpec::timing_repeats);
+  table.optional(integer_key("timing_repeats", "repeats of guess and solve; times are medians over them").from(1, 1000),
+                 &SolveSpec::timing_repeats);
   return table;
 }
 
@@ -161,8 +160,7 @@ KeyTable<SolveSpec> solve_keys() {
 Key time_key() { return object_key("time", "time stepping", time_keys().keys()); }
 
 Key solve_key() {
-  return object_key("solve", "what moves the rods towards their constraints: mostly linear solves", solve_keys().keys(),
-                    "method")
+  return object_key("solve", "solver that moves the rods towards their constraints", solve_keys().keys(), "method")
       .defaults_to(nlohmann::ordered_json::object());
 }
 
@@ -205,7 +203,7 @@ OutputSpec output_spec(const Job& job) {
 /// Checks settings that are not available for CG on motions, which does not solve for multipliers.
 static void check_condensed(const Point& point, const Job& job) {
   if (method(point) != Method::cg || point.text("solve.preconditioner") != "condensed") return;
-  constexpr const char* not_allowed = "not allowed with the preconditioner \"condensed\", whose unknowns are motions";
+  constexpr const char* not_allowed = "not allowed with the preconditioner \"condensed\" (its unknowns are motions)";
   if (point.text("solve.norm") != "true_residual")
     throw job_error(job.path, "solve.norm",
                     fmt::format("\"{}\" is {}; must be \"true_residual\"", point.text("solve.norm"), not_allowed));
@@ -221,22 +219,21 @@ void check_method(const Point& point, const Job& job) {
   if (const Method own = method(point);
       point.has("time.balance") && point.number("time.balance") != 0 && own != Method::cg && own != Method::direct)
     throw job_error(job.path, "time.balance",
-                    fmt::format("true is not allowed with solve.method \"{}\", which solves no linear system that "
-                                "could hold the balance; must be with \"direct\" or \"cg\"",
+                    fmt::format("true is not allowed with solve.method \"{}\", which solves no linear system; must be "
+                                "used with \"direct\" or \"cg\"",
                                 point.text("solve.method")));
   if (evaluation(point) == Evaluation::closed_loop) return;
   if (point.has("solve.forcing") && point.text("solve.forcing") != "fixed")
     throw job_error(job.path, "solve.forcing",
-                    fmt::format("\"{}\" is not allowed with evaluation \"paired\", in which the reference advances "
-                                "the rod, whatever the tolerance of cg; must be with \"closed_loop\"",
+                    fmt::format("\"{}\" is not allowed with evaluation \"paired\", whose reference solve advances the "
+                                "rod; must be used with \"closed_loop\"",
                                 point.text("solve.forcing")));
   const Method own = method(point);
   if (own == Method::cg || own == Method::direct) return;
-  throw job_error(
-      job.path, "solve.method",
-      fmt::format("\"{}\" is not allowed with evaluation \"paired\", in which the direct solve advances the "
-                  "rod: what stands in its place has a trajectory of its own; must be with \"closed_loop\"",
-                  point.text("solve.method")));
+  throw job_error(job.path, "solve.method",
+                  fmt::format("\"{}\" is not allowed with evaluation \"paired\", whose direct solve advances the rod; "
+                              "must be used with \"closed_loop\"",
+                              point.text("solve.method")));
 }
 
 }  // namespace rodsweep

@@ -54,7 +54,7 @@ void check_state(const TrainingJob& training, const std::filesystem::path& file)
   want(training.training.loss == LossKind::mse, "training.loss", quoted(word_of(losses, training.training.loss)),
        "\"mse\"");
   want(training.turned_copies == 0, "training.turned_copies", std::to_string(training.turned_copies),
-       "0: turning does not change it");
+       "0: it does not depend on turning");
 }
 
 void check(const TrainingJob& training, const std::filesystem::path& file) {
@@ -78,13 +78,13 @@ void check(const TrainingJob& training, const std::filesystem::path& file) {
   }
   if (training.noisy_copies > 0) {
     throw job_error(file, "training.noisy_copies",
-                    fmt::format("{} is not allowed with network.encoding \"{}\"; must be with \"state\"",
+                    fmt::format("{} is not allowed with network.encoding \"{}\"; must be used with \"state\"",
                                 training.noisy_copies, word_of(encodings, training.network.encoding)));
   }
   if (training.turned_copies > 0 && !is_of_graphs(training.network.encoding)) {
     throw job_error(
         file, "training.turned_copies",
-        fmt::format("{} is not allowed with network.encoding \"{}\", which turning does not change; remove this key",
+        fmt::format("{} is not allowed with network.encoding \"{}\", which does not depend on turning; remove this key",
                     training.turned_copies, word_of(encodings, training.network.encoding)));
   }
   if (training.network.moves && settings.loss != LossKind::mse) {

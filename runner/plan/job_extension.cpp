@@ -89,12 +89,10 @@ void rename(Json& value, const InputFiles& files, const InputFiles& as) {
 void check_extends(const Job& job, const Job& before) {
   const std::string file = before.path.native();
   const auto refuse = [&](const std::string& path, const std::string& what) {
-    throw job_error(
-        job.path, path,
-        fmt::format(
-            "{}. --extend takes the job of {} (rodsweep info {} --job) with more samples, more "
-            "values in a grid, more guesses or another time limit, and no other change; run this job without --extend",
-            what, file, file));
+    throw job_error(job.path, path,
+                    fmt::format("{}. --extend allows these changes to the job of {} (rodsweep info {} --job): more "
+                                "samples, grid values or guesses, or another time limit; run this job without --extend",
+                                what, file, file));
   };
   if (job.samples < before.samples) {
     refuse("samples", fmt::format("{} here are fewer than the {} in {}", job.samples, before.samples, file));
@@ -109,7 +107,7 @@ void check_extends(const Job& job, const Job& before) {
       if (guess_label(guesses[i]) == guess_label(guess))
         if (const auto found = difference(guesses[i], guess, element("guesses", i)))
           refuse(found->path, fmt::format("{} here, {} in {}", shown(found->now), shown(found->before), file));
-    refuse("guesses", fmt::format("\"{}\" of {} is not among them", guess_label(guess), file));
+    refuse("guesses", fmt::format("\"{}\" of {} is missing", guess_label(guess), file));
   }
   for (const char* free : {"$schema", "name", "description", "samples", "guesses", "task_time_limit_s"})
     now.erase(free), then.erase(free);

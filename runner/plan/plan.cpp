@@ -32,7 +32,7 @@ std::int64_t point_count(const SweepSpace& space, const Job& job) {
   const std::int64_t points = space.grid_points();
   if (static_cast<double>(points) * static_cast<double>(job.samples) <= most_tasks) return points * job.samples;
   throw job_error(job.path, "",
-                  fmt::format("{} grid points with {} samples each are too many tasks; the most is {}", points,
+                  fmt::format("{} grid points with {} samples each are too many tasks; must be at most {}", points,
                               job.samples, most_tasks));
 }
 

@@ -20,9 +20,9 @@ void check_scene(const SceneSpec& scene, const Job& job) {
   if (rod && segment_count(scene) < 2) {
     throw job_error(
         job.path, "scene.segments",
-        fmt::format("{} is not allowed with clamp \"{}\", since nothing is jointed; must be at least 2, or 1 with "
-                    "clamp \"wall\"",
-                    rod->segments, rod->clamp == Clamp::free ? "free" : "segment"));
+        fmt::format(
+            "{} is not allowed with clamp \"{}\": there is no joint; must be at least 2, or 1 with clamp \"wall\"",
+            rod->segments, rod->clamp == Clamp::free ? "free" : "segment"));
   }
   try {
     validate(scene);

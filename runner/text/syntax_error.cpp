@@ -75,17 +75,17 @@ std::string unclosed_text(const std::string& problem) {
 /// An explanation of the wrong token at `at`; else the parser's message.
 std::string wrong_token_text(const std::string& text, std::size_t at, const std::string& problem) {
   const char c = text[at];
-  if (c == '/' || c == '#') return "JSON has no comments: remove it, or put it into \"description\"";
-  if (c == '\'') return "texts and keys stand in double quotes";
+  if (c == '/' || c == '#') return "JSON does not allow comments: remove it, or put it into \"description\"";
+  if (c == '\'') return "strings and keys must be in double quotes";
   std::size_t end = at;
   while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
   std::string word = text.substr(at, std::min<std::size_t>(end - at, 20));
   if (word.empty() || problem.find("invalid literal") == std::string::npos) return problem;
   std::transform(word.begin(), word.end(), word.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  if (word == "true" || word == "false") return fmt::format("{} is written in small letters", word);
-  if (word == "none") return "null is JSON's word for none";
-  if (word == "nan" || word == "inf" || word == "infinity") return "JSON has numbers only: no NaN, no infinity";
-  return "texts and keys stand in double quotes";
+  if (word == "true" || word == "false") return fmt::format("{} must be in lower case", word);
+  if (word == "none") return "use null instead of none";
+  if (word == "nan" || word == "inf" || word == "infinity") return "JSON does not allow NaN or infinity";
+  return "strings and keys must be in double quotes";
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ std::string syntax_error_text(const std::string& text, std::size_t last, const s
     return placed(text, after_last_entry(token_begin(text, last, token)), "a comma is missing here");
   const std::size_t before = after_last_entry(last);
   if (last < text.size() && (text[last] == '}' || text[last] == ']') && before > 0 && text[before - 1] == ',')
-    return placed(text, before - 1, "a comma after the last entry, which JSON does not have: remove it");
+    return placed(text, before - 1, "JSON does not allow a comma after the last entry: remove it");
   if (last >= text.size()) return placed(text, last, problem);
   const bool other_bracket =
       (text[last] == '}' && expects(problem, "]")) || (text[last] == ']' && expects(problem, "}"));

@@ -15,21 +15,21 @@ DatasetReader opened(const std::filesystem::path& path, const TrainingJob& train
   by_rank_0(ranks, [&] {
     std::error_code error;
     if (std::filesystem::exists(path, error)) return;
-    throw job_error(job.path, "data",
-                    fmt::format("there is no file {}: make the data set first, with `rodsweep run` and a job of kind "
-                                "\"dataset\"",
-                                path.native()));
+    throw job_error(
+        job.path, "data",
+        fmt::format("{} was not found: make the data set first, with `rodsweep run` and a job of kind \"dataset\"",
+                    path.native()));
   });
   DatasetReader set(path, ranks);
   if (set.size() <= training.validation_simulations) {
     throw job_error(job.path, "validation_simulations",
-                    fmt::format("{} is not allowed, since {} holds {} simulations and some must be left to learn from",
+                    fmt::format("{} is not allowed: {} holds {} simulations, and some must remain for training",
                                 training.validation_simulations, path.native(), set.size()));
   }
   if (training.training_simulations > set.size() - training.validation_simulations) {
     throw job_error(
         job.path, "training_simulations",
-        fmt::format("{} is not allowed, since {} holds {} simulations, {} of which are for validation",
+        fmt::format("{} is not allowed: {} holds {} simulations, and {} are for validation",
                     training.training_simulations, path.native(), set.size(), training.validation_simulations));
   }
   return set;

@@ -51,8 +51,8 @@ void write_starts(hid_t file, std::vector<TrainingStart> starts) {
   }
   const std::vector<hsize_t> rows{starts.size()};
   write(file, "/runs/ranks", rows, ranks, "1", "processes");
-  write(file, "/runs/exit_code", rows, exit_codes, "1", "of the program; -1: it runs still, or was killed");
-  write(file, "/runs/oversubscribed", rows, oversubscribed, "1", "1: more ranks than cores, times are worthless");
+  write(file, "/runs/exit_code", rows, exit_codes, "1", "exit code of the program; -1: it still runs, or was killed");
+  write(file, "/runs/oversubscribed", rows, oversubscribed, "1", "1: more ranks than cores; times are not valid");
 }
 
 void write_epochs(hid_t file, const ModelCard& card) {
@@ -92,7 +92,7 @@ void write_card(hid_t file, const ModelCard& card) {
   write_texts(file, "/data/hash", {card.data_hash});
   write_starts(file, card.starts);
   write(file, "/axes/tolerance", {ValidationRatio::tolerance_count}, ValidationRatio::tolerances(), "1",
-        "of CG, relative to the norm of b");
+        "tolerances of CG, relative to ||b||");
   write_epochs(file, card);
   for (const RatioPlace& place : ratio_places)
     write(file, place.path, {ValidationRatio::tolerance_count}, card.*place.member, "1", place.meaning);
@@ -137,13 +137,14 @@ void write_model(hid_t file, const Model& model) {
 
 void write_checkpoint(hid_t file, const Checkpoint& checkpoint) {
   const std::vector<hsize_t> extent{checkpoint.weights.size()};
-  write(file, "/checkpoint/weights", extent, checkpoint.weights, "1", "as they are now, padding included");
+  write(file, "/checkpoint/weights", extent, checkpoint.weights, "1", "current weights, padding included");
   write(file, "/checkpoint/mean", extent, checkpoint.optimiser.mean, "1", "Adam's mean of gradients");
   write(file, "/checkpoint/square", extent, checkpoint.optimiser.square, "1", "Adam's mean of their squares");
   write(file, "/checkpoint/step", {1}, std::vector<std::int64_t>{checkpoint.optimiser.step}, "1", "steps taken");
   write(file, "/checkpoint/epoch_loss", {1}, std::vector<double>{checkpoint.epoch_loss}, "1",
-        "sum of the losses of the steps of the epoch that has begun");
-  write(file, "/checkpoint/epoch_s", {1}, std::vector<double>{checkpoint.epoch_seconds}, "s", "time spent on it");
+        "sum of the step losses in the current epoch");
+  write(file, "/checkpoint/epoch_s", {1}, std::vector<double>{checkpoint.epoch_seconds}, "s",
+        "time spent on the current epoch");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ struct RatioPlace {
 inline constexpr std::array<RatioPlace, 2> ratio_places{{
     {"/validation/cg_ratio", "CG iterations with the model over those from zero, mean over validation simulations",
      &ModelCard::cg_ratio},
-    {"/validation/base_cg_ratio", "the same of the model's base guess alone", &ModelCard::base_cg_ratio},
+    {"/validation/base_cg_ratio", "the same for the model's base guess alone", &ModelCard::base_cg_ratio},
 }};
 
 /// Columns with one row per scene type, if the validation simulations have several types.
@@ -60,7 +60,7 @@ inline constexpr std::array<ScenePlace, 2> scene_places{{
      "CG iterations with the model over those from zero, mean over validation "
      "simulations of the scene",
      &SceneRatios::cg_ratio},
-    {"/validation/scenes/base_cg_ratio", "the same of the model's base guess alone", &SceneRatios::base_cg_ratio},
+    {"/validation/scenes/base_cg_ratio", "the same for the model's base guess alone", &SceneRatios::base_cg_ratio},
 }};
 
 /// Text columns with one row per start.

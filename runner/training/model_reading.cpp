@@ -28,7 +28,7 @@ std::vector<T> read(hid_t file, const std::string& path, const std::vector<hsize
 std::vector<float> read_finite(hid_t file, const std::string& path, const std::vector<hsize_t>& extent) {
   std::vector<float> values = read<float>(file, path, extent);
   if (!std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }))
-    throw Damage(path + " holds something that is not a finite number");
+    throw Damage(path + " holds a value that is not finite");
   return values;
 }
 
@@ -68,7 +68,7 @@ std::shared_ptr<Model> read_network(hid_t file, const fs::path& path) {
     if (!(scale.deviation > 0).all()) throw Damage(std::string(place.folder) + "deviation is not above 0 everywhere");
   }
   if (hdf5::read_text_attribute(file, "/model", "hash") != model_hash(*model))
-    throw Damage("the model is not what was written: it has another hash");
+    throw Damage("the hash of the model differs");
   return model;
 }
 
@@ -126,7 +126,7 @@ ModelCard read_card(hid_t file) {
     card.*place.member = hdf5::read_int_attribute(file, place.group, place.name);
   card.epochs = read_epochs(file);
   if (card.best_epoch < 0 || card.best_epoch > static_cast<std::int64_t>(card.epochs.size()))
-    throw Damage(fmt::format("the best epoch is said to be {} of {}", card.best_epoch, card.epochs.size()));
+    throw Damage(fmt::format("the best epoch is {} of {}", card.best_epoch, card.epochs.size()));
   for (const RatioPlace& place : ratio_places) {
     const auto ratios = read<double>(file, place.path, {ValidationRatio::tolerance_count});
     std::copy(ratios.begin(), ratios.end(), (card.*place.member).begin());
@@ -134,7 +134,7 @@ ModelCard read_card(hid_t file) {
   card.scenes = read_scenes(file);
   const std::string word = hdf5::read_text_attribute(file, "/training", "ending");
   const auto ending = std::find_if(endings.begin(), endings.end(), [&](const auto& e) { return word == e.second; });
-  if (ending == endings.end()) throw Damage(fmt::format("the training is said to have ended \"{}\"", word));
+  if (ending == endings.end()) throw Damage(fmt::format("\"{}\" is not an ending of a training", word));
   card.ending = ending->first;
   card.message = hdf5::read_text_attribute(file, "/training", "message");
   card.starts = read_starts(file);

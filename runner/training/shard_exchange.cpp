@@ -12,7 +12,7 @@ ShardExchange::ShardExchange(MPI_Comm comm, int shards, std::size_t size) : comm
   check_mpi(MPI_Comm_size(comm, &ranks_), "MPI_Comm_size");
   const std::size_t total = static_cast<std::size_t>(ranks_) + static_cast<std::size_t>(shards) * size;
   if (total > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw std::length_error("the gradients of all shards are more numbers than MPI can count: use fewer shards");
+    throw std::length_error("the gradients of all shards exceed the largest count of MPI: use fewer shards");
   int first = 0;
   for (int rank = 0; rank < ranks_; ++rank) {
     const int own = shards / ranks_ + (rank < shards % ranks_ ? 1 : 0);

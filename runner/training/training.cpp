@@ -101,8 +101,8 @@ void Training::end_epoch() {
 
 void Training::diverge(const char* loss) {
   card_.ending = Ending::diverged;
-  card_.message = fmt::format("the {} loss is not finite any more in epoch {}: try a lower training.rate", loss,
-                              card_.epochs.size() + 1);
+  card_.message =
+      fmt::format("the {} loss is not finite in epoch {}: try a lower training.rate", loss, card_.epochs.size() + 1);
 }
 
 /// Batches are distributed over the ranks; their losses are summed in order.
