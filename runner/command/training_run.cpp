@@ -81,7 +81,7 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   collectively(mpi_.world(), [&] {
     const LearningSets sets(training_job_, job_, mpi_.world());
     if (earlier && earlier->card.data_hash != sets.hash())
-      throw FileError(fmt::format("{} cannot be continued: the data set {} has changed", path_.native(),
+      throw FileError(fmt::format("{} cannot be continued: {} is not the data set of its earlier runs", path_.native(),
                                   paths_of(training_job_.data)));
     data_ = training_data(training_job_, sets, threads_);
     simulations = ratio_simulations(training_job_, sets, mpi_.rank(), mpi_.size());

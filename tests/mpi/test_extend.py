@@ -133,7 +133,7 @@ class Extending(ExtendCase):
         original, = status("old.h5")["starts"]
         self.assertEqual({**first, "source": ""}, original)
         self.assertEqual((first["source"], first["tasks"], second["source"], second["tasks"]), ("old.h5", 4, "", 2))
-        self.assertIn("start 0 (of old.h5, extended here): ", rodsweep(0, "info", "kept-0.h5").stdout)
+        self.assertIn("start 0 (copied from old.h5): ", rodsweep(0, "info", "kept-0.h5").stdout)
         with h5py.File("old.h5") as old, h5py.File("kept-0.h5") as new:
             for name in ("rank", "host", "elapsed_s", "write_s"):
                 np.testing.assert_array_equal(old[f"timing/tasks/{name}"][:], new[f"timing/tasks/{name}"][:][[0, 1, 3, 4]])

@@ -31,7 +31,7 @@ TEST_CASE("the summary tells how a training ended, and the model's CG ratio besi
   const auto path = folder / "net.h5";
   std::ofstream(path) << std::string(1500, ' ');
   const std::string file = "\n2 min 05 s for 2 epochs; model: " + path.native() + ", 1.5 kB";
-  const std::string kept = "; the model is that of epoch 1, validation loss 0.4";
+  const std::string kept = "; the model is from epoch 1, validation loss 0.4";
 
   ModelCard card = card_of_two_epochs();
   CHECK(training_summary(card, path) == "net: 2 of 120 epochs" + kept + file);

@@ -104,7 +104,7 @@ TEST_CASE("failed simulations are left out with a note") {
   CHECK(data.note() == "1 of 3 simulations of " + (folder / "a.h5").native() +
                            " failed and are left out (the first: task 2, diverged: step 2: too bad)");
   make_data_set(folder / "none.h5", ragged_job(), 0);
-  CHECK_THAT(refusal_of(folder / "none.h5"), Contains("holds no simulation that can be used: all 3 failed"));
+  CHECK_THAT(refusal_of(folder / "none.h5"), Contains("holds no usable simulation: all 3 failed"));
 }
 
 TEST_CASE("the hash is that of the data: the same for the same job and in a packed copy, another for another") {
@@ -125,7 +125,7 @@ TEST_CASE("the hash is that of the data: the same for the same job and in a pack
 
 TEST_CASE("what is no finished data set is refused with what to do") {
   const TemporaryFolder folder;
-  CHECK_THAT(refusal_of(folder / "none.h5"), EndsWith("none.h5: there is no such file"));
+  CHECK_THAT(refusal_of(folder / "none.h5"), EndsWith("none.h5: file not found"));
   std::ofstream(folder / "notes.txt") << "hello";
   CHECK_THAT(refusal_of(folder / "notes.txt"), EndsWith("is not an HDF5 file"));
 
@@ -137,7 +137,7 @@ TEST_CASE("what is no finished data set is refused with what to do") {
 
   ResultsFile::create(folder / "task.h5", plan_of(ragged_job()).alone(1, 1), test_provenance(), MPI_COMM_SELF).close();
   CHECK_THAT(refusal_of(folder / "task.h5"),
-             EndsWith("holds one task of a data set, made by `rodsweep rerun`: give the file of the data set"));
+             EndsWith("holds only one task of a data set, from `rodsweep rerun`: give the file of the data set"));
 
   make_data_set(folder / "part.h5", ragged_job(), 1, true);
   CHECK_THAT(refusal_of(folder / "part.h5"),
@@ -157,8 +157,7 @@ TEST_CASE("a damaged simulation is refused, the others are read") {
   }
   const DatasetReader data(path);
   CHECK(data.read(0).systems.size() == 4);
-  CHECK_THAT(message_of<FileError>([&] { data.read(1); }),
-             Contains("is damaged: the data of task 1 are not what was written"));
+  CHECK_THAT(message_of<FileError>([&] { data.read(1); }), Contains("is damaged: wrong checksum of task 1"));
 }
 
 }  // namespace test_dataset

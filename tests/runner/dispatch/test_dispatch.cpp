@@ -165,7 +165,7 @@ TEST_CASE("a report of a task that the worker does not have is a protocol error"
   Sweep sweep(2, tasks_of_cost({2, 1}));
   sweep.master.step();
   Inbox(sweep.network[1]).report(1);
-  CHECK_THROWS_WITH(sweep.master.step(), "rank 1 reports task 1, which it does not have");
+  CHECK_THROWS_WITH(sweep.master.step(), "rank 1 reports task 1, which is not assigned to it");
 }
 
 TEST_CASE("a message of the wrong kind is a protocol error") {

@@ -144,7 +144,7 @@ TEST_CASE("of a signal that mpirun sent it is said that Ctrl-C may have been the
     for (const int end : {texts[0], texts[1], ready[0], ready[1]}) close(end);
     return std::string(text);
   };
-  CHECK(cause_of_sigterm(true, true) == "mpirun (SIGTERM), which got Ctrl-C or a signal, or lost a rank");
+  CHECK(cause_of_sigterm(true, true) == "mpirun (SIGTERM), after Ctrl-C, a signal or the loss of a rank");
   CHECK(cause_of_sigterm(false, true) == "SIGTERM");
   CHECK(cause_of_sigterm(true, false) == "SIGTERM");
 }

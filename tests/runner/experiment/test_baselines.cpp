@@ -124,12 +124,12 @@ TEST_CASE("models are refused where they are for something else") {
     return message_of<JobError>([&] { check_guesses(Plan(parse_job(job.dump(), folder / "job.json"))); });
   };
   CHECK_THAT(refusal_of(instead_of_the_solve("states.h5")),
-             Catch::Contains("solve.model: states.h5 is not allowed: it is of the encoding \"state\""));
+             Catch::Contains("solve.model: states.h5 is not allowed: its encoding is \"state\""));
   CHECK(refusal_of(instead_of_the_solve("systems.h5")).empty());
   Json simulator = instead_of_the_solve("systems.h5");
   simulator["solve"]["method"] = "state_network";
   CHECK_THAT(refusal_of(simulator),
-             Catch::Contains("solve.model: systems.h5 is not allowed: it corrects linear systems"));
+             Catch::Contains("solve.model: systems.h5 is not allowed: its encoding is not \"state\""));
   CHECK_THAT(refusal_of(with("/guesses", R"(["zero", {"copingnet": {"model": "states.h5"}}])")),
              Catch::Contains("guesses[1]: states.h5 is not allowed"));
 }

@@ -233,7 +233,7 @@ TEST_CASE("a file of more bytes than any disk has is refused with the dataset an
   const Plan plan = plan_of(job);
   CHECK_THAT(message_of<FileError>([&] { file_bytes(plan); }),
              StartsWith("job.json: the results file would be too large: /solves/initial_residual has "
-                        "1000000000000000 x 600 values of 8 bytes, with which it exceeds 1e+18 bytes; record less"));
+                        "1000000000000000 x 600 values of 8 bytes, and the file exceeds 1e+18 bytes; record less"));
 }
 
 TEST_CASE("the bytes of a file are reserved when it is created, where the file system can") {

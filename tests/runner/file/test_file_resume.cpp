@@ -97,7 +97,7 @@ TEST_CASE("a sweep can be resumed more often than /runs has rows, and says so") 
                     std::vector<std::string>(run_rows, "2025-01-01T00:00:00Z"));
   ResultsFile file = resume(made.path, made.plan);
   CHECK(file.run_index() == run_rows - 1);
-  CHECK_THAT(file.note(), Contains("was started 64 times before") && Contains("/runs"));
+  CHECK_THAT(file.note(), Contains("has 64 rows") && Contains("/runs"));
   const FileSummary summary = inspect(made.path);
   CHECK(summary.runs.size() == run_rows);
   CHECK(summary.runs.back().provenance.begin_utc != "2025-01-01T00:00:00Z");
@@ -112,8 +112,7 @@ TEST_CASE("a task whose data are not what was written is pending again when a sw
   {
     ResultsFile file = resume(folder / "a.h5", plan);
     CHECK(file.done() == std::vector<std::uint8_t>{0, 1, 1, 1, 0, 0});
-    CHECK(file.note() == (folder / "a.h5").native() +
-                             ": task 0 is run again, since the data there are not what was written (checksum)");
+    CHECK(file.note() == (folder / "a.h5").native() + ": task 0 is run again, because of a wrong checksum");
     CHECK(inspect(folder / "a.h5").done == 3);
     for (const std::int64_t i : {0, 4, 5}) file.write(plan.task(i), synthetic_record(plan, i));
   }
@@ -141,8 +140,7 @@ TEST_CASE("failed tasks are run again on request, if they may end otherwise") {
       ResultsFile::resume(folder / "a.h5", plan, test_provenance(), MPI_COMM_SELF, Retry::failed).value();
   CHECK(file.done() == std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0});
   CHECK(file.note() ==
-        (folder / "a.h5").native() +
-            ": 2 tasks, the first being 1, are run again, after an error, for want of time or after a crash");
+        (folder / "a.h5").native() + ": 2 tasks (first: 1) are run again, after an error, a timeout or a crash");
   CHECK(inspect(folder / "a.h5").done == 2);
 }
 

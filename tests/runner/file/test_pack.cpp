@@ -56,7 +56,7 @@ TEST_CASE("a damaged file is not packed, and nothing is left behind") {
   const FullFile made(6);
   hdf5::write_row<double>(hdf5::open_file(made.path, H5F_ACC_RDWR).id(), "/steps/joint_gap", 4, 12345);
   CHECK_THAT(message_of<FileError>([&] { pack_results(made.path, made.folder / "b.h5"); }),
-             Contains("the data of task 1 are not what was written; nothing was packed"));
+             Contains("wrong checksum of task 1; nothing was packed"));
   CHECK(entries(made.folder.path()) == 1);
 }
 
@@ -79,8 +79,8 @@ TEST_CASE("a packed copy is not continued, and what to do is said") {
   CHECK(message_of<FileError>([&] {
           ResultsFile::resume(made.folder / "b.h5", made.plan, test_provenance(), MPI_COMM_SELF);
         }) == (made.folder / "b.h5").native() +
-                  " is a packed copy, which cannot be written: resume the file that it was made from, or run into "
-                  "another file with -o FILE");
+                  " is a packed copy, which cannot be resumed: resume the original, or run into another file with "
+                  "-o FILE");
   CHECK(bytes_of(made.folder / "b.h5") == before);
 }
 
@@ -91,7 +91,7 @@ TEST_CASE("the file of one task run again is not continued either") {
   CHECK(inspect(folder / "one.h5").rerun_of_task == 3);
   CHECK_THAT(
       message_of<FileError>([&] { ResultsFile::resume(folder / "one.h5", plan, test_provenance(), MPI_COMM_SELF); }),
-      Contains("holds one task of a sweep, made by `rodsweep rerun`"));
+      Contains("holds only one task of a sweep, from `rodsweep rerun`"));
 }
 
 }  // namespace test_pack

@@ -28,7 +28,7 @@ TEST_CASE("a file that cannot be read is refused with key, path and reason") {
   CHECK(folder.refusal(learned("models/none.h5")) ==
         (folder.path() / "job.json").native() + ": guesses[1].copingnet.model: \"models/none.h5\" is not allowed: " +
             (folder.path() / "models/none.h5").native() +
-            " is not there; the path is relative to the job file's folder");
+            " was not found; the path is relative to the job file's folder");
   folder.write("models/bending.h5", "weights");
   CHECK_THAT(folder.refusal(learned("models/bendin.h5")),
              Catch::EndsWith("folder; did you mean \"models/bending.h5\"?"));
@@ -41,7 +41,7 @@ TEST_CASE("a file that is missing may come from a job beside, and may be missing
   const JobFolder folder;
   folder.write("data.json", "{}");
   CHECK_THAT(folder.refusal(learned("../results/data.h5")),
-             Catch::EndsWith("; does " + (folder.path() / "data.json").native() + " make it? Then run that first"));
+             Catch::EndsWith("; if " + (folder.path() / "data.json").native() + " makes it, run that job first"));
   const Job job = parse_job(learned("none.h5").dump(), folder.path() / "job.json", MissingFiles::accepted);
   CHECK(job.files.at("none.h5").hash.empty());
   REQUIRE(missing_files(job).size() == 1);
@@ -58,7 +58,7 @@ TEST_CASE("a training misses the data sets that are not there") {
   CHECK(missing_file_text(folder.path() / "job.json", missing.front()) ==
         (folder.path() / "job.json").native() +
             ": data[1]: \"there.h5\" is not allowed: " + (folder.path() / "there.h5").native() +
-            " is not there; the path is relative to the job file's folder; did you mean \"here.h5\"?");
+            " was not found; the path is relative to the job file's folder; did you mean \"here.h5\"?");
 }
 
 TEST_CASE("what a task is depends on what its files hold, not on their names") {

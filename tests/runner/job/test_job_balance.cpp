@@ -34,7 +34,7 @@ TEST_CASE("the balance is refused where no linear system could hold it") {
   const Json closed = with("/evaluation", "\"closed_loop\"", without("/guesses", with("/time/balance", "true")));
   for (const std::string method : {"pbd", "xpbd"})
     check_refused({{with("/solve", R"({"method": ")" + method + "\"}", closed), "time.balance: true ",
-                    "solve.method \"" + method + "\"", "must be with \"direct\" or \"cg\""}});
+                    "solve.method \"" + method + "\"", "must be used with \"direct\" or \"cg\""}});
 }
 
 TEST_CASE("data sets have what the balance is kept against, where any task keeps it") {

@@ -45,7 +45,7 @@ TEST_CASE("nearest neighbours without data, or with none, are refused") {
   check_refused(
       {
           {neighbours("{}"), "guesses[1].knn.data: missing"},
-          {neighbours(R"({"data": "none.h5"})"), "guesses[1].knn.data: \"none.h5\" ", "is not there"},
+          {neighbours(R"({"data": "none.h5"})"), "guesses[1].knn.data: \"none.h5\" ", "was not found"},
           {neighbours(R"({"data": "data.h5", "k": 0})"), "guesses[1].knn.k: 0 is not allowed"},
           {neighbours(R"({"data": "data.h5", "neighbours": 4})"), "guesses[1].knn.neighbours: ", "did you mean \"k\"?"},
       },

@@ -16,7 +16,7 @@ TEST_CASE("a data set has no keys of guesses and solves, a sweep no systems: the
       {with("/record", R"({"systems": "none"})", data_job()), "record.systems: \"none\" ", "\"first\", \"all\""},
       {with("/record", R"({"system": "all"})", data_job()), "record.system: unknown key", "did you mean \"systems\"?"},
       {with("/record", R"({"systems": "all"})"), "record.systems: ", "\"dataset\", not to \"sweep\"",
-       "make the simulations a job of that kind"},
+       "use a job of kind \"dataset\""},
   });
   CHECK(refusal(data_job()).empty());
   CHECK(refusal(with("/record", R"({"systems": "all"})", data_job())).empty());

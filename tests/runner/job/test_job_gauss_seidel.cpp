@@ -53,7 +53,7 @@ TEST_CASE("keys of Gauss-Seidel are refused out of bounds and with other methods
       {by(R"({"method": "pbd", "stretch_stiffness": 1.5})"), "solve.stretch_stiffness: 1.5 ", "a number from 0 to 1"},
       {by(R"({"method": "pbd", "bending_stiffness": -1})"), "solve.bending_stiffness: -1 ", "a number from 0 to 1"},
       {with("/solve", R"({"iterations": 5})"), "solve.iterations: ", "\"xpbd\" or \"pbd\", not to \"cg\"",
-       "max_iterations, Newton time.newton_iterations"},
+       "use max_iterations for cg, time.newton_iterations for Newton"},
       {by(R"({"method": "xpbd", "stretch_stiffness": 1})"), "solve.stretch_stiffness: ", "\"pbd\", not to \"xpbd\"",
        "moduli and stretch_compliance_per_j of the scene"},
       {by(R"({"method": "xpbd", "bending_stiffness": 1})"), "solve.bending_stiffness: ", "\"pbd\", not to \"xpbd\"",
@@ -66,7 +66,7 @@ TEST_CASE("Gauss-Seidel is refused where the direct solve advances the rod, and 
     const Json job = with("/solve", R"({"method": ")" + method + "\"}");
     check_refused({
         {without("/guesses", job), "solve.method: \"" + method + "\" ", "evaluation \"paired\"",
-         "must be with \"closed_loop\""},
+         "must be used with \"closed_loop\""},
         {job, "guesses: only solve.method \"cg\" uses initial guesses"},
     });
   }

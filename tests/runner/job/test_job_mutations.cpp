@@ -64,7 +64,7 @@ TEST_CASE("a job with more than anyone writes is refused before it takes the mem
   const fs::path path = fs::temp_directory_path() / "rodsweep-large-job.json";
   std::ofstream(path) << std::string(17 << 20, ' ');
   CHECK_THAT(message_of<JobError>([&] { read_job(path); }),
-             Contains("rodsweep-large-job.json: is larger than a job may be, 16 MB") && Contains("samples"));
+             Contains("rodsweep-large-job.json: is too large; must be at most 16 MB") && Contains("samples"));
   fs::remove(path);
 
   Json many = small_job();

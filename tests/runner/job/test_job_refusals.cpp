@@ -27,7 +27,7 @@ TEST_CASE("a value that its key does not take is refused with what is allowed") 
       {with("/scene", "3"), "scene: 3 ", "must be an object {...}"},
       {with("/seed", "-1"), "seed: -1 ", "must be an integer from 0 to 9007199254740991"},
       {with("/solve", R"({"tolerance": 0})"), "solve.tolerance: 0 ", "must be a number above 0 and at most 1"},
-      {with("/$schema", "3"), "$schema: 3 ", "must be a text"},
+      {with("/$schema", "3"), "$schema: 3 ", "must be a string"},
       {Json::parse("[1]"), "[1] ", "must be an object {...}"},
       {with_guess(R"({"copingnet": {"model": 5}})"), "guesses[1].copingnet.model: 5 ", "must be the path of a file"},
       {with_guess(R"({"copingnet": {"model": {"a": {}}}})"), "guesses[1].copingnet.model: {\"a\":{}} ", "a file"},
@@ -105,7 +105,7 @@ TEST_CASE("a job's name must be usable as a file name") {
 
 TEST_CASE("text that is not JSON is refused with line, column and a caret under the place") {
   CHECK(refusal_of_text("{\"a\": 1,\n  \"b\": 2,\n}") ==
-        "job.json: line 2, column 9: a comma after the last entry, which JSON does not have: remove it\n"
+        "job.json: line 2, column 9: JSON does not allow a comma after the last entry: remove it\n"
         "  \"b\": 2,\n"
         "        ^");
   CHECK_THAT(refusal_of_text(""), StartsWith("job.json: line 1, column 1: syntax error while parsing value"));
@@ -115,16 +115,16 @@ TEST_CASE("text that is not JSON is refused with line, column and a caret under 
     return whole.substr(10, whole.find('\n') - 10);
   };
   CHECK(said("{\n  \"a\": 1\n  \"b\": 2\n}") == "line 2, column 9: a comma is missing here");
-  CHECK(said("{\"a\": NaN}") == "line 1, column 7: JSON has numbers only: no NaN, no infinity");
+  CHECK(said("{\"a\": NaN}") == "line 1, column 7: JSON does not allow NaN or infinity");
   CHECK(said("{\"a\": 1\n\n") == "line 1, column 8: the object before this is not closed: } is missing");
-  const std::string comment = "JSON has no comments: remove it, or put it into \"description\"";
+  const std::string comment = "JSON does not allow comments: remove it, or put it into \"description\"";
   CHECK(said("// no\n{}") == "line 1, column 1: " + comment);
   CHECK(said("{\n  # no\n}") == "line 2, column 3: " + comment);
-  CHECK(said("{\"a\": sweep}") == "line 1, column 7: texts and keys stand in double quotes");
-  CHECK(said("{'a': 1}") == "line 1, column 2: texts and keys stand in double quotes");
-  CHECK(said("{a: 1}") == "line 1, column 2: texts and keys stand in double quotes");
-  CHECK(said("[True]") == "line 1, column 2: true is written in small letters");
-  CHECK(said("[None]") == "line 1, column 2: null is JSON's word for none");
+  CHECK(said("{\"a\": sweep}") == "line 1, column 7: strings and keys must be in double quotes");
+  CHECK(said("{'a': 1}") == "line 1, column 2: strings and keys must be in double quotes");
+  CHECK(said("{a: 1}") == "line 1, column 2: strings and keys must be in double quotes");
+  CHECK(said("[True]") == "line 1, column 2: true must be in lower case");
+  CHECK(said("[None]") == "line 1, column 2: use null instead of none");
   CHECK(said("{\"a\": [1, 2\n}") == "line 2, column 1: the list before this is not closed: ] is missing");
   CHECK(said("[{\"a\": 1]") == "line 1, column 9: the object before this is not closed: } is missing");
   CHECK(said("[1, 2") == "line 1, column 6: the list before this is not closed: ] is missing");
@@ -207,7 +207,7 @@ TEST_CASE("a sweep that its key does not take is refused") {
       {length(R"({"uniform": [3, 2]})"), "scene.length_m.uniform: [3,2] ", "must not be above the second"},
       {length(R"({"uniform": [1, 2, 3]})"), "scene.length_m.uniform: [1,2,3] ", "the two ends of a range [a, b]"},
       {length(R"({"uniform": [{"grid": [1]}, 2]})"), "scene.length_m.uniform[0]: {\"grid\":[1]} ", number,
-       "a range's ends are not swept"},
+       "the ends of a range cannot be swept"},
       {length(R"({"unifrom": [1, 2]})"), "scene.length_m: {\"unifrom\":[1,2]} ", number, "did you mean \"uniform\"?"},
       {with("/scene/initial_angle_deg", R"({"log_uniform": [0, 2]})"), "scene.initial_angle_deg.log_uniform: [0,2] ",
        "must lie above 0"},
@@ -216,17 +216,17 @@ TEST_CASE("a sweep that its key does not take is refused") {
       {segments(R"({"grid": [4, {"grid": [5, 0]}]})"), "scene.segments.grid[1].grid[1]: 0 ", integer},
       {segments(R"({"grid": []})"), "scene.segments.grid: [] ", "at least one value"},
       {segments(R"({"grid": [4], "zip": [5]})"), "scene.segments: {\"grid\":[4],\"zip\":[5]} ",
-       "no other key beside \"grid\""},
+       "no key other than \"grid\""},
       {with("/scene/clamp", R"({"uniform": [0, 2]})"), "scene.clamp.uniform: uniform draws a number",
        "\"segment\", \"wall\", \"free\""},
       {with("/samples", R"({"grid": [1, 2]})"), "samples: this key cannot be swept"},
-      {grid({small_job(), small_job()}), "this key cannot be swept", "put the sweep in place of a value"},
+      {grid({small_job(), small_job()}), "this key cannot be swept", "sweep a value instead"},
       {guesses(R"({"grid": [["zero"], ["zero", "previous"]]})"), "guesses: this key cannot be swept",
-       "or a sweep in place of a guess"},
+       "sweep one guess of the list"},
       {with("/scene/type", R"({"grid": ["bending_rod", "helix"]})"), "scene.type: this key cannot be swept",
        R"("scene": {"grid": [{"type": "bending_rod", ...}, {"type": "helix", ...}]})"},
       {with("/time/steps", R"({"zip": [1, 2]})", segments(R"({"zip": [4, 5, 6]})")),
-       "time.steps: this zip has 2 values and that of scene.segments has 3"},
+       "time.steps: this zip has 2 values, but scene.segments has 3"},
   });
 }
 
@@ -234,14 +234,14 @@ TEST_CASE("samples of which all would be equal are refused") {
   const Json job = with("/samples", "5");
   const Json partly = with("/scene/length_m", R"({"grid": [2, {"uniform": [1, 3]}]})", job);
   check_refused({
-      {job, "samples: 5 ", "all samples would be equal", "such as {\"uniform\": [a, b]}, or use 1"},
-      {partly, "samples: 5 ", "all samples would be equal", "such as {\"uniform\": [a, b]}, or use 1"},
+      {job, "samples: 5 ", "must be 1", "such as {\"uniform\": [a, b]}"},
+      {partly, "samples: 5 ", "must be 1", "such as {\"uniform\": [a, b]}"},
   });
   CHECK(refusal(with("/scene/length_m", R"({"grid": [{"uniform": [4, 5]}, {"uniform": [1, 3]}]})", job)) == "");
 }
 
 TEST_CASE("guesses that make no guess axis are refused") {
-  const std::string zero = "needs \"zero\" in this list", text = "must be a text of 1 to 60 characters on one line";
+  const std::string zero = "needs \"zero\" in this list", text = "must be a string of 1 to 60 characters on one line";
   const std::string names =
       "must be one of \"zero\", \"previous\", \"linear\", \"quadratic\", \"fischer\", \"subspace\", \"deflation\", "
       "\"regression\", \"copingnet\", \"knn\", \"oracle\", \"guarded\", \"totals\", \"first\", or an object such as "
@@ -265,11 +265,11 @@ TEST_CASE("guesses that make no guess axis are refused") {
        "did you mean \"error\"?"},
       {with_guess(R"({"uniform": [0, 1]})"), "guesses[1].uniform: uniform draws a number", "not allowed here"},
       {with_guess(R"({"grid": ["linear"], "error": 3})"), "guesses[1]: {\"grid\":[\"linear\"],\"error\":3} ",
-       "no other key beside \"grid\""},
+       "no key other than \"grid\""},
       {with_guess("\"orcale\""), "guesses[1]: \"orcale\" ", names, "did you mean \"oracle\"?"},
       {with_guess("3"), "guesses[1]: 3 ", names},
       {with_guess(R"({"oracle": {}, "label": "x"})"), "guesses[1]: {\"oracle\":{},\"label\":\"x\"} ", names,
-       "the label stands within: {\"previous\": {\"label\": \"...\"}}"},
+       "put the label inside: {\"previous\": {\"label\": \"...\"}}"},
   });
 }
 
@@ -306,7 +306,7 @@ TEST_CASE("a job of too many tasks or rows is refused") {
   large["record"] = {{"trajectory_every", 1}};
   large["scene"]["radius_m"] = large["time"]["step_s"] = grid({1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
   check_refused({
-      {job, "2 grid points with 1000000 samples each", "the most is 1000000"},
+      {job, "2 grid points with 1000000 samples each", "must be at most 1000000"},
       {large, "this job is too large", "more than 1000000 tasks or 1000000000000000 rows"},
   });
 }

@@ -96,7 +96,7 @@ TEST_CASE("nothing of a training is swept") {
 TEST_CASE("keys of simulations are refused with where a training has its own from, and the reverse") {
   check_refused({
       {with("/scene", bending_scene().dump(), train_job()), "scene: ", "\"sweep\" or \"dataset\", not to \"train\"",
-       "learns from the simulations in \"data\": remove this key"},
+       "remove this key"},
       {with("/guesses", R"(["zero"])", train_job()), "guesses: ", "\"sweep\", not to \"train\"", "remove this key"},
       {with("/network", "{}"), "network: ", "\"train\", not to \"sweep\""},
   });
@@ -104,9 +104,9 @@ TEST_CASE("keys of simulations are refused with where a training has its own fro
 
 TEST_CASE("missing, misspelt and impossible values of a training are refused") {
   check_refused({
-      {without("/data", train_job()), "data: missing: data set to learn from",
-       "a text of 1 to 4000 characters on one line, or a list of at least one such"},
-      {training_with("/data", "[]"), "data: ", "or a list of at least one such"},
+      {without("/data", train_job()), "data: missing: training data",
+       "a string of 1 to 4000 characters on one line, or a non-empty list of these"},
+      {training_with("/data", "[]"), "data: ", "or a non-empty list of these"},
       {training_with("/data", R"(["a.h5", 5])"), "data[1]: 5 is not allowed"},
       {training_with("/training/epoch", "3"), "training.epoch: unknown key", "did you mean \"epochs\"?"},
       {training_with("/training/lr", "3"), "training.lr: unknown key", "did you mean \"rate\"?"},
@@ -121,7 +121,7 @@ TEST_CASE("missing, misspelt and impossible values of a training are refused") {
 TEST_CASE("keys that the network or the loss has no use for are refused, also where its kind is the default") {
   const std::string not_factors = "network.processor \"message_passing\", not to \"factors\"";
   check_refused({
-      {training_with("/network/moves", "true"), "network.moves: ", not_factors, "factors work on joints alone"},
+      {training_with("/network/moves", "true"), "network.moves: ", not_factors, "factors work only on joints"},
       {training_with("/network", R"({"processor": "factors", "steps": 3})"), "network.steps: ", not_factors},
       {training_with("/training/cg_steps", "3"), "training.cg_steps: ", "\"in_the_loop\", not to \"energy\""},
   });
@@ -136,7 +136,7 @@ TEST_CASE("values that do not go together are refused") {
       {training_with("/network", R"({"processor": "message_passing", "moves": true})"), "network.moves: true ",
        "with training.loss \"energy\"", "use \"mse\" or remove this key"},
       {training_with("/training/noisy_copies", "2"), "training.noisy_copies: 2 ", "network.encoding \"linear_system\"",
-       "must be with \"state\""},
+       "must be used with \"state\""},
   });
 }
 

@@ -104,7 +104,7 @@ TEST_CASE("winds and trees that a job cannot mean are refused with what is allow
       {tree_job("tree", R"(, "taper": 0)"), "scene.taper: 0 ", "must be a number above 0 and at most 1"},
       {with("/scene/segments", "1", tree_job("tree", R"(, "taper": 0.5)")), "scene: taper is 0.5", "must be 1 "},
       {with("/scene/depth", "20", tree_job()), "scene: number of segments of a tree is 1.04604e+10", "at most 1e7"},
-      {tree_job("tree", R"(, "clamp": "free")"), "scene.clamp: ", "not to \"tree\"", "trees stand on the ground"},
+      {tree_job("tree", R"(, "clamp": "free")"), "scene.clamp: ", "not to \"tree\"", "trees are fixed to the ground"},
   });
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("a skeleton is found beside the job; units, axis and root are brought 
 TEST_CASE("a skeleton that is none is refused with file, line, value and bound") {
   CHECK(refusal_of_skeleton(plum).empty());
   CHECK(refusal_of_skeleton("") == "plum.swc:0: 0 nodes; must be at least 2");
-  const std::string id_above = "must be the id of a line above, or -1 of the first node alone";
+  const std::string id_above = "must be the id of a line above, or -1 for the first node only";
   const std::vector<std::pair<std::string, std::string>> after_first_line{
       {"2 0 0 1 0 1\n", "2: 6 values; must be the 7 of SWC: id type x y z radius parent"},
       {"2 0 0 1m 0 1 1\n", "2: y is \"1m\"; must be a finite number"},
@@ -149,7 +149,7 @@ TEST_CASE("a skeleton that is none is refused with file, line, value and bound")
   };
   for (const auto& [lines, says] : after_first_line)
     CHECK(refusal_of_skeleton("1 0 0 0 0 1 -1\n" + lines) == "plum.swc:" + says);
-  CHECK(refusal_of_skeleton("1 0 0 0 0 1 0\n") == "plum.swc:1: parent is 0; must be -1, since this is the first node");
+  CHECK(refusal_of_skeleton("1 0 0 0 0 1 0\n") == "plum.swc:1: parent is 0; must be -1 for the first node");
   const JobFolder folder;
   folder.write("plum.swc", "1 0 0 0\n");
   CHECK(folder.refusal(skeleton_job()) == (folder.path() / "job.json").native() +
@@ -162,7 +162,7 @@ TEST_CASE("nearest neighbours are refused on a tree, but not on a trunk") {
     job["guesses"].push_back({{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}});  // the data are not read yet
     return message_of<JobError>([&] { check_guesses(plan_of(job)); });
   };
-  check_refused({{tree_job(), "guesses[2]: \"knn\" ", "rods that branch", "27 segments of task 0"}},
+  check_refused({{tree_job(), "guesses[2]: \"knn\" ", "rods with branches", "27 segments of task 0"}},
                 refusal_of_neighbours);
   CHECK(refusal_of_neighbours(with("/scene/depth", "0", tree_job())).empty());
 }

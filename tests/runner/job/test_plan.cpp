@@ -170,7 +170,7 @@ TEST_CASE("a column says whether it varies, in which unit, and what it means") {
   CHECK(column(plan, "scene.segments").swept);
   CHECK_FALSE(column(plan, "scene.length_m").swept);
   CHECK(column(plan, "scene.length_m").unit == "m");
-  CHECK(column(plan, "scene.length_m").meaning == "length of the rod; of a tree's trunk");
+  CHECK(column(plan, "scene.length_m").meaning == "length of the rod or of a tree's trunk");
   CHECK(texts(plan, "solve.preconditioner") == std::vector<std::string>{"jacobi", "jacobi"});
   CHECK(texts(plan, "evaluation") == std::vector<std::string>{"paired", "paired"});
   CHECK_FALSE(has_column(plan, "seed"));

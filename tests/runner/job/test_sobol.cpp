@@ -94,8 +94,8 @@ TEST_CASE("more random values than Sobol's sequence has dimensions are refused")
   const auto most = static_cast<int>(SobolSequence::most_dimensions());
   for (int i = 0; i < most - 1; ++i)
     job["guesses"].push_back({{"oracle", {{"error", uniform(0, 1)}, {"label", fmt::format("{}", i)}}}});
-  CHECK(refusal(job) == fmt::format("job.json: sampling: \"sobol\" is not allowed, since this job draws {} values a "
-                                    "sample and Sobol's sequence has {} dimensions; use \"random\"",
+  CHECK(refusal(job) == fmt::format("job.json: sampling: \"sobol\" is not allowed: this job draws {} values per "
+                                    "sample, and the Sobol sequence has at most {} dimensions; use \"random\"",
                                     most + 1, most));
   CHECK(refusal(with("/sampling", "\"sobel\"")) ==
         "job.json: sampling: \"sobel\" is not allowed; must be one of \"random\", \"sobol\"; did you mean \"sobol\"?");
