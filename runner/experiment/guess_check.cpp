@@ -36,11 +36,11 @@ void check_model(const Plan& plan, const std::string& key, const std::filesystem
 void check_knn(const Plan& plan, const Task& task, const TaskSpec& spec, const std::string& key) {
   const bool loops = task.joints > task.segments - rod_count(spec.scene);
   if (!loops && !branches(spec.scene)) return;
-  throw job_error(plan.job().path, key,
-                  fmt::format("\"knn\" is not allowed on rods {}; must be another guess; the joints of the {} segments "
-                              "of task {} {}",
-                              loops ? "with loops" : "with branches", task.segments, task.index,
-                              loops ? "close a loop" : "form a tree"));
+  throw job_error(
+      plan.job().path, key,
+      fmt::format(
+          "\"knn\" is not allowed on rods {} (the joints of the {} segments of task {} {}); must be another guess",
+          loops ? "with loops" : "with branches", task.segments, task.index, loops ? "close a loop" : "form a tree"));
 }
 
 void check_copingnet(const Plan& plan, const guess::CopingNet& guess, const std::string& key) {

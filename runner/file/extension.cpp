@@ -46,7 +46,7 @@ Extension::Extension(const fs::path& path, const Plan& plan) : path_(path), plan
     const FileSummary file = inspect(path);
     const std::string revision = file.runs.empty() ? "" : file.runs.back().provenance.revision;
     if (revision != source_revision()) {
-      note_ = fmt::format("{} was made by revision {}, and this is {}: copied results are from the former",
+      note_ = fmt::format("{} was made by revision {}, and this is {}: copied results are from the first",
                           path.native(), revision, source_revision());
     }
     Job before = stored_job(file, plan.job().path);

@@ -144,7 +144,7 @@ KeyTable<SolveSpec> solve_keys() {
       &SolveSpec::tolerance);
   table.optional(choice_key("forcing",
                             "fixed: every solve to `tolerance`; eisenstat_walker: the first solve of a step to "
-                            "`tolerance`, later ones to a tolerance from the convergence of Newton (closed loops)"),
+                            "`tolerance`, later tolerances follow the convergence of Newton (closed loops)"),
                  Words<Forcing>{{"fixed", Forcing::fixed}, {"eisenstat_walker", Forcing::eisenstat_walker}},
                  &SolveSpec::forcing);
   table.optional(

@@ -113,7 +113,7 @@ void write_scale(hid_t file, const std::string& folder, const Normalisation& sca
   const std::vector<float> mean(scale.mean.begin(), scale.mean.end());
   const std::vector<float> deviation(scale.deviation.begin(), scale.deviation.end());
   write(file, folder + "mean", extent, mean, "", "in the unit of each feature (network/encoding/graph_encoding.hpp)");
-  write(file, folder + "deviation", extent, deviation, "", "the network is given (feature - mean) / deviation");
+  write(file, folder + "deviation", extent, deviation, "", "input of the network: (feature - mean) / deviation");
 }
 
 void write_model(hid_t file, const Model& model) {

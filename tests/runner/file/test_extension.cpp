@@ -184,7 +184,7 @@ TEST_CASE(
   const std::string text = message_of<FileError>([&] { body({4}, {}); });
   CHECK_THAT(text, StartsWith("task 4, repeated for its new guesses, differs from " + (folder / "old.h5").native() +
                               ", task 4: /steps/joint_gap, value 1, is "));
-  CHECK_THAT(text, Contains("--resume without --extend"));
+  CHECK_THAT(text, Catch::Matchers::Contains("--resume without --extend"));
   CHECK(written == 1);
 }
 
