@@ -129,7 +129,7 @@ class Script(Scripts):
         self.plant("hole.h5")
         with h5py.File("hole.h5", "r+") as h5:
             del h5["training/rate"]
-        for name, words in (("sweep.h5", "holds the results of a sweep"), ("none.h5", "there is no such file"),
+        for name, words in (("sweep.h5", "holds the results of a sweep"), ("none.h5", "file not found"),
                             ("begun.h5", "no epoch"), ("old.h5", "schema version 7, these scripts read 1"),
                             ("hole.h5", "damaged")):
             self.assertIn(name, self.refused("loss.py", name, words=words))

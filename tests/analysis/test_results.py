@@ -149,7 +149,7 @@ class Refusals(Opened):
         self.assertIn(words, str(caught.exception))
 
     def test_what_is_no_sweep_is_refused(self):
-        self.refused("there is no such file", lambda: rodsweep.open("none.h5"))
+        self.refused("file not found", lambda: rodsweep.open("none.h5"))
         for kind, words in (("model", "of kind model without tasks"),
                             ("dataset", "is a dataset, not the results of a sweep")):
             self.open().close()

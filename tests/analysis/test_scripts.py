@@ -56,7 +56,7 @@ class Spatial(Scripts):
         self.assertIn("CG ratios only", done.stderr)
 
     def test_mistakes_are_one_line_and_exit_code_2(self):
-        self.refused("spatial.py", "none.h5", words="none.h5: there is no such file")
+        self.refused("spatial.py", "none.h5", words="none.h5: file not found")
         with open("notes.txt", "w") as notes:
             notes.write("hello")
         self.refused("spatial.py", "notes.txt", words="not an HDF5 file")
@@ -163,7 +163,7 @@ class Summary(Scripts):
         self.assertEqual((done.stdout, done.stderr), ("0\n", ""))
 
     def test_mistakes_are_one_line_and_exit_code_2(self):
-        self.refused("summary.py", "none.h5", words="there is no such file")
+        self.refused("summary.py", "none.h5", words="file not found")
         self.write()
         for words, *arguments in (("did you mean scene.length_m?", "--by", "scene.length"),
                                   ("known: 10, 20, 40", "--select", "scene.segments=7"),

@@ -20,7 +20,7 @@ class Refusals(Folder):
             self.assertIn(part, str(caught.exception))
 
     def test_what_is_no_file_of_hdf5(self):
-        self.refused("there is no such file")
+        self.refused("file not found")
         os.mkdir(self.path)
         self.refused("is a folder")
         os.rmdir(self.path)

@@ -190,7 +190,7 @@ class Pack(Case):
         self.assertEqual(self.shown("status", "part-packed.h5")["pending"], 3)
 
     def test_a_missing_file_is_refused_and_leaves_nothing(self):
-        self.assert_refused(("pack", "nowhere.h5", "-o", "a.h5"), "nowhere.h5: there is no such file")
+        self.assert_refused(("pack", "nowhere.h5", "-o", "a.h5"), "nowhere.h5: file not found")
         self.assertFalse(os.path.exists("a.h5"))
 
 

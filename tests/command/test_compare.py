@@ -133,7 +133,7 @@ class Compare(Case):
         self.assertIn("seed: 3 in A, 9 in B", said.stdout)
         said = rodsweep("compare", sweep(), "nowhere.h5")
         self.assertEqual(said.returncode, USER_ERROR)
-        self.assertIn("nowhere.h5: there is no such file", said.stderr)
+        self.assertIn("nowhere.h5: file not found", said.stderr)
         self.compare(sweep(), sweep(), "--by", "name", code=USER_ERROR)
 
 

@@ -125,7 +125,7 @@ class Left(Plain):
         write(name, b"half")
         said = rodsweep("status", "left.h5")
         self.assert_plain(said, USER_ERROR)
-        self.assertRegex(said.stderr, f"left.h5: there is no such file; .*{name}")
+        self.assertRegex(said.stderr, f"left.h5: file not found; .*{name}")
         sweep()
         self.assertIn(name, rodsweep("run", JOB, "-o", "left.h5").stderr)
         self.assertIn(name, rodsweep("status", "left.h5").stderr)

@@ -258,11 +258,11 @@ class Refusing(ExtendCase):
                 self.assert_refused(self.new("other", **changes), "no.h5", old, says=says)
                 self.assertFalse(os.path.exists("no.h5"))
         path = self.new("fine", samples=3)
-        self.assert_refused(path, "no.h5", "none.h5", says="none.h5: there is no such file")
+        self.assert_refused(path, "no.h5", "none.h5", says="none.h5: file not found")
         self.assert_refused(path, "old.h5", "old.h5", says=("old.h5", "-o FILE"))
         self.rodsweep(3, "run", path, "-o", "fine.h5")
         self.assert_refused(path, "fine.h5", old, says="fine.h5 exists already")
-        self.assert_refused(path, "fine.h5", old, "--resume", says="fine.h5 was not begun with --extend old.h5")
+        self.assert_refused(path, "fine.h5", old, "--resume", says="fine.h5 was not started with --extend old.h5")
 
 
 if __name__ == "__main__":

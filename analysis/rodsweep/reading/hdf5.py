@@ -14,7 +14,7 @@ UNREADABLE = (OSError, RuntimeError, LookupError, ValueError, TypeError, Attribu
 def opened(path, what):
     """The h5py.File of a path that should lead to `what`."""
     if not os.path.exists(path):
-        raise SweepFileError(f"{path}: there is no such file")
+        raise SweepFileError(f"{path}: file not found")
     if os.path.isdir(path):
         raise SweepFileError(f"{path} is a folder; give {what}")
     try:
