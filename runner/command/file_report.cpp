@@ -46,10 +46,10 @@ std::string ending(const RunRow& run, bool is_last, const FileSummary& file) {
 
 }  // namespace
 
-std::string start_text(const FileSummary& file, std::size_t index) {
+std::string run_text(const FileSummary& file, std::size_t index) {
   const RunRow& run = file.runs.at(index);
   const Provenance& p = run.provenance;
-  return fmt::format("start {}{}: {} to {} on {}, {}{}: {} in {} of work; {}\n", index,
+  return fmt::format("run {}{}: {} to {} on {}, {}{}: {} in {} of work; {}\n", index,
                      run.source.empty() ? "" : fmt::format(" (copied from {})", run.source), p.begin_utc,
                      run.end_utc.empty() ? "?" : run.end_utc, p.host, counted(p.ranks, "rank"),
                      p.oversubscribed ? " (more than cores: times are not valid)" : "", counted(run.tasks, "task"),
@@ -103,24 +103,24 @@ nlohmann::ordered_json to_json(const FileSummary& file) {
     json["failures"].push_back({{"task", task.index}, {"outcome", task.outcome}, {"message", task.message}});
   json["running"] = Json::array();
   for (const BegunTask& task : file.begun)
-    if (is_alive(file) && task.start + 1 == static_cast<int>(file.runs.size()))
+    if (is_alive(file) && task.run + 1 == static_cast<int>(file.runs.size()))
       json["running"].push_back({{"task", task.index}, {"host", task.host}, {"rank", task.rank}});
-  json["starts"] = Json::array();
+  json["runs"] = Json::array();
   for (const RunRow& run : file.runs) {
     const Provenance& p = run.provenance;
-    json["starts"].push_back({{"begin", p.begin_utc},
-                              {"end", run.end_utc.empty() ? Json() : Json(run.end_utc)},
-                              {"exit_code", run.end_utc.empty() ? Json() : Json(run.exit_code)},
-                              {"tasks", run.tasks},
-                              {"task_seconds", run.task_seconds},
-                              {"host", p.host},
-                              {"ranks", p.ranks},
-                              {"oversubscribed", p.oversubscribed},
-                              {"command", p.user_command},
-                              {"source", run.source},
-                              {"revision", p.revision},
-                              {"versions", p.versions},
-                              {"petsc_options", p.petsc_options}});
+    json["runs"].push_back({{"begin", p.begin_utc},
+                            {"end", run.end_utc.empty() ? Json() : Json(run.end_utc)},
+                            {"exit_code", run.end_utc.empty() ? Json() : Json(run.exit_code)},
+                            {"tasks", run.tasks},
+                            {"task_seconds", run.task_seconds},
+                            {"host", p.host},
+                            {"ranks", p.ranks},
+                            {"oversubscribed", p.oversubscribed},
+                            {"command", p.user_command},
+                            {"source", run.source},
+                            {"revision", p.revision},
+                            {"versions", p.versions},
+                            {"petsc_options", p.petsc_options}});
   }
   return json;
 }

@@ -12,7 +12,7 @@ namespace rodsweep {
 
 std::string outcomes_text(const FileSummary& file);  ///< "98 ok, 2 torn"
 
-/// The tasks of the last start: all tasks, or those of its shard.
+/// The tasks of the last run: all tasks, or those of its shard.
 struct Share {
   std::optional<Shard> shard;
   std::int64_t tasks = 0;
@@ -24,11 +24,11 @@ Share share_of(const FileSummary& file);
 /// uses the file's modification time, which a run renews.
 bool is_alive(const FileSummary& file);
 
-/// Tasks per second of the current start; none before its first task.
+/// Tasks per second of the current run; none before its first task.
 std::optional<double> rate_of(const FileSummary& file);
 
-/// One line about start `index` of the sweep.
-std::string start_text(const FileSummary& file, std::size_t index);
+/// One line about run `index` of the sweep.
+std::string run_text(const FileSummary& file, std::size_t index);
 
 nlohmann::ordered_json to_json(const FileSummary& file);
 

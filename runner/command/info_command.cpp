@@ -31,7 +31,7 @@ std::string provenance_text(const FileSummary& file) {
                         *file.momentum_residual);
   for (std::size_t i = 0; i < file.runs.size(); ++i) {
     const Provenance& p = file.runs[i].provenance;
-    text += start_text(file, i);
+    text += run_text(file, i);
     text += fmt::format("  command   {}\n  revision  {}\n  versions  {}\n", p.user_command, p.revision, p.versions);
     if (!p.petsc_options.empty()) text += fmt::format("  PETSC_OPTIONS  {}\n", p.petsc_options);
   }

@@ -17,7 +17,7 @@ struct InfoOptions {
 
 inline constexpr const char* info_help =
     "Examples:\n"
-    "  rodsweep info results/demo.h5                     job, axes, and all starts with versions\n"
+    "  rodsweep info results/demo.h5                     job, axes, and all runs with versions\n"
     "  rodsweep info results/demo.h5 --verify            compares the data with their checksums\n"
     "  rodsweep info results/demo.h5 --job > again.json  writes the job of the results";
 

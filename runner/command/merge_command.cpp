@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An input file, and the index of its first start in the new file.
+/// An input file, and the index of its first run in the new file.
 struct Part {
   fs::path path;
   TaskReader reader;

@@ -32,13 +32,13 @@ std::string progress_text(const FileSummary& file) {
   return text;
 }
 
-/// The tasks that workers of the last start are running.
+/// The tasks that workers of the last run are running.
 std::string running_text(const FileSummary& file) {
   const int last = static_cast<int>(file.runs.size()) - 1;
   std::string text;
   std::size_t shown = 0, more = 0;
   for (const BegunTask& task : file.begun) {
-    if (task.start != last) continue;
+    if (task.run != last) continue;
     if (shown == running_shown) {
       ++more;
       continue;
@@ -58,7 +58,7 @@ std::string status_text(const FileSummary& file) {
   if (file.failures.size() > failures_shown)
     text += fmt::format("  and {} more: --json lists them all\n", file.failures.size() - failures_shown);
   if (is_alive(file)) text += running_text(file);
-  if (!file.runs.empty()) text += start_text(file, file.runs.size() - 1);
+  if (!file.runs.empty()) text += run_text(file, file.runs.size() - 1);
   text.pop_back();
   return text;
 }

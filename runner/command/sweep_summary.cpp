@@ -13,7 +13,7 @@ namespace {
 
 const std::string ok_name = to_string(TaskOutcome::ok);
 
-/// All finished tasks by outcome, including earlier starts.
+/// All finished tasks by outcome, including earlier runs.
 std::map<std::string, std::int64_t> finished(const SweepSummary& summary) {
   auto counts = summary.before;
   for (std::size_t i = 0; i < summary.dispatch.finished.size(); ++i)

@@ -22,7 +22,7 @@ struct TooLarge {
 
 struct SweepSummary {
   std::int64_t tasks = 0;                      ///< in the plan
-  std::map<std::string, std::int64_t> before;  ///< finished in earlier starts, by outcome
+  std::map<std::string, std::int64_t> before;  ///< finished in earlier runs, by outcome
   Dispatch dispatch;                           ///< of this start
   int workers = 1;
   std::filesystem::path path;

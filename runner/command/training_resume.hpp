@@ -1,4 +1,4 @@
-// Reads the file of an earlier start, to resume its training.
+// Reads the file of an earlier run, to resume its training.
 #pragma once
 
 #include <filesystem>

@@ -68,7 +68,7 @@ class TrainingRun {
   std::optional<Training> training_;
   std::optional<ModelFile> file_;
   std::optional<ProgressLine> progress_;
-  std::vector<TrainingStart> starts_;
+  std::vector<TrainingRunRow> starts_;
   Stopwatch since_begin_, since_save_;  ///< since the first step; since the last save
   double save_s_ = 0;                   ///< duration of the last save
   std::int64_t first_step_ = 0;
@@ -89,7 +89,7 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   collectively(mpi_.world(),
                [&] { training_.emplace(job_, training_job_, data_, std::move(simulations), threads_, mpi_.world()); });
   if (earlier) {
-    starts_ = earlier->card.starts;
+    starts_ = earlier->card.runs;
     training_->restore(earlier->card, *earlier->model, *earlier->checkpoint);
   }
   first_step_ = training_->trainer().step();
@@ -176,7 +176,7 @@ bool TrainingRun::save_is_due() const {
 void TrainingRun::save() {
   const Stopwatch watch;
   ModelCard card = training_->card();
-  card.starts = starts_;
+  card.runs = starts_;
   std::optional<Checkpoint> checkpoint;
   if (!training_->ended()) checkpoint = training_->checkpoint();
   file_->save(card, training_->kept(), checkpoint);

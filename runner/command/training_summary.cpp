@@ -104,15 +104,15 @@ Json to_json(const StoredModel& stored, const std::filesystem::path& path) {
             {"base_cg_ratio", to_json(card.base_cg_ratio)}};
   for (const SceneRatios& of : card.scenes)
     json["scenes"][of.scene] = {{"cg_ratio", to_json(of.cg_ratio)}, {"base_cg_ratio", to_json(of.base_cg_ratio)}};
-  for (const TrainingStart& start : card.starts)
-    json["starts"].push_back({{"begin", start.provenance.begin_utc},
-                              {"end", start.end_utc.empty() ? Json() : Json(start.end_utc)},
-                              {"exit_code", start.end_utc.empty() ? Json() : Json(start.exit_code)},
-                              {"host", start.provenance.host},
-                              {"ranks", start.provenance.ranks},
-                              {"command", start.provenance.user_command},
-                              {"revision", start.provenance.revision},
-                              {"versions", start.provenance.versions}});
+  for (const TrainingRunRow& run : card.runs)
+    json["runs"].push_back({{"begin", run.provenance.begin_utc},
+                            {"end", run.end_utc.empty() ? Json() : Json(run.end_utc)},
+                            {"exit_code", run.end_utc.empty() ? Json() : Json(run.exit_code)},
+                            {"host", run.provenance.host},
+                            {"ranks", run.provenance.ranks},
+                            {"command", run.provenance.user_command},
+                            {"revision", run.provenance.revision},
+                            {"versions", run.provenance.versions}});
   return json;
 }
 
@@ -124,11 +124,11 @@ std::string provenance_text(const StoredModel& stored) {
   text += fmt::format("data     {}, hash {}: {} examples of {} simulations, {} of {} for validation\n", card.data_path,
                       card.data_hash, card.training_examples, card.training_simulations, card.validation_examples,
                       card.validation_simulations);
-  for (std::size_t i = 0; i < card.starts.size(); ++i) {
-    const Provenance& p = card.starts[i].provenance;
-    text += fmt::format("start {}: {} to {} on {}, {}\n  command   {}\n  revision  {}\n  versions  {}\n", i,
-                        p.begin_utc, card.starts[i].end_utc.empty() ? "?" : card.starts[i].end_utc, p.host,
-                        counted(p.ranks, "rank"), p.user_command, p.revision, p.versions);
+  for (std::size_t i = 0; i < card.runs.size(); ++i) {
+    const Provenance& p = card.runs[i].provenance;
+    text += fmt::format("run {}: {} to {} on {}, {}\n  command   {}\n  revision  {}\n  versions  {}\n", i, p.begin_utc,
+                        card.runs[i].end_utc.empty() ? "?" : card.runs[i].end_utc, p.host, counted(p.ranks, "rank"),
+                        p.user_command, p.revision, p.versions);
   }
   text.pop_back();
   return text;

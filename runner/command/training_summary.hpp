@@ -16,7 +16,7 @@ std::string progress_text(const ModelCard& card, double seconds_left);
 /// A few lines for stdout: the result or the progress of a training.
 std::string training_summary(const ModelCard& card, const std::filesystem::path& path);
 
-/// The additional lines of `info`: model, data, all starts.
+/// The additional lines of `info`: model, data, all runs.
 std::string provenance_text(const StoredModel& stored);
 nlohmann::ordered_json to_json(const StoredModel& stored, const std::filesystem::path& path);
 

@@ -24,7 +24,7 @@ struct FailedTask {
 /// A started but unfinished task: it is running, or its worker died.
 struct BegunTask {
   std::int64_t index = 0;
-  int start = 0;  ///< row of /runs
+  int run = 0;  ///< row of /runs
   int rank = 0;
   std::string host;
 };

@@ -194,7 +194,7 @@ struct ResultsFile::Open {
   std::int64_t committed = 0;
   int own_rank = 0;
   AxisSizes sizes;
-  RunRow run;                             // of this start
+  RunRow run;                             // of this run
   std::vector<hdf5::RowDataset> columns;  // in the order of columns(); empty: not in the file
   hdf5::RowDataset state, outcome, message, checksum, tries, rank, host, run_row, write_s, tried_s, tried_steps;
   hdf5::Datatype outcome_type = hdf5::text_type(outcome_bytes), message_type = hdf5::text_type(message_bytes);
@@ -256,8 +256,8 @@ ResultsFile::ResultsFile(const fs::path& path, const Plan& plan, std::vector<std
       tries_(std::move(tries)),
       run_index_(std::min(runs, run_rows - 1)) {
   if (runs >= run_rows) {
-    note_ = fmt::format("{} already has {} rows in /runs, the maximum: this start overwrites the last one",
-                        path.native(), run_rows);
+    note_ = fmt::format("{} already has {} rows in /runs, the maximum: this run overwrites the last one", path.native(),
+                        run_rows);
   }
   collectively(comm, [&] {
     const hdf5::PropertyList access(hdf5::check(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"));

@@ -1,4 +1,4 @@
-// The starts of a sweep, one row of /runs each. The list of columns is in runs.cpp.
+// The runs of a sweep, one row of /runs each. The list of columns is in runs.cpp.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace rodsweep {
 
-inline constexpr int run_rows = 64;  ///< maximum number of starts stored in a file
+inline constexpr int run_rows = 64;  ///< maximum number of runs stored in a file
 
 /// The datasets, in the order of the file.
 std::vector<Field> run_fields();

@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-/// The path of the job file of the last start that stored one, the base of relative paths; else the results file.
+/// The path of the job file of the last run that stored one, the base of relative paths; else the results file.
 std::filesystem::path stored_job_path(const FileSummary& file);
 
 /// The job stored in the file. Relative paths start at its original folder. If it can't be read that way, they start at

@@ -53,7 +53,7 @@ class Plan {
   const TaskList& tasks() const { return tasks_; }
   TaskSpec spec(std::int64_t index) const;  ///< built on demand: a plan of 100,000 tasks stays small
 
-  /// Replaces the job's limit in this start; 0: none. Results of tasks within the limit do not depend on it.
+  /// Replaces the job's limit in this run; 0: none. Results of tasks within the limit do not depend on it.
   void set_task_time_limit(double seconds) { task_time_limit_s_ = seconds; }
 
   TaskIdentity identity(std::int64_t index) const;  ///< built on demand

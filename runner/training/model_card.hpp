@@ -27,8 +27,8 @@ enum class Ending {
   diverged   ///< a loss is not finite
 };
 
-/// One start of the training.
-struct TrainingStart {
+/// One run of the program that trained.
+struct TrainingRunRow {
   Provenance provenance;
   std::string end_utc;  ///< empty: still running or killed
   int exit_code = -1;   ///< -1: still running or killed
@@ -57,7 +57,7 @@ struct ModelCard {
   std::int64_t ratio_simulations = 0;
   std::vector<SceneRatios> scenes;  ///< the same by scene type; empty if there is only one
 
-  std::vector<TrainingStart> starts;
+  std::vector<TrainingRunRow> runs;
 };
 
 /// The epoch of the model's weights. Requires best_epoch > 0.

@@ -36,20 +36,20 @@ hdf5::Object open_group(hid_t file, const char* path) {
   return hdf5::Object(hdf5::check(H5Oopen(file, path, H5P_DEFAULT), "H5Oopen", path));
 }
 
-void write_starts(hid_t file, std::vector<TrainingStart> starts) {
-  for (const StartPlace& place : start_places) {
+void write_runs(hid_t file, std::vector<TrainingRunRow> runs) {
+  for (const RunPlace& place : run_places) {
     std::vector<std::string> texts;
-    for (TrainingStart& start : starts) texts.push_back(place.of(start));
+    for (TrainingRunRow& run : runs) texts.push_back(place.of(run));
     write_texts(file, place.path, texts);
   }
   std::vector<std::int32_t> ranks, exit_codes;
   std::vector<std::uint8_t> oversubscribed;
-  for (const TrainingStart& start : starts) {
-    ranks.push_back(start.provenance.ranks);
-    exit_codes.push_back(start.exit_code);
-    oversubscribed.push_back(start.provenance.oversubscribed ? 1 : 0);
+  for (const TrainingRunRow& run : runs) {
+    ranks.push_back(run.provenance.ranks);
+    exit_codes.push_back(run.exit_code);
+    oversubscribed.push_back(run.provenance.oversubscribed ? 1 : 0);
   }
-  const std::vector<hsize_t> rows{starts.size()};
+  const std::vector<hsize_t> rows{runs.size()};
   write(file, "/runs/ranks", rows, ranks, "1", "processes");
   write(file, "/runs/exit_code", rows, exit_codes, "1", "exit code of the program; -1: it still runs, or was killed");
   write(file, "/runs/oversubscribed", rows, oversubscribed, "1", "1: more ranks than cores; times are not valid");
@@ -90,7 +90,7 @@ void write_card(hid_t file, const ModelCard& card) {
   write_texts(file, "/job/text", {card.job_text});
   write_texts(file, "/data/path", {card.data_path});
   write_texts(file, "/data/hash", {card.data_hash});
-  write_starts(file, card.starts);
+  write_runs(file, card.runs);
   write(file, "/axes/tolerance", {ValidationRatio::tolerance_count}, ValidationRatio::tolerances(), "1",
         "tolerances of CG, relative to ||b||");
   write_epochs(file, card);

@@ -72,21 +72,21 @@ std::shared_ptr<Model> read_network(hid_t file, const fs::path& path) {
   return model;
 }
 
-std::vector<TrainingStart> read_starts(hid_t file) {
+std::vector<TrainingRunRow> read_runs(hid_t file) {
   const auto ranks = hdf5::read_all<std::int32_t>(file, "/runs/ranks");
   const auto exit_codes = read<std::int32_t>(file, "/runs/exit_code", {ranks.size()});
   const auto oversubscribed = read<std::uint8_t>(file, "/runs/oversubscribed", {ranks.size()});
-  std::vector<TrainingStart> starts(ranks.size());
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    starts[i].provenance.ranks = ranks[i];
-    starts[i].exit_code = exit_codes[i];
-    starts[i].provenance.oversubscribed = oversubscribed[i] != 0;
+  std::vector<TrainingRunRow> runs(ranks.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].provenance.ranks = ranks[i];
+    runs[i].exit_code = exit_codes[i];
+    runs[i].provenance.oversubscribed = oversubscribed[i] != 0;
   }
-  for (const StartPlace& place : start_places) {
+  for (const RunPlace& place : run_places) {
     const std::vector<std::string> texts = hdf5::read_texts(file, place.path);
-    for (std::size_t i = 0; i < starts.size(); ++i) place.of(starts[i]) = texts.at(i);
+    for (std::size_t i = 0; i < runs.size(); ++i) place.of(runs[i]) = texts.at(i);
   }
-  return starts;
+  return runs;
 }
 
 std::vector<Epoch> read_epochs(hid_t file) {
@@ -137,7 +137,7 @@ ModelCard read_card(hid_t file) {
   if (ending == endings.end()) throw Damage(fmt::format("\"{}\" is not an ending of a training", word));
   card.ending = ending->first;
   card.message = hdf5::read_text_attribute(file, "/training", "message");
-  card.starts = read_starts(file);
+  card.runs = read_runs(file);
   return card;
 }
 

@@ -34,7 +34,7 @@ class Training {
   void end();
 
   const Trainer& trainer() const { return trainer_; }
-  /// The metadata of the best model, without the starts.
+  /// The metadata of the best model, without the runs.
   const ModelCard& card() const { return card_; }
   /// The model of the best epoch; the initial model until the first epoch ends.
   const Model& kept() const { return *kept_; }

@@ -40,7 +40,7 @@ class HostsCase(SweepCase):
         sweep.end()    # mpirun's exit code is always 0: ranks may die alone
         self.assert_whole(sweep.path)
         self.assert_same_results("whole.h5", sweep.path)
-        self.assertEqual([s["exit_code"] for s in status(sweep.path)["starts"]], runs, sweep.text())
+        self.assertEqual([s["exit_code"] for s in status(sweep.path)["runs"]], runs, sweep.text())
 
     def assert_continues(self, sweep, fault_s, lost):
         """The tasks of lost ranks are reassigned."""

@@ -74,8 +74,8 @@ class Slurmed(SlurmCase):
     def test_a_sweep_runs_to_its_end(self):
         self.wait_for_end(self.submit())
         self.assert_as_undisturbed()
-        self.assertEqual([s["exit_code"] for s in status(self.path)["starts"]], [ALL_DONE])
-        self.assertIn("--time-limit", status(self.path)["starts"][0]["command"])
+        self.assertEqual([s["exit_code"] for s in status(self.path)["runs"]], [ALL_DONE])
+        self.assertIn("--time-limit", status(self.path)["runs"][0]["command"])
 
     def test_a_killed_worker_has_the_run_repeated(self):
         number = self.submit()
@@ -84,7 +84,7 @@ class Slurmed(SlurmCase):
         self.wait_for_end(number)
         self.assertIn("sweep.sbatch: the run ended with code 137", self.log())
         self.assert_as_undisturbed()
-        self.assertEqual([s["exit_code"] for s in status(self.path)["starts"]], [None, ALL_DONE])
+        self.assertEqual([s["exit_code"] for s in status(self.path)["runs"]], [None, ALL_DONE])
 
     def test_a_cancelled_job_goes_on_when_it_is_submitted_again(self):
         number = self.submit()
@@ -96,7 +96,7 @@ class Slurmed(SlurmCase):
         self.assertLess(before, 300)
         self.wait_for_end(self.submit())
         self.assert_as_undisturbed()
-        self.assertEqual(status(self.path)["starts"][-1]["tasks"], 300 - before)
+        self.assertEqual(status(self.path)["runs"][-1]["tasks"], 300 - before)
 
     def test_an_array_makes_shards_that_merge_into_what_a_single_run_writes(self):
         number = self.submit(self.path, options=("--array=1-3", "--ntasks=1"))
@@ -122,7 +122,7 @@ class TimeLimits(SlurmCase):
         run_undisturbed(path, "longer-whole.h5")
         number = self.submit_short(self.path, stop_s=45, job_file=path)
         found = self.wait_for_end(number, seconds=800)
-        starts = status(self.path)["starts"]
+        starts = status(self.path)["runs"]
         self.assertGreaterEqual(int(found["Restarts"]), 1, self.log())
         self.assertEqual([s["exit_code"] for s in starts], [4] * int(found["Restarts"]) + [ALL_DONE])
         self.assertEqual(self.log().count("left to do\n"), int(found["Restarts"]), self.log())
@@ -138,8 +138,8 @@ class TimeLimits(SlurmCase):
         self.assertEqual(found["ExitCode"], f"{TOO_LONG}:0")
         self.assertIn("task 3, the longest, would take about", self.log())
         self.assertEqual(self.done(), 3)
-        self.assertLessEqual(len(status(self.path)["starts"]), 3)
-        self.tell(f"{len(status(self.path)['starts'])} starts of 30 s until it said so")
+        self.assertLessEqual(len(status(self.path)["runs"]), 3)
+        self.tell(f"{len(status(self.path)['runs'])} runs of 30 s until it said so")
 
         number = self.submit_short(self.path, "--task-time-limit", "3", stop_s=30, job_file=path)
         self.assertEqual(self.wait_for_end(number, "FAILED")["ExitCode"], f"{TASKS_FAILED}:0")
@@ -157,7 +157,7 @@ class Nodes(SlurmCase):
         self.tell(f"work again after {time.monotonic() - begin:.1f} s")
         self.wait_for_end(number)
         self.assert_as_undisturbed()
-        starts = status(self.path)["starts"]
+        starts = status(self.path)["runs"]
         self.assertEqual([s["exit_code"] for s in starts], [None, ALL_DONE])
         self.assertEqual(starts[0]["host"], host.name)
         self.assertNotEqual(starts[1]["host"], host.name)

@@ -267,7 +267,7 @@ class Output(Case):
                     self.assertIn("standard output", said.stderr)
                     now = self.shown("info", path, "--verify")
                     self.assertEqual((now["pending"], now["verified"]["damaged"]), (0, []))
-                    self.assertEqual(now["starts"][0]["exit_code"], TASKS_FAILED if job == "failing" else ALL_DONE)
+                    self.assertEqual(now["runs"][0]["exit_code"], TASKS_FAILED if job == "failing" else ALL_DONE)
 
     def test_a_reader_that_has_left_ends_it_without_a_word(self):
         for words in (("schema",), ("--help",), ("status", sweep())):

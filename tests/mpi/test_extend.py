@@ -89,7 +89,7 @@ class Extending(ExtendCase):
         file = self.extend(more, old, (9, 0, 4, 5))
         most = self.new("most", record=record, samples=4, segments=(9, 6, 12), guesses=NEW_GUESSES)
         last = self.extend(most, file, (12, 9, 0, 3))
-        starts = status(last)["starts"]
+        starts = status(last)["runs"]
         self.assertEqual([s["source"] for s in starts], [old, file, ""])
         self.assertEqual([s["tasks"] for s in starts], [0, 9, 3])
         with h5py.File(last) as h5:
@@ -129,11 +129,11 @@ class Extending(ExtendCase):
     def test_provenance_is_kept(self):
         path = self.new("kept", samples=3)
         self.extend(path, self.old(), (6, 4, 0, 2), ranks=(0,))
-        first, second = status("kept-0.h5")["starts"]
-        original, = status("old.h5")["starts"]
+        first, second = status("kept-0.h5")["runs"]
+        original, = status("old.h5")["runs"]
         self.assertEqual({**first, "source": ""}, original)
         self.assertEqual((first["source"], first["tasks"], second["source"], second["tasks"]), ("old.h5", 4, "", 2))
-        self.assertIn("start 0 (copied from old.h5): ", rodsweep(0, "info", "kept-0.h5").stdout)
+        self.assertIn("run 0 (copied from old.h5): ", rodsweep(0, "info", "kept-0.h5").stdout)
         with h5py.File("old.h5") as old, h5py.File("kept-0.h5") as new:
             for name in ("rank", "host", "elapsed_s", "write_s"):
                 np.testing.assert_array_equal(old[f"timing/tasks/{name}"][:], new[f"timing/tasks/{name}"][:][[0, 1, 3, 4]])
@@ -171,7 +171,7 @@ class Damage(ExtendCase):
         self.rodsweep(3, "run", path, "-o", "killed.h5", "--extend", old, "--resume")
         self.assert_same_results("unkilled.h5", "killed.h5")
         self.assert_whole("killed.h5")
-        self.assertEqual([s["source"] for s in status("killed.h5")["starts"]], [old, "", ""])
+        self.assertEqual([s["source"] for s in status("killed.h5")["runs"]], [old, "", ""])
 
     def test_stopped_it_says_how_to_go_on(self):
         changes = {"steps": 40, "samples": 2, "segments": (15, 30)}

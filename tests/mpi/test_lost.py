@@ -33,7 +33,7 @@ class LostCase(SweepCase):
     def assert_as_undisturbed(self, path, starts):
         self.assert_whole(path)
         self.assert_same_results("whole.h5", path)
-        self.assertEqual([s["exit_code"] for s in status(path)["starts"]], starts)
+        self.assertEqual([s["exit_code"] for s in status(path)["runs"]], starts)
 
 
 class Silent(LostCase):

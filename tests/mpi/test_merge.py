@@ -37,7 +37,7 @@ class Merging(SweepCase):
                 self.assertEqual(merged.stderr, "")
                 self.assert_whole("merged.h5")
                 self.assert_same_results("single.h5", "merged.h5")
-                starts = status("merged.h5")["starts"]
+                starts = status("merged.h5")["runs"]
                 self.assertEqual([s["tasks"] for s in starts], [*done, 0])
                 self.assertIn("--shard 2/3", starts[1]["command"])
                 self.assertIn(" merge ", starts[3]["command"])

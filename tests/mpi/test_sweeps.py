@@ -62,7 +62,7 @@ class InterruptedCase(SweepCase):
         self.rodsweep(ranks, "run", self.job, "-o", path, "--resume")
         self.assert_same_results(self.whole, path)
         self.assert_whole(path)
-        starts = status(path)["starts"]
+        starts = status(path)["runs"]
         self.assertEqual([s["tasks"] for s in starts], [before["done"], before["pending"]])
         return starts
 
@@ -199,7 +199,7 @@ class Watching(SweepCase):
         self.assertEqual({r["host"] for r in now["running"]}, {os.uname().nodename})
         self.assertLessEqual({r["rank"] for r in now["running"]}, {1, 2})
         self.assertRegex(rodsweep(0, "status", "watched.h5").stdout,
-                         r"tasks/s, .* left\n  task \d+ .*, rank [12]\n(.*\n)?start 0: .* \S+ m?s ago\n$")
+                         r"tasks/s, .* left\n  task \d+ .*, rank [12]\n(.*\n)?run 0: .* \S+ m?s ago\n$")
 
         now = status("watched.h5")
         self.assertAlmostEqual(now["left_s"], now["pending"] / now["tasks_per_s"])
@@ -227,7 +227,7 @@ class Watching(SweepCase):
         for pid in [process.pid, *ranks.values()]:
             os.kill(pid, signal.SIGKILL)
         process.communicate(timeout=30)
-        self.assertRegex(said, r"start 0: .* still.*\b3 min \d\d s\b")
+        self.assertRegex(said, r"run 0: .*running.*\b3 min \d\d s\b")
 
 
 class Refusals(SweepCase):
@@ -281,7 +281,7 @@ class Outcomes(SweepCase):
         self.rodsweep(3, "run", path, "--resume", code=TASKS_FAILED)
         now = status("results/hard.h5")
         self.assertEqual((now["failed"], now["pending"]), (24, 0))
-        self.assertEqual([s["exit_code"] for s in now["starts"]], [TASKS_FAILED, TASKS_FAILED])
+        self.assertEqual([s["exit_code"] for s in now["runs"]], [TASKS_FAILED, TASKS_FAILED])
 
     def test_a_limit_belongs_to_a_start_and_not_to_the_results(self):
         path = job("limited", samples=1, segments=[6, 3000], solve={"reference": "cg"}, guesses=["zero"],
@@ -331,15 +331,15 @@ class Outcomes(SweepCase):
         path = job("fresh")
         self.rodsweep(2, "run", path, "--resume")
         self.rodsweep(3, "run", path, "--resume")
-        self.assertEqual([s["tasks"] for s in status("results/fresh.h5")["starts"]], [6, 0])
+        self.assertEqual([s["tasks"] for s in status("results/fresh.h5")["runs"]], [6, 0])
 
     def test_more_workers_than_cores_are_warned_of_and_marked(self):
         ranks = len(os.sched_getaffinity(0)) + 2
         crowded = self.rodsweep(ranks, "run", job("crowded"))
         self.assertEqual(crowded.stderr.count("warning"), 1, crowded.stderr)
-        self.assertTrue(status("results/crowded.h5")["starts"][0]["oversubscribed"])
+        self.assertTrue(status("results/crowded.h5")["runs"][0]["oversubscribed"])
         self.rodsweep(2, "run", job("roomy"))
-        self.assertFalse(status("results/roomy.h5")["starts"][0]["oversubscribed"])
+        self.assertFalse(status("results/roomy.h5")["runs"][0]["oversubscribed"])
 
 
 class Speaking(SweepCase):

@@ -62,7 +62,7 @@ class Learning(TrainingCase):
                     self.rodsweep(ranks, "run", path, "-o", f"{name}{ranks}.h5")
                     self.assert_same_results(f"{name}.h5", f"{name}{ranks}.h5")
                     self.assert_finished(f"{name}{ranks}.h5")
-                    self.assertEqual(status(f"{name}{ranks}.h5")["starts"][0]["ranks"], ranks)
+                    self.assertEqual(status(f"{name}{ranks}.h5")["runs"][0]["ranks"], ranks)
 
     def test_what_a_model_file_tells(self):
         self.rodsweep(0, "run", train_job("told"))
@@ -100,7 +100,7 @@ class Stopping(TrainingCase):
         self.assertIn("continued after step", resumed.stderr)
         self.assert_same_results("whole.h5", path)
         self.assertTrue(status(path)["ended"])
-        self.assertEqual(len(status(path)["starts"]), 2)
+        self.assertEqual(len(status(path)["runs"]), 2)
 
     def test_after_a_signal_to_one_rank(self):
         for name, ranks, hit in (("one", 3, lambda p: os.kill(ranks_of(p)[2], signal.SIGTERM)),
@@ -110,12 +110,12 @@ class Stopping(TrainingCase):
                 self.assertEqual(code, STOPPED, stderr)
                 self.assertIn(" of 600 epochs", stdout)
                 self.assertIn(f"-o {name}.h5 --resume", stderr)
-                self.assertEqual(status(f"{name}.h5")["starts"][0]["exit_code"], STOPPED)
+                self.assertEqual(status(f"{name}.h5")["runs"][0]["exit_code"], STOPPED)
                 self.resume(f"{name}.h5", 3 if name == "one" else 1)
 
     def test_after_all_ranks_are_killed(self):
         self.interrupt("killed.h5", 2, kill_all)
-        self.assertIsNone(status("killed.h5")["starts"][0]["end"])
+        self.assertIsNone(status("killed.h5")["runs"][0]["end"])
         self.resume("killed.h5", 2)
 
 
@@ -167,7 +167,7 @@ class Refused(TrainingCase):
         self.assertIn("not finite", ran.stdout)
         now = json.loads(rodsweep(0, "info", "wild.h5", "--json").stdout)
         self.assertEqual((now["hash"], now["best_epoch"]), (kept["hash"], kept["best_epoch"]))
-        self.assertEqual(now["starts"][1]["exit_code"], DIVERGED)
+        self.assertEqual(now["runs"][1]["exit_code"], DIVERGED)
 
     def test_plan_and_validate(self):
         path = train_job("planned")

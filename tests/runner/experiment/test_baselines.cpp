@@ -30,7 +30,7 @@ void write_model(const fs::path& path, float factor, bool of_states = false) {
   for (float& weight : model.net.parameters().values()) weight *= factor;
   ModelCard card;
   card.name = "planted";
-  card.starts.push_back({test_provenance(), "", 0});
+  card.runs.push_back({test_provenance(), "", 0});
   card.planned_epochs = card.best_epoch = 1;
   card.epochs.push_back({1, 1, 1e-3, 0});
   card.ending = Ending::complete;

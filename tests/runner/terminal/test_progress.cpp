@@ -33,7 +33,7 @@ TEST_CASE("the time left is weighted by the cost of tasks") {
   CHECK_FALSE(progress.seconds_left(start + seconds(101)));
 }
 
-TEST_CASE("progress counts earlier starts, but judges the rate by this one") {
+TEST_CASE("progress counts earlier runs, but judges the rate by this one") {
   Console silent(false);
   Progress progress(silent, {400, 100, 1, 300, 1}, start);
   for (int i = 0; i < 20; ++i) progress.finished(i == 0 ? TaskOutcome::error : TaskOutcome::ok, 1, 0.5);
