@@ -18,7 +18,7 @@
 
 #include "runner/command/command_line.hpp"
 #include "runner/command/next_line.hpp"
-#include "runner/file/broken_library.hpp"
+#include "runner/file/file_error.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/mpi/mpi_session.hpp"

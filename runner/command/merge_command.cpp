@@ -10,11 +10,11 @@
 
 #include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
+#include "runner/file/record.hpp"
 #include "runner/file/results_file.hpp"
 #include "runner/file/resume_check.hpp"
 #include "runner/file/runs.hpp"
 #include "runner/file/stored_plan.hpp"
-#include "runner/file/task_checksum.hpp"
 #include "runner/file/task_reader.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/terminal/text.hpp"

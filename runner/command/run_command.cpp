@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "runner/command/sweep_run.hpp"
-#include "runner/command/training_run.hpp"
 #include "runner/experiment/inputs.hpp"
 #include "solver/cg/petsc_session.hpp"
 

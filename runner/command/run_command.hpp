@@ -1,5 +1,5 @@
-// The command `run`: a job of kind "train" trains a model (training_run.hpp); any other job is a sweep (sweep_run.hpp).
-// Collective over all ranks.
+// The command `run`, collective over all ranks: a job of kind "train" trains a model (training_run.cpp); any other job is
+// a sweep or makes a data set (sweep_run.cpp).
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include "runner/command/exit_codes.hpp"
 #include "runner/command/shard.hpp"
 #include "runner/file/provenance.hpp"
+#include "runner/job/job.hpp"
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/console.hpp"
 
@@ -24,7 +25,6 @@ struct RunOptions {
   std::optional<double> task_time_limit_s;      ///< replaces the job's limit
   std::optional<double> memory_limit_gb;        ///< per rank; default: a share of the host's memory
   std::optional<double> time_limit_s;           ///< of this start
-  double time_passed_s = 0;                     ///< part of that limit used before this start
   int max_crashes = 3;                          ///< a task is not retried after this many worker deaths
   double worker_timeout_s = 120;                ///< a worker without heartbeat for this long is lost; 0: no timeout
   std::string program = "rodsweep";             ///< as the user typed it
@@ -59,6 +59,10 @@ inline constexpr const char* run_help =
 /// Starts PETSc. All ranks return the same result. Throws CollectiveError on all ranks if the run cannot start (a job
 /// or file error). Any other exception concerns one rank only; the caller must abort, because the others wait for it.
 ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console);
+
+/// The two parts of execute(). `job` is read from options.job and is the same on every rank.
+ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console);
+ExitCode run_training(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console);
 
 /// The results file: the user's choice; default results/NAME.h5, or results/NAME-IofN.h5 for a shard.
 std::filesystem::path output_of(const RunOptions& options, const std::string& job_name);

@@ -1,4 +1,6 @@
-#include "runner/command/sweep_run.hpp"
+// Runs a sweep or makes a data set: plans the job, creates or continues its file, dispatches its tasks, and prints a
+// summary. Rank 0 is the master, the others are workers; a single rank is both.
+#include "runner/command/run_command.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "runner/experiment/task_body.hpp"
-#include "runner/file/task_times.hpp"
+#include "runner/file/inspect.hpp"
 
 namespace rodsweep {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "runner/file/state_rows.hpp"
 #include "solver/numbers/narrow.hpp"
+#include "solver/rod/state_rows.hpp"
 
 namespace rodsweep {
 

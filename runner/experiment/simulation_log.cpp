@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "runner/experiment/projections.hpp"
-#include "runner/file/state_rows.hpp"
 #include "solver/numbers/larger_or_nan.hpp"
 #include "solver/numbers/narrow.hpp"
+#include "solver/rod/state_rows.hpp"
 #include "solver/step/observables.hpp"
 
 namespace rodsweep {

@@ -4,12 +4,35 @@
 // folder marks it as valid. Throws FileError if a sync fails.
 #pragma once
 
+#include <unistd.h>
+
 #include <chrono>
 #include <filesystem>
-
-#include "runner/file/descriptor.hpp"
+#include <utility>
 
 namespace rodsweep {
+
+/// Owns one file descriptor; empty after a move.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  /// `number`: as returned by open(); negative: none.
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+
+  int number() const { return number_; }
+  explicit operator bool() const { return number_ >= 0; }
+
+ private:
+  int number_ = -1;
+};
 
 /// Syncs a file's data and length, including writes of other processes on this host.
 class SyncedFile {

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "runner/file/descriptor.hpp"
+#include "runner/file/durable.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/hdf5.hpp"
 #include "runner/file/layout.hpp"

@@ -24,4 +24,9 @@ class Hdf5Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Whether a write or close failed in this process, for example on a full disk. HDF5's shutdown would then crash, in
+/// MPI_Finalize and at exit, so the process must end with _Exit().
+bool hdf5_is_broken();
+void set_hdf5_broken();
+
 }  // namespace rodsweep

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "runner/file/descriptor.hpp"
+#include "runner/file/durable.hpp"
 
 namespace rodsweep {
 

@@ -4,7 +4,7 @@
 #include <new>
 #include <numeric>
 
-#include "runner/file/broken_library.hpp"
+#include "runner/file/file_error.hpp"
 
 namespace rodsweep {
 namespace {

@@ -130,4 +130,8 @@ PerRows<std::int64_t> row_bytes(const AxisSizes& sizes);
 /// Bytes of a record prepared for this task.
 std::int64_t record_bytes(const Task& task, const PerRows<std::int64_t>& of_a_row);
 
+/// The checksum of a task (/tasks/checksum): its index, outcome and message as stored, then all columns outside /timing
+/// in the order of columns(). Empty optional columns are skipped: the file does not have them.
+std::uint64_t task_checksum(std::int64_t task, const TaskRecord& record);
+
 }  // namespace rodsweep

@@ -24,9 +24,9 @@
 #include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/file_lock.hpp"
+#include "runner/file/inspect.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
-#include "runner/file/task_times.hpp"
 #include "runner/plan/plan.hpp"
 
 namespace rodsweep {

@@ -6,7 +6,7 @@
 #include "runner/file/columns.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/planned_columns.hpp"
-#include "runner/file/task_checksum.hpp"
+#include "runner/file/record.hpp"
 
 namespace rodsweep {
 namespace {

@@ -9,7 +9,7 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
-#include "runner/file/task_checksum.hpp"
+#include "runner/file/record.hpp"
 #include "runner/text/checksum.hpp"
 #include "tests/runner/file_examples.hpp"
 
