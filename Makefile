@@ -22,9 +22,11 @@ configure = generator=$$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' $(2)/CMakeCach
   log=$$(cmake --preset $(1) -B $(2) $${generator:+"-G$$generator"} $(if $(BUILD_TYPE),-DCMAKE_BUILD_TYPE=$(BUILD_TYPE)) \
   $(if $(call yes,$(PORTABLE)),-DRODSWEEP_NATIVE=OFF) $(if $(call yes,$(CHECKS)),-DRODSWEEP_CHECKS=ON) 2>&1) \
   || { echo "$$log"; exit 1; }
+# $(call job,NAME): its file; the shell looks for it, since NAME may be one of its variables.
+job = $$(ls jobs/$(1).json jobs/*/$(1).json 2>/dev/null)
 # $(call study,NAME): a job that is done is not run again, one that was stopped goes on.
 study = [ -e results/$(1).h5 ] && resume=--resume || resume=; \
-  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/$(1).json -o results/$(1).h5 $$resume </dev/null || [ $$? = 3 ]
+  cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run $(call job,$(1)) -o results/$(1).h5 $$resume </dev/null || [ $$? = 3 ]
 studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
   temporal_bending temporal_helix side_by_side learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
@@ -117,7 +119,7 @@ pictures = pictures:0:helix:along pictures:1:net:rod pictures:2:ring:along pictu
 pictures: build
 	@$(call packages,pictures)
 	@mkdir -p results/figures; for job in $(picture_jobs); do [ -e results/$$job.h5 ] && resume=--resume || resume=; \
-	  $(BUILD)/rodsweep run jobs/$$job.json -o results/$$job.h5 $$resume </dev/null; \
+	  $(BUILD)/rodsweep run $(call job,$$job) -o results/$$job.h5 $$resume </dev/null; \
 	done
 	@for picture in $(pictures); do IFS=: read job task name colour <<<$$picture; \
 	  for film in mp4 'gif --every 2 --rate 12'; do path=results/figures/$$name.$${film%% *}; \

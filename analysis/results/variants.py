@@ -19,7 +19,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
-JOBS = os.path.join(os.path.dirname(__file__), "../../jobs")
+JOBS = os.path.join(os.path.dirname(__file__), "../../jobs/networks")
 ITS_OWN = None    # the value of the training job itself
 
 RODS = {
@@ -147,7 +147,7 @@ def training(family, name):
     if data and DATA[data]:
         job["data"] = f"set_{data}.h5"
     else:
-        job["data"] = os.path.join("..", f"{family.data}_{data}.h5" if data else job["data"].removeprefix("../results/"))
+        job["data"] = os.path.join("..", f"{family.data}_{data}.h5" if data else job["data"].removeprefix("../../results/"))
     network = job["network"]
     if network.get("base") in ("none", "extrapolation"):
         network.pop("base_size", None)

@@ -8,7 +8,7 @@ prefix="$PWD/a prefix"
 share="$prefix/share/rodsweep"
 mkdir elsewhere
 cd elsewhere
-"../a prefix/bin/rodsweep" validate --later "$share"/jobs/*.json
+"../a prefix/bin/rodsweep" validate --later "$share"/jobs/*.json "$share"/jobs/*/*.json
 "../a prefix/bin/rodsweep" run "$share/jobs/smoke.json" -o smoke.h5 | tee run.txt
 sh -c "$(sed -n 's/^next: //p' run.txt)" | tee summary.txt
 [ -s summary.txt ]

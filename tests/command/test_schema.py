@@ -159,7 +159,8 @@ class Schema(unittest.TestCase):
         self.assertTrue(said.stdout == self.text, "jobs/schema.json is not what the program prints: run `make schema`")
 
     def test_every_job_of_the_project_validates(self):
-        jobs = [path for path in glob.glob(os.path.join(JOBS, "*.json")) if not path.endswith("schema.json")]
+        jobs = [path for path in glob.glob(os.path.join(JOBS, "**", "*.json"), recursive=True)
+                if not path.endswith("schema.json")]
         self.assertGreaterEqual(len(jobs), 4)
         for path in jobs:
             with self.subTest(path=path), open(path, encoding="utf-8") as file:

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The pages of the repository: links, tables and lists hold, all are in the navigation, docs/keys.md has every key."""
 
+import glob
 import json
 import os
 import re
@@ -197,9 +198,9 @@ class Jobs(unittest.TestCase):
     def test_the_page_names_all_sweeps_and_those_that_make_studies_runs(self):
         """Data sets and trainings have tables of their own."""
         made = re.search(r"^studies = ((?:.*\\\n)*.*)", keys.read(os.path.join(ROOT, "Makefile")), re.M)[1].split()
-        folder = os.path.join(ROOT, "jobs")
-        kinds = {name[:-5]: json.loads(keys.read(os.path.join(folder, name))).get("kind", "sweep")
-                 for name in os.listdir(folder) if name.endswith(".json") and name != "schema.json"}
+        paths = glob.glob(os.path.join(ROOT, "jobs", "**", "*.json"), recursive=True)
+        kinds = {os.path.basename(path)[:-5]: json.loads(keys.read(path)).get("kind", "sweep")
+                 for path in paths if os.path.basename(path) != "schema.json"}
         sweeps = {name for name, kind in kinds.items() if kind == "sweep"}
         section = keys.read(os.path.join(ROOT, "docs", "jobs.md")).partition("## The jobs that come along")[2]
         studies, others = (self.named(table, sweeps) for table in re.findall(r"(?:^\|.*\n)+", section, re.M))

@@ -7,7 +7,7 @@ using namespace rodsweep;
 
 TEST_CASE("every job file of the project is valid and named like its file") {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(RODSWEEP_JOBS)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(RODSWEEP_JOBS)) {
     if (entry.path().extension() != ".json" || entry.path().filename() == "schema.json") continue;
     ++files;
     INFO(entry.path());

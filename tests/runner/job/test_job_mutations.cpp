@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> shipped_jobs() {
   std::vector<fs::path> jobs;
-  for (const auto& entry : fs::directory_iterator(RODSWEEP_JOBS))
+  for (const auto& entry : fs::recursive_directory_iterator(RODSWEEP_JOBS))
     if (entry.path().extension() == ".json" && entry.path().filename() != "schema.json") jobs.push_back(entry.path());
   std::sort(jobs.begin(), jobs.end());
   return jobs;

@@ -40,7 +40,7 @@ TEST_CASE("of a sweep every value counts, and of a range its ends") {
 }
 
 TEST_CASE("no job of the project has a value that is not plausible") {
-  for (const auto& entry : std::filesystem::directory_iterator(RODSWEEP_JOBS)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(RODSWEEP_JOBS)) {
     if (entry.path().extension() != ".json" || entry.path().filename() == "schema.json") continue;
     CAPTURE(entry.path());
     CHECK(read_job(entry.path(), MissingFiles::accepted).warnings == Texts());
