@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""What makes a network a good guess: the CG ratio of one network after another, each trained with one setting changed.
+"""CG ratios of networks that differ from a base network in one training setting each.
 
-The file is of a sweep whose learned guesses are those networks, as `make ablation` trains them; MODELS is the folder of
-their model files, named like the guesses (others, without one there, stand at the end of the table), and --base the one
-that the others are changed from. What is changed is read from the models' own jobs. A panel per setting; in every one the
-base stands beside its variants, and a level line carries its ratios on. Networks with several changes are in a panel of
-their own. Printed before the paths of the figure: the same with the number of weights, time per segment and solve, the
-ratio over all Newton iterations, and the means of networks that differ in their seed alone, with what training left to
-chance in their intervals.
+The results file is a sweep whose learned guesses are these networks, as `make ablation` trains them. MODELS is the
+folder of their model files, named like the guesses. Guesses without a model file go to the end of the table. --base
+names the base network. The changed settings are read from the jobs in the model files.
+
+Each setting has a panel: the base beside its variants, with a dashed line at the base's ratio. Networks with several
+changes share one panel. The table adds the number of weights, the time of a guess per segment and solve, and the ratio
+over all Newton iterations. It also has the mean over networks that differ only in their seed; its interval includes
+the randomness of training.
 """
 
 import os
@@ -24,13 +25,13 @@ from rodsweep.reading.sweepfile import SweepFile
 EXAMPLES = """examples:
   analysis/ablation.py results/ablation_bending.h5 results/ablation_bending
   analysis/ablation.py results/ablation_helix.h5 results/ablation_helix --tolerance 1e-1,1e-2 --base base"""
-MOST = 1.4    # ratio on an axis
-LABEL_MM = 0.62    # that a character of a turned label takes downwards
+MOST = 1.4    # upper limit of the ratio axis
+LABEL_MM = 0.62    # height of a rotated tick label per character
 TOLERANCE_COLOURS = ["#0072B2", "#D55E00", "#00805c", "#7b3fb5"]
 
 
 def _key(*path, default):
-    """A reader of a value of a training job."""
+    """A function that reads a value of a training job."""
     def read(model):
         of = model.job
         for part in path[:-1]:
@@ -50,12 +51,12 @@ def _base(model):
 
 
 def _data(model):
-    """What is behind SCENE_data in the name of the data set."""
+    """The variant of the data set: the suffix after SCENE_data in its file name."""
     other = os.path.splitext(os.path.basename(model.job["data"]))[0].partition("_data")[2].strip("_")
     return f"{other} steps" if other.isdigit() else other or "as in Shao et al."
 
 
-SETTINGS = {    # what a panel is about, and how a model's value of it is read; None where its job says nothing of it
+SETTINGS = {    # title of a panel: function that reads the setting of a model; None if its job does not set it
     "training simulations": lambda model: model.learned_from,
     "message-passing steps": lambda model: model.network.get("steps"),
     "latent size": lambda model: model.network["latent"],
@@ -72,7 +73,7 @@ SETTINGS = {    # what a panel is about, and how a model's value of it is read; 
     "data": _data,
     "seed": _key("seed", default=0),
 }
-# Values that come with another's change: sweeps have no steps, nor moves; a loss without moves cannot teach them.
+# Settings that change with another one: other processors have no steps and no moves, and the loss depends on moves.
 FOLLOWS = {"processor": ("message-passing steps", "global state", "hidden layers", "loss"), "encoding": ("loss",)}
 SEVERAL = "several at once"
 
@@ -80,7 +81,7 @@ SEVERAL = "several at once"
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES)
     made.add_argument("models", metavar="MODELS", help="folder of the model files")
-    made.add_argument("--base", default="base", help="the model that the others are changed from (default: base)")
+    made.add_argument("--base", default="base", help="name of the base model (default: base)")
     study.add_figure_arguments(made)
     return made.parse_args()
 
@@ -93,8 +94,8 @@ def main():
         models = {g: modelfile.read(path) for g, path in paths.items() if os.path.exists(path)}
         base = next((g for g in models if name_of(file.guesses[g]) == options.base), None)
         if base is None:
-            raise KeyNotFound(f"{file.path} has no guess \"copingnet {options.base}\" with a model in {options.models}: --base "
-                              "names the model that the others are changed from")
+            raise KeyNotFound(f"{file.path} has no guess \"copingnet {options.base}\" with a model in {options.models}: "
+                              "give the name of the base model with --base")
         panels = panels_of(models, base)
         tolerances = commandline.chosen_tolerances(file, options)
         ratios = [measures.cg_ratios(file, shown.sims, newton).ratio for newton in ("first", "all")]
@@ -105,13 +106,13 @@ def main():
 
 
 def name_of(label):
-    """Of the model of a learned guess, "" for other guesses."""
+    """Name of a learned guess's model; "" for other guesses."""
     kind, _, name = label.partition(" ")
     return name if kind == "copingnet" else ""
 
 
 def differences(model, base):
-    """{setting: value} of what is not the base's, but for what only comes with another change."""
+    """{setting: value} that differ from the base, without those that follow another change."""
     found = {what: value for what, read in SETTINGS.items() if (value := read(model)) not in (None, read(base))}
     for what, others in FOLLOWS.items():
         for other in others if what in found else ():
@@ -120,7 +121,7 @@ def differences(model, base):
 
 
 def panels_of(models, base):
-    """{setting: [(text of the value, guess)]}, the base among them, in the order of the values."""
+    """{setting: [(text of the value, guess)]} with the base: sorted if the values are numbers, else the base first."""
     panels = {}
     for g, model in models.items():
         if g == base:
@@ -141,7 +142,7 @@ def panels_of(models, base):
 
 
 def text_of(value, alone=True):
-    """Of a value, or not `alone` of a setting and its value, in few words."""
+    """Short text of a value or, if not `alone`, of a (setting, value) pair."""
     if not alone:
         what, value = value
         if what == "seed":
@@ -151,7 +152,7 @@ def text_of(value, alone=True):
 
 
 def trained_again(models):
-    """[guesses]: of networks that differ in nothing but their seed, where there are several."""
+    """Groups of at least two guesses whose networks differ only in the seed."""
     groups = {}
     for g, model in models.items():
         of = tuple((what, read(model)) for what, read in SETTINGS.items() if what != "seed")
@@ -182,8 +183,8 @@ def table(shown, models, base, panels, ratios, means, tolerances):
             rows.append(row(f"{names[same[0]]}, {len(same)} trainings", same[0],
                             intervals.mean_over_trainings(values[:, same], shown.sims.sample)))
         rows += [row(file.guesses[g], g, ratio[g]) for g in shown.lines() if g not in models]
-        lines += [f"CG ratio, {measures.NEWTON[newton]}: mean over simulations [95 % interval; of several trainings with their randomness]", "",
-                  *texts.aligned(rows), ""]
+        lines += [f"CG ratio, {measures.NEWTON[newton]}: mean over simulations [95 % interval; of several trainings with "
+                  "their randomness]", "", *texts.aligned(rows), ""]
     return lines[:-1]
 
 
@@ -193,8 +194,8 @@ def figure(shown, models, base, panels, ratio, tolerances):
                for colour, t in zip(TOLERANCE_COLOURS, tolerances)]
     handles.append(Line2D([], [], color="#777777", linewidth=0.8, linestyle=(0, (4, 2)), label="the base"))
     notes = [f"CG ratio: {measures.NEWTON[shown.newton]}; mean over simulations, {study.sample_text([ratio])}. Open "
-             f"markers: the base, {described(models[base])}. Every network was trained for as many steps of the "
-             "optimiser.", shown.about()]
+             f"markers: the base ({described(models[base])}). All networks took the same number of optimiser steps.",
+             shown.about()]
     columns = 5 if shown.wide else 2
     longest = max(len(text) for values in panels.values() for text, _ in values)
     page = layout.Page(shown.width_mm, [""], len(panels), columns, 30, handles, notes, gap_mm=3,
@@ -223,14 +224,14 @@ def figure(shown, models, base, panels, ratio, tolerances):
     return page
 
 
-# Settings whose values are joined by a line: more of the same.
+# Settings with ordered values: a line joins their points.
 ORDERED = ("training simulations", "message-passing steps", "latent size", "hidden layers", "largest learning rate",
            "turned copies")
 
 
 def described(model):
     network = model.network
-    return (f"encoding {network['encoding']}, {SETTINGS['processor'](model)} of {network.get('steps', '?')} steps, latent size "
+    return (f"encoding {network['encoding']}, {SETTINGS['processor'](model)} with {network.get('steps', '?')} steps, latent size "
             f"{network['latent']}, {_loss(model)}, {model.learned_from} simulations")
 
 

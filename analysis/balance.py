@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Figure and table of the two kinds of step over the time step: the paper's, and one that keeps the balance of momentum.
+"""Error against wall time for two kinds of time step: the paper's, and one that keeps the balance of momentum.
 
-A panel per kind of scene: the error at the end of a simulation over the wall time that a second of it takes, a point
-per time step; of scenes that have one time step the table alone. Error: the distance of a segment from where the
-balanced step of the smallest size has it, root mean square over segments, relative to the diagonal of the box around
-all segments at the start; medians over simulations. The table has, besides, the Newton iterations of a step and the
-largest momentum residual after the first step. Needs trajectories in the file (record.trajectory_every) that end with
-the simulation, and /solves (record.solves "all").
+Each kind of scene has a panel: the error at the end of a simulation over the wall time of a simulated second, one
+point per time step. Without several time steps, only the table is printed. The error is the distance of a segment from
+its position with the smallest balanced step, root mean square over segments. It is relative to the diagonal of the box
+around all segments at the start. Times and errors are medians over simulations. The table adds the mean Newton
+iterations of a step and the largest momentum residual after the first step. The file needs trajectories to the end of
+the simulation (record.trajectory_every) and /solves (record.solves "all").
 """
 
 from dataclasses import dataclass
@@ -27,10 +27,10 @@ KINDS = {"false": "the paper's step", "true": "in balance"}
 
 @dataclass(frozen=True)
 class Line:
-    """Of one kind of scene and step, over the time step, largest first; Estimates."""
+    """Estimates of one kind of scene and step, one per time step, largest step first."""
     step_s: list
     second_ms: list      # wall time of a simulated second
-    error: list          # None of the reference
+    error: list          # None for the reference
     iterations: list
     lacking: list        # momentum residual
 
@@ -45,12 +45,12 @@ def main():
     options = arguments()
     with SweepFile(options.file) as file:
         if "time.balance" not in file.parameters:
-            raise KeyNotFound(f"{file.path} has one kind of step: sweep time.balance over false and true")
+            raise KeyNotFound(f"{file.path} has only one kind of step: sweep time.balance over false and true")
         shown = study.of_tasks(file, options)
         panels = by_panel(file, np.unique(shown.sims.any_task))
         print("\n".join(table(panels)) + "\n")
         if any(len(lines["true"].step_s) == 1 for lines in panels.values()):
-            return  # one time step makes a row, not a line
+            return  # one time step gives no line to draw
         study.save(file, options, {"balance": figure(shown, panels)})
 
 
@@ -61,7 +61,7 @@ def by_panel(file, tasks):
 
 
 def _scenes(file, tasks):
-    """{title: mask}: by type, and by what holds or loads it where types are the same."""
+    """{title: mask of tasks} by scene type and tip load."""
     keys = [key for key in ("scene.type", "scene.tip_force_n") if key in file.parameters]
     codes = np.column_stack([file.parameters[key].codes()[tasks] for key in keys])
     loaded = {}
@@ -119,8 +119,8 @@ def figure(shown, panels):
     looks = dict(zip(KINDS, style.series_styles(len(KINDS))))
     points = [error for lines in panels.values() for line in lines.values() for error in line.error if error]
     notes = [f"Medians of {study.sample_text(points, mark='')}. Along a line the time step halves from point to point, "
-             f"from {max(next(iter(panels.values()))['true'].step_s):g} s on the left, to twice that of the reference, "
-             "the smallest step in balance.", shown.about()]
+             f"from {max(next(iter(panels.values()))['true'].step_s):g} s on the left to twice the reference's. "
+             "Reference: the smallest step in balance.", shown.about()]
     page = layout.Page(shown.width_mm, ["Error at the end"], len(panels), 3 if shown.wide else 1, 44,
                        [look.handle(KINDS[kind]) for kind, look in looks.items()], notes, shown.timing_warning(),
                        left_mm=13, gap_mm=9)
@@ -137,7 +137,7 @@ def figure(shown, panels):
         page.title(axes, title)
         if column == 0:
             axes.set_ylabel("error / size of the scene", labelpad=2)
-    page.label_x(0, "wall time of a simulated second (ms)")
+    page.label_x(0, "wall time per simulated second (ms)")
     return page
 
 

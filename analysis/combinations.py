@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Which preconditioner and guess together solve fastest, how much of it is the guess's, and where a direct solve does.
+"""Solve times of all combinations of preconditioner and guess, compared with the direct solve.
 
-For every place along x (--x, nodes of a lattice by default) a table of all combinations, and the cheapest of each kind:
-the direct solve, CG from zero, with a classical guess, with a learned one, and with an oracle that costs nothing. In a
-paired sweep the time is that of a solve, guess and set-up of the preconditioner included, assembly left out; in a
-closed loop that of a whole step. The figure has the time of the cheapest of each kind over the number of joints, a
-panel per scene type and value of any other grid. Intervals are 95 % bootstrap intervals over simulations. Needs /solves
-in the file (record.solves "all"). Written as PDF and PNG; the paths are printed.
+For each value of --x (by default the nodes of a lattice) a table lists all combinations and the fastest of each kind:
+the direct solve, CG from zero, with a classical guess, with a learned one, and with an oracle. In a paired sweep the
+time is that of a solve with guess and preconditioner set-up, without assembly. The oracle's own time is not counted
+there. In a closed loop the time is that of a whole step. The figure has the time of the fastest of each kind over the
+number of joints, a panel per scene type and value of any other grid. Intervals are 95 % bootstrap intervals over
+simulations. The file needs /solves (record.solves "all"). Writes PDF and PNG and prints the paths.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances="1e-2,1e-3")
     study.add_figure_arguments(made)
     made.add_argument("--x", metavar="KEY", default="scene.nodes_x",
-                      help="parameter along x (default: scene.nodes_x); the axis says joints")
+                      help="parameter along x (default: scene.nodes_x); the axis shows joints")
     return made.parse_args()
 
 
@@ -43,7 +43,7 @@ def main():
         if not timings.timed(file):
             raise KeyNotFound(f"{file.path} has no times of guesses")
         if combinations.PRECONDITIONER not in file.parameters or file.zero is None:
-            raise KeyNotFound(f"{file.path} needs a preconditioner and the zero guess to compare with")
+            raise KeyNotFound(f"{file.path} has no preconditioner or no zero guess to compare with")
         rows = groups.applicable(file, shown.sims, options.x)
         panels = combinations.panels(file, shown.sims.subset(rows), options.x)
         shown.sims = shown.sims.subset(rows)
@@ -56,11 +56,11 @@ def main():
 
 def table(shown, panels, found, tolerances, x):
     file, closed = shown.file, shown.sims.closed_loop
-    unit = "a whole step" if closed else "a solve, guess and set-up included, assembly left out"
+    unit = "a whole step" if closed else "a solve with guess and set-up, without assembly"
     lines = [f"{file.path}, {shown.census.text()}, revision {remarks.revisions(file)}",
              f"µs: {unit}, to {shown.solve_tolerance()}, median over simulations [95 % interval]. Iterations per solve "
-             f"and CG ratios: means, {measures.NEWTON[shown.newton]}. * some solves missed the tolerance and count what "
-             "they used"]
+             f"and CG ratios: means, {measures.NEWTON[shown.newton]}. * some solves missed the tolerance; the iterations "
+             "that they used are counted"]
     lines += list(filter(None, [shown.timing_warning()]))
     for panel, cells in zip(panels, found):
         for cell in cells:
@@ -105,7 +105,7 @@ def _mean(values):
 
 
 def _interval(estimate):
-    """Three digits, the interval where there are enough draws for one."""
+    """Three digits, with the interval if there are enough draws."""
     value, low, high = (float(np.squeeze(part)) for part in (estimate.value, estimate.low, estimate.high))
     if not np.isfinite(value):
         return "-"
@@ -118,10 +118,10 @@ def figure(shown, panels, found):
     there = [kind for kind in combinations.KINDS if any(cell.cheapest(kind) for cells in found for cell in cells)]
     handles = [STYLES[kind].handle("direct solve" if kind == combinations.DIRECT else f"CG {kind}" if
                                    kind == combinations.ZERO else f"CG, best {kind}") for kind in there]
-    unit = "A whole step" if closed else "Guess, set-up of the preconditioner and CG, or the direct solve"
+    unit = "Time of a whole step" if closed else "Time of guess, preconditioner set-up and CG, or of the direct solve"
     estimates = [[{kind: intervals.median(cell.cheapest(kind).time_us, cell.draws) for kind in there
                    if cell.cheapest(kind)} for cell in cells] for cells in found]
-    notes = [f"{unit}, to {shown.solve_tolerance()}: of each kind the fastest combination of preconditioner and guess; "
+    notes = [f"{unit}, to {shown.solve_tolerance()}. Each line: the fastest combination of its kind; "
              f"median over {study.sample_text([e for row in estimates for one in row for e in one.values()])}. "
              f"Counted: {measures.NEWTON[shown.newton]}.", shown.about()]
     titles = groups.short_titles(panels)

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""What differs between two sweeps, task by task and in the mean.
+"""Differences between two sweeps, task by task and in the mean.
 
-Two tasks are the same if all that their results depend on is: the keys that apply to them, seed, sample and guesses. So
-sweeps with other grids, samples or guesses overlap where they can. Where jobs differ in a key on purpose (a tolerance, a
-preconditioner), --by parameters matches tasks by their sample and by the keys that vary within either job, and guesses
-by their label. Models and data sets are known by the path in the job.
+Two tasks are the same if everything that their results depend on is equal: the keys that apply to them, seed, sample
+and, in a closed loop, the guess. So sweeps with other grids, samples or guesses can overlap. If jobs differ in a key
+on purpose (a tolerance, a preconditioner), use --by parameters. It matches tasks by their sample and by the keys that
+vary within either job, and guesses by their label. Models and data sets are identified by their path in the job.
 
-The output has the keys in which the jobs differ, the number of tasks in both, the values that differ, changed outcomes,
-and for every guess the mean CG ratio in both and its difference, task by task, with a bootstrap interval of 95 % over
-draws of the random parameters ("-" for fewer than 5). Times are shown and do not count as differences. The table has
-one tolerance, that of the first job; --csv and --json have all.
+The output lists the keys in which the jobs differ, the number of tasks in both, the values that differ, and changed
+outcomes. For every guess it has the mean CG ratio in both files and the mean difference of the tasks, with a 95 %
+bootstrap interval over draws of the random parameters ("-" for fewer than 5). Times are shown, but do not count as
+differences. The table has the first job's tolerance; --csv and --json have all.
 """
 
 import argparse
@@ -28,8 +28,8 @@ EXAMPLES = """examples:
   rodsweep compare results/jacobi.h5 results/icc.h5 --by parameters
   rodsweep compare old.h5 new.h5 --tasks --csv >differing.csv
 
-exit codes: 0 what is in both files is the same, to the last bit; 8 results differ; 2 an error of the command line or a
-file, or no task is in both"""
+exit codes: 0 all results in both files are bitwise equal; 8 results differ; 2 an error in the command line or a file,
+or no task is done in both"""
 DIFFER = 8
 MOST_KEYS, MOST_CHANGES, LONGEST = 20, 10, 60
 
@@ -38,12 +38,12 @@ def arguments():
     made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("file", metavar="FILE", help="results file (HDF5)")
-    made.add_argument("other", metavar="OTHER", help="another one")
-    made.add_argument("--by", choices=comparison.BY, default="everything", help="what makes two tasks the same")
+    made.add_argument("other", metavar="OTHER", help="second results file (HDF5)")
+    made.add_argument("--by", choices=comparison.BY, default="everything", help="how tasks are matched (default: everything)")
     made.add_argument("--tasks", action="store_true", help="list every task that differs")
     form = made.add_mutually_exclusive_group()
     form.add_argument("--csv", action="store_true", help="comma-separated values")
-    form.add_argument("--json", action="store_true", help="one object")
+    form.add_argument("--json", action="store_true", help="one JSON object")
     return made.parse_args()
 
 
@@ -60,7 +60,7 @@ def main():
         else:
             print(text(found, pairs, keys, options))
         if not found.compared:
-            hint = "; --by parameters matches tasks though the jobs differ"
+            hint = "; use --by parameters to match tasks of different jobs"
             raise KeyNotFound("no task is done in both files, so nothing was compared" if len(pairs.a) else
                               "no task is in both files, so nothing was compared" +
                               hint * (options.by == "everything"))
@@ -83,7 +83,7 @@ def text(found, pairs, keys, options):
         for path in found.left_out:
             group = "/" + path.split("/")[1]
             groups[group] = groups.get(group, 0) + 1
-        lines.append("not compared, since it is not in both or of another length: " +
+        lines.append("not compared (missing in one file, or of another shape): " +
                      ", ".join(f"{group} ({count} column{'s' * (count > 1)})" for group, count in groups.items()))
     changed = [place for place in found.differing if outcomes(found, place)[0] != outcomes(found, place)[1]]
     if changed:
@@ -132,9 +132,9 @@ def oversubscribed(file):
 
 def times_remark(found):
     hosts = [run_text(file, "host") for file in (found.one, found.other)]
-    remark = f"; other machines: {hosts[0]} and {hosts[1]}" if hosts[0] != hosts[1] else ""
+    remark = f"; different machines: {hosts[0]} and {hosts[1]}" if hosts[0] != hosts[1] else ""
     if oversubscribed(found.one) or oversubscribed(found.other):
-        remark += "; more ranks than cores, so they mean nothing"
+        remark += "; more ranks than cores, so they are not valid"
     return remark
 
 
@@ -203,7 +203,7 @@ def value_text(value):
 
 
 def table(rows):
-    """Indented lines; none for a head alone."""
+    """Indented lines; empty for a header row without others."""
     return ["  " + line for line in texts.aligned(rows)] if len(rows) > 1 else []
 
 

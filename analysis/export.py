@@ -5,9 +5,9 @@
   solves  a row per linear solve and guess: iterations to every tolerance, residuals, times
   steps   a row per time step: length drift, joint gap, energies, momenta
 
-The first columns say which task, with the parameters that the job sweeps. Tasks that are not complete are left out;
-failed ones have their outcome. A value that was not measured or not reached is an empty field (null in Parquet). CSV is
-written block by block, so a file of any size needs little memory. Parquet needs pyarrow, and memory for all its rows.
+The first columns identify the task and have the parameters that the job sweeps. Incomplete tasks are left out; failed
+ones have their outcome. A value that was not measured or not reached is an empty field (null in Parquet). CSV is
+written block by block, so memory use does not grow with the file. Parquet needs pyarrow and memory for all its rows.
 """
 
 import contextlib
@@ -34,12 +34,12 @@ def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances="all", newton=False)
     made.add_argument("-o", "--output", metavar="FILE", help="file to write (default: standard output); Parquet if its "
                                                              "name ends in .parquet, compressed CSV if in .gz")
-    made.add_argument("--level", choices=tidy.LEVELS, default="tasks", help="what a row stands for (default: tasks)")
-    made.add_argument("--columns", metavar="NAME,…", help="these columns in this order (default: all measured ones and "
-                                                          "the swept parameters)")
+    made.add_argument("--level", choices=tidy.LEVELS, default="tasks", help="content of a row (default: tasks)")
+    made.add_argument("--columns", metavar="NAME,…", help="columns to write, in this order (default: all measured "
+                                                          "ones and the swept parameters)")
     made.add_argument("--where", metavar="CONDITION", action="append", default=[],
-                      help=f"only rows that meet it: a column, chosen or not, {conditions.FORM}; may be repeated")
-    made.add_argument("--list", action="store_true", help="print the names of the columns and stop")
+                      help=f"only rows that meet the condition: any column, {conditions.FORM}; may be repeated")
+    made.add_argument("--list", action="store_true", help="print the names of the columns and exit")
     outputs.add_force(made)
     made.set_defaults(tolerance="all")
     return made.parse_args()
@@ -69,7 +69,7 @@ def main():
 
 @contextlib.contextmanager
 def opened(options):
-    """The output as bytes; the file appears under its name when it is whole. SweepFileError rather than replace one."""
+    """The output as a binary stream. A file gets its name when it is complete. Raises SweepFileError if it exists."""
     path = options.output
     if path is None:
         yield sys.stdout.buffer

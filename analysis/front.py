@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""What guesses cost and what they leave: CG ratio over the time of a guess, per segment and solve.
+"""CG ratio over the time of a guess, per segment and solve.
 
-A row of panels per scene type and value of any other grid, a panel per tolerance. Means over simulations of the CG
-ratio, medians of the time; whiskers are 95 % bootstrap intervals. The grey line joins what no other guess beats in
-both. On the dashed line guess and CG take as long as with the best of the classical guesses (without deflation, whose
-iterations are dearer), if every iteration takes as long as from zero: below it a guess is faster. It is drawn where the
-panel's tolerance is that of the timed solves. Needs a file with times and a zero guess. Written as PDF and PNG; the
-paths are printed after the table.
+A row of panels per scene type and value of any other grid, a panel per tolerance. CG ratios are means over
+simulations, times are medians; whiskers are 95 % bootstrap intervals. The grey line joins the guesses that no other
+guess beats in both. On the dashed line, guess and CG take as long as with the best classical guess; a guess below it
+is faster. The line assumes that an iteration takes as long as from zero. It leaves out deflation, whose iterations
+take longer. It is drawn if the panel's tolerance is that of the timed solves. The file needs times and a zero guess.
+The script prints the table, writes PDF and PNG, and prints the paths.
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ from rodsweep.reading.sweepfile import SweepFile
 EXAMPLES = """examples:
   analysis/front.py results/learned_rods.h5 --tolerance 1e-2,1e-3
   analysis/front.py results/learned_rods.h5 --scene helix --newton all"""
-# In labels of what is more than a classical guess; deflation makes iterations dearer.
+# Words in labels of guesses that are not classical; deflation makes iterations longer.
 OTHERS = ("copingnet", "knn", "oracle", "deflation")
 
 
@@ -35,7 +35,7 @@ def main():
     with SweepFile(options.file) as file:
         shown = study.of_guesses(file, options)
         if not timings.timed(file):
-            raise KeyNotFound(f"{file.path} has no times: nothing is known of what guesses cost")
+            raise KeyNotFound(f"{file.path} has no times, so the cost of guesses is not known")
         tolerances = commandline.chosen_tolerances(file, options)
         panels = groups.panels(file, shown.sims, None, pooled="scene.", most=None)
         found = [estimates(shown, panel.index) for panel in panels]
@@ -44,7 +44,8 @@ def main():
 
 
 def estimates(shown, index):
-    """(ratio [guess, tolerance], guess [guess] and CG from zero in us per segment and solve) of some simulations."""
+    """(ratio [guess, tolerance], time of the guess [guess], time of CG from zero) of some simulations, in us per
+    segment and solve."""
     file, sims = shown.file, shown.sims.subset(index)
     ratio = intervals.mean(measures.cg_ratios(file, sims, shown.newton).ratio, sims.sample)
     spent = timings.times(file, sims)[shown.newton]
@@ -71,7 +72,7 @@ def table(shown, panels, found, tolerances):
 def figure(shown, panels, found, tolerances):
     file = shown.file
     lines = shown.lines()
-    handles = shown.handles(lines) + [Line2D([], [], color="#999999", linewidth=0.8, label="not beaten in both"),
+    handles = shown.handles(lines) + [Line2D([], [], color="#999999", linewidth=0.8, label="no other guess is better in both"),
                                       Line2D([], [], color="#999999", linewidth=0.8, linestyle=(0, (3, 2)),
                                              label="as fast as the best classical guess")]
     notes = [f"CG ratio: {measures.NEWTON[shown.newton]}; mean over simulations; time: median; "
@@ -106,7 +107,7 @@ def figure(shown, panels, found, tolerances):
 
 
 def unbeaten(x, y):
-    """Indices, by x, of the points that no other has both below and left of."""
+    """Indices, sorted by x, of the points without another point below and to the left."""
     order = np.lexsort((y, x))
     best = np.minimum.accumulate(np.concatenate([[np.inf], y[order]]))[:-1]
     return order[y[order] < best]

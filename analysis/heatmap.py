@@ -2,18 +2,17 @@
 """Heat maps of a sweep over two parameters: a CG ratio, speedup, iterations or residual in every cell.
 
   --measure ratio            CG iterations relative to the zero guess (default)
-            matvec-ratio     products with A instead, those of the guess included
-            other-norm-ratio CG ratio with the residual test in the norm that the job doesn't use
+            matvec-ratio     products with A instead, including those of the guess
+            other-norm-ratio CG ratio with the residual test in the norm that the job does not use
             speedup-cg, speedup-guess-cg, speedup-step
                              time of zero-guess CG over the time with a guess
             iterations       CG iterations of a solve from zero
             newton-residual, joint-gap
                              largest at the end of a step
 
---x and --y name keys of the job, or `tolerance`: the ladder of tolerances that iterations are counted to. A cell shows
-the best of the guesses, and its name; the oracle, which knows the solution, only takes part when --guess names it.
---each draws a panel per guess instead. A panel per value of any other grid. Written as PDF and PNG; the paths are
-printed.
+--x and --y name keys of the job, or `tolerance`: the tolerances that iterations are counted to. A cell shows the best
+guess and its name. The oracle, which knows the solution, only takes part if --guess names it. --each draws a panel per
+guess instead. Each value of any other grid has a panel. Writes PDF and PNG and prints the paths.
 """
 
 import numpy as np
@@ -40,7 +39,7 @@ def arguments():
     made.add_argument("--x", metavar="KEY", required=True, help="parameter along x, or `tolerance`")
     made.add_argument("--y", metavar="KEY", required=True, help="parameter along y, or `tolerance`")
     made.add_argument("--measure", choices=list(heat.MEASURES), default="ratio", help="default: ratio")
-    made.add_argument("--each", action="store_true", help="a panel per guess, not the best of them")
+    made.add_argument("--each", action="store_true", help="one panel per guess instead of the best guess")
     return made.parse_args()
 
 
@@ -63,14 +62,14 @@ def main():
 
 
 def chosen(file, options):
-    """What to show: a Study, the tolerances and the guesses of the cells. Raises KeyNotFound for what makes no map."""
+    """The Study, the tolerances and the guesses of the cells. Raises KeyNotFound if the options give no map."""
     measure = heat.MEASURES[options.measure]
     if options.x == options.y:
         raise KeyNotFound(f"--x and --y are both {options.x}: a map needs two parameters")
     laddered = heat.LADDER in (options.x, options.y)
     if laddered and not measure.ladder:
-        raise KeyNotFound(f"--measure {options.measure} has one value at the job's tolerance, not one for each of the "
-                          "ladder: sweep solve.tolerance in the job and give that as an axis")
+        raise KeyNotFound(f"--measure {options.measure} has values only at the job's tolerance: sweep solve.tolerance in "
+                          "the job and give it as an axis instead of `tolerance`")
     if measure.of_guess or measure.ladder:
         shown = study.of_guesses(file, options)
     else:
@@ -79,11 +78,11 @@ def chosen(file, options):
         if key != heat.LADDER:
             shown.sims = shown.sims.subset(groups.applicable(file, shown.sims, key))
     if laddered and not shown.sims.closed_loop and "solve.tolerance" in file.parameters:
-        # Counts to the whole ladder do not depend on the tolerance of the timed solves of a paired sweep.
+        # In a paired sweep, counts do not depend on the tolerance of the timed solves.
         timed = file.parameters["solve.tolerance"].values[shown.sims.any_task]
         if (timed != timed[0]).any():
             shown.sims = shown.sims.subset(timed == timed.min())
-            shown.left_out = "counts do not depend on solve.tolerance, tasks of one value shown"
+            shown.left_out = "counts do not depend on solve.tolerance, so tasks of one value are shown"
     tolerances = commandline.chosen_tolerances(file, options) if measure.ladder else [0]
     if measure.ladder and not laddered:
         if len(tolerances) > 1 and options.tolerance:
@@ -91,7 +90,7 @@ def chosen(file, options):
         tolerances = tolerances if options.tolerance else [file.tolerance_index(1e-2)]
     guesses = shown.lines() if options.guess else heat.comparable(file, shown.guesses)
     if measure.of_guess and not guesses:
-        raise KeyNotFound(f"no guess is left to compare with zero among {', '.join(file.guesses)}")
+        raise KeyNotFound(f"no guess to compare with zero among {', '.join(file.guesses)}")
     if not measure.of_guess:
         guesses = shown.guesses[:1]
     return shown, tolerances, guesses
@@ -126,7 +125,7 @@ def figure(shown, options, planes, guesses, tolerances):
 
 
 def most_columns(width_mm, planes):
-    """So many panels side by side that a cell has room for its number."""
+    """Largest number of panels side by side whose cells have room for a number."""
     cells = max(len(plane.x.index) for plane in planes)
     return max(1, min(4, int(width_mm / (14 + 9.5 * cells))))
 
@@ -156,12 +155,12 @@ def notes(shown, options, planes, guesses):
     if measure.of_guess and len(guesses) > 1 and not options.each:
         text += "Each cell shows the best of " + ", ".join(shown.file.guesses[g] for g in guesses) + ". "
     if any(plane.unreached.any() for plane in planes):
-        text += "*: some of these solves missed the tolerance and count what they used."
+        text += "*: some of these solves missed the tolerance; the iterations that they used are counted."
     return [text, shown.about()]
 
 
 def scale(measure, planes):
-    """Colours: about 1 where guesses are compared with zero (blue is better), else from small to large."""
+    """Norm and colours: diverging about 1 for a comparison with zero (blue is better), else sequential."""
     values = np.concatenate([plane.cells.value.ravel() for plane in planes])
     values = values[np.isfinite(values) & (values > 0)]
     if not measure.better:
@@ -171,7 +170,7 @@ def scale(measure, planes):
         return (colors.LogNorm if high > 30 * low else colors.Normalize)(low, high), style.SEQUENTIAL
     low, high = (min(values.min(), 0.8), max(values.max(), 1.25)) if len(values) else (0.8, 1.25)
     reach = np.log(max(high, 1 / low))
-    # As far to either side of 1 as the values go, with the same colour for the same factor up or down.
+    # The colours cover the range of the values; a factor above 1 and its inverse have the same strength.
     part = np.linspace(*(0.5 + 0.5 * np.log(end) / reach for end in (low, high)), 256)
     both = style.DIVERGING if measure.better < 0 else style.DIVERGING.reversed()
     return colors.LogNorm(low, high), colors.ListedColormap(both(part))

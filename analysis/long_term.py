@@ -1,13 +1,12 @@
 #!/usr/bin/python3
-"""Figure and table of long runs: length drift, joint gap, total energy and momenta over time for every method.
+"""Length drift, joint gap, total energy and momenta of long runs over time, for every method, as figure and table.
 
-Made for closed loops, where every guess advances a trajectory of its own, with tasks of `solve.method` "direct" or
-"end_to_end" beside them; in a paired sweep there is one trajectory, that of the direct solve. A line is the median over
-simulations of the largest value in each of a few hundred stretches of the run (energy: of the middle of its range); its
-band goes from the smallest to the largest that any simulation had there. A simulation that failed takes part up to its
-end, which a cross marks. The table has the largest and the final drift, its slope per 1000 steps with a 95 % bootstrap
-interval over simulations, and what failed when. The figure is written as PDF and PNG; the paths are printed after the
-table.
+The script is meant for closed loops, where every guess advances its own trajectory, and for tasks with `solve.method`
+"direct" or "end_to_end". A paired sweep has one trajectory, that of the direct solve. The run is divided into up to
+240 intervals. A line is the median over simulations of the largest value in an interval (energy: of the middle of its
+range). Its band goes from the smallest to the largest value of all simulations. A failed simulation is included up to
+its end, which a cross marks. The table has the largest and the final drift, its slope per 1000 steps with a 95 %
+bootstrap interval over simulations, and the failures. Writes PDF and PNG; prints the table and the paths.
 """
 
 import sys
@@ -30,16 +29,16 @@ PANELS = {  # quantity: title, vertical scale
     "momentum_kg_m_s": ("linear momentum (kg m/s)", "log"),
     "angular_momentum_kg_m2_s": ("angular momentum about the origin (kg m²/s)", "log"),
 }
-DECADES = 8   # of a logarithmic axis, counted from the largest value of a method that did not fail
+DECADES = 8   # of a logarithmic axis, below the largest value of the methods that did not fail
 
 
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     study.add_figure_arguments(made)
     made.add_argument("--after", metavar="STEP", type=int,
-                      help="first step of the fit of drift per 1000 steps (default: a tenth of the run)")
+                      help="first step of the fit of the drift (default: a tenth of the run)")
     made.add_argument("--log-time", action="store_true", help="logarithmic time axis")
-    made.add_argument("--csv", action="store_true", help="the table as comma-separated values, and no figure")
+    made.add_argument("--csv", action="store_true", help="the table as comma-separated values, without a figure")
     return made.parse_args()
 
 
@@ -64,14 +63,15 @@ def main():
 
 
 def make_study(file, options):
-    """All tasks that were chosen, with and without guesses, those that failed too."""
+    """A Study of all chosen tasks, with and without guesses, including failed ones."""
     if not envelopes.recorded(file):
-        raise KeyNotFound(f"{file.path} has no rows of steps (/steps): nothing is known of the runs")
+        raise KeyNotFound(f"{file.path} has no rows of steps (/steps), which this script needs")
     return study.of_tasks(file, options, failed_too=True)
 
 
 def methods(shown, panel):
-    """{method: (style, tasks, rows of Simulations)} of a panel: guesses in the file's order, then what has none."""
+    """{method: (style, tasks, rows of Simulations)} of a panel: guesses in the file's order, then methods without a
+    guess."""
     file, sims = shown.file, shown.sims
     found = {}
     for g in shown.guesses:
@@ -88,10 +88,10 @@ def figure(shown, panels, series, found, options):
     steps = int(found.edges[-1])
     middle = (found.edges[:-1] + found.edges[1:] + 1) / 2
     times = [shown.time_axis(shown.sims.any_task[panel.index], middle) for panel in panels]
-    notes = [f"{steps} steps in {buckets} stretches. Lines: median over {counts} simulations of the largest value in a "
-             "stretch (energy: of the middle of its range, relative to the first step). Bands: smallest to largest of "
-             "all simulations, for length drift of these largest values. Crosses with black edges: simulations that "
-             f"failed. Logarithmic axes reach {DECADES} decades below the largest value of what did not fail."]
+    notes = [f"{steps} steps in {buckets} intervals. Lines: median over {counts} simulations of the largest value in an "
+             "interval (energy: of the middle of its range, relative to the first step). Bands: smallest to largest "
+             "value of all simulations; for length drift, of the largest values. Crosses: failed simulations. "
+             f"Logarithmic axes show {DECADES} decades below the largest value of the methods that did not fail."]
     scales = [_scales(found, methods_of, shown) for methods_of in series]
     envelopes_of = {name: [{method: _envelope(found, name, method, tasks, scale)
                             for method, (_, tasks, _) in methods_of.items()} for methods_of, scale in zip(series, scales)]
@@ -99,7 +99,7 @@ def figure(shown, panels, series, found, options):
     notes += filter(None, [_coincident(envelopes_of)])
     titles = groups.short_titles(panels)
     columns = layout.even_columns(len(panels), 4 if shown.wide else 1)
-    if max(map(len, titles)) > (shown.width_mm - 13) / columns / 1.2:    # a character has about 1.2 mm
+    if max(map(len, titles)) > (shown.width_mm - 13) / columns / 1.2:    # about 1.2 mm per character
         titles = [title.replace(", ", "\n") for title in titles]
     page = layout.Page(shown.width_mm, [PANELS[name][0] for name in names], len(panels), columns,
                        26, study.handles(series), notes + [shown.about()], left_mm=13,
@@ -123,8 +123,8 @@ def figure(shown, panels, series, found, options):
 
 
 def _scales(found, methods_of, shown):
-    """{draw: J}: a simulation's largest kinetic energy, the smallest over its methods (one may have blown up); failed
-    ones count where there is no other."""
+    """{method: [task] J}: a draw's largest kinetic energy, the smallest over its methods (one may have diverged).
+    Failed simulations count only if all failed."""
     scales = {}
     well = [(tasks[ok], rows[ok]) for _, tasks, rows in methods_of.values() for ok in [shown.file.ok[tasks]]]
     for tasks, rows in well if any(len(tasks) for tasks, _ in well) else [m[1:] for m in methods_of.values()]:
@@ -150,7 +150,7 @@ def _envelope(found, name, method, tasks, scales):
 
 
 def _coincident(envelopes_of):
-    """A sentence on methods whose lines nobody can tell apart, in all panels of a row; the largest set of each row."""
+    """A sentence on methods whose lines coincide in all panels of a row: the largest set of each row."""
     found = {}
     for name, panels in envelopes_of.items():
         methods_of = list(dict.fromkeys(method for of_panel in panels for method in of_panel))
@@ -189,7 +189,8 @@ def _finite(parts):
 
 
 def _scale_y(axes, scale, values, well):
-    """The same for all panels of a row. `values` of all methods set the top, those that ended `well` the resolution."""
+    """One scale for all panels of a row. `values` of all methods set the top, `well` (without failed methods) the
+    resolution."""
     sizes, typical = (np.abs(some[some != 0]) for some in (values, well))
     if not len(sizes) or not len(typical):
         return
@@ -200,7 +201,7 @@ def _scale_y(axes, scale, values, well):
     elif top < 20 * np.median(typical):
         axes.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
     else:
-        # Linear about zero up to the size of a typical value, at most four decades below the largest.
+        # Linear about zero up to a typical value, at most four decades below the largest.
         largest = np.ceil(np.log10(typical.max()))
         linear = 10.0 ** np.clip(np.floor(np.log10(np.median(typical))), largest - 4, largest - 1)
         axes.set_yscale("symlog", linthresh=linear, linscale=0.6)
@@ -212,7 +213,7 @@ def _scale_y(axes, scale, values, well):
 
 
 def _symlog_ticks(linear, low, high):
-    """Zero and powers of ten, the first where the linear part ends."""
+    """Zero and powers of ten from the end of the linear part."""
     def decades(reach):
         count = int(np.floor(np.log10(reach / linear) + 1e-9)) if reach >= linear else -1
         return [linear * 10.0 ** k for k in range(0, count + 1, max(1, -(-count // 3)))]

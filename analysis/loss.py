@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Figure and table of how networks were trained: losses, and the CG ratio on validation simulations, by epoch.
+"""Losses and CG ratios on validation simulations by epoch, as figure and table.
 
-The first panel has the loss of training (dotted: while the weights changed) and of validation; the dot marks the epoch
-whose weights the model has. A panel per tolerance has the CG ratio: CG iterations from the network's guess over those
-from zero, summed over a validation simulation's first Newton iterations and averaged over simulations; the level line
-is that of the base guess alone, which the network corrects, and a star the model's own. The last panel has the
-learning rate. Several models are drawn together; losses of different kinds do not compare. Files of trainings that still run
-are shown as far as they are.
+The first panel has the training loss (dotted: while the weights changed) and the validation loss; a dot marks the
+epoch of the model's weights. Each tolerance has a panel of the CG ratio: CG iterations from the network's guess over
+those from zero. Iterations are summed over a validation simulation's first Newton iterations, ratios are averaged over
+simulations. A dashed line is the ratio of the base guess that the network corrects, a star that of the model. The last
+panel has the learning rate. Several models are drawn together, but losses of different kinds cannot be compared. A
+running training is shown up to its last epoch.
 """
 
 import argparse
@@ -42,7 +42,7 @@ def main():
 
 
 def labels(trainings):
-    """Names of the jobs, or of the files where those are the same."""
+    """Names of the jobs, or of the files if job names repeat."""
     names = [t.name for t in trainings]
     return names if len(set(names)) == len(names) else [os.path.splitext(os.path.basename(t.path))[0] for t in trainings]
 
@@ -99,10 +99,10 @@ def figure(trainings, width_mm):
 def about(trainings):
     counts = texts.range_text([t.simulations for t in trainings])
     text = (f"CG ratio: iterations from the network's guess over those from zero, first Newton iterations (j = 0), jacobi, "
-            f"true residual; mean over {counts} validation simulations. Stars, dots: the model kept, of the epoch with the "
-            "least validation loss.")
+            f"true residual; mean over {counts} validation simulations. Stars, dots: the kept model, from the epoch with the "
+            "smallest validation loss.")
     running = [label for label, t in zip(labels(trainings), trainings) if not t.ended]
-    return text + (f" Not ended yet: {', '.join(running)}." if running else "")
+    return text + (f" Still running: {', '.join(running)}." if running else "")
 
 
 def _losses(axes, trainings, looks):
@@ -116,7 +116,7 @@ def _losses(axes, trainings, looks):
     axes.set_ylim(values.min() / 1.2, values.max() * 1.2)
     axes.set_yticks(ticks, labels=[texts.number_text(tick) for tick in ticks])
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.set_title("loss of validation and training")
+    axes.set_title("validation and training loss")
 
 
 def _ratios(axes, k, trainings, looks):

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Figure and table of Newton's convergence within a step: residual and joint gap before every iteration and at the end.
+"""Newton's convergence within a step: residual and joint gap before every iteration and at the end of the step.
 
-A line per way of solving the linear systems: the direct solve (which also advances every paired sweep), and in closed
-loops CG to each `solve.tolerance`, per guess. It is the median over simulations of each simulation's median over its
-steps; whiskers are 95 % bootstrap intervals over simulations, bands the median quartiles over steps, thin dots the
-largest value of all. The last panel shows the residual after an iteration against that before: lines of slope 1 (a
-fixed factor per iteration) and 2 (quadratic) are drawn for the eye, and the table has the observed orders. A row of
-panels per scene type and per value of any other grid. Needs /solves in the file (record.solves "all").
+Each solution method of the linear systems has a line: the direct solve (which also advances every paired sweep), and
+in closed loops CG to each `solve.tolerance`, per guess. A line is the median over simulations of each simulation's
+median over its steps. Whiskers are 95 % bootstrap intervals over simulations, bands the median quartiles over steps,
+dots the largest value of all. The last panel shows the residual after an iteration against that before it. Its grey
+lines have slope 1 (a fixed factor per iteration) and 2 (quadratic); the table has the observed orders. Each scene type
+and value of any other grid has a row of panels. The file needs /solves (record.solves "all").
 """
 
 import numpy as np
@@ -30,7 +30,7 @@ def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     study.add_figure_arguments(made)
     made.add_argument("--floor", type=float, default=1e-13, metavar="R",
-                      help="residuals up to this are rounding and have no order (default: 1e-13)")
+                      help="residuals up to this are rounding errors without an order (default: 1e-13)")
     return made.parse_args()
 
 
@@ -38,8 +38,8 @@ def main():
     options = arguments()
     with SweepFile(options.file) as file:
         if "newton_residual" not in newton_levels.quantities(file):
-            raise KeyNotFound(f"{file.path} has no rows of single solves (record.solves is \"summary\"): nothing is "
-                              "known of single Newton iterations")
+            raise KeyNotFound(f"{file.path} has no rows of single solves (record.solves is \"summary\"), which this "
+                              "script needs")
         shown = study.of_tasks(file, options)
         panels = groups.with_direct(shown.sims, groups.panels(file, shown.sims, AXES, most=None))
         found = newton_levels.levels(file, shown.sims.tasks())
@@ -51,7 +51,8 @@ def main():
 
 
 def methods(shown, panel):
-    """{method: (style, tasks, rows of Simulations)}: CG by tolerance and guess in a closed loop, and what has none."""
+    """{method: (style, tasks, rows of Simulations)}: CG by tolerance and guess in a closed loop, then methods without
+    a guess."""
     file, sims = shown.file, shown.sims
     own = sims.own[panel.index]
     tolerance = file.parameters["solve.tolerance"] if "solve.tolerance" in file.parameters else None
@@ -101,7 +102,7 @@ def figure(shown, panels, series, medians, found, floor):
     notes = ["Before Newton iteration j, and after the last. Lines: median over simulations of their medians over steps; "
              f"{study.sample_text(shown_counts)}; bands: quartiles over steps; dots: largest of all."]
     if left_early:
-        notes.append("Steps whose residual was below the job's newton_tolerance ended early and stay with their last value.")
+        notes.append("Steps whose residual was below the job's newton_tolerance ended early and keep their last value.")
     page = layout.Page(shown.width_mm, [panel.caption() for panel in panels], len(names) + 1,
                        len(names) + 1 if shown.wide else 1, 42, handles, notes + [shown.about()], gap_mm=12,
                        left_mm=12, ticks_mm=8 if not shown.wide else 5.5)
@@ -141,7 +142,7 @@ GUIDES = {1: (0, (1, 0)), 2: (0, (3, 2))}
 
 
 def _order(axes, ways, e, floor):
-    """Residual after an iteration against that before it, with lines of slope 1 and 2 through the largest."""
+    """Residual after an iteration against that before it, with lines of slope 1 and 2 through the largest residual."""
     axes.set(xscale="log", yscale="log")
     befores, afters = [], []
     for method, (look, _, _) in ways.items():

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""A recorded trajectory for ParaView or VisIt: an XDMF file that points into the results file.
+"""A recorded trajectory for ParaView or VisIt: an XDMF file that refers to the results file.
 
-Every frame is a set of segments' centres joined by lines, with orientation (w, x, y, z), radius, length, rod and
-whether they are held. Numbers are read from the HDF5 file, which stays as it is: keep the two together. Open the .xdmf
-with ParaView's "XDMF Reader" (its Xdmf3 readers fail on parts of datasets, which frames are). Extract Surface and Tube,
-there with Scalars "radius" and Vary Radius "By Absolute Scalar", show the rods as they are. Obstacles are a block of
-their own, "obstacles", of triangles: Extract Block tells them apart. The path is printed.
+Each frame has the segments' centres, joined by lines, with orientation (w, x, y, z), radius, length, rod and whether a
+clamp holds them. The numbers stay in the HDF5 file: keep the two together. Open the .xdmf with ParaView's "XDMF
+Reader"; its Xdmf3 readers fail on parts of datasets, which frames are. To show tubes, apply Extract Surface and Tube
+with Scalars "radius" and Vary Radius "By Absolute Scalar". Obstacles are a separate block of triangles, "obstacles",
+which Extract Block selects. The script prints the path.
 """
 
 import os
@@ -47,7 +47,7 @@ def main():
 
 
 def document(shown, reference, touched=()):
-    """The XDMF (version 2) of all frames; `reference`: path of the results file from where the XDMF is; touched:
+    """The XDMF (version 2) of all frames. `reference`: path of the results file relative to the XDMF; touched:
     obstacles.of_task()."""
     root = ElementTree.Element("Xdmf", Version="2.0")
     domain = ElementTree.SubElement(root, "Domain")
@@ -82,7 +82,7 @@ def document(shown, reference, touched=()):
 
 
 def topology(parent, pairs, segments):
-    """Lines between the centres of joined segments; points where nothing is joined."""
+    """Lines between the centres of joined segments; points if no segments are joined."""
     if len(pairs):
         lines = ElementTree.SubElement(parent, "Topology", TopologyType="Polyline", NodesPerElement="2",
                                        NumberOfElements=str(len(pairs)))
@@ -94,7 +94,7 @@ def topology(parent, pairs, segments):
 
 
 def solids(parent, points, triangles, time=None):
-    """Triangles as a grid, at a time or always there."""
+    """Triangles as a grid, at one time or at all times."""
     grid = ElementTree.SubElement(parent, "Grid", Name="obstacles", GridType="Uniform")
     if time is not None:
         ElementTree.SubElement(grid, "Time", Value=repr(float(time)))
@@ -104,7 +104,7 @@ def solids(parent, points, triangles, time=None):
 
 
 def numbers(parent, rows, **kind):
-    """An array written out."""
+    """Adds an array as text."""
     item = ElementTree.SubElement(parent, "DataItem", Format="XML", Dimensions=text(len(rows), len(rows[0])), **kind)
     item.text = "\n" + "\n".join(" ".join(f"{value:.9g}" for value in row) for row in rows) + "\n"
 
@@ -114,7 +114,7 @@ def attribute(grid, name, kind):
 
 
 class Rows:
-    """Points at rows of datasets."""
+    """References to rows of datasets."""
 
     def __init__(self, h5, reference, count):
         self.h5, self.reference, self.count = h5, reference, count

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """The tasks of a sweep that meet some conditions, as a table, CSV or JSON. Works while the sweep runs.
 
-A condition is COLUMN, one of = != < <= > >= ~ (contains), and a value; = and != take several values with commas between,
-and of numbers ranges LOW:HIGH, LOW: or :HIGH, ends included. All conditions must be met. A missing value (a key of another
-scene, a result of a pending task) meets none. Quote < and > against the shell.
-Columns are keys of the job (scene.segments), state (done, pending), outcome, message, counts and ratios of a guess
-(cg_ratio.LABEL, at another tolerance cg_ratio.LABEL@1e-4), times (elapsed_s) and more: --columns help lists them.
+A condition is COLUMN, one of = != < <= > >= ~ (contains), and a value. = and != take several values, separated by
+commas, and for numbers also ranges LOW:HIGH, LOW: or :HIGH, ends included. A task must meet all conditions. A missing
+value (a key of another scene, a result of a pending task) meets none. Quote < and > in the shell. Columns are keys of
+the job (scene.segments), state (done, pending), outcome, message, counts and ratios of a guess (cg_ratio.LABEL, at
+another tolerance cg_ratio.LABEL@1e-4), times (elapsed_s) and more: --columns help lists them.
 """
 
 import argparse
@@ -27,23 +27,23 @@ EXAMPLES = """examples:
   rodsweep query results/demo.h5 --csv >tasks.csv
   rodsweep query results/demo.h5 'cg_ratio.previous@1e-4>1' --json | jq '.[].task'
 
-exit codes: 0 the file was read, whether tasks were found or not; 2 an error of the command line or the file"""
+exit codes: 0 the file was read, even if no task was found; 2 an error in the command line or the file"""
 
 
 def arguments():
     made = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("file", metavar="FILE", help="results file (HDF5)")
-    made.add_argument("conditions", metavar="CONDITION", nargs="*", help="what the tasks must meet")
-    made.add_argument("--where", metavar="CONDITION", action="append", default=[], help="one more condition")
+    made.add_argument("conditions", metavar="CONDITION", nargs="*", help="condition that the tasks must meet")
+    made.add_argument("--where", metavar="CONDITION", action="append", default=[], help="another condition")
     made.add_argument("--columns", metavar="LIST", action="append", default=[],
-                      help="columns to show, with commas between; help: list all columns")
-    made.add_argument("--sort", metavar="COLUMN", default="task", help="order by a column, smallest first")
+                      help="columns to show, separated by commas; help: list all columns")
+    made.add_argument("--sort", metavar="COLUMN", default="task", help="sort by a column, smallest first")
     made.add_argument("--descending", action="store_true", help="largest first")
     made.add_argument("--limit", metavar="N", type=commandline.whole_number, help="show at most N tasks")
     form = made.add_mutually_exclusive_group()
     form.add_argument("--csv", action="store_true", help="comma-separated values")
-    form.add_argument("--json", action="store_true", help="a list of objects")
+    form.add_argument("--json", action="store_true", help="a JSON list of objects")
     return made.parse_intermixed_args()
 
 
@@ -70,8 +70,8 @@ def main():
 
 
 def usual_columns(table):
-    """The task's number, what is swept, the outcome, the largest overlap in contact, and CG ratios; in a closed loop the
-    task's guess and times, since there a task has one guess."""
+    """Task number, swept parameters, outcome, penetration and CG ratios. In a closed loop a task has one guess: the
+    guess, steps and time replace the ratios."""
     names = ["task", *(c.name for c in table.columns.values() if c.parameter and c.swept)]
     names += ["own_guess"] * table.closed_loop + ["outcome", "penetration"]
     if table.closed_loop:
@@ -89,7 +89,7 @@ def chosen_columns(table, entries):
 
 
 def columns_text(table):
-    """Every column with its meaning; those of guesses once for all."""
+    """Every column with its meaning; columns of guesses appear once for all guesses."""
     lines, guesses = [], table.file.guesses
     for column in table.columns.values():
         if not column.guess or column.guess == guesses[0]:
@@ -106,14 +106,14 @@ def columns_text(table):
 
 
 def ordered(values, descending):
-    """Places in their order; missing values come last in either direction, equal ones stay as they were."""
+    """Sorted indices; missing values come last in both directions, equal ones keep their order."""
     missing = values == "" if values.dtype.kind == "U" else np.isnan(values.astype(float))
     ranks = np.unique(values, return_inverse=True)[1]
     return np.lexsort((-ranks if descending else ranks, missing))
 
 
 def cells(column, values):
-    """Python values; None: missing."""
+    """Python values; None if missing."""
     if not column.numeric:
         return [str(value) or None for value in values]
     return [None if value != value else int(value) if column.whole else float(value) for value in values]

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Pictures and films of a recorded trajectory: segments as tubes of their radius, obstacles, soft shadows.
+"""Pictures and films of a recorded trajectory: segments as tubes, obstacles, soft shadows.
 
-Without --movie, a PNG of the last frame, of the frames of --frame, or of every N-th of --every N. The job must record
-frames (record.trajectory_every), or `rodsweep rerun FILE TASK` makes a file of one task that has them.
-POV-Ray draws the pictures; --movie mp4 needs ffmpeg. `make pictures` installs both.
-The camera sees every segment in every frame that is drawn. Paths are printed; files that exist are not replaced.
+Without --movie, the script writes a PNG of the last frame, of the frames of --frame, or of every N-th with --every N.
+The job must record frames (record.trajectory_every); if not, `rodsweep rerun FILE TASK` makes a file of one task that
+has them. POV-Ray draws the pictures; --movie mp4 needs ffmpeg. `make pictures` installs both. The camera shows all
+segments in all drawn frames. The script prints the paths and does not replace existing files without --force.
 """
 
 import os
@@ -25,36 +25,36 @@ EXAMPLES = """examples:
   analysis/render.py results/helix.h5 --select scene.segments=50 --movie mp4 --every 2 -o helix.mp4
   analysis/render.py results/ring.h5 --movie gif --size 400x300 --colour along
   analysis/render.py results/side_by_side.h5 --task 0 --beside 1 2 3 --movie mp4"""
-SAMPLES = 4   # small pictures from which a GIF takes its colours
+SAMPLES = 4   # small pictures that give a GIF its colours
 
 
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     trajectory.add_task_argument(made)
     made.add_argument("--beside", metavar="N", type=int, nargs="+", default=[],
-                      help="tasks that are drawn beside it, each in a colour: methods on the same scene, say")
+                      help="tasks to draw beside it, each in its own colour, e.g. other methods on the same scene")
     made.add_argument("--apart", metavar="X,Y,Z", type=vector, default=np.array([0, 0, 1.0]),
-                      help="from each of them to the next in m (default: 0,0,1)")
-    made.add_argument("-o", "--output", metavar="PATH", help="file of one still or of a film, folder of several stills "
+                      help="offset from each task to the next in m (default: 0,0,1)")
+    made.add_argument("-o", "--output", metavar="PATH", help="file of one picture or film, folder of several pictures "
                                                              "(default: in figures/ beside the file)")
     which = made.add_mutually_exclusive_group()
-    which.add_argument("--frame", metavar="K", type=int, nargs="+", help="these frames; -1 is the last (the default)")
+    which.add_argument("--frame", metavar="K", type=int, nargs="+", help="frames to draw; -1 is the last (default: -1)")
     which.add_argument("--every", metavar="N", type=whole_number, help="frames 0, N, 2 N …")
-    made.add_argument("--movie", choices=["mp4", "gif"], help="a film of all frames, or of those of --every")
-    made.add_argument("--rate", metavar="F", type=whole_number, default=25, help="frames a second of a film (default: "
-                                                                                 "25)")
+    made.add_argument("--movie", choices=["mp4", "gif"], help="make a film of all frames, or of those of --every")
+    made.add_argument("--rate", metavar="F", type=whole_number, default=25,
+                      help="frames per second of a film (default: 25)")
     made.add_argument("--size", metavar="WxH", type=pixels, default=(800, 600), help="pixels (default: 800x600)")
     made.add_argument("--view", metavar="VIEW", type=view, help="front, side, top or AZIMUTH,ELEVATION in degrees "
                                                                "(default: chosen from the shape of the scene)")
     made.add_argument("--colour", choices=["rod", "along", "radius"], default="rod",
-                      help="what colours tell: the rod (default), the place along it, or the radius")
+                      help="what colours show: the rod (default), the position along it, or the radius")
     made.add_argument("--floor", metavar="HEIGHT", type=height, default="auto",
-                      help="height of the floor in m, or none (default: auto, the scene's own, else where trees "
-                           "stand, else a little under the lowest point)")
-    made.add_argument("--fine", action="store_true", help="smooth edges of rods thinner than a pixel, three "
+                      help="height of the floor in m, none, or auto (default): the scene's own floor, else the foot of "
+                           "trees, else a little under the lowest point")
+    made.add_argument("--fine", action="store_true", help="smooth edges of rods thinner than a pixel; three "
                                                           "times slower")
     made.add_argument("-j", "--jobs", metavar="J", type=whole_number, default=os.cpu_count() or 1,
-                      help="frames drawn at a time (default: one per core)")
+                      help="frames drawn in parallel (default: one per core)")
     outputs.add_force(made)
     return made.parse_args()
 
@@ -65,9 +65,9 @@ def main():
         raise KeyNotFound("--movie shows all frames, or those of --every N: remove --frame")
     if options.movie == "mp4" and any(side % 2 for side in options.size):
         raise KeyNotFound("--size of an MP4 must be even: its colours have half the resolution")
-    tools.needed("povray", "which draws the pictures")
+    tools.needed("povray", "it draws the pictures")
     if options.movie == "mp4":
-        tools.needed("ffmpeg", "which --movie mp4 needs (gif does not)")
+        tools.needed("ffmpeg", "--movie mp4 needs it, gif does not")
     with SweepFile(options.file) as file:
         shown = trajectory.chosen(file, options)
         if options.beside:
@@ -91,14 +91,14 @@ def main():
 
 
 class Drawing:
-    """Pictures of one trajectory, all with the same camera, lights and colours."""
+    """Pictures of one trajectory with the same camera, lights and colours."""
 
     def __init__(self, shown, stage, colouring, options):
         self.shown, self.stage, self.colouring = shown, stage, colouring
         self.size, self.jobs, self.fine = options.size, options.jobs, options.fine
 
     def pictures(self, frames, shrink=1):
-        """In order; `jobs` are drawn at a time, and no more are kept."""
+        """Pictures in order; `jobs` are drawn in parallel, so memory use is bounded."""
         size = tuple(max(1, side // shrink) for side in self.size)
         threads = self.jobs if len(frames) == 1 else 1
         with ThreadPoolExecutor(self.jobs) as pool:
@@ -122,7 +122,7 @@ def write_movie(draw, frames, path, options):
 
 
 def chosen_frames(shown, options):
-    """Their numbers, in order."""
+    """Sorted frame numbers."""
     count = shown.frames()
     if options.movie or options.every:
         return np.arange(0, count, options.every or 1)
@@ -134,7 +134,7 @@ def chosen_frames(shown, options):
 
 
 def names(options, task, frames):
-    """A path for every picture, or the film's."""
+    """A path per picture, or the path of the film."""
     stem = f"{os.path.splitext(os.path.basename(options.file))[0]}-task{task}"
     folder = os.path.join(os.path.dirname(options.file), "figures")
     if options.movie:

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """A report of one or several sweeps: one page of HTML that opens in any browser, without network.
 
-First what a sweep found, in sentences and a table: which guess saves how many iterations, what that is worth on the
-clock, where the direct solve stands, what failed. Then charts to explore: any measure over any parameter that the job
-sweeps, with 95 % bootstrap intervals over simulations; recorded trajectories as animations; how it was run. The numbers
-are those of summary.py and spatial.py. A sweep may still be running.
+First come the results in sentences and a table: which guess saves how many iterations and how much time, how the
+direct solve compares, what failed. Then come charts of any measure over any parameter that the job sweeps, with 95 %
+bootstrap intervals over simulations, animations of recorded trajectories, and how the sweep was run. The numbers are
+those of summary.py and spatial.py. A sweep may still be running.
 """
 
 import contextlib
@@ -21,20 +21,20 @@ EXAMPLES = """examples:
   analysis/report.py results/demo.h5
   analysis/report.py results/*.h5 --skip -o all.html
   analysis/report.py results/demo.h5 --scene helix --x scene.torsion_modulus_pa --tolerance all -o helix.html --force"""
-ESTIMATES = 80_000          # in a page, some 15 bytes each
-ANIMATIONS = 2_000_000      # bytes in a page
+ESTIMATES = 80_000          # per page, about 15 bytes each
+ANIMATIONS = 2_000_000      # bytes per page
 
 
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, newton=False, files=True)
-    made.add_argument("-o", "--output", metavar="FILE", help="page to write (default: FILE.html beside the only file, "
+    made.add_argument("-o", "--output", metavar="FILE", help="page to write (default: NAME.html beside a single file, "
                                                              "report.html beside the first of several)")
     made.add_argument("--x", metavar="KEY", action="append", default=[],
-                      help="this parameter along x, and no others; may be repeated (default: all that the job sweeps, "
-                           "as far as the page stays small)")
+                      help="only this parameter along x; may be repeated (default: all that the job sweeps and that fit "
+                           "into a small page)")
     made.add_argument("--title", metavar="TEXT", help="title of the page")
-    made.add_argument("--skip", action="store_true", help="leave out files that are no sweeps, such as models, and "
-                                                          "those that nothing is chosen of")
+    made.add_argument("--skip", action="store_true", help="leave out files that are not sweeps, such as models, and "
+                                                          "files without a chosen task")
     outputs.add_force(made)
     return made.parse_args()
 
@@ -54,7 +54,7 @@ def main():
                 raise
             print(f"left out: {error.args[0]}", file=sys.stderr)
     if not sweeps:
-        raise KeyNotFound("nothing to report: none of the files is a sweep of which something is chosen")
+        raise KeyNotFound("nothing to report: no file is a sweep with a chosen task")
     text = page.html(sweeps, options.title or ", ".join(one.name for one in sweeps[:3]) +
                      (f" and {len(sweeps) - 3} more" if len(sweeps) > 3 else ""))
     with outputs.whole(path) as part, open(part, "w", encoding="utf-8") as out:
@@ -63,7 +63,7 @@ def main():
 
 
 def check_axes(options):
-    """Before anything is read: is every --x a parameter of one of the files?"""
+    """Raises KeyNotFound if an --x is not a parameter of any file, before results are read."""
     known = {}
     for name in options.files if options.x else []:
         with contextlib.suppress(SweepFileError), SweepFile(name) as file:

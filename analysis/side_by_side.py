@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Trajectories of several methods from one start, side by side: the rods at some moments, and how far they part.
+"""Trajectories of several methods from the same start, side by side: the rods at some times, and their distance.
 
-For closed loops whose tasks record frames (record.trajectory_every): the first task that --scene, --select and --guess
-leave, and all others that start where it does. A panel per moment has the rods' centre lines, seen from where they
-spread most; gravity points down. What ended early (a joint tore, a number was none) is drawn dotted where it was last.
-The last panel has the root mean square distance of the segments from those of the first task. Printed: that distance at
-the moments. The figure is written as PDF and PNG.
+The script is meant for closed loops whose tasks record frames (record.trajectory_every). It shows the first task that
+--scene and --select choose, and all others with the same start. Each panel has the rods' centre lines at one time,
+seen in the direction that shows their largest spread; gravity points down. A simulation that ended early (a joint
+tore, a value was not a number) is drawn dotted at its last frame. The last panel has the root mean square distance of
+the segments from those of the first task. Prints these distances at the times; writes the figure as PDF and PNG.
 """
 
 import numpy as np
@@ -49,7 +49,7 @@ def main():
             if len(one.length) == len(start) and np.allclose(one.centres(0), start):
                 found.setdefault(name_of(file, task), one)
         if len(found) < 2:
-            raise KeyNotFound(f"only task {tasks[0]} of {file.path} starts where it does: nothing stands beside it")
+            raise KeyNotFound(f"no other task of {file.path} starts like task {tasks[0]}: there is nothing to compare")
         apart = {name: distances(first, one) for name, one in found.items()}
         print("\n".join(table(found, apart, options.moments)) + "\n")
         study.save(file, options, {"beside": figure(shown, found, apart, options)})
@@ -61,7 +61,7 @@ def name_of(file, task):
 
 
 def distances(first, other):
-    """[frame] root mean square distance [m] of the segments' centres, as long as both were recorded."""
+    """[frame] root mean square distance [m] of the segments' centres, over the frames that both recorded."""
     return np.array([np.sqrt(np.mean(np.sum((first.centres(k) - other.centres(k)) ** 2, axis=1)))
                      for k in range(min(first.frames(), other.frames()))])
 
@@ -83,14 +83,14 @@ def figure(shown, found, apart, options):
     looks, reference = style.guess_styles(list(found)), next(iter(found))
 
     def line(name):
-        """The first is broad, for others to lie on."""
+        """The reference is broad, so that other lines on it stay visible."""
         wide = {"linewidth": 3, "alpha": 0.3} if name == reference else {"linewidth": 1.1}
         return {"color": looks[name].colour, **wide}
 
     first = next(iter(found.values()))
     plane = seen_from(first, staging.upwards(shown.file, int(first.task)))
-    notes = ["Centre lines at the same moments, gravity downwards. Dotted: ended before, drawn as it was last. Last panel: "
-             f"root mean square distance of the segments from those of {reference}.", shown.about()]
+    notes = ["Centre lines at the same times, gravity downwards. Dotted: last frame of a simulation that ended before. "
+             f"Last panel: root mean square distance of the segments from those of {reference}.", shown.about()]
     count = len(options.moments) + 1
     page = layout.Page(shown.width_mm, [""], count, layout.even_columns(count, 3 if shown.wide else 2), 42,
                        [Line2D([], [], label=name, **line(name)) for name in found], notes, gap_mm=9, ticks_mm=7)
@@ -123,13 +123,13 @@ def figure(shown, found, apart, options):
 
 
 def line_of(one, frame):
-    """Points [.., 3] along the rod: where segments begin, and the last one's end."""
+    """Points [.., 3] along the rod: the start of every segment, and the end of the last."""
     low, high = one.ends(frame)
     return np.concatenate([low, high[-1:]])
 
 
 def seen_from(one, up):
-    """Two rows: the horizontal direction in which the rod spreads most, and upwards."""
+    """Two rows: the horizontal direction of the rod's largest spread, and upwards."""
     points = np.concatenate([one.centres(k) for k in np.unique(np.linspace(0, one.frames() - 1, 50).astype(int))])
     points = points - points.mean(axis=0)
     flat = points - np.outer(points @ up, up)

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Figure and table of what accuracy costs: error of the positions over wall time per step, for every projection.
+"""Error of the positions over wall time per step, for every projection, as figure and table.
 
-The error is relative to the trajectory of the direct solve with the most Newton iterations that the job has for the
-same rod at the same step (see accuracy.py): what it shows is convergence within a step, not the error of the step. A
-row of panels per value of one parameter, a panel per value of another; a line per method, a point per effort
-(iterations per step, tolerance of CG), the median over simulations; whiskers are 95 % bootstrap intervals over them.
-A way that failed in any simulation of a panel is left out of it. The table has the cheapest way to every error. Needs
-trajectories in the file (record.trajectory_every) and /solves (record.solves "all").
+The error is relative to the direct solve with the most Newton iterations for the same rod at the same step (see
+accuracy.py). So it shows the convergence within a step, not the error of the time step. One parameter gives the rows
+of panels, another the columns. Each method has a line with a point per effort (iterations per step, tolerance of CG).
+A point is the median over simulations; whiskers are 95 % bootstrap intervals. A method and effort that failed in any
+simulation of a panel is left out of it. The table has the fastest way to reach every error. The file needs
+trajectories (record.trajectory_every) and /solves (record.solves "all").
 """
 
 import numpy as np
@@ -25,9 +25,9 @@ LEVELS = (1e-2, 1e-3, 1e-4, 1e-6)
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     study.add_figure_arguments(made)
-    made.add_argument("--rows", metavar="KEY", default="scene.segments", help="(default: scene.segments)")
+    made.add_argument("--rows", metavar="KEY", default="scene.segments", help="parameter of the rows (default: scene.segments)")
     made.add_argument("--columns", metavar="KEY", default="scene.youngs_modulus_pa",
-                      help="(default: scene.youngs_modulus_pa)")
+                      help="parameter of the columns (default: scene.youngs_modulus_pa)")
     return made.parse_args()
 
 
@@ -52,7 +52,7 @@ def values(file, key, found):
 
 
 def lines(found, file, cell):
-    """{family: its points} of the tasks of a mask."""
+    """{family: [Point]} of the tasks of a mask."""
     families = {}
     for point in accuracy.points(file, found, cell):
         families.setdefault(point.way.family, []).append(point)
@@ -79,7 +79,7 @@ def figure(shown, found, cells, names):
         texts.number_text(point.way.effort) for row in cells for ways in row for point in ways.get(family, [])))
         for family in families)
     notes = [f"Medians of {study.sample_text(points)}. Points: tolerances of CG, else iterations per step: {efforts}. "
-             f"Errors up to {accuracy.FLOOR:g} are drawn there; ways that failed in any simulation are not. "
+             f"Errors below {accuracy.FLOOR:g} are drawn there. Methods that failed in any simulation are left out. "
              f"{accuracy.REFERENCE}", shown.about()]
     page = layout.Page(shown.width_mm, names[0], len(names[1]), len(names[1]) if shown.wide else 2, 32, handles, notes,
                        shown.timing_warning(), left_mm=12)

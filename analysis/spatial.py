@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Figures of a sweep against the size of the rod, or against any other swept parameter.
+"""Figures of a sweep against the number of segments, or against any other swept parameter.
 
   cg-ratio   CG iterations relative to the zero guess, a panel per tolerance
-  speedup    time of zero-guess CG over the time with a guess: CG only, guess and CG, whole step; direct beside
-  time       time per solve split into assembly, guess and CG, per guess, with the direct solve beside
-  four-curves  of learned guesses, as Shao et al. show it: CG ratio, time of the guess over that of its CG, speedups
-  overview   with --overview, alone: CG ratio and time of guess and CG side by side, for a few guesses at a glance
+  speedup    time of zero-guess CG over the time with a guess (CG only, guess and CG, whole step), and of the direct solve
+  time       time per solve split into assembly, guess and CG, per guess, with the direct solve
+  four-curves  for learned guesses, as in Shao et al.: CG ratio, time of the guess over that of its CG, speedups
+  overview   only with --overview, as the only figure: CG ratio and time of guess and CG side by side, for a few guesses
 
-A row of panels per scene type and per value of any other grid of the job. Figures of times need /solves in the file
-(record.solves "all"). Written as PDF and PNG; the paths are printed.
+Each scene type and value of any other grid of the job has a row of panels. Figures of times need /solves in the file
+(record.solves "all"). Writes PDF and PNG and prints the paths.
 """
 
 import sys
@@ -61,7 +61,7 @@ def main():
 def all_figures(file, options, shown, by_newton):
     made = {"cg-ratio": figures.ratio_figure(shown, commandline.chosen_tolerances(file, options))}
     if by_newton is None:
-        print(f"{file.path} has no times of single solves (record.solves is \"summary\"): CG ratios only", file=sys.stderr)
+        print(f"{file.path} has no times of single solves (record.solves is \"summary\"): only CG ratios", file=sys.stderr)
         return made
     made["speedup"] = figures.speedup_figure(shown, by_newton)
     made["time"] = figures.time_figure(shown, by_newton)

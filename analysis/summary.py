@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""Tables of a sweep: CG ratios with confidence intervals, three speedups, and how the simulations went.
+"""Tables of a sweep: CG ratios with confidence intervals, three speedups, and results of the time steps.
 
-  CG ratio   CG iterations over those from the zero guess, summed over a simulation, mean over simulations; beside it
-             the same in products with A, a guess's own counted, of all Newton iterations, and both
+  CG ratio   CG iterations over those from the zero guess, summed over a simulation, mean over simulations; also in
+             products with A (with those of the guess), over all Newton iterations, and both
   speedups   time of zero-guess CG (and of the direct solve) over the time with a guess, at the job's tolerance:
              CG only, guess and CG, whole step; sums over a simulation, median over simulations
   steps      Newton iterations, largest length drift, joint gap, penetration and contact residual, over all steps
 
-A block per scene type and per value of any grid of the job outside `scene`; --by KEY splits them further. Intervals are
+Each scene type and each value of a grid outside `scene` has a block; --by KEY splits the blocks further. Intervals are
 95 % bootstrap intervals over simulations.
 """
 
@@ -32,7 +32,7 @@ def arguments():
     made = commandline.parser(__doc__, EXAMPLES)
     made.add_argument("--by", metavar="KEY", help="a block for every value of this parameter, e.g. scene.segments")
     kind = made.add_mutually_exclusive_group()
-    kind.add_argument("--csv", action="store_true", help="every number on a line of comma-separated values")
+    kind.add_argument("--csv", action="store_true", help="comma-separated values, a line per number")
     kind.add_argument("--json", action="store_true", help="the same numbers as JSON")
     return made.parse_args()
 
@@ -105,7 +105,7 @@ def ratio_lines(file, found, guesses, tolerances, newton):
 
 
 def _beside(file, block, guesses, tolerances):
-    """The means of what stands beside the ratio."""
+    """Means of the further ratios (Block.beside)."""
     rows = [["  the same, means"] +
             [f"{texts.tolerance_label(file.tolerances[t])} {BESIDE[name]}" for t in tolerances for name in block.beside]]
     return rows + [["  " + file.guesses[g]] + [texts.fixed_text(block.beside[name].value[g, t], 2)
@@ -120,7 +120,7 @@ def _missed(file, block, guesses, tolerances):
                   if block.unreached[g, t]]
         if counts:
             found.append(f"      at {texts.tolerance_label(file.tolerances[t])}: " + ", ".join(counts))
-    return ["  * with solves that missed the tolerance and count what they used:"] + found if found else []
+    return ["  * some solves missed the tolerance; the iterations that they used are counted:"] + found if found else []
 
 
 def speedup_lines(file, sims, found, guesses, newton):
@@ -150,7 +150,7 @@ def speedup_lines(file, sims, found, guesses, newton):
 
 
 def direct_lines(file, sims, found):
-    """Times of simulations that have no guesses."""
+    """Times of simulations without guesses."""
     shown = [block for block in found if block.direct_times]
     if not shown:
         return []
@@ -190,7 +190,7 @@ def step_lines(file, found, guesses):
 
 
 def _titled(block, counts):
-    """A block's title: in the first cell of its table, or on a line before it if it is long."""
+    """A block's title: in the first cell of its table, or on a line before the table if it is long."""
     title = f"{block.title}, n = {texts.range_text(counts)}"
     return ([], title) if len(title) <= TITLE_WIDTH else ([title], "")
 

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Figures of a sweep along the simulated time: does a guess help as much late in a simulation as early?
+"""CG ratio and iterations of guesses over the simulated time.
 
   cg-ratio-in-time    CG iterations relative to the zero guess, a panel per tolerance
   iterations-in-time  CG iterations of a solve, zero guess included
 
-Made for simulations that share their fixed parameters (the temporal study of Shao et al. 2021: one scene, many samples). Iterations
-are summed over a window of steps around each point (--window, by default a twentieth of the run) and over simulations;
-the ratio is that of the sums. Bands are 95 % bootstrap intervals over simulations. A row of panels per scene type and
-per value of any grid of the job. Needs /solves in the file (record.solves "all"). Written as PDF and PNG; the paths are
-printed.
+The script is meant for simulations that share their fixed parameters (the temporal study of Shao et al. 2021: one
+scene, many samples). Iterations are summed over simulations and over a window of steps around each point (--window, by
+default a twentieth of the run); the ratio is that of the sums. Bands are 95 % bootstrap intervals over simulations.
+Each scene type and value of any grid of the job has a row of panels. The file needs /solves (record.solves "all").
+Writes PDF and PNG and prints the paths.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ def arguments():
     made = commandline.parser(__doc__, EXAMPLES)
     study.add_figure_arguments(made)
     made.add_argument("--window", metavar="STEPS", type=commandline.whole_number,
-                      help="steps summed for a point, 1 for no smoothing (default: a twentieth of the run)")
+                      help="steps per window, 1 for no smoothing (default: a twentieth of the run)")
     return made.parse_args()
 
 
@@ -38,8 +38,8 @@ def main():
     with SweepFile(options.file) as file:
         shown = study.of_guesses(file, options)
         if not along_time.recorded(file):
-            raise KeyNotFound(f"{file.path} has no rows of single solves (record.solves is \"summary\"): "
-                              "nothing is known along the time")
+            raise KeyNotFound(f"{file.path} has no rows of single solves (record.solves is \"summary\"), which this "
+                              "script needs")
         tolerances = commandline.chosen_tolerances(file, options)
         panels = groups.panels(file, shown.sims)
         columns = sorted({*shown.guesses, file.zero})
@@ -53,7 +53,7 @@ def main():
 def estimate(sims, windows, zero, relative):
     """[window, guess, tolerance]: iterations over those from zero, or per solve; sums over simulations."""
     found = []
-    for k in range(windows.iterations.shape[-1]):   # one tolerance at a time: the bootstrap copies what it gets
+    for k in range(windows.iterations.shape[-1]):   # one tolerance at a time: the bootstrap copies its input
         counts = windows.iterations[..., k]
         per = counts[:, :, [zero]] if relative else windows.solves
         found.append(intervals.ratio_of_sums(counts, np.broadcast_to(per, counts.shape), sims.sample))
@@ -73,8 +73,8 @@ def figure(shown, panels, found, columns, tolerances, relative):
     notes = [f"{what} over a window of {widths} {steps} (shorter at the ends) and over "
              f"{study.sample_text(estimates, mark='bands')}. Counted: {measures.NEWTON[shown.newton]}."]
     if any(windows.unreached[:, columns.index(g)].any() for windows in found for g in lines):
-        notes.append("Open markers: some solves of the window missed the tolerance (iteration limit or divergence) and "
-                     "count the mean of what such solves used in their simulation.")
+        notes.append("Open markers: some solves of the window missed the tolerance (iteration limit or divergence). They "
+                     "count with the mean iterations of such solves in their simulation.")
     page = layout.Page(shown.width_mm, [panel.caption() for panel in panels], len(tolerances),
                        layout.even_columns(len(tolerances), 2 if shown.wide else 1), 38 if shown.wide else 32,
                        shown.handles(lines, "zero guess (= 1)" if relative else ""), notes + [shown.about()])
@@ -99,13 +99,13 @@ def figure(shown, panels, found, columns, tolerances, relative):
 
 
 def _top(e):
-    """Upper end of an axis: all lines are in it, and bands up to half as high again."""
+    """Upper end of an axis: it includes all lines, and bands up to 1.5 times the highest line."""
     value, high = (float(np.nanmax(part)) if np.isfinite(part).any() else 1.0 for part in (e.value, e.high))
     return 1.06 * max(1.0, value, min(high, 1.5 * value))
 
 
 def draw(axes, x, e, guess_style, hollow, rank, count):
-    """A line with a marker now and then and its band. Points whose solves missed the tolerance have open markers."""
+    """A line with its band and some markers. Markers are open where solves missed the tolerance."""
     every = max(1, len(x) // 8)
     colour = guess_style.colour
     axes.fill_between(x, e.low, e.high, color=colour, alpha=0.15, linewidth=0)

@@ -1,13 +1,12 @@
 #!/usr/bin/python3
-"""Figure and table of what a step costs altogether: which method, preconditioner and guess to use when.
+"""Error of a trajectory over wall time per step: which method, preconditioner and guess is fastest for an accuracy.
 
-Error of a trajectory over wall time of a step, as in solvers.py (see accuracy.py), a panel per value of a parameter, in
-rows that tell one choice apart each: the method, the preconditioner of CG, the guess of CG. A line is the lower
-envelope over all that its name leaves open: the efforts (Newton iterations, tolerance of CG, iterations of xpbd and
-pbd), in the row of preconditioners also the guesses, in that of guesses the preconditioners, in that of methods both.
-A way that failed in any simulation of a panel is left out of it. The table has, for every error, the cheapest way of
-all and of CG, and how many times the time of the cheapest direct solve CG takes. Needs trajectories in the file
-(record.trajectory_every) and /solves (record.solves "all").
+Errors and times are those of solvers.py (see accuracy.py). Each value of a parameter has a column of panels. The rows
+compare methods, preconditioners of CG, and guesses of CG. A line is the lower envelope over all that its name leaves
+open: the effort (Newton iterations, tolerance of CG, iterations of xpbd and pbd), for preconditioners also the
+guesses, for guesses the preconditioners, for methods both. A way that failed in any simulation of a panel is left out
+of it. For each error, the table has the fastest way, the fastest CG, and the time of that CG over that of the fastest
+direct solve. The file needs trajectories (record.trajectory_every) and /solves (record.solves "all").
 """
 
 import numpy as np
@@ -19,10 +18,10 @@ from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
   analysis/work_precision.py results/work_precision.h5
-  analysis/work_precision.py results/work_precision.h5 --guess zero        # what preconditioners do alone
+  analysis/work_precision.py results/work_precision.h5 --guess zero        # preconditioners only
   analysis/work_precision.py results/solvers.h5 --select scene.segments=50 --columns scene.youngs_modulus_pa"""
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-6)
-DRAWN_FROM = 1e-8    # of an error: nobody pays for less
+DRAWN_FROM = 1e-8    # smallest error on the axis
 
 
 def arguments():
@@ -45,7 +44,7 @@ def main():
 
 
 def by_panel(file, found, parameter):
-    """{title: points}, numbers in their order, words in that of the job."""
+    """{title: [Point]}; numbers are sorted, words keep the order of the job."""
     codes = parameter.codes()[found.tasks]
     ordered = np.unique(codes) if parameter.numeric else dict.fromkeys(codes.tolist())
     label = texts.parameter_label(parameter.name, parameter.unit)
@@ -75,7 +74,7 @@ def _cells(point):
 
 
 def choices(shown, points):
-    """Rows of panels: (title, name of a way's line, {name: style}). What the file has one of is no choice."""
+    """Rows of panels: (title, function from a Way to its line's name, {name: style}), for what has several values."""
     cg = [point.way for point in points if point.way.method == "cg"]
     methods = dict.fromkeys(_method(point.way) for point in points)
     preconditioners, guesses = dict.fromkeys(way.preconditioner for way in cg), dict.fromkeys(way.guess for way in cg)
@@ -106,8 +105,8 @@ def figure(shown, panels):
     points = sum(panels.values(), [])
     rows = choices(shown, points)
     notes = [f"Medians of {study.sample_text([point.error for point in points], mark='')}. Lines: the lower envelope "
-             "over what their names leave open, Newton iterations and the tolerance of CG among it. Errors up to "
-             f"{DRAWN_FROM:g} are drawn there; ways that failed in any simulation are not. {accuracy.REFERENCE}",
+             "over all other choices, including Newton iterations and the tolerance of CG. Errors below "
+             f"{DRAWN_FROM:g} are drawn there. Methods that failed in any simulation are left out. {accuracy.REFERENCE}",
              shown.about()]
     page = layout.Page(shown.width_mm, [title for title, _, _ in rows], len(panels), 5 if shown.wide else 2, 36, [],
                        notes, shown.timing_warning(), left_mm=12, gap_mm=3,

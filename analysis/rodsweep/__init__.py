@@ -1,7 +1,7 @@
-"""Results of rodsweep in Python. `rodsweep.open("results/demo.h5")` has them as pandas frames and xarray datasets.
+"""Results of rodsweep in Python. `rodsweep.open("results/demo.h5")` gives pandas frames and xarray datasets.
 
-`reading` has files and all numbers made of them, `writing` their rows in other formats, `drawing` figures, pictures and
-films; the scripts of analysis/, installed as `rodsweep-summary` and so on, are made of these.
+`reading` reads files and computes all numbers, `writing` writes rows in other formats, `drawing` makes figures,
+pictures and films. The scripts of analysis/ use them; they are installed as `rodsweep-summary` and so on.
 """
 
 try:
@@ -13,10 +13,10 @@ except ModuleNotFoundError as error:
     raise ImportError(f"rodsweep needs {error.name}: apt-get install python3-h5py python3-scipy, or pip install h5py scipy",
                       name=error.name) from None
 
-__version__ = "1.0.0"    # that of CMakeLists.txt (tested)
+__version__ = "1.0.0"    # same as in CMakeLists.txt (tested)
 __all__ = ["Results", "UserError", "open"]
 
 
 def open(path):
-    """The results of a sweep, finished or not, as Results. Raises UserError for a file that holds none."""
+    """Results of a sweep, which may still be running. Raises UserError if the file is not a sweep."""
     return Results(path)

@@ -1,4 +1,4 @@
-"""What the installed `rodsweep-summary`, `rodsweep-long-term` and so on call: the script of that name in analysis/."""
+"""Entry point of the installed `rodsweep-summary` and so on: runs the script of that name in analysis/."""
 
 import importlib
 import os

@@ -1,8 +1,8 @@
-"""A sweep's results as pandas frames and xarray datasets, which are imported when they are first needed.
+"""A sweep's results as pandas frames and xarray datasets. Both libraries are imported when first needed.
 
-Rows of tasks that are not complete are never handed out; `missing` says how many there are. What was not measured or
-not reached is NaN, so counts that may be missing are floating-point numbers. Units and meanings are those of the file:
-in the `attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "missing": ...}) and of every variable of a
+Rows of incomplete tasks are left out; `missing` counts these tasks. A value that was not measured or not reached is
+NaN, so counts that may be missing are floating-point numbers. Units and meanings come from the file. They are in the
+`attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "missing": ...}) and of every variable of a
 dataset ("units", "long_name").
 """
 
@@ -14,14 +14,14 @@ from rodsweep.reading.hdf5 import as_text
 from rodsweep.reading.sweepfile import SweepFile
 
 ROWS = 100_000
-TOLERANCE = "cg_tolerance"    # the axis; `tolerance` is a word of xarray's sel(), which would take it for its own
+TOLERANCE = "cg_tolerance"    # name of the axis; xarray's sel() has a parameter `tolerance`
 
 
 class Results:
     """Use as `with rodsweep.open(path) as results:`, or close() it.
 
     `columns` are names, by default all measured ones and the swept parameters; columns() lists them. `where` is one
-    condition or a list of them, as `rodsweep query` takes them: "scene.segments>=20", "guess=zero,quadratic".
+    condition or a list of them, as for `rodsweep query`: "scene.segments>=20", "guess=zero,quadratic".
     """
 
     def __init__(self, path):
@@ -29,7 +29,7 @@ class Results:
         kind = as_text(self.file.h5.attrs.get("kind", "sweep"))
         if kind != "sweep":
             self.close()
-            raise SweepFileError(f"{self.file.path} is a {kind}, not the results of a sweep; h5py reads its /systems")
+            raise SweepFileError(f"{self.file.path} is a {kind}, not the results of a sweep; read its /systems with h5py")
 
     def __enter__(self):
         return self
@@ -45,7 +45,7 @@ class Results:
 
     @property
     def job(self):
-        """The job as it was given."""
+        """The job of the sweep."""
         return self.file.job()
 
     @property
@@ -58,14 +58,14 @@ class Results:
 
     @property
     def missing(self):
-        """What is not in the rows, or only with its outcome: "2 pending, 1 diverged of 24 tasks"; "" for nothing."""
+        """Pending and failed tasks: "2 pending, 1 diverged of 24 tasks"; "" if there are none."""
         census = self.census()
         said = [f"{census.pending} pending"] if census.pending else []
         said += [f"{count} {outcome}" for outcome, count in sorted(census.failed.items())]
         return f"{', '.join(said)} of {census.total} tasks" if said else ""
 
     def census(self):
-        """How many tasks there are in each state."""
+        """Number of tasks in each state."""
         return measures.census(self.file, np.ones(self.file.task_count, dtype=bool))
 
     def columns(self, level="tasks"):
@@ -79,7 +79,7 @@ class Results:
         return self._frame("tasks", columns, where)
 
     def solves(self, columns=None, where=()):
-        """A row per linear solve and guess. They may be too many for the memory: see blocks()."""
+        """A row per linear solve and guess. Use blocks() if they do not fit into memory."""
         return self._frame("solves", columns, where)
 
     def steps(self, columns=None, where=()):
@@ -87,7 +87,7 @@ class Results:
         return self._frame("steps", columns, where)
 
     def blocks(self, level, columns=None, where=(), rows=ROWS):
-        """Yields the same frame in parts of about so many rows, in memory that does not grow with the file."""
+        """Yields the same frame in parts of about `rows` rows, so memory use does not grow with the file."""
         table, names, tests = self._asked(level, columns, where)
         return self._parts(table, names, tests, rows)
 
@@ -108,8 +108,9 @@ class Results:
         return self._dataset(table, owners, guesses, tolerances, found, usual)
 
     def summary(self, by=None, newton="first", where=()):
-        """The numbers of `rodsweep-summary` with their 95 % intervals: CG ratios, speedups, times, how the steps went; a
-        row per number. `by`: a parameter by whose values they are split. `newton`: "first" or "all" iterations."""
+        """The numbers of `rodsweep-summary` with 95 % intervals, a row per number: CG ratios, speedups, times and
+        results of the steps. `by`: a parameter whose values split the numbers. `newton`: "first" or "all"
+        iterations."""
         if newton not in measures.NEWTON:
             raise UserError(f"newton={newton!r}: choose one of {', '.join(measures.NEWTON)}")
         sims = measures.simulations(self.file, self.file.select(_listed(where)))
@@ -128,7 +129,7 @@ class Results:
 
     def _table(self, level):
         if level not in tidy.LEVELS:
-            raise UserError(f"there are no {level!r} in a results file; choose one of {', '.join(tidy.LEVELS)}")
+            raise UserError(f"level {level!r} is unknown; choose one of {', '.join(tidy.LEVELS)}")
         tidy.require_rows(self.file, level)
         return tidy.Tidy(self.file, level, np.flatnonzero(self.file.complete), range(len(self.file.guesses)),
                          range(len(self.file.tolerances)))
@@ -142,7 +143,7 @@ class Results:
     def _frame(self, level, columns, where):
         table, names, tests = self._asked(level, columns, where)
         frame = self._part(table, names, list(table.blocks(names, tests)))
-        for name, values in frame.select_dtypes("category").items():    # else groupby() has groups that `where` excludes
+        for name, values in frame.select_dtypes("category").items():    # else groupby() shows groups that `where` excludes
             frame[name] = values.cat.remove_unused_categories()
         return frame
 
@@ -191,7 +192,7 @@ class Results:
 
 
 def _column(table, name, columns):
-    """The values of a frame's column: texts that many rows share as a categorical."""
+    """Values of a frame's column; texts that rows share become a categorical."""
     shared = table.shared(name)
     if shared is None:
         values = np.concatenate([column.array() for column in columns] or [np.empty(0, dtype=table.dtype(name))])
@@ -207,14 +208,14 @@ def _column(table, name, columns):
 
 
 def _measured(values, name):
-    """Whole numbers that may be missing as floating-point ones, whether any of these is or not."""
+    """Integers that may be missing become floating-point numbers, even if none is missing."""
     if values.dtype.kind == "i" and name not in tidy.COUNTED:
         return np.where(values == -1, np.nan, values)
     return values.astype(object) if values.dtype.kind == "U" else values
 
 
 def _present(values):
-    """The same of a value for every task, where one is missing."""
+    """Integers per task become floating-point numbers if one is missing."""
     return np.where(values == -1, np.nan, values) if values.dtype.kind == "i" and (values == -1).any() else values
 
 

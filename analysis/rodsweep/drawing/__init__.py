@@ -1,1 +1,1 @@
-"""Figures, pictures and films of the numbers of `reading`, and the files that they go to."""
+"""Figures, pictures and films of the numbers of `reading`, and their files."""

@@ -1,10 +1,10 @@
-"""Where a picture is taken from: a perspective camera that sees all spheres that it is shown, as large as possible.
+"""A perspective camera that shows all given spheres as large as possible.
 
-Camera coordinates of a point p are c = (p . right, p . up, p . forward). With the tangent t of half the angle of view
-across, a sphere of radius r is right of the left edge of the picture if c_x - e_x + t (c_z - e_z) >= r sqrt(1 + t^2), e
-being the eye. Each of the four edges is such a bound on e, of which the strictest over all spheres counts; the eye
-nearest to the scene meets the two bounds across or the two upwards with equality. Only minima are kept, so spheres may
-come frame by frame.
+Camera coordinates of a point p are c = (p . right, p . up, p . forward). Let e be the eye and t the tangent of half
+the horizontal angle of view. A sphere of radius r is right of the left edge of the picture if c_x - e_x + t (c_z -
+e_z) >= r sqrt(1 + t^2). Each of the four edges gives such a bound on e, and the strictest bound over all spheres
+counts. The eye nearest to the scene meets the two horizontal or the two vertical bounds with equality. Only minima are
+kept, so spheres can be added frame by frame.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 ANGLE_DEG = 26     # of view, along the longer side of the picture
-MARGIN = 0.05      # of half the picture, that stays free at each edge
+MARGIN = 0.05      # free space at each edge, as a share of half the picture
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Camera:
 
 
 class Framing:
-    """Takes spheres in, gives a camera that sees them all. `towards_eye`: from the scene to the viewer."""
+    """Collects spheres and gives a camera that shows all of them. `towards_eye`: from the scene to the viewer."""
 
     def __init__(self, towards_eye, up, size):
         self.forward = -np.asarray(towards_eye) / np.linalg.norm(towards_eye)
@@ -63,14 +63,15 @@ class Framing:
 
 
 def direction(azimuth_deg, elevation_deg, up):
-    """From the scene to the eye. Azimuth: 0 the front, 90 the side that is to the right there; elevation: 90 above."""
+    """From the scene to the eye. Azimuth 0 is the front, azimuth 90 the side that is right in the front view;
+    elevation 90 is above."""
     right, back = horizontal(up)
     azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
     return np.cos(elevation) * (np.sin(azimuth) * right + np.cos(azimuth) * back) + np.sin(elevation) * np.asarray(up)
 
 
 def horizontal(up):
-    """Unit vectors to the right and towards the eye of a view from the front: x and z where y is up, x and -y where z
-    is, and -y and z where x is."""
+    """Unit vectors to the right and towards the eye in a front view: x and z if y is up, x and -y if z is up, -y and z
+    if x is up."""
     right = np.array([0.0, -1, 0]) if abs(up[0]) > 0.9 else np.array([1.0, 0, 0])
     return right, np.cross(right, up)

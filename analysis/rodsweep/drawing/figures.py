@@ -1,7 +1,7 @@
 """The figures of spatial.py: CG ratios, speedups and times of a Study along one parameter, a row per panel.
 
-Every figure says which Newton iterations, norm, tolerance and preconditioner it is of, over how many simulations, and
-what was left out.
+The notes of every figure give the Newton iterations, norm, tolerance and preconditioner, the number of simulations,
+and what was left out.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from rodsweep.drawing.study import sample_text
 from rodsweep.reading import intervals, measures, remarks, timings
 
 TIME_PARTS = ("assembly", "guess", "CG")
-FOUR_CURVES = {"ratio": "CG ratio", "share": "time of the guess ÷ of its CG", "guess_cg": "speedup of guess and CG",
+FOUR_CURVES = {"ratio": "CG ratio", "share": "time of the guess ÷ time of its CG", "guess_cg": "speedup of guess and CG",
                "step": "speedup of the whole step"}
 
 
@@ -30,8 +30,8 @@ def ratio_figure(study, tolerances):
     notes = [f"Iterations with a guess ÷ from zero, summed over a simulation: mean over {sample_text(shown)}. "
              f"Counted: {measures.NEWTON[study.newton]}."]
     if any_open:
-        notes.append("Open markers: some of these solves missed the tolerance (iteration limit or divergence) and "
-                     "count what they used.")
+        notes.append("Open markers: some of these solves missed the tolerance (iteration limit or divergence); the "
+                     "iterations that they used are counted.")
     width = study.width_mm
     page = layout.Page(width, [p.caption() for p in study.panels], len(tolerances), 4 if study.wide else 2,
                       40 if study.wide else 30, study.handles(lines, "zero guess (= 1)"), notes + [study.about()],
@@ -101,8 +101,8 @@ def speedup_figure(study, by_newton):
 
 
 def four_curves_figure(study, by_newton):
-    """What Shao et al. 2021 show of a learned guess, a panel for each: the CG ratio, the time of the guess over
-    that of its CG, and two speedups over CG from zero, of guess and CG and of the whole step. None without one."""
+    """The curves of Shao et al. 2021, a panel per learned guess: the CG ratio, the time of the guess over that of its
+    CG, and the speedups of guess and CG and of the whole step over CG from zero. None without a learned guess."""
     learned = [g for g in study.lines() if study.file.guesses[g].removeprefix("first ").startswith("copingnet")]
     if not learned:
         return None
@@ -115,8 +115,8 @@ def four_curves_figure(study, by_newton):
     rows = [[{name: (intervals.mean if name == "ratio" else intervals.median)(values[i], study.sims.sample[i])
               for name, values in curves.items()} for i in points.index] for points in study.points]
     shown = [e[g] for row in rows for at in row for e in at.values() for g in learned]
-    notes = [f"CG ratio: mean, times: median over {sample_text(shown)}. Time of the guess: base, features, network and "
-             f"products, over that of the CG that starts from it. Counted: {measures.NEWTON[study.newton]}; the whole "
+    notes = [f"CG ratio: mean, times: median over {sample_text(shown)}. The time of the guess includes base, features, "
+             f"network and products. Counted: {measures.NEWTON[study.newton]}; the whole "
              f"step has all Newton iterations. Solved to tolerance {study.solve_tolerance()}. "
              f"{timings.interruptions(part, study.sims)}"]
     handles = [style.FOUR_CURVES[name].handle(label) for name, label in FOUR_CURVES.items()]
@@ -140,14 +140,14 @@ def four_curves_figure(study, by_newton):
             axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             page.title(axes, study.file.guesses[g], weight="bold")
             x.apply(axes)
-            page.label_y(axes, k, "ratio, or times as fast")
+            page.label_y(axes, k, "ratio or speedup")
     _x_labels(page, study)
     return page
 
 
 def overview_figure(study, by_newton):
-    """A row per panel: CG ratio at the tolerance of the timed solves, and the time of guess and CG per segment, with the
-    direct solve. For a few guesses (--guess), at a glance."""
+    """A row per panel: CG ratio at the tolerance of the timed solves, and time of guess and CG per segment, with the
+    direct solve. Meant for a few guesses (--guess)."""
     file, part = study.file, by_newton[study.newton]
     timed = timings.timed_rung(file)[study.sims.any_task]
     ratios = measures.cg_ratios(file, study.sims, study.newton).ratio[np.arange(len(timed)), :, timed]
@@ -159,8 +159,8 @@ def overview_figure(study, by_newton):
     lines = study.lines()
     shown = [ratio[g] for row in rows for ratio, _, _ in row for g in lines]
     with_direct = any(np.isfinite(e.value).any() for row in rows for _, _, e in row)
-    notes = [f"CG ratio: iterations with a guess ÷ from zero, mean over {sample_text(shown)}. Time: of guess and CG with its "
-             f"set-up, assembly left out, median. To {study.solve_tolerance()}. Counted: {measures.NEWTON[study.newton]}. "
+    notes = [f"CG ratio: iterations with a guess ÷ from zero, mean over {sample_text(shown)}. Time: guess, set-up and CG, "
+             f"median. Solved to tolerance {study.solve_tolerance()}. Counted: {measures.NEWTON[study.newton]}. "
              f"{remarks.oracle_note(file, lines)}{timings.interruptions(part, study.sims)}"]
     handles = study.handles(lines, "from zero") + ([style.DIRECT.handle("direct solve")] if with_direct else [])
     page = layout.Page(study.width_mm, [p.caption() for p in study.panels], 2, 2, 46, handles, notes + [study.about()],
@@ -187,8 +187,8 @@ def overview_figure(study, by_newton):
 
 
 def time_figure(study, by_newton):
-    """Microseconds per segment and solve, stacked parts: a panel per guess; the direct solve of the same systems beside
-    it."""
+    """Microseconds per segment and solve in stacked parts: a panel per guess, with the direct solve of the same
+    systems."""
     part = by_newton[study.newton]
     segments = study.file.results("segments", study.sims.any_task)[:, None, None]
     values = np.stack([part.assemble_s, part.guess_s, part.cg_s, part.assemble_s + part.direct_s,
@@ -196,8 +196,8 @@ def time_figure(study, by_newton):
     rows = [[intervals.median(values[i], study.sims.sample[i]) for i in points.index] for points in study.points]
     shown = [e[g, 4] for row in rows for e in row for g in study.guesses]
     with_direct = any(np.isfinite(e.value[g, 3]) for row in rows for e in row for g in study.guesses)
-    notes = [f"Mean time of a solve in a simulation, per segment, median over {sample_text(shown, ' of the total')}; parts in their "
-             f"median proportions. Counted: {measures.NEWTON[study.newton]}. "
+    notes = [f"Mean time of a solve in a simulation, per segment, median over {sample_text(shown, ' of the total')}; parts "
+             f"in the proportions of their medians. Counted: {measures.NEWTON[study.newton]}. "
              f"Solved to tolerance {study.solve_tolerance()}. CG includes the preconditioner's set-up. "
              f"{remarks.oracle_note(study.file, study.guesses)}{timings.interruptions(part, study.sims)}"]
     handles = [Patch(facecolor=style.PARTS[name][0], hatch=style.PARTS[name][1], edgecolor="white", label=name)
@@ -226,7 +226,7 @@ def time_figure(study, by_newton):
 
 
 def _line(axes, x, estimates, guess_style, categorical, hollow=None, size=None):
-    """Values with their intervals; categories have no line between them."""
+    """Values with their intervals; no line joins categories."""
     value, low, high = (np.array([getattr(e, name) for e in estimates], dtype=float)
                         for name in ("value", "low", "high"))
     line = {**guess_style.line(), "markersize": size}
@@ -243,7 +243,7 @@ def _line(axes, x, estimates, guess_style, categorical, hollow=None, size=None):
 
 
 def _stack(axes, x, estimates):
-    """Bars whose parts have the proportions of their medians and whose height is the median of the total."""
+    """Bars: the height is the median of the total, the parts have the proportions of their medians."""
     parts = np.array([e.value[:3] for e in estimates])
     total = np.array([e.value[4] for e in estimates])
     parts = parts * (total / parts.sum(axis=1))[:, None]
@@ -260,7 +260,7 @@ def _stack(axes, x, estimates):
 
 
 def _ticks_mm(study):
-    """Room under the panels: more for words, which may have to lean."""
+    """Space under the panels: words need more, since they may be rotated."""
     longest = max((len(text) for points in study.points if points.categorical for text in points.text), default=0)
     return 5.5 if longest < 5 else min(14, 5 + 0.6 * longest)
 
@@ -271,5 +271,5 @@ def _x_labels(page, study):
 
 
 def _unreached(ratios, rows):
-    """[guess, tolerance]: did any solve of these simulations, of the guess or of zero, miss the tolerance?"""
+    """[guess, tolerance]: whether any solve of these simulations, from the guess or from zero, missed the tolerance."""
     return (np.nansum(ratios.unreached[rows], axis=0) + np.nansum(ratios.unreached_zero[rows], axis=0)) > 0

@@ -1,4 +1,4 @@
-"""Where things stand on a figure: a page of panels laid out in millimetres, and an x axis whose ticks never overlap."""
+"""Layout of a figure: a page of panels in millimetres, and an x axis whose ticks never overlap."""
 
 import os
 import textwrap
@@ -14,15 +14,14 @@ from rodsweep.reading import texts
 
 METADATA = {"pdf": {"CreationDate": None, "Producer": None, "Creator": "rodsweep"}, "png": {"Software": "rodsweep"},
             "svg": {"Date": None, "Creator": "rodsweep"}}
-CHARACTER_MM = 1.45  # width of a digit of a tick, about
+CHARACTER_MM = 1.45  # approximate width of a digit of a tick
 
 
 class Page:
-    """A figure laid out in millimetres: warning, legend and notes over and under rows of equal panels.
+    """A figure laid out in millimetres: warning and legend above rows of equal panels, notes below them.
 
-    Rows have titles of their own, and may have legends (`row_handles`); panels of a row wrap at `columns`. axes[row][k]
-    are the panels in order.
-    """
+    Each row has a title and may have a legend (`row_handles`). Panels of a row wrap at `columns`. axes[row][k] is
+    panel k."""
 
     def __init__(self, width_mm, row_titles, panels_per_row, columns, panel_height_mm, handles, notes, warning="",
                  left_mm=12, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5, bar_mm=0, row_handles=()):
@@ -72,7 +71,7 @@ class Page:
         self.figure.text(x / width, y / height, text, va="top", ha="left", **text_style)
 
     def _legend(self, handles, width_mm):
-        """As few lines as fit the width, evenly filled."""
+        """(legend, height in mm), with as few lines as the width allows, evenly filled."""
         if not handles:
             return None, 0
         most = len(handles)
@@ -89,14 +88,14 @@ class Page:
             legend.set_bbox_to_anchor((0, 0, 1, top), transform=self.figure.transFigure)
 
     def label_y(self, axes, panel, text):
-        """On the first panel of a line; the others have neither label nor numbers."""
+        """Labels the first panel of a line; the others get no label and no numbers."""
         if panel % self.columns == 0:
             axes.set_ylabel(text, labelpad=2)
         else:
             axes.tick_params(labelleft=False)
 
     def colour_bar(self, mappable, text):
-        """In the strip of `bar_mm` over the panels, at the right."""
+        """In the strip of `bar_mm` above the panels, at the right."""
         axes = self.figure.add_axes(self.bar_box)
         bar = self.figure.colorbar(mappable, cax=axes, orientation="horizontal")
         bar.outline.set_linewidth(0.4)
@@ -109,14 +108,14 @@ class Page:
         axes.text(-0.02, 0.5, text, transform=axes.transAxes, ha="right", va="center")
 
     def label_x(self, row, text):
-        """One label in the middle under a row of panels."""
+        """One label, centred under a row of panels."""
         height = self.figure.get_size_inches()[1] / style.MM
         boxes = [axes.get_position() for axes in self.axes[row]]
         middle, bottom = (min(b.x0 for b in boxes) + max(b.x1 for b in boxes)) / 2, min(b.y0 for b in boxes)
         self.figure.text(middle, bottom - (self.ticks_mm - 0.7) / height, text, ha="center", va="top")
 
     def title(self, axes, text, **text_style):
-        """A panel's title, smaller where the panel is narrow, and in two lines where it is narrower still."""
+        """A panel's title: smaller in a narrow panel, on two lines in a very narrow one."""
         width = axes.get_position().width * self.figure.get_size_inches()[0] / style.MM
         size = 7.5 * width / (1.55 * len(text))
         if size < 5.5 and " " in text:
@@ -139,7 +138,7 @@ class Page:
 
 
 def even_columns(count, most):
-    """Columns of a row of `count` panels: as even as `most` allows."""
+    """Number of columns, at most `most`, that distributes `count` panels most evenly."""
     return -(-count // -(-count // most))
 
 
@@ -153,7 +152,7 @@ def log_ticks(low, high):
 
 
 class XAxis:
-    """Positions along x and their ticks. Bars stand at even distances where the values are too dense for them."""
+    """Positions along x and their ticks. Bars get even distances if the values are too dense for them."""
 
     def __init__(self, points, bars=False):
         values, self.text, self.words = points.position, points.text, points.categorical
@@ -176,7 +175,7 @@ class XAxis:
         return 10 ** scaled if self.log else scaled
 
     def dodged(self, rank, count):
-        """Positions moved a little, so that intervals of several lines do not hide each other."""
+        """Slightly shifted positions, so that intervals of several lines do not hide each other."""
         width = 0.5 * self.gap if self.even else min(0.05 * self.span, 0.6 * self.gap)
         return self._unscaled(self.scaled + width * (rank / max(1, count - 1) - 0.5))
 
@@ -197,7 +196,7 @@ class XAxis:
             axes.xaxis.set_major_locator(FixedLocator(self.position))
             axes.xaxis.set_minor_locator(NullLocator())
             leaning = {} if fits or not self.words else {"rotation": 25, "ha": "right", "rotation_mode": "anchor"}
-            every = 1 if self.words else -(-needed // room)    # of numbers some stand for all
+            every = 1 if self.words else -(-needed // room)    # only some numbers are labelled
             axes.set_xticklabels([text if k % every == 0 else "" for k, text in enumerate(self.text)], **leaning)
         elif self.log:
             axes.xaxis.set_major_locator(LogLocator(numticks=5))

@@ -1,9 +1,9 @@
-"""How guesses and methods look, free of any program that draws: one colour, marker and dash for each.
+"""Colour, marker and dash of every guess and method, independent of drawing programs.
 
-Colours are Okabe and Ito's (2008) with darker relatives for the additional kinds. Guesses are told apart by marker and
-dash as well, so that neither a colour-blind reader nor a black-and-white print needs the colour. A guess is recognised
-by the first word of its label; several of one kind (oracle 0.1, oracle 0.01) share a hue and differ in lightness, marker
-and dash. Markers and dashes are written as matplotlib takes them.
+Colours are those of Okabe and Ito (2008), with darker variants for the additional kinds. Guesses also differ in marker
+and dash, for colour-blind readers and for black-and-white print. The first word of a label gives the kind of a guess.
+Several guesses of one kind (oracle 0.1, oracle 0.01) share a hue and differ in lightness, marker and dash. Markers and
+dashes have matplotlib's form.
 """
 
 from dataclasses import dataclass

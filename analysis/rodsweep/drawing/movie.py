@@ -1,4 +1,4 @@
-"""Pictures as a film, one at a time: MP4 by ffmpeg, GIF by Pillow. Neither holds more than two frames."""
+"""Writes pictures as a film, one at a time: MP4 with ffmpeg, GIF with Pillow. Both hold at most two frames."""
 
 import contextlib
 import io
@@ -11,17 +11,17 @@ from scipy.spatial import cKDTree
 
 from rodsweep.drawing.tools import ToolError
 
-COLOURS = 255      # of a GIF, in one palette for all frames, so that what stands still does not flicker
+COLOURS = 255      # of a GIF; all frames share one palette, so that still parts do not flicker
 
 
 def write_mp4(path, pictures, rate):
-    """H.264 that every browser plays. pictures: PNG bytes of equal, even sizes."""
+    """H.264 for all browsers. pictures: PNG bytes of one size, with even width and height."""
     command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "image2pipe", "-framerate", str(rate), "-c:v", "png", "-i",
                "-", "-c:v", "libx264", "-preset", "slow", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags",
                "+faststart", "-f", "mp4", path]
     with tempfile.TemporaryFile() as said:
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said) as encoder:
-            with contextlib.suppress(BrokenPipeError):  # it has stopped, and said why
+            with contextlib.suppress(BrokenPipeError):  # ffmpeg stopped with a message
                 for picture in pictures:
                     encoder.stdin.write(picture)
             with contextlib.suppress(BrokenPipeError):
@@ -32,8 +32,8 @@ def write_mp4(path, pictures, rate):
 
 
 def write_gif(path, pictures, rate, samples):
-    """Loops for ever. samples: pictures that have all colours, of any size. After the first frame, only the rectangle
-    that changes is stored."""
+    """An endless loop. samples: pictures of any size that together have all colours. Frames after the first store only
+    the rectangle that changes."""
     palette, before = Palette(samples), None
     show = {"duration": max(20, 10 * round(100 / rate))}   # ms, in steps of 10; viewers slow down below 20
     with open(path, "wb") as out:
@@ -51,7 +51,7 @@ def write_gif(path, pictures, rate, samples):
 
 
 class Palette:
-    """The colours of a GIF. Pillow's own search for the nearest one is coarse, which shows in soft greys."""
+    """The colours of a GIF. Pillow's own search for the nearest colour is too coarse for soft greys."""
 
     def __init__(self, samples):
         colours = np.concatenate([pixels(sample).reshape(-1, 3) for sample in samples])
@@ -73,7 +73,7 @@ class Palette:
 
 
 def changed(indices, before):
-    """The smallest rectangle that holds all differences, as slices; a pixel where there are none."""
+    """The smallest rectangle with all differences, as slices; one pixel if there are none."""
     different = indices != before
     if not different.any():
         return slice(0, 1), slice(0, 1)

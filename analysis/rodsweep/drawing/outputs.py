@@ -1,4 +1,4 @@
-"""Files that scripts write: never one of the user's replaced unasked, never half a file under its name."""
+"""Output files of the scripts: replaced only with --force, and complete before they get their name."""
 
 import contextlib
 import os
@@ -7,23 +7,23 @@ from rodsweep.reading.errors import SweepFileError
 
 
 def add_force(made):
-    made.add_argument("--force", action="store_true", help="replace the output if it is there")
+    made.add_argument("--force", action="store_true", help="replace the output if it exists")
 
 
 def check(path, options):
-    """Refuses to replace a file, without options.force; a results file (options.file or files) never."""
+    """Raises SweepFileError if the file exists and options.force is not set, or if it is an input file."""
     if not os.path.exists(path):
         return
     sources = options.files if "files" in options else [options.file]
     source = any(os.path.exists(name) and os.path.samefile(path, name) for name in sources)
     if source or not options.force:
-        raise SweepFileError(f"{path} is there already; give another name with -o" +
+        raise SweepFileError(f"{path} already exists; give another name with -o" +
                              ("" if source else ", or --force to replace it"))
 
 
 @contextlib.contextmanager
 def whole(path):
-    """A name to write to, which becomes `path` when all is written and is removed when it isn't."""
+    """A temporary name to write to. It becomes `path` when the file is complete, and is removed after an error."""
     part = f"{path}.part"
     try:
         yield part

@@ -1,8 +1,8 @@
 """A frame as a scene for POV-Ray, and its picture.
 
-Segments are cylinders whose ends are spheres of the same radius, and so are obstacles; a held one without length is a
-plate. The floor is a disc that takes shadows and fades into the white background, a slope a disc with an edge, which is
-glass from behind. Vectors are handed over as they are: POV-Ray's camera takes right, up and direction in any
+Segments and obstacles are cylinders with spheres of the same radius at their ends; a held segment without length is a
+plate. The floor is a disc that takes shadows and fades into the white background. A slope is a disc with an edge,
+which is glass from behind. Vectors need no conversion: POV-Ray's camera takes right, up and direction in any
 handedness. The picture comes through a pipe; the scene is a temporary file, since POV-Ray cannot read one from a pipe.
 """
 
@@ -16,12 +16,12 @@ from rodsweep.drawing.tools import ToolError
 
 SETTINGS = ("-D", "-V", "-GA", "+O-", "+FN8", "-J")
 EDGES = {False: ("+A0.2", "+AM2", "+R2"), True: ("+A0.05", "+AM1", "+R3")}   # antialiasing; fine: three times slower
-LAMP = 0.4    # width of the lamp, of the scene's extent: how soft its shadows are
-PLATE = 0.3   # thickness of a wall's plate, in the radius of the sphere that holds it
+LAMP = 0.4    # width of the lamp as a share of the scene's extent; sets how soft its shadows are
+PLATE = 0.3   # thickness of a wall's plate as a share of the radius of the sphere around it
 STONE = "pigment{srgb <0.80, 0.78, 0.74>} finish{ambient 0.14 diffuse 0.75}"
 GLASS = "pigment{srgbt <0.80, 0.78, 0.74, 0.8>} finish{ambient 0.14 diffuse 0.75} no_shadow"
-BUSY, TRIES = b"Timed out waiting for worker thread startup", 5   # what POV-Ray says on a machine with much to do
-SLAB = 0.02   # thickness of a slope's disc, of its radius
+BUSY, TRIES = b"Timed out waiting for worker thread startup", 5   # POV-Ray's message on a busy machine
+SLAB = 0.02   # thickness of a slope's disc as a share of its radius
 
 
 def scene(trajectory, stage, colouring, frame):
@@ -46,7 +46,7 @@ light_source {{ {vector(lamp)} rgb 0.95 area_light {vector(wide * seen.right)}, 
   5, 5 adaptive 1 circular orient }}
 light_source {{ {vector(fill)} rgb 0.3 shadowless }}
 """
-    if stage.floor is None or seen.eye @ up < stage.floor:   # from below it would hide everything
+    if stage.floor is None or seen.eye @ up < stage.floor:   # from below, the floor would hide everything
         return text
     under = stage.centre + (stage.floor - stage.centre @ up) * up
     return text + f"""plane {{ {vector(up)}, 0
@@ -59,7 +59,7 @@ light_source {{ {vector(fill)} rgb 0.3 shadowless }}
 
 
 def turned_from_y(up):
-    """POV-Ray's cylindrical pattern has y for its axis."""
+    """Rotation of POV-Ray's cylindrical pattern from its axis y to `up`."""
     if abs(up[1]) > 0.9:
         return ""
     return "rotate 90*x" if abs(up[2]) > 0.9 else "rotate 90*z"
@@ -101,7 +101,7 @@ def tubes(trajectory, palette, colour, frame):
 
 
 def many(shape, *columns):
-    """`shape` for every row of the columns, at a stroke: numbers are formatted together."""
+    """`shape` for every row of the columns. All numbers are formatted in one operation, which is fast."""
     rows = np.concatenate(columns, axis=1)
     return (shape * len(rows)) % tuple(rows.ravel().tolist())
 
@@ -115,7 +115,7 @@ def number(value):
 
 
 def picture(text, size, threads=1, fine=False):
-    """PNG bytes. Raises ToolError with what POV-Ray says where it fails."""
+    """PNG bytes. Raises ToolError with POV-Ray's message if it fails."""
     with tempfile.NamedTemporaryFile("w", suffix=".pov", encoding="ascii") as scene_file:
         scene_file.write(text)
         scene_file.flush()

@@ -1,6 +1,6 @@
-"""How a trajectory is shown: which way is up, and where the floor and the eye are.
+"""The view of a trajectory: the upward direction, the floor and the eye.
 
-Only sums and extremes over the frames are kept, so any number of them takes the same memory.
+Only sums and extremes over the frames are kept, so memory use does not grow with their number.
 """
 
 from dataclasses import dataclass
@@ -12,26 +12,26 @@ from rodsweep.reading import obstacles
 from rodsweep.reading.errors import KeyNotFound
 
 VIEWS = {"front": (0, 4), "side": (90, 4), "top": (0, 89.9)}   # azimuth and elevation in degrees
-TURN_DEG = 28           # of a chosen view, away from looking at the broad side
-GAP = 0.015             # between the lowest point and the floor, of the scene's extent
+TURN_DEG = 28           # rotation of the default view away from the broad side
+GAP = 0.015             # from the lowest point to the floor, as a share of the scene's extent
 WALL_RADII = 2.2        # radius of the plate that stands for a wall (a held segment without length), in rod radii
-HAIR = 1e-4             # by which a floor covers the plates of walls that stand on it, of the scene's extent
-GROUND_DEG = 10         # from the vertical: a wall that holds a rod this upright stands on the floor
+HAIR = 1e-4             # by which a floor covers the plates of walls on it, as a share of the scene's extent
+GROUND_DEG = 10         # from the vertical: a wall stands on the floor if its rod is this upright
 
 
 @dataclass(frozen=True)
 class Stage:
     camera: camera.Camera
     up: np.ndarray
-    floor: float          # height along `up`; None: there is none
+    floor: float          # height along `up`; None: no floor
     centre: np.ndarray    # of the scene
     extent: float         # diagonal of its bounding box
     solids: list          # Capsules among the obstacles
-    slopes: list          # HalfSpaces among them that are no floor: of those that are the highest is drawn
+    slopes: list          # HalfSpaces among them that are not a floor; of the floors, only the highest is drawn
 
 
 def upwards(file, task):
-    """The axis that points most against gravity; y where there is none."""
+    """The axis that points most against gravity; y without gravity."""
     gravity = file.parameters.get("scene.gravity_m_s2")
     against = -gravity.values[task] if gravity is not None and gravity.values.ndim == 2 else np.zeros(3)
     up = np.zeros(3)
@@ -41,7 +41,8 @@ def upwards(file, task):
 
 
 def drawn_radius(trajectory):
-    """Of every segment's spheres. A wall, which has neither length nor radius, is wider than the rod that it holds."""
+    """Radius of every segment's spheres. A wall has no length and no radius; it is drawn wider than the rod that it
+    holds."""
     radius = trajectory.radius.copy()
     for wall in np.flatnonzero(trajectory.length <= 0):
         radius[wall] = WALL_RADII * trajectory.radius[trajectory.rod == trajectory.rod[wall]].max()
@@ -93,7 +94,7 @@ def bounds(trajectory, frames):
 
 
 def rim(slope, centre, extent):
-    """Points [.., 3] around the disc that a slope is shown as."""
+    """Points [.., 3] on the rim of a slope's disc."""
     middle, radius = slope.disc(centre, extent)
     across, along = np.linalg.svd(slope.normal[None])[2][1:]
     turn = np.linspace(0, 2 * np.pi, obstacles.PIECES)[:, None]
@@ -101,8 +102,8 @@ def rim(slope, centre, extent):
 
 
 def floor_level(trajectory, frames, up, floor, extent, touched=(), still=()):
-    """Height along `up`, or None. By itself: that of the obstacles' floor; else where rods stand, if nothing is lower;
-    else a little under the lowest point. still: (points, radius) of what obstacles are drawn."""
+    """Height along `up`, or None. "auto": that of the obstacles' floor; else where rods stand, if nothing is lower;
+    else a little under the lowest point. still: (points, radius) of the drawn obstacles."""
     if floor != "auto":
         return None if floor == "none" else float(floor)
     given = obstacles.floor(touched, up)
@@ -117,7 +118,7 @@ def floor_level(trajectory, frames, up, floor, extent, touched=(), still=()):
 
 
 def chosen_view(spread, low, high, up):
-    """Azimuth and elevation: turned a little from the broad side, from higher above the flatter the scene is."""
+    """Azimuth and elevation: slightly rotated from the broad side; the flatter the scene, the higher the eye."""
     right, back = camera.horizontal(up)
     plane = np.stack([right, back])
     values, vectors = np.linalg.eigh(plane @ spread @ plane.T)

@@ -1,4 +1,4 @@
-"""What the figure scripts share: the simulations and guesses of a figure, what it must say of itself, and its files."""
+"""Shared by the figure scripts: the simulations and guesses of a figure, its notes, and its files."""
 
 import argparse
 import os
@@ -23,26 +23,26 @@ class Study:
     newton: str
     width_mm: int
     census: measures.Census
-    left_out: str = ""    # of the tasks counted, and why
+    left_out: str = ""    # which of the counted tasks, and why
 
     @property
     def wide(self):
         return self.width_mm > 100
 
     def lines(self):
-        """The guesses that are drawn relative to zero: all but zero itself."""
+        """The guesses that are drawn relative to zero: all except zero."""
         return [g for g in self.guesses if g != self.file.zero]
 
     def style(self, guess):
         return self.styles[self.file.guesses[guess]]
 
     def handles(self, lines, zero_text=""):
-        """The legend: the guesses, and what the line at 1 is."""
+        """Legend entries of the guesses and of the line at 1."""
         found = [self.style(g).handle(self.file.guesses[g]) for g in lines]
         return found + ([Line2D([], [], label=zero_text, **style.ZERO_LINE)] if zero_text else [])
 
     def methods_without_guess(self, panel, reverse=False):
-        """{method: (style, tasks, rows of Simulations)} of what has no guess in a panel."""
+        """{method: (style, tasks, rows of Simulations)} of the methods without a guess in a panel."""
         rows = panel.index[~self.sims.own[panel.index]]
         tasks = self.sims.any_task[rows]
         names = measures.without_guess(self.file, tasks)
@@ -50,7 +50,7 @@ class Study:
         return {name: (look, tasks[names == name], rows[names == name]) for name, look in looks.items()}
 
     def time_axis(self, tasks, steps):
-        """Times of steps and a label where the simulations share one step size, else the steps themselves."""
+        """(times of steps, label) if the simulations share one step size, else (steps, label)."""
         parameter = self.file.parameters.get("time.step_s")
         sizes = set(parameter.values[tasks]) if parameter else set()
         return (steps * sizes.pop(), "simulated time (s)") if len(sizes) == 1 else (steps, "time step")
@@ -62,7 +62,7 @@ class Study:
         return remarks.timing_warning(self.file, self.sims.tasks())
 
     def about(self):
-        """The note that every figure ends with."""
+        """The last note of every figure."""
         said = remarks.conditions(self.file, self.sims.tasks())
         revisions = remarks.revisions(self.file)
         evaluation = f"{said['evaluation'].capitalize()} evaluation" if said["evaluation"] else "Direct solve alone"
@@ -80,20 +80,21 @@ class Study:
 
 
 def of_guesses(file, options):
-    """A Study of the chosen tasks that try guesses. Raises KeyNotFound where there are none to compare with zero."""
+    """A Study of the chosen tasks that try guesses. Raises KeyNotFound if there is no guess to compare with zero."""
     guessing = commandline.chosen_tasks(file, options) & measures.has_guesses(file)
     if not guessing.any():
-        raise KeyNotFound(f"{file.path} has no guesses to compare: the direct solve alone advances these simulations")
+        raise KeyNotFound(f"{file.path} has no guesses to compare in the chosen simulations")
     guesses = commandline.chosen_guesses(file, options)
     if file.zero is None:
-        raise KeyNotFound(f"{file.path} has no zero guess: nothing to relate {', '.join(file.guesses)} to")
+        raise KeyNotFound(f"{file.path} has no zero guess to compare {', '.join(file.guesses)} with")
     if guesses == [file.zero]:
-        raise KeyNotFound("only the zero guess is left: nothing to relate to it")
+        raise KeyNotFound("only the zero guess is chosen: there is no guess to compare with it")
     return _study(file, options, guessing, guesses)
 
 
 def of_tasks(file, options, failed_too=False):
-    """A Study of the chosen tasks that ended well (or at all). Raises KeyNotFound where there is none."""
+    """A Study of the chosen tasks that ended ok (failed_too: of all complete ones). Raises KeyNotFound if there is
+    none."""
     chosen = commandline.chosen_tasks(file, options)
     return _study(file, options, chosen, commandline.chosen_guesses(file, options), failed_too)
 
@@ -108,13 +109,13 @@ def _study(file, options, chosen, guesses, failed_too=False):
 
 
 def handles(series):
-    """The legend of several {method: (style, …)}, each method once."""
+    """Legend entries of several {method: (style, …)}, each method once."""
     looks = {method: look for methods in series for method, (look, *_) in methods.items()}
     return [look.handle(method) for method, look in looks.items()]
 
 
 def sample_text(estimates, of="", mark="whiskers", point="point"):
-    """How many simulations the points stand for, and what their intervals look like (`mark`, "" if not drawn)."""
+    """The number of simulations per point, and how intervals are drawn (`mark`; "" if they are not)."""
     counts = texts.range_text([int(n) for e in estimates for n in np.ravel(e.count)])
     simulations = "simulation" if counts == "1" else "simulations"
     has_intervals = any(np.isfinite(e.low).any() for e in estimates)
@@ -127,11 +128,11 @@ def sample_text(estimates, of="", mark="whiskers", point="point"):
 def add_figure_arguments(made):
     made.add_argument("-o", "--output", metavar="DIR", help="folder of the figures (default: figures/ beside the file)")
     made.add_argument("--width", choices=list(style.WIDTHS_MM), default="174",
-                      help="width of the figures in mm, a column or a page (default: 174)")
+                      help="width of the figures in mm: a column or a page (default: 174)")
     made.add_argument("--format", metavar="F,…", type=formats, default=("pdf", "png"),
-                      help="pdf, png and svg, with commas between (default: pdf,png)")
+                      help="pdf, png and svg, separated by commas (default: pdf,png)")
     made.add_argument("--no-caption", action="store_true",
-                      help="without the notes under the figure, for a paper that says the same in its own words")
+                      help="leave out the notes under the figure, e.g. for a paper with its own caption")
 
 
 def formats(text):
@@ -139,12 +140,12 @@ def formats(text):
     chosen = tuple(text.split(","))
     unknown = [one for one in chosen if one not in layout.METADATA]
     if unknown:
-        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is none of {', '.join(layout.METADATA)}")
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is not one of {', '.join(layout.METADATA)}")
     return chosen
 
 
 def save(file, options, pages, choices=()):
-    """Writes pages {name: Page} of what has a path as FILE[-SCENE]-NAME[-CHOICE…] and prints their paths."""
+    """Writes {name: Page} as FILE[-SCENE]-NAME[-CHOICE…] and prints the paths. `file` has the path of the results."""
     folder = options.output or os.path.join(os.path.dirname(file.path), "figures")
     stem = os.path.splitext(os.path.basename(file.path))[0] + (f"-{options.scene}" if options.scene else "")
     endings = [*choices, "all-newton" if options.newton == "all" else "",

@@ -1,4 +1,4 @@
-"""How figures look: colours, markers and dashes of `looks` as matplotlib takes them, type sizes, widths for print.
+"""Style of figures: colours, markers and dashes of `looks` for matplotlib, font sizes, widths for print.
 
 Widths: 84 mm is one column of a page of two, 174 mm the whole page.
 """
@@ -27,12 +27,12 @@ class GuessStyle(looks.Look):
         return {"color": self.colour, "marker": self.marker, "linestyle": self.dash}
 
     def handle(self, label):
-        """Its line in a legend."""
+        """Its legend entry."""
         return Line2D([], [], label=label, **self.line())
 
 
 DIRECT = GuessStyle(*KINDS["direct"])
-# As Shao et al. 2021 have them: black, purple, red, pink.
+# The colours of Shao et al. 2021: black, purple, red, pink.
 FOUR_CURVES = {"ratio": GuessStyle("#000000", "o", (0, (1, 0))), "share": GuessStyle("#7b3fb5", "v", (0, (3, 1))),
                "guess_cg": GuessStyle("#c62828", "s", (0, (1, 0))), "step": GuessStyle("#e88fb4", "D", (0, (5, 1.5)))}
 ZERO_LINE = {"color": KINDS["zero"][0], "linewidth": 0.9}    # at 1, where guesses are compared with zero
@@ -45,14 +45,14 @@ def guess_styles(labels):
 
 
 def series_styles(count):
-    """Styles of lines that are of no guess, in their order."""
+    """Styles of lines that do not stand for guesses, in order."""
     kinds = ("previous", "quadratic", "oracle", "copingnet", "linear", "guarded", "knn")
     found = [KINDS[kind] for kind in kinds] + SPARE
     return [GuessStyle(*found[k % len(found)]) for k in range(count)]
 
 
 def whiskers(value, low, high):
-    """Lengths below and above a value for errorbar(); 0 where there is no interval."""
+    """Lengths below and above a value for errorbar(); 0 without an interval."""
     return np.nan_to_num(np.stack([value - low, high - value]).clip(min=0))
 
 

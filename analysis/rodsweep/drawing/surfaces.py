@@ -4,12 +4,12 @@ import numpy as np
 
 from rodsweep.reading import obstacles
 
-AROUND = 32     # corners of a circle
+AROUND = 32     # corners of the polygon for a circle
 
 
 def surface(obstacle, centre, extent):
-    """Points [point, 3] and triangles [triangle, 3] of an obstacle's surface; of a half-space, the disc that is shown
-    under a scene of this centre and extent."""
+    """Points [point, 3] and triangles [triangle, 3] of an obstacle's surface. A half-space is the disc under a scene
+    of this centre and extent."""
     if isinstance(obstacle, obstacles.HalfSpace):
         middle, radius = obstacle.disc(centre, extent)
         return revolved([radius, 0], [0, 0], middle, obstacle.normal)
@@ -23,7 +23,7 @@ def surface(obstacle, centre, extent):
 
 
 def revolved(radii, heights, foot, axis):
-    """Points and triangles of a profile [radius, height] turned around an axis, a unit vector."""
+    """Points and triangles of a profile [radius, height] rotated around an axis (unit vector)."""
     across = np.linalg.svd(axis[None])[2][1]
     turn = np.linspace(0, 2 * np.pi, AROUND, endpoint=False)[:, None]
     circle = np.cos(turn) * across + np.sin(turn) * np.cross(axis, across)
@@ -36,7 +36,7 @@ def revolved(radii, heights, foot, axis):
 
 
 def joined(surfaces):
-    """Several as one."""
+    """Several surfaces as one."""
     before = np.cumsum([0, *(len(points) for points, _ in surfaces)])
     return (np.concatenate([points for points, _ in surfaces]),
             np.concatenate([triangles + first for (_, triangles), first in zip(surfaces, before)]))

@@ -1,4 +1,4 @@
-"""The colours of segments in pictures of rods: by rod, along it, or by radius."""
+"""Colours of segments in pictures: by rod, by position along the rod, or by radius."""
 
 import numpy as np
 from matplotlib import colormaps, colors
@@ -11,7 +11,7 @@ SHADES = 64             # colours of a continuous scale
 
 
 def colours(trajectory, by):
-    """A palette [colour, rgb] (sRGB) and every segment's number in it. by: "rod", "along" its rod, or "radius"."""
+    """A palette [colour, rgb] (sRGB) and every segment's index in it. by: "rod", "along" its rod, or "radius"."""
     if by == "rod":
         palette = [colors.to_rgb(c) for c in RODS]
         number = trajectory.rod % len(palette)
@@ -25,7 +25,7 @@ def colours(trajectory, by):
 
 
 def along(rod):
-    """Every segment's place within its rod, from 0 to 1."""
+    """Every segment's position within its rod, from 0 to 1."""
     place = np.zeros(len(rod))
     for number in np.unique(rod):
         mine = rod == number

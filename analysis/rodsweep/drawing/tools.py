@@ -1,4 +1,4 @@
-"""Programs beside Python that some scripts need."""
+"""External programs that some scripts need."""
 
 import shutil
 
@@ -6,11 +6,11 @@ from rodsweep.reading.errors import UserError
 
 
 class ToolError(UserError):
-    """A program that is missing, or that failed."""
+    """A program is missing or failed."""
 
 
 def needed(program, purpose):
-    """Refuses to begin without a program; its Debian package has the same name."""
+    """Raises ToolError if a program is missing. Its Debian package has the same name."""
     if shutil.which(program) is None:
-        raise ToolError(f"there is no {program} on the PATH, {purpose}: install the Debian package {program} "
+        raise ToolError(f"{program} is not on the PATH ({purpose}): install the Debian package {program} "
                         "(make pictures)")

@@ -1,12 +1,12 @@
-"""How far every way of moving the rods ends from a converged trajectory, and what its steps cost: for solvers.py and
-work_precision.py.
+"""Errors of all ways of moving the rods, relative to a converged trajectory, and the cost of their steps: for
+solvers.py and work_precision.py.
 
-A way is a method with its effort: Newton iterations of the direct solve, these and the tolerance of CG with its
-preconditioner and guess, Gauss-Seidel iterations. The reference of a simulation is the direct solve with the most
-Newton iterations, of the same scene, draw and step. Error: the distance of a segment from where the reference has it,
-root mean square over segments, the largest over the frames of the trajectory, relative to the diagonal of the box
-around all segments at the start, which is the length of a straight rod; NaN where a simulation has no reference,
-infinite where it failed. Cost: wall time of a step with its assembly, guess and solves, the median over steps.
+A way is a method with its effort: Newton iterations of the direct solve; for CG also tolerance, preconditioner and
+guess; Gauss-Seidel iterations. The reference of a simulation is the direct solve with the most Newton iterations, of
+the same scene, draw and step. The error of a frame is the root mean square distance of the segments from the
+reference. The error of a way is the largest over the frames, relative to the diagonal of the box around all segments
+at the start (for a straight rod, its length). It is NaN without a reference, and infinite for a failed simulation. The
+cost is the median wall time of a step with its assembly, guess and solves.
 """
 
 from dataclasses import dataclass
@@ -19,21 +19,21 @@ from rodsweep.reading.errors import KeyNotFound
 REST, ASSEMBLY, DIRECT, GUESS, CG = ("/timing/steps/rest_s", *(f"/timing/solves/{part}_s" for part in
                                                                ("assemble", "direct", "guess", "cg")))
 NEWTON = "time.newton_iterations"
-FLOOR = 1e-12    # errors up to this are rounding of another order of operations
-REFERENCE = ("Reference: Newton with direct solves, converged, with the same step; xpbd converges to a trajectory of "
-             "its own, whose forces acted along the positions on its way.")
+FLOOR = 1e-12    # errors up to this are rounding errors
+REFERENCE = ("Reference: converged Newton iterations with direct solves at the same step. xpbd converges to another "
+             "trajectory, since its forces act along the positions of its iterations.")
 
 
 @dataclass(frozen=True)
 class Way:
-    """What does not apply is empty or 0."""
-    method: str               # direct, cg, xpbd, pbd, or end_to_end and its model
+    """Fields that do not apply are empty or 0."""
+    method: str               # direct, cg, xpbd, pbd, or a network's method and its model
     newton: int = 0
     iterations: int = 0
     tolerance: float = 0
     preconditioner: str = ""
     guess: str = ""
-    forcing: bool = False     # the tolerance is that of a step's first solves
+    forcing: bool = False     # the tolerance holds for the first solves of a step
 
     @property
     def family(self):
@@ -41,7 +41,7 @@ class Way:
 
     @property
     def effort(self):
-        """What a line of a figure goes along: iterations, or CG's tolerance."""
+        """What varies along a line of a figure: iterations, or the tolerance of CG."""
         return self.tolerance or self.iterations or self.newton
 
     def text(self):
@@ -57,30 +57,30 @@ class Accuracy:
     """A row per task."""
     tasks: np.ndarray
     ways: list
-    reference: np.ndarray  # is it one?
+    reference: np.ndarray  # whether it is one
     error: np.ndarray
     step_s: np.ndarray
 
 
 @dataclass(frozen=True)
 class Point:
-    """A way's medians over simulations, Estimates."""
+    """Medians of a way over simulations."""
     way: Way
     time_us: intervals.Estimate
     error: intervals.Estimate
 
 
 def accuracy(file, tasks):
-    """Of tasks that are complete. Raises KeyNotFound where the file has no trajectories, times or reference."""
+    """The Accuracy of complete tasks. Raises KeyNotFound if the file has no trajectories, times or reference."""
     if not file.has("/trajectories/position_m"):
-        raise KeyNotFound(f"{file.path} has no trajectories: ask for them with record.trajectory_every")
+        raise KeyNotFound(f"{file.path} has no trajectories: set record.trajectory_every in the job")
     if not all(file.has(path) for path in (REST, ASSEMBLY, DIRECT)):
         raise KeyNotFound(f"{file.path} has no times of single solves (record.solves is \"summary\")")
     ways = [_way(file, task) for task in tasks]
     ok = file.ok[tasks]
     reference = _references(file, tasks, ok & np.array([way.method == "direct" for way in ways]))
     if (reference < 0).all():
-        raise KeyNotFound(f"{file.path} has no task of the direct solve to compare the others with")
+        raise KeyNotFound(f"{file.path} has no task with the direct solve to compare with")
     error, cost_s = np.full(len(tasks), np.nan), np.full(len(tasks), np.nan)
     error[(reference >= 0) & ~ok] = np.inf
     for of in np.unique(reference[reference >= 0]):
@@ -91,8 +91,8 @@ def accuracy(file, tasks):
 
 
 def points(file, found, cell):
-    """A Point per way among the rows of a mask, families in the order of the job, least effort first in each; none of a
-    way that failed in any simulation."""
+    """A Point per way among the rows of a mask, without ways that failed in any simulation. Families keep the order of
+    the job; in each, the least effort comes first."""
     rows, families = {}, {}
     for row in np.flatnonzero(cell & ~found.reference & ~np.isnan(found.error)):
         way = found.ways[row]
@@ -108,13 +108,13 @@ def points(file, found, cell):
 
 
 def cheapest(points, level):
-    """The fastest of the points whose error is at most `level`; None where there is none."""
+    """The fastest of the points whose error is at most `level`; None if there is none."""
     good = [point for point in points if point.error.value <= level]
     return min(good, key=lambda point: float(point.time_us.value)) if good else None
 
 
 def envelope(points, floor):
-    """The points that no cheaper one is as accurate as, fastest first; errors up to the floor are all one."""
+    """The points that are more accurate than all faster ones, fastest first. Errors up to the floor count as equal."""
     kept, least = [], np.inf
     for point in sorted(points, key=lambda point: (float(point.time_us.value), float(point.error.value))):
         if max(float(point.error.value), floor) < least:
@@ -139,7 +139,7 @@ def _way(file, task):
 
 
 def _references(file, tasks, candidate):
-    """The row of the reference among `tasks` for each of them, of the candidates; -1 where there is none."""
+    """For each task, the row of its reference among the candidates; -1 if there is none."""
     keys = [p.codes()[tasks] for p in file.parameters.values()
             if p.name.startswith(("scene.", "time.")) and p.name != NEWTON]
     rod = np.unique(np.column_stack([file.sample[tasks], *keys]), axis=0, return_inverse=True)[1].ravel()
@@ -169,7 +169,7 @@ def _error(file, task, exact):
 
 
 def step_s(file, task):
-    """Wall time of a step of a task, the median: its rows are those of its steps one after the other."""
+    """Median wall time of a task's steps. Its rows of solves are in the order of the steps."""
     def rows(path, first, count):
         return file.h5[path][first[task]:first[task] + count[task]].astype(float)
 

@@ -1,9 +1,9 @@
 """CG iterations along the simulated time, summed over windows of steps: the numbers of temporal.py.
 
-Steps go into at most MOST_BINS bins (fewer where there are so many simulations that they would fill BUDGET_BYTES); a
-window is a run of whole bins around its centre, cut off at the ends of the run. A solve that missed a tolerance counts
-what it used, as in the CG ratio of a simulation; a row does not say how much that was, so the mean over the solves of
-its simulation that missed that tolerance stands for each of them, and all sums over a whole run are exact.
+Steps go into at most MOST_BINS bins (fewer if many simulations would exceed BUDGET_BYTES). A window is a range of
+whole bins around its centre, cut off at the ends of the run. A solve that missed a tolerance counts the iterations
+that it used, as in the CG ratio of a simulation. A row does not have that number, so each of them counts the mean over
+all such solves of its simulation. Sums over a whole run are therefore exact.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ COLUMNS = ("/solves/newton", "/solves/step", "/solves/iterations")
 
 @dataclass(frozen=True)
 class Windows:
-    """Sums over windows; NaN where a simulation has no task of the guess."""
+    """Sums over windows; NaN if a simulation has no task with the guess."""
     centre: np.ndarray      # [window] mean step of the window, counted from 1
     width: int              # steps of a whole window
     iterations: np.ndarray  # [simulation, window, guess, tolerance]
@@ -32,7 +32,7 @@ def recorded(file):
 
 
 def windows(file, sims, newton, guesses, tolerances, width=None):
-    """Of `width` steps, by default a twentieth of the run; guesses and tolerances are indices."""
+    """Windows of `width` steps, by default a twentieth of the run; guesses and tolerances are indices."""
     steps = int(file.steps[sims.tasks()].max())
     per_bin = len(sims) * len(guesses) * (len(tolerances) + 1) * 8 * 2
     bins = min(steps, MOST_BINS, max(FEWEST_BINS, BUDGET_BYTES // per_bin))
@@ -57,7 +57,8 @@ def _between(values, begin, end):
 
 
 def _binned(file, sims, newton, guesses, tolerances, edges):
-    """Iterations of solves that reached the tolerance [simulation, bin, guess, tolerance], and how many did not."""
+    """Iterations of solves that reached the tolerance, all solves, and solves that missed it: [simulation, bin,
+    guess], the first and last also by tolerance."""
     shape = (len(sims), len(edges) - 1, len(guesses))
     iterations, missed = np.zeros(shape + (len(tolerances),)), np.zeros(shape + (len(tolerances),))
     solves = np.zeros(shape)
@@ -84,7 +85,8 @@ def _binned(file, sims, newton, guesses, tolerances, edges):
 
 
 def _spent(file, sims, newton, guesses, tolerances, iterations, missed):
-    """Mean iterations of a solve that missed the tolerance, [simulation, 1, guess, tolerance]; 0 where none did."""
+    """Mean iterations of a solve that missed the tolerance, [simulation, 1, guess, tolerance]; 0 without such
+    solves."""
     sums = file.results("iterations_sum" if newton == "first" else "iterations_sum_all", sims.tasks())
     full = np.zeros((file.task_count, len(file.guesses), len(file.tolerances)))
     if sums is not None:

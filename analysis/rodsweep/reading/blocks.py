@@ -1,4 +1,4 @@
-"""The numbers of summary.py: everything measured about one group of simulations, and the same as flat records."""
+"""The numbers of summary.py: all measurements of a group of simulations, also as flat records."""
 
 from dataclasses import dataclass
 
@@ -10,20 +10,20 @@ TIMES = ("assemble_us", "guess_us", "cg_us", "direct_us")
 # The fields of records().
 COLUMNS = ("scene", "settings", "newton", "quantity", "guess", "tolerance", "value", "low", "high", "simulations",
            "unreached_solves")
-# What stands beside the CG ratio of first or of all Newton iterations: of which, and what is counted.
+# Further CG ratios beside that of the first or of all Newton iterations: which iterations, and what is counted.
 BESIDE = {"first": {"products": ("first", "matvecs"), "all": ("all", "iterations"), "all_products": ("all", "matvecs")},
           "all": {"products": ("all", "matvecs")}}
 
 
 @dataclass(frozen=True)
 class Block:
-    """Estimates over the simulations of a group. Those that the file cannot give are None."""
+    """Estimates over the simulations of a group; None if the file does not have the data."""
     title: str
     scene: str
     settings: dict
     sims: measures.Simulations
     ratio: intervals.Estimate = None             # [guess, tolerance]
-    beside: dict = None                          # the same in products with A, of all Newton iterations: Estimate
+    beside: dict = None                          # name in BESIDE: Estimate [guess, tolerance] of a further ratio
     zero_iterations: np.ndarray = None           # [tolerance] per solve from zero; None for all Newton iterations
     unreached: np.ndarray = None                 # [guess, tolerance] solves
     speedup: dict = None                         # definition: Estimate [guess], over zero-guess CG
@@ -36,7 +36,7 @@ class Block:
 
 
 def blocks(file, sims, by, newton):
-    """One per scene type, gridded key outside `scene`, and value of the key `by`."""
+    """One Block per scene type, gridded key outside `scene`, and value of the key `by`."""
     panels = groups.panels(file, sims, by, pooled="scene.", most=None)
     found = []
     for panel in panels:
@@ -105,7 +105,7 @@ def _times(file, sims, newton):
 
 
 def per_solve_us(part):
-    """{name of TIMES: [simulation, guess]}, mean time of a solve in a simulation, of a timings.Times."""
+    """{name of TIMES: [simulation, guess]}: mean time of a solve in a simulation, from a timings.Times."""
     return {name: getattr(part, name.replace("_us", "_s")) / part.solves * 1e6 for name in TIMES}
 
 

@@ -1,10 +1,10 @@
-"""What solving costs by every preconditioner and guess together, and the cheapest of each kind: for combinations.py.
+"""Solve times of all combinations of preconditioner and guess, and the fastest of each kind: for combinations.py.
 
-A combination is what a job tries on the same systems (paired), or on trajectories of their own (closed loop): a
-preconditioner with the settings that the job sweeps, and a guess; or the direct solve. Its time is that of a solve,
-guess and set-up of the preconditioner included, or in a closed loop of a whole step. Kinds of guesses: CG from zero,
-classical ones, learned ones, and oracles, which know the solution: their own time is left out, so that they tell what
-a guess of their error would bring that costs nothing.
+A combination is a preconditioner, with the settings that the job sweeps, and a guess; or the direct solve. Paired
+combinations solve the same systems, in a closed loop each has its own trajectory. The time is that of a solve with
+guess and preconditioner set-up, or in a closed loop of a whole step. Kinds of guesses: CG from zero, classical ones,
+learned ones, and oracles, which know the solution. A paired oracle's own time is not counted: it shows what a free
+guess with the same error would save.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ DIRECT, ZERO, CLASSICAL, LEARNED, ORACLE = KINDS = ("direct", "from zero", "clas
 
 @dataclass(frozen=True)
 class Combination:
-    """Per draw, NaN where a simulation did not end well; iterations and products per solve [draw, tolerance]."""
+    """Values per draw, NaN if a simulation failed; iterations and products per solve [draw, tolerance]."""
     kind: str
     solver: str
     guess: str
@@ -38,14 +38,14 @@ class Combination:
 
 @dataclass(frozen=True)
 class Cell:
-    """The combinations of one panel at one place along x, over the same draws."""
+    """The combinations of one panel at one value of x, over the same draws."""
     x: str
     joints: float
     draws: np.ndarray
     combinations: list
 
     def cheapest(self, kind):
-        """By the median over draws, of those that ended well on all; None where there is none."""
+        """The fastest by the median over draws, among combinations without failures; None if there is none."""
         there = [one for one in self.combinations if one.kind == kind and np.isfinite(one.time_us).all()]
         return min(there, key=lambda one: np.median(one.time_us)) if there else None
 
@@ -59,16 +59,16 @@ def kind_of(guess):
 
 
 def panels(file, sims, x):
-    """Panels by scene type and gridded keys other than x and those of the preconditioner, the direct solve in each."""
+    """Panels by scene type and gridded keys except x and those of the preconditioner, each with the direct solve."""
     found = groups.with_direct(sims, groups.panels(file, sims, (x, *AXES)))
-    # Of the keys of `solve` that only the direct solve has otherwise there is nothing to say.
+    # Titles omit keys of `solve` that are equal in all panels.
     same = {key for panel in found for key in panel.settings
             if key.startswith("solve.") and len({other.settings.get(key) for other in found}) == 1}
     return [panel.without(same) for panel in found]
 
 
 def cells(file, sims, panel, x, newton):
-    """[Cell] along x."""
+    """[Cell], sorted by the number of joints."""
     measured = _Measured(file, sims, newton)
     codes = file.parameter(x).codes()[sims.any_task]
     found = []
@@ -82,7 +82,7 @@ def cells(file, sims, panel, x, newton):
 
 
 class _Measured:
-    """Everything per simulation and guess, from which cells take their rows."""
+    """Times and counts per simulation and guess, from which cells take their rows."""
 
     def __init__(self, file, sims, newton):
         self.file, self.sims = file, sims
@@ -122,7 +122,8 @@ class _Measured:
         return [one for one in found if np.isfinite(one.time_us).any()]
 
     def _direct(self, rows, guessing, draws):
-        """Of the paired simulations of all preconditioners, each of which timed it: their median."""
+        """The direct solve. In a paired sweep the simulations of all preconditioners time it: the median of a draw
+        counts."""
         from_rows = guessing if not self.sims.closed_loop else np.setdiff1d(rows, guessing)
         time_us = np.full(len(draws), np.nan)
         for k, draw in enumerate(draws):
@@ -147,7 +148,7 @@ class _Measured:
 
 
 def solver_text(file, task):
-    """A preconditioner and those of its settings that the job sweeps and that it has."""
+    """A preconditioner with its settings that the job sweeps."""
     name_of = file.parameters[PRECONDITIONER].text(task)
     swept = [f"{name} {file.parameters[key].text(task)}" for key, name in SETTINGS.items()
              if key in file.parameters and file.parameters[key].swept and file.parameters[key].applies()[task]
@@ -156,10 +157,10 @@ def solver_text(file, task):
 
 
 def speedup(slower, faster, draws):
-    """Estimate of how many times as fast one combination is as another: the median over draws."""
+    """Estimate of the time of one combination over that of a faster one: the median over draws."""
     return intervals.median(slower.time_us / faster.time_us, draws)
 
 
 def ratio(one, zero, draws, tolerance):
-    """Estimate of the CG ratio of a combination at a tolerance, of sums over all its draws."""
+    """Estimate of the CG ratio of a combination at a tolerance: the mean over draws."""
     return intervals.mean(one.iterations[:, tolerance] / zero.iterations[:, tolerance], draws)

@@ -1,4 +1,4 @@
-"""What the scripts share on the command line: choosing tasks, guesses and tolerances, and plain errors."""
+"""Shared by the scripts' command lines: choice of tasks, guesses and tolerances, and error messages."""
 
 import argparse
 import os
@@ -14,15 +14,15 @@ DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
 
 def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True, files=False):
-    """`tolerances`: what is shown by default, None for a script without that choice; newton: is there a choice? files:
-    several instead of one."""
+    """`tolerances`: the default in the help, None for a script without --tolerance. newton: adds --newton. files:
+    several files instead of one."""
     made = argparse.ArgumentParser(description=description, epilog=examples(epilog or ""),
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     of_files = {"dest": "files", "nargs": "+", "metavar": "FILE"} if files else {"dest": "file"}
-    made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
+    made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); the run may still go on")
     made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
     made.add_argument("--select", metavar="CONDITION", action="append", default=[],
-                      help=f"only tasks that meet it: a parameter, {conditions.FORM}; may be repeated")
+                      help=f"only tasks that meet the condition: a parameter, {conditions.FORM}; may be repeated")
     made.add_argument("--guess", metavar="LABEL,…", help="only these guesses (default: all)")
     if tolerances:
         made.add_argument("--tolerance", metavar="T,…",
@@ -30,18 +30,18 @@ def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=Tr
     made.set_defaults(newton="first")
     if newton:
         made.add_argument("--newton", choices=list(measures.NEWTON), default="first",
-                          help="Newton iterations that count: the first of every step (j = 0, the default) or all")
+                          help="Newton iterations that count: the first of every step (j = 0, default) or all")
     return made
 
 
 def examples(text):
-    """Examples of a script with its name as it was called: analysis/summary.py, or rodsweep-summary where installed."""
+    """The examples with the script's name as it was called: analysis/summary.py, or rodsweep-summary if installed."""
     name = os.path.basename(sys.argv[0])
     return text if name.endswith(".py") else re.sub(r"analysis/\w+\.py", name, text)
 
 
 def whole_number(text):
-    """The type of an argument that is at least 1."""
+    """The type of an integer argument of at least 1."""
     value = int(text)
     if value < 1:
         raise ValueError
@@ -49,26 +49,26 @@ def whole_number(text):
 
 
 def run(main):
-    """Calls main(); what the user can put right is one line on stderr and exit code 2. So is whatever else goes wrong, since a
-    damaged file can make any line fail; `python3 -X dev SCRIPT` shows where."""
+    """Calls main(). A UserError gives one line on stderr and exit code 2. So does any other exception, since a damaged
+    file can make any line fail; `python3 -X dev SCRIPT` shows where."""
     try:
         main()
         sys.stdout.flush()
     except UserError as error:
         _stop(error.args[0])
-    except BrokenPipeError:  # the reader of a pipe has seen enough
+    except BrokenPipeError:  # the reader of the pipe closed it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
-        # h5py raises it for rows that cannot be read, without a number
+        # h5py raises OSError without errno for unreadable rows
         _stop(f"{error.filename or 'output'}: {error.strerror}" if error.errno else f"the file is damaged: {error}")
     except MemoryError:
-        _stop("there is not enough memory, or the file is damaged; `rodsweep info FILE --verify` tells")
+        _stop("there is not enough memory, or the file is damaged; check it with `rodsweep info FILE --verify`")
     except Exception as error:
         if sys.flags.dev_mode:
             raise
         words = " ".join(str(error).split())
-        _stop(f"the file is damaged, or this script has a fault: {type(error).__name__}: {words}; "
-              "`rodsweep info FILE --verify` tells which")
+        _stop(f"the file is damaged, or this script has a bug: {type(error).__name__}: {words}; "
+              "check the file with `rodsweep info FILE --verify`")
 
 
 def _stop(message):
@@ -77,7 +77,7 @@ def _stop(message):
 
 
 def chosen_tasks(file, arguments):
-    """Mask of the tasks that --scene and --select leave, complete or not."""
+    """Mask of the tasks that --scene and --select choose, complete or not."""
     mask = file.select(arguments.select)
     if arguments.scene:
         scenes = file.scene_types()
@@ -105,6 +105,6 @@ def chosen_tolerances(file, arguments):
     try:
         values = [float(part) for part in arguments.tolerance.split(",")]
     except ValueError:
-        raise KeyNotFound(f"--tolerance {arguments.tolerance}: write numbers of the file's ladder with commas between "
-                          "them, or `all`") from None
+        raise KeyNotFound(f"--tolerance {arguments.tolerance}: give tolerances of the file, separated by commas, or "
+                          "`all`") from None
     return [file.tolerance_index(value) for value in values]

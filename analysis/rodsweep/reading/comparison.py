@@ -1,9 +1,9 @@
-"""Two sweeps, task by task: which tasks are in both, which of their values differ, CG ratios and times.
+"""Two sweeps, task by task: common tasks, values that differ, CG ratios and times.
 
-Two tasks are the same if all that their results depend on is: seed, sample, every key that applies to them, and in a
-closed loop the guess. With by="parameters" they are the same if the sample and the keys that vary within either job are.
-Guesses are the same if their label and their entry in the job are, or by="parameters" their label. Models and data sets
-are known by the path in the job.
+Two tasks are the same if everything that their results depend on is equal: seed, sample, every key that applies to
+them, and in a closed loop the guess. With by="parameters", the seed and keys that neither job varies do not count. Two
+guesses are the same if their label and their entry in the job are equal; with by="parameters" the label is enough.
+Models and data sets are identified by their path in the job.
 """
 
 import json
@@ -18,7 +18,7 @@ from rodsweep.reading.hdf5 import decoded
 
 BY = ("everything", "parameters")
 BLOCK_ROWS = 1 << 16
-# Of the rows of a group: the columns of /tasks with a task's first row and its number of rows.
+# Group: the columns of /tasks with a task's first row and its number of rows.
 PLACES = {"/steps": ("first_step", "steps"), "/solves": ("first_solve", "solves"), "/systems": ("first_system", "systems"),
           "/systems/segments": ("first_system_segment", "system_segments"),
           "/systems/joints": ("first_system_joint", "system_joints")}
@@ -31,7 +31,8 @@ IGNORED_KEYS = ("name", "description", "$schema")
 
 @dataclass
 class Pairs:
-    """Tasks that are in both files: a[i] of one is b[i] of the other, whose guess g is guesses[i][g], -1 for none."""
+    """Tasks in both files: a[i] of one is b[i] of the other. Guess g of a[i] is guess guesses[i][g] of b[i], -1 for
+    none."""
     a: np.ndarray
     b: np.ndarray
     guesses: np.ndarray
@@ -44,19 +45,19 @@ class ColumnDifference:
     path: str
     tasks: int = 0
     values: int = 0
-    largest: float = 0.0    # infinite where a value is missing in one
-    task: int = -1          # of A, with the largest
+    largest: float = 0.0    # infinite if a value is missing in one
+    task: int = -1          # of A, with the largest difference
 
 
 def key_differences(one, other):
-    """[(key, value in one, value in the other)], None where a job has no such key."""
+    """[(key, value in one, value in the other)], None if a job does not have the key."""
     jobs = [_flat({key: value for key, value in file.job().items() if key not in IGNORED_KEYS}) for file in (one, other)]
     return [(key, jobs[0].get(key), jobs[1].get(key)) for key in dict.fromkeys([*jobs[0], *jobs[1]])
             if jobs[0].get(key) != jobs[1].get(key)]
 
 
 def _flat(value, path=""):
-    """{"scene.segments": ...}: objects are opened but for sweeps; guesses are keys of their own."""
+    """{"scene.segments": ...}: objects except sweeps are flattened; each guess has its own key."""
     if path == "guesses" and isinstance(value, list):
         return {f"guesses.{_text(guess)}": guess for guess in value}
     if isinstance(value, dict) and not _is_sweep(value):
@@ -89,7 +90,7 @@ def match(one, other, by):
     shared = np.array(_guess_places(one, other, by), dtype=int)
     guesses = np.tile(shared, (len(a), 1)) if len(shared) else np.empty((len(a), 0), dtype=int)
     for row, (i, k) in enumerate(zip(a, b)):
-        if one.own_guess[i] >= 0:    # a closed loop: its own guess alone
+        if one.own_guess[i] >= 0:    # closed loop: only its own guess
             guesses[row] = -1
             guesses[row, one.own_guess[i]] = other.own_guess[k]
     return Pairs(np.array(a, dtype=int), np.array(b, dtype=int), guesses, one.task_count - len(a),
@@ -97,7 +98,7 @@ def match(one, other, by):
 
 
 def _identities(file, by, one, other):
-    """A text for every task, equal where tasks are the same."""
+    """A text for every task, equal if the tasks are the same."""
     if by == "parameters":
         names = sorted({name for one_of in (one, other) for name in one_of.swept()})
         head = ""
@@ -121,7 +122,7 @@ def _identities(file, by, one, other):
 
 
 def _of_guess(name):
-    """(place of the guess that a parameter is of, None for none; its name without that place)."""
+    """(index of the guess that a parameter belongs to, None without one; its name without that index)."""
     found = re.fullmatch(r"guesses\[(\d+)\](.*)", name)
     return (int(found.group(1)), found.group(2)) if found else (None, name)
 
@@ -132,8 +133,8 @@ def _guess_places(one, other, by):
 
 
 def _guess_keys(file, by):
-    """What a guess is known by: its label, and unless by parameters its entry in the job, where the job lists its
-    guesses one by one."""
+    """Identity of each guess: its label and, unless by="parameters", its entry in the job if the job has a plain list
+    of guesses."""
     listed = file.job().get("guesses")
     if by == "parameters" or not isinstance(listed, list) or len(listed) != len(file.guesses):
         return file.guesses
@@ -141,8 +142,8 @@ def _guess_keys(file, by):
 
 
 class Comparison:
-    """compared: pairs done in both; columns: ColumnDifference of those that differ; differing: {place in the pairs:
-    paths}; left_out: paths that are not in both files or of another shape."""
+    """compared: number of pairs done in both; columns: {path: ColumnDifference}; differing: {index of the pair:
+    paths}; left_out: paths that are missing in one file or have another shape."""
 
     def __init__(self, one, other, pairs):
         self.one, self.other = one, other
@@ -178,7 +179,7 @@ class Comparison:
                     yield label, float(tolerance), *(estimate[g, t] for estimate in estimates)
 
     def times(self):
-        """Yields (what, median of one, median of the other, median of the tasks' quotients, tasks)."""
+        """Yields (what, median of one, median of the other, median of the tasks' quotients, number of tasks)."""
         ok = self._both_ok()
         a, b = self.a[ok], self.b[ok]
         columns = [("whole task", *(self._per_task(file, "/timing/tasks/elapsed_s", tasks) for file, tasks in
@@ -275,7 +276,7 @@ class Comparison:
 
 
 def _datasets(file):
-    """{path: None} of all results, in their order: not times, places, parameters or what made the file."""
+    """{path: None} of all results, in order, without times, row numbers, parameters and provenance."""
     found = {}
 
     def add(name, item):
@@ -288,7 +289,7 @@ def _datasets(file):
 
 
 def _places(file, group, tasks):
-    """(first row, number of rows) of some tasks in a group; None where the file does not say."""
+    """(first row, number of rows) of some tasks in a group; None if the file does not have them."""
     if group == "/tasks":
         return tasks, np.ones(len(tasks), dtype=int)
     if group == "/trajectories":
@@ -300,14 +301,14 @@ def _places(file, group, tasks):
 
 
 def _blocks(counts):
-    """Places of pairs, in blocks of bounded numbers of rows."""
+    """Indices of pairs, in blocks of bounded numbers of rows."""
     ends = np.cumsum(counts)
     return [block for block in np.split(np.arange(len(counts)), np.flatnonzero(np.diff(ends // BLOCK_ROWS)) + 1)
             if len(block)]
 
 
 def _rows(first, count):
-    """All row numbers of ranges, one after the other."""
+    """The row numbers of all ranges, concatenated."""
     if not count.sum():
         return np.empty(0, dtype=int)
     return np.repeat(first - np.concatenate([[0], np.cumsum(count)[:-1]]), count) + np.arange(count.sum())

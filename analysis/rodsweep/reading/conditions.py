@@ -1,4 +1,4 @@
-"""A condition on a column, as `rodsweep query`, export.py --where and --select take it: COLUMN OPERATOR VALUE.
+"""A condition on a column for `rodsweep query`, export.py --where and --select: COLUMN OPERATOR VALUE.
 
   =  (or ==)   equal to one of the values, which commas (outside of parentheses) separate; of numbers, a value may be a
                range LOW:HIGH, LOW: or :HIGH, ends included
@@ -6,10 +6,10 @@
   < <= > >=    numbers
   ~            texts that contain the value
 
-Numbers are equal up to a relative 1e-9, whatever the operator. A value that is not there (NaN, an empty text, -1 of
-whole numbers) meets no condition. runner/command/query_condition.hpp reads the same language; tests/conditions.json has
-cases that both must meet. Raises KeyNotFound: an unknown column or word, with the nearest known one; a number or an
-operator that does not fit the column.
+All operators treat numbers as equal up to a relative 1e-9. A missing value (NaN, an empty text, -1 of integers) meets
+no condition. runner/command/query_condition.hpp reads the same language; tests/conditions.json has cases for both.
+Raises KeyNotFound for an unknown column or word, with the nearest known one, and for a number or an operator that does
+not fit the column.
 """
 
 import re
@@ -21,14 +21,14 @@ from rodsweep.reading import texts
 from rodsweep.reading.errors import KeyNotFound, not_found
 
 OPERATORS = ("<=", ">=", "!=", "==", "=", "<", ">", "~")   # the longer ones first
-FORM = "one of = != < <= > >= ~ (contains), and a value; for = also A,B or LOW:HIGH"   # after what a column is
+FORM = "one of = != < <= > >= ~ (contains), and a value; for = also A,B or LOW:HIGH"   # in helps, after the column
 ROUNDING = 1e-9
 NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
 class Column:
-    """What a condition has to know of a column. words: all texts that it can have, where that is known."""
+    """Properties of a column for conditions. words: all texts that it can have, if known."""
     numeric: bool
     words: tuple = ()
 
@@ -63,7 +63,7 @@ class Condition:
 
 
 def absent(values):
-    """Mask of the values that are not there."""
+    """Mask of the missing values."""
     if values.dtype.kind == "f":
         return np.isnan(values)
     if values.dtype.kind == "i":
@@ -72,7 +72,7 @@ def absent(values):
 
 
 def parse(text, columns, all_by=""):
-    """The condition that a text says of one of {name: Column}. all_by: what lists them (errors.not_found)."""
+    """Parses a condition on one of {name: Column}. all_by: the command that lists them (errors.not_found)."""
     name, operator, value = _parts(text, columns)
     if not value:
         raise _no_condition(text)
@@ -92,11 +92,11 @@ def parse(text, columns, all_by=""):
     for item in _listed(value) if column.words else ():
         if item not in column.words:
             raise not_found(f'"{text}":', item, column.words)
-    return Condition(text, name, operator, texts=(*_listed(value), value))   # the last: a value that holds a comma
+    return Condition(text, name, operator, texts=(*_listed(value), value))   # the last: a value with a comma
 
 
 def _parts(text, columns):
-    """Labels may hold any character: the operator is the first one that follows a column's name."""
+    """Labels may contain any character, so the operator is the first one after a known column name."""
     found = []
     for at in range(len(text)):
         operator = next((word for word in OPERATORS if text.startswith(word, at)), None)
@@ -137,7 +137,7 @@ def _number(item, text, name):
 
 
 def _compared(operator, numbers, limit):
-    with np.errstate(invalid="ignore"):    # infinite less infinite
+    with np.errstate(invalid="ignore"):    # inf - inf
         apart = np.abs(numbers - limit)
         same = (numbers == limit) | (np.isfinite(apart) & (apart <= ROUNDING * np.maximum(np.abs(numbers), abs(limit))))
         strict = numbers < limit if operator[0] == "<" else numbers > limit

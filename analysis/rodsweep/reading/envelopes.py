@@ -1,10 +1,10 @@
-"""What long runs did, step by step, in bounded memory: envelopes of a few quantities and fits to the length drift.
+"""Long runs, step by step, in bounded memory: envelopes of a few quantities and fits of the length drift.
 
-A run that failed is there up to its last good step.
+A failed run is included up to its last good step.
 
-Steps go into buckets of equal width (or equal ratio of times); of each bucket the smallest and the largest value are
-kept, so that no spike is lost, whatever the length of the run. Drift per 1000 steps is the slope of a least-squares
-line through all steps from `begin` on. A *history* is one task: of a guess in a closed loop, or of the direct solve.
+Steps go into buckets of equal width (or equal ratio of times). Each bucket keeps its smallest and largest value, so no
+spike is lost in a run of any length. Drift per 1000 steps is the slope of a least-squares line through all steps from
+`begin` on. A *history* is one task: of a guess in a closed loop, or of the direct solve.
 """
 
 from dataclasses import dataclass
@@ -29,11 +29,11 @@ class Histories:
     first: dict              # quantity: at the first step
     final: dict              # quantity: at the last step
     slope: np.ndarray        # of the length drift, per 1000 steps
-    reached: np.ndarray      # steps that were recorded: fewer than asked for where the run failed
+    reached: np.ndarray      # recorded steps: fewer than requested if the run failed
     largest_kinetic: np.ndarray
 
     def rows(self, tasks):
-        """Where these tasks stand."""
+        """Row numbers of these tasks."""
         return np.searchsorted(self.tasks, tasks)
 
 
@@ -55,7 +55,7 @@ def _parts(name):
 
 
 def histories(file, tasks, begin=0, logarithmic=False):
-    """Of tasks that are complete; `begin` is the first step of the fit."""
+    """The Histories of complete tasks; `begin` is the first step of the fit."""
     tasks = np.unique(tasks)
     at = edges(int(file.steps[tasks].max()), len(tasks), logarithmic)
     names = recorded(file)
@@ -83,7 +83,7 @@ def histories(file, tasks, begin=0, logarithmic=False):
             np.fmax.at(largest[name], w, np.abs(v))
             at_first = step[there] == 0
             first[name][w[at_first]] = v[at_first]
-            final[name][w] = v     # the last of a task is written last
+            final[name][w] = v     # the last step of a task is written last
             if name == "energy_j":
                 np.fmax.at(kinetic, w, rows["/steps/kinetic_energy_j"][there])
             if name == "length_drift":

@@ -1,12 +1,12 @@
-"""What the user can put right: a message for him, which commandline.run() prints."""
+"""Errors that the user can correct. commandline.run() prints their message."""
 
 import difflib
 import importlib
 import re
 
 LISTED = 12       # names that a message lists
-CLOSE = 0.7       # difflib's measure: one letter of four, or a third of a long word, may be wrong
-CONTAINED = 4     # letters that are found within a name
+CLOSE = 0.7       # difflib's cutoff: one letter of four, or a third of a long word, may be wrong
+CONTAINED = 4     # fewest letters to find within a name
 NUMBER = re.compile(r"[+-]?[\d.]+(e[+-]?\d+)?")
 
 
@@ -19,11 +19,11 @@ class SweepFileError(UserError):
 
 
 class KeyNotFound(UserError):
-    """A name or value that the user asked for and that the file does not have."""
+    """A name or value that the user gave and that the file does not have."""
 
 
 def library(name):
-    """The module of a library that only some of the package needs; a UserError that says how to install it."""
+    """The module of an optional library. Raises a UserError that gives the command to install it."""
     try:
         return importlib.import_module(name)
     except ImportError:
@@ -31,7 +31,7 @@ def library(name):
 
 
 def not_found(what, name, known, all_by=""):
-    """A KeyNotFound of one line, with the nearest known name, and the known ones where they are few or none is near."""
+    """A KeyNotFound with the nearest known name. Lists the known names if they are few or none is near."""
     known = [str(k) for k in known]
     near = nearest(str(name), known)
     if near:
@@ -42,15 +42,16 @@ def not_found(what, name, known, all_by=""):
 
 
 def listed(names, all_by=""):
-    """The first ones, how many more there are, and where all are told."""
+    """The first names, the number of others, and the command that lists all."""
     shown, more = ", ".join(names[:LISTED]) or "none", len(names) - LISTED
     return shown if more <= 0 else f"{shown} and {more} more" + (f" ({all_by})" if all_by else "")
 
 
 def nearest(word, known):
-    """The known name that a mistyped one is meant for, "" where none is near. As in the program (runner/text/nearest.hpp)
-    case does not count, and where none is spelled alike one that holds the word is near ("length": "length_m"). Here the
-    last part alone is a name too ("segments": "scene.segments"), and no number is near to another."""
+    """The known name that a mistyped word is meant for; "" if none is near. As in the program
+    (runner/text/nearest.hpp), case does not count, and a name that contains the word is near if no spelling is
+    ("length": "length_m"). Here, the last part of a name matches too ("segments": "scene.segments"), and numbers are
+    never near."""
     typed = word.lower()
     if NUMBER.fullmatch(typed):
         return ""

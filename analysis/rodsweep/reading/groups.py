@@ -1,8 +1,8 @@
-"""Which simulations of a sweep belong together in a panel and at a point of a figure, or in a block of a table.
+"""Groups simulations of a sweep into panels and points of a figure, or into blocks of a table.
 
-A key of the job is *gridded* where it varies although scene type, x and draw are the same; a key that only varies with
-the draw is a random one and is averaged over. Simulations that differ in a gridded key are never averaged: they go to
-panels of their own. (A table over all of a scene type pools the scene's own keys, never those of time or solve.)
+A key of the job is *gridded* if it varies while scene type, x and draw are the same. A key that only varies with the
+draw is random and is averaged over. Simulations that differ in a gridded key are never averaged: they go to separate
+panels. (A table over all of a scene type pools keys of the scene, never those of time or solve.)
 """
 
 from dataclasses import dataclass, replace
@@ -23,19 +23,19 @@ class Panel:
     scene: str
     settings: dict        # gridded keys other than x: text of their value
     index: np.ndarray     # rows of Simulations
-    words: tuple = ()     # the settings as a reader says them
+    words: tuple = ()     # the settings in words
 
     def without(self, keys):
-        """The same, of some of its settings nothing said."""
+        """The same panel without some settings."""
         kept = [(item, word) for item, word in zip(self.settings.items(), self.words) if item[0] not in keys]
         return replace(self, settings=dict(item for item, _ in kept), words=tuple(word for _, word in kept))
 
     def title(self):
-        """With keys, as --select wants them: for tables."""
+        """For tables: settings with keys, as --select takes them."""
         return ", ".join([self._name()] + [f"{key} = {value}" for key, value in self.settings.items()])
 
     def caption(self):
-        """In words: for figures."""
+        """For figures: settings in words."""
         return ", ".join([self._name(), *self.words])
 
     def _name(self):
@@ -58,11 +58,10 @@ class Points:
 
 
 def gridded_keys(file, tasks, x, pooled=""):
-    """Keys that vary within (scene type, x, draw) over these tasks; those that begin with `pooled`, one text or a tuple
-    of them, are left out.
+    """Keys that vary within (scene type, x, draw) over these tasks, without those that begin with `pooled` (one text
+    or a tuple).
 
-    x is one key, several in a tuple, or None.
-    """
+    x is one key, several in a tuple, or None."""
     axes = _keys(x)
     fixed = [file.sample[tasks]]
     fixed += [file.parameters[key].codes()[tasks] for key in ("scene.type", *axes) if key in file.parameters]
@@ -94,8 +93,8 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
         settings = {key: file.parameters[key].text(task) for key in keys if _says_something(file, key, task)}
         members.setdefault((scenes[row], tuple(settings.items())), []).append(row)
     if most is not None and len(members) > most:
-        raise KeyNotFound(f"{len(members)} panels are too many for a page (at most {most}): the job has a grid "
-                          f"over {', '.join(keys) or 'scene.type'} too; choose with --scene TYPE or --select KEY=VALUE")
+        raise KeyNotFound(f"{len(members)} panels are too many for a page (at most {most}): the job also has a "
+                          f"grid over {', '.join(keys) or 'scene.type'}; choose with --scene TYPE or --select KEY=VALUE")
     return [Panel(scene, dict(settings), np.array(rows), _words(file, dict(settings), tasks[rows[0]]))
             for (scene, settings), rows in members.items()]
 
@@ -113,7 +112,7 @@ def _words(file, keys, task):
 
 
 def with_direct(sims, panels):
-    """Panels of a closed loop, each with the tasks of the direct solve that differ from it in keys of `solve` alone."""
+    """Panels of a closed loop, each with the tasks of the direct solve that differ from it only in keys of `solve`."""
     own = [panel.index[sims.own[panel.index]] for panel in panels]
     if not any(map(len, own)):
         return panels
@@ -133,7 +132,7 @@ def with_direct(sims, panels):
 
 
 def short_titles(panels):
-    """Captions that say only in what the panels differ; empty for a single one."""
+    """Captions that have only the differences of the panels; empty for a single one."""
     if len(panels) == 1:
         return [""]
     scenes = {panel.scene for panel in panels}
@@ -142,7 +141,7 @@ def short_titles(panels):
 
 
 def _says_something(file, key, task):
-    """False for a parameter of a guess ("guesses[1].oracle.error") or method in a task where there is another one."""
+    """False for a parameter of a guess ("guesses[1].oracle.error") or method that the task does not use."""
     return not key.startswith(("guesses[", "solve.")) or file.parameters[key].applies()[task]
 
 
@@ -151,10 +150,9 @@ def _keys(x):
 
 
 def applicable(file, sims, x, without=False):
-    """Rows of Simulations for whose scene the key x has a meaning. Raises KeyNotFound where there is none.
+    """Rows of Simulations to which the key x applies. Raises KeyNotFound if there are none.
 
-    `without`: those of the same types of scene too that do without, such as friction where "contact" is "none".
-    """
+    `without`: also those of the same scene types without the key, such as friction if "contact" is "none"."""
     parameter = file.parameter(x)
     applies = parameter.applies()[sims.any_task]
     if without and x.startswith("scene."):
@@ -162,7 +160,7 @@ def applicable(file, sims, x, without=False):
         applies = np.isin(scenes, scenes[applies])
     rows = np.flatnonzero(applies)
     if not len(rows):
-        raise KeyNotFound(f"parameter {x!r} has no meaning for the chosen simulations")
+        raise KeyNotFound(f"parameter {x!r} does not apply to the chosen simulations")
     return rows
 
 

@@ -1,4 +1,4 @@
-"""Opening the program's HDF5 files and decoding their texts. A file that cannot be opened is a SweepFileError."""
+"""Opens the program's HDF5 files and decodes their texts. Raises SweepFileError if a file cannot be opened."""
 
 import os
 
@@ -8,11 +8,11 @@ import numpy as np
 from rodsweep.reading.errors import SweepFileError
 
 PROGRAM = "rodsweep"
-UNREADABLE = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError)  # what bad bytes raise
+UNREADABLE = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError)  # exceptions from bad bytes
 
 
 def opened(path, what):
-    """The h5py.File of a path that should lead to `what`."""
+    """The h5py.File of a path; `what` describes the expected file in messages."""
     if not os.path.exists(path):
         raise SweepFileError(f"{path}: file not found")
     if os.path.isdir(path):
@@ -23,7 +23,7 @@ def opened(path, what):
         if not os.access(path, os.R_OK):
             raise SweepFileError(f"{path}: no permission to read it") from error
         raise SweepFileError(f"{path} is " + (
-            "damaged or incomplete; use a copy of it if there is one, or make it again" if h5py.is_hdf5(path) else
+            "damaged or incomplete; use a copy of it, or make it again" if h5py.is_hdf5(path) else
             "not an HDF5 file; give a file written by `rodsweep run`")) from error
 
 

@@ -1,7 +1,7 @@
 """The numbers of heatmap.py: one measure of every guess in every cell of a plane of two parameters.
 
-A plane is a panel of simulations (groups.py) whose cells are the combinations of the values along x and y. The name
-`tolerance` as an axis is the file's ladder of tolerances, for the measures that know iterations to all of them.
+A plane is a panel of simulations (groups.py). Its cells are the combinations of the values along x and y. The axis
+`tolerance` has the file's tolerances, for measures with iterations to all of them.
 """
 
 from dataclasses import dataclass
@@ -16,13 +16,13 @@ LADDER = "tolerance"
 
 @dataclass(frozen=True)
 class Measure:
-    """What a cell can show. `better` is -1 where less is better, 1 where more is, about 1; 0 is no comparison."""
+    """A measure for cells. `better`: -1 if values below 1 are better, 1 if values above 1 are; 0: no comparison."""
     label: str
     explained: str
     better: int
-    statistic: str           # of simulations: mean or median
-    ladder: bool = False     # has it a value for every tolerance of the ladder?
-    of_guess: bool = True    # or is it the same whatever the guess (of a paired trajectory, or of zero)?
+    statistic: str           # over simulations: mean or median
+    ladder: bool = False     # whether it has a value for every tolerance
+    of_guess: bool = True    # whether it depends on the guess; if not, it is of a trajectory or of zero
     timed: bool = False
 
 
@@ -31,7 +31,7 @@ MEASURES = {
     "matvec-ratio": Measure("ratio of products with A", "Products with A (of CG and of the guess) with a guess ÷ from "
                             "zero, summed over a simulation", -1, "mean", True),
     "other-norm-ratio": Measure("CG ratio in the other norm", "Iterations with a guess ÷ from zero, summed over a "
-                                "simulation, to the residual in the norm that the job doesn't use", -1, "mean", True),
+                                "simulation, to the residual in the norm that the job does not use", -1, "mean", True),
     "iterations": Measure("CG iterations from zero", "Iterations of a solve from zero, mean over a simulation", 0,
                           "mean", True, False),
     **{f"speedup-{name}".replace("_", "-"):
@@ -46,7 +46,7 @@ MEASURES = {
 
 @dataclass(frozen=True)
 class Plane:
-    """Cells [y, x]; guess is -1 where a cell is empty or the measure is of no guess."""
+    """Cells [y, x]; guess is -1 in an empty cell and for a measure that does not depend on the guess."""
     panel: groups.Panel
     x: groups.Points
     y: groups.Points
@@ -56,14 +56,15 @@ class Plane:
 
 
 def per_simulation(shown, name, tolerances):
-    """[simulation, guess, tolerance] values and solves that missed the tolerance; one guess, one tolerance if alike."""
+    """[simulation, guess, tolerance] values and solves that missed the tolerance. An axis that does not matter has
+    length 1."""
     file, sims, newton = shown.file, shown.sims, shown.newton
     none = np.zeros((len(sims), 1, 1))
     if MEASURES[name].ladder:
         counted, norm = {"matvec-ratio": ("matvecs", ""), "other-norm-ratio": ("iterations", "other_norm")}.get(
             name, ("iterations", ""))
         if norm and newton != "first":
-            raise KeyNotFound(f"--measure {name} is of the first Newton iterations: leave --newton all out")
+            raise KeyNotFound(f"--measure {name} counts only first Newton iterations: remove --newton all")
         ratios = measures.cg_ratios(file, sims, newton, counted, norm)
         if not np.isfinite(ratios.ratio).any():
             raise KeyNotFound(f"{file.path} has no counts for --measure {name}")
@@ -71,7 +72,7 @@ def per_simulation(shown, name, tolerances):
         if name != "iterations":
             return ratios.ratio[:, :, tolerances], missed[:, :, tolerances]
         if newton != "first":
-            raise KeyNotFound("--measure iterations is of the first Newton iterations: leave --newton all out")
+            raise KeyNotFound("--measure iterations counts only first Newton iterations: remove --newton all")
         return (part[:, [file.zero]][:, :, tolerances] for part in (ratios.iterations_per_solve, ratios.unreached))
     if MEASURES[name].timed:
         if not timings.timed(file):
@@ -85,14 +86,15 @@ def per_simulation(shown, name, tolerances):
 
 
 def tolerance_points(file, tolerances):
-    """The ladder as points along an axis; every tolerance is of all simulations."""
+    """The tolerances as points along an axis; each holds for all simulations."""
     order = np.argsort(file.tolerances[tolerances])
     values = file.tolerances[tolerances][order]
     return groups.Points(values, [texts.tolerance_label(value) for value in values], list(order), True, False)
 
 
 def planes(shown, name, x, y, guesses, tolerances):
-    """One per scene type and value of any other grid; in a cell the best of `guesses`, or the measure of no guess."""
+    """A Plane per scene type and value of any other grid. A cell has the best of `guesses`, if the measure depends on
+    them."""
     file, measure = shown.file, MEASURES[name]
     keys = tuple(key for key in (x, y) if key != LADDER)
     panels = groups.panels(file, shown.sims, keys, most=None)
@@ -122,7 +124,7 @@ def planes(shown, name, x, y, guesses, tolerances):
 
 
 def _members(panel, along, at):
-    """Simulations of a cell and its place on the ladder of tolerances."""
+    """Simulations of a cell and the index of its tolerance."""
     rows, t = panel.index, 0
     for key, k in at.items():
         if key == LADDER:
@@ -133,5 +135,5 @@ def _members(panel, along, at):
 
 
 def comparable(file, guesses):
-    """The guesses among which a best is sought: neither zero nor an oracle, which knows the solution."""
+    """Guesses among which the best is chosen: without zero and the oracle, which knows the solution."""
     return [g for g in guesses if g != file.zero and not texts.kind_of(file.guesses[g]).startswith("oracle")]

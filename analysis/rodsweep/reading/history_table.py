@@ -1,4 +1,4 @@
-"""The table of long_term.py: how far the length and the joints of each method went, as text and as CSV."""
+"""The table of long_term.py: length drift and joint gap of each method, as text and as CSV."""
 
 import numpy as np
 
@@ -11,8 +11,8 @@ COLUMNS = ("scene", "settings", "method", "simulations", "failed", "failed_after
 
 
 def records(panels, series, found, sims, ok):
-    """One per panel and method. Largest and final: of the worst simulation; the slope: median over those that are `ok`
-    (mask of tasks), with its interval; the steps before a failure: median over the others."""
+    """One per panel and method. Largest and final: of the worst simulation. The slope: median over simulations that
+    are `ok` (mask of tasks), with its interval. Steps before a failure: median over the others."""
     for panel, methods_of in zip(panels, series):
         settings = "; ".join(f"{key}={value}" for key, value in panel.settings.items())
         for method, (_, tasks, rows) in methods_of.items():
@@ -44,8 +44,8 @@ def lines(panels, series, found, sims, ok, begin):
                          number_text(r["length_drift_largest"]), number_text(r["length_drift_final"]),
                          _text(r["drift_per_1000_steps"]) + interval, number_text(r["joint_gap_largest"])])
     heading = [f"Largest and final drift, largest gap: of the worst simulation. Drift per 1000 steps: slope from step "
-               f"{begin} on, median over simulations that did not fail [95 % interval]. After steps: median of how far the "
-               "others came.", ""]
+               f"{begin} on, median over simulations that did not fail [95 % interval]. After steps: median number of "
+               "steps of the others.", ""]
     return heading + texts.aligned(rows)
 
 

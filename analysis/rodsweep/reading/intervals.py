@@ -1,11 +1,11 @@
 """Bootstrap confidence intervals for means and medians over simulations.
 
-What is resampled is the *draw*: simulations that share a draw of the random parameters (grid points do) stay together,
-and a solve is never a unit of its own. Fewer than FEWEST_DRAWS draws give no interval. The percentile interval is too
-narrow for few draws, so its level is raised as Hesterberg (2015, "What teachers should know about the bootstrap",
-expanded percentile) says: alpha'/2 = Phi(-sqrt(n/(n-1)) t_{alpha/2, n-1}). No such interval leaves the range of the
-data: of normal values "95 %" covers 90 and 95 % of the time for n = 5 and 8 draws. The generator is seeded: a figure
-made twice is the same.
+Draws are resampled: simulations that share a draw of the random parameters (grid points do) stay together, and single
+solves are never resampled. Fewer than FEWEST_DRAWS draws give no interval. The percentile interval is too narrow for
+few draws, so its level is raised as in Hesterberg (2015, "What teachers should know about the bootstrap", expanded
+percentile): alpha'/2 = Phi(-sqrt(n/(n-1)) t_{alpha/2, n-1}). Such an interval stays within the range of the data: for
+normal values, "95 %" covers 90 and 95 % of the time with n = 5 and 8 draws. The seed of the generator is fixed, so
+figures are reproducible.
 """
 
 from dataclasses import dataclass
@@ -17,13 +17,14 @@ LEVEL = 0.95
 FEWEST_DRAWS = 5
 RESAMPLES = 4000
 FEWEST_RESAMPLES = 1000
-MOST_DRAWN = 400_000   # draws in all resamples: with more than a hundred, fewer resamples do
+MOST_DRAWN = 400_000   # draws in all resamples: more than a hundred draws need fewer resamples
 BLOCK_BYTES = 16 << 20
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Arrays of one shape. low and high are NaN where draws are too few; `count` is simulations that contributed."""
+    """Arrays of one shape. low and high are NaN if there are too few draws; `count` is the number of simulations
+    used."""
     value: np.ndarray
     low: np.ndarray
     high: np.ndarray
@@ -43,8 +44,8 @@ class Estimate:
 
 
 def mean(values, draws=None, level=LEVEL, resamples=RESAMPLES):
-    """Mean over the first axis, NaN left out per column; `draws` labels the draw of each simulation. Without resamples
-    it has no interval."""
+    """Mean over the first axis, without NaN per column; `draws` has the draw of each simulation. Without resamples
+    there is no interval."""
     return _estimate(values, draws, level, resamples, _weighted_means)
 
 
@@ -53,8 +54,8 @@ def median(values, draws=None, level=LEVEL, resamples=RESAMPLES):
 
 
 def medians(values, draws=None):
-    """{name: Estimate} of {name: values}, each as median() finds it, from one set of resamples: of many simulations these
-    cost more than the medians."""
+    """{name: Estimate} of {name: values}, each as from median(), with one set of resamples: for many simulations,
+    resampling costs more than the medians."""
     values = {name: np.asarray(of, dtype=float) for name, of in values.items()}
     if not values:
         return {}
@@ -68,7 +69,7 @@ def medians(values, draws=None):
 
 
 def ratio_of_sums(numerator, denominator, draws=None, level=LEVEL, resamples=RESAMPLES):
-    """Sum over the first axis of one over that of the other; a simulation counts where both are finite."""
+    """Ratio of the sums over the first axis; a simulation counts if both values are finite."""
     numerator, denominator = np.asarray(numerator, dtype=float), np.asarray(denominator, dtype=float)
     both = np.isfinite(numerator) & np.isfinite(denominator)
     parts = np.stack([np.where(both, part, np.nan) for part in (numerator, denominator)], axis=-1)
@@ -76,9 +77,9 @@ def ratio_of_sums(numerator, denominator, draws=None, level=LEVEL, resamples=RES
 
 
 def mean_over_trainings(values, draws=None, level=LEVEL):
-    """Mean over simulations (first axis) and trainings that differ in their seed alone (second axis, at least two). Its
-    interval has the randomness of both: the bootstrap's over simulations of the trainings' mean, and Student's over the
-    means of the trainings, which are too few to be resampled, added in quadrature."""
+    """Mean over simulations (first axis) and trainings that differ only in their seed (second axis, at least two). Its
+    interval combines two in quadrature: the bootstrap's over simulations for the mean of the trainings, and Student's
+    over the means of the trainings, which are too few for resampling."""
     values = np.asarray(values, dtype=float)
     trainings = values.shape[1]
     found = mean(values.mean(axis=1), draws, level)
@@ -89,7 +90,8 @@ def mean_over_trainings(values, draws=None, level=LEVEL):
 
 
 def _estimate(values, draws, level, resamples, statistic, parts=1):
-    """`parts` numbers of the last axis make one value of the statistic. Columns and resamples come in blocks."""
+    """`parts` numbers of the last axis give one value of the statistic. Columns and resamples are processed in
+    blocks."""
     values = np.asarray(values, dtype=float)
     if parts == 1:
         values = values[..., None]
@@ -118,7 +120,7 @@ def _estimate(values, draws, level, resamples, statistic, parts=1):
 
 
 def _distinct(draws, finite, groups):
-    """Draws with a finite value, per column."""
+    """Number of draws with a finite value, per column."""
     found = np.zeros((groups, finite.shape[1]), dtype=bool)
     np.logical_or.at(found, draws, finite)
     return found.sum(axis=0)
@@ -135,8 +137,8 @@ def _resampled(statistic, columns, draws, groups, resamples):
     return found
 
 
-# Each is a function of values [simulation, column, part] and which of them are finite [simulation, column], and gives
-# one of weights [resample, simulation]: what all resamples share is done once.
+# Each takes values [simulation, column, part] and the mask of the finite ones [simulation, column]. It returns a function
+# of weights [resample, simulation], so that the work that all resamples share is done once.
 
 
 def _weighted_means(values, finite):
@@ -155,7 +157,7 @@ def _weighted_quotients(numerator, denominator):
 
 
 def _weighted_medians(values, finite):
-    """Median of each resample: the mean of the lower and the upper one, as for an even count."""
+    """Median of each resample: the mean of the lower and the upper median."""
     ordered = []
     for k in range(values.shape[1]):
         rows = np.flatnonzero(finite[:, k])
