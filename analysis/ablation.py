@@ -6,9 +6,8 @@ folder of their model files, named like the guesses. Guesses without a model fil
 names the base network. The changed settings are read from the jobs in the model files.
 
 Each setting has a panel: the base beside its variants, with a dashed line at the base's ratio. Networks with several
-changes share one panel. The table adds the number of weights, the time of a guess per segment and solve, and the ratio
-over all Newton iterations. It also has the mean over networks that differ only in their seed; its interval includes
-the randomness of training.
+changes share one panel. The table adds the number of weights, the time of a guess per segment and solve, the ratio over
+all Newton iterations, and the mean over networks that differ only in their seed, with the randomness of training.
 """
 
 import os
@@ -94,8 +93,8 @@ def main():
         models = {g: modelfile.read(path) for g, path in paths.items() if os.path.exists(path)}
         base = next((g for g in models if name_of(file.guesses[g]) == options.base), None)
         if base is None:
-            raise KeyNotFound(f"{file.path} has no guess \"copingnet {options.base}\" with a model in {options.models}: "
-                              "give the name of the base model with --base")
+            raise KeyNotFound(f"{file.path} has no guess \"copingnet {options.base}\" with a model in "
+                              f"{options.models}: name the base model with --base")
         panels = panels_of(models, base)
         tolerances = commandline.chosen_tolerances(file, options)
         ratios = [measures.cg_ratios(file, shown.sims, newton).ratio for newton in ("first", "all")]
@@ -183,8 +182,8 @@ def table(shown, models, base, panels, ratios, means, tolerances):
             rows.append(row(f"{names[same[0]]}, {len(same)} trainings", same[0],
                             intervals.mean_over_trainings(values[:, same], shown.sims.sample)))
         rows += [row(file.guesses[g], g, ratio[g]) for g in shown.lines() if g not in models]
-        lines += [f"CG ratio, {measures.NEWTON[newton]}: mean over simulations [95 % interval; of several trainings with "
-                  "their randomness]", "", *texts.aligned(rows), ""]
+        lines += [f"CG ratio, {measures.NEWTON[newton]}: mean over simulations [95 % interval; of several trainings "
+                  "with their randomness]", "", *texts.aligned(rows), ""]
     return lines[:-1]
 
 
@@ -231,8 +230,8 @@ ORDERED = ("training simulations", "message-passing steps", "latent size", "hidd
 
 def described(model):
     network = model.network
-    return (f"encoding {network['encoding']}, {SETTINGS['processor'](model)} with {network.get('steps', '?')} steps, latent size "
-            f"{network['latent']}, {_loss(model)}, {model.learned_from} simulations")
+    return (f"encoding {network['encoding']}, {SETTINGS['processor'](model)} with {network.get('steps', '?')} steps, "
+            f"latent size {network['latent']}, {_loss(model)}, {model.learned_from} simulations")
 
 
 if __name__ == "__main__":

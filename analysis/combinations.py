@@ -59,8 +59,8 @@ def table(shown, panels, found, tolerances, x):
     unit = "a whole step" if closed else "a solve with guess and set-up, without assembly"
     lines = [f"{file.path}, {shown.census.text()}, revision {remarks.revisions(file)}",
              f"µs: {unit}, to {shown.solve_tolerance()}, median over simulations [95 % interval]. Iterations per solve "
-             f"and CG ratios: means, {measures.NEWTON[shown.newton]}. * some solves missed the tolerance; the iterations "
-             "that they used are counted"]
+             f"and CG ratios: means, {measures.NEWTON[shown.newton]}. * some solves missed the tolerance; the "
+             "iterations that they used are counted"]
     lines += list(filter(None, [shown.timing_warning()]))
     for panel, cells in zip(panels, found):
         for cell in cells:

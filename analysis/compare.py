@@ -39,7 +39,7 @@ def arguments():
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("file", metavar="FILE", help="results file (HDF5)")
     made.add_argument("other", metavar="OTHER", help="second results file (HDF5)")
-    made.add_argument("--by", choices=comparison.BY, default="everything", help="how tasks are matched (default: everything)")
+    made.add_argument("--by", choices=comparison.BY, default="everything", help="how to match tasks")
     made.add_argument("--tasks", action="store_true", help="list every task that differs")
     form = made.add_mutually_exclusive_group()
     form.add_argument("--csv", action="store_true", help="comma-separated values")

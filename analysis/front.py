@@ -2,11 +2,11 @@
 """CG ratio over the time of a guess, per segment and solve.
 
 A row of panels per scene type and value of any other grid, a panel per tolerance. CG ratios are means over
-simulations, times are medians; whiskers are 95 % bootstrap intervals. The grey line joins the guesses that no other
-guess beats in both. On the dashed line, guess and CG take as long as with the best classical guess; a guess below it
-is faster. The line assumes that an iteration takes as long as from zero. It leaves out deflation, whose iterations
-take longer. It is drawn if the panel's tolerance is that of the timed solves. The file needs times and a zero guess.
-The script prints the table, writes PDF and PNG, and prints the paths.
+simulations, times are medians; whiskers are 95 % bootstrap intervals. The grey line is the Pareto front. On the dashed
+line, guess and CG take as long as with the best classical guess; a guess below it is faster. The line assumes that an
+iteration takes as long as from zero, and leaves out deflation, whose iterations take longer. It is drawn if the
+panel's tolerance is that of the timed solves. The file needs times and a zero guess. Prints the table, writes PDF and
+PNG, and prints the paths.
 """
 
 import numpy as np
@@ -44,8 +44,8 @@ def main():
 
 
 def estimates(shown, index):
-    """(ratio [guess, tolerance], time of the guess [guess], time of CG from zero) of some simulations, in us per
-    segment and solve."""
+    """(ratio [guess, tolerance], time [us] per segment and solve of guesses [guess] and of CG from zero) of some
+    simulations."""
     file, sims = shown.file, shown.sims.subset(index)
     ratio = intervals.mean(measures.cg_ratios(file, sims, shown.newton).ratio, sims.sample)
     spent = timings.times(file, sims)[shown.newton]
@@ -72,7 +72,7 @@ def table(shown, panels, found, tolerances):
 def figure(shown, panels, found, tolerances):
     file = shown.file
     lines = shown.lines()
-    handles = shown.handles(lines) + [Line2D([], [], color="#999999", linewidth=0.8, label="no other guess is better in both"),
+    handles = shown.handles(lines) + [Line2D([], [], color="#999999", linewidth=0.8, label="Pareto front"),
                                       Line2D([], [], color="#999999", linewidth=0.8, linestyle=(0, (3, 2)),
                                              label="as fast as the best classical guess")]
     notes = [f"CG ratio: {measures.NEWTON[shown.newton]}; mean over simulations; time: median; "

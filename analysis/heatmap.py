@@ -68,8 +68,8 @@ def chosen(file, options):
         raise KeyNotFound(f"--x and --y are both {options.x}: a map needs two parameters")
     laddered = heat.LADDER in (options.x, options.y)
     if laddered and not measure.ladder:
-        raise KeyNotFound(f"--measure {options.measure} has values only at the job's tolerance: sweep solve.tolerance in "
-                          "the job and give it as an axis instead of `tolerance`")
+        raise KeyNotFound(f"--measure {options.measure} has values only at the job's tolerance: sweep solve.tolerance "
+                          "in the job and give it as an axis instead of `tolerance`")
     if measure.of_guess or measure.ladder:
         shown = study.of_guesses(file, options)
     else:

@@ -70,8 +70,7 @@ def make_study(file, options):
 
 
 def methods(shown, panel):
-    """{method: (style, tasks, rows of Simulations)} of a panel: guesses in the file's order, then methods without a
-    guess."""
+    """{method: (style, tasks, rows of Simulations)} of a panel: guesses in the file's order, then the other methods."""
     file, sims = shown.file, shown.sims
     found = {}
     for g in shown.guesses:
@@ -88,8 +87,8 @@ def figure(shown, panels, series, found, options):
     steps = int(found.edges[-1])
     middle = (found.edges[:-1] + found.edges[1:] + 1) / 2
     times = [shown.time_axis(shown.sims.any_task[panel.index], middle) for panel in panels]
-    notes = [f"{steps} steps in {buckets} intervals. Lines: median over {counts} simulations of the largest value in an "
-             "interval (energy: of the middle of its range, relative to the first step). Bands: smallest to largest "
+    notes = [f"{steps} steps in {buckets} intervals. Lines: median over {counts} simulations of the largest value in "
+             "an interval (energy: of the middle of its range, relative to the first step). Bands: smallest to largest "
              "value of all simulations; for length drift, of the largest values. Crosses: failed simulations. "
              f"Logarithmic axes show {DECADES} decades below the largest value of the methods that did not fail."]
     scales = [_scales(found, methods_of, shown) for methods_of in series]
@@ -189,8 +188,7 @@ def _finite(parts):
 
 
 def _scale_y(axes, scale, values, well):
-    """One scale for all panels of a row. `values` of all methods set the top, `well` (without failed methods) the
-    resolution."""
+    """One scale for all panels of a row. `values` of all methods set the top, `well` (no failures) the resolution."""
     sizes, typical = (np.abs(some[some != 0]) for some in (values, well))
     if not len(sizes) or not len(typical):
         return

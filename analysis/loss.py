@@ -99,8 +99,8 @@ def figure(trainings, width_mm):
 def about(trainings):
     counts = texts.range_text([t.simulations for t in trainings])
     text = (f"CG ratio: iterations from the network's guess over those from zero, first Newton iterations (j = 0), jacobi, "
-            f"true residual; mean over {counts} validation simulations. Stars, dots: the kept model, from the epoch with the "
-            "smallest validation loss.")
+            f"true residual; mean over {counts} validation simulations. Stars, dots: the kept model, from the epoch "
+            "with the smallest validation loss.")
     running = [label for label, t in zip(labels(trainings), trainings) if not t.ended]
     return text + (f" Still running: {', '.join(running)}." if running else "")
 

@@ -51,8 +51,7 @@ def main():
 
 
 def methods(shown, panel):
-    """{method: (style, tasks, rows of Simulations)}: CG by tolerance and guess in a closed loop, then methods without
-    a guess."""
+    """{method: (style, tasks, rows of Simulations)}: CG by tolerance and guess in a closed loop, then the others."""
     file, sims = shown.file, shown.sims
     own = sims.own[panel.index]
     tolerance = file.parameters["solve.tolerance"] if "solve.tolerance" in file.parameters else None

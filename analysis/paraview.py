@@ -47,7 +47,7 @@ def main():
 
 
 def document(shown, reference, touched=()):
-    """The XDMF (version 2) of all frames. `reference`: path of the results file relative to the XDMF; touched:
+    """The XDMF (version 2) of all frames. reference: path of the results file from the XDMF; touched:
     obstacles.of_task()."""
     root = ElementTree.Element("Xdmf", Version="2.0")
     domain = ElementTree.SubElement(root, "Domain")

@@ -30,8 +30,8 @@ def arguments():
     made.add_argument("-o", "--output", metavar="FILE", help="page to write (default: NAME.html beside a single file, "
                                                              "report.html beside the first of several)")
     made.add_argument("--x", metavar="KEY", action="append", default=[],
-                      help="only this parameter along x; may be repeated (default: all that the job sweeps and that fit "
-                           "into a small page)")
+                      help="only this parameter along x; may be repeated (default: all that the job sweeps, as far as "
+                           "the page stays small)")
     made.add_argument("--title", metavar="TEXT", help="title of the page")
     made.add_argument("--skip", action="store_true", help="leave out files that are not sweeps, such as models, and "
                                                           "files without a chosen task")

@@ -2,7 +2,7 @@
 """Figures of a sweep against the number of segments, or against any other swept parameter.
 
   cg-ratio   CG iterations relative to the zero guess, a panel per tolerance
-  speedup    time of zero-guess CG over the time with a guess (CG only, guess and CG, whole step), and of the direct solve
+  speedup    time of zero-guess CG over the time with a guess: CG only, guess and CG, whole step; also direct solve
   time       time per solve split into assembly, guess and CG, per guess, with the direct solve
   four-curves  for learned guesses, as in Shao et al.: CG ratio, time of the guess over that of its CG, speedups
   overview   only with --overview, as the only figure: CG ratio and time of guess and CG side by side, for a few guesses
@@ -61,7 +61,7 @@ def main():
 def all_figures(file, options, shown, by_newton):
     made = {"cg-ratio": figures.ratio_figure(shown, commandline.chosen_tolerances(file, options))}
     if by_newton is None:
-        print(f"{file.path} has no times of single solves (record.solves is \"summary\"): only CG ratios", file=sys.stderr)
+        print(f"{file.path} has no times of single solves (record.solves is \"summary\"): CG ratios only", file=sys.stderr)
         return made
     made["speedup"] = figures.speedup_figure(shown, by_newton)
     made["time"] = figures.time_figure(shown, by_newton)

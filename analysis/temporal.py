@@ -73,8 +73,8 @@ def figure(shown, panels, found, columns, tolerances, relative):
     notes = [f"{what} over a window of {widths} {steps} (shorter at the ends) and over "
              f"{study.sample_text(estimates, mark='bands')}. Counted: {measures.NEWTON[shown.newton]}."]
     if any(windows.unreached[:, columns.index(g)].any() for windows in found for g in lines):
-        notes.append("Open markers: some solves of the window missed the tolerance (iteration limit or divergence). They "
-                     "count with the mean iterations of such solves in their simulation.")
+        notes.append("Open markers: some solves of the window missed the tolerance (iteration limit or divergence). "
+                     "They count with the mean iterations of such solves in their simulation.")
     page = layout.Page(shown.width_mm, [panel.caption() for panel in panels], len(tolerances),
                        layout.even_columns(len(tolerances), 2 if shown.wide else 1), 38 if shown.wide else 32,
                        shown.handles(lines, "zero guess (= 1)" if relative else ""), notes + [shown.about()])

@@ -105,8 +105,8 @@ def figure(shown, panels):
     points = sum(panels.values(), [])
     rows = choices(shown, points)
     notes = [f"Medians of {study.sample_text([point.error for point in points], mark='')}. Lines: the lower envelope "
-             "over all other choices, including Newton iterations and the tolerance of CG. Errors below "
-             f"{DRAWN_FROM:g} are drawn there. Methods that failed in any simulation are left out. {accuracy.REFERENCE}",
+             f"over all other choices, also Newton iterations and the tolerance of CG. Errors below {DRAWN_FROM:g} "
+             f"are drawn there. Methods that failed in any simulation are left out. {accuracy.REFERENCE}",
              shown.about()]
     page = layout.Page(shown.width_mm, [title for title, _, _ in rows], len(panels), 5 if shown.wide else 2, 36, [],
                        notes, shown.timing_warning(), left_mm=12, gap_mm=3,

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Trains what a network could have been, one setting changed at a time: `make variants` and `make ablation` call it.
+"""Trains variants of a network with one setting changed at a time: `make variants` and `make ablation` call it.
 
     analysis/results/variants.py PROGRAM RESULTS FAMILY
 
-A family is a training job with changes of its own (fewer epochs, for one), and its variants, each with one more. Jobs,
-models and data sets that jobs/ has not are RESULTS/FOLDER/NAME.json and .h5, what the program says of each NAME.log.
-What is done is left alone, what was stopped goes on. A core trains one of them at a time: they are many, and two threads
-of one training wait for each other.
+A family is a training job with common changes (such as fewer epochs), and its variants with one more change each.
+Jobs, models and data sets that are not in jobs/ are RESULTS/FOLDER/NAME.json and .h5; NAME.log has the program's
+output. Complete runs are kept, stopped ones are resumed. Each core trains one variant at a time, since two threads of
+one training wait for each other.
 
-Ablations have the same number of steps of the optimiser in every variant: fewer examples are seen more often.
+All variants of an ablation have the same number of optimiser steps: fewer examples are seen more often.
 """
 
 import json
@@ -52,7 +52,7 @@ LATTICES = {
 
 
 def of_the_paper(epochs):
-    """Variants of its network: so many passes over 256 simulations of 50 steps, or as many steps on other data."""
+    """Variants of the paper's network: `epochs` times 256 simulations of 50 steps, or as many steps on other data."""
     every = {"training.systems": "all", "training.epochs": epochs // 4}
     return {
         "base": {},
@@ -74,7 +74,7 @@ def of_the_paper(epochs):
         "base_extrapolation": {"network.base": "extrapolation"},
         "base_regression": {"network.base": "regression", "network.base_size": 6},
         "base_subspace": {"network.base": "subspace", "network.base_size": 10},
-        "encoding_linear_system": {"network.moves": False, "training.loss": "energy",    # it has no moves, and this loss
+        "encoding_linear_system": {"network.moves": False, "training.loss": "energy",    # no moves, only this loss
                                    "network.encoding": "linear_system"},
         "all_paper": every,
         "all_paper_residual": {**every, "network.encoding": "paper_residual"},
@@ -89,7 +89,7 @@ def of_the_paper(epochs):
     }
 
 
-# Other data than those of jobs/SCENE_data.json: what is changed there; None: a job of jobs/.
+# Data sets other than that of jobs/SCENE_data.json: the changes to that job; None: a job of jobs/.
 DATA = {
     "100": None,
     "0.01_s": {"time.step_s": 0.01},
@@ -98,11 +98,11 @@ DATA = {
 
 
 class Family(NamedTuple):
-    job: str                # of jobs/
+    job: str                # in jobs/
     folder: str             # within the results
-    changes: dict           # of all variants
+    changes: dict           # common to all variants
     variants: dict
-    data: str = ""          # job of jobs/ whose changes are DATA
+    data: str = ""          # job in jobs/ that DATA changes
 
 
 def ablation(scene, epochs, without=()):
@@ -111,7 +111,7 @@ def ablation(scene, epochs, without=()):
     return Family(f"train_{scene}_paper", f"ablation_{scene}", changes, variants, f"{scene}_data")
 
 
-# On bending rods they say the same as their neighbours; helices have twice as many segments, and take twice as long.
+# On bending rods these give the same as similar variants; helices have twice as many segments and take twice as long.
 NOT_ON_HELICES = {"size_16", "size_64", "steps_2", "steps_8", "hidden_layers_3", "rate_5e-4", "turned_3", "best_length",
                   "globals_in_the_loop", "base_extrapolation", "encoding_linear_system", "all_paper"}
 
@@ -125,7 +125,7 @@ FAMILIES = {
 
 
 def changed(original, name, changes):
-    """The job of that name in jobs/ with other values, by path."""
+    """The job `original` of jobs/ with another name and changed values, {path: value}."""
     with open(os.path.join(JOBS, original + ".json"), encoding="utf-8") as file:
         job = json.load(file)
     del job["$schema"]
@@ -140,7 +140,7 @@ def changed(original, name, changes):
 
 
 def training(family, name):
-    """The job of a variant, without keys that its other values leave no use for."""
+    """The job of a variant, without keys that its other values make useless."""
     changes = {**family.changes, **family.variants[name]}
     data = changes.pop("data", None)
     job = changed(family.job, name, {key: value for key, value in changes.items() if value is not ITS_OWN})
@@ -160,7 +160,7 @@ def training(family, name):
 
 
 def run(program, folder, job):
-    """True if it is done now."""
+    """Runs a job; True if it is complete."""
     path = os.path.join(folder, job["name"])
     with open(path + ".json", "w", encoding="utf-8") as file:
         json.dump(job, file, indent=2)

@@ -29,7 +29,7 @@ class Results:
         kind = as_text(self.file.h5.attrs.get("kind", "sweep"))
         if kind != "sweep":
             self.close()
-            raise SweepFileError(f"{self.file.path} is a {kind}, not the results of a sweep; read its /systems with h5py")
+            raise SweepFileError(f"{self.file.path} is a {kind}, not the results of a sweep; h5py reads its /systems")
 
     def __enter__(self):
         return self
@@ -108,9 +108,8 @@ class Results:
         return self._dataset(table, owners, guesses, tolerances, found, usual)
 
     def summary(self, by=None, newton="first", where=()):
-        """The numbers of `rodsweep-summary` with 95 % intervals, a row per number: CG ratios, speedups, times and
-        results of the steps. `by`: a parameter whose values split the numbers. `newton`: "first" or "all"
-        iterations."""
+        """The numbers of `rodsweep-summary`, a row each, with 95 % intervals: CG ratios, speedups, times, results of
+        the steps. `by`: a parameter whose values split the numbers. `newton`: "first" or "all" iterations."""
         if newton not in measures.NEWTON:
             raise UserError(f"newton={newton!r}: choose one of {', '.join(measures.NEWTON)}")
         sims = measures.simulations(self.file, self.file.select(_listed(where)))
@@ -143,7 +142,7 @@ class Results:
     def _frame(self, level, columns, where):
         table, names, tests = self._asked(level, columns, where)
         frame = self._part(table, names, list(table.blocks(names, tests)))
-        for name, values in frame.select_dtypes("category").items():    # else groupby() shows groups that `where` excludes
+        for name, values in frame.select_dtypes("category").items():    # else groupby() has groups without rows
             frame[name] = values.cat.remove_unused_categories()
         return frame
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""docs/keys.md: every key that a job may have, made of jobs/schema.json, which the program prints.
+"""docs/keys.md: every key that a job may have, made from jobs/schema.json, which the program prints.
 
-    docs/tools/keys.py                 is the page current? exit code 1 where it is not
+    docs/tools/keys.py                 checks that the page is current; exit code 1 if it is not
     docs/tools/keys.py --update        writes it (`make schema` does)
 """
 
@@ -50,7 +50,7 @@ class Schema:
         self.all, self.definitions = schema, schema["definitions"]
 
     def plain(self, node):
-        """A node without what sweeps and references add to it."""
+        """A node without sweeps and references."""
         while True:
             if "$ref" in node:
                 node = self.definitions[node["$ref"].rpartition("/")[2]]
@@ -90,7 +90,7 @@ class Schema:
 
 
 class Place:
-    """Where a key is allowed and required, by the word of another: the scene's type, the job's kind, ..."""
+    """Where a key is allowed and required, by the value of another key: the scene's type, the job's kind, ..."""
 
     def __init__(self, node, name):
         self.rules = []
@@ -123,7 +123,7 @@ def default_of(node, name, place):
 
 
 def table(schema, node, first=None):
-    """The keys of an object; with `first`, a column before them that says so."""
+    """The table of an object's keys; `first` is the text of an additional first column."""
     lines = []
     for name, child in node["properties"].items():
         place = Place(node, name)
@@ -206,7 +206,7 @@ def main():
             file.write(text)
         return 0
     current = read(PAGE) == text
-    print("docs/keys.md is current" if current else "docs/keys.md is not what jobs/schema.json says: run `make schema`")
+    print("docs/keys.md is current" if current else "docs/keys.md does not match jobs/schema.json: run `make schema`")
     return 0 if current else 1
 
 

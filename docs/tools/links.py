@@ -1,13 +1,12 @@
 #!/usr/bin/python3
-"""Do the pages of this repository hold together, on GitHub as in the site?
+"""Checks the pages of this repository, for GitHub and for the site.
 
     docs/tools/links.py [ROOT]
 
-Every relative link leads to a file that is there, and to a heading of it; every page is in the navigation
-(mkdocs.yml) and every entry of that is a page; rows of tables have as many cells as their head, as GitHub counts them,
-where a | within code ends a cell too; lists have an empty line before them, which the site's Markdown wants; no
-sentence has more than 60 words and no paragraph more than 900 characters. What is wrong is printed with its line, and
-the exit code is 1.
+Every relative link needs an existing file and, if it names one, a heading in it. Every page is in the navigation
+(mkdocs.yml), and every entry of the navigation is a page. Rows of a table have as many cells as their head; as on
+GitHub, a | within code ends a cell too. A list has an empty line before it, which the site's Markdown needs. A
+sentence has at most 60 words, a paragraph at most 900 characters. Errors are printed with their line; exit code 1.
 """
 
 import os
@@ -33,7 +32,7 @@ def pages(root):
 
 
 def lines_of(root, page):
-    """(number, line) of a page outside of fenced code."""
+    """Yields (number, line) of a page outside fenced code."""
     with open(os.path.join(root, page), encoding="utf-8") as file:
         fenced = False
         for number, line in enumerate(file.read().splitlines(), 1):
@@ -44,7 +43,7 @@ def lines_of(root, page):
 
 
 def anchor(heading):
-    """As GitHub makes it of a heading's text."""
+    """GitHub's anchor of a heading's text."""
     text = LINK_TEXT.sub(r"\2", heading)
     text = re.sub(r"[^\w\- ]", "", re.sub(r"<!--.*?-->|<[^>]+>", "", text).lower())
     return text.strip().replace(" ", "-")
@@ -73,7 +72,7 @@ def targets(root, page):
 
 
 def files_of(root, page):
-    """Paths below `root` of what a page links and shows."""
+    """Paths below `root` of the files that a page links or shows."""
     for _, target in targets(root, page):
         path = target.partition("#")[0]
         if path:
@@ -108,7 +107,7 @@ def wrong_tables(root, page):
 
 
 def wrong_lists(root, page):
-    before = words = False    # of the paragraph so far: an item, anything
+    before = words = False    # whether the paragraph so far has an item, a text
     for number, line in lines_of(root, page):
         if not line.strip() or line.startswith("#"):
             before = words = False

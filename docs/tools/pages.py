@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the pages with measured numbers: PAGE.md of the Jinja template PAGE.md.j2 beside it.
+"""Writes the pages with measured numbers: PAGE.md from the Jinja template PAGE.md.j2 beside it.
 
     docs/tools/pages.py            write all pages
     docs/tools/pages.py --check    name the pages that are not current; exit code 1 if there are any
@@ -8,12 +8,13 @@ Tables are the .txt files of analysis/results. A template takes a number from on
 
     subspace leaves {{ cell("spatial_bending; CG ratio; Bending rod; subspace 10; 1e-2", ".00") }}
 
-The address is the table's name, how its section begins, how its block begins, the row and the column; `; 2` at the end is the
-second number of a cell such as "0.10 [0.09, 0.11]". A section of `*` is any. The second argument is the style: as many digits
-after the point, with commas, an exponent and a zero before the point as it has.
+The address has the table's name, the beginnings of its section and of its block, the row and the column. `; 2` at the
+end selects the second number of a cell such as "0.10 [0.09, 0.11]". The section `*` matches any. The second argument
+is the style: the number gets its digits after the point, and commas, an exponent or a zero before the point if it has
+them.
 
-Whole tables pass through a filter. Its address has {row} and {column}, which are the texts of the table's first column and
-line; what follows in @<<...>> is taken instead of the text, and not shown:
+Whole tables pass through a filter. {row} and {column} in its address are the texts of the table's first column and
+line. A text in @<<...>> replaces the visible text there, and is not shown:
 
     {% filter table("learned_rods; CG ratio, first; {row}; {column}") %}
     | 1e-2, 1e-3 | subspace 10@<<subspace 10; 1e-2, 1e-3>> |
@@ -21,9 +22,8 @@ line; what follows in @<<...>> is taken instead of the text, and not shown:
     | bending rods@<<Bending rod>> | .00 **.00** |
     {% endfilter %}
 
-The numbers in the cells are styles. A cell has as many numbers as its address names columns, each with or without its
-interval behind it, [.00, .00]. What is in `backticks` is not a number; a column that is called `-` stays as it is. A | in an
-address within a table is written \\|.
+The numbers in the cells are styles. A cell has one number per column in its address, each with or without its
+interval, [.00, .00]. Text in `backticks` and columns called `-` do not change. In tables, a | in an address is \\|.
 """
 
 import os
@@ -42,7 +42,7 @@ WITH_INTERVAL = re.compile(rf"({NUMBER.pattern})[*_]*(?:\s*\[({NUMBER.pattern}),
 
 
 class NotFound(Exception):
-    """The message says what is not in which table."""
+    """The message names the table and what it lacks."""
 
 
 class Tables:
@@ -98,7 +98,7 @@ class Tables:
 
 
 def find_cell(lines, section, block, row, column):
-    """The text of a cell. Columns are to the right: that of a header's cell ends where the row's does."""
+    """The text of a cell. Columns are right-aligned: a header's cell ends where the row's does."""
     start = _first(lines, 0, section, f"section {section!r}") if section != "*" else 0
     start = _first(lines, start, block, f"block {block!r}")
     above = start    # blocks may share a header above them
@@ -133,13 +133,13 @@ def _first(lines, start, words, what):
 
 
 def called(cell):
-    """The name of a row or column in its address."""
+    """The name of a row or column for its address."""
     named = NAMED.search(cell)
     return named.group(1).replace("\\|", "|") if named else re.sub(r"[*`_]", "", cell).strip()
 
 
 def styled(number, style):
-    """A table's number with the digits and in the style of another."""
+    """A number in the style of another."""
     mantissa, exponent, _ = style.lower().partition("e")
     digits, value = len(mantissa.partition(".")[2]), Decimal(number.replace("−", "-").replace(",", ""))
     if exponent:

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""The pages as a static site, by MkDocs (packages mkdocs, mkdocs-material). `make docs` calls it.
+"""Builds the pages as a static site with MkDocs (packages mkdocs, mkdocs-material). `make docs` calls it.
 
     docs/tools/site.py OUTPUT
 
-A folder beside OUTPUT, OUTPUT-pages, gets links to all pages and to what they show and link, each where it lies in the
-repository, so that their own links go on leading there. Whatever MkDocs warns of is an error.
+A folder beside OUTPUT, OUTPUT-pages, gets links to all pages and to the files that they show and link. The layout is
+that of the repository, so relative links still work. A warning of MkDocs is an error.
 """
 
 import os
@@ -19,7 +19,7 @@ ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), 
 
 
 def lay_out(root, folder):
-    """Links below `folder` to all pages and what they need."""
+    """Creates links below `folder` to all pages and the files that they need."""
     shutil.rmtree(folder, ignore_errors=True)
     pages = links.pages(root)
     for path in {STYLE, *pages, *(path for page in pages for path in links.files_of(root, page))}:
@@ -38,7 +38,7 @@ def main():
     done = subprocess.run(command, env={**os.environ, "RODSWEEP_SITE_PAGES": f"{output}-pages"}, check=False)
     if done.returncode == 0:
         shown = os.path.relpath(output)
-        print(f"{shown}/index.html; with its search: python3 -m http.server -d {shown}, then http://localhost:8000")
+        print(f"{shown}/index.html; for its search: python3 -m http.server -d {shown}, then http://localhost:8000")
     return done.returncode
 
 

@@ -91,7 +91,7 @@ class Figures(Drawn):
         for epochs in (1, 2, 4):
             page = loss.figure([self.read(ending="none", epochs=epochs)], 174)
             self.legible(page)
-            self.assertIn("Not ended yet: net.", self.page_texts(page))
+            self.assertIn("running: net.", self.page_texts(page))
 
 
 class Script(Scripts):

@@ -115,7 +115,7 @@ class Paraview(trajectories.Planted):
         self.refused("paraview.py", "sweep.h5", words="record.trajectory_every")
         self.plant()
         self.document()
-        self.refused("paraview.py", "sweep.h5", words="sweep-task0.xdmf is there already")
+        self.refused("paraview.py", "sweep.h5", words="sweep-task0.xdmf already exists")
         self.run_script("paraview.py", "sweep.h5", "--force")
         self.assertEqual(sorted(os.listdir(self.folder)), ["sweep-task0.xdmf", "sweep.h5"])
 

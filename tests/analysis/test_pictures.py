@@ -201,8 +201,8 @@ class Pictures(Planted):
         self.assertEqual(said.split(), ["out/sweep-task0-frame0000.png", "out/sweep-task0-frame0002.png"])
         said = self.run_script("render.py", "sweep.h5", *size, "--every", "3", "-o", "some").stdout
         self.assertEqual(said.split(), ["some/sweep-task0-frame0000.png", "some/sweep-task0-frame0003.png"])
-        self.refused("render.py", "sweep.h5", *size, words="sweep-task0-frame0003.png is there already")
-        self.refused("render.py", "sweep.h5", *size, "-o", "sweep.h5", "--force", words="is there already")
+        self.refused("render.py", "sweep.h5", *size, words="sweep-task0-frame0003.png already exists")
+        self.refused("render.py", "sweep.h5", *size, "-o", "sweep.h5", "--force", words="already exists")
         self.run_script("render.py", "sweep.h5", *size, "--force")
         with open("figures/sweep-task0-frame0003.png", "rb") as a, open("some/sweep-task0-frame0003.png", "rb") as b:
             self.assertNotEqual(a.read(), b.read())   # seen from another place: two frames must fit

@@ -53,7 +53,7 @@ class Spatial(Scripts):
                                "-o", "out", "--x", "scene.youngs_modulus_pa", "--select", "scene.segments=10")
         self.assertEqual(done.stdout.split()[0],
                          "out/sweep-helix-cg-ratio-by-youngs_modulus_pa-all-newton-84mm.pdf")
-        self.assertIn("CG ratios only", done.stderr)
+        self.assertIn("CG ratios", done.stderr)
 
     def test_mistakes_are_one_line_and_exit_code_2(self):
         self.refused("spatial.py", "none.h5", words="none.h5: file not found")

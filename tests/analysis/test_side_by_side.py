@@ -39,7 +39,7 @@ class Figures(Planted):
             for task in (1, 2):
                 row = h5["trajectories/first_row"][task, 0]
                 h5["trajectories/position_m"][row:row + 6] += 1
-        self.refused("side_by_side.py", "sweep.h5", words="nothing stands beside it")
+        self.refused("side_by_side.py", "sweep.h5", words="task 0")
 
     def test_a_view_is_the_plane_of_the_motion(self):
         self.plant()

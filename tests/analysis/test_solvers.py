@@ -72,7 +72,7 @@ class Solvers(ways.Planted):
 
     def test_files_without_trajectories_or_reference_are_refused(self):
         self.write()
-        self.refused("solvers.py", "sweep.h5", "--select", "solve.method=pbd", words="no task of the direct solve")
+        self.refused("solvers.py", "sweep.h5", "--select", "solve.method=pbd", words="direct solve")
         with h5py.File(self.path, "a") as h5:
             del h5["trajectories"]
         self.refused("solvers.py", "sweep.h5", words="record.trajectory_every")

@@ -63,15 +63,14 @@ class Framing:
 
 
 def direction(azimuth_deg, elevation_deg, up):
-    """From the scene to the eye. Azimuth 0 is the front, azimuth 90 the side that is right in the front view;
-    elevation 90 is above."""
+    """From the scene to the eye. Azimuth: 0 is the front, 90 the side to the right of it; elevation: 90 is above."""
     right, back = horizontal(up)
     azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
     return np.cos(elevation) * (np.sin(azimuth) * right + np.cos(azimuth) * back) + np.sin(elevation) * np.asarray(up)
 
 
 def horizontal(up):
-    """Unit vectors to the right and towards the eye in a front view: x and z if y is up, x and -y if z is up, -y and z
-    if x is up."""
+    """Unit vectors to the right and towards the eye in a front view: x and z for up y, x and -y for up z, -y and z for
+    up x."""
     right = np.array([0.0, -1, 0]) if abs(up[0]) > 0.9 else np.array([1.0, 0, 0])
     return right, np.cross(right, up)

@@ -1,7 +1,6 @@
 """The figures of spatial.py: CG ratios, speedups and times of a Study along one parameter, a row per panel.
 
-The notes of every figure give the Newton iterations, norm, tolerance and preconditioner, the number of simulations,
-and what was left out.
+Notes give Newton iterations, norm, tolerance, preconditioner, number of simulations, and what was left out.
 """
 
 import numpy as np
@@ -13,8 +12,8 @@ from rodsweep.drawing.study import sample_text
 from rodsweep.reading import intervals, measures, remarks, timings
 
 TIME_PARTS = ("assembly", "guess", "CG")
-FOUR_CURVES = {"ratio": "CG ratio", "share": "time of the guess ÷ time of its CG", "guess_cg": "speedup of guess and CG",
-               "step": "speedup of the whole step"}
+FOUR_CURVES = {"ratio": "CG ratio", "share": "time of the guess ÷ time of its CG",
+               "guess_cg": "speedup of guess and CG", "step": "speedup of the whole step"}
 
 
 def ratio_figure(study, tolerances):
@@ -159,8 +158,8 @@ def overview_figure(study, by_newton):
     lines = study.lines()
     shown = [ratio[g] for row in rows for ratio, _, _ in row for g in lines]
     with_direct = any(np.isfinite(e.value).any() for row in rows for _, _, e in row)
-    notes = [f"CG ratio: iterations with a guess ÷ from zero, mean over {sample_text(shown)}. Time: guess, set-up and CG, "
-             f"median. Solved to tolerance {study.solve_tolerance()}. Counted: {measures.NEWTON[study.newton]}. "
+    notes = [f"CG ratio: iterations with a guess ÷ from zero, mean over {sample_text(shown)}. Time: guess, set-up and "
+             f"CG, median. Solved to tolerance {study.solve_tolerance()}. Counted: {measures.NEWTON[study.newton]}. "
              f"{remarks.oracle_note(file, lines)}{timings.interruptions(part, study.sims)}"]
     handles = study.handles(lines, "from zero") + ([style.DIRECT.handle("direct solve")] if with_direct else [])
     page = layout.Page(study.width_mm, [p.caption() for p in study.panels], 2, 2, 46, handles, notes + [study.about()],
@@ -187,8 +186,7 @@ def overview_figure(study, by_newton):
 
 
 def time_figure(study, by_newton):
-    """Microseconds per segment and solve in stacked parts: a panel per guess, with the direct solve of the same
-    systems."""
+    """Microseconds per segment and solve in stacked parts: a panel per guess, with the direct solve of its systems."""
     part = by_newton[study.newton]
     segments = study.file.results("segments", study.sims.any_task)[:, None, None]
     values = np.stack([part.assemble_s, part.guess_s, part.cg_s, part.assemble_s + part.direct_s,
@@ -196,8 +194,8 @@ def time_figure(study, by_newton):
     rows = [[intervals.median(values[i], study.sims.sample[i]) for i in points.index] for points in study.points]
     shown = [e[g, 4] for row in rows for e in row for g in study.guesses]
     with_direct = any(np.isfinite(e.value[g, 3]) for row in rows for e in row for g in study.guesses)
-    notes = [f"Mean time of a solve in a simulation, per segment, median over {sample_text(shown, ' of the total')}; parts "
-             f"in the proportions of their medians. Counted: {measures.NEWTON[study.newton]}. "
+    notes = [f"Mean time of a solve in a simulation, per segment, median over {sample_text(shown, ' of the total')}; "
+             f"parts in the proportions of their medians. Counted: {measures.NEWTON[study.newton]}. "
              f"Solved to tolerance {study.solve_tolerance()}. CG includes the preconditioner's set-up. "
              f"{remarks.oracle_note(study.file, study.guesses)}{timings.interruptions(part, study.sims)}"]
     handles = [Patch(facecolor=style.PARTS[name][0], hatch=style.PARTS[name][1], edgecolor="white", label=name)

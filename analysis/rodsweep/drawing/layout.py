@@ -20,8 +20,7 @@ CHARACTER_MM = 1.45  # approximate width of a digit of a tick
 class Page:
     """A figure laid out in millimetres: warning and legend above rows of equal panels, notes below them.
 
-    Each row has a title and may have a legend (`row_handles`). Panels of a row wrap at `columns`. axes[row][k] is
-    panel k."""
+    Each row has a title and may have a legend (`row_handles`). Panels of a row, axes[row][k], wrap at `columns`."""
 
     def __init__(self, width_mm, row_titles, panels_per_row, columns, panel_height_mm, handles, notes, warning="",
                  left_mm=12, gap_mm=4, panel_titles_mm=4.5, ticks_mm=5.5, bar_mm=0, row_handles=()):

@@ -2,8 +2,8 @@
 
 Colours are those of Okabe and Ito (2008), with darker variants for the additional kinds. Guesses also differ in marker
 and dash, for colour-blind readers and for black-and-white print. The first word of a label gives the kind of a guess.
-Several guesses of one kind (oracle 0.1, oracle 0.01) share a hue and differ in lightness, marker and dash. Markers and
-dashes have matplotlib's form.
+Several guesses of one kind (oracle 0.1, oracle 0.01) share a hue and differ in lightness, marker and dash, all written
+in matplotlib's form.
 """
 
 from dataclasses import dataclass

@@ -41,8 +41,7 @@ def upwards(file, task):
 
 
 def drawn_radius(trajectory):
-    """Radius of every segment's spheres. A wall has no length and no radius; it is drawn wider than the rod that it
-    holds."""
+    """Radius of every segment's spheres. A wall has no length and no radius; it is drawn wider than its rod."""
     radius = trajectory.radius.copy()
     for wall in np.flatnonzero(trajectory.length <= 0):
         radius[wall] = WALL_RADII * trajectory.radius[trajectory.rod == trajectory.rod[wall]].max()
@@ -102,8 +101,8 @@ def rim(slope, centre, extent):
 
 
 def floor_level(trajectory, frames, up, floor, extent, touched=(), still=()):
-    """Height along `up`, or None. "auto": that of the obstacles' floor; else where rods stand, if nothing is lower;
-    else a little under the lowest point. still: (points, radius) of the drawn obstacles."""
+    """Height along `up`, or None. "auto": the obstacles' floor; else where rods stand, if nothing is lower; else a
+    little under the lowest point. still: (points, radius) of the drawn obstacles."""
     if floor != "auto":
         return None if floor == "none" else float(floor)
     given = obstacles.floor(touched, up)

@@ -93,8 +93,7 @@ def of_guesses(file, options):
 
 
 def of_tasks(file, options, failed_too=False):
-    """A Study of the chosen tasks that ended ok (failed_too: of all complete ones). Raises KeyNotFound if there is
-    none."""
+    """A Study of the chosen tasks that ended ok (failed_too: of all complete ones). KeyNotFound if there is none."""
     chosen = commandline.chosen_tasks(file, options)
     return _study(file, options, chosen, commandline.chosen_guesses(file, options), failed_too)
 

@@ -2,8 +2,8 @@
 
 Steps go into at most MOST_BINS bins (fewer if many simulations would exceed BUDGET_BYTES). A window is a range of
 whole bins around its centre, cut off at the ends of the run. A solve that missed a tolerance counts the iterations
-that it used, as in the CG ratio of a simulation. A row does not have that number, so each of them counts the mean over
-all such solves of its simulation. Sums over a whole run are therefore exact.
+that it used, as in the CG ratio of a simulation. A row does not have that number: the mean over all such solves of its
+simulation is counted instead. Sums over a whole run are exact.
 """
 
 from dataclasses import dataclass
@@ -57,8 +57,8 @@ def _between(values, begin, end):
 
 
 def _binned(file, sims, newton, guesses, tolerances, edges):
-    """Iterations of solves that reached the tolerance, all solves, and solves that missed it: [simulation, bin,
-    guess], the first and last also by tolerance."""
+    """Iterations of solves that reached the tolerance, all solves, and solves that missed it, by [simulation, bin,
+    guess]."""
     shape = (len(sims), len(edges) - 1, len(guesses))
     iterations, missed = np.zeros(shape + (len(tolerances),)), np.zeros(shape + (len(tolerances),))
     solves = np.zeros(shape)
@@ -85,8 +85,7 @@ def _binned(file, sims, newton, guesses, tolerances, edges):
 
 
 def _spent(file, sims, newton, guesses, tolerances, iterations, missed):
-    """Mean iterations of a solve that missed the tolerance, [simulation, 1, guess, tolerance]; 0 without such
-    solves."""
+    """Mean iterations of a solve that missed the tolerance, [simulation, 1, guess, tolerance]; 0 if none did."""
     sums = file.results("iterations_sum" if newton == "first" else "iterations_sum_all", sims.tasks())
     full = np.zeros((file.task_count, len(file.guesses), len(file.tolerances)))
     if sums is not None:

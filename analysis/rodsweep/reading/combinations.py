@@ -3,8 +3,7 @@
 A combination is a preconditioner, with the settings that the job sweeps, and a guess; or the direct solve. Paired
 combinations solve the same systems, in a closed loop each has its own trajectory. The time is that of a solve with
 guess and preconditioner set-up, or in a closed loop of a whole step. Kinds of guesses: CG from zero, classical ones,
-learned ones, and oracles, which know the solution. A paired oracle's own time is not counted: it shows what a free
-guess with the same error would save.
+learned ones, and oracles, which know the solution. A paired oracle's own time is not counted: it is a free guess.
 """
 
 from dataclasses import dataclass
@@ -122,8 +121,7 @@ class _Measured:
         return [one for one in found if np.isfinite(one.time_us).any()]
 
     def _direct(self, rows, guessing, draws):
-        """The direct solve. In a paired sweep the simulations of all preconditioners time it: the median of a draw
-        counts."""
+        """The direct solve. In a paired sweep simulations of all preconditioners time it: the median counts."""
         from_rows = guessing if not self.sims.closed_loop else np.setdiff1d(rows, guessing)
         time_us = np.full(len(draws), np.nan)
         for k, draw in enumerate(draws):

@@ -14,8 +14,8 @@ DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
 
 def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True, files=False):
-    """`tolerances`: the default in the help, None for a script without --tolerance. newton: adds --newton. files:
-    several files instead of one."""
+    """`tolerances`: default in the help, None: no --tolerance; newton: adds --newton; files: several files instead of
+    one."""
     made = argparse.ArgumentParser(description=description, epilog=examples(epilog or ""),
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     of_files = {"dest": "files", "nargs": "+", "metavar": "FILE"} if files else {"dest": "file"}
@@ -49,8 +49,8 @@ def whole_number(text):
 
 
 def run(main):
-    """Calls main(). A UserError gives one line on stderr and exit code 2. So does any other exception, since a damaged
-    file can make any line fail; `python3 -X dev SCRIPT` shows where."""
+    """Calls main(). A UserError gives one line on stderr and exit code 2. So do other errors, since a damaged file can
+    make any line fail; `python3 -X dev SCRIPT` shows where."""
     try:
         main()
         sys.stdout.flush()

@@ -31,8 +31,7 @@ IGNORED_KEYS = ("name", "description", "$schema")
 
 @dataclass
 class Pairs:
-    """Tasks in both files: a[i] of one is b[i] of the other. Guess g of a[i] is guess guesses[i][g] of b[i], -1 for
-    none."""
+    """Tasks in both files: a[i] of one is b[i] of the other. Its guess g is guess guesses[i][g] there, -1 for none."""
     a: np.ndarray
     b: np.ndarray
     guesses: np.ndarray
@@ -133,8 +132,8 @@ def _guess_places(one, other, by):
 
 
 def _guess_keys(file, by):
-    """Identity of each guess: its label and, unless by="parameters", its entry in the job if the job has a plain list
-    of guesses."""
+    """Identity of each guess: its label and, unless by="parameters", its entry in the job's list of guesses, if it has
+    one."""
     listed = file.job().get("guesses")
     if by == "parameters" or not isinstance(listed, list) or len(listed) != len(file.guesses):
         return file.guesses

@@ -94,7 +94,7 @@ def panels(file, sims, x=None, pooled="", most=MOST_PANELS):
         members.setdefault((scenes[row], tuple(settings.items())), []).append(row)
     if most is not None and len(members) > most:
         raise KeyNotFound(f"{len(members)} panels are too many for a page (at most {most}): the job also has a "
-                          f"grid over {', '.join(keys) or 'scene.type'}; choose with --scene TYPE or --select KEY=VALUE")
+                          f"grid over {', '.join(keys) or 'scene.type'}; choose by --scene TYPE or --select KEY=VALUE")
     return [Panel(scene, dict(settings), np.array(rows), _words(file, dict(settings), tasks[rows[0]]))
             for (scene, settings), rows in members.items()]
 

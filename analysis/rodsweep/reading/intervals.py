@@ -4,8 +4,7 @@ Draws are resampled: simulations that share a draw of the random parameters (gri
 solves are never resampled. Fewer than FEWEST_DRAWS draws give no interval. The percentile interval is too narrow for
 few draws, so its level is raised as in Hesterberg (2015, "What teachers should know about the bootstrap", expanded
 percentile): alpha'/2 = Phi(-sqrt(n/(n-1)) t_{alpha/2, n-1}). Such an interval stays within the range of the data: for
-normal values, "95 %" covers 90 and 95 % of the time with n = 5 and 8 draws. The seed of the generator is fixed, so
-figures are reproducible.
+normal values, "95 %" covers 90 and 95 % of the time with n = 5 and 8 draws. A fixed seed makes figures reproducible.
 """
 
 from dataclasses import dataclass
@@ -23,8 +22,7 @@ BLOCK_BYTES = 16 << 20
 
 @dataclass(frozen=True)
 class Estimate:
-    """Arrays of one shape. low and high are NaN if there are too few draws; `count` is the number of simulations
-    used."""
+    """Arrays of one shape. low and high are NaN for too few draws; `count` is the number of simulations used."""
     value: np.ndarray
     low: np.ndarray
     high: np.ndarray
@@ -90,8 +88,7 @@ def mean_over_trainings(values, draws=None, level=LEVEL):
 
 
 def _estimate(values, draws, level, resamples, statistic, parts=1):
-    """`parts` numbers of the last axis give one value of the statistic. Columns and resamples are processed in
-    blocks."""
+    """`parts` numbers of the last axis give one value of the statistic. Columns and resamples come in blocks."""
     values = np.asarray(values, dtype=float)
     if parts == 1:
         values = values[..., None]
@@ -137,8 +134,8 @@ def _resampled(statistic, columns, draws, groups, resamples):
     return found
 
 
-# Each takes values [simulation, column, part] and the mask of the finite ones [simulation, column]. It returns a function
-# of weights [resample, simulation], so that the work that all resamples share is done once.
+# Each takes values [simulation, column, part] and the mask of the finite ones [simulation, column]. It returns a
+# function of weights [resample, simulation], so that the work that all resamples share is done once.
 
 
 def _weighted_means(values, finite):

@@ -1,15 +1,15 @@
-"""Which segments of a trajectory are joined: those that meet at the start, at ends or, in a net, at their middles."""
+"""Joined segments of a trajectory: those whose ends, or middles in a net, meet in the first frame."""
 
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-NEAR = 1e-3   # of the shortest segment's length: points this close are one
+NEAR = 1e-3   # points this close, as a share of the shortest segment's length, are one
 
 
 def pairs(trajectory):
-    """[joint, 2] numbers of segments of one rod that share an end or the middle in the first frame; where several do,
+    """[joint, 2] numbers of segments of one rod that share an end or the middle in the first frame. If several meet,
     all are joined to the first of them."""
     points = np.concatenate([*trajectory.ends(0), trajectory.centres(0)])
     count = len(trajectory.length)

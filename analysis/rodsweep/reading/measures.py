@@ -1,9 +1,9 @@
-"""What a sweep measured, per simulation: CG ratios and how the steps went; times are in timings.py.
+"""Measurements of a sweep per simulation: CG ratios and results of the steps. Times are in timings.py.
 
-A simulation is a parameter point. In a paired sweep one task tries every guess on the same systems; in a closed loop
-each guess is a task of its own, and tasks of one point belong together. Both end up in the same arrays, [simulation,
-guess, ...]. Sums run over a simulation first; ratios are of sums. Only tasks that ended `ok` count: a ratio over half a
-simulation would not be one. What is left out is counted in Simulations and shown by every script.
+A simulation is a parameter point. In a paired sweep one task tries every guess on the same systems. In a closed loop
+each guess has its own task, and the tasks of one point belong together. Both give the same arrays, [simulation, guess,
+...]. Values are summed over a simulation first; ratios are ratios of sums. Only tasks that ended `ok` count, since a
+ratio over half a simulation is not comparable. A Census counts the other tasks, and every script shows it.
 """
 
 import os
@@ -12,17 +12,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Which solves count: of the first Newton iteration of every step, or of all.
+# Which solves count: those of the first Newton iteration of every step, or all.
 NEWTON = {"first": "first Newton iteration (j = 0)", "all": "all Newton iterations"}
 
 
 @dataclass(frozen=True)
 class Simulations:
-    """task[s, g]: the task that holds guess g of simulation s, or -1. Without a guess axis there is one column."""
+    """task[s, g]: the task with guess g of simulation s, or -1. Without a guess axis there is only column 0."""
     task: np.ndarray
-    any_task: np.ndarray   # a task that stands for the simulation's parameters
+    any_task: np.ndarray   # a task with the simulation's parameters
     sample: np.ndarray     # its draw of the random parameters
-    own: np.ndarray        # does each guess have a task of its own (closed loop)?
+    own: np.ndarray        # whether each guess has its own task (closed loop)
 
     def __len__(self):
         return len(self.task)
@@ -39,7 +39,8 @@ class Simulations:
         return np.unique(self.task[self.task >= 0])
 
     def gather(self, per_task, zero=None):
-        """[task, guess, ...] as [simulation, guess, ...], NaN where no task; zero: that guess in each column."""
+        """[task, guess, ...] as [simulation, guess, ...], NaN without a task; zero: index of a guess for every
+        column."""
         guesses = np.arange(self.task.shape[1]) if zero is None else np.full(self.task.shape[1], zero)
         task = self.task[:, guesses]
         out = np.asarray(per_task, dtype=float)[np.maximum(task, 0), guesses[None, :]]
@@ -49,7 +50,7 @@ class Simulations:
 
 @dataclass(frozen=True)
 class Census:
-    """How many of the chosen tasks there are in each state."""
+    """Number of chosen tasks in each state."""
     total: int
     ok: int
     pending: int
@@ -68,7 +69,7 @@ def census(file, chosen):
 
 
 def has_guesses(file):
-    """Mask of the tasks that try guesses: cg does, the direct solve and what stands in its place have none."""
+    """Mask of the tasks that try guesses: only the method cg does."""
     if not file.guesses:
         return np.zeros(file.task_count, dtype=bool)
     method = file.parameters.get("solve.method")
@@ -76,8 +77,8 @@ def has_guesses(file):
 
 
 def without_guess(file, tasks):
-    """Names of what moves the rods of tasks that have no guess of their own: "direct", "end_to_end" or
-    "state_network" and a model, "xpbd" or "pbd" and how many iterations."""
+    """Method names of tasks without their own guess: "direct", "end_to_end" or "state_network" with the model, "xpbd"
+    or "pbd" with the number of iterations."""
     method = file.parameters.get("solve.method")
     if method is None:
         return np.full(len(tasks), "direct")
@@ -94,7 +95,7 @@ def _method_name(file, method, task):
 
 
 def simulations(file, chosen, failed_too=False):
-    """The simulations among the tasks of the mask that ended well (or at all: `failed_too`), by point."""
+    """Simulations, by point, of the tasks of the mask that ended ok (`failed_too`: of all complete ones)."""
     tasks = np.flatnonzero(chosen & (file.complete if failed_too else file.ok))
     points, row = np.unique(file.point[tasks], return_inverse=True)
     task = np.full((len(points), max(1, len(file.guesses))), -1, dtype=np.int64)
@@ -118,7 +119,7 @@ class Ratios:
 
 @dataclass(frozen=True)
 class Sums:
-    """Over a simulation: [simulation, guess, tolerance], and what Ratios has of them."""
+    """Sums over a simulation, [simulation, guess, tolerance]; solves are those of Ratios."""
     own: np.ndarray
     zero: np.ndarray
     unreached: np.ndarray
@@ -127,7 +128,7 @@ class Sums:
 
 
 def cg_sums(file, sims, newton, counted="iterations", norm=""):
-    """Of `matvecs` instead of iterations, or of iterations in the `other_norm`; NaN where the file has none of them."""
+    """Sums of `counted` (iterations or matvecs), or of iterations in the `other_norm`; NaN if the file has none."""
     suffix = f"_{norm}" if norm else "" if newton == "first" else "_all"
     shape = (file.task_count, len(file.guesses), len(file.tolerances))
     tasks = sims.tasks()
@@ -193,7 +194,7 @@ def step_figures(file, sims):
 
 
 def median_of_finite(values):
-    """Median over the first axis of what is finite; NaN where nothing is."""
+    """Median of the finite values over the first axis; NaN if there are none."""
     found = np.full(values.shape[1:], np.nan)
     there = np.isfinite(values).any(axis=0)
     found[there] = np.nanmedian(np.where(np.isfinite(values), values, np.nan)[:, there], axis=0)

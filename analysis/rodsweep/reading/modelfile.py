@@ -1,4 +1,4 @@
-"""The one reader of a model file (HDF5, schema version 1; layout in runner/training/model_file.hpp)."""
+"""Reads model files (HDF5, schema version 1; layout in runner/training/model_file.hpp)."""
 
 import json
 import os
@@ -14,7 +14,7 @@ SCHEMA_VERSION = 1
 
 @dataclass(frozen=True)
 class Training:
-    """How a model was trained, and how well it does. Rows are epochs, columns of ratios tolerances."""
+    """Training history and CG ratios of a model. Rows are epochs, columns of ratios are tolerances."""
     path: str
     name: str
     ended: bool
@@ -23,15 +23,15 @@ class Training:
     validation_loss: np.ndarray
     rate: np.ndarray
     cg_ratio: np.ndarray        # [epoch, tolerance], NaN where it was not measured
-    best_epoch: int             # whose weights the model has, from 1; 0: none yet
+    best_epoch: int             # the epoch of the model's weights, from 1; 0: none yet
     kept_ratio: np.ndarray      # [tolerance], of the model; NaN until the training has ended
     base_ratio: np.ndarray      # of its base guess alone
-    simulations: int            # that ratios are means over
+    simulations: int            # number of validation simulations for the ratios
     seconds: float
-    scenes: dict                # {type of scene: (kept_ratio, base_ratio)}, where there are several
+    scenes: dict                # {type of scene: (kept_ratio, base_ratio)}, if there are several
     job: dict                   # as it was written
-    network: dict               # with all that its job left to defaults
-    learned_from: int           # simulations
+    network: dict               # settings, with defaults
+    learned_from: int           # number of training simulations
     parameters: int
 
     @property
@@ -44,7 +44,7 @@ class Training:
 
 
 def read(path):
-    """The training of a model file, whole or in the middle. Raises SweepFileError."""
+    """The training in a model file, ended or running. Raises SweepFileError."""
     with opened(path, "a model file") as h5:
         try:
             if as_text(h5.attrs.get("program", "")) != PROGRAM:

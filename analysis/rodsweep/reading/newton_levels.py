@@ -1,9 +1,8 @@
 """Residual and joint gap before every Newton iteration and at the end of a step: the numbers of newton.py.
 
-Level j is the state before Newton iteration j (rows of /solves); a step that used k iterations ends in level k (rows of
-/steps). Per simulation and level: the quartiles over all steps, and the largest. A step that Newton left early, since it
-was below the job's tolerance, stays in the later levels with what it ended with: else ever fewer steps, the hardest,
-would be taken for all.
+Level j is the state before Newton iteration j (rows of /solves). A step with k iterations ends in level k (rows of
+/steps). Each simulation and level has the quartiles over all steps, and the largest value. A step that ended early,
+below the job's tolerance, keeps its last value in later levels. Otherwise these would show only the hardest steps.
 """
 
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ QUARTILES = (0.25, 0.5, 0.75)
 
 @dataclass(frozen=True)
 class Levels:
-    """[task, level, 4]: lower quartile, median, upper quartile, largest; `share` of the steps that got to a level."""
+    """[task, level, 4]: lower quartile, median, upper quartile, largest; `share` of the steps that reached a level."""
     tasks: np.ndarray
     values: dict
     share: np.ndarray    # [task, level]
@@ -27,14 +26,14 @@ class Levels:
 
 
 def quantities(file):
-    """The quantities that the file has, both before the iterations and at the ends of the steps."""
+    """Quantities that the file has both before the iterations and at the ends of the steps."""
     if not all(file.has(path) for path in ("/solves/newton", "/steps/newton_iterations")):
         return []
     return [name for name in SOLVES if file.has(SOLVES[name]) and file.has(STEPS[name])]
 
 
 def levels(file, tasks):
-    """Of tasks that are complete, one after the other: the rows of one have to fit in memory."""
+    """The Levels of complete tasks, one after the other: the rows of one task have to fit in memory."""
     tasks = np.unique(tasks)
     names = quantities(file)
     most = int(file.parameter("time.newton_iterations").values[tasks].max()) + 1
@@ -63,7 +62,7 @@ def levels(file, tasks):
 
 
 def _by_task(blocks, count):
-    """(task, {column: rows}) with all rows of a task, put together where a task comes in several blocks."""
+    """Yields (task, {column: rows}) with all rows of a task, even if it comes in several blocks."""
     waiting = {}
     for owners, starts, rows in blocks:
         ends = np.append(starts[1:], len(next(iter(rows.values()))))
@@ -78,7 +77,7 @@ def _by_task(blocks, count):
 def orders(medians, floor):
     """Observed order of convergence at every level from three successive medians; NaN at or below the floor.
 
-    log(r[j+1] / r[j]) / log(r[j] / r[j-1]): 1 for a fixed factor, 2 where the residual is squared.
+    log(r[j+1] / r[j]) / log(r[j] / r[j-1]): 1 for a fixed factor, 2 if the residual is squared.
     """
     found = np.full(len(medians), np.nan)
     for j in range(1, len(medians) - 1):

@@ -1,9 +1,8 @@
-"""What the rods of a task touch besides each other: balls, capsules and half-spaces, in metres, at time 0; at(time_s)
-is where they have gone by then.
+"""Obstacles of a task: balls, capsules and half-spaces, in metres, at time 0; at(time_s) gives them at a later time.
 
-Obstacles of a job are columns of /tasks/parameters, scene.obstacles[k].KIND.KEY, NaN where a task's list has something
-else or nothing in that place; falling_rods and coiling_rod have a floor y = 0 of their own. Rods without contact pass
-through all of them: such a task has none.
+Obstacles of a job are columns of /tasks/parameters, scene.obstacles[k].KIND.KEY. They are NaN if the task has no
+obstacle, or one of another kind, at index k. falling_rods and coiling_rod have their own floor y = 0. Rods without
+contact pass through all obstacles, so their tasks have none.
 """
 
 from dataclasses import dataclass, field, replace
@@ -11,9 +10,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 FLOORED = ("falling_rods", "coiling_rod")   # scenes with a floor of their own (solver/scene/scenes.cpp)
-PIECES = 33       # spheres that stand for a capsule where one asks what is near
+PIECES = 33       # spheres that approximate a capsule in the search for its near parts
 LEVEL = 1e-9      # 1 - cosine of the angle up to which a plane is horizontal
-DISC = 0.5        # radius of the part of a plane that is shown, of the scene's extent
+DISC = 0.5        # radius of the visible part of a plane, as a share of the scene's extent
 
 
 def at_rest():
@@ -22,7 +21,7 @@ def at_rest():
 
 @dataclass(frozen=True)
 class Capsule:
-    """All points nearer than the radius to a line; a ball where both ends are one."""
+    """All points nearer to a line than the radius; a ball if both ends are equal."""
     start: np.ndarray
     end: np.ndarray
     radius: float
@@ -33,7 +32,7 @@ class Capsule:
         return replace(self, start=self.start + way, end=self.end + way)
 
     def spheres(self, centre, extent):
-        """Centres [sphere, 3] along the line, those within `extent` of a point; none of a radius beyond `extent`."""
+        """Centres [sphere, 3] along the line within `extent` of a point; none if the radius is larger than `extent`."""
         points = np.linspace(self.start, self.end, PIECES)
         return points[(np.linalg.norm(points - centre, axis=1) <= extent) & (self.radius <= extent)]
 
@@ -49,16 +48,16 @@ class HalfSpace:
         return replace(self, point=self.point + time_s * self.velocity)
 
     def disc(self, centre, extent):
-        """Centre and radius of the part of its surface that is shown under a scene."""
+        """Centre and radius of the visible part of its surface under a scene."""
         return centre - (centre - self.point) @ self.normal * self.normal, DISC * extent
 
     def is_floor(self, up):
-        """Level, and at rest."""
+        """Whether it is level and at rest."""
         return self.normal @ up >= 1 - LEVEL and not self.velocity.any()
 
 
 def of_task(file, task):
-    """In the order of the job, the scene's own floor first."""
+    """Obstacles in the order of the job; the scene's own floor comes first."""
     if value(file, "scene.contact.friction", task) is None:
         return []
     found = [HalfSpace(np.zeros(3), np.array([0.0, 1, 0]))] if file.scene_types()[task] in FLOORED else []
@@ -70,11 +69,11 @@ def of_task(file, task):
 
 
 def at_place(file, place, task):
-    """The obstacle at a place of the task's list, None behind its end."""
+    """The obstacle at an index of the task's list, None after its end."""
     def of(key):
         return value(file, f"scene.obstacles[{place}].{key}", task)
 
-    def moving(kind):   # files of before have no velocities
+    def moving(kind):   # older files have no velocities
         velocity = of(f"{kind}.velocity_m_s")
         return {} if velocity is None else {"velocity": velocity}
 
@@ -88,12 +87,12 @@ def at_place(file, place, task):
 
 
 def value(file, name, task):
-    """A parameter's value for a task; None where it has none."""
+    """A parameter's value for a task; None if it does not apply."""
     parameter = file.parameters.get(name)
     return parameter.values[task] if parameter is not None and parameter.applies()[task] else None
 
 
 def floor(obstacles, up):
-    """Height along `up` of the highest level surface at rest, None where there is none."""
+    """Height along `up` of the highest level surface at rest, None if there is none."""
     return max((obstacle.point @ up for obstacle in obstacles if isinstance(obstacle, HalfSpace) and
                 obstacle.is_floor(up)), default=None)

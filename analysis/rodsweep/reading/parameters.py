@@ -19,20 +19,20 @@ class Parameter:
         return self.values.ndim == 1 and self.values.dtype.kind in "iuf"
 
     def applies(self):
-        """False where the key has no meaning for the task's scene: NaN, -1 or the empty string."""
+        """False if the key does not apply to the task's scene: NaN, -1 or the empty string."""
         first = self.values if self.values.ndim == 1 else self.values[:, 0]
         if first.dtype.kind == "f":
             return np.isfinite(first)
         return first != ("" if first.dtype.kind == "U" else -1)
 
     def codes(self):
-        """An integer per task, equal where the values are equal; where the key does not apply, too."""
+        """An integer per task, equal if the values are equal; also equal for tasks to which the key does not apply."""
         def codes(values):
             return np.unique(values, return_inverse=True)[1].reshape(len(values))
 
         if self.values.ndim == 1:
             return codes(self.values)
-        components = np.column_stack([codes(component) for component in self.values.T])  # NaN is no NaN's equal in rows
+        components = np.column_stack([codes(component) for component in self.values.T])  # in rows, NaN is unequal to NaN
         return np.unique(components, axis=0, return_inverse=True)[1].reshape(len(self.values))
 
     def texts(self):

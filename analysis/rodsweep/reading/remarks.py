@@ -1,4 +1,4 @@
-"""What every ratio and time must say of itself: how it was solved and timed, and by which revision."""
+"""Notes on ratios and times: how they were solved and timed, and the revision of the program."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ NORMS = {"true_residual": "‖b − Ax‖₂ relative to ‖b‖₂", "natural":
 
 
 def conditions(file, tasks):
-    """As text by name; several values are joined by a slash."""
+    """{name: text}; several values are joined by a slash."""
     def values(name, text=str):
         parameter = file.parameters.get(name)
         if parameter is None:
@@ -23,7 +23,7 @@ def conditions(file, tasks):
 
 
 def solve_tolerance(file, tasks):
-    """That of the timed solves; several where the job has a grid of them."""
+    """The tolerance of the timed solves; several if the job has a grid of them."""
     parameter = file.parameters.get("solve.tolerance")
     values = [] if parameter is None else parameter.values[tasks]
     return " / ".join(dict.fromkeys(texts.tolerance_label(value) for value in values))
@@ -39,14 +39,14 @@ def timing_warning(file, tasks):
 
 
 def timing_note(file, tasks):
-    """What to know of times beside timing_warning(); or empty."""
+    """A further note on times beside timing_warning(); or empty."""
     apart = int(file.timed_apart(tasks).sum()) if len(tasks) else 0
-    return (f"Of {apart} tasks some guesses were timed in another run than the others (run --extend): speedups between "
-            "them compare two runs.") if apart else ""
+    return (f"In {apart} tasks, some guesses were timed in another run than the others (run --extend): speedups "
+            "between them compare two runs.") if apart else ""
 
 
 def oracle_note(file, guesses):
-    """A sentence for whatever shows times of guesses, and a blank; empty without an oracle."""
+    """A sentence and a blank for outputs with times of guesses; empty without an oracle."""
     if not any("oracle" in file.guesses[g] for g in guesses):
         return ""
-    return "The oracle solves the system itself: its guess time is no method's cost. "
+    return "The oracle solves the system itself: its guess time is not the cost of a method. "

@@ -1,10 +1,10 @@
-"""The one reader of a rodsweep results file (HDF5, schema version 1; layout in runner/file/columns.cpp).
+"""Reads rodsweep results files (HDF5, schema version 1; layout in runner/file/columns.cpp).
 
-A SweepFile knows the tasks of a sweep, their parameters and the axes of guesses and tolerances. Results are masked by
-/tasks/state: rows of a task that is not complete are never handed out, since unwritten bytes read as perfect results.
-Rows of /solves, /steps and /timing come in blocks of bounded size. Datasets that a job did not ask for may be empty or
-absent. Raises SweepFileError with a message for the user when a file is missing, foreign or damaged, and KeyNotFound
-when a parameter, guess or tolerance that was asked for is not in it.
+A SweepFile has the tasks of a sweep, their parameters and the axes of guesses and tolerances. /tasks/state masks all
+results: rows of incomplete tasks are never returned, since unwritten bytes look like perfect results. Rows of /solves,
+/steps and /timing come in blocks of bounded size. Datasets that a job did not request may be empty or absent. Raises
+SweepFileError if a file is missing, foreign or damaged. Raises KeyNotFound if it does not have a requested parameter,
+guess or tolerance.
 """
 
 import json
@@ -20,8 +20,8 @@ from rodsweep.reading.parameters import Parameter
 
 SCHEMA_VERSION = 1
 BLOCK_ROWS = 1 << 17
-ALL_BY = "rodsweep query FILE --columns help has all"    # of an answer to a parameter that there is not
-OF_TASKS = {"task": True, "sample": True, "outcome": False}   # can be selected by beside parameters; numbers?
+ALL_BY = "rodsweep query FILE --columns help lists all"    # in the message for an unknown parameter
+OF_TASKS = {"task": True, "sample": True, "outcome": False}   # columns for select() beside parameters; if numeric
 PLAN_COLUMNS = ("point", "sample", "own_guess", "first_step", "steps", "first_solve", "solves")
 
 
@@ -73,7 +73,7 @@ class SweepFile:
 
     def _required(self, path):
         if path not in self.h5:
-            raise SweepFileError(f"{self.path} is damaged or was never completely created: {path} is missing")
+            raise SweepFileError(f"{self.path} is damaged or incomplete: {path} is missing")
         return self.h5[path]
 
     def _read_parameters(self):
@@ -91,7 +91,7 @@ class SweepFile:
         return parameters
 
     def has(self, path):
-        """Whether a dataset is there and not empty."""
+        """Whether a dataset exists and is not empty."""
         return path in self.h5 and isinstance(self.h5[path], h5py.Dataset) and self.h5[path].size > 0
 
     def parameter(self, name):
@@ -104,7 +104,7 @@ class SweepFile:
         return [p.name for p in self.parameters.values() if p.swept]
 
     def scene_types(self):
-        """The scene type of every task; "scene" where the file does not say."""
+        """The scene type of every task; "scene" if the file does not have it."""
         if "scene.type" in self.parameters:
             return self.parameters["scene.type"].values
         return np.full(self.task_count, "scene")
@@ -121,7 +121,7 @@ class SweepFile:
         return int(match[0])
 
     def results(self, name, tasks):
-        """/tasks/<name> for task numbers that must be complete. None where the file lacks the column."""
+        """/tasks/<name> for task numbers that must be complete. None if the file does not have the column."""
         path = f"/tasks/{name}"
         tasks = np.asarray(tasks, dtype=np.int64)
         if not self.complete[tasks].all():
@@ -129,8 +129,8 @@ class SweepFile:
         return decoded(self.h5[path][:])[tasks] if self.has(path) else None
 
     def select(self, texts):
-        """Mask of the tasks that meet all conditions (see conditions.py): on parameters, a vector's with .x, .y or .z
-        after its name, on task, sample and outcome."""
+        """Mask of the tasks that meet all conditions (see conditions.py) on task, sample, outcome and parameters;
+        vectors have .x, .y or .z after the name."""
         known = self._selectable()
         mask = np.ones(self.task_count, dtype=bool)
         for text in texts:
@@ -186,14 +186,14 @@ class SweepFile:
         return any(0 <= n < len(marked) and marked[n] for n in set(numbers.tolist()))
 
     def timed_apart(self, tasks):
-        """Mask of the tasks of which some guesses were timed in another run than the others (run --extend)."""
+        """Mask of the tasks with some guesses timed in another run than the others (run --extend)."""
         if not self.has("/timing/tasks/copied_guess"):
             return np.zeros(len(tasks), dtype=bool)
         copied = self.h5["/timing/tasks/copied_guess"][:][tasks] == 1
         return copied.any(axis=1) & ~copied.all(axis=1) & (self.own_guess[tasks] < 0)
 
     def job(self):
-        """The job as it was given, parsed; empty where it cannot be."""
+        """The parsed job; empty if it cannot be parsed."""
         if "/job/text" not in self.h5:
             return {}
         text = np.asarray(self.h5["/job/text"][()]).tobytes()  # one string, or an array of characters or of bytes

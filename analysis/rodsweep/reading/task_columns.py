@@ -1,12 +1,12 @@
-"""The tasks of a results file as flat columns, a value per task; each column is read when it is asked for.
+"""The tasks of a results file as flat columns, a value per task; each column is read when it is needed.
 
   task, state ("done", "pending"), outcome, message
   scene.segments, scene.gravity_m_s2.x, ...   /tasks/parameters
   sample, point, own_guess (its label), ...   /tasks
-  cg_ratio.LABEL[@TOLERANCE], ...             /tasks, of one guess; without a tolerance at that of `headline`
+  cg_ratio.LABEL[@TOLERANCE], ...             /tasks, of one guess; default tolerance: that of `headline`
   elapsed_s, rank, host, run, ...             /timing/tasks
 
-A missing value (a key that does not apply, a result of a pending task, -1 of whole numbers) is NaN or "".
+A missing value (a key that does not apply, a result of a pending task, -1 of integers) is NaN or "".
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +29,7 @@ LEFT_OUT = ("state", "checksum")
 @dataclass(frozen=True)
 class TaskColumn:
     name: str
-    path: str = ""        # of the dataset; "" of columns that are made here
+    path: str = ""        # of the dataset; "" of computed columns
     index: tuple = ()     # of the value within a row
     unit: str = ""
     meaning: str = ""
@@ -43,7 +43,7 @@ class TaskColumn:
 
 
 class TaskColumns:
-    """`names`: of all columns, in their order."""
+    """`names`: names of all columns, in order."""
 
     def __init__(self, file):
         self.file = file
@@ -59,7 +59,7 @@ class TaskColumns:
         self.names = list(self.columns)
 
     def __getitem__(self, name):
-        """The column of a name, which may end in @TOLERANCE. KeyNotFound where there is none."""
+        """The column of a name, which may end in @TOLERANCE. Raises KeyNotFound if there is none."""
         if name in self.columns:
             return self.columns[name]
         base, at, tolerance = name.rpartition("@")
@@ -77,7 +77,7 @@ class TaskColumns:
         return conditions.parse(text, _Known(self), ALL_BY)
 
     def values(self, column):
-        """An array with a value of every task."""
+        """An array with a value per task."""
         if column.name == "task":
             return np.arange(self.file.task_count)
         if column.name == "state":
@@ -98,7 +98,7 @@ class TaskColumns:
         return [texts.tolerance_label(value) for value in self.file.tolerances]
 
     def _headline(self):
-        """Index of the tolerance of the job's timed solves, where all tasks have one on the ladder; else of 1e-2."""
+        """Index of the tolerance of the timed solves, if all tasks have one and the file has it; else of 1e-2."""
         wanted = 1e-2
         if "solve.tolerance" in self.file.parameters:
             used = np.unique(self.file.parameters["solve.tolerance"].values)
@@ -118,7 +118,7 @@ class TaskColumns:
                           item.dtype.kind in "iufb" and name != "own_guess", item.dtype.kind in "iu",
                           bool(item.attrs.get("swept", False)), parameter, not planned)
         if name == "own_guess" and not parameter:
-            made = replace(made, meaning="the guess that advances the rods; none: the direct solve does", whole=False)
+            made = replace(made, meaning="the guess that advances the rods; none: no guess does", whole=False)
         guesses, shape = self.file.guesses, item.shape[1:]
         if not shape:
             self._add(made)
@@ -133,7 +133,7 @@ class TaskColumns:
 
 
 class _Known:
-    """The columns as conditions.parse() asks for them: with the words that they hold, and with any tolerance."""
+    """The columns for conditions.parse(): with the words that they can hold, and with any tolerance."""
 
     def __init__(self, table):
         self.table = table

@@ -19,7 +19,7 @@ def number_text(value):
 
 
 def quantity(name, unit):
-    """What a key measures, its unit left out: scene.torsion_modulus_pa, Pa -> "torsion modulus"."""
+    """What a key measures, without its unit: scene.torsion_modulus_pa, Pa -> "torsion modulus"."""
     if name in NAMES:
         return NAMES[name]
     words = name.rsplit(".", 1)[-1].split("_")
@@ -43,7 +43,7 @@ def tolerance_label(value):
 
 
 def interval_text(estimate):
-    """0.25 [0.21, 0.30] of an Estimate of one number; "-" where there is none."""
+    """0.25 [0.21, 0.30] of an Estimate of one number; "-" if there is none."""
     if not math.isfinite(estimate.value):
         return "-"
     if not math.isfinite(estimate.low):
@@ -68,21 +68,21 @@ def range_text(counts):
 
 
 def aligned(rows):
-    """Columns of equal width, the first to the left, the others to the right."""
+    """Columns of equal width: the first is left-aligned, the others are right-aligned."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     return ["  ".join([row[0].ljust(widths[0])] + [cell.rjust(w) for cell, w in zip(row[1:], widths[1:])]).rstrip()
             for row in rows]
 
 
 def write_csv(out, columns, records):
-    """NaN (the one value that differs from itself) and what a record lacks are empty fields."""
+    """NaN (the only value that is not equal to itself) and missing keys of a record become empty fields."""
     writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
     writer.writeheader()
     writer.writerows({key: "" if value != value else value for key, value in record.items()} for record in records)
 
 
 def split_labels(text):
-    """At commas outside parentheses: labels may hold their own."""
+    """Splits at commas outside parentheses, since labels may contain commas."""
     parts, depth, start = [], 0, 0
     for k, letter in enumerate(text):
         depth += (letter == "(") - (letter == ")")

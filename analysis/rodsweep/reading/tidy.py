@@ -1,9 +1,9 @@
-"""Flat columns of a results file, block by block: what export.py writes and rodsweep.open() hands out as frames.
+"""Flat columns of a results file, block by block, for export.py and the frames of rodsweep.open().
 
-A row of the level `tasks` is one task x guess x tolerance, of `solves` one solve x guess (a column per tolerance of
-what has that axis), of `steps` one step. Every dataset of the level is a column by its name, with those of /timing
-after them, so that columns of later versions come along. Sentinels of whole numbers (-1: not reached, not run), NaN and empty
-texts stand for what is not there. Blocks are of at most BLOCK_ROWS rows of the file, whatever its size.
+A row of the level `tasks` is one task x guess x tolerance, of `solves` one solve x guess (with a column per tolerance
+of datasets that have this axis), of `steps` one step. Every dataset of the level is a column with its name, followed
+by those of /timing, so that columns of later versions are included. -1 of integers (not reached, not run), NaN and
+empty texts are missing values. Blocks have at most BLOCK_ROWS rows of the file.
 """
 
 import itertools
@@ -21,18 +21,18 @@ BLOCK_ROWS = 1 << 13
 INTERNAL = ("first_step", "first_solve", "first_frame_row", "first_segment_row", "first_system", "first_system_segment",
             "first_system_joint", "state", "checksum", "segments_total")
 COMPONENTS = ("x", "y", "z")
-OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # known of every task without reading
+OF_TASKS = ("task", "outcome", "sample", "own_guess", "point")    # loaded for every task
 OWN_MEANING = {"task": "number of the task: its row in /tasks", "guess": "label of the initial guess",
-               "tolerance": "what CG's residual is brought to, relative to the right-hand side's"}
-COUNTED = ("step", "newton", "rod", "newton_iterations")    # whole numbers that no row which was reached lacks
-ALL_BY = "export.py --list and results.columns() have all"    # of an answer to a name that there is not
-MARKS = ("newton", "newton_iterations", "time_s")    # the first of these that there is says which rows were reached
+               "tolerance": "residual that CG has to reach, relative to the right-hand side's"}
+COUNTED = ("step", "newton", "rod", "newton_iterations")    # integers that every reached row has
+ALL_BY = "export.py --list and results.columns() list all"    # in the message for an unknown name
+MARKS = ("newton", "newton_iterations", "time_s")    # the first one in the file tells which rows were reached
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column's rows: values, or values[index]. What many rows or blocks have in common is one array, so that whoever
-    works on values does so once."""
+    """A column's rows: values, or values[index]. Rows and blocks share one array of values, so work on them is done
+    once."""
     values: np.ndarray
     index: np.ndarray = None
 
@@ -43,21 +43,21 @@ class Column:
         return self.values if self.index is None else self.values[self.index]
 
     def at(self, rows, made):
-        """Of some rows. What `made` of a block holds serves all its columns: they mostly have the same index."""
+        """The Column of some rows. `made` caches the index for all columns of a block, which mostly share it."""
         if id(self.index) not in made:
             made[id(self.index)] = rows if self.index is None else self.index[rows]
         return Column(self.values, made[id(self.index)])
 
 
 def require_rows(file, level):
-    """Raises KeyNotFound where a file has no rows of a level."""
+    """Raises KeyNotFound if a file has no rows of a level."""
     if level != "tasks" and not any(file.has(f"/{level}/{name}") for name in MARKS):
-        raise KeyNotFound(f"{file.path} has no rows of {level} (/{level} is empty: record.solves of the job is "
-                          "\"summary\", or it has none)")
+        raise KeyNotFound(f"{file.path} has no rows of {level} (/{level} is empty, for example since record.solves of "
+                          "the job is \"summary\")")
 
 
 class Tidy:
-    """Columns of a level, of complete tasks. names: all there are; blocks(): their rows."""
+    """Columns of a level, of complete tasks. names: names of all columns; blocks(): their rows."""
 
     def __init__(self, file, level, tasks, guesses, tolerances):
         self.file, self.level, self.tasks = file, level, np.asarray(tasks)
@@ -75,7 +75,7 @@ class Tidy:
         self.names = self._names()
 
     def _axes(self, path):
-        """Names of the axes after the row, from their lengths."""
+        """Names of the axes after the row axis, derived from their lengths."""
         lengths = self.file.h5[path].shape[1:]
         known = {(): (), (len(self.file.guesses),): ("guess",),
                  (len(self.file.guesses), len(self.file.tolerances)): ("guess", "tolerance")}
@@ -103,7 +103,7 @@ class Tidy:
         return names + [name for name in self.file.parameters if name not in names and name != "guess"]
 
     def default_names(self):
-        """All but the parameters that are the same for every task."""
+        """All names except parameters that are the same for every task."""
         fixed = set(self.file.parameters) - {*self.swept, "scene.type", "guess"}
         return [name for name in self.names if name not in fixed]
 
@@ -123,7 +123,7 @@ class Tidy:
         return stored if stored.kind in "iuf" else np.dtype(str)
 
     def about(self, name):
-        """(unit, meaning) of a column, as the file tells them."""
+        """(unit, meaning) of a column, from the file."""
         if name in OWN_MEANING:
             return "", OWN_MEANING[name]
         if not self._is_measured(name) and name in self.file.parameters:
@@ -134,13 +134,13 @@ class Tidy:
         return unit, meaning if index is None else f"{meaning}; {name[len(base) + 1:]}".removeprefix("; ")
 
     def condition(self, text):
-        """What a condition says of these columns; see conditions.py."""
+        """Parses a condition on these columns; see conditions.py."""
         return conditions.parse(text, {name: conditions.Column(self.dtype(name).kind in "iuf",
                                                                tuple(self.file.guesses) if name == "guess" else ())
                                        for name in self.names}, ALL_BY)
 
     def blocks(self, names, where=()):
-        """Yields {name: Column} of the columns `names` where all of the conditions are met, in the file's order."""
+        """Yields {name: Column} with the rows that meet all conditions, in the file's order."""
         tasks, guesses, tolerances, conditions_left = self._narrowed(where)
         needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
         guesses = guesses if self.by_guess else [None]
@@ -159,13 +159,13 @@ class Tidy:
                     yield {name: block[name].at(rows_kept, made) for name in names}
 
     def arrays(self, names, where=()):
-        """(task of every row, indices of guesses, of tolerances, {dataset: rows}) of datasets, or of columns without
-        axes, in one piece with their axes. Raises KeyNotFound for a condition on what has several values in a row."""
+        """(task of every row, indices of guesses, of tolerances, {dataset: rows}) of whole datasets with their axes.
+        Raises KeyNotFound for a condition on a column with several values in a row."""
         tasks, guesses, tolerances, conditions_left = self._narrowed(where)
         for condition in conditions_left:
             if self.shape.get(condition.column) != ():
-                raise KeyNotFound(f"{condition.text}: {condition.column} has a value for every guess or tolerance, "
-                                  "which chooses no rows; use where() of the dataset")
+                raise KeyNotFound(f"{condition.text}: {condition.column} has a value for every guess or tolerance, so "
+                                  "it cannot choose rows; use where() of the dataset")
         needed = list(dict.fromkeys([*names, *(condition.column for condition in conditions_left)]))
         owners, found = [], {name: [] for name in names}
         for some, rows in self._row_blocks(tasks, self._paths(needed)):
@@ -185,7 +185,8 @@ class Tidy:
         return np.concatenate(owners), guesses, tolerances, whole
 
     def _narrowed(self, where):
-        """What conditions leave of tasks, guesses and tolerances, and those conditions that are on rows."""
+        """The tasks, guesses and tolerances that meet the conditions, and the remaining conditions, which are on
+        rows."""
         tasks, guesses, tolerances, left = self.tasks, self.guesses, self.tolerances, []
         for condition in where:
             name = condition.column
@@ -200,7 +201,7 @@ class Tidy:
         return tasks, guesses, tolerances, left
 
     def _belongs(self, tasks, g):
-        """Mask of the rows that there are for a guess: in a closed loop each task has its own."""
+        """Mask of the rows with a guess: in a closed loop each task has only its own."""
         if g is None:
             return np.ones(len(tasks), dtype=bool)
         own = self.file.own_guess[tasks]
@@ -211,7 +212,7 @@ class Tidy:
         return list(dict.fromkeys(self.datasets[self._source(name)[0]] for name in names if self._is_measured(name)))
 
     def _row_blocks(self, chosen, paths):
-        """(task of every row, {dataset: rows}) with rows that were never reached left out."""
+        """Yields (task of every row, {dataset: rows}) without rows that were never reached."""
         if self.level == "tasks":
             for begin in range(0, len(chosen), BLOCK_ROWS):
                 some = chosen[begin:begin + BLOCK_ROWS]
@@ -229,18 +230,19 @@ class Tidy:
                 yield tasks[reached], {path: values[reached] for path, values in rows.items()}
 
     def shared(self, name):
-        """The array that a column's values are in all blocks; None where every block has its own."""
+        """The array of a column's values for all blocks; None if every block has its own."""
         if name in ("guess", "tolerance"):
             return self.labels if name == "guess" else self.file.tolerances
         return None if self._is_measured(name) else self._of_tasks(name)
 
     def _is_measured(self, name):
-        """Whether a column is read by the block; others go by the task, the guess or the tolerance."""
+        """Whether a column is read in blocks; others depend only on the task, the guess or the tolerance."""
         return name not in (*OF_TASKS, "guess", "tolerance") and (name in self.datasets or
                                                                   name not in self.file.parameters)
 
     def _column(self, name, tasks, rows, parts, g, t):
-        """`parts` holds the columns of a block's datasets: what is the same for all guesses is the same array."""
+        """The Column of a name. `parts` caches a block's columns, so that guesses share an array if it is equal for
+        them."""
         if not self._is_measured(name):
             index = {"guess": g, "tolerance": t}
             return Column(self.shared(name), np.full(len(tasks), index[name]) if name in index else tasks)
@@ -253,7 +255,7 @@ class Tidy:
         return Column(parts[name, where])
 
     def _of_tasks(self, name):
-        """A value for every task of the file; always the same array."""
+        """A value for every task of the file, in a cached array."""
         if name not in self.whole:
             if name in OF_TASKS:
                 values = np.arange(self.file.task_count) if name == "task" else getattr(self.file, name)

@@ -1,16 +1,16 @@
-"""Times and speedups per simulation, from the rows of /timing: sums over a simulation, as CG ratios are.
+"""Times and speedups per simulation, from the rows of /timing: sums over a simulation, like CG ratios.
 
-A row holds the times of the parts of a solve: assembly, each guess and its CG to the job's tolerance, the direct solve.
-They last microseconds, and the operating system's interruptions milliseconds: one would outweigh a whole simulation.
-A row is left out, for all guesses, where a part took over INTERRUPTED times its median and FLOOR_S longer (CG: its
-median per iteration, with FIXED iterations for what every solve costs; a guess: per product with A before the first
-iteration, with one for the rest; the rest of a step: per Newton iteration, with one for prediction and velocities);
-sums are scaled up to all rows. The median is over the simulation's rows of the same Newton iteration, since a guess may
-be made in another way there (the nearest data of a first one, no history of a late one); where they are fewer than FEW,
-that of an iteration before it or of all stands in. Some parts are judged by each other alone, and not where they are
-fewer than FEW: CG without an iteration, and what made anew a preconditioner or factors that lag (/solves/renewed).
-Times.interrupted counts the rows left out; where they are more than SUSPICIOUS of all, the sentence that says so says
-also what it means.
+A row has the times of the parts of a solve: assembly, each guess and its CG to the job's tolerance, the direct solve.
+Parts take microseconds, but the operating system's interruptions take milliseconds: one could exceed a simulation. A
+row is left out, for all guesses, if a part took over INTERRUPTED times its usual time and FLOOR_S longer. Sums are
+then scaled up to all rows. The usual time is a median per unit of work. Units of CG are iterations, with FIXED for the
+cost of every solve. Units of a guess are products with A before the first iteration, plus one. Units of the rest of a
+step are Newton iterations, plus one for prediction and velocities. The median is over the simulation's rows of the
+same Newton iteration, since a guess may work differently there (nearest data at the first, no history at a late one).
+If they are fewer than FEW, the median of an earlier iteration or of all rows is used. Two kinds of parts are only
+compared among themselves, and only if there are FEW: CG without an iteration, and parts that renewed a lagged
+preconditioner or factor (/solves/renewed). Times.interrupted counts the rows left out; above a share of SUSPICIOUS,
+interruptions() warns.
 """
 
 from dataclasses import dataclass
@@ -89,7 +89,7 @@ def times(file, sims):
             for name, values in parts.items():
                 np.add.at(sums[which][name], owners, np.add.reduceat(values.astype(float), starts, axis=0))
     rest = np.broadcast_to(_rest_s(file, tasks)[:, None], (file.task_count, guesses))
-    first, every = _scale(sums["first"]), _scale(sums["later"])  # in place: most of the memory of a large file is here
+    first, every = _scale(sums["first"]), _scale(sums["later"])  # in place: these arrays are most of the memory
     found = {"first": _gathered(sims, zero, first, rest)}
     for name in list(first):
         every[name] += first.pop(name)
@@ -97,7 +97,7 @@ def times(file, sims):
 
 
 def timed_rung(file):
-    """Per task, the tolerance of the ladder that is nearest to that of the timed solves."""
+    """Per task, the index of the tolerance that is nearest to that of the timed solves."""
     parameter = file.parameters.get("solve.tolerance")
     if parameter is None:
         return np.zeros(file.task_count, dtype=int)
@@ -105,8 +105,8 @@ def timed_rung(file):
 
 
 def _interrupted(starts, parts, work, kind=None, apart=None):
-    """Rows in which some part lasted far longer than its median per work over the task's rows of that kind. Parts of
-    one number above 0 in `apart` are judged by each other."""
+    """Mask of the rows in which a part took far longer than its median per work over the task's rows of that kind.
+    Parts with the same number above 0 in `apart` are only compared with each other."""
     found = np.zeros(len(parts), dtype=bool)
     kind = np.zeros(len(parts)) if kind is None else kind
     apart = np.zeros(parts.shape, dtype=np.int8) if apart is None else apart
@@ -129,8 +129,8 @@ def _interrupted(starts, parts, work, kind=None, apart=None):
 
 
 def _medians(rates, otherwise, fewest=1):
-    """Of each part, over its rates that are not NaN; `otherwise` where they are fewer than `fewest`. Called for every
-    task and Newton iteration: five times as fast as numpy.nanmedian."""
+    """Median of each part's rates that are not NaN; `otherwise` if they are fewer than `fewest`. Called for every task
+    and Newton iteration, so it must be fast: numpy.nanmedian takes five times as long."""
     ordered, count = np.sort(rates, axis=0), np.count_nonzero(~np.isnan(rates), axis=0)  # NaN last
     part = np.arange(rates.shape[1])
     middle = (ordered[(count - 1) // 2, part] + ordered[count // 2, part]) / 2
@@ -138,7 +138,7 @@ def _medians(rates, otherwise, fewest=1):
 
 
 def _scale(sums):
-    """Makes sums over the rows kept sums over all rows; direct_s is NaN unless all rows kept have it."""
+    """Scales sums over the kept rows to all rows; direct_s is NaN unless all kept rows have it."""
     none = np.where(sums["solves"] > 0, np.nan, 1.0)
     scale = np.divide(sums["solves"], sums["kept"], out=none, where=sums["kept"] > 0)
     for name in sums.keys() - {"solves", "kept", "direct_kept"}:
@@ -148,7 +148,7 @@ def _scale(sums):
 
 
 def _gathered(sims, zero, sums, rest):
-    """Sums of tasks by simulation and guess; NaN where there were no solves."""
+    """Sums of tasks by simulation and guess; NaN without solves."""
     solves = sims.gather(sums["solves"])
 
     def of(name, guess=None):
@@ -167,7 +167,7 @@ def _gathered(sims, zero, sums, rest):
 
 
 def _rest_s(file, tasks):
-    """Seconds of the steps outside assembly and solves per task, interruptions left out; NaN if not recorded."""
+    """Seconds of the steps outside assembly and solves per task, without interruptions; NaN if not recorded."""
     total, kept, taken = (np.zeros(file.task_count) for _ in range(3))
     if file.has("/timing/steps/rest_s"):
         for owners, starts, rows in file.step_blocks(tasks, ["/timing/steps/rest_s", "/steps/newton_iterations"]):
@@ -207,7 +207,7 @@ def direct_times(file, sims):
 
 
 def direct_step_us(file, sims):
-    """[simulation], mean time of a whole step that the direct solve takes; NaN where none was timed."""
+    """[simulation]: mean time of a whole step with the direct solve; NaN if none was timed."""
     tasks = sims.tasks()
     mean_us, solves = _direct_means(file, tasks)
     step_us = (mean_us.sum(axis=0) * solves + 1e6 * _rest_s(file, tasks)) / np.maximum(file.steps, 1)
@@ -231,7 +231,7 @@ def _direct_means(file, tasks):
 
 
 def interruptions(part, sims):
-    """What was left out of a Times, as a sentence; empty where nothing was."""
+    """A sentence on the rows that a Times leaves out; empty if there are none."""
     solves, left_out = (np.where(sims.own, np.nansum(count, axis=1), np.nan_to_num(count).max(axis=1, initial=0)).sum()
                         for count in (part.solves, part.interrupted))
     if not left_out:
@@ -240,5 +240,5 @@ def interruptions(part, sims):
              f"(a part lasted over {INTERRUPTED} times its median).")
     if left_out <= SUSPICIOUS * solves:
         return found
-    return (f"{found} That is {left_out / solves:.0%} of them: these times are not to be trusted. The machine had other "
-            "work to do, or some solves are slow by design.")
+    return (f"{found} That is {left_out / solves:.0%} of them: these times are not reliable. The machine was busy with "
+            "other work, or some solves are slow by design.")

@@ -1,8 +1,8 @@
-"""The recorded trajectory of a task: what its segments are, and where they are in every frame.
+"""The recorded trajectory of a task: its segments and their positions in every frame.
 
-A segment is a cylinder along its local z with length, radius and centre x; its orientation is the unit quaternion
-q = (w, x, y, z), and its axis in the world the third column of q's rotation matrix. Lengths in metres. A frame is read
-when it is asked for, so that memory does not grow with their number. Raises KeyNotFound for what the file lacks.
+A segment is a cylinder along its local z with length, radius and centre x. Its orientation is the unit quaternion q =
+(w, x, y, z), and its axis in the world is the third column of q's rotation matrix. Lengths are in metres. A frame is
+read when it is needed, so memory use does not grow with their number. Raises KeyNotFound if the file lacks data.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Trajectory:
     first_row: np.ndarray   # [frame] row in /trajectories
     time_s: np.ndarray      # [frame]
     length: np.ndarray      # [segment]
-    radius: np.ndarray      # [segment] 0, like the length: a wall that holds the rod
+    radius: np.ndarray      # [segment] radius and length are 0 for a wall that holds the rod
     rod: np.ndarray         # [segment]
     static: np.ndarray      # [segment] held by a clamp
 
@@ -50,8 +50,8 @@ class Trajectory:
 
 
 class Beside:
-    """Several trajectories as one, every one `apart` [3] from that before it; each is a rod of its own. One that ended
-    early stays as it was."""
+    """Several trajectories as one, each shifted by `apart` [3] from the one before; each is a separate rod. A
+    trajectory that ended early keeps its last frame."""
 
     def __init__(self, parts, apart):
         self.parts, self.shift = parts, [k * np.asarray(apart) for k in range(len(parts))]
@@ -84,7 +84,7 @@ def axis(orientation):
 
 
 def of_task(file, task):
-    """The frames that a complete task recorded; of one that failed, those up to then."""
+    """The recorded frames of a complete task; a failed task has those before its failure."""
     recorded(file)
     if not 0 <= task < file.task_count:
         raise KeyNotFound(f"{file.path} has tasks 0 to {file.task_count - 1}, not {task}")
@@ -103,23 +103,23 @@ def of_task(file, task):
 
 
 def recorded(file):
-    """Refuses a file without frames, or whose frames do not say how long and thick the segments are."""
-    again = f"`rodsweep rerun {file.path} TASK` makes a file of one task that has them"
+    """Raises KeyNotFound for a file without frames, or without the lengths and radii of the segments."""
+    again = f"`rodsweep rerun {file.path} TASK` makes a file of one task with them"
     if not file.has("/trajectories/position_m"):
-        raise KeyNotFound(f"{file.path} has no trajectories: ask for them with record.trajectory_every in the job; "
+        raise KeyNotFound(f"{file.path} has no trajectories: set record.trajectory_every in the job; "
                           f"{again}")
     if not file.has(f"{SEGMENTS}/radius_m"):
-        raise KeyNotFound(f"{file.path} does not say how long and thick its segments are ({SEGMENTS} is missing: an "
-                          f"older rodsweep wrote it); {again}")
+        raise KeyNotFound(f"{file.path} has no lengths and radii of its segments ({SEGMENTS} is missing: an older "
+                          f"rodsweep wrote it); {again}")
 
 
 def add_task_argument(made):
-    made.add_argument("--task", metavar="N", type=int, help="this task (default: the first that --scene, --select and "
-                                                            "--guess leave)")
+    made.add_argument("--task", metavar="N", type=int, help="task to show (default: the first that --scene, --select "
+                                                            "and --guess choose)")
 
 
 def chosen(file, options):
-    """That of --task, or of the first complete task that --scene, --select and --guess leave."""
+    """The trajectory of --task, or of the first complete task that --scene, --select and --guess choose."""
     recorded(file)
     if options.task is not None:
         return of_task(file, options.task)
@@ -127,7 +127,7 @@ def chosen(file, options):
     if options.guess:
         left &= np.isin(file.own_guess, commandline.chosen_guesses(file, options))
     if not left.any():
-        raise KeyNotFound(f"no complete task of {file.path} is left" +
-                          ("; --guess chooses tasks of closed loops, which have a guess of their own" if options.guess
+        raise KeyNotFound(f"no complete task of {file.path} is chosen" +
+                          ("; --guess chooses tasks of closed loops, which have their own guess" if options.guess
                            else ""))
     return of_task(file, int(np.flatnonzero(left)[0]))

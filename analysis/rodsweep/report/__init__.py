@@ -1,1 +1,1 @@
-"""The report of one or several sweeps: a page of HTML that needs nothing else. Its numbers are those of `reading`."""
+"""The report of one or several sweeps: one self-contained page of HTML. Its numbers are those of `reading`."""

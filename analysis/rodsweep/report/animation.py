@@ -1,9 +1,9 @@
-"""Recorded trajectories, small enough for a page: fewer frames, and points in whole numbers.
+"""Recorded trajectories in a form that is small enough for a page: fewer frames, and points as integers.
 
-A rod's segments meet at joints, so both ends there become one point (their mean, as in the length drift). Points are
-those of the first frame that are nearer than MEETING of a segment to each other on the same rod. Coordinates are 16-bit
-steps through the box around all frames, about 1e-5 of the scene, little endian in base64. Frames are left out evenly
-until an animation fits into its share of the page.
+A rod's segments meet at joints, so both ends at a joint become one point (their mean, as in the length drift). Two
+ends are one point if they are on the same rod and nearer than MEETING segment lengths in the first frame. Coordinates
+are 16-bit steps through the box around all frames, about 1e-5 of the scene, little endian in base64. Frames are left
+out evenly until an animation fits into its share of the page.
 """
 
 import base64
@@ -29,8 +29,8 @@ WORDS = 4            # of a title, besides the scene
 
 
 def animations(file, chosen, room):
-    """Of tasks as different as there are, in the room (axes.Budget) of bytes that the page has for them, and how many
-    did not fit; ([], 0) where nothing was recorded."""
+    """(animations, number of those that did not fit) of tasks that differ in their settings, within `room`
+    (axes.Budget, bytes); ([], 0) if nothing was recorded."""
     tasks = _different(file, chosen)
     found = []
     for left, task in zip(range(len(tasks), 0, -1), tasks):
@@ -41,7 +41,7 @@ def animations(file, chosen, room):
 
 
 def _different(file, chosen):
-    """The first task of every scene, gridded setting and guess, by what the job varies; of few, all."""
+    """The first task of every scene, gridded setting and guess; at most MOST_TASKS."""
     try:
         trajectory.recorded(file)
     except KeyNotFound:
@@ -55,7 +55,7 @@ def _different(file, chosen):
     codes = [file.parameters[key].codes()[tasks] for key in keys if key in file.parameters]
     kinds = np.stack([np.zeros(len(tasks), dtype=int), *codes], axis=1)
     first = np.sort(np.unique(kinds, axis=0, return_index=True)[1])
-    if len(first) > MOST_TASKS:     # of many kinds those of every scene, and as many as fit
+    if len(first) > MOST_TASKS:     # one of every scene first, then as many as fit
         scenes = np.sort(np.unique(file.scene_types()[tasks[first]], return_index=True)[1])
         rest = np.setdiff1d(np.arange(len(first)), scenes)
         first = first[np.sort(np.concatenate([scenes, rest])[:MOST_TASKS])]
@@ -73,7 +73,7 @@ def _animation(file, task, tasks, room):
         return None
     try:
         low, high, spread = staging.bounds(shown, frames)
-    except KeyNotFound:     # positions that are no numbers
+    except KeyNotFound:     # positions that are not numbers
         return None
     up = staging.upwards(file, task)
     touched = obstacles.of_task(file, task)
@@ -104,7 +104,7 @@ def _animation(file, task, tasks, room):
 
 
 def _points(shown):
-    """The number of every end's point, first ends before second ones, and how many points there are."""
+    """(index of every end's point, number of points); the first ends of all segments come before the second ones."""
     ends = np.concatenate(shown.ends(0))
     rod = np.concatenate([shown.rod, shown.rod])
     reach = MEETING * np.median(shown.length[shown.length > 0]) if (shown.length > 0).any() else 1.0
@@ -116,14 +116,14 @@ def _points(shown):
 
 
 def _frames(recorded, most):
-    """Evenly chosen frames, the first among them; None where too few would be left."""
+    """Evenly chosen frames, with the first; None if too few fit."""
     if most < min(recorded, FEWEST_FRAMES):
         return None
     return list(range(0, recorded, math.ceil(recorded / most)))
 
 
 def _title(file, task, tasks):
-    """What sets a task apart: its scene, and what the others of that scene have not."""
+    """A task's scene, and its parameters that differ among the tasks of that scene."""
     scenes = file.scene_types()
     words, alike = [scenes[task].replace("_", " ").capitalize()], [one for one in tasks if scenes[one] == scenes[task]]
     for parameter in file.parameters.values():

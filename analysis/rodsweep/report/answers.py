@@ -1,7 +1,7 @@
-"""What a sweep answers, for the page's first lines: the numbers of summary.py's tables, and what they say in words.
+"""Results of a sweep for the page's first lines: the numbers of summary.py's tables, and sentences about them.
 
-An Answer is of one block (a scene type and gridded settings). A guess that solves the system itself, the oracle, is in
-the table and wins nothing. Texts of numbers are those of the table.
+An Answer is about one block (a scene type and gridded settings). The oracle, a guess that solves the system itself, is
+in the table but cannot be the best. Numbers are formatted as in the table.
 """
 
 import math
@@ -17,14 +17,14 @@ DOT_WIDTH, BAR_WIDTH = 96, 120    # of the drawings in the table, in pixels
 
 @dataclass(frozen=True)
 class Row:
-    """A guess or the direct solve. Names: ratio and all (of iterations), guess_us and cg_us, the SPEEDUPS over CG from
-    zero and over_direct_ with them."""
+    """A guess or the direct solve. Keys: ratio and all (of iterations), guess_us and cg_us, the SPEEDUPS over CG from
+    zero, and those over the direct solve with over_direct_ before the name."""
     label: str
-    wins: bool         # may it be called the best?
+    wins: bool         # whether it can be the best
     texts: dict        # as summary.py writes them
     sort: dict         # the numbers of the texts, NaN where there is none
     estimates: dict    # of those that have an interval
-    parts: dict        # what the time of a solve is made of, in us
+    parts: dict        # parts of the time of a solve, in us
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Answer:
     block: blocks.Block
     title: str
     simulations: str
-    missed: bool             # did any solve of it miss the tolerance?
+    missed: bool             # whether any solve missed the tolerance
     rows: list
     fewest: Row = None       # of iterations
     fastest: Row = None      # guess and CG
@@ -41,7 +41,7 @@ class Answer:
 
     @property
     def few(self):
-        """Are simulations too few for intervals?"""
+        """Whether there are too few simulations for intervals."""
         return not any(math.isfinite(row.estimates["ratio"].low) for row in self.rows if "ratio" in row.estimates)
 
     @property
@@ -49,16 +49,16 @@ class Answer:
         return sum(row.wins for row in self.rows)
 
     def sorted(self):
-        """By iterations; the direct solve, which has none, behind."""
+        """By iterations; the direct solve, which has none, comes last."""
         return sorted(self.rows, key=lambda row: row.sort.get("ratio", math.inf))
 
     def at(self, ratio):
-        """Where a CG ratio is in its drawing, in pixels."""
+        """Position of a CG ratio in its drawing, in pixels."""
         highest = max([1.1] + [1.02 * row.sort["ratio"] for row in self.rows if "ratio" in row.sort])
         return round(5 + (DOT_WIDTH - 10) * min(ratio / highest, 1), 1)
 
     def bars(self, row):
-        """(name, left edge, width) of the parts of a solve's time, in pixels; an answer has one scale."""
+        """(name, left edge, width) of the parts of a solve's time, in pixels; all rows of an answer have one scale."""
         longest = max((sum(other.parts.values()) for other in self.rows if math.isfinite(sum(other.parts.values()))),
                       default=math.nan)
         found, left = [], 0.0
@@ -76,12 +76,12 @@ def answers(file, found, guesses, tolerance):
 
 
 def tried(found):
-    """How the guesses of some Answers were tried: a sentence for a reader who knows nothing of it."""
+    """A sentence on how the guesses of some Answers were tried, for readers who do not know it."""
     loops = [answer.block.sims.closed_loop for answer in found]
     direct = [answer.direct is not None for answer in found]
-    how = "was tried on the same systems" if not all(loops) else "led simulations of its own"
+    how = "was tried on the same systems" if not all(loops) else "advanced its own simulations"
     if any(loops) and not all(loops):
-        how += ", or in closed loops led simulations of its own,"
+        how += ", or in closed loops advanced its own simulations,"
     timed = any(answer.block.times is not None for answer in found)
     what = "its iterations and time were measured" if timed else "its iterations were counted"
     beside = "" if not any(direct) else f",{'' if all(direct) else ' in part'} with a direct solve beside it"
@@ -89,7 +89,7 @@ def tried(found):
 
 
 def headline_tolerance(file, sims, tolerances):
-    """That of the timed solves where it is shown, else 1e-2, else the first."""
+    """Index of the tolerance of the timed solves if it is shown, else of 1e-2, else of the first."""
     timed = timings.timed_rung(file)[sims.tasks()]
     wanted = [int(np.bincount(timed).argmax())]
     wanted += [k for k in tolerances if abs(math.log10(file.tolerances[k]) + 2) < 1e-6]
@@ -122,7 +122,7 @@ def _row(file, block, g, t):
     sort = {name: float(estimate.value) for name, estimate in estimates.items()}
     if "all" in shown:
         shown["all"] = texts.fixed_text(sort["all"], 2)
-    if zero:    # what all others are measured against
+    if zero:    # the reference of all others
         shown.update({name: "1" for name in ("ratio", "all", *timings.SPEEDUPS) if name in shown})
     elif block.unreached[g, t] or block.unreached[file.zero, t]:
         shown["ratio"] += "*"
@@ -147,7 +147,7 @@ def _direct(file, block):
 
 
 def failures(file, chosen):
-    """(lines of [task, outcome, message], how many more there are)."""
+    """(lines of [task, outcome, message], number of further failures)."""
     failed = np.flatnonzero(chosen & file.complete & ~file.ok)
     shown = failed[:FAILURES_SHOWN]
     messages = file.results("message", shown) if len(shown) else None
@@ -156,7 +156,7 @@ def failures(file, chosen):
 
 
 def runs(file):
-    """One dictionary per start: when, where, by which revision."""
+    """One dictionary per start: time, host, ranks, revision."""
     return [{"begin": run.get("begin", ""), "end": run.get("end", ""), "host": run.get("host", ""),
              "ranks": int(run.get("ranks", 0)), "revision": run.get("revision", ""),
              "versions": run.get("versions", ""), "oversubscribed": bool(run.get("oversubscribed", 0))}
@@ -164,7 +164,7 @@ def runs(file):
 
 
 def steps(found, guesses, labels):
-    """Rows of how the steps went: (title, {name: (median, largest)} as texts) of Blocks."""
+    """Rows with results of the steps of Blocks: (title, {name: (median, largest)} as texts)."""
     rows = []
     for block in found:
         for g in guesses if block.sims.closed_loop and guesses else [0]:
@@ -175,6 +175,6 @@ def steps(found, guesses, labels):
 
 
 def notes(file, sims, guesses):
-    """What to know before one believes the times; remarks of `reading`."""
+    """Notes on the reliability of the times; remarks of `reading`."""
     tasks = sims.tasks()
     return [note for note in (remarks.timing_note(file, tasks), remarks.oracle_note(file, guesses).strip()) if note]

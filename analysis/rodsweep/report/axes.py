@@ -1,8 +1,8 @@
 """Estimates of a family's measures at the points along every axis, panel by panel, packed for the page.
 
-Axes are the parameters that the job sweeps: those of a grid first, then those that are drawn at random, in bins, as
-long as the estimates fit into a budget; which of them did not is said. Estimates are flat arrays in the order Newton
-iterations, points, lines, tolerances, rounded to what a reader can see; None stands for what is not known.
+Axes are the parameters that the job sweeps: first grids, then random ones in bins, as long as the estimates fit into a
+budget. The others are listed in `left_out`. Estimates are flat arrays in the order Newton iterations, points, lines,
+tolerances, rounded to visible precision; None stands for a missing value.
 """
 
 import math
@@ -14,11 +14,11 @@ from rodsweep.reading import groups, texts
 SCENE = "scene.type"
 PREFERRED = "scene.segments"
 MOST_PANELS = 60
-POOLED = {"guesses": (), "methods": ("solve.",)}   # keys that make lines, not panels, of a family
+POOLED = {"guesses": (), "methods": ("solve.",)}   # keys that give lines instead of panels
 
 
 class Budget:
-    """What a page still takes: of estimates, or of bytes."""
+    """Remaining budget of a page, in estimates or in bytes."""
 
     def __init__(self, left, whole=None):
         self.left, self.whole = left, whole
@@ -30,7 +30,7 @@ class Budget:
         return True
 
     def share(self, parts):
-        """One of so many equal parts; what it is spent on is spent of the whole."""
+        """One of `parts` equal shares; spending from it also spends from the whole."""
         return Budget(self.left / parts, self)
 
     def _spend(self, count):
@@ -40,8 +40,8 @@ class Budget:
 
 
 def packed(file, family, budget, wanted=()):
-    """The family as the page reads it. `wanted`: the keys of its axes that the user asked for, whatever they need. An
-    axis along which most panels have a single point is none; the scene stands in where there is no other."""
+    """The family in the form that the page reads. `wanted`: the axes that the user asked for, without a budget. An
+    axis needs several points in most panels; without any axis, the scene type is one."""
     keys = [key for key in wanted if key in candidates(file, family.sims)]
     if keys:
         budget = Budget(math.inf)
@@ -63,7 +63,7 @@ def packed(file, family, budget, wanted=()):
 
 
 def candidates(file, sims):
-    """Keys that can be an axis, the most telling first."""
+    """Keys that can be an axis, the most useful first."""
     tasks = sims.any_task
     gridded, distinct, common = groups.gridded_keys(file, tasks, None), {}, set()
     for parameter in file.parameters.values():
@@ -80,7 +80,7 @@ def candidates(file, sims):
 
 
 def _axis(file, family, key, budget):
-    """None where it has too many panels or does not fit into the budget."""
+    """None if it has too many panels or does not fit into the budget."""
     parameter = file.parameter(key)
     rows = groups.applicable(file, family.sims, key)
     sims = family.sims.subset(rows)
@@ -113,7 +113,7 @@ def _estimates(measure):
 
 
 def _values(measure, sims, index):
-    """[value, low, high, count], flat; a count that is everywhere the same is one number."""
+    """[value, low, high, count] as flat lists; a constant count is one number."""
     found = [measure.estimate(values[some], sims.sample[some]) for values in measure.values.values() for some in index]
     numbers = [np.concatenate([getattr(estimate, name).ravel() for estimate in found])
                for name in ("value", "low", "high", "count")]
@@ -122,7 +122,7 @@ def _values(measure, sims, index):
 
 
 def _rounded(numbers, digits=6):
-    """Plain numbers of so many digits; None where there is none."""
+    """Numbers rounded to `digits` digits; None if not finite."""
     return [_short(float(f"{number:.{digits}g}")) if math.isfinite(number) else None for number in np.ravel(numbers)]
 
 

@@ -1,8 +1,8 @@
-"""What the charts of a report show of a file: its families of simulations, the lines of each and their measures.
+"""Content of a report's charts: the families of simulations of a file, the lines of each and their measures.
 
-A family is what can share a chart: the simulations that try guesses, a line per guess and one for the direct solve of
-the same systems; and those that try none, a line per method. Every value is one that spatial.py or summary.py would
-show; a measure says by which of their functions it becomes an estimate.
+Simulations of a family share a chart. Those that try guesses have a line per guess and one for the direct solve of the
+same systems; those that try none have a line per method. Every value is also one of spatial.py or summary.py. A
+measure names the function that makes an estimate of its values.
 """
 
 from collections.abc import Callable
@@ -27,14 +27,14 @@ class Measure:
     name: str
     title: str
     unit: str            # how a value is written: ratio, times, us, count or part
-    log: bool            # is its axis logarithmic?
+    log: bool            # whether its axis is logarithmic
     values: dict         # {"first": …, "all": …}, or {"": …}, of [simulation, line] or [simulation, line, tolerance]
     estimate: Callable   # intervals.mean or intervals.median
     note: str = ""
 
     @property
     def tolerances(self):
-        """Of how many tolerances, 1 where it does not depend on them."""
+        """Number of tolerances, 1 if it does not depend on them."""
         some = next(iter(self.values.values()))
         return some.shape[2] if some.ndim == 3 else 1
 
@@ -49,7 +49,7 @@ class Family:
 
 
 def families(file, sims, guesses, tolerances):
-    """Those that have a simulation; guesses and tolerances are indices."""
+    """The families that have simulations; guesses and tolerances are indices."""
     guessing = measures.has_guesses(file)[sims.any_task]
     found = [of_guesses(file, sims.subset(np.flatnonzero(guessing)), guesses, tolerances) if guessing.any() else None,
              of_methods(file, sims.subset(np.flatnonzero(~guessing))) if not guessing.all() else None]
@@ -80,7 +80,7 @@ def _ratios(file, sims, guesses, tolerances):
                     "Below 1 the guess saves iterations.")
     iterations = Measure("iterations", "CG iterations of a solve", "count", False,
                          {"": ratios["first"].iterations_per_solve[chosen]}, intervals.mean,
-                         "Of first Newton iterations; mean over a simulation, mean over simulations.")
+                         "First Newton iterations; mean over a simulation, then over simulations.")
     return [iterations] if guesses == [file.zero] else [ratio, iterations]
 
 
@@ -90,7 +90,7 @@ def _times(file, parts, guesses, with_direct):
     found = []
 
     def beside(of_guesses, direct):
-        """Columns of the guesses, and one of the direct solve where it was timed."""
+        """Columns of the guesses, and one of the direct solve if it was timed."""
         return np.column_stack([of_guesses[:, guesses], *([direct] if with_direct else [])])
 
     if file.zero is not None:

@@ -1,4 +1,4 @@
-"""How the lines of a family look on the page: colours for light and dark pages, markers and dashes of its charts."""
+"""Look of a family's lines on the page: colours for light and dark pages, markers and dashes of its charts."""
 
 from rodsweep.drawing import looks
 
@@ -6,12 +6,12 @@ SYMBOLS = {"o": "circle", "v": "wye", "s": "square", ">": "diamond", "8": "hexag
            "<": "triangle2", "X": "times", "*": "star", "D": "diamond", "x": "times", "H": "hexagon", "h": "hexagon",
            "p": "square2", "d": "diamond2", (5, 1, 0): "star", (4, 2, 0): "asterisk", (3, 1, 0): "wye",
            (3, 2, 0): "asterisk", (6, 1, 0): "asterisk", (4, 1, 0): "star"}
-DASH = 1.6           # pixels of a unit of a dash
-ON_DARK = 0.30       # relative luminance that a line has at least on a dark page
+DASH = 1.6           # pixels per unit of a dash
+ON_DARK = 0.30       # smallest relative luminance of a line on a dark page
 
 
 def packed(found):
-    """Of {label: looks.Look}."""
+    """{label: looks.Look} in the form that the page reads."""
     return [{"label": label, "light": look.colour, "dark": on_dark(look.colour),
              "symbol": SYMBOLS.get(look.marker, "circle"),
              "dash": " ".join(f"{DASH * length:g}" for length in look.dash[1]) if look.dash[1][-1] else ""}
@@ -19,7 +19,7 @@ def packed(found):
 
 
 def on_dark(colour):
-    """The colour, lighter where a dark page needs it."""
+    """The colour, lighter if a dark page needs it."""
     share = 0.0
     while looks.luminance(looks.channels(looks.lighter(colour, share))) < ON_DARK:
         share += 0.02

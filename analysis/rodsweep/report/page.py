@@ -1,4 +1,4 @@
-"""Puts sweeps, style, scripts and libraries into one page of HTML that needs nothing from anywhere else."""
+"""Puts sweeps, style, scripts and libraries into one self-contained page of HTML."""
 
 import json
 import math
@@ -13,7 +13,7 @@ HERE = Path(__file__).parent
 LIBRARIES = ("d3.min.js", "plot.min.js")
 SCRIPTS = ("numbers.js", "theme.js", "sorting.js", "chart.js", "cursor.js", "explorer.js", "rods.js", "main.js")
 
-ANSWERS_OPEN, STEPS_OPEN = 6, 12    # answers and rows of steps of a sweep; where there are more they are folded
+ANSWERS_OPEN, STEPS_OPEN = 6, 12    # answers and rows of steps of a sweep; more are folded
 
 
 def html(sweeps, title):
@@ -32,7 +32,7 @@ def html(sweeps, title):
 
 
 def embedded(data):
-    """JSON that stays within its <script>, whatever labels and messages hold."""
+    """JSON that stays within its <script> for any labels and messages."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 

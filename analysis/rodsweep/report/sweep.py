@@ -1,4 +1,4 @@
-"""A file as the template and the scripts of the page take it: what it answers, its charts and its animations."""
+"""A file in the form that the page's template and scripts read: its answers, charts and animations."""
 
 import json
 import os
@@ -15,8 +15,8 @@ STEP_TITLES = {"newton_iterations": "Newton iterations a step", "newton_residual
 
 @dataclass(frozen=True, kw_only=True)
 class Sweep:
-    """Texts for the template; `data` is what the scripts of the page draw from. Of a file without a simulation that
-    ended well there is nothing but its state."""
+    """Texts for the template; `data` is the input of the page's scripts. Without simulations that ended ok, only the
+    state."""
     name: str
     path: str
     job: dict
@@ -27,7 +27,7 @@ class Sweep:
     revisions: str
     data: dict
     films_left_out: int
-    no_ratios: str               # why; or empty
+    no_ratios: str               # the reason; or empty
     conditions: dict = field(default_factory=dict)
     warning: str = ""
     notes: list = field(default_factory=list)
@@ -66,12 +66,12 @@ def made(file, options, budget, room):
     return Sweep(name=job.get("name") or os.path.splitext(os.path.basename(file.path))[0], path=file.path, job=job,
                  census=measures.census(file, chosen), failures=failures, more_failures=more, runs=answers.runs(file),
                  revisions=remarks.revisions(file), data=data, films_left_out=films_left_out,
-                 no_ratios="the job has no zero guess to relate the others to" if file.guesses and file.zero is None
+                 no_ratios="the job has no zero guess to compare with" if file.guesses and file.zero is None
                  else "", **found)
 
 
 def _found(file, options, sims, guesses, tolerances, budget, data):
-    """What simulations give of a Sweep, by name, and of its data."""
+    """Fields of a Sweep that come from its simulations, by name; completes `data`."""
     tasks, measured = sims.tasks(), blocks.blocks(file, sims, None, "first")
     headline = answers.headline_tolerance(file, sims, tolerances) if file.guesses else None
     shown = [{**axes.packed(file, family, budget, options.x), "lines": lines.packed(family.lines)}

@@ -1,5 +1,6 @@
-"""Blocks of columns as CSV or Parquet, written by pandas. Missing values (-1 of whole numbers, NaN, empty texts) are
-empty fields in CSV and null in Parquet."""
+"""Writes blocks of columns as CSV or Parquet with pandas. Missing values (-1 of integers, NaN, empty texts) are empty
+fields in CSV and null in Parquet.
+"""
 
 from rodsweep.reading.errors import UserError, library
 
@@ -16,8 +17,8 @@ def write_csv(out, names, blocks):
 
 
 def write_parquet(out, names, blocks):
-    """Writes all blocks to a binary file at once, so they must fit in memory; returns the number of rows. UserError
-    without pyarrow, which pandas needs for this."""
+    """Writes all blocks to a binary file at once, so they must fit in memory; returns the number of rows. Raises
+    UserError without pyarrow, which pandas needs."""
     pandas = library("pandas")
     frame = pandas.concat([_frame(names, None), *(_frame(names, block) for block in blocks)], ignore_index=True)
     try:
