@@ -5,9 +5,10 @@ The results file is a sweep whose learned guesses are these networks, as `make a
 folder of their model files, named like the guesses. Guesses without a model file go to the end of the table. --base
 names the base network. The changed settings are read from the jobs in the model files.
 
-Each setting has a panel: the base beside its variants, with a dashed line at the base's ratio. Networks with several
-changes share one panel. The table adds the number of weights, the time of a guess per segment and solve, the ratio over
-all Newton iterations, and the mean over networks that differ only in their seed, with the randomness of training.
+Each setting has a panel: the base and its variants, with a dashed line at the base's ratio. Networks with several
+changes share one panel. The table adds the number of weights, the time of a guess per segment and solve, and the ratio
+over all Newton iterations. It has a mean over networks that differ only in their seed, with the randomness of
+training.
 """
 
 import os

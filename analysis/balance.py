@@ -2,7 +2,7 @@
 """Error against wall time for two kinds of time step: the paper's, and one that keeps the balance of momentum.
 
 Each kind of scene has a panel: the error at the end of a simulation over the wall time of a simulated second, one
-point per time step. Without several time steps, only the table is printed. The error is the distance of a segment from
+point per time step. If a scene has only one time step, there is no figure. The error is the distance of a segment from
 its position with the smallest balanced step, root mean square over segments. It is relative to the diagonal of the box
 around all segments at the start. Times and errors are medians over simulations. The table adds the mean Newton
 iterations of a step and the largest momentum residual after the first step. The file needs trajectories to the end of

@@ -5,7 +5,7 @@ For each value of --x (by default the nodes of a lattice) a table lists all comb
 the direct solve, CG from zero, with a classical guess, with a learned one, and with an oracle. In a paired sweep the
 time is that of a solve with guess and preconditioner set-up, without assembly. The oracle's own time is not counted
 there. In a closed loop the time is that of a whole step. The figure has the time of the fastest of each kind over the
-number of joints, a panel per scene type and value of any other grid. Intervals are 95 % bootstrap intervals over
+number of joints. Each scene type and value of any other grid has a panel. Intervals are 95 % bootstrap intervals over
 simulations. The file needs /solves (record.solves "all"). Writes PDF and PNG and prints the paths.
 """
 

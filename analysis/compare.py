@@ -7,8 +7,8 @@ on purpose (a tolerance, a preconditioner), use --by parameters. It matches task
 vary within either job, and guesses by their label. Models and data sets are identified by their path in the job.
 
 The output lists the keys in which the jobs differ, the number of tasks in both, the values that differ, and changed
-outcomes. For every guess it has the mean CG ratio in both files and the mean difference of the tasks, with a 95 %
-bootstrap interval over draws of the random parameters ("-" for fewer than 5). Times are shown, but do not count as
+outcomes. For every guess it has the mean CG ratio in both files and the mean difference of the tasks. Its 95 %
+bootstrap interval is over draws of the random parameters ("-" for fewer than 5). Times are shown, but do not count as
 differences. The table has the first job's tolerance; --csv and --json have all.
 """
 

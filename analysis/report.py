@@ -2,8 +2,8 @@
 """A report of one or several sweeps: one page of HTML that opens in any browser, without network.
 
 First come the results in sentences and a table: which guess saves how many iterations and how much time, how the
-direct solve compares, what failed. Then come charts of any measure over any parameter that the job sweeps, with 95 %
-bootstrap intervals over simulations, animations of recorded trajectories, and how the sweep was run. The numbers are
+direct solve compares, what failed. Charts show any measure over any parameter that the job sweeps, with 95 % bootstrap
+intervals over simulations. Then come animations of recorded trajectories, and how the sweep was run. The numbers are
 those of summary.py and spatial.py. A sweep may still be running.
 """
 

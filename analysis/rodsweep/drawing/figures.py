@@ -100,8 +100,8 @@ def speedup_figure(study, by_newton):
 
 
 def four_curves_figure(study, by_newton):
-    """The curves of Shao et al. 2021, a panel per learned guess: the CG ratio, the time of the guess over that of its
-    CG, and the speedups of guess and CG and of the whole step over CG from zero. None without a learned guess."""
+    """The curves of Shao et al. 2021, a panel per learned guess: CG ratio, time of the guess over that of its CG, and
+    two speedups over CG from zero (guess and CG; whole step). None without a learned guess."""
     learned = [g for g in study.lines() if study.file.guesses[g].removeprefix("first ").startswith("copingnet")]
     if not learned:
         return None

@@ -65,7 +65,7 @@ class Study:
         """The last note of every figure."""
         said = remarks.conditions(self.file, self.sims.tasks())
         revisions = remarks.revisions(self.file)
-        evaluation = f"{said['evaluation'].capitalize()} evaluation" if said["evaluation"] else "Direct solve alone"
+        evaluation = f"{said['evaluation'].capitalize()} evaluation" if said["evaluation"] else "Direct solve only"
         parts = [f"{evaluation}; preconditioner {said['preconditioner']}; "
                  f"residual test: {said['norm']}; time step {said['step_s']} s.",
                  f"{os.path.basename(self.file.path)}: {self.census.text()}"]

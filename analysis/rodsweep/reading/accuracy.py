@@ -2,11 +2,11 @@
 solvers.py and work_precision.py.
 
 A way is a method with its effort: Newton iterations of the direct solve; for CG also tolerance, preconditioner and
-guess; Gauss-Seidel iterations. The reference of a simulation is the direct solve with the most Newton iterations, of
-the same scene, draw and step. The error of a frame is the root mean square distance of the segments from the
-reference. The error of a way is the largest over the frames, relative to the diagonal of the box around all segments
-at the start (for a straight rod, its length). It is NaN without a reference, and infinite for a failed simulation. The
-cost is the median wall time of a step with its assembly, guess and solves.
+guess; for xpbd and pbd their iterations. The reference of a simulation is the direct solve with the most Newton
+iterations, of the same scene, draw and step. The error of a frame is the root mean square distance of the segments
+from the reference, relative to the diagonal of the box around all segments at the start (for a straight rod, its
+length). The error of a way is that of its worst frame. It is NaN without a reference, and infinite for a failed
+simulation. The cost is the median wall time of a step with its assembly, guess and solves.
 """
 
 from dataclasses import dataclass

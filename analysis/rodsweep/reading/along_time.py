@@ -57,8 +57,8 @@ def _between(values, begin, end):
 
 
 def _binned(file, sims, newton, guesses, tolerances, edges):
-    """Iterations of solves that reached the tolerance, all solves, and solves that missed it, by [simulation, bin,
-    guess]."""
+    """Iterations of solves that reached the tolerance, all solves, and solves that missed it: [simulation, bin, guess,
+    ...]."""
     shape = (len(sims), len(edges) - 1, len(guesses))
     iterations, missed = np.zeros(shape + (len(tolerances),)), np.zeros(shape + (len(tolerances),))
     solves = np.zeros(shape)

@@ -14,12 +14,11 @@ DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
 
 def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=True, files=False):
-    """`tolerances`: default in the help, None: no --tolerance; newton: adds --newton; files: several files instead of
-    one."""
+    """`tolerances`: default in the help, None: no --tolerance; newton: adds --newton; files: several files, not one."""
     made = argparse.ArgumentParser(description=description, epilog=examples(epilog or ""),
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     of_files = {"dest": "files", "nargs": "+", "metavar": "FILE"} if files else {"dest": "file"}
-    made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); the run may still go on")
+    made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
     made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
     made.add_argument("--select", metavar="CONDITION", action="append", default=[],
                       help=f"only tasks that meet the condition: a parameter, {conditions.FORM}; may be repeated")

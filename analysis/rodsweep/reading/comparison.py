@@ -132,8 +132,7 @@ def _guess_places(one, other, by):
 
 
 def _guess_keys(file, by):
-    """Identity of each guess: its label and, unless by="parameters", its entry in the job's list of guesses, if it has
-    one."""
+    """Identity of each guess: its label and, unless by="parameters", its entry in the job's list of guesses, if any."""
     listed = file.job().get("guesses")
     if by == "parameters" or not isinstance(listed, list) or len(listed) != len(file.guesses):
         return file.guesses

@@ -8,8 +8,8 @@
 
 All operators treat numbers as equal up to a relative 1e-9. A missing value (NaN, an empty text, -1 of integers) meets
 no condition. runner/command/query_condition.hpp reads the same language; tests/conditions.json has cases for both.
-Raises KeyNotFound for an unknown column or word, with the nearest known one, and for a number or an operator that does
-not fit the column.
+Raises KeyNotFound for an unknown column or word, with the nearest known one. Raises it also for a number or an operator
+that does not fit the column.
 """
 
 import re
@@ -21,7 +21,7 @@ from rodsweep.reading import texts
 from rodsweep.reading.errors import KeyNotFound, not_found
 
 OPERATORS = ("<=", ">=", "!=", "==", "=", "<", ">", "~")   # the longer ones first
-FORM = "one of = != < <= > >= ~ (contains), and a value; for = also A,B or LOW:HIGH"   # in helps, after the column
+FORM = "one of = != < <= > >= ~ (contains), and a value; for = also A,B or LOW:HIGH"   # in help texts, after the column
 ROUNDING = 1e-9
 NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity)", re.IGNORECASE)
 

@@ -49,8 +49,8 @@ def listed(names, all_by=""):
 
 def nearest(word, known):
     """The known name that a mistyped word is meant for; "" if none is near. As in the program
-    (runner/text/nearest.hpp), case does not count; if no spelling is near, a name with the word in it is ("length":
-    "length_m"). Here, the last part of a name is a name too ("segments": "scene.segments"), and no number is near."""
+    (runner/text/nearest.hpp), case does not count, and a name may also contain the word ("length": "length_m"). Here,
+    the last part of a name matches too ("segments": "scene.segments"), and numbers have no near name."""
     typed = word.lower()
     if NUMBER.fullmatch(typed):
         return ""

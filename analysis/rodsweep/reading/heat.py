@@ -56,8 +56,7 @@ class Plane:
 
 
 def per_simulation(shown, name, tolerances):
-    """[simulation, guess, tolerance] values and solves that missed the tolerance; axes without an effect have length
-    1."""
+    """[simulation, guess, tolerance] values and solves that missed the tolerance; unused axes have length 1."""
     file, sims, newton = shown.file, shown.sims, shown.newton
     none = np.zeros((len(sims), 1, 1))
     if MEASURES[name].ladder:
@@ -93,8 +92,8 @@ def tolerance_points(file, tolerances):
 
 
 def planes(shown, name, x, y, guesses, tolerances):
-    """A Plane per scene type and value of any other grid. A cell has the best of `guesses`, or the measure of no
-    guess."""
+    """A Plane per scene type and value of any other grid. A cell has the best of `guesses`, if the measure needs
+    one."""
     file, measure = shown.file, MEASURES[name]
     keys = tuple(key for key in (x, y) if key != LADDER)
     panels = groups.panels(file, shown.sims, keys, most=None)

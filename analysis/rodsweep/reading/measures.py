@@ -39,8 +39,8 @@ class Simulations:
         return np.unique(self.task[self.task >= 0])
 
     def gather(self, per_task, zero=None):
-        """[task, guess, ...] as [simulation, guess, ...], NaN without a task; zero: index of a guess for every
-        column."""
+        """[task, guess, ...] as [simulation, guess, ...], NaN without a task; zero: index of a guess for all
+        columns."""
         guesses = np.arange(self.task.shape[1]) if zero is None else np.full(self.task.shape[1], zero)
         task = self.task[:, guesses]
         out = np.asarray(per_task, dtype=float)[np.maximum(task, 0), guesses[None, :]]

@@ -118,7 +118,7 @@ class TaskColumns:
                           item.dtype.kind in "iufb" and name != "own_guess", item.dtype.kind in "iu",
                           bool(item.attrs.get("swept", False)), parameter, not planned)
         if name == "own_guess" and not parameter:
-            made = replace(made, meaning="the guess that advances the rods; none: no guess does", whole=False)
+            made = replace(made, meaning="the guess that advances the rods; none: another method does", whole=False)
         guesses, shape = self.file.guesses, item.shape[1:]
         if not shape:
             self._add(made)

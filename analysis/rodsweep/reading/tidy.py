@@ -1,9 +1,9 @@
 """Flat columns of a results file, block by block, for export.py and the frames of rodsweep.open().
 
-A row of the level `tasks` is one task x guess x tolerance, of `solves` one solve x guess (with a column per tolerance
-of datasets that have this axis), of `steps` one step. Every dataset of the level is a column with its name, followed
-by those of /timing, so that columns of later versions are included. -1 of integers (not reached, not run), NaN and
-empty texts are missing values. Blocks have at most BLOCK_ROWS rows of the file.
+A row of the level `tasks` is one task x guess x tolerance; of `steps`, one step. A row of `solves` is a solve x guess,
+with a column per tolerance of datasets that have this axis. Every dataset of the level is a column with its name,
+followed by those of /timing, so that columns of later versions are included. -1 of integers (not reached, not run), NaN
+and empty texts are missing values. Blocks have at most BLOCK_ROWS rows of the file.
 """
 
 import itertools
@@ -31,8 +31,7 @@ MARKS = ("newton", "newton_iterations", "time_s")    # the first one in the file
 
 @dataclass(frozen=True)
 class Column:
-    """A column's rows: values, or values[index]. Rows and blocks share one array of values, so work on them is done
-    once."""
+    """A column's rows: values, or values[index]. Rows and blocks share one array of values, to work on it only once."""
     values: np.ndarray
     index: np.ndarray = None
 

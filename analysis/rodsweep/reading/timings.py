@@ -6,7 +6,7 @@ row is left out, for all guesses, if a part took over INTERRUPTED times its usua
 then scaled up to all rows. The usual time is a median per unit of work. Units of CG are iterations, with FIXED for the
 cost of every solve. Units of a guess are products with A before the first iteration, plus one. Units of the rest of a
 step are Newton iterations, plus one for prediction and velocities. The median is over the simulation's rows of the
-same Newton iteration, since a guess may work differently there (nearest data at the first, no history at a late one).
+same Newton iteration. A guess may differ between them (nearest data at the first, no history at a late one).
 If they are fewer than FEW, the median of an earlier iteration or of all rows is used. Two kinds of parts are only
 compared among themselves, and only if there are FEW: CG without an iteration, and parts that renewed a lagged
 preconditioner or factor (/solves/renewed). Times.interrupted counts the rows left out; above a share of SUSPICIOUS,

@@ -84,7 +84,7 @@ def tried(found):
         how += ", or in closed loops advanced its own simulations,"
     timed = any(answer.block.times is not None for answer in found)
     what = "its iterations and time were measured" if timed else "its iterations were counted"
-    beside = "" if not any(direct) else f",{'' if all(direct) else ' in part'} with a direct solve beside it"
+    beside = "" if not any(direct) else f",{'' if all(direct) else ' in part'} with a direct solve for comparison"
     return f"Each guess {how} and {what}{beside}."
 
 
