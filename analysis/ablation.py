@@ -7,8 +7,7 @@ names the base network. The changed settings are read from the jobs in the model
 
 Each setting has a panel: the base and its variants, with a dashed line at the base's ratio. Networks with several
 changes share one panel. The table adds the number of weights, the time of a guess per segment and solve, and the ratio
-over all Newton iterations. It has a mean over networks that differ only in their seed, with the randomness of
-training.
+over all Newton iterations. It has a mean over networks that differ only in their seed, with training's randomness.
 """
 
 import os

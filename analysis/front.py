@@ -44,7 +44,7 @@ def main():
 
 
 def estimates(shown, index):
-    """(ratio [guess, tolerance], time [us] per segment and solve of guesses [guess] and of CG from zero) of some
+    """(ratio [guess, tolerance], time [us] per segment and solve of guesses [guess] and of CG from zero) of
     simulations."""
     file, sims = shown.file, shown.sims.subset(index)
     ratio = intervals.mean(measures.cg_ratios(file, sims, shown.newton).ratio, sims.sample)

@@ -25,9 +25,10 @@ LEVELS = (1e-2, 1e-3, 1e-4, 1e-6)
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances=None, newton=False)
     study.add_figure_arguments(made)
-    made.add_argument("--rows", metavar="KEY", default="scene.segments", help="rows (default: scene.segments)")
+    made.add_argument("--rows", metavar="KEY", default="scene.segments",
+                      help="parameter of the rows (default: scene.segments)")
     made.add_argument("--columns", metavar="KEY", default="scene.youngs_modulus_pa",
-                      help="columns (default: scene.youngs_modulus_pa)")
+                      help="parameter of the columns (default: scene.youngs_modulus_pa)")
     return made.parse_args()
 
 

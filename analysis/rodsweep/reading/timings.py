@@ -240,5 +240,5 @@ def interruptions(part, sims):
              f"(a part lasted over {INTERRUPTED} times its median).")
     if left_out <= SUSPICIOUS * solves:
         return found
-    return (f"{found} That is {left_out / solves:.0%} of them: these times are not reliable. The machine was busy with "
-            "other work, or some solves are slow by design.")
+    return (f"{found} That is {left_out / solves:.0%} of them: these times are not to be trusted. The machine was busy "
+            "with other work, or some solves are slow by design.")
