@@ -113,8 +113,8 @@ class Export(Scripts):
     def test_nothing_is_overwritten_and_mistakes_are_one_line(self):
         self.write(scenes=("helix",))
         self.run_script("export.py", "sweep.h5", "-o", "out.csv")
-        for words, *arguments in (("out.csv is there already", "-o", "out.csv"),
-                                  ("sweep.h5 is there already", "-o", "sweep.h5", "--force"),
+        for words, *arguments in (("out.csv already exists", "-o", "out.csv"),
+                                  ("sweep.h5 already exists", "-o", "sweep.h5", "--force"),
                                   ("did you mean iterations_sum?", "--columns", "iterationssum"),
                                   ("did you mean quadratic?", "--where", "guess=quadratc"),
                                   ("did you mean time.newton_iterations?\n", "--where", "newton=0"),

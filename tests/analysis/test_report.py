@@ -238,7 +238,7 @@ class Commands(Report):
     def test_it_lies_beside_its_file_and_is_replaced_only_if_asked(self):
         self.write()
         self.assertEqual(self.run_script("report.py", "sweep.h5").stdout, "sweep.html\n")
-        self.refused("report.py", "sweep.h5", words="is there already")
+        self.refused("report.py", "sweep.h5", words="already exists")
         self.refused("report.py", "sweep.h5", "-o", "sweep.h5", "--force", words="give another name")
         self.run_script("report.py", "sweep.h5", "--force")
 

@@ -105,7 +105,7 @@ class Temporal(Studies):
         self.assertEqual(printed[0], "figures/sweep-cg-ratio-in-time-window4.pdf")
         self.assertEqual(len(printed), 4)
         self.write(solves=False, **{**self.TEMPORAL, "counts_in_rows": False})
-        self.refused("temporal.py", "sweep.h5", words="along the time")
+        self.refused("temporal.py", "sweep.h5", words="record.solves is")
 
 
 class Cells(synthetic.Plant):
@@ -352,7 +352,7 @@ class Newton(Studies):
         self.write(plant=Converging(), closed_loop=True, **self.NEWTON)
         self.assertIn("CG to 1e-2, quadratic", self.run_script("newton.py", "sweep.h5").stdout)
         self.write(plant=Converging(), solves=False, **self.NEWTON)
-        self.refused("newton.py", "sweep.h5", words="single Newton iterations")
+        self.refused("newton.py", "sweep.h5", words="record.solves is")
 
 
 class RatiosOfSums(unittest.TestCase):
