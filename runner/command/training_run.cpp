@@ -22,6 +22,7 @@ namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 constexpr double most_of_time_for_saving = 0.02, longest_unsaved_s = 30;
 

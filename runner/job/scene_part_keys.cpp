@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 template <class Solid>
-struct Kind {
+struct SolidKind {
   const char* name;
   const char* help;
   KeyTable<Solid> table;
@@ -46,16 +46,16 @@ KeyTable<Capsule> capsule_keys() {
   return table;
 }
 
-const auto& kinds() {
+const auto& solid_kinds() {
   static const std::tuple kinds{
-      Kind<HalfSpace>{"half_space", "everything below a plane", half_space_keys()},
-      Kind<Ball>{"ball", "a ball", ball_keys()},
-      Kind<Capsule>{"capsule", "everything within a radius of a line between two points", capsule_keys()}};
+      SolidKind<HalfSpace>{"half_space", "everything below a plane", half_space_keys()},
+      SolidKind<Ball>{"ball", "a ball", ball_keys()},
+      SolidKind<Capsule>{"capsule", "everything within a radius of a line between two points", capsule_keys()}};
   return kinds;
 }
 
 template <class Solid>
-void read_if(const Kind<Solid>& kind, const Place& at, Obstacle& obstacle) {
+void read_if(const SolidKind<Solid>& kind, const Place& at, Obstacle& obstacle) {
   if (at.point.text(at.path) != kind.name) return;
   Solid solid;
   kind.table.fill(solid, at.of(kind.name));
@@ -64,7 +64,7 @@ void read_if(const Kind<Solid>& kind, const Place& at, Obstacle& obstacle) {
 
 Obstacle obstacle(const Place& at) {
   Obstacle found;
-  std::apply([&](const auto&... kind) { (read_if(kind, at, found), ...); }, kinds());
+  std::apply([&](const auto&... kind) { (read_if(kind, at, found), ...); }, solid_kinds());
   if (const auto* space = std::get_if<HalfSpace>(&found); space && space->normal.isZero(0))
     throw job_error(at.job.path, at.path + ".half_space.normal", "[0, 0, 0] is not allowed; must have a direction");
   return found;
@@ -133,8 +133,9 @@ Key obstacles_key() {
   const auto keys = [](const auto&... kind) {
     return std::vector<Key>{object_key(kind.name, kind.help, kind.table.keys())...};
   };
-  return list_key("obstacles", "solids that rods with \"contact\" touch, besides each other and the floor of the scene",
-                  variant_key("obstacle", "a solid at rest or with constant velocity", std::apply(keys, kinds())));
+  return list_key(
+      "obstacles", "solids that rods with \"contact\" touch, besides each other and the floor of the scene",
+      variant_key("obstacle", "a solid at rest or with constant velocity", std::apply(keys, solid_kinds())));
 }
 
 void read_value(const Place& list, std::vector<Obstacle>& obstacles) {
