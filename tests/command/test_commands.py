@@ -143,7 +143,7 @@ class Rerun(Case):
         with open("mine.h5", encoding="utf-8") as file:
             self.assertEqual(file.read(), "precious")
         self.said("rerun", sweep(), 1, "-o", "one.h5")
-        self.assert_refused(("rerun", "one.h5", 0), "one.h5 holds task 1 of a sweep")
+        self.assert_refused(("rerun", "one.h5", 0), "one.h5 ", "task 1 ", "rodsweep rerun")
 
     def test_a_signal_ends_it_without_a_file(self):
         path = sweep("endless", samples=1, time={"step_s": 0.02, "steps": 3000}, record={"solves": "summary"},

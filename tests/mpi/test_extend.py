@@ -53,7 +53,7 @@ class ExtendCase(SweepCase):
 
     def assert_shared(self, ran, old, shared):
         """It says how many tasks there are, are copied, get their new guesses, and are run."""
-        said = re.search(rf"of (\d+) tasks (\d+) .*{re.escape(old)}, (\d+) .*, (\d+) ", ran.stderr)
+        said = re.search(rf"\b(\d+) tasks: (\d+) .*{re.escape(old)}, (\d+) .*, (\d+) ", ran.stderr)
         self.assertIsNotNone(said, ran.stderr)
         self.assertEqual(tuple(map(int, said.groups())), shared)
 

@@ -211,7 +211,7 @@ TEST_CASE("a sweep that its key does not take is refused") {
       {length(R"({"unifrom": [1, 2]})"), "scene.length_m: {\"unifrom\":[1,2]} ", number, "did you mean \"uniform\"?"},
       {with("/scene/initial_angle_deg", R"({"log_uniform": [0, 2]})"), "scene.initial_angle_deg.log_uniform: [0,2] ",
        "must lie above 0"},
-      {segments(R"({"uniform": [1, 2]})"), "scene.segments.uniform: ", "not whole", "use {\"integer\": [a, b]}"},
+      {segments(R"({"uniform": [1, 2]})"), "scene.segments.uniform: ", "uniform", "use {\"integer\": [a, b]}"},
       {segments(R"({"integer": [2, 3.5]})"), "scene.segments.integer[1]: 3.5 ", integer},
       {segments(R"({"grid": [4, {"grid": [5, 0]}]})"), "scene.segments.grid[1].grid[1]: 0 ", integer},
       {segments(R"({"grid": []})"), "scene.segments.grid: [] ", "at least one value"},
