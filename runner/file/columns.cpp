@@ -47,22 +47,23 @@ std::vector<Column> all_columns() {
       column<&R::tasks, &Tasks::penetration>(
           "/tasks/penetration", Rows::contact_task, none, "1",
           "deepest overlap of two bodies after any step, over the smaller radius; NaN without contact"),
-      column<&R::tasks, &Tasks::momentum_residual>("/tasks/momentum_residual", Rows::task, none, "1",
-                                                   "largest /steps/momentum_residual; NaN of rods stepped in batches"),
+      column<&R::tasks, &Tasks::momentum_residual>(
+          "/tasks/momentum_residual", Rows::task, none, "1",
+          "largest /steps/momentum_residual; NaN if rods are stepped in batches"),
       column<&R::tasks, &Tasks::counted, &Sums::iterations>(
           "/tasks/iterations_sum", Rows::task, ladder, "1",
-          "CG iterations summed over the first Newton iteration of every step; solves that missed the tolerance count "
-          "what they used"),
+          "CG iterations summed over the first Newton iteration of every step; a solve that misses the tolerance "
+          "counts all its iterations"),
       column<&R::tasks, &Tasks::counted_all, &Sums::iterations>("/tasks/iterations_sum_all", Rows::task, ladder, "1",
                                                                 "CG iterations summed over all Newton iterations"),
       column<&R::tasks, &Tasks::counted_other_norm, &Sums::iterations>(
           "/tasks/iterations_sum_other_norm", Rows::task, ladder, "1",
-          "iterations_sum with the residual test in the norm that the job doesn't use: natural for true_residual, and "
-          "the other way round; -1 where record.norms is \"one\""),
+          "iterations_sum in the other norm: natural if solve.norm is true_residual, and vice versa; -1 if "
+          "record.norms is \"one\""),
       column<&R::tasks, &Tasks::counted, &Sums::matvecs>(
           "/tasks/matvecs_sum", Rows::task, ladder, "1",
-          "products with A in the solves of iterations_sum: iterations, residuals of nonzero guesses, and those that "
-          "guesses take themselves"),
+          "products with A in the solves of iterations_sum: iterations, residuals of nonzero guesses, and products of "
+          "the guess itself"),
       column<&R::tasks, &Tasks::counted_all, &Sums::matvecs>("/tasks/matvecs_sum_all", Rows::task, ladder, "1",
                                                              "matvecs_sum over all Newton iterations"),
       column<&R::tasks, &Tasks::counted, &Sums::unreached>("/tasks/unreached", Rows::task, ladder, "1",
@@ -74,7 +75,7 @@ std::vector<Column> all_columns() {
           "solves in iterations_sum_other_norm that missed the tolerance"),
       column<&R::tasks, &Tasks::counted, &Sums::cg_ratio>(
           "/tasks/cg_ratio", Rows::task, ladder, "1",
-          "iterations_sum over that of the zero guess; NaN where there is no zero guess in the task"),
+          "iterations_sum over that of the zero guess; NaN if the task has no zero guess"),
       column<&R::tasks, &Tasks::counted_all, &Sums::cg_ratio>("/tasks/cg_ratio_all", Rows::task, ladder, "1",
                                                               "iterations_sum_all over that of the zero guess"),
       column<&R::tasks, &Tasks::counted_other_norm, &Sums::cg_ratio>(
@@ -87,7 +88,7 @@ std::vector<Column> all_columns() {
       column<&R::solves, &Solves::rod>("/solves/rod", Rows::solve, none, "1", "rod within the scene, from 0"),
       column<&R::solves, &Solves::newton_residual>(
           "/solves/newton_residual", Rows::solve, none, "1",
-          "max |C + alpha~ lambda| before the solve; of Gauss-Seidel, that met by the iteration"),
+          "max |C + alpha~ lambda| before the solve or the Gauss-Seidel iteration"),
       column<&R::solves, &Solves::joint_gap>(
           "/solves/joint_gap", Rows::solve, none, "1",
           "largest distance between the two sides of a joint over the joint length, before the solve"),
@@ -101,14 +102,12 @@ std::vector<Column> all_columns() {
           "/solves/outcome", Rows::solve, guess, "1",
           "outcome of the tight solve: 0 not run, 1 converged, 2 zero right-hand side, 3 "
           "iteration limit, 4 diverged, 5 indefinite, 6 not a number"),
-      column<&R::solves, &Solves::start_matvecs>(
-          "/solves/start_matvecs", Rows::solve, guess, "1",
-          "products with A before the first iteration: those of the guess itself, and "
-          "one for the residual if it is nonzero and its residual not known; -1 not run"),
+      column<&R::solves, &Solves::start_matvecs>("/solves/start_matvecs", Rows::solve, guess, "1",
+                                                 "products with A before the first iteration: those of the guess, and "
+                                                 "one if its residual must be computed; -1 not run"),
       column<&R::solves, &Solves::renewed>(
           "/solves/renewed", Rows::solve, guess, "1",
-          "1 where what lags was made anew for the solve, the preconditioner or a network's factors; "
-          "else 0"),
+          "1: the preconditioner or a network's factors were set up for this solve; 0: older ones were used"),
       column<&R::solves, &Solves::iterations>("/solves/iterations", Rows::solve, ladder, "1",
                                               "CG iterations to each tolerance; -1 not reached or not run"),
 
@@ -135,17 +134,16 @@ std::vector<Column> all_columns() {
                                                  "max |C + alpha~ lambda| at the end of the step"),
       column<&R::steps, &Steps::momentum_residual>(
           "/steps/momentum_residual", Rows::step, none, "1",
-          "most that the forces on a segment lack at the end of the step, relative to the "
-          "greatest that a joint carries"),
+          "largest missing force on a segment at the end of the step, relative to the largest force of a joint"),
       column<&R::steps, &Steps::contacts>("/steps/contacts", Rows::contact_step, none, "1",
-                                          "places where bodies are near each other in this step; -1 without contact"),
+                                          "number of contact candidates in this step; -1 without contact"),
       column<&R::steps, &Steps::penetration>(
           "/steps/penetration", Rows::contact_step, none, "1",
           "deepest overlap of two bodies after the step, over the smaller radius; NaN without contact"),
       column<&R::steps, &Steps::contact_residual>(
           "/steps/contact_residual", Rows::contact_step, none, "1",
-          "farthest that a contact still wants to move its bodies after the step, over the smaller radius; those below "
-          "contact.tolerance have converged; NaN without contact"),
+          "largest remaining correction of a contact after the step, over the smaller radius; below contact.tolerance: "
+          "converged; NaN without contact"),
 
       column<&R::trajectories, &Trajectories::position_m>("/trajectories/position_m", Rows::frame_segment, xyz, "m",
                                                           "segment centre"),
@@ -163,7 +161,7 @@ std::vector<Column> all_columns() {
       column<&R::trajectories, &Trajectories::segments, &Segments::rod>("/trajectories/segments/rod", Rows::segment,
                                                                         none, "1", "rod within the scene, from 0"),
       column<&R::trajectories, &Trajectories::segments, &Segments::is_static>(
-          "/trajectories/segments/static", Rows::segment, none, "1", "1: held, as its clamp says; 0: it moves freely"),
+          "/trajectories/segments/static", Rows::segment, none, "1", "1: static; 0: free"),
 
       column<&R::systems, &Systems::step>("/systems/step", Rows::system, none, "1",
                                           "time step, from 0; -1: a Newton iteration that was not needed"),
@@ -180,32 +178,30 @@ std::vector<Column> all_columns() {
       column<&R::systems, &Systems::angular_velocity_rad_s>("/systems/segments/angular_velocity_rad_s",
                                                             Rows::system_segment, xyz, "rad/s",
                                                             "angular velocity at the start of the step, world frame"),
-      column<&R::systems, &Systems::free_position_m>(
-          "/systems/segments/free_position_m", Rows::balanced_segment, xyz, "m",
-          "segment centre where it would be without joints and contacts, which the balance of momentum measures from; "
-          "NaN where it is not kept"),
+      column<&R::systems, &Systems::free_position_m>("/systems/segments/free_position_m", Rows::balanced_segment, xyz,
+                                                     "m",
+                                                     "segment centre without joints and contacts, the reference of the "
+                                                     "momentum balance; NaN if the balance is off"),
       column<&R::systems, &Systems::free_orientation>("/systems/segments/free_orientation", Rows::balanced_segment,
                                                       wxyz, "1", "segment orientation there"),
       column<&R::systems, &Systems::contact_force>(
           "/systems/segments/contact_force", Rows::balanced_segment, xyz, "kg m",
-          "contacts' force on the segment, times the square of the constraints' time "
-          "step, world frame"),
+          "force of contacts on the segment times the squared constraint time step, world frame"),
       column<&R::systems, &Systems::contact_torque>("/systems/segments/contact_torque", Rows::balanced_segment, xyz,
-                                                    "kg m^2", "their torque about its centre, times the same"),
+                                                    "kg m^2", "torque of contacts about its centre, times the same"),
       column<&R::systems, &Systems::lambda>(
           "/systems/joints/lambda", Rows::system_joint, six, "kg m^2",
           "Lagrange multipliers before the solve: stretch-shear (3), bend-twist (3), in the joint's frame"),
       column<&R::systems, &Systems::solution>("/systems/joints/solution", Rows::system_joint, six, "kg m^2",
-                                              "their increment, which solves A dlambda = b: by the direct solve"),
+                                              "increment of the multipliers from the direct solve of A dlambda = b"),
 
       column<&R::timing, &Timing::assemble_s>("/timing/solves/assemble_s", Rows::solve, none, "s",
                                               "assembly of A and b"),
-      column<&R::timing, &Timing::direct_s>(
-          "/timing/solves/direct_s", Rows::solve, none, "s",
-          "factorisation and solve of the same system; NaN where solve.reference is cg"),
+      column<&R::timing, &Timing::direct_s>("/timing/solves/direct_s", Rows::solve, none, "s",
+                                            "factorisation and solve of the same system; NaN if solve.reference is cg"),
       column<&R::timing, &Timing::guess_s>(
           "/timing/solves/guess_s", Rows::solve, guess, "s",
-          "making the initial guess, median of solve.timing_repeats, and what the guess does once for a solve"),
+          "initial guess: median of solve.timing_repeats, plus its work once per solve"),
       column<&R::timing, &Timing::cg_s>(
           "/timing/solves/cg_s", Rows::solve, guess, "s",
           "preconditioner set-up and CG to the job's tolerance; median of solve.timing_repeats"),
@@ -213,7 +209,7 @@ std::vector<Column> all_columns() {
                                           "the step without assembly, guesses and solves"),
       column<&R::timing, &Timing::source_task>(
           "/timing/tasks/source_task", Rows::task, none, "1",
-          "task of the extended file that its rows, or some guesses' rows, were copied from; -1: none"),
+          "task of the extended file whose rows, or rows of some guesses, were copied; -1: none"),
       column<&R::timing, &Timing::copied_guess>(
           "/timing/tasks/copied_guess", Rows::task, guess, "1",
           "1: the guess's rows and times were copied from source_task; -1: they were not"),

@@ -20,7 +20,7 @@ struct Field {
   std::string unit, meaning;
 };
 
-inline constexpr int schema_version = 1;
+inline constexpr int schema_version = 2;
 
 inline constexpr int outcome_bytes = 16;
 inline constexpr int message_bytes = 240;

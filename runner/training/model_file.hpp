@@ -23,7 +23,7 @@
 
 namespace rodsweep {
 
-inline constexpr int model_schema_version = 1;
+inline constexpr int model_schema_version = 2;
 
 /// A hash of settings, weights and scales: sixteen hexadecimal digits.
 std::string model_hash(const Model& model);

@@ -86,7 +86,7 @@ class Sweep:
     failed: dict = field(default_factory=dict)       # task: outcome
     oversubscribed: bool = False
     counts_in_rows: bool = False   # planted counts in rows of /solves; else 10 in all, as the planted times would have
-    attributes: dict = field(default_factory=lambda: {"program": "rodsweep", "schema_version": 1})
+    attributes: dict = field(default_factory=lambda: {"program": "rodsweep", "schema_version": 2})
 
     def tasks(self):
         """(scene, grid values, draw, own guess, point) of every task in order."""

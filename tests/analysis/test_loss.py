@@ -27,7 +27,7 @@ def plant(path, name="net", ending="complete", epochs=EPOCHS, factor=1.0, job=No
     validation = factor * 0.5 / number
     validation[-1:] *= 2
     with h5py.File(path, "w") as h5:
-        h5.attrs.update({"program": np.bytes_("rodsweep"), "kind": np.bytes_("model"), "schema_version": np.int32(1)})
+        h5.attrs.update({"program": np.bytes_("rodsweep"), "kind": np.bytes_("model"), "schema_version": np.int32(2)})
         h5.create_group("job").attrs["name"] = np.bytes_(name)
         h5["axes/tolerance"] = [1e-1, 1e-2, 1e-3, 1e-4]
         h5["training/training_loss"] = factor * 0.6 / number

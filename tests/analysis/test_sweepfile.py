@@ -36,9 +36,9 @@ class Refusals(Folder):
 
     def test_files_of_others(self):
         for attributes, *parts in (({}, "not one of rodsweep", "`program`"),
-                                   ({"program": "lammps", "schema_version": 1}, "not one of rodsweep", "'lammps'"),
-                                   ({"program": "rodsweep", "schema_version": 2}, "schema version 2", "read 1"),
-                                   ({"program": "rodsweep", "schema_version": 1}, "/tasks/state", "not the results")):
+                                   ({"program": "lammps", "schema_version": 2}, "not one of rodsweep", "'lammps'"),
+                                   ({"program": "rodsweep", "schema_version": 1}, "schema version 1", "read 2"),
+                                   ({"program": "rodsweep", "schema_version": 2}, "/tasks/state", "not the results")):
             with self.subTest(attributes=attributes):
                 with h5py.File(self.path, "w") as h5:
                     h5.attrs.update(attributes)

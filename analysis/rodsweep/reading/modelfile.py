@@ -1,4 +1,4 @@
-"""Reads model files (HDF5, schema version 1; layout in runner/training/model_file.hpp)."""
+"""Reads model files (HDF5, schema version 2; layout in runner/training/model_file.hpp)."""
 
 import json
 import os
@@ -9,7 +9,7 @@ import numpy as np
 from rodsweep.reading.errors import SweepFileError
 from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, opened
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 @dataclass(frozen=True)

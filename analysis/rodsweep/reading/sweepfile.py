@@ -1,4 +1,4 @@
-"""Reads rodsweep results files (HDF5, schema version 1; layout in runner/file/columns.cpp).
+"""Reads rodsweep results files (HDF5, schema version 2; layout in runner/file/columns.cpp).
 
 A SweepFile has the tasks of a sweep, their parameters and the axes of guesses and tolerances. /tasks/state masks all
 results: rows of incomplete tasks are never returned, since unwritten bytes look like perfect results. Rows of /solves,
@@ -18,7 +18,7 @@ from rodsweep.reading.errors import KeyNotFound, SweepFileError, listed, not_fou
 from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, opened
 from rodsweep.reading.parameters import Parameter
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 BLOCK_ROWS = 1 << 17
 ALL_BY = "rodsweep query FILE --columns help lists all"    # in the message for an unknown parameter
 OF_TASKS = {"task": True, "sample": True, "outcome": False}   # columns for select() beside parameters; if numeric
