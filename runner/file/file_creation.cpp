@@ -74,7 +74,6 @@ void write_parameters(hid_t file, const std::vector<ParameterColumn>& parameters
 void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterColumn>& parameters) {
   hdf5::write_attribute(file, "program", "rodsweep");
   hdf5::write_attribute(file, "schema_version", schema_version);
-  mark_frame(file);
   hdf5::write_attribute(file, "kind", plan.job().values["kind"].get<std::string>());
   hdf5::write_attribute(file, "title", "rodsweep results: " + plan.job().name);
   hdf5::write_texts(file, "/job/text", {plan.job().text});

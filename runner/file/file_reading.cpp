@@ -14,8 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* frame_attribute = "multiplier_frame";
-
 bool has_hdf5_signature(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string start(8, '\0');
@@ -71,16 +69,6 @@ void check_version(const hdf5::File& file, const fs::path& path, int known) {
       fmt::format("{} has schema version {}, but this rodsweep reads only version {}: use the revision that wrote it "
                   "(/runs/revision in the file)",
                   path.native(), version, known));
-}
-
-void mark_frame(hid_t file) { hdf5::write_attribute(file, frame_attribute, "joint"); }
-
-void check_frame(const hdf5::File& file, const fs::path& path, const char* advice) {
-  if (hdf5::has_attribute(file.id(), "/", frame_attribute)) return;
-  throw FileError(
-      fmt::format("{} was made by an earlier rodsweep (revision {}), with multipliers in the world frame instead of "
-                  "the joints' frames. {}",
-                  path.native(), hdf5::read_text_row(file.id(), "/runs/revision", 0), advice));
 }
 
 hdf5::File open_results(const fs::path& path) {

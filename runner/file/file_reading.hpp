@@ -22,12 +22,6 @@ std::string kind_of(const hdf5::File& file);
 /// Throws FileError if the schema version is not `known`.
 void check_version(const hdf5::File& file, const std::filesystem::path& path, int known);
 
-/// Marks that a file's A, b and multipliers are in joint frames (solver/rod/linearization.hpp).
-void mark_frame(hid_t file);
-
-/// Throws FileError with `advice` if a file lacks that mark: it is from a version that used the world frame.
-void check_frame(const hdf5::File& file, const std::filesystem::path& path, const char* advice);
-
 hdf5::File open_results(const std::filesystem::path& path);
 
 /// The error for a file that passed open_results() but has invalid contents; `reason` says why.

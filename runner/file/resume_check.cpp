@@ -167,10 +167,7 @@ void check_same_tasks(const fs::path& path, const Plan& plan) {
 
 void check_same_plan(const fs::path& path, const Plan& plan, const char* advice) {
   const hdf5::File file = open_results(path);
-  reading(path, [&] {
-    check_frame(file, path, advice);
-    check_plan(file, path, plan, advice);
-  });
+  reading(path, [&] { check_plan(file, path, plan, advice); });
 }
 
 ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
@@ -181,7 +178,6 @@ ResumePoint check_resumable(const fs::path& path, const Plan& plan) {
   return reading(path, [&] {
     refuse_copies(file, path);
     check_job(file, path, plan);
-    check_frame(file, path, other_revision);
     check_plan(file, path, plan, other_revision);
     return ResumePoint{hdf5::read_all<std::uint8_t>(file.id(), "/tasks/state"),
                        hdf5::read_all<std::uint8_t>(file.id(), "/timing/tasks/tries"),

@@ -84,7 +84,6 @@ void write_scenes(hid_t file, const std::vector<SceneRatios>& scenes) {
 void write_card(hid_t file, const ModelCard& card) {
   hdf5::write_attribute(file, "program", "rodsweep");
   hdf5::write_attribute(file, "schema_version", model_schema_version);
-  mark_frame(file);
   hdf5::write_attribute(file, "kind", "model");
   hdf5::write_attribute(file, "title", "rodsweep model: " + card.name);
   write_texts(file, "/job/text", {card.job_text});

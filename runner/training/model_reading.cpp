@@ -193,7 +193,6 @@ StoredModel read_training(const fs::path& path) {
 }
 
 StoredModel read_model(const fs::path& path) {
-  reading(path, [&] { check_frame(open_model(path), path, "Use that revision, or train the model again"); });
   StoredModel stored = read_training(path);
   if (stored.card.best_epoch > 0) return stored;
   throw FileError(fmt::format("{} holds no trained model yet: no epoch of its training has ended", path.native()));

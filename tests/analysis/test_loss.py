@@ -130,7 +130,7 @@ class Script(Scripts):
         with h5py.File("hole.h5", "r+") as h5:
             del h5["training/rate"]
         for name, words in (("sweep.h5", "holds the results of a sweep"), ("none.h5", "file not found"),
-                            ("begun.h5", "no epoch"), ("old.h5", "schema version 7, these scripts read 1"),
+                            ("begun.h5", "no epoch"), ("old.h5", "schema version 7, these scripts read 2"),
                             ("hole.h5", "damaged")):
             self.assertIn(name, self.refused("loss.py", name, words=words))
         self.refused("spatial.py", "hole.h5", words="hole.h5 is a rodsweep file of kind model")
