@@ -26,6 +26,7 @@ GOOD = {
     "nothing changed": {},
     "its schema named": {"$schema": "schema.json"},
     "a helix": {"scene": HELIX},
+    "a shear modulus": {"scene.torsion_modulus_pa": None, "scene.shear_modulus_pa": {"grid": [1e5, 1e6]}},
     "a grid": {"scene.segments": {"grid": [5, 10]}},
     "a zip": {"scene.segments": {"zip": [5, 10]}, "scene.length_m": {"zip": [1, 2]}},
     "ranges": {"scene.length_m": {"uniform": [1, 5]}, "scene.segments": {"integer": [5, 9]},
@@ -59,6 +60,8 @@ GOOD = {
     "a data set of all systems": {"kind": "dataset", "guesses": None, "record": {"systems": "all", "solves": "summary"}},
 }
 BAD = {
+    "two names of one modulus": {"scene.shear_modulus_pa": 1e6},
+    "neither name of a modulus": {"scene.torsion_modulus_pa": None},
     "an unknown key": {"scene.lenght_m": 2},
     "an unknown key of the job": {"comment": "no"},
     "a missing key": {"scene.radius_m": None},
