@@ -36,7 +36,7 @@ constexpr const char* main_help =
     "Examples:\n"
     "  rodsweep validate jobs/demo.json         check a job\n"
     "  rodsweep plan jobs/demo.json             estimate tasks, bytes and core-hours\n"
-    "  mpirun -n 9 rodsweep run jobs/demo.json  run a job with 8 workers and a sleeping master\n"
+    "  mpirun -n 9 rodsweep run jobs/demo.json  run a job with 8 workers and a master\n"
     "  rodsweep status results/demo.h5          show the progress, also during the run\n"
     "  rodsweep query results/demo.h5           list the tasks as a table, CSV or JSON\n"
     "'rodsweep COMMAND --help' shows the help of a command.\n\n"
@@ -107,7 +107,7 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
       ->type_name("SECONDS");
   command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
-                   "Memory per rank; a task that needs more ends in an error [90 % of the host's / its ranks]")
+                   "Memory per rank; a task that needs more ends in an error [90 % of the host's / its workers]")
       ->check(CLI::Range(0.1, 1e9))  // the program itself needs most of 0.1 GB
       ->type_name("GB");
   command->add_option("--max-crashes", run.max_crashes, "Mark a task as crashed after this many worker deaths [3]")
