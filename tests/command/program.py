@@ -22,7 +22,7 @@ DATA = {"kind": "dataset", "solve": None, "guesses": None}  # the changes that m
 
 def rodsweep(*words, **options):
     """Runs to the end: the completed process with its texts, unless `options` send them elsewhere."""
-    return subprocess.run([RODSWEEP, *map(str, words)], stdin=subprocess.DEVNULL, text=True, timeout=60,
+    return subprocess.run([RODSWEEP, *map(str, words)], stdin=subprocess.DEVNULL, text=True, timeout=600,
                           **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options})
 
 

@@ -155,7 +155,7 @@ class Rerun(Case):
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertIn("task 0: 200 segments", process.stderr.readline())
         process.send_signal(signal.SIGTERM)
-        _, stderr = process.communicate(timeout=30)
+        _, stderr = process.communicate(timeout=600)
         self.assertEqual(process.returncode, STOPPED, stderr)
         self.assertIn("SIGTERM", stderr)
         self.assertEqual([name for name in os.listdir("results") if name.startswith("endless")], ["endless.h5"])

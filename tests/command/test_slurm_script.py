@@ -34,7 +34,7 @@ class SlurmScript(unittest.TestCase):
     def run_script(self, *words, code=0, **slurm):
         slurm = {"SLURM_JOB_ID": 7, "SLURM_NTASKS": 4, "SLURM_JOB_NUM_NODES": 2, "CODE": code, "RODSWEEP": self.program,
                  "PATH": os.path.abspath("bin") + os.pathsep + os.environ["PATH"], **slurm}
-        ran = subprocess.run(["bash", SCRIPT, "job.json", *words], capture_output=True, text=True, timeout=60, check=False,
+        ran = subprocess.run(["bash", SCRIPT, "job.json", *words], capture_output=True, text=True, timeout=600, check=False,
                              env={**os.environ, **{name: str(value) for name, value in slurm.items()}})
         self.assertEqual(ran.returncode, code, ran.stderr)
         return ran.stdout + ran.stderr

@@ -51,7 +51,7 @@ def command(ranks, *words):
     return ([MPIRUN, "-n", str(ranks)] if ranks else []) + [RODSWEEP, *words]
 
 
-def rodsweep(ranks, *words, timeout=60):
+def rodsweep(ranks, *words, timeout=600):
     """Runs to the end: the completed process with its texts. ranks 0: without mpirun."""
     return subprocess.run(command(ranks, *words), stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           timeout=timeout)
@@ -70,7 +70,7 @@ def status(path):
 def wait_for_tasks(process, path, count):
     """Until `count` tasks are in the file; the sweep must still be running then. Reads the file, which is done sooner than
     starting a program that does: a short sweep is hit in its middle too."""
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 600
     while time.monotonic() < deadline:
         if os.path.exists(path):
             with h5py.File(path) as file:

@@ -166,7 +166,7 @@ class Damage(ExtendCase):
         process = start(3, "run", path, "-o", "killed.h5", "--extend", old)
         wait_for_tasks(process, "killed.h5", 4)
         kill_all(process)
-        process.communicate(timeout=30)
+        process.communicate(timeout=600)
         self.assertGreater(status("killed.h5")["pending"], 0)
         self.rodsweep(3, "run", path, "-o", "killed.h5", "--extend", old, "--resume")
         self.assert_same_results("unkilled.h5", "killed.h5")
@@ -180,7 +180,7 @@ class Damage(ExtendCase):
         process = start(0, "run", path, "-o", "stopped.h5", "--extend", old)
         wait_for_tasks(process, "stopped.h5", 4)
         process.send_signal(signal.SIGTERM)
-        _, stderr = process.communicate(timeout=30)
+        _, stderr = process.communicate(timeout=600)
         self.assertIn(f"run {path} -o stopped.h5 --extend {old} --resume", stderr)
 
 

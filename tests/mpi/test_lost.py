@@ -20,12 +20,12 @@ class LostCase(SweepCase):
             self.rodsweep(3, "run", self.job, "-o", "whole.h5")
 
     def end(self, process, code):
-        stdout, stderr = process.communicate(timeout=60)
+        stdout, stderr = process.communicate(timeout=600)
         self.assertEqual(process.returncode, code, f"{stdout}\n{stderr}")
         return stdout, stderr
 
     def wait_for_end(self, pid):
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 600
         while os.path.exists(f"/proc/{pid}") and time.monotonic() < deadline:
             time.sleep(0.05)
         self.assertFalse(os.path.exists(f"/proc/{pid}"))

@@ -52,7 +52,7 @@ class InterruptedCase(SweepCase):
         process = start(ranks, "run", self.job, "-o", path)
         wait_for_tasks(process, path, 4)
         hit(process)
-        stdout, stderr = process.communicate(timeout=30)
+        stdout, stderr = process.communicate(timeout=600)
         return process.returncode, stdout, stderr
 
     def resume(self, path, ranks):
@@ -146,7 +146,7 @@ class Killers(SweepCase):
         for attempt in range(3):
             process = start(3, "run", path, "-o", "killer.h5", "--resume")
             self.kill_who_runs(process, "killer.h5", killer)
-            process.communicate(timeout=30)
+            process.communicate(timeout=600)
             with h5py.File("killer.h5") as file:
                 starts = file["/timing/tasks/tries"][:]
                 self.assertEqual(starts[killer], attempt + 1)
@@ -170,7 +170,7 @@ class Killers(SweepCase):
 
     def kill_who_runs(self, process, path, task):
         """Waits until a worker has begun the task, once more than before, and kills it."""
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + 600
         before = None
         while time.monotonic() < deadline and process.poll() is None:
             try:
@@ -207,8 +207,8 @@ class Watching(SweepCase):
         watch = start(0, "status", "watched.h5", "--watch", "0.2")
         self.assertIn("left", watch.stdout.readline())
         kill_all(process)
-        process.communicate(timeout=30)
-        rest, _ = watch.communicate(timeout=30)  # ends by itself
+        process.communicate(timeout=600)
+        rest, _ = watch.communicate(timeout=600)  # ends by itself
         self.assertIn("was killed", rest)
         dead = status("watched.h5")
         self.assertEqual((dead["being_written"], dead["alive"], dead["running"]), (False, False, []))
@@ -226,7 +226,7 @@ class Watching(SweepCase):
         said = rodsweep(0, "status", "hung.h5").stdout
         for pid in [process.pid, *ranks.values()]:
             os.kill(pid, signal.SIGKILL)
-        process.communicate(timeout=30)
+        process.communicate(timeout=600)
         self.assertRegex(said, r"run 0: .*running.*\b3 min \d\d s\b")
 
 
@@ -251,7 +251,7 @@ class Refusals(SweepCase):
         first = start(3, "run", path, "-o", "unlocked.h5")
         wait_for_tasks(first, "unlocked.h5", 1)
         self.assert_refused_once(2, "run", path, "-o", "unlocked.h5", "--resume", says="unlocked.h5 seems to be")
-        _, stderr = first.communicate(timeout=60)
+        _, stderr = first.communicate(timeout=600)
         self.assertEqual((first.returncode, stderr.count("file system without locks")), (ALL_DONE, 1), stderr)
         with h5py.File("unlocked.h5", "r+") as file:
             file["runs/end"][0] = b""  # killed, then

@@ -91,7 +91,7 @@ class Stopping(TrainingCase):
     def interrupt(self, path, ranks, hit):
         process = self.start(ranks, self.job, path, 3)
         hit(process)
-        stdout, stderr = process.communicate(timeout=30)
+        stdout, stderr = process.communicate(timeout=600)
         self.assertFalse(status(path)["ended"], "the training is too short to be interrupted")
         return process.returncode, stdout, stderr
 
@@ -147,7 +147,7 @@ class Refused(TrainingCase):
         path = train_job(name, training={"epochs": 1000000})
         process = self.start(0, path, f"{name}.h5", 1)
         process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=30)
+        process.communicate(timeout=600)
         self.assertEqual(process.returncode, STOPPED)
         return path
 
