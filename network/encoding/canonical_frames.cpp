@@ -6,7 +6,7 @@
 namespace rodsweep {
 namespace {
 
-/// The frame of a hand, of c and s.
+/// The frame that is rolled by t = c + i s, and mirrored if `hand` is -1.
 struct Hand {
   Lane8 cosine, always, sine;
 
@@ -15,18 +15,18 @@ struct Hand {
   CanonicalFrame frame(double c, double s) const { return {c * cosine + always, s * sine}; }
 };
 
-/// Of the diagonal, one number for both transverse rows of a kind.
+/// The diagonal, averaged over both transverse rows of a kind.
 Lane4 diagonal_of(const Block6& block) {
   return Lane4{(block.column[0][0] + block.column[1][1]) / 2, block.column[2][2],
                (block.column[3][3] + block.column[4][4]) / 2, block.column[5][5]};
 }
 
-/// One over what bending rows have on the diagonal, of a rod with joints.
+/// 1 / (bending entry of the first diagonal block), or 1 for a rod without joints.
 double bending_unit(const SystemPattern& pattern, const BlockMatrix& a) {
   return pattern.diagonal.empty() ? 1 : 1 / diagonal_of(a.blocks[at(pattern.diagonal[0])])[2];
 }
 
-/// In single precision, which is enough for scales and a third of the time.
+/// 1 / sqrt(values). Single precision is enough for scales and takes a third of the time.
 Lane8 inverse_root(const Lane8& values) {
   using FloatLane8 = float __attribute__((vector_size(32)));
   FloatLane8 roots = __builtin_convertvector(values, FloatLane8);
@@ -77,10 +77,10 @@ void CanonicalFrames::find(const SystemPattern& pattern, const BlockMatrix& a, c
 /// Sets scales, rho and the rolls along the trees.
 void CanonicalFrames::carry(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual) {
   double sum = 0;
-  // What rolls are read from, without its unit, so that its square is a single-precision number of any rod.
+  // Removes the unit of the entries that give the rolls, so that their squares fit single precision for any rod.
   const double unit = bending_unit(pattern, a);
   for (std::size_t place = 0; place < frames_.size(); ++place) {
-    // All roots of a joint at once: of the diagonal, and of the size of what its roll is read from.
+    // All inverse roots of a joint at once: of the diagonal, and of |re + i im|^2, which gives the roll.
     const Lane4 diagonal = diagonal_of(a.blocks[at(pattern.diagonal[place])]);
     const int k = pattern.to_parent[place];
     const SystemPattern::Coupling* parent = k >= 0 ? &pattern.couplings[at(k)] : nullptr;
@@ -105,7 +105,7 @@ void CanonicalFrames::carry(const SystemPattern& pattern, const BlockMatrix& a, 
   rho_ = std::sqrt(sum / a.unknowns());
 }
 
-/// Sets the axes of trees that are bent, and the hands of those that are not flat.
+/// Sets the axes of bent trees, and the hands of trees that are not flat.
 void CanonicalFrames::orient_by_matrix(const SystemPattern& pattern, const BlockMatrix& a) {
   const double unit = bending_unit(pattern, a);
   for (std::size_t place = 0; place < frames_.size(); ++place) {
@@ -158,7 +158,7 @@ void CanonicalFrames::orient_by_residual(const SystemPattern& pattern, const Vec
   }
 }
 
-/// The root of the second moment, by half of its angle, on the side of the first.
+/// The axis is the square root of the second moment (half its angle). Its sign points towards the first moment.
 void CanonicalFrames::set_axis(Tree& tree) {
   const auto& [first, second, size, hand] = tree.moments;
   const double length = std::hypot(second.x, second.y);

@@ -1,21 +1,20 @@
-// Frames in which a linear system does not depend on how the scene is turned or mirrored, or how its segments' frames are
-// rolled about their axes (which has no meaning for a circular section).
+// Frames in which a linear system does not change when the scene is rotated or mirrored, or when segments' frames are
+// rolled about their axes. (That roll has no physical meaning for a circular section.)
 //
 // A joint's rows are in its own frame, whose z is along the rod; the roll about z and the handedness are arbitrary.
 // With transverse pairs (x, y) as complex numbers, the frame of joint k is rolled by the unit number t_k:
 //   along a tree  t_k = t_parent conj(u),  u = -(B_00 + B_11 + i (B_10 - B_01)) / |.|,  B the transverse bend block of
 //                 the coupling of k with its parent: frames are carried along the rod without roll
 //   as a whole    every tree is rolled so that x is the axis of largest second moment of its transverse vectors v_k,
-//                 sqrt(sum (t v_k)^2), towards sum t v_k
-//   mirrored      across the xz plane, where the tree's hand is negative; rows of bend and twist are those of an axis,
-//                 which a mirror turns the other way
-// An Alignment says what v_k and the hand are taken from:
-//   residual      v_k of stretch-shear, and of bending a quarter turn on (in planar motion in and across its plane);
-//                 the hand is the sum of twists, or where there are none, that sum t v_k is on the left of x
-//   matrix        v_k = (B_35, B_45) of the coupling, by which the joint is bent against its parent, and the hand is
-//                 that in which they turn along the tree, sum Im conj(t v_parent) t v_k: the frames of a matrix
-//                 for any residual. The axis of a straight tree, and the hand of a flat one, are taken from the
-//                 residual.
+//                 sqrt(sum (t v_k)^2), pointing to sum t v_k
+//   mirrored      across the xz plane if the tree's hand is negative; bend and twist are axial vectors, which a mirror
+//                 transforms with the opposite sign
+// An Alignment is the source of v_k and of the hand:
+//   residual      v_k are the stretch-shear pairs and the bending pairs, turned by 90 degrees (planar motion bends
+//                 about the normal); the hand is the sum of twists, or if that is 0, whether sum t v_k is left of x
+//   matrix        v_k = (B_35, B_45) of the coupling, the bend of the joint against its parent; the hand is the sense
+//                 of rotation of v_k along the tree, sum Im conj(t v_parent) t v_k. Only a straight tree's axis and a flat
+//                 tree's hand depend on the residual; they come from it.
 #pragma once
 
 #include "network/encoding/scaled_system.hpp"
@@ -55,7 +54,7 @@ class CanonicalFrames {
 
  private:
   struct Pair {
-    double x = 0, y = 0;  ///< of a complex number
+    double x = 0, y = 0;  ///< parts of a complex number
   };
   /// Sums over a tree: of a vector, of its square, of its absolute square, and of the terms that give the hand.
   struct Moments {
@@ -64,8 +63,8 @@ class CanonicalFrames {
   };
   struct Tree {
     Moments moments;
-    Pair axis;        ///< the direction that becomes x, of length one; none: zero
-    double hand = 0;  ///< its sign counts; zero: none yet
+    Pair axis;        ///< unit vector that becomes x; zero until it is known
+    double hand = 0;  ///< only its sign matters; zero until it is known
   };
   void carry(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual);
   void orient_by_matrix(const SystemPattern& pattern, const BlockMatrix& a);
@@ -82,7 +81,7 @@ class CanonicalFrames {
   double rho_ = 0;
 };
 
-/// The system of a correction as scaled_system() has it, in these frames.
+/// scaled_system() in these frames.
 ScaledSystem<float> canonical_system(const SystemPattern& pattern, const CanonicalFrames& frames, const BlockMatrix& a,
                                      const VectorX& residual, const VectorX& error, double solution_energy);
 

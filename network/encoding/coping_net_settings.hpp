@@ -1,4 +1,4 @@
-// The structure of a COPINGNet: all but its weights.
+// The structure of a COPINGNet: everything except its weights.
 #pragma once
 
 #include "network/encoding/graph_encoding.hpp"
@@ -11,8 +11,8 @@ enum class Processor {
   message_passing  ///< hops over the graph (network/processor/message_passing.hpp)
 };
 
-/// Which couplings of the matrix factors have: those of the forest of joints (network/processor/factor_sweeps.hpp), or
-/// all (network/processor/coupled_factors.hpp).
+/// The couplings that the factors include: those of the forest of joints (network/processor/factor_sweeps.hpp), or all
+/// (network/processor/coupled_factors.hpp).
 enum class Couplings { tree, all };
 
 /// The guess that the network corrects: none (zero), quadratic extrapolation in time, least squares of the last
@@ -30,20 +30,20 @@ struct CopingNetSettings {
   int hidden_layers = 1;                  ///< message_passing: of every MLP
   bool globals = false;                   ///< message_passing: with a state of the whole graph
   bool best_length =
-      true;  ///< the correction is scaled to what lowers the error most (network/training/energy_loss.hpp)
+      true;  ///< scale the correction to the length that reduces the error most (network/training/energy_loss.hpp)
   bool moves =
-      false;  ///< message_passing: also predicts the segments' moves, for `end_to_end`; `state` predicts only these
+      false;  ///< message_passing: also predict the segments' moves, for `end_to_end`; `state` predicts only moves
 };
 
 /// Whether the network corrects multipliers, and so makes a guess; `state` predicts moves of segments only.
 inline bool is_guess(const CopingNetSettings& settings) { return settings.encoding != Encoding::state; }
 
-/// Whether features have means and deviations of a training set.
+/// Whether features are normalised by a training set's means and deviations.
 inline bool has_scales(const CopingNetSettings& settings) {
   return is_of_graphs(settings.encoding) || settings.encoding == Encoding::state;
 }
 
-/// Whether there are factors of all couplings.
+/// Whether the factors include all couplings.
 inline bool has_all_couplings(const CopingNetSettings& settings) {
   return settings.processor == Processor::factors && settings.couplings == Couplings::all;
 }

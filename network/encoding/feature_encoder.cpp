@@ -12,7 +12,7 @@ bool of_graphs(const CopingNetSettings& settings) { return is_of_graphs(settings
 
 int sum(const std::vector<int>& sizes) { return std::accumulate(sizes.begin(), sizes.end(), 0); }
 
-/// The places of a topology are those of its forest's order.
+/// A topology's places are those of its forest's order.
 SystemPattern pattern_of(const Topology& topology, const BlockMatrix& a) {
   JointForest forest = topology.forest;
   forest.order = topology.joint;

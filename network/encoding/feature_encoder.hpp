@@ -1,15 +1,15 @@
-// The inputs of a COPINGNet from a linear system and its base guess, and the units of its outputs: one interface for all
-// encodings.
+// The inputs of a COPINGNet from a linear system and its base guess, and the units of its outputs: one interface for
+// all encodings.
 //
 // The network corrects x_base: x = x_base + unit * y, entry by entry.
 //   paper, paper_residual   features of segments and joints (graph_encoding.hpp), with a base guess also x_base of the
 //                           joints, all normalised; unit: the deviation of each component of x - x_base in the training
 //                           set
 //   linear_system           features of the scaled system A^ d^ = r^ (system_encoding.hpp), not normalised; unit: the
-//                           scale of d^. Factors of all couplings read the matrix themselves: for them only the frames
-//                           are found.
+//                           scale of d^. Factors of all couplings read the matrix directly, so only the frames are
+//                           found for them.
 // `state` uses no linear system: it has its own encoder (state_encoding.hpp), and only its sizes are here.
-// Edge features are in the places of the rod's topology.
+// Edge features are in the order of the topology's places.
 #pragma once
 
 #include <memory>
@@ -24,11 +24,11 @@ namespace rodsweep {
 /// The scales of a training set, for encodings of graphs and states; empty for others.
 struct FeatureScales {
   Normalisation nodes, edges;
-  Normalisation multipliers;  ///< of x - x_base, six; of guesses
-  Normalisation moves;        ///< of the segments' moves, six; where the network predicts them
+  Normalisation multipliers;  ///< of x - x_base, six; for guesses only
+  Normalisation moves;        ///< of the segments' moves, six; if the network predicts them
 };
 
-/// Features of a segment, and of a joint with those of the base guess.
+/// Number of features of a segment, and of a joint including those of the base guess.
 int node_features(const CopingNetSettings& settings);
 int edge_features(const CopingNetSettings& settings);
 /// Sizes of groups of components, for network/encoding/normalisation.hpp.
@@ -37,7 +37,7 @@ std::vector<int> edge_groups(const CopingNetSettings& settings);
 
 class FeatureEncoder {
  public:
-  /// Of a rod; `a` is the matrix of its linear systems.
+  /// `a` is the matrix of the rod's linear systems.
   FeatureEncoder(const CopingNetSettings& settings, const Rod& rod, const BlockMatrix& a);
 
   const Topology& topology() const { return *topology_; }
@@ -49,7 +49,7 @@ class FeatureEncoder {
   void encode(const Rod& rod, const LinearSystem& system, int newton, const VectorX& base, const VectorX& residual,
               Eigen::Ref<Tensor<float>> nodes, Eigen::Ref<Tensor<float>> edges);
 
-  /// Of `linear_system`; else null.
+  /// Null unless the encoding is `linear_system`.
   const SystemEncoding* system() const { return system_.get(); }
 
  private:

@@ -11,7 +11,7 @@
 namespace rodsweep {
 namespace {
 
-/// Where the segments of a rod lie along it. Every connected piece has a root.
+/// Distances of segments from the root of their connected piece.
 struct ArcLength {
   std::vector<double> distance;  ///< [m] from the root
   std::vector<std::size_t> roots;
@@ -46,7 +46,8 @@ struct ArcLength {
 const GraphEncoding::Groups& GraphEncoding::groups(Encoding encoding) {
   static const Groups paper{{3, 4, 1, 1, 1, 1, 1, 1, 1}, {3, 1, 1}};
   static const Groups paper_residual{paper.nodes, {3, 1, 1, 3, 3}};
-  if (!is_of_graphs(encoding)) throw std::invalid_argument("GraphEncoding: an encoding without features of graphs");
+  if (!is_of_graphs(encoding))
+    throw std::invalid_argument("GraphEncoding: the encoding must be paper or paper_residual");
   return encoding == Encoding::paper ? paper : paper_residual;
 }
 
@@ -62,7 +63,7 @@ int GraphEncoding::edge_features(Encoding encoding) {
 
 GraphEncoding::GraphEncoding(Encoding encoding, const Rod& rod)
     : encoding_(encoding), constants_(7, rod.segment_count()), moduli_(2, rod.joint_count()) {
-  groups(encoding);  // refuses the others
+  groups(encoding);  // throws for other encodings
   const ArcLength arc(rod);
   const double farthest = *std::max_element(arc.distance.begin(), arc.distance.end());
   std::vector<int> joints_at(rod.segments.size(), 0);

@@ -1,5 +1,5 @@
-// Features of nodes (segments) and edges (joints) that depend on where a rod is, for message passing: the inputs of
-// Shao et al. 2021.
+// Features of nodes (segments) and edges (joints) for message passing, which depend on the rod's position: the inputs
+// of Shao et al. 2021.
 //
 // At the positions p^j of Newton iteration j:
 //   paper            node 14: x [m], q (w, x, y, z; the hemisphere w >= 0), r [m], rho [kg/m^3], segment length [m],
@@ -7,9 +7,9 @@
 //                    edge 5:  Darboux vector Omega [1/m], Y, T [Pa]
 //   paper_residual   node 14: the same
 //                    edge 11: the same, and from j = 1 on the constraint residual -C - alpha~ lambda (0 at j = 0)
-// alpha is the distance of a segment's centre from the root along the joints, over the largest. The root is the first
-// static segment, or the first segment where none is static. Y and T are the moduli of the joint's bend-twist compliance
-// (l / EI, l / GJ).
+// alpha is the distance of a segment's centre from the root along the joints, over the largest. The root of a connected
+// piece is its first static segment, or its first segment if none is static. Y and T are the moduli of the joint's
+// bend-twist compliance (l / EI, l / GJ).
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ namespace rodsweep {
 /// `linear_system`: network/encoding/system_encoding.hpp; `state`: state_encoding.hpp.
 enum class Encoding { paper, paper_residual, linear_system, state };
 
-/// Of segments and joints, not of the linear system.
+/// Whether features describe segments and joints rather than the linear system.
 constexpr bool is_of_graphs(Encoding encoding) {
   return encoding == Encoding::paper || encoding == Encoding::paper_residual;
 }
@@ -37,7 +37,7 @@ class GraphEncoding {
   static int node_features(Encoding encoding);
   static int edge_features(Encoding encoding);
 
-  /// Throws std::invalid_argument for an encoding that is not of graphs.
+  /// Throws std::invalid_argument unless is_of_graphs(encoding).
   GraphEncoding(Encoding encoding, const Rod& rod);
 
   /// Writes [node_features, segments] and [edge_features, joints]; `system` is assembled at the rod's state. Allocates

@@ -1,8 +1,8 @@
 // Features shifted and scaled to mean 0 and standard deviation 1 over a training set.
 //
 // Features come in groups, the components of one quantity: a component that hardly varies (z of a planar motion) is
-// divided by a tenth of the group's root mean square deviation. A group that is constant in single precision is divided by
-// its own size, so that other values of it stay of order one.
+// divided by a tenth of the group's root mean square deviation. A group that is constant in single precision is divided
+// by its own size, so that other values remain of order one.
 #pragma once
 
 #include <vector>

@@ -8,9 +8,9 @@ namespace {
 template <class T>
 using Block = Eigen::Map<const Eigen::Matrix<T, 6, 6>>;
 
-/// Joints on one segment are coupled all among themselves.
+/// Joints on the same segment are all coupled with each other.
 void put_sides(const std::vector<int>& place, const BlockMatrix& a, SystemPattern& pattern) {
-  std::vector<int> earliest(pattern.joint.size());  // joint with which each place's joint is coupled
+  std::vector<int> earliest(pattern.joint.size());  // the earliest joint that is coupled with each place's joint
   for (std::size_t i = 0; i < earliest.size(); ++i) {
     earliest[i] = -1;
     for (int k = a.row_begin(pattern.joint[i]); k < a.row_end(pattern.joint[i]); ++k)

@@ -3,9 +3,9 @@
 // The correction d of a base guess x_base solves A d = r, r = b - A x_base. With S = diag(A)^-1/2 and rho the root mean
 // square of S r the system is
 //   A^ d^ = r^,   A^ = S A S,   r^ = S r / rho,   d = rho S d^
-// where A^ has a unit diagonal, entries below one, and no unit; r^ has a root mean square of one. CG with Jacobi on A
-// is plain CG on A^. Blocks are in the places of a JointForest, a row of blocks per joint; of two coupled joints only
-// the block of the later place (row) and the earlier one (column) is stored.
+// A^ is dimensionless, with a unit diagonal and entries below one; r^ has a root mean square of one. CG with Jacobi on
+// A is plain CG on A^. Blocks are in the places of a JointForest, one block row per joint. For two coupled joints only
+// the block in the later place's row and the earlier place's column is stored.
 #pragma once
 
 #include <vector>
@@ -21,8 +21,8 @@ struct SystemPattern {
   struct Coupling {
     int row, column;                ///< places, row > column
     int block;                      ///< in the BlockMatrix
-    int side = 0, column_side = 0;  ///< by which of the row's two segments, and of the column's: 0: by that which is
-                                    ///< shared with the earliest place, else 1
+    int side = 0, column_side = 0;  ///< which segment of the row's joint, and of the column's, couples them; 0: the one
+                                    ///< shared with the earliest place, 1: the other
   };
   std::vector<int> joint;           ///< of each place
   std::vector<int> diagonal;        ///< block of each place
@@ -46,15 +46,15 @@ struct ScaledSystem {
   int systems() const { return static_cast<int>(base_energy.size()); }
 };
 
-/// Sets rho S per unknown, in the order of joints: d = scale * d^; returns rho. Zero where the residual is.
+/// Sets rho S per unknown, in the order of joints: d = scale * d^; returns rho. Both are zero if the residual is.
 double correction_scale(const BlockMatrix& a, const VectorX& residual, VectorX& scale);
 
-/// From A, r, the solution of A x = b and b.
+/// `error` is x - x_base, `solution_energy` is x^T A x, with A x = b.
 ScaledSystem<float> scaled_system(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
                                   const VectorX& error, double solution_energy);
 
-/// The same in whatever frames and scales: put_residual(place, six floats) writes r^ of a place, put_block(block, row,
-/// column, 36 floats) a block of A^ between two places, of which `block` is that of A. `rho` as in correction_scale().
+/// The same in other frames and scales: put_residual(place, six floats) writes r^ of a place; put_block(block, row,
+/// column, 36 floats) writes the block of A^ that corresponds to `block` of A. `rho` as in correction_scale().
 template <class PutResidual, class PutBlock>
 ScaledSystem<float> scaled_system_of(const SystemPattern& pattern, const BlockMatrix& a, double rho, double base_energy,
                                      double solution_energy, const PutResidual& put_residual,

@@ -1,15 +1,15 @@
-// The encoding `state`, for a simulator that updates the state of rods without constraints (Sanchez-Gonzalez et al. 2020,
-// Learning to simulate complex physics with graph networks): from the last five velocities to accelerations.
+// The encoding `state`, for a simulator that updates the state of rods without constraints (Sanchez-Gonzalez et al.
+// 2020, Learning to simulate complex physics with graph networks): the last five velocities give accelerations.
 //
-//   node 37: the last five velocities [m/s] and angular velocities [rad/s], the last first, v then w of each; gravity;
+//   node 37: the last five velocities [m/s] and angular velocities [rad/s], newest first, v then w of each; gravity;
 //            radius [m], density [kg/m^3], length [m], and whether fixed
 //   edge 15: the joint's gap, (x_a + R_a arm_a - x_b - R_b arm_b) / l; (x_b - x_a) / l; l (Omega - Omega0);
 //            l Omega0; log10 of Young's and torsion modulus; l [m]
 //   output:  v_{n+1} - v_n [m/s] and w_{n+1} - w_n [rad/s], a step's accelerations times dt
-// All vectors are in the segment's own frame, those of an edge in the frame of its segment a, so that turning the scene
-// does not change them; in the paper they are in the world. The gap and the strain are not in the paper: they are small
-// differences of large numbers, which a network learns slowly. Rolling all frames about the segments' axes changes the
-// features (rolled) but not the physics; copies for training have random rolls.
+// Vectors are in the segment's own frame, vectors of an edge in the frame of its segment a: rotating the scene does not
+// change them (the paper uses the world frame). The gap and the strain are not in the paper. They are small differences
+// of large numbers, which a network learns slowly. Rolling all frames about the segments' axes changes the features but
+// not the physics; copies for training have random rolls.
 #pragma once
 
 #include <memory>
@@ -35,7 +35,7 @@ class StateEncoding {
   void encode(const Rod& rod, const StateHistory& history, Eigen::Ref<Tensor<float>> nodes,
               Eigen::Ref<Tensor<float>> edges) const;
 
-  /// The answer [6, segments] that is exact, where the next velocities are these; 0 for fixed segments.
+  /// Sets the exact output [6, segments] for these next velocities; 0 for fixed segments.
   static void answer(const Rod& rod, const StateHistory& history, const std::vector<Vector3>& velocity,
                      const std::vector<Vector3>& spin, Eigen::Ref<Tensor<float>> out);
 
@@ -46,7 +46,7 @@ class StateEncoding {
   Tensor<float> moduli_;     ///< [2, joints]
 };
 
-/// Columns whose groups of three are vectors, as frames see them that are rolled by an angle about their z.
+/// Transforms columns, whose groups of three are vectors, to frames rolled by `angle` about their z.
 void roll(const std::vector<int>& groups, double angle, Eigen::Ref<Tensor<float>> columns);
 
 }  // namespace rodsweep

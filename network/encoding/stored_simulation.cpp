@@ -9,8 +9,8 @@ namespace rodsweep {
 
 void restore(const StoredSystem& system, Rod& rod) {
   if (system.position.size() != rod.segments.size() || system.lambda.size() != rod.lambda.size())
-    throw std::invalid_argument("restore: a system of " + std::to_string(system.position.size()) + " segments and " +
-                                std::to_string(system.lambda.size() / 6) + " joints for a rod of " +
+    throw std::invalid_argument("restore: the system has " + std::to_string(system.position.size()) + " segments and " +
+                                std::to_string(system.lambda.size() / 6) + " joints, the rod has " +
                                 std::to_string(rod.segment_count()) + " and " + std::to_string(rod.joint_count()));
   rod.position = system.position;
   rod.orientation = system.orientation;

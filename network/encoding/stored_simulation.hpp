@@ -1,5 +1,5 @@
-// A recorded simulation for training: for every stored linear system the state from which it was assembled and its exact
-// solution, so that A, b and every feature can be formed again, bit for bit.
+// A recorded simulation for training: for every stored linear system the state from which it was assembled and its
+// exact solution, so that A, b and every feature can be formed again, bit for bit.
 //
 //   assemble_again(system, constraint_dt_s, rod, linear_system)   gives A and b, and A solution = b
 #pragma once
@@ -29,32 +29,32 @@ struct StoredSystem {
   std::vector<Vector3> angular_velocity;   ///< at the start of the step [rad/s]
   VectorX lambda;                          ///< before the solve [kg m^2]
   VectorX solution;                        ///< the increment of lambda [kg m^2]
-  std::optional<StoredBalance> balance{};  ///< of a system with g and K (momentum_balance.hpp)
+  std::optional<StoredBalance> balance{};  ///< if the system has g and K (momentum_balance.hpp)
 };
 
 struct StoredSimulation {
-  Scene scene;                        ///< at its start: what is constant, the rods' masses, joints and loads
+  Scene scene;                        ///< at its start, with the constant masses, joints and loads
   double step_s = 0;                  ///< time step
   double constraint_dt_s = 0;         ///< constraint_dt(scene, step_s)
-  int newton_iterations = 0;          ///< at most, in a step
+  int newton_iterations = 0;          ///< limit per step
   std::vector<StoredSystem> systems;  ///< in the order in which they were solved
 };
 
-/// Puts the rod `system.at.rod` of the scene into the state that the system was assembled from. Throws
-/// std::invalid_argument where the rod has another number of segments or joints.
+/// Sets the rod `system.at.rod` of the scene to the state from which the system was assembled. Throws
+/// std::invalid_argument if the rod has another number of segments or joints.
 void restore(const StoredSystem& system, Rod& rod);
 
 /// The same, and assembles the system that was solved, with or without the balance of momentum.
 void assemble_again(const StoredSystem& stored, double constraint_dt_s, Rod& rod, LinearSystem& system);
 
-/// Goes through a simulation once more: one rod after the other is put into the state that a system was assembled from,
-/// and the system is assembled again.
+/// Repeats a simulation without solving: sets one rod after the other to the state of a stored system, and assembles
+/// that system again.
 class Replay {
  public:
-  explicit Replay(const StoredSimulation& simulation);  ///< which must outlive this
+  explicit Replay(const StoredSimulation& simulation);  ///< `simulation` must outlive this
 
   const Scene& scene() const { return scene_; }
-  const std::vector<LinearSystem>& systems() const { return systems_; }  ///< of each rod, as it stands
+  const std::vector<LinearSystem>& systems() const { return systems_; }  ///< of each rod, as last assembled
 
   /// Calls visit(stored system, its rod, its linear system) for every system in order.
   template <class Visit>

@@ -11,7 +11,7 @@ float entry(const FloatLane8& values, int i) { return reinterpret_cast<const flo
 
 FloatLane8 narrowed(const Lane8& values) { return __builtin_convertvector(values, FloatLane8); }
 
-/// S T of a joint, in single precision: what features keep.
+/// S T of a joint, in the single precision of features.
 struct ScaledFrame {
   FloatLane8 along, across;
 
@@ -37,7 +37,7 @@ void see(const Block6& block, const ScaledFrame& row, const ScaledFrame& column,
                               : entry(column.along, c) * half[c] + entry(column.across, c) * half[other[c]];
 }
 
-/// `count` entries of a column.
+/// Writes the first `count` entries of a column.
 template <int count>
 float* put(float* to, const FloatLane8& values) {
   std::memcpy(to, &values, count * sizeof(float));

@@ -2,11 +2,11 @@
 //
 // Per joint, in the places of a JointForest, of A^ d^ = r^ (network/encoding/scaled_system.hpp) in canonical frames
 // (network/encoding/canonical_frames.hpp):
-//   r^ (6), the upper triangle of its diagonal block of A^ without the diagonal (15), its block with its parent joint
-//   (36; 0 at roots)
-// They determine d^ of a chain completely. They are the same for a rod that is scaled in length, mass or time, turned or
-// mirrored, and for segments' frames rolled about their axes. They leave out couplings between siblings at a branching
-// and across the cut of a loop.
+//   r^ (6), the upper triangle of the joint's diagonal block of A^ without the diagonal (15), its block with its
+//   parent (36; 0 at roots)
+// They determine d^ of a chain completely. Scaling a rod in length, mass or time, rotating or mirroring it, and rolling
+// segments' frames about their axes do not change them. They omit couplings between siblings at a branching and across
+// the cut of a loop.
 #pragma once
 
 #include "network/encoding/canonical_frames.hpp"
@@ -23,13 +23,13 @@ class SystemEncoding {
   void encode(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual,
               Eigen::Ref<Tensor<float>> features);
 
-  /// Finds the frames alone.
+  /// Finds only the frames.
   void find(const SystemPattern& pattern, const BlockMatrix& a, const VectorX& residual) {
     frames_.find(pattern, a, residual);
   }
   const CanonicalFrames& frames() const { return frames_; }
 
-  /// d in the joint's frame from the network's output d^ for a place, and the inverse, of the system last encoded.
+  /// d in the joint's frame from the network's output d^ for a place, and the inverse, for the system last encoded.
   Lane8 from_unit(int place, const Lane8& answer) const;
   Lane8 to_unit(int place, const Lane8& correction) const;
 

@@ -43,7 +43,7 @@ JointForest joint_forest(const Rod& rod) {
   const auto grow = [&] {
     for (std::size_t next = 0; next < queue.size(); ++next) {
       const auto [segment, from] = queue[next];
-      if (is_static(segment)) continue;  // nothing couples through it
+      if (is_static(segment)) continue;  // joints do not couple through it
       if (segment_seen[static_cast<std::size_t>(segment)]++) {
         cut = true;
         continue;
@@ -67,7 +67,7 @@ JointForest joint_forest(const Rod& rod) {
     queue.emplace_back(is_static(joint.a) ? joint.b : joint.a, j);
     grow();
   }
-  for (int s = 0; s < rod.segment_count(); ++s) {  // free ones
+  for (int s = 0; s < rod.segment_count(); ++s) {  // trees without a static segment
     if (is_static(s) || segment_seen[static_cast<std::size_t>(s)]) continue;
     queue.emplace_back(s, -1);
     grow();
@@ -96,7 +96,7 @@ JointForest side_by_side(const std::vector<const JointForest*>& forests) {
     for (int level = 0; level < forest->levels(); ++level)
       for (int i = forest->level_begin[static_cast<std::size_t>(level)];
            i < forest->level_begin[static_cast<std::size_t>(level) + 1]; ++i) {
-        // Places of each forest are its joints here, so that features already in its order stay together.
+        // A forest's places serve as joint numbers here, so that features in its order stay together.
         const int up = forest->parent[static_cast<std::size_t>(i)];
         parent[static_cast<std::size_t>(first + i)] = up < 0 ? -1 : first + up;
         depth[static_cast<std::size_t>(first + i)] = level;

@@ -1,5 +1,5 @@
 // A rod as a graph for message passing: a node per segment, an edge per joint from its segment a (sender) to b
-// (receiver). Any graph, loops included. Several rods side by side are one graph whose parts stay contiguous.
+// (receiver). Loops are allowed. Several rods side by side are one graph whose parts stay contiguous.
 #pragma once
 
 #include <vector>
@@ -18,10 +18,10 @@ struct RodGraph {
   int rods() const { return static_cast<int>(first_node.size()) - 1; }
 };
 
-/// Of one rod.
+/// The graph of one rod.
 RodGraph rod_graph(const Rod& rod);
 
-/// Of several: nodes and edges numbered on.
+/// Several graphs as one; nodes and edges are numbered consecutively.
 RodGraph side_by_side(const std::vector<const RodGraph*>& graphs);
 
 }  // namespace rodsweep

@@ -1,7 +1,6 @@
 // The topology of a rod's joints, or of several rods side by side, for every kind of processor.
 //
-// Edges (joints) are numbered by places: of one rod, the places of its JointForest; of several, those of one rod after
-// those of the other.
+// Edges (joints) are numbered by places: for one rod, the places of its JointForest; for several rods, rod after rod.
 #pragma once
 
 #include "network/graph/joint_forest.hpp"
@@ -12,7 +11,7 @@ namespace rodsweep {
 struct Topology {
   RodGraph graph;          ///< an edge per place
   JointForest forest;      ///< levels of places: forest.order[i] is a place
-  std::vector<int> joint;  ///< of one rod: the joint at each place
+  std::vector<int> joint;  ///< the joint at each place, for one rod only
 };
 
 Topology topology(const Rod& rod);

@@ -1,4 +1,4 @@
-// The guess that a COPINGNet corrects, made by name.
+// Makes the guess that a COPINGNet corrects.
 #pragma once
 
 #include <memory>

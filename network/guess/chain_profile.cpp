@@ -7,7 +7,7 @@
 namespace rodsweep {
 namespace {
 
-constexpr double rigid = 1e15;  // [N m^2], stands for the stiffness of a joint without compliance
+constexpr double rigid = 1e15;  // [N m^2], stiffness of a joint without compliance
 
 [[noreturn]] void not_a_chain(const std::string& what) {
   throw SceneError(what + "; must be a single chain: nearest neighbours compare rods along their arc length");
@@ -63,7 +63,7 @@ ChainProfile::ChainProfile(const Rod& rod, const Vector3& gravity_m_s2)
     }
     reached.push_back(length_m_);
   }
-  if (length_m_ <= 0) not_a_chain("nothing of the rod is free");
+  if (length_m_ <= 0) not_a_chain("every segment is static");
   Eigen::Array2d stiffness(0, 0);
   for (std::size_t i = 0; i < chain.joints.size(); ++i) {
     const Joint& joint = rod.joints[at(chain.joints[i])];
@@ -106,7 +106,7 @@ void ChainProfile::state(const Rod& rod, const LinearSystem& system, double dt_c
   }
 }
 
-/// What a multiplier is divided by to be a load.
+/// A multiplier divided by this is a load.
 Vector6 ChainProfile::load_unit(std::size_t place, double dt_c) const {
   const double force = sign_[place] * mass_kg_ * acceleration_m_s2_ * dt_c * dt_c;
   Vector6 unit;

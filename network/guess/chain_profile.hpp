@@ -1,14 +1,15 @@
-// An unbranched rod as functions of its arc length, without units, so that rods of any size and division are comparable.
+// An unbranched rod as functions of its arc length, without units, so that rods of any size and division are
+// comparable.
 //
-// sigma in [0, 1] runs over the free segments from the held end (without one, or with two: from the lower-numbered
-// one); static segments are points. Units: the free length L, the free mass m, the size a of the scene's gravity (1
-// m/s^2 where there is none), T = sqrt(L / a). At every joint, of length l:
+// sigma in [0, 1] runs over the free segments from the static end (if none or both are static: from the end with the
+// lower number); static segments have no length. Units: the free length L, the free mass m, the magnitude a of the
+// scene's gravity (1 m/s^2 if it is zero), T = sqrt(L / a). At every joint, of length l:
 //   state   15: its point relative to the first joint's, over L
-//               L / l (-b_b): L (Omega - Omega0), and what multipliers changed of it
-//               the sum of l b_s / (a dt_c^2) up to this joint, in the world: a clamp's jump and gaps spread alike
-//               velocity of the point T / L, angular velocity T
+//               L / l (-b_b): L (Omega - Omega0), plus the multipliers' term
+//               the sum of l b_s / (a dt_c^2) up to this joint, in the world: equal for a clamp's jump and spread gaps
+//               T / L times the velocity of the point, T times the angular velocity
 //   load     6: force lambda_s / (l dt_c^2) over m a, torque lambda_b / dt_c^2 over m a L, in the joint's frame.
-//               Neither depends on how finely the rod is divided nor, but for the motion in a step, on dt.
+//               Neither depends on the number of segments or, except for the motion in a step, on dt.
 //   constants 2: log10 of EI and GJ over m a L^2, means over the joints
 #pragma once
 
@@ -22,10 +23,10 @@ namespace rodsweep {
 class ChainProfile {
  public:
   static constexpr int state_size = 15, constant_count = 2;
-  static constexpr int shape_size = 6;            ///< of the state, from its first: places and curvature
+  static constexpr int shape_size = 6;            ///< the state's first features: positions and curvature
   static const std::vector<int>& state_groups();  ///< for network/encoding/normalisation.hpp
 
-  /// Throws SceneError for a rod that branches, closes a loop, falls into pieces or has nothing free.
+  /// Throws SceneError for a rod with branches, loops or several pieces, or without free segments.
   ChainProfile(const Rod& rod, const Vector3& gravity_m_s2);
 
   const std::vector<float>& arc() const { return arc_; }  ///< sigma of the joints, ascending
@@ -42,14 +43,14 @@ class ChainProfile {
 
   std::vector<int> joint_;      ///< along the rod
   std::vector<double> length_;  ///< l
-  std::vector<double> sign_;    ///< -1 where a is the farther segment: C and lambda point the other way
+  std::vector<double> sign_;    ///< -1 if a is the farther segment: C and lambda are reversed
   std::vector<float> arc_;
   double length_m_ = 0, mass_kg_ = 0, acceleration_m_s2_;
   Eigen::Array2f constants_;
 };
 
-/// Adds `weight` times the values [n, from.size()] at `from` to the columns of `out`, at `to`: linear between and
-/// beyond. Both ascend.
+/// Adds `weight` times the values [n, from.size()] at `from` to the columns of `out`, at `to`, with linear
+/// interpolation and extrapolation. `from` and `to` ascend.
 void add_resampled(const std::vector<float>& from, const Eigen::Ref<const Tensor<float>>& values,
                    const std::vector<float>& to, float weight, Eigen::Ref<Tensor<float>> out);
 

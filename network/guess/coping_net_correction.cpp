@@ -20,7 +20,7 @@ CopingNetCorrection::CopingNetCorrection(std::shared_ptr<const Model> model, con
       previous_(a.unknowns()) {
   const CopingNetSettings& settings = model_->net.settings();
   if ((use.corrections > 1 || use.lag_steps > 0 || use.stop_at > 0) && settings.processor != Processor::factors)
-    throw std::invalid_argument("CopingNetCorrection: corrections, lag_steps or stop_at without factors");
+    throw std::invalid_argument("CopingNetCorrection: corrections, lag_steps and stop_at need a model with factors");
   if (has_all_couplings(settings))
     coupled_ = std::make_unique<CoupledInference>(model_->net.coupled(), model_->net.parameters(), encoder_.pattern());
   else if (settings.processor == Processor::factors)
@@ -66,7 +66,7 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
     energy = d_.dot(ad_);
     length = energy == 0 ? 0 : d_.dot(residual_) / energy;
   }
-  proposal.residual = &residual_;  // of x, so far
+  proposal.residual = &residual_;  // of the current x
   if (!std::isfinite(length) || !d_.allFinite() || (moves && !write(*moves))) return false;
   const auto move = [&] {
     x += length * d_;
@@ -90,14 +90,14 @@ bool CopingNetCorrection::correct(const Rod& rod, const LinearSystem& system, co
   return true;
 }
 
-/// Whether there are factors for a solve; not where they are its own, so that proposing again takes as long.
+/// Whether earlier factors are reused. A second proposal for the same solve factorises again, so it takes as long.
 bool CopingNetCorrection::factors_serve(const SolvePosition& at) const {
   if (!factorised_at_ || at.step - factorised_at_->step >= use_.lag_steps) return false;
   return at.step != factorised_at_->step || at.newton != factorised_at_->newton;
 }
 
-/// The next direction of conjugate gradients, d_ = F r - (F r . A d_) / (d_ . A d_) d_, A d_, its energy, and the
-/// length that is best along it.
+/// Sets the next direction of conjugate gradients, d_ = F r - (F r . A d_) / (d_ . A d_) d_, A d_ and the best length
+/// along d_. Returns the energy d_ . A d_.
 double CopingNetCorrection::correct_again(const LinearSystem& system, double energy, double& length) {
   previous_.swap(d_);
   solve_with_factors();
@@ -149,7 +149,7 @@ void CopingNetCorrection::answer(bool with_moves) {
   }
 }
 
-/// The network's answer for the segments; false where it is not finite.
+/// Writes the moves of the segments. Returns false if they are not finite.
 bool CopingNetCorrection::write(std::vector<Lane8>& moves) const {
   const Eigen::ArrayXf& unit = model_->scales.moves.deviation;
   moves.resize(static_cast<std::size_t>(y_nodes_.cols()));

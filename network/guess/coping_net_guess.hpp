@@ -1,7 +1,7 @@
 // COPINGNet as an initial guess: a base guess, and the network's correction of it
 // (network/guess/coping_net_correction.hpp).
 //
-// With `best_length` x0 is no worse than x_base in the energy norm, whatever the network's output. x0 is x_base if the
+// With `best_length` x0 is no worse than x_base in the energy norm for any output of the network. x0 is x_base if the
 // output is not finite or the residual is zero.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace rodsweep {
 
 class CopingNetGuess : public InitialGuess {
  public:
-  /// Of the rods of the scene that the solves move: features of graphs read the rods' state there.
+  /// `scene` is the one that the solves move: features of graphs read the rods' state from it.
   CopingNetGuess(std::shared_ptr<const Model> model, const Scene& scene, int newton_iterations, FactorUse use = {});
 
   void prepare(const SolvePosition& at) override { base_->prepare(at); }

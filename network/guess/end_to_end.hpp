@@ -1,7 +1,7 @@
-// A network instead of the solve ("end to end" in Shao et al. 2021): its increments move the rod, unchecked.
+// A network replaces the solve ("end to end" in Shao et al. 2021): its increments move the rod without a check.
 //
 // In every Newton iteration   lambda += Delta lambda,   x += R u,   q <- normalise(q + q [0, phi] / 2)
-// on free segments; static ones stay. The system is assembled for the network's features and for Newton's test.
+// on free segments; static ones do not move. The system is assembled for the network's features and for Newton's test.
 #pragma once
 
 #include <memory>
@@ -16,13 +16,13 @@ class IncrementSource {
  public:
   virtual ~IncrementSource() = default;
   /// Sets Delta lambda and the segments' moves (u in lanes 0..2, phi in lanes 3..5, in their own frames) for the system
-  /// assembled at the rod's state. False where they are not finite.
+  /// assembled at the rod's state. Returns false if they are not finite.
   virtual bool predict(const Rod& rod, const LinearSystem& system, const SolvePosition& at, VectorX& delta_lambda,
                        std::vector<Lane8>& moves) = 0;
 };
 
-/// The increments of a COPINGNet: its base guess, whose history here is that of the increments, plus its correction. The
-/// moves are the network's where it predicts them (CopingNetSettings::moves), else M^-1 J^T Delta lambda.
+/// The increments of a COPINGNet: its base guess, whose history is that of the increments, plus its correction. The
+/// network predicts the moves (CopingNetSettings::moves), or they are M^-1 J^T Delta lambda.
 class CopingNetIncrements : public IncrementSource {
  public:
   CopingNetIncrements(std::shared_ptr<const Model> model, const Scene& scene, int newton_iterations);
@@ -39,8 +39,8 @@ class EndToEndProjection : public Projection {
  public:
   EndToEndProjection(const Scene& scene, std::unique_ptr<IncrementSource> source);
 
-  /// `converged` stands for "applied". `not_a_number`, and the rod as it was, where the residual, the increments or the
-  /// moves are not finite. Allocates nothing after a rod's first iterations.
+  /// Returns `converged` if it applied the increments, and `not_a_number`, with the rod unchanged, if the residual, the
+  /// increments or the moves are not finite. Allocates nothing after a rod's first iterations.
   ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override;
 
  private:

@@ -34,7 +34,7 @@ auto constants(Query& query) {
 
 }  // namespace
 
-/// The systems of one Newton iteration, in the shape that nanoflann asks for.
+/// The systems of one Newton iteration, with the interface that nanoflann requires.
 struct KnnSet::Iteration {
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Adaptor<float, Iteration>, Iteration, query_size,
                                                    std::uint32_t>;
@@ -102,7 +102,7 @@ void KnnSet::finish() {
     }
     if (inputs_ == KnnInputs::shape)
       of->of_state.deviation.tail(ChainProfile::state_size - ChainProfile::shape_size) =
-          std::numeric_limits<float>::infinity();  // all else counts nothing
+          std::numeric_limits<float>::infinity();  // ignores the other features
     of->of_constants.deviation /= constant_weight;
     for (Query& query : of->queries) of->normalise(query);
     of->tree = std::make_unique<Iteration::Tree>(query_size, *of, nanoflann::KDTreeSingleIndexAdaptorParams(16));

@@ -7,7 +7,8 @@ namespace rodsweep {
 
 KnnGuess::KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, double dt_c, int neighbours)
     : training_(std::move(training)), scene_(scene), dt_c_(dt_c) {
-  if (neighbours < 1) throw std::invalid_argument("KnnGuess: " + std::to_string(neighbours) + " neighbours");
+  if (neighbours < 1)
+    throw std::invalid_argument("KnnGuess: neighbours is " + std::to_string(neighbours) + "; must be at least 1");
   const auto k = static_cast<std::size_t>(neighbours);
   neighbours_ = {std::vector<std::uint32_t>(k), std::vector<float>(k)};
   for (const Rod& rod : scene.rods)
@@ -21,7 +22,7 @@ Proposal KnnGuess::propose(const LinearSystem& system, const SolvePosition& at, 
   of.profile.state(scene_.rods[static_cast<std::size_t>(at.rod)], system, dt_c_, of.state);
   const int found = training_->nearest(at.newton, KnnSet::query(of.profile, of.state), neighbours_);
   if (found == 0) return {};
-  constexpr float same = 1e-6F;  // a system of the training set itself outweighs its neighbours, and divides by no zero
+  constexpr float same = 1e-6F;  // prevents a division by zero for a system of the training set itself
   const auto weight = [&](int i) { return 1 / std::max(neighbours_.distance[static_cast<std::size_t>(i)], same); };
   float sum = 0;
   for (int i = 0; i < found; ++i) sum += weight(i);

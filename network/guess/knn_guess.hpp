@@ -1,8 +1,8 @@
-// k nearest neighbours as an initial guess, what Shao et al. 2021 compare their network with (k = 3): the solutions of
-// the most similar systems of a training set, resampled to the rod's joints by arc length, averaged with the inverse of
-// their distances as weights, and scaled from loads without units (network/guess/chain_profile.hpp) to this rod's sizes
-// and time step. Its length is not optimised in the energy norm as that of a COPINGNet's correction: stiff components
-// determine that length, and it was measured to need more iterations to loose tolerances.
+// k nearest neighbours as an initial guess, the comparison of Shao et al. 2021 (k = 3). The solutions of the most
+// similar systems of a training set are resampled to the rod's joints by arc length and averaged with weights of
+// inverse distance. Loads without units (network/guess/chain_profile.hpp) are scaled to this rod's sizes and time step.
+// Unlike a COPINGNet's correction, the guess is not scaled by the best length in the energy norm: stiff components
+// determine that length, and in measurements it costs more iterations to loose tolerances.
 #pragma once
 
 #include <memory>
@@ -15,11 +15,11 @@ namespace rodsweep {
 
 class KnnGuess : public InitialGuess {
  public:
-  /// Of the rods of the scene that the solves move. Throws SceneError where one branches, std::invalid_argument where
-  /// there is not one neighbour.
+  /// `scene` is the one that the solves move. Throws SceneError if a rod is not a chain, std::invalid_argument if
+  /// neighbours < 1.
   KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, double dt_c, int neighbours);
 
-  /// Zero for Newton iterations that the training set has no systems of. Allocates nothing.
+  /// Proposes zero for Newton iterations without systems in the training set. Allocates nothing.
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
   void accept(const SolvePosition&, const VectorX&) override {}
 

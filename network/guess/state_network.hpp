@@ -17,11 +17,11 @@ namespace rodsweep {
 
 class StateNetworkProjection : public Projection {
  public:
-  /// Of a scene before its first step of dt. Throws std::invalid_argument for a model of another encoding.
+  /// `scene` is before its first step of dt. Throws std::invalid_argument for a model of another encoding.
   StateNetworkProjection(const Scene& scene, std::shared_ptr<const Model> model, double dt);
 
-  /// In the first iteration of a step; not_run in others. `converged` stands for "applied"; `not_a_number`, and the rod
-  /// as it was, where the answer is not finite. Allocates nothing after a rod's first step.
+  /// Acts in the first iteration of a step; returns not_run in the others. Returns `converged` if it applied the moves,
+  /// and `not_a_number`, with the rod unchanged, if they are not finite. Allocates nothing after a rod's first step.
   ProjectionReport project(Rod& rod, const SolvePosition& at, double dt_c, double newton_tolerance) override;
 
  private:

@@ -1,4 +1,4 @@
-// As many floats as the processor handles in one instruction.
+// A vector of as many floats as the processor handles in one instruction.
 #pragma once
 
 #include <cstring>

@@ -13,12 +13,12 @@ class Linear {
 
   int in() const { return in_; }
   int out() const { return out_; }
-  int weight() const { return weight_; }  ///< their indices among the parameters
+  int weight() const { return weight_; }  ///< index among the parameters
   int bias() const { return bias_; }
 
   /// y must be of the right size and not overlap x.
   void forward(const Parameters<T>& p, const TensorIn<T>& x, Eigen::Ref<Tensor<T>> y) const;
-  /// dx (if given) receives W^T dy, added to what it holds.
+  /// Adds W^T dy to dx, if given.
   void backward(const Parameters<T>& p, const TensorIn<T>& x, const TensorIn<T>& dy, Parameters<T>& gradient,
                 Tensor<T>* dx) const;
 

@@ -1,5 +1,5 @@
-// Two layers with SiLU between them, y = W2 silu(W1 x + b1) + b2, silu(a) = a / (1 + exp(-a)); with more hidden layers
-// of the same width (hidden_layers.hpp) in the place of the one.
+// Two layers with SiLU between them, y = W2 silu(W1 x + b1) + b2, silu(a) = a / (1 + exp(-a)). Further hidden layers of
+// the same width (hidden_layers.hpp) follow the first.
 #pragma once
 
 #include "network/layers/hidden_layers.hpp"

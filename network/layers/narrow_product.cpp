@@ -13,7 +13,9 @@ namespace rodsweep {
 
 NarrowMatrix::NarrowMatrix(const TensorIn<float>& weight)
     : rows_(weight.rows()), length_(narrow_length(weight.cols())) {
-  if (rows_ % lane_floats != 0) throw std::invalid_argument("NarrowMatrix: " + std::to_string(rows_) + " rows");
+  if (rows_ % lane_floats != 0)
+    throw std::invalid_argument("NarrowMatrix: " + std::to_string(rows_) + " rows; must be a multiple of " +
+                                std::to_string(lane_floats));
   entries_.resize(static_cast<std::size_t>(rows_ * length_));
   for (Eigen::Index c = 0; c < weight.cols(); ++c)
     for (Eigen::Index r = 0; r < rows_; ++r)
@@ -25,7 +27,7 @@ NarrowMatrix::NarrowMatrix(const TensorIn<float>& weight)
 
 namespace {
 
-/// R lanes of rows from `row` on, of C items; `pairs` of operands are multiplied at once.
+/// Computes R lanes of rows for C items. One instruction multiplies a pair of operands per row.
 template <int R, int C>
 void tile(const Narrow* w, Eigen::Index rows, Eigen::Index pairs, const float* bias, const Narrow* x,
           Eigen::Index x_stride, float* y, Eigen::Index y_stride) {

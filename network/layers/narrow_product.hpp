@@ -1,5 +1,5 @@
-// y = W x + b of inference with operands of 16 bits if the processor supports them (bfloat16, AVX512_BF16), with half the
-// loads and multiplications of product.hpp; else in single precision. Sums are in single precision.
+// y = W x + b of inference, with 16-bit operands if the processor supports them (bfloat16, AVX512_BF16), else in single
+// precision. 16 bits halve the loads and multiplications of product.hpp. Sums are in single precision.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ using Narrow = float;
 constexpr int narrow_bits = 32;
 #endif
 
-/// A lane of floats, rounded to the nearest.
+/// Stores a lane of floats, rounded to nearest.
 void store_narrow(Narrow* to, const FloatLane& values);
-/// Any number of them.
+/// Stores any number of floats, rounded to nearest.
 void narrow(const float* from, Eigen::Index count, Narrow* to);
 
 /// Columns of operands of even length: an odd column is padded with a zero.
@@ -37,7 +37,7 @@ class NarrowMatrix {
 
  private:
   Eigen::Index rows_ = 0, length_ = 0;
-  AlignedVector<Narrow> entries_;  ///< by pairs of columns, in them by rows, in them the pair; or by columns
+  AlignedVector<Narrow> entries_;  ///< 16 bits: [pair of columns][row][2]; 32 bits: [column][row]
 };
 
 }  // namespace rodsweep

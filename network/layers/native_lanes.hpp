@@ -1,7 +1,7 @@
 // The width of one vector register of the processor that the program is built for.
 //
-// The solver's six rows fit one 64-byte vector, which the compiler may split (solver/numbers/lanes.hpp); in the network's
-// long loops splitting would cost too much.
+// The solver's six rows fit one 64-byte vector, which the compiler may split (solver/numbers/lanes.hpp). In the
+// network's long loops splitting costs too much.
 #pragma once
 
 namespace rodsweep {

@@ -24,7 +24,7 @@ class Parameters {
   using Map = Eigen::Map<Tensor<T>>;
   using ConstMap = Eigen::Map<const Tensor<T>>;
 
-  /// A new matrix of zeros; its index.
+  /// Adds a matrix of zeros; returns its index.
   int add(const std::string& name, int rows, int cols) {
     entries_.push_back({name, rows, cols, values_.size()});
     const std::size_t size = static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
@@ -57,7 +57,7 @@ class Parameters {
   AlignedVector<T> values_;
 };
 
-/// Where initial weights come from: uniform in +-sqrt(3 / fan_in) times `gain`, the same on every machine.
+/// Draws initial weights: uniform in +-sqrt(3 / fan_in) times `gain`, the same on every machine.
 class WeightSource {
  public:
   explicit WeightSource(std::uint64_t seed) : random_(seed) {}

@@ -7,7 +7,7 @@
 namespace rodsweep {
 namespace {
 
-// Of the processor's registers, `sums` hold a tile of outputs; `widest` columns share a load of W.
+// `sums` registers hold a tile of outputs; up to `widest` columns share a load of W.
 constexpr int sums = lane_bytes == 64 ? 16 : 8, widest = lane_bytes == 64 ? 8 : 4;
 
 template <class T>
@@ -52,7 +52,7 @@ struct Operands {
   Eigen::Index y_stride;
 };
 
-/// R lanes of rows from `row` on, of C columns from `column` on.
+/// Computes R lanes of rows from `row` for C columns from `column`.
 template <int R, int C, class T>
 void tile(const Operands<T>& o, Eigen::Index row, Eigen::Index column) {
   Lane<T> sum[R][C];
@@ -71,7 +71,7 @@ void tile(const Operands<T>& o, Eigen::Index row, Eigen::Index column) {
       std::memcpy(o.y + (column + c) * o.y_stride + row + r * lane_size<T>, &sum[r][c], sizeof sum[r][c]);
 }
 
-/// The rows from `row` on, fewer than a lane: a full load reads into the next column of W, where there is one.
+/// Computes the rows from `row`, fewer than a lane. A full load reads into the next column of W, if there is one.
 template <int C, class T>
 void last_rows(const Operands<T>& o, Eigen::Index row, Eigen::Index column) {
   const Eigen::Index count = o.rows - row, end = (o.depth - 1) * o.weight_stride + o.rows;
@@ -87,7 +87,7 @@ void last_rows(const Operands<T>& o, Eigen::Index row, Eigen::Index column) {
     std::memcpy(o.y + (column + c) * o.y_stride + row, &sum[c], static_cast<std::size_t>(count) * sizeof(T));
 }
 
-/// Tiles of R lanes as long as they fit, then narrower ones.
+/// Computes tiles of R lanes while they fit, then smaller ones.
 template <int R, int C, class T>
 void rows_from(const Operands<T>& o, Eigen::Index row, Eigen::Index column) {
   for (; row + R * lane_size<T> <= o.rows; row += R * lane_size<T>) tile<R, C>(o, row, column);

@@ -1,9 +1,9 @@
-// y = W x + b for narrow layers, most of the time of inference.
+// y = W x + b for narrow layers, which takes most of the time of inference.
 //
-// Layers here have 6 to 200 rows: a general matrix product repacks its operands, which costs as much as multiplying. Here
-// columns of W are read in place, a tile of outputs stays in registers, and nothing is allocated.
+// Layers here have 6 to 200 rows: a general matrix product repacks its operands, which costs as much as multiplying.
+// Here columns of W are read in place, a tile of outputs stays in registers, and nothing is allocated.
 //
-// The products of training are Eigen's general ones, each compiled in one source only, since that takes seconds.
+// Training uses Eigen's general products. Each is compiled in one source only, because that takes seconds.
 #pragma once
 
 #include "network/layers/tensor.hpp"
@@ -21,7 +21,7 @@ void add_product(const TensorIn<T>& a, const TensorIn<T>& b, Eigen::Ref<Tensor<T
 /// y += A B^T: the gradient of a weight from outputs' derivatives A and inputs B.
 template <class T>
 void add_outer_product(const TensorIn<T>& a, const TensorIn<T>& b, Eigen::Ref<Tensor<T>> y);
-/// y += A^T B: from derivatives B of a layer's outputs to those of its inputs, A the weight.
+/// y += A^T B: the gradient of a layer's inputs from its weight A and its outputs' derivatives B.
 template <class T>
 void add_transposed_product(const TensorIn<T>& a, const TensorIn<T>& b, Eigen::Ref<Tensor<T>> y);
 

@@ -9,8 +9,8 @@ CopingNet<T>::CopingNet(const CopingNetSettings& settings, std::uint64_t seed) :
   WeightSource source(seed);
   const int nodes = node_features(settings), edges = edge_features(settings);
   if (settings.moves && settings.processor != Processor::message_passing)
-    throw std::invalid_argument("CopingNet: factors predict no moves of segments");
-  if (!is_guess(settings) && !settings.moves) throw std::invalid_argument("CopingNet: states without moves");
+    throw std::invalid_argument("CopingNet: moves need the processor message_passing");
+  if (!is_guess(settings) && !settings.moves) throw std::invalid_argument("CopingNet: the encoding state needs moves");
   switch (settings.processor) {
     case Processor::factors:
       if (settings.encoding != Encoding::linear_system)

@@ -1,8 +1,7 @@
-// COPINGNet: from the features of segments and joints to corrections of the Lagrange multipliers, and moves of the
-// segments where they are asked for, or of states to these alone, by one of two processors
-// (network/encoding/coping_net_settings.hpp).
+// COPINGNet maps features of segments and joints to corrections of the Lagrange multipliers and, on request, moves of
+// the segments; for `state` to moves only. It has one of two processors (network/encoding/coping_net_settings.hpp).
 //
-// Factors of a tree read the features of joints, factors of all couplings the blocks of the scaled system itself.
+// Factors of a tree read the features of joints, factors of all couplings read the blocks of the scaled system.
 #pragma once
 
 #include "network/encoding/feature_encoder.hpp"
@@ -17,7 +16,7 @@ template <class T>
 class CopingNet {
  public:
   struct Tape {
-    Tensor<T> ordered, y_ordered, dy_ordered;  ///< by level
+    Tensor<T> ordered, y_ordered, dy_ordered;  ///< sorted by level
     typename FactorSweeps<T>::Tape factors;
     typename CoupledFactors<T>::Tape coupled;
     typename MessagePassing<T>::Tape messages;
@@ -29,8 +28,8 @@ class CopingNet {
   Parameters<T>& parameters() { return parameters_; }
   const Parameters<T>& parameters() const { return parameters_; }
 
-  /// nodes [node features, segments], edges [edge features, places] -> y_edges [6, places], of states [0, places],
-  /// and, if given, y_nodes [6, segments]. Only factors of all couplings use `systems`, in the places of edges.
+  /// nodes [node features, segments], edges [edge features, places] -> y_edges [6, places] (`state`: [0, places]) and,
+  /// if given, y_nodes [6, segments]. `systems`, in the places of edges, is only for factors of all couplings.
   void forward(const Topology& topology, const TensorIn<T>& nodes, const TensorIn<T>& edges, Tape& tape,
                Tensor<T>& y_edges, Tensor<T>* y_nodes, const ScaledSystem<T>* systems = nullptr) const;
   /// Adds to `gradient`.

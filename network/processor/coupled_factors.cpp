@@ -23,7 +23,7 @@ void apply_back(const Linear<T>& layer, const Parameters<T>& p, const TensorIn<T
   layer.backward(p, x, d_after.cwiseProduct(ramp_derivative(before.array()).matrix()), gradient, dx);
 }
 
-/// [x_k; sums over later places of x, by sides of k].
+/// [x_k; sums of x over later places, one per side of k].
 template <class T>
 Tensor<T> with_later(const CouplingList& couplings, const Tensor<T>& x) {
   const Eigen::Index h = x.rows();
@@ -33,7 +33,7 @@ Tensor<T> with_later(const CouplingList& couplings, const Tensor<T>& x) {
   return out;
 }
 
-/// From the derivatives by with_later() to those by x.
+/// Derivatives with respect to x from those with respect to with_later().
 template <class T>
 Tensor<T> with_earlier(const CouplingList& couplings, const Tensor<T>& d) {
   const Eigen::Index h = d.rows() / 3;
@@ -52,7 +52,7 @@ void square(const T* c, T* n) {
     for (int i = j; i < 6; ++i) *n++ = full.row(i).dot(full.row(j));
 }
 
-/// From derivatives by the triangle of C C^T to those by C's.
+/// Derivatives with respect to C's triangle from those with respect to the triangle of C C^T.
 template <class T>
 void square_back(const T* c, const T* dn, T* dc) {
   Eigen::Matrix<T, 6, 6> full = Eigen::Matrix<T, 6, 6>::Zero(), d;

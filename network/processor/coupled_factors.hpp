@@ -4,9 +4,9 @@
 //   e_k = ramp(W [a_k; t_k; sums of messages to k] + b)           by sides of k, from earlier and from later places
 //   f_k = ramp(W' [e_k; sums over later places i of e_i] + b')    by sides of k; g_k of f in the same way
 //   (C_k, T_k0, T_k1) = W* g_k + b*,   N_k = C_k C_k^T
-// a_k are the entries of A's diagonal block less one on its diagonal, t_k those of coupling_features(). All blocks are
+// a_k are the entries of A's diagonal block minus 1 on the diagonal, t_k those of coupling_features(). All blocks are
 // those of a scaled system in canonical frames (network/encoding/canonical_frames.hpp). N is positive definite, and so
-// is the operator. The initial C = 1 and T = 0, apart from small random weights, are Jacobi's.
+// is the operator. Initially C = I and T = 0 up to small random weights, which is Jacobi's preconditioner.
 #pragma once
 
 #include "network/layers/linear.hpp"
@@ -14,8 +14,8 @@
 
 namespace rodsweep {
 
-/// t_k of all places, [6, places]: exp(-height_k / 1, 4, 16, 64), with height_k how many couplings lie one behind the
-/// other from k to a place without later ones; a quarter of how many earlier places k is coupled with, and later ones.
+/// t_k of all places, [6, places]: exp(-height_k / 1, 4, 16, 64), with height_k the length of the longest path of
+/// couplings from k through later places; a quarter of the number of k's earlier neighbours, and of later ones.
 Tensor<float> coupling_features(const std::vector<SystemPattern::Coupling>& couplings, Eigen::Index places);
 
 template <class T>
@@ -33,13 +33,13 @@ class CoupledFactors {
 
   /// Sets tape.factors [93, places] of the systems' matrices.
   void predict(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& tape) const;
-  /// Adds to `gradient` from the derivatives by them.
+  /// Adds to `gradient` from the derivatives with respect to tape.factors.
   void learn(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& tape, const TensorIn<T>& d_factors,
              Parameters<T>& gradient) const;
 
   /// The output [6, places] for the systems' residuals.
   void forward(const Parameters<T>& p, const ScaledSystem<T>& systems, Tape& tape, Tensor<T>& y) const;
-  /// Adds to `gradient`; inputs are data, so nothing flows to the systems.
+  /// Adds to `gradient`; `systems` is data: its derivatives are not computed.
   void backward(const Parameters<T>& p, const ScaledSystem<T>& systems, const Tape& tape, const TensorIn<T>& dy,
                 Parameters<T>& gradient) const;
 

@@ -33,7 +33,8 @@ CoupledInference::CoupledInference(const CoupledFactors<float>& factors, const P
       d_(pattern.joint.size()) {
   const int h = factors.latent();
   const auto n = static_cast<Eigen::Index>(joints_.size()), m = static_cast<Eigen::Index>(couplings_.size());
-  if (!supports(h)) throw std::invalid_argument("CoupledInference: latent size " + std::to_string(h));
+  if (!supports(h))
+    throw std::invalid_argument("CoupledInference: latent size " + std::to_string(h) + "; must be a multiple of 16");
   const CoupledFactors<float>::Layers layers = factors.layers();
   message_ = NarrowMatrix(weights[layers.message.weight()]);
   message_bias_ = weights[layers.message.bias()];
@@ -83,7 +84,7 @@ void CoupledInference::factorise(const CanonicalFrames& frames, const BlockMatri
   for (int i = 0; i < static_cast<int>(joints_.size()); ++i) form(i, frames);
 }
 
-/// Blocks as they are, and as features.
+/// Stores the couplings' blocks, and sets the features of all blocks.
 void CoupledInference::see(const CanonicalFrames& frames, const BlockMatrix& a) {
   float entries[38], lower[triangle];
   for (std::size_t i = 0; i < couplings_.size(); ++i) {
@@ -127,7 +128,8 @@ void CoupledInference::send_messages() {
       store_narrow(x_.col(k).data() + r, load_lane(sums_.col(k).data() + r));
 }
 
-/// The activations of a layer, and below them the sums of later places' by sides; or the activations alone, to g_.
+/// Writes a layer's activations and, below them, their sums over later places per side. If `out` is null, writes only
+/// the activations, to g_.
 template <class Start>
 void CoupledInference::activate(const Start& start, NarrowColumns* out) {
   const Eigen::Index h = before_.rows();

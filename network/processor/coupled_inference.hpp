@@ -1,11 +1,12 @@
 // The learned factors of network/processor/coupled_factors.hpp for one rod at a time: no allocation, no tape.
 //
 // Factors are predicted for all joints at once, in canonical frames, and transformed to the joints' frames: with
-// P_k = T_k S_k, the turn to a canonical frame and the scale in it (network/encoding/canonical_frames.hpp),
+// P_k = T_k S_k, the transformation to a canonical frame and the scale in it (network/encoding/canonical_frames.hpp),
 //   N_k <- P_k^T N_k P_k,   T_ks <- P_k^T T_ks P_k
 // so that a solve uses residuals without scaling and A's own blocks in single precision, in the two passes of
-// network/processor/coupled_passes.hpp. Layers have operands of 16 bits (network/layers/narrow_product.hpp). The results
-// differ from the training code's in rounding, and where that code drops a state (CoupledPasses::longest_state).
+// network/processor/coupled_passes.hpp. Layers have operands of 16 bits (network/layers/narrow_product.hpp). The
+// results differ from the training code's in rounding, and where that code drops a state
+// (CoupledPasses::longest_state).
 #pragma once
 
 #include "network/encoding/canonical_frames.hpp"
@@ -19,7 +20,7 @@ class CoupledInference {
   /// Whether there are kernels for a latent size: multiples of 16.
   static bool supports(int latent) { return latent > 0 && latent % 16 == 0; }
 
-  /// std::invalid_argument for a latent size without kernels. `pattern` must outlive this.
+  /// Throws std::invalid_argument for a latent size without kernels. `pattern` must outlive this.
   CoupledInference(const CoupledFactors<float>& factors, const Parameters<float>& weights,
                    const SystemPattern& pattern);
 
@@ -35,7 +36,7 @@ class CoupledInference {
   struct alignas(64) Joint {
     Lane16 n[3], t[2][3], t_transposed[2][3];
     int first_coupling = 0;
-    int sides = 0;  ///< on which there are earlier places
+    int sides = 0;  ///< number of sides with earlier places
   };
   struct alignas(64) Coupling {
     Lane16 b[3], b_transposed[3];
@@ -56,7 +57,7 @@ class CoupledInference {
   Tensor<float> factors_;                   ///< [96, places]
   std::vector<Joint> joints_;
   std::vector<Coupling> couplings_;
-  std::vector<Lane16> h_, d_;  ///< states, twice each
+  std::vector<Lane16> h_, d_;  ///< states, in both halves
 };
 
 }  // namespace rodsweep

@@ -12,7 +12,8 @@ bool within_bound(const Column<T>& state) {
   return sum<T>(state * state) < CoupledPasses<T>::longest_state * CoupledPasses<T>::longest_state;
 }
 
-/// Calls each(place, begin, end) for every place in order, with its range of couplings as a row; or from the last.
+/// Calls each(place, begin, end) for every place, in ascending or descending order. [begin, end) are its row's
+/// couplings.
 template <class Each>
 void ascending(const std::vector<SystemPattern::Coupling>& couplings, Eigen::Index places, const Each& each) {
   std::size_t begin = 0;
@@ -34,7 +35,7 @@ void descending(const std::vector<SystemPattern::Coupling>& couplings, Eigen::In
   }
 }
 
-/// On how many sides a row has couplings.
+/// Number of sides on which a row has couplings.
 template <class T>
 int sides_of(const ScaledSystem<T>& a, std::size_t begin, std::size_t end) {
   int sides = 0;
@@ -57,7 +58,7 @@ Block<T> t(const TensorIn<T>& factors, int place, int side) {
   return block(factors.col(place).data() + CoupledPasses<T>::triangle + 36 * side);
 }
 
-/// Adds d(u^T T v) / dT to the derivatives by a side's factor.
+/// Adds d(u^T T v) / dT to the derivatives with respect to a side's factor.
 template <class T>
 void add_outer(const Column<T>& u, const Column<T>& v, Tensor<T>& d_factors, int place, int side) {
   T* to = d_factors.col(place).data() + CoupledPasses<T>::triangle + 36 * side;

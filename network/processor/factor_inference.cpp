@@ -17,7 +17,8 @@ FactorInference::FactorInference(const FactorSweeps<float>& sweeps, const Parame
     : forest_(forest), pattern_(pattern), joints_(at(forest.size())), h_(at(forest.size())), d_(at(forest.size())) {
   using Sweep = FactorSweeps<float>;
   const int h = sweeps.latent(), n = forest.size();
-  if (!supports(h)) throw std::invalid_argument("FactorInference: latent size " + std::to_string(h));
+  if (!supports(h))
+    throw std::invalid_argument("FactorInference: latent size " + std::to_string(h) + "; must be a multiple of 16");
   const Sweep::Layers layers = sweeps.layers();
   const auto encode = weights[layers.encode.weight()];
   encode_ = NarrowMatrix(encode.leftCols(Sweep::block_features));
@@ -50,7 +51,7 @@ void FactorInference::factorise(const TensorIn<float>& x, const CanonicalFrames&
   using Sweep = FactorSweeps<float>;
   const Eigen::Index h = g_.rows();
   const int n = forest_.size();
-  /// The activations of a layer, and below them the sums of the children's.
+  /// Writes a layer's activations and, below them, the sums of the children's activations.
   const auto activate = [&](const auto& start, NarrowColumns& out) {
     sums_.setZero();
     for (int i = n - 1; i >= 0; --i) {

@@ -27,7 +27,7 @@ Tensor<T> with_children(const JointForest& forest, const Tensor<T>& x) {
   return out;
 }
 
-/// From the derivatives by [x_k; sum of x_c] to those by x.
+/// Derivatives with respect to x from those with respect to [x_k; sum of x_c].
 template <class T>
 Tensor<T> with_parents(const JointForest& forest, const Tensor<T>& d) {
   const Eigen::Index h = d.rows() / 2;

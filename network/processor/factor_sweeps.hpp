@@ -2,17 +2,17 @@
 //
 // Block elimination of a tree's joints from the tips to the root (solver/factor/block_factor.hpp) needs the inverses of
 // the Schur complements S_k = A_kk - sum over children c of B_c^T S_c^-1 B_c, where B_c is A's block of a child's row
-// and its parent's column, and then solves A y = r by two passes. Here a network predicts symmetric matrices in the place
-// of S_k^-1, N_k on the diagonal and T_k beside B_k, for all joints at once, from three generations of the tree:
+// and its parent's column. It then solves A y = r by two passes. Here a network replaces S_k^-1 by symmetric matrices,
+// N_k on the diagonal and T_k beside B_k. It predicts them for all joints at once from three generations of the tree:
 //   e_k = ramp(W a_k + V t_k + b),   t_k = exp(-height_k / 1, 4, 16, 64), beside_k / 4
 //   f_k = ramp(W' [e_k; sum_c e_c] + b'),   g_k = ramp(W'' [f_k; sum_c f_c] + b'')
 //   (N_k, T_k) = W* g_k + b*,  lower triangles by columns
 //   h_k = r_k - sum_c B_c^T T_c h_c                    tips to roots
 //   y_k = N_k h_k - T_k B_k y_parent                   roots to tips
-// a_k are the features of A's blocks and r_k those of the residual (network/encoding/system_encoding.hpp). height_k is the
-// number of joints between k and the farthest tip, beside_k the number of couplings of k besides parent and children,
-// whose blocks are left out. With N = T = S^-1 a chain is solved exactly. The initial N = I and T = 0, apart from small
-// random weights, are Jacobi's.
+// a_k are the features of A's blocks and r_k those of the residual (network/encoding/system_encoding.hpp). height_k is
+// the number of joints between k and the farthest tip, beside_k the number of couplings of k except parent and
+// children. The blocks of those couplings are omitted. With N = T = S^-1 a chain is solved exactly. Initially N = I and
+// T = 0 up to small random weights, which is Jacobi's preconditioner.
 //
 // A product of many T_k may grow without bound during training: a state longer than `longest_state` is dropped.
 #pragma once
@@ -31,7 +31,7 @@ class FactorSweeps {
  public:
   static constexpr int triangle = 21, place_features = 5;
   static constexpr int residual_features = 6, block_features = SystemEncoding::size - residual_features;
-  static constexpr int coupling = SystemEncoding::coupling;  ///< the feature that B_k begins at
+  static constexpr int coupling = SystemEncoding::coupling;  ///< the first feature of B_k
   static constexpr T longest_state = 1e4;
 
   struct Tape {
@@ -43,7 +43,7 @@ class FactorSweeps {
 
   /// x [57, places] -> y [6, places], in the order of the forest.
   void forward(const Parameters<T>& p, const JointForest& forest, const TensorIn<T>& x, Tape& tape, Tensor<T>& y) const;
-  /// Adds to `gradient`; inputs are data, so nothing flows to x.
+  /// Adds to `gradient`; x is data: its derivatives are not computed.
   void backward(const Parameters<T>& p, const JointForest& forest, const TensorIn<T>& x, const Tape& tape,
                 const TensorIn<T>& dy, Parameters<T>& gradient) const;
 

@@ -44,7 +44,7 @@ void sum_per_rod(const Tensor<T>& x, const std::vector<int>& first, Eigen::Ref<T
   for (int rod = 0; rod < y.cols(); ++rod) y.col(rod) = columns_of(x, first, rod).rowwise().sum();
 }
 
-/// From sums per rod to means, or back through them. A rod of one segment has no edges; their mean is zero.
+/// Divides by the number of columns per rod: sums become means. A rod of one segment has no edges; their mean is zero.
 template <class T>
 void divide_by_count(const std::vector<int>& first, Eigen::Ref<Tensor<T>> y) {
   for (int rod = 0; rod < y.cols(); ++rod) {
@@ -59,7 +59,7 @@ template <class T>
 GraphBlock<T>::GraphBlock(Parameters<T>& parameters, const std::string& name, int latent, int hidden_layers,
                           Updates updates, bool reads_globals, WeightSource& source)
     : latent_(latent) {
-  // The parts of a first layer share its fan-in: three of H, or four.
+  // A first layer's parts share its fan-in, 3 H or 4 H.
   const double gain = std::sqrt(reads_globals ? 1 / 4.0 : 1 / 3.0);
   const bool nodes = updates != Updates::edges;
   const int readers = nodes ? 2 : 1;

@@ -4,7 +4,7 @@
 //   u'   = u + MLP([mean e'; mean v'; u])          per rod; only with a global state, which is 0 before the first
 // phi and psi are MLPs with one hidden layer or more, whose first matrix is kept in parts: W [e; v_s; v_r] is
 // W_e e + (W_s v)_s + (W_r v)_r, so nothing is concatenated and two thirds of the work are done per node. W_s, W_r and
-// the part of psi's that multiplies v are one product.
+// the part of psi's matrix that multiplies v are one product.
 #pragma once
 
 #include "network/graph/rod_graph.hpp"
@@ -37,14 +37,14 @@ class GraphBlock {
   };
 
   GraphBlock() = default;
-  /// `updates`: the parts that the block can change; `reads_globals`: there is a u before it.
+  /// `updates`: the parts that the block can change; `reads_globals`: the block has u as an input.
   GraphBlock(Parameters<T>& parameters, const std::string& name, int latent, int hidden_layers, Updates updates,
              bool reads_globals, WeightSource& source);
 
-  /// Sets `out`, except for the parts that `updates` leaves out.
+  /// Sets the parts of `out` that `updates` includes.
   void forward(const Parameters<T>& p, const RodGraph& graph, const GraphState<T>& in, Updates updates, Tape& tape,
                GraphState<T>& out) const;
-  /// `d` comes as the gradient with respect to the state after the step, and leaves as that before it.
+  /// `d`: on entry the gradient with respect to the state after the step, on return to the state before it.
   void backward(const Parameters<T>& p, const RodGraph& graph, const GraphState<T>& in, Updates updates,
                 const Tape& tape, GraphState<T>& d, Parameters<T>& gradient) const;
 

@@ -1,5 +1,5 @@
-// 6x6 blocks of inference in single precision: two columns of six numbers to a register of sixteen, in lanes 0..5 and
-// 8..13, and vectors twice.
+// 6x6 blocks of inference in single precision: a register of sixteen lanes holds two columns of six numbers, in lanes
+// 0..5 and 8..13, or one vector twice.
 #pragma once
 
 #include <cstring>
@@ -19,7 +19,7 @@ inline Lane16 load16(const float* from) {
   return out;
 }
 
-/// Both halves of a register: lane I of `v`, and lane J.
+/// Lane I of `v` in the whole lower half, lane J in the upper half.
 template <int I, int J>
 Lane16 spread(const Lane16& v) {
   return __builtin_shufflevector(v, v, I, I, I, I, I, I, I, I, J, J, J, J, J, J, J, J);
@@ -39,7 +39,7 @@ inline Lane16 twice(const Lane8& v) {
   return halves(once, once);
 }
 
-/// P = T S of a joint, in both halves, and what acts on pairs of columns by it.
+/// P = T S of a joint, in both halves, and its products with pairs of columns.
 struct ScaledFrame {
   Lane16 along, across;
 
@@ -47,13 +47,13 @@ struct ScaledFrame {
       : along(twice(frames.scale(place) * frames.frame(place).along)),
         across(twice(frames.scale(place) * frames.frame(place).across)) {}
 
-  /// x and y of both transverse pairs exchanged.
+  /// `v` with x and y of both transverse pairs exchanged.
   static Lane16 exchanged(const Lane16& v) {
     return __builtin_shufflevector(v, v, 1, 0, 2, 4, 3, 5, 6, 7, 9, 8, 10, 12, 11, 13, 14, 15);
   }
   Lane16 apply(const Lane16& v) const { return along * v + across * exchanged(v); }
   Lane16 transposed(const Lane16& v) const { return along * v + exchanged(across * v); }
-  /// Columns whose x and y are exchanged.
+  /// Sets `other` to the columns of `m` with x and y exchanged.
   static void exchange_columns(const Lane16 (&m)[3], Lane16 (&other)[3]) {
     other[0] = __builtin_shufflevector(m[0], m[0], 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
     other[1] = __builtin_shufflevector(m[1], m[2], 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23);
@@ -79,14 +79,14 @@ struct ScaledFrame {
   }
 };
 
-/// A block of a matrix.
+/// A block in single precision.
 inline void narrowed(const Block6& block, Lane16 (&m)[3]) {
   for (int q = 0; q < 3; ++q)
     m[q] = halves(__builtin_convertvector(block.column[2 * q], Lane8Float),
                   __builtin_convertvector(block.column[2 * q + 1], Lane8Float));
 }
 
-/// Columns one behind the other; beyond the 36 entries there is room for two.
+/// Stores 36 entries, column by column; writes two more beyond them.
 inline void put_columns(const Lane16 (&m)[3], float* to) {
   for (int q = 0; q < 3; ++q) {
     const Lane8Float first = __builtin_shufflevector(m[q], m[q], 0, 1, 2, 3, 4, 5, 6, 7),
@@ -104,7 +104,7 @@ inline void take_columns(const float* from, Lane16 (&m)[3]) {
   }
 }
 
-/// A v, twice; v in lanes 0..5.
+/// A v in both halves; v is in lanes 0..5.
 inline Lane16 times(const Lane16 (&a)[3], const Lane16& v) {
   const Lane16 sum = a[0] * spread<0, 1>(v) + a[1] * spread<2, 3>(v) + a[2] * spread<4, 5>(v);
   return sum + __builtin_shufflevector(sum, sum, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);

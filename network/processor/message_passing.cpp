@@ -21,7 +21,7 @@ MessagePassing<T>::MessagePassing(Parameters<T>& parameters, const Sizes& sizes,
                            sizes.hidden_layers);
 }
 
-/// The last step's nodes matter only if they are decoded, its globals never.
+/// The last step updates nodes only if they are decoded, and never updates globals.
 template <class T>
 Updates MessagePassing<T>::updates(std::size_t step, bool nodes) const {
   if (step + 1 == blocks_.size()) return nodes ? Updates::nodes : Updates::edges;

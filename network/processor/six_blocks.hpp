@@ -1,4 +1,4 @@
-// Products with 6x6 blocks of a training code's tensors: columns of six numbers in registers of eight.
+// Products with 6x6 blocks of the training code's tensors: columns of six numbers in registers of eight.
 #pragma once
 
 #include <cstring>
@@ -65,7 +65,7 @@ Column<T> transposed_times(const Block<T>& a, const Column<T>& x) {
   return y;
 }
 
-/// The same with sums in another order, three times as fast.
+/// transposed_times() with sums in another order, three times as fast.
 template <class T>
 Column<T> folded_times(const Block<T>& a, const Column<T>& x) {
   const auto fold = [](const Column<T>& u, const Column<T>& v) {
@@ -77,7 +77,7 @@ Column<T> folded_times(const Block<T>& a, const Column<T>& x) {
   return fold(low, high);
 }
 
-/// Adds d(u^T N v) / dN to the derivatives by the triangle.
+/// Adds d(u^T N v) / dN to the derivatives with respect to the triangle.
 template <class T>
 void add_derivatives(const Column<T>& u, const Column<T>& v, T* triangle) {
   for (int c = 0; c < 6; ++c)

@@ -14,12 +14,12 @@ class Adam {
   };
   Adam(std::size_t size, const Settings& settings);
 
-  /// weights -= rate * (m / (1 - beta1^t) / (sqrt(v / (1 - beta2^t)) + epsilon) + weight_decay * weights)
   const AlignedVector<float>& mean() const { return mean_; }
   const AlignedVector<float>& square() const { return square_; }
   /// Continues from earlier moments after that many steps.
   void restore(std::int64_t steps, const AlignedVector<float>& mean, const AlignedVector<float>& square);
 
+  /// weights -= rate * (m / (1 - beta1^t) / (sqrt(v / (1 - beta2^t)) + epsilon) + weight_decay * weights)
   void step(double rate, const AlignedVector<float>& gradient, AlignedVector<float>& weights);
 
  private:

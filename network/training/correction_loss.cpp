@@ -23,7 +23,7 @@ double dot(const ScaledSystem<T>& a, const Tensor<T>& x, const Tensor<T>& y, std
   return static_cast<double>(part(x, a.first_place, s).cwiseProduct(part(y, a.first_place, s)).sum());
 }
 
-constexpr double smallest = 1e-8;  // of E relative to the solution's: below is rounding, where the root has no slope
+constexpr double smallest = 1e-8;  // limit of E / x^T A x; below is rounding
 
 }  // namespace
 
@@ -69,7 +69,7 @@ double CorrectionLoss<T>::operator()(const ScaledSystem<T>& a, const TensorIn<T>
   return loss;
 }
 
-/// From the derivatives by the sum of all a_i p_i.
+/// Derivatives with respect to the factors from those with respect to the sum of all a_i p_i.
 template <class T>
 void CorrectionLoss<T>::go_back(const ScaledSystem<T>& a, const TensorIn<T>& factors, Tensor<T> dx,
                                 Tensor<T>& d_factors) {

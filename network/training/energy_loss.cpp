@@ -17,7 +17,7 @@ double dot(const A& a, const B& b) {
   return static_cast<double>(a.cwiseProduct(b).sum());
 }
 
-constexpr double smallest = 1e-12;  // of E relative to the solution's: below is rounding, where the root has no slope
+constexpr double smallest = 1e-12;  // limit of E / x^T A x; below is rounding
 
 }  // namespace
 

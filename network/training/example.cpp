@@ -28,7 +28,7 @@ Batch<T> make_batch(const std::vector<const Example*>& examples) {
   std::vector<const ScaledSystem<float>*> systems;
   for (const Example* one : examples) {
     topologies.push_back(one->topology.get());
-    if (one->system.diagonal.cols() > 0) systems.push_back(&one->system);  // a simulator's have none
+    if (one->system.diagonal.cols() > 0) systems.push_back(&one->system);  // `state` has none
   }
   const Example& first = *examples.front();
   Batch<T> out;

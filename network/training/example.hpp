@@ -1,6 +1,6 @@
 // One linear system as a training example, and mini-batches of examples.
 //
-// The network's output y, [6, places], stands for the correction d^ = unit * y of the scaled system (entry by entry;
+// The network's output y, [6, places], represents the correction d^ = unit * y of the scaled system (entry by entry;
 // network/encoding/scaled_system.hpp). Everything per joint is in the places of the topology.
 #pragma once
 
@@ -14,12 +14,12 @@ namespace rodsweep {
 
 struct Example {
   std::shared_ptr<const Topology> topology;
-  Tensor<float> nodes, edges;  ///< features [node features, segments], [edge features, places]; of joints none where
-                               ///< they are those of `system` (system_features)
-  ScaledSystem<float> system;  ///< without places: of `state`
+  Tensor<float> nodes, edges;  ///< features [node features, segments], [edge features, places]; edges is empty
+                               ///< if system_features(system) gives them
+  ScaledSystem<float> system;  ///< without places for `state`
   Tensor<float> unit;          ///< [6, places]; empty: ones
-  Tensor<float> edge_target;   ///< [6, places]: the y that is exact
-  Tensor<float> node_target;   ///< [6, segments]: the moves Delta p in the network's units; or empty
+  Tensor<float> edge_target;   ///< [6, places]: the exact y
+  Tensor<float> node_target;   ///< [6, segments]: the moves Delta p in the network's units, or empty
 };
 
 template <class T>

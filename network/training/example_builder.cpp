@@ -11,7 +11,7 @@
 namespace rodsweep {
 namespace {
 
-/// What one rod needs again and again.
+/// The encoder and the buffers of one rod.
 struct RodExamples {
   FeatureEncoder encoder;
   VectorX base, residual, scale;
@@ -39,7 +39,7 @@ Tensor<float> by_place(const Topology& topology, const VectorX& values) {
   return out;
 }
 
-/// The system to learn from, and how outputs and their targets stand to it.
+/// Sets the system, and the units and targets of outputs.
 void put_system(const LinearSystem& system, const StoredSystem& stored, RodExamples& of, Example& out) {
   const SystemPattern& pattern = of.encoder.pattern();
   const VectorX error = stored.solution - of.base;
@@ -60,7 +60,7 @@ void put_system(const LinearSystem& system, const StoredSystem& stored, RodExamp
   out.edge_target = by_place(*out.topology, error);
 }
 
-/// `seen` is the system's rod as `turn` has it.
+/// `seen` is the system's rod after `turn`.
 Example example_of(const CopingNetSettings& settings, const Rod& rod, const LinearSystem& system,
                    const StoredSystem& stored, RodExamples& of, const Rod& seen, const Turn& turn) {
   Example out;

@@ -1,8 +1,8 @@
 // Training examples from recorded simulations.
 //
-// The base guess is evaluated on the exact history, as in a paired evaluation. Systems with a residual at rounding level
-// (the base guess is the solution) are left out. Encodings that depend on where a rod is may have copies of every example,
-// turned about gravity and shifted at random (turn.hpp). For `state` see state_examples.hpp.
+// The base guess is evaluated on the exact history, as in a paired evaluation. Systems with a residual at rounding
+// level (the base guess is the solution) are left out. Encodings that depend on the rod's position may have copies of
+// every example, rotated about gravity and shifted at random (turn.hpp). For `state` see state_examples.hpp.
 #pragma once
 
 #include "network/encoding/feature_encoder.hpp"
@@ -13,12 +13,12 @@ namespace rodsweep {
 
 struct Copies {
   int count = 0;           ///< of every example
-  double noise = 0;        ///< state: of theirs, relative
-  std::uint64_t seed = 0;  ///< of a simulation
+  double noise = 0;        ///< `state`: relative noise of the copies
+  std::uint64_t seed = 0;  ///< per simulation
 };
 
-/// Adds the examples of one simulation, with features and targets that are not normalised; on request those of first
-/// Newton iterations only.
+/// Adds the examples of one simulation, without normalising features and targets; with `first_iterations_only`, those
+/// of first Newton iterations.
 void add_examples(const CopingNetSettings& settings, const StoredSimulation& simulation, std::vector<Example>& out,
                   const Copies& copies = {}, bool first_iterations_only = false);
 

@@ -8,7 +8,7 @@
 namespace rodsweep {
 namespace {
 
-using Steps = std::vector<const StoredSystem*>;  ///< of a rod, one after the other
+using Steps = std::vector<const StoredSystem*>;  ///< of a rod, in order
 
 std::vector<Steps> steps_of(const StoredSimulation& simulation) {
   std::vector<Steps> out(simulation.scene.rods.size());
@@ -23,7 +23,7 @@ struct Sizes {
   double velocity = 0, spin = 0;
 };
 
-/// Root mean squares of what a step adds to velocities and angular velocities.
+/// Root mean squares of a step's changes of velocities and angular velocities.
 Sizes usual_change(const std::vector<Steps>& rods) {
   Sizes squares;
   double entries = 0;

@@ -13,7 +13,7 @@
 namespace rodsweep {
 namespace {
 
-/// Number `index`, from 1, of the sequence of a seed: the source of permutations that are the same everywhere.
+/// Element `index`, from 1, of a seed's random sequence. It gives the same permutations on every machine.
 std::uint64_t random_bits(std::uint64_t seed, std::uint64_t index) {
   return split_mix(seed + (index - 1) * split_mix_increment);
 }
@@ -116,7 +116,7 @@ std::vector<double> Trainer::losses(const std::vector<Example>& examples,
   return sums;
 }
 
-/// The sum of losses; adds to the workspace's gradient on request.
+/// The sum of losses. With `with_gradient` adds to the workspace's gradient.
 double Trainer::evaluate(const std::vector<const Example*>& examples, Workspace& with, bool with_gradient) const {
   const Batch<float> batch = make_batch<float>(examples);
   if (settings_.loss == LossKind::in_the_loop && has_all_couplings(net_.settings())) {

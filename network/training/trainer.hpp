@@ -1,11 +1,11 @@
 // Trains a COPINGNet on examples: mini-batches in a fixed number of shards, whose gradients are summed in a fixed
 // order, so that any distribution of the shards over processes gives the same bits.
 //
-// The shards of a step, and the parts of a loss, are shared by threads, which all read the same examples.
+// Threads share the shards of a step, and the batches of losses(). All read the same examples.
 //
 // Step t of an epoch takes the next `batch` examples of a permutation that depends on (seed, epoch) alone; its shards
-// are equal parts of it. Adam, its rate rising linearly over the first `warm_up` of all steps and falling along a
-// cosine to zero; the gradient's norm is clipped.
+// are equal parts of it. Adam's rate rises linearly over the first `warm_up` of all steps, then falls along a cosine to
+// zero. The gradient's norm is clipped.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,17 @@ namespace rodsweep {
 enum class LossKind {
   mse,         ///< mean square of the outputs' errors
   energy,      ///< energy norm of the guess's error
-  in_the_loop  ///< the same after `cg_steps` steps of CG; of factors of all couplings, after so many corrections
+  in_the_loop  ///< the same after `cg_steps` steps of CG, or corrections with factors of all couplings
 };
 
 struct TrainingSettings {
   LossKind loss = LossKind::energy;
   int cg_steps = 4;  ///< in_the_loop
   int epochs = 40;
-  int batch = 32;  ///< examples in a step
-  int shards = 4;  ///< of a step; a divisor of `batch`
+  int batch = 32;  ///< examples per step
+  int shards = 4;  ///< per step; a divisor of `batch`
   double rate = 2e-3;
-  double warm_up = 0.02;  ///< of all steps
+  double warm_up = 0.02;  ///< fraction of all steps
   double weight_decay = 0;
   double clip = 1;  ///< largest norm of the mean gradient
   std::uint64_t seed = 0;
@@ -55,15 +55,15 @@ class Trainer {
   };
   std::size_t shard_size() const { return 1 + net_.parameters().values().size(); }
   void compute(const std::vector<Shard>& shards);
-  /// Takes the step from the contributions of all shards in order; its mean loss.
+  /// Takes the step from the contributions of all shards in order; returns its mean loss.
   double update(const std::vector<const float*>& shards);
 
   double rate() const { return rate_; }  ///< of the last step
 
-  /// Sums of the losses of consecutive batches of examples, without gradients; of those for which wanted(batch).
+  /// Sums of the losses of consecutive batches of examples, without gradients; 0 unless wanted(batch).
   std::vector<double> losses(const std::vector<Example>& examples, const std::function<bool(int batch)>& wanted);
 
-  /// The state of the trainer, with which, beside the parameters, training continues exactly.
+  /// The state of the trainer: with it and the parameters, training continues exactly.
   struct State {
     std::int64_t step = 0;
     AlignedVector<float> mean, square;
@@ -89,7 +89,7 @@ class Trainer {
   TrainingSettings settings_;
   std::int64_t steps_per_epoch_ = 0, step_ = 0, shuffled_epoch_ = -1;
   double rate_ = 0;
-  double edge_entries_ = 0, node_entries_ = 0;  ///< outputs of an example, on average: mse is per entry
+  double edge_entries_ = 0, node_entries_ = 0;  ///< mean number of outputs per example, for the mse
   std::vector<std::uint32_t> order_;
   Adam adam_;
   Parameters<float> sum_;  ///< of the shards' gradients

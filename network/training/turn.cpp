@@ -5,7 +5,7 @@
 namespace rodsweep {
 namespace {
 
-/// Uniform on the sphere: Archimedes' cylinder.
+/// Uniform on the sphere, by Archimedes' projection of a cylinder.
 Vector3 random_direction(SplitMix& random) {
   const double z = 2 * random.uniform() - 1, angle = 2 * pi * random.uniform(), r = std::sqrt(1 - z * z);
   return {r * std::cos(angle), r * std::sin(angle), z};

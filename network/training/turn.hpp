@@ -1,4 +1,4 @@
-// A turn about gravity and a shift, which do not affect the motion of a rod but some encodings.
+// A rotation about gravity and a shift. They do not change a rod's motion, but they change some encodings.
 #pragma once
 
 #include "solver/numbers/split_mix.hpp"
@@ -11,10 +11,10 @@ struct Turn {
   Vector3 shift = Vector3::Zero();
 };
 
-/// A random angle about gravity, or about a random axis without gravity; a shift of at most `reach` [m] along every axis.
+/// A random angle about gravity, or about a random axis without gravity; a shift of at most `reach_m` along each axis.
 Turn random_turn(const Vector3& gravity_m_s2, double reach_m, SplitMix& random);
 
-/// The rod turned about the origin, then shifted; with its velocities.
+/// The rod rotated about the origin, then shifted, with rotated velocities.
 Rod turned(const Rod& rod, const Turn& turn);
 
 }  // namespace rodsweep

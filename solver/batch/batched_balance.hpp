@@ -1,6 +1,6 @@
 // The balance of momentum of several equal chains at once (momentum_balance.hpp), rod r in lane r: g, the stiffening of
-// turns, and what both add to b and take from the solution's moves. Lanes that do not keep the balance have g = 0 and
-// their own mobility.
+// rotations, and the terms of both in b and in the moves. Lanes that do not keep the balance have g = 0 and the
+// mobility without stiffening.
 #pragma once
 
 #include <vector>
@@ -14,10 +14,10 @@ class BatchedBalance {
  public:
   BatchedBalance(const std::vector<Scene>& scenes, const BatchedRods& rods);
 
-  /// At the linearisation's positions: g, M + K of the rods, and b + J (M + K)^-1 g, where the balance is kept.
+  /// Sets g, M + K of the rods, and b + J (M + K)^-1 g at the linearisation's positions, in the lanes `kept`.
   void assemble(BatchedRods& rods, BatchedLinearization& at, const LaneMask& kept);
 
-  const Lane& residual() const { return residual_; }  ///< MomentumBalance::residual; 0 where it is not kept
+  const Lane& residual() const { return residual_; }  ///< MomentumBalance::residual; 0 without the balance
   const LaneMask& kept() const { return kept_; }
   const Wrench<Lane>& defect(std::size_t segment) const { return segments_[segment].defect; }
 
@@ -28,7 +28,7 @@ class BatchedBalance {
     Wrench<Lane> defect;          ///< g
   };
   std::vector<OfSegment> segments_;
-  Lane least_;  ///< what the residual is relative to at least
+  Lane least_;  ///< lower bound of the residual's reference
   Lane residual_;
   LaneMask kept_;
 };

@@ -1,8 +1,7 @@
-// Constraints of several equal chains at once: linearization.hpp's, rod r in lane r.
+// Constraints of several equal chains at once, as in linearization.hpp, rod r in lane r.
 //
-// Of a joint's Jacobian only its turn is kept. Residual, norm and gap are those of b in the joints' frames;
-// the stretch-shear rows of b are left in the frames of the joints' second segments, R_b^T R_m = H^T, for
-// batched_system.hpp.
+// A joint's Jacobian is stored as its JointTurn only. Residual, norm and gap are those of b in the joints' frames. The
+// stretch-shear rows of b are in the frames of the joints' second segments, R_b^T R_m = H^T, for batched_system.hpp.
 #pragma once
 
 #include <vector>
@@ -19,7 +18,7 @@ struct BatchedLinearization {
 
   Lane residual;      ///< max |b|
   Lane squared_norm;  ///< of b
-  Lane squared_gap;   ///< of the widest joint, over the joint length
+  Lane squared_gap;   ///< of the widest gap, over the joint length
 };
 
 /// Evaluates `out` at the rods' positions.

@@ -12,10 +12,11 @@ namespace {
 void check_alone(const Scene& scene, const std::string& name) {
   if (scene.rods.size() != 1)
     throw SceneError(name + " has " + std::to_string(scene.rods.size()) + " rods; must have one");
-  if (!scene.clamps.empty()) throw SceneError(name + " has a moving clamp; a batched step has no moving clamps");
-  if (!scene.loads.empty()) throw SceneError(name + " has a point load; a batched step has no point loads");
-  if (scene.contact) throw SceneError(name + " has contact; a batched step has no contact");
-  if (scene.wind) throw SceneError(name + " has wind; a batched step has no wind");
+  if (!scene.clamps.empty())
+    throw SceneError(name + " has a moving clamp; a batched step does not support moving clamps");
+  if (!scene.loads.empty()) throw SceneError(name + " has a point load; a batched step does not support point loads");
+  if (scene.contact) throw SceneError(name + " has contact; a batched step does not support contact");
+  if (scene.wind) throw SceneError(name + " has wind; a batched step does not support wind");
   const Rod& rod = scene.rods.front();
   if (rod.joint_count() != rod.segment_count() - 1)
     throw SceneError(name + " has " + std::to_string(rod.joint_count()) + " joints for " +
@@ -39,7 +40,7 @@ void check_equal(const Rod& first, const Rod& rod, const std::string& name) {
   for (std::size_t s = 0; s < rod.segments.size(); ++s)
     if (rod.segments[s].is_static != first.segments[s].is_static)
       throw SceneError(name + ": segment " + std::to_string(s) + " is " +
-                       (rod.segments[s].is_static ? "static" : "free") + "; that of the first one is not");
+                       (rod.segments[s].is_static ? "static" : "free") + "; in the first scene it is not");
 }
 
 void put(LaneVector& out, int lane, const Vector3& v) {

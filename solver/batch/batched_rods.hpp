@@ -1,9 +1,8 @@
-// Equal chains side by side, as many as a register has lanes, rod r in lane r of every number: the state of the batched
-// step.
+// The state of the batched step: equal chains, as many as a register has lanes, rod r in lane r of every number.
 //
-// Equal means: as many segments, joint k between segments k and k + 1, the same segments static. Everything else
-// (sizes, moduli, rest shapes, states, gravity, damping) is each rod's own. Lanes beyond the last rod repeat it, so
-// that they hold harmless numbers.
+// Equal chains have the same number of segments, joint k between segments k and k + 1, and the same static segments.
+// Everything else (sizes, moduli, rest shapes, states, gravity, damping) may differ. Lanes beyond the last rod repeat
+// it, so that they hold valid numbers.
 #pragma once
 
 #include <vector>
@@ -19,7 +18,7 @@ namespace rodsweep {
 struct BatchedSegment {
   bool is_static;
   Lane inverse_mass, inverse_inertia_axial;
-  Lane turn_mobility;                                   ///< Segment's
+  Lane turn_mobility;                                   ///< inverse transverse inertia, with stiffening
   Lane root_turn_mobility, root_inverse_inertia_axial;  ///< square roots
   Lane gyration;                                        ///< (axial - transverse) / transverse inertia
   LaneVector position, velocity, angular_velocity;
@@ -37,8 +36,8 @@ struct BatchedJoint {
 struct BatchedRods {
   static constexpr int lanes = lane_width;
 
-  /// From the states of scenes of one rod each, for steps of dt. Throws SceneError: no scene or more than `lanes`, rods
-  /// that are not equal chains, a joint between static segments, moving clamps or point loads.
+  /// From the states of scenes of one rod each, for steps of dt. Throws SceneError for no scene or more than `lanes`,
+  /// rods that are not equal chains, a joint between static segments, moving clamps, point loads, contact or wind.
   BatchedRods(const std::vector<Scene>& scenes, double dt);
 
   /// Writes the state of rod `lane` and its p* into its scene.
@@ -50,7 +49,7 @@ struct BatchedRods {
   std::vector<SegmentPose<Lane>> free;  ///< p* of the segments
   LaneVector gravity;
   Lane damping;           ///< 1 / (1 + c dt)
-  bool stretches_evenly;  ///< every joint is as compliant along its rod as across
+  bool stretches_evenly;  ///< every joint's stretch and shear compliances are equal
 };
 
 }  // namespace rodsweep

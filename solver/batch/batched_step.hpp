@@ -1,7 +1,7 @@
-// The time step of time_step.hpp with the direct solve, for as many equal chains at once as a register has lanes, one
-// in each: this makes data generation fast. The result of a rod is that of a single rod up to rounding, and has the same
-// bits in every batch: a converged lane does not change while the others iterate, and a lane whose solve failed does not
-// change any more. Nothing allocates after construction.
+// The time step of time_step.hpp with the direct solve, for as many equal chains at once as a register has lanes, which
+// makes data generation fast. A rod's result equals that of a single rod up to rounding, and has the same bits in every
+// batch: a converged lane does not change while the others iterate, and a lane whose solve failed does not change
+// again. Nothing allocates after construction.
 #pragma once
 
 #include <optional>
@@ -14,26 +14,26 @@ namespace rodsweep {
 
 class BatchedStepper {
  public:
-  /// Copies the scenes' rods; what it refuses is told by BatchedRods. With a `momentum_tolerance` steps keep the
-  /// balance of momentum.
+  /// Copies the scenes' rods. Throws as BatchedRods does. With a `momentum_tolerance` steps keep the balance of
+  /// momentum.
   BatchedStepper(const std::vector<Scene>& scenes, const StepSettings& settings,
                  std::optional<double> momentum_tolerance = {});
 
   /// Advances all rods whose steps have not failed by dt. One report per rod; a failed one repeats its outcome.
   const std::vector<StepReport>& step();
 
-  // The same in parts, for those who look at the systems: begin(); solve() for as long as linearize() is true; end().
+  // step() in parts, to access the systems: begin(); solve() while linearize() is true; end().
   void begin();
-  bool linearize();  ///< the system at the rods' positions; false once no rod iterates on
-  void solve();      ///< and move the rods
+  bool linearize();  ///< the system at the rods' positions; false if no rod iterates
+  void solve();      ///< solves the system and moves the rods
   const std::vector<StepReport>& end();
 
-  /// Between linearize() and the next: is this one of the rods whose system is solved?
+  /// Whether this rod's system is solved, from one linearize() to the next.
   bool iterates(int rod) const { return running_[rod] != 0; }
   const BatchedSystem& system() const { return system_; }
   bool keeps_balance(int rod) const { return balanced_[rod] != 0; }
 
-  /// This rod goes no further.
+  /// Stops this rod.
   void abandon(int rod) { sound_[rod] = 0; }
 
   int steps_taken(int rod) const { return steps_[static_cast<std::size_t>(rod)]; }
@@ -55,8 +55,8 @@ class BatchedStepper {
   BatchedRods rods_;
   BatchedSystem system_;
   LaneMask sound_;     ///< rods whose steps have not failed
-  LaneMask running_;   ///< of them, those that have not converged in this step
-  LaneMask balanced_;  ///< and those that keep the balance of momentum
+  LaneMask running_;   ///< the sound rods that have not converged in this step
+  LaneMask balanced_;  ///< the sound rods that keep the balance of momentum
   std::optional<double> momentum_tolerance_;
   std::vector<Motion> before_;  ///< of the segments, at the last step's start
   bool has_before_ = false;

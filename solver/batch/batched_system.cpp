@@ -54,7 +54,7 @@ inline void put_side_b(const LaneQuaternion& d, const BatchedJoint& joint, const
   put_bend(d, d.w, t, a, out.b);
 }
 
-/// H^T diag(c) H, of the lower triangle's rows of stretch-shear.
+/// Writes H^T diag(c) H to the lower triangle's stretch-shear rows.
 inline void put_turned_compliance(const JointTurn<Lane>& turn, const LaneVector6& c, LaneBlock& out) {
   const LaneMatrix h = half_turn(turn);
   const LaneVector across = {c[0] * h.x.x, c[1] * h.x.y, c[2] * h.x.z}, up = {c[0] * h.y.x, c[1] * h.y.y, c[2] * h.y.z},
@@ -67,7 +67,7 @@ inline void put_turned_compliance(const JointTurn<Lane>& turn, const LaneVector6
   out[2][2] = dot(along, h.z);
 }
 
-/// A_kk but for what the joint after takes from it, and the sides of joint k.
+/// A_kk before the next joint is eliminated, and the sides of joint k.
 [[gnu::always_inline]] inline LaneBlock evaluate(const BatchedRods& rods, const JointTurn<Lane>& turn, std::size_t k,
                                                  Sides& sides) {
   const BatchedJoint& joint = rods.joints[k];
@@ -88,7 +88,7 @@ inline void put_turned_compliance(const JointTurn<Lane>& turn, const LaneVector6
   return out;
 }
 
-/// A column of B_k: of side a of joint k, and of side b of the joint before, 1 / `inverse_length` long.
+/// Column c of B_k, from side a of joint k and side b of the joint before, of length 1 / `inverse_length`.
 inline LaneVector6 coupling(const Sides& sides, const Side& before, const Lane& inverse_length, int c) {
   LaneVector6 out = sides.shift[c];
 #pragma GCC unroll 3
@@ -100,7 +100,7 @@ inline LaneVector6 coupling(const Sides& sides, const Side& before, const Lane& 
   return out;
 }
 
-/// Of stretch-shear, in the world, while the segments of a joint turn.
+/// Keeps the stretch-shear force constant in the world while the joint's segments rotate.
 inline void hold_force(const JointTurn<Lane>& turn, const LaneVector& phi_a, const LaneVector& phi_b,
                        const LaneMask& where, BatchedJoint& joint) {
   const LaneMatrix half = half_turn(turn);
@@ -124,9 +124,9 @@ LaneMask BatchedSystem::eliminate(const BatchedRods& rods) {
   LaneMask positive = Lane{} < 1;
   if (columns_.empty()) return positive;
   std::size_t k = columns_.size() - 1;
-  Sides sides[2];  // of joint k and of the one before, by the last bit of their numbers
+  Sides sides[2];  // of joints k and k - 1, at their numbers modulo 2
   LaneBlock s = evaluate(rods, linearization_.joints[k], k, sides[k % 2]);
-  LaneVector6 w{};  // what the joint after has taken from b_k
+  LaneVector6 w{};  // the next joint's term in b_k
   for (;; --k) {
     Column& column = columns_[k];
     positive &= factorise(s, column.factor);

@@ -1,5 +1,5 @@
-// The check of PETSc calls. Included by sources only: the solver's headers do not include PETSc. It throws, so callbacks
-// from PETSc must not use it: an exception must not cross C frames, and callbacks are noexcept.
+// The check of PETSc calls. Included by sources only: the solver's headers do not include PETSc. It throws, so
+// callbacks from PETSc must not use it: an exception must not cross C frames, and callbacks are noexcept.
 #pragma once
 
 #include <petscsys.h>

@@ -3,16 +3,16 @@
 //
 // A contact keeps the axes of two capsules at least R = r_a + r_b apart, measured along a normal n from b to a. n must
 // point to the side on which a was at the start. If the axes could have crossed between p and p*, n is taken at the
-// first time when they are R apart on their straight paths, else at p*. Later n follows the closest points, as long as it
-// turns by less than a right angle at once; otherwise the axes have crossed, and n is kept (see follow()). A contact that
-// lasts keeps its side, so that axes that are crossed at the end of a step are still pushed back.
+// first time when they are R apart on their straight paths, else at p*. Later n follows the closest points, as long as
+// it turns by less than a right angle at once; otherwise the axes have crossed, and n is kept (see follow()). A contact
+// that lasts keeps its side, so that axes that are crossed at the end of a step are still pushed back.
 //
 // If a closest point is the end of a segment and the rod continues there towards the other body, the contact belongs to
 // the next segment, which is nearer. Otherwise rods would catch on each other's joints.
 //
-// A contact is made if the axes can have come within 1.2 R: the rods' projection may move them into it. Capsules side by
-// side have two contacts, at the ends of their overlap; a capsule on a half-space has two, at its ends; all others have
-// one, at their closest points. A penetration at p is allowed, except for a share that is corrected
+// A contact is made if the axes can have come within 1.2 R: the rods' projection may move them into it. Capsules side
+// by side have two contacts, at the ends of their overlap; a capsule on a half-space has two, at its ends; all others
+// have one, at their closest points. A penetration at p is allowed, except for a share that is corrected
 // (ContactSettings::recovery), at most a hundredth of a radius in a step: a correction of positions adds a velocity.
 #pragma once
 

@@ -1,6 +1,6 @@
 // All bodies of a scene that may touch, in one list: the segments of all rods, then balls and capsules among the
-// obstacles. A segment is a capsule: its axis is as long as the segment, with a half sphere of its radius at either end.
-// A segment without radius (an exact wall) has no contacts.
+// obstacles. A segment is a capsule: its axis is as long as the segment, with a half sphere of its radius at either
+// end. A segment without radius (an exact wall) has no contacts.
 //
 // Two segments of a rod can be in contact only if the path between them along the rod, from joint to joint, is at least
 // (pi / 2) (r_a + r_b): nearer ones could touch only where the rod is bent more tightly than its own radius. This

@@ -1,7 +1,7 @@
 // The motion of bodies under the impulses of their contacts, within one Newton iteration and to first order. push()
-// moves a segment as if it were free; settle() adds the response of the joints of its rod (rod_response.hpp); at the end
-// every segment moves once, x += dx, q <- rotated(q, dtheta), and lambda += dlambda. Obstacles and static segments do
-// not move.
+// moves a segment as if it were free; settle() adds the response of the joints of its rod (rod_response.hpp); at the
+// end every segment moves once, x += dx, q <- rotated(q, dtheta), and lambda += dlambda. Obstacles and static segments
+// do not move.
 #pragma once
 
 #include <optional>

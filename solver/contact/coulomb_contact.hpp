@@ -4,8 +4,8 @@
 //   |lambda_t| <= mu lambda_n;  the slip is 0, or against |lambda_t| = mu lambda_n
 //
 // A relaxation updates the normal part first, then friction (Jean 1999): the friction that stops the slip, if it is
-// within the cone, else a step of projected gradient descent. Its step size is that of the larger eigenvalue of W across
-// the normal, which is safe in every direction, also where a body rolls much more easily than it slides.
+// within the cone, else a step of projected gradient descent. Its step size is that of the larger eigenvalue of W
+// across the normal, which is safe in every direction, also where a body rolls much more easily than it slides.
 #pragma once
 
 #include "solver/numbers/types.hpp"

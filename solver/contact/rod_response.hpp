@@ -20,9 +20,9 @@ class RodResponse {
  public:
   explicit RodResponse(const Rod& rod);
 
-  /// At the rod's positions. Multipliers start from zero. Does not check that A is positive definite: the rod's projection
-  /// has just solved with nearly the same A. Gauss-Seidel projections have no A; a response that is not finite then
-  /// shows in the state.
+  /// At the rod's positions. Multipliers start from zero. Does not check that A is positive definite: the rod's
+  /// projection has just solved with nearly the same A. Gauss-Seidel projections have no A; a response that is not
+  /// finite then shows in the state.
   void assemble(const Rod& rod, double dt);
 
   /// `motion`: dx and dtheta of every segment, lanes 0..2 and 3..5, in the world; of static ones zero.

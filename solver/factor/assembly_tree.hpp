@@ -8,8 +8,8 @@
 // zeros. Siblings are ordered so that pending updates need the least memory (Liu 1986). Updates are kept on two stacks,
 // by the parity of their depth, so that a parent's U does not overlap those of its children.
 //
-// P, R and U are stored in tiles of four block rows, 24 entries of one column after the other. P and R each begin with a
-// new tile, the last tile is padded with zeros, and only the lower triangle of U's tiles is stored.
+// P, R and U are stored in tiles of four block rows, 24 entries of one column after the other. P and R each begin with
+// a new tile, the last tile is padded with zeros, and only the lower triangle of U's tiles is stored.
 #pragma once
 
 #include <array>

@@ -20,14 +20,14 @@
 
 namespace rodsweep {
 
-/// Joints of the rod from its middle to its leaves; a branch ends at a static segment as at a free end. Joints of loops,
-/// and between loops, come first.
+/// Joints of the rod from its middle to its leaves; a branch ends at a static segment as at a free end. Joints of
+/// loops, and between loops, come first.
 std::vector<int> root_to_leaf_order(const Rod& rod);
 
 class BlockFactor {
  public:
-  /// `preferred`: block rows, eliminated from the last to the first; replaced by a better order if it has fill-in. Throws
-  /// FactorTooLarge before it allocates more memory than allowed.
+  /// `preferred`: block rows, eliminated from the last to the first; replaced by a better order if it has fill-in.
+  /// Throws FactorTooLarge before it allocates more memory than allowed.
   BlockFactor(const BlockMatrix& pattern, const std::vector<int>& preferred);
 
   /// Factorises and solves. `a` has the pattern of construction. x is valid only if the outcome is `converged`.

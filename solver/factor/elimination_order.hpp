@@ -2,8 +2,8 @@
 //
 // An elimination couples all later neighbours of its row; pairs that the matrix does not couple are fill-in. Chains and
 // trees have orders without fill-in (root_to_leaf_order() of block_factor.hpp). With loops there is none, and minimum
-// degree keeps the fill-in low: the row with the fewest remaining neighbours comes next (Amestoy, Davis & Duff 1996; the
-// approximate degrees are Eigen's).
+// degree keeps the fill-in low: the row with the fewest remaining neighbours comes next (Amestoy, Davis & Duff 1996;
+// the approximate degrees are Eigen's).
 #pragma once
 
 #include <vector>
@@ -19,8 +19,8 @@ bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order);
 std::vector<int> minimum_degree_order(const BlockMatrix& pattern);
 
 /// Block rows by their distance from a peripheral row (George & Liu 1979), rows of equal distance in the order of their
-/// first neighbours (Cuthill & McKee 1969). Eliminated from the last to the first it is reverse Cuthill-McKee: a complete
-/// factor has much fill-in, but an incomplete one (incomplete_factor.hpp) loses little.
+/// first neighbours (Cuthill & McKee 1969). Eliminated from the last to the first it is reverse Cuthill-McKee: a
+/// complete factor has much fill-in, but an incomplete one (incomplete_factor.hpp) loses little.
 std::vector<int> breadth_first_order(const BlockMatrix& pattern);
 
 }  // namespace rodsweep

@@ -1,5 +1,5 @@
-// The cost of an elimination before it is stored: the elimination tree and the number of blocks of every column of L, in
-// time nearly linear in the blocks of A and independent of the fill-in.
+// The cost of an elimination before it is stored: the elimination tree and the number of blocks of every column of L,
+// in time nearly linear in the blocks of A and independent of the fill-in.
 //
 // The parent of a column is its first later neighbour, fill-in included (Liu 1990). Counts are those of Gilbert, Ng &
 // Peyton 1994: leaves of the row subtrees less their common ancestors. Columns are numbered in a postorder; a postorder

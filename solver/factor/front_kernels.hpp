@@ -1,10 +1,10 @@
-// Dense kernels of a front (assembly_tree.hpp): 24 rows of a tile by the six rows of a block, for any size of registers,
-// near the peak of one core.
+// Dense kernels of a front (assembly_tree.hpp): 24 rows of a tile by the six rows of a block, for any size of
+// registers, near the peak of one core.
 //
 //   P = L L^T,   R <- R L^-T,   U <- U - R R^T
 //
-// All kernels work in place and allocate nothing. `inverse_pivot` are the reciprocals of L's diagonal. Large fronts take
-// many seconds: both steps can be interrupted (interruption.hpp) and then throw InterruptedComputation.
+// All kernels work in place and allocate nothing. `inverse_pivot` are the reciprocals of L's diagonal. Large fronts
+// take many seconds: both steps can be interrupted (interruption.hpp) and then throw InterruptedComputation.
 #pragma once
 
 #include "solver/factor/assembly_tree.hpp"

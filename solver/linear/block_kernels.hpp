@@ -3,8 +3,8 @@
 //   W = L^-1 B     and     L^-T D^-1 W.
 //
 // Pivots are computed in pairs, the second as the determinant of both over the first, so that it does not depend on the
-// first division. The kernels process one register's columns after the other (Lane): six rows of a slice and a broadcast
-// factor fit into the registers of any processor.
+// first division. The kernels process one register's columns after the other (Lane): six rows of a slice and a
+// broadcast factor fit into the registers of any processor.
 #pragma once
 
 #include <algorithm>

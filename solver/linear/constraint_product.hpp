@@ -3,8 +3,8 @@
 // J of a joint follows from d, its half turn H, the arms and 1/l (linearization.hpp): some twenty numbers, where A has
 // four or five blocks of 36 in a row. If the blocks do not fit into the near caches, their product is bound by memory.
 // Both passes process as many joints at once as a register has lanes. Several joints share a segment, so impulses and
-// motions of segments are stored one after the other. Equal to BlockMatrix::multiply() up to rounding. Allocates nothing
-// after construction. Not safe for concurrent products on one object: they share a scratch array.
+// motions of segments are stored one after the other. Equal to BlockMatrix::multiply() up to rounding. Allocates
+// nothing after construction. Not safe for concurrent products on one object: they share a scratch array.
 #pragma once
 
 #include <vector>

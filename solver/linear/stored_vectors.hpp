@@ -39,7 +39,8 @@ class StoredVectors {
   const Lane8* single(int index) const { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
   Lane8* single(int index) { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
 
-  /// The products of A and one panel, or a part of it: its rows of half_ and dots_, and all those of the single vectors.
+  /// The products of A and one panel, or a part of it: its rows of half_ and dots_, and all those of the single
+  /// vectors.
   template <int singles>
   void pass(const BlockMatrix& a, const VectorX& b, int panel, int part);
   /// Calls take(block row, its six entries of V c).

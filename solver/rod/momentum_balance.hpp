@@ -2,20 +2,20 @@
 //
 //   g = M (p - p*) - J^T lambda - f_c
 //
-// and the geometric stiffness with which Newton's iteration for g = 0 converges. p - p* is R^T (x - x*) and 2 Im(d) / Re(d), d = conj(q*) q,
-// the rotation vector that the time step's update undoes (rotation.hpp; its axis is the same in both frames); f_c are
-// the contacts' impulses. With g = 0 a rod at rest is in equilibrium whatever the time step: p* - p is then M^-1 dt_c^2
-// times the loads. The step of Deul et al. 2018 and Shao et al. 2021 does not use g: there p - p* = sum_j M^-1 J_j^T
-// dlambda_j, with J at each Newton iteration's own positions.
+// and the geometric stiffness with which Newton's iteration for g = 0 converges. p - p* is R^T (x - x*) and 2 Im(d) /
+// Re(d), d = conj(q*) q, the rotation vector that the time step's update undoes (rotation.hpp; its axis is the same in
+// both frames); f_c are the contacts' impulses. With g = 0 a rod at rest is in equilibrium whatever the time step: p* -
+// p is then M^-1 dt_c^2 times the loads. The step of Deul et al. 2018 and Shao et al. 2021 does not use g: there p - p*
+// = sum_j M^-1 J_j^T dlambda_j, with J at each Newton iteration's own positions.
 //
 // Geometric stiffness K = -d(J^T lambda)/dp: under the force f of a joint at its arm r a segment turns back by
-// (f.r) I - f r^T. Only the diagonal part across the axis is kept, the sum of (f.r) over its joints, tension times length
-// on a rod: M + K stays diagonal in the segment's frame and A keeps its pattern (Tournier et al. 2015, Stable Constrained
-// Dynamics; Andrews et al. 2017, Geometric Stiffness for Real-time Constrained Multibody Dynamics). Compression is limited
-// to half of the inertia, so that M + K stays positive.
+// (f.r) I - f r^T. Only the diagonal part across the axis is kept, the sum of (f.r) over its joints, tension times
+// length on a rod: M + K stays diagonal in the segment's frame and A keeps its pattern (Tournier et al. 2015, Stable
+// Constrained Dynamics; Andrews et al. 2017, Geometric Stiffness for Real-time Constrained Multibody Dynamics).
+// Compression is limited to half of the inertia, so that M + K stays positive.
 //
-// Stretch-shear multipliers represent forces: Newton turns the joints' frames, and balanced iterations keep the force, so
-// they turn the multipliers back. With displacements this is done to second order (turned_back); contacts have no
+// Stretch-shear multipliers represent forces: Newton turns the joints' frames, and balanced iterations keep the force,
+// so they turn the multipliers back. With displacements this is done to second order (turned_back); contacts have no
 // displacements and use the poses before and after (with_forces_held).
 #pragma once
 

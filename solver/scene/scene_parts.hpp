@@ -15,9 +15,10 @@ SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, dou
 /// an "inextensible" joint has to hold.
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p, double force_n);
 
-/// Two segments with one centre, with the given stiffness about every axis [Nm] and compliance of the three stretch-shear
-/// rows [1/J]. If the two differ at rest by an angle theta about an axis, the bend-twist constraint measures a turn about
-/// it times cos(theta / 2) only: the compliance compensates for that if it is an axis of the frames.
+/// Two segments with one centre, with the given stiffness about every axis [Nm] and compliance of the three
+/// stretch-shear rows [1/J]. If the two differ at rest by an angle theta about an axis, the bend-twist constraint
+/// measures a turn about it times cos(theta / 2) only: the compliance compensates for that if it is an axis of the
+/// frames.
 JointSpec crossing_between(const std::vector<SegmentSpec>& segments, int a, int b, double stiffness_nm,
                            double stretch_per_j);
 

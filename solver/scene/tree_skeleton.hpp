@@ -35,8 +35,8 @@ struct SkeletonFault {
   std::string text;
 };
 
-/// Finds radii that are not positive, edges without length, and edges that turn back by more than 160 degrees onto the one
-/// below (edges from the root: onto its first): the constraint of a joint is singular at 180.
+/// Finds radii that are not positive, edges without length, and edges that turn back by more than 160 degrees onto the
+/// one below (edges from the root: onto its first): the constraint of a joint is singular at 180.
 std::optional<SkeletonFault> fault(const Skeleton& skeleton);
 
 enum class Up { y, z };

@@ -24,8 +24,8 @@ class GaussSeidelProjection : public Projection {
   /// Throws SceneError where a joint joins two static segments.
   explicit GaussSeidelProjection(const Scene& scene);
 
-  /// `not_run` if the residual was below `newton_tolerance` (the corrections of the iteration are kept), `not_a_number` if
-  /// it is not finite, `indefinite` if a joint's block is not positive definite.
+  /// `not_run` if the residual was below `newton_tolerance` (the corrections of the iteration are kept), `not_a_number`
+  /// if it is not finite, `indefinite` if a joint's block is not positive definite.
   ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) final;
 
  protected:

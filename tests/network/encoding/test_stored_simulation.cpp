@@ -33,5 +33,5 @@ TEST_CASE("a system is not put into a rod of another size") {
   system.position.resize(3);
   system.lambda.resize(12);
   Rod rod = test::random_rod(test::chain(4), {}, 1);
-  CHECK_THROWS_WITH(restore(system, rod), "restore: a system of 3 segments and 2 joints for a rod of 4 and 3");
+  CHECK_THROWS_WITH(restore(system, rod), Catch::Contains("3 segments and 2 joints") && Catch::Contains("4 and 3"));
 }
