@@ -10,11 +10,11 @@
 //   mirrored      across the xz plane if the tree's hand is negative; bend and twist are axial vectors, which a mirror
 //                 transforms with the opposite sign
 // An Alignment is the source of v_k and of the hand:
-//   residual      v_k are the stretch-shear pairs and the bending pairs, turned by 90 degrees (planar motion bends
+//   residual      v_k are the stretch-shear pairs, and the bending pairs turned by 90 degrees (planar motion bends
 //                 about the normal); the hand is the sum of twists, or if that is 0, whether sum t v_k is left of x
 //   matrix        v_k = (B_35, B_45) of the coupling, the bend of the joint against its parent; the hand is the sense
-//                 of rotation of v_k along the tree, sum Im conj(t v_parent) t v_k. Only a straight tree's axis and a flat
-//                 tree's hand depend on the residual; they come from it.
+//                 of rotation of v_k along the tree, sum Im conj(t v_parent) t v_k. Only a straight tree's axis and a
+//                 flat tree's hand come from the residual.
 #pragma once
 
 #include "network/encoding/scaled_system.hpp"

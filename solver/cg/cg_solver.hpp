@@ -1,5 +1,5 @@
-// Conjugate gradients on A x = b, instrumented: the interface of the two kinds, on the joints' multipliers
-// (conjugate_gradient.hpp) and on the motions of crossings (condensed_cg.hpp).
+// Conjugate gradients on A x = b with a history of residuals: the interface of two solvers. The unknowns are the
+// joints' multipliers (conjugate_gradient.hpp) or the motions of crossings (condensed_cg.hpp).
 //
 // Convergence: the norm of A's residual relative to that of b (`reference`), also with a nonzero guess. One solver per
 // guess and rod.
@@ -23,14 +23,14 @@ enum class Norm { true_residual, natural };
 struct CgSettings {
   Preconditioner preconditioner = Preconditioner::jacobi;
   Norm norm = Norm::true_residual;
-  int max_iterations = 0;                 ///< 0: ten times the number of unknowns
+  int max_iterations = 0;                 ///< 0: ten times the unknowns, at most 32767
   int fill_levels = default_fill_levels;  ///< of block_icc and condensed
 };
 
-/// The cap for a system with that many unknowns; iterations are stored in 16 bits.
+/// The limit for a system. Iterations are stored in 16 bits.
 int iteration_limit(const CgSettings& settings, int unknowns);
 
-/// What a solve starts from.
+/// The start of a solve.
 struct CgStart {
   bool nonzero = false;               ///< from x; else from zero
   const VectorX* residual = nullptr;  ///< b - A x, if it is known
@@ -48,18 +48,18 @@ class CgSolver {
  public:
   virtual ~CgSolver() = default;
 
-  /// Rebuilds the preconditioner in the next solve that iterates (and counts its time there); else the old one is kept.
+  /// The next solve that iterates rebuilds the preconditioner, within its time. Without this call the old one is kept.
   virtual void matrix_changed() = 0;
 
-  /// Until the norm is below tolerance * reference. x receives the solution.
+  /// Iterates until the norm is at most tolerance * reference. Sets x to the solution.
   /// With `deflation` every preconditioned residual is projected; the first residual must be orthogonal to its space.
   virtual CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
                          Deflation* deflation = nullptr) = 0;
 
-  /// The norm of b in which `reference` is to be given: ||b||_2, or the natural one.
+  /// The norm of b to pass as `reference`: ||b||_2, or the natural norm.
   virtual double norm_of(const VectorX& b) = 0;
 
-  /// Norms of the residual, [0] before the first iteration; of the last solve, if it was kept.
+  /// Norms of the last solve's residuals, [0] before the first iteration, if kept.
   virtual void keep_history(bool on) = 0;
   virtual const std::vector<double>& history() const = 0;
 };

@@ -64,7 +64,7 @@ struct CondensedCg::Impl {
     VecDestroy(&rhs);
   }
 
-  /// KSPCG applies it to each of its residuals before it asks whether that is small enough.
+  /// KSPCG applies it to each of its residuals before the convergence test.
   static PetscErrorCode apply(PC pc, Vec p, Vec z) noexcept {
     void* context = nullptr;
     if (const PetscErrorCode error = PCShellGetContext(pc, &context)) return error;
@@ -86,7 +86,7 @@ struct CondensedCg::Impl {
     return 0;
   }
 
-  /// The system as it is, the preconditioner when it is to be made anew. False where either is not positive definite.
+  /// Assembles the system and, if stale, the preconditioner. Returns false if either is not positive definite.
   bool refresh() {
     const bool condensed = condensation.assemble(rod, system.linearization(), system.dt());
     if (std::exchange(stale, false)) positive = preconditioner->set_up(op.a);
@@ -102,7 +102,7 @@ void CondensedCg::matrix_changed() { impl_->stale = true; }
 
 CgReport CondensedCg::solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
                             Deflation* deflation) {
-  if (deflation) throw std::logic_error("a condensed system has no space of multipliers to deflate");
+  if (deflation) throw std::logic_error("CondensedCg: deflation is not supported");
   Impl& s = *impl_;
   s.history.clear();
   CgReport report{SolveOutcome::converged, 0, 0};

@@ -1,5 +1,5 @@
-// Conjugate gradients on a condensed system (condensation.hpp) by PETSc's KSPCG: struts exactly, crossings by
-// iteration, with an incomplete factor of their matrix (block_icc of block_preconditioner.hpp).
+// Conjugate gradients on a condensed system (condensation.hpp) by PETSc's KSPCG: struts are eliminated, crossings are
+// solved iteratively with an incomplete factor of their matrix (block_icc of block_preconditioner.hpp).
 //
 // It solves A d = r for the correction of multipliers with residual r. The convergence test uses the norm of A's
 // residual, so the accuracy is that of ConjugateGradient. The first iteration is the elimination of struts: residuals

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double divergence_limit = 1e30;
 
-/// What the convergence test compares with.
+/// The target of the convergence test.
 struct Target {
   double tolerance = 0;
   double reference = 0;
@@ -90,13 +90,13 @@ struct ConjugateGradient::Impl {
   Mat entries = nullptr;  ///< copy of the blocks for PETSc's preconditioners that need them; else null
   KSP ksp = nullptr;
   std::unique_ptr<BlockPreconditioner> own;  ///< null: PETSc's
-  bool own_positive = true;                  ///< as it was last set up
-  PC plain = nullptr, shell = nullptr;  ///< the preconditioner, and the same with projections, once one was asked for
+  bool own_positive = true;                  ///< at the last set-up
+  PC plain = nullptr, shell = nullptr;  ///< the preconditioner; with projections, once used
   Projected projected;
   Vec b = nullptr, x = nullptr, scratch = nullptr;
   VectorX residual;
   Target target;
-  bool stale = true;  ///< the preconditioner is of older entries
+  bool stale = true;  ///< the preconditioner belongs to older entries
   std::vector<PetscReal> history_buffer;
   std::vector<double> history;
 
@@ -120,7 +120,7 @@ ConjugateGradient::Impl::Impl(const BlockMatrix& matrix, const ConstraintProduct
   settings.max_iterations = iteration_limit(settings, a.unknowns());
   try {
     create();
-  } catch (...) {  // out of memory: this task's, not the next one's
+  } catch (...) {  // if out of memory, later tasks need this memory
     destroy();
     throw;
   }
@@ -155,7 +155,7 @@ void ConjugateGradient::Impl::create() {
 }
 
 void ConjugateGradient::Impl::destroy() {
-  // A destructor cannot report; PETSc prints what it has to say.
+  // A destructor cannot report errors; PETSc prints them.
   KSPDestroy(&ksp);
   PCDestroy(&shell);
   PCDestroy(&plain);
@@ -231,7 +231,7 @@ CgReport ConjugateGradient::Impl::without_iterations(SolveOutcome outcome, doubl
 }
 
 void ConjugateGradient::Impl::copy_entries() {
-  // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper ones.
+  // PETSc's blocks: column-major, unpadded, in block-row order; the symmetric format holds the upper blocks.
   const bool symmetric = settings.preconditioner == Preconditioner::icc;
   PetscScalar* out = nullptr;
   petsc_check(symmetric ? MatSeqSBAIJGetArray(entries, &out) : MatSeqBAIJGetArray(entries, &out), "MatSeqBAIJGetArray");
@@ -264,7 +264,7 @@ CgReport ConjugateGradient::solve(const VectorX& b, VectorX& x, const CgStart& s
   const double norm = first.norm();
   if (!start.nonzero) x.setZero(b.size());
   if (!std::isfinite(norm)) return s.without_iterations(SolveOutcome::not_a_number, norm);
-  // Nothing is set up for a guess that is good enough.
+  // A guess within the tolerance needs no preconditioner.
   if (s.settings.norm == Norm::true_residual && norm <= tolerance * reference)
     return s.without_iterations(SolveOutcome::converged, norm);
   s.refresh();

@@ -1,11 +1,11 @@
-// Conjugate gradients on A x = b by PETSc's KSPCG, instrumented: iterations to any tolerance from the residual history.
+// Conjugate gradients on A x = b by PETSc's KSPCG. The history of residuals gives the iterations to any tolerance.
 //
 // The operator is BlockMatrix::multiply or that of a system (petsc_operator.hpp). Preconditioners are PETSc's, with a
-// copy of the blocks in its format where they need entries, or ours (block_preconditioner.hpp). If one of ours is not
+// copy of the blocks in its format if they need entries, or ours (block_preconditioner.hpp). If one of ours is not
 // positive definite, no iteration is made. None is set up if the guess already meets the tolerance (2-norm). The solve
-// diverges only past 1e30 times `reference`: a guess from history may start far above a late, tiny b. Products: one for
+// diverges only above 1e30 times `reference`: a guess from history may start far above a small b. Products: one for
 // each iteration, one more for the residual of a nonzero guess, if not known. PETSc must be initialised (PetscSession).
-// Throws PetscError when a call fails.
+// Throws PetscError if a call fails.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ class ConjugateGradient : public CgSolver {
   ConjugateGradient(ConjugateGradient&&) noexcept;
   ConjugateGradient& operator=(ConjugateGradient&&) noexcept;
 
-  void matrix_changed() override;  ///< products always take the entries as they are
+  void matrix_changed() override;  ///< products always use the current entries
   CgReport solve(const VectorX& b, VectorX& x, const CgStart& start, double tolerance, double reference,
                  Deflation* deflation = nullptr) override;
   double norm_of(const VectorX& b) override;

@@ -22,7 +22,7 @@ struct BlockOperator {
   void multiply(const double* x, double* y) const { product ? product->multiply(x, y) : a.multiply(x, y); }
 };
 
-/// Nanoseconds that an iteration of CG takes, roughly, for is_interrupted().
+/// Approximate time of a CG iteration in nanoseconds, for is_interrupted().
 inline std::int64_t work_of_iteration(const BlockMatrix& a) { return 10 * static_cast<std::int64_t>(a.blocks.size()); }
 
 /// A matrix with the product of `op`. Call MatAssemblyBegin() and MatAssemblyEnd() when entries change.

@@ -11,7 +11,7 @@ PetscSession::PetscSession() {
 
   int mpi_running = 0;
   MPI_Initialized(&mpi_running);
-  if (!mpi_running) {  // PETSc refuses a communicator of ours if it has to start MPI itself
+  if (!mpi_running) {  // PETSc refuses our communicator if it starts MPI itself
     if (MPI_Init(nullptr, nullptr) != MPI_SUCCESS) throw PetscError("MPI_Init failed");
     owns_mpi_ = true;
   }

@@ -29,7 +29,7 @@ double sum(const Lane8& v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v
 double product(Vec x, Vec y) {
   const Lane8 *a = lanes(x), *b = lanes(y);
   const PetscInt count = lane_count(x);
-  Lane8 sums[4]{};  // as many as hide the latency of an addition
+  Lane8 sums[4]{};  // enough to hide the latency of an addition
   PetscInt i = 0;
   for (; i + 4 <= count; i += 4)
 #pragma GCC unroll 4
@@ -110,7 +110,7 @@ PetscErrorCode create(PetscInt size, Vec* out) noexcept {
   if (code == 0) code = VecCreateSeqWithArray(PETSC_COMM_SELF, 1, size, reinterpret_cast<double*>(memory), out);
   if (code == 0)
     code = PetscObjectCompose(reinterpret_cast<PetscObject>(*out), "entries", reinterpret_cast<PetscObject>(owner));
-  if (code == 0) code = PetscContainerDestroy(&owner);  // the vector's from here on
+  if (code == 0) code = PetscContainerDestroy(&owner);  // the vector owns it now
   if (code != 0) return code;
 
   _VecOps& ops = *(*out)->ops;

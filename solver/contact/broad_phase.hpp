@@ -1,7 +1,7 @@
 // The pairs of bodies that may touch in a step: all pairs with overlapping boxes, from a packed R-tree (Boost.Geometry;
 // Leutenegger et al. 1997; Garcia et al. 1998) with a query for every box: O(n log n) in total.
 //
-// Boxes are enlarged by a margin. They and their pairs are kept until a box leaves its enlarged one (a Verlet list):
+// Boxes are enlarged by a margin. They and their pairs are kept until a box leaves its enlarged box (a Verlet list):
 // slow bodies cost one comparison each. Pairs are sorted. Only a new search allocates.
 #pragma once
 

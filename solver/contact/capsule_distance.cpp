@@ -10,7 +10,7 @@ double clamp(double s) { return std::clamp(s, -1.0, 1.0); }
 }  // namespace
 
 AxisPoints closest_points(const CapsuleAxis& a, const CapsuleAxis& b) {
-  constexpr double parallel = 1e-12;  // sine squared of the angle, below which it says nothing
+  constexpr double parallel = 1e-12;  // squared sine of the angle of parallel axes
   const Vector3 c = a.centre - b.centre;
   const double uu = a.half.squaredNorm(), uv = a.half.dot(b.half), vv = b.half.squaredNorm();
   const double uc = a.half.dot(c), vc = b.half.dot(c);

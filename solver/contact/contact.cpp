@@ -8,10 +8,10 @@
 namespace rodsweep {
 namespace {
 
-constexpr double reach = 1.2;            ///< contacts begin at so many radii from either axis, and more for what moves
-constexpr double most_recovered = 0.01;  ///< of a penetration in a step, of the smaller radius
-constexpr double catching = 0.3;         ///< cosine: how much nearer the next segment must be
-constexpr double side_by_side = 0.1;     ///< of R: by how much less the distance may differ along the overlap
+constexpr double reach = 1.2;            ///< contacts begin at this many radii from the axis, plus the motion
+constexpr double most_recovered = 0.01;  ///< limit per step of a penetration's correction, of the smaller radius
+constexpr double catching = 0.3;         ///< cosine of the angle at which the next segment must approach
+constexpr double side_by_side = 0.1;     ///< of R: limit of the distance's change along the overlap
 
 std::vector<double> margins(const ContactBodies& bodies) {
   std::vector<double> out;
@@ -29,7 +29,7 @@ Box swept_box(const CapsuleAxis& from, const CapsuleAxis& to, double beyond) {
 
 bool is_finite(const CapsuleAxis& axis) { return axis.centre.allFinite() && axis.half.allFinite(); }
 
-/// The direction from b to a, any that is at right angles to both where they meet.
+/// The unit vector from b to a. If the axes meet, any that is at right angles to both.
 Vector3 direction(const Vector3& separation, const CapsuleAxis& a, const CapsuleAxis& b, double scale) {
   const double distance = separation.norm();
   if (distance > 1e-9 * scale) return separation / distance;
@@ -83,7 +83,7 @@ bool ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
   }
   keep_impulses(contacts);
   std::swap(found_, contacts);
-  found_.reserve(contacts.capacity());  // of the two lists, neither is to grow alone in a later step
+  found_.reserve(contacts.capacity());  // both lists have room, so that a later step need not allocate
   return true;
 }
 
@@ -158,7 +158,7 @@ void ContactFinder::find_below(int a, int half_space) {
 
 void ContactFinder::add(Contact contact, bool sided) {
   Contact at_start = contact;
-  if (!sided) at_start.normal.setZero();  // nothing is on the wrong side: what counts is the distance
+  if (!sided) at_start.normal.setZero();  // there is no wrong side: only the distance counts
   const double width = std::min(0.0, follow(at_start, start_, start_s_).width);
   contact.allowed =
       std::min((1 - recovery_) * width, width + most_recovered * bodies_.smaller_radius(contact.a, contact.b));

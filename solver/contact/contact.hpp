@@ -3,17 +3,17 @@
 //
 // A contact keeps the axes of two capsules at least R = r_a + r_b apart, measured along a normal n from b to a. n must
 // point to the side on which a was at the start. If the axes could have crossed between p and p*, n is taken at the
-// first time when they are R apart on their straight paths, else at p*. Later n follows the closest points, as long as
-// it turns by less than a right angle at once; otherwise the axes have crossed, and n is kept (see follow()). A contact
-// that lasts keeps its side, so that axes that are crossed at the end of a step are still pushed back.
+// first time when they are R apart on their straight paths, else at p*. Later n follows the closest points while it
+// turns by less than a right angle per update; otherwise the axes have crossed, and n is kept (see follow()). A contact
+// that persists keeps its side, so that axes that are crossed at the end of a step are still pushed back.
 //
 // If a closest point is the end of a segment and the rod continues there towards the other body, the contact belongs to
 // the next segment, which is nearer. Otherwise rods would catch on each other's joints.
 //
-// A contact is made if the axes can have come within 1.2 R: the rods' projection may move them into it. Capsules side
-// by side have two contacts, at the ends of their overlap; a capsule on a half-space has two, at its ends; all others
-// have one, at their closest points. A penetration at p is allowed, except for a share that is corrected
-// (ContactSettings::recovery), at most a hundredth of a radius in a step: a correction of positions adds a velocity.
+// A contact is made if the axes can have come within 1.2 R: the rods' projection may move them into contact. Capsules
+// side by side have two contacts, at the ends of their overlap; a capsule on a half-space has two, at its ends; all
+// others have one, at their closest points. A penetration at p is allowed, except for a share that is corrected
+// (ContactSettings::recovery), at most a hundredth of a radius per step: correcting positions adds a velocity.
 #pragma once
 
 #include <vector>
@@ -23,27 +23,27 @@
 namespace rodsweep {
 
 struct Contact {
-  enum class Place { closest, low, high };  ///< on a's axis: closest to b; at s of a smaller and a larger value
+  enum class Place { closest, low, high };  ///< on a's axis: closest to b, or at a lower or higher s
 
   int a;  ///< body, see ContactBodies
-  int b;  ///< body after a, or -1 - i of the half-space i
+  int b;  ///< body after a, or -1 - i for half-space i
   Place place;
   double s;                  ///< on a's axis, unless closest
   Vector3 normal;            ///< n
-  double allowed = 0;        ///< of the gap |x_a - x_b| - R, at most 0 [m]
-  Vector3 impulse{0, 0, 0};  ///< on a, so far in the step, at first that of the last: force times dt_c^2 [kg m]
+  double allowed = 0;        ///< lower limit of the gap |x_a - x_b| - R, at most 0 [m]
+  Vector3 impulse{0, 0, 0};  ///< on a, in this step so far, starting from the last: force times dt_c^2 [kg m]
 };
 
-/// Where a contact's capsules are nearest, and the gap there along the contact's normal, which follows.
+/// The gap of a contact where its capsules are nearest, along its normal, which follows() updates.
 struct Gap {
   double width;    ///< [m]; negative where they overlap
-  Vector3 middle;  ///< of it
+  Vector3 middle;  ///< of the gap
 };
 
 class ContactFinder {
  public:
   ContactFinder(const Scene& scene, double recovery);
-  ContactFinder(const ContactFinder&) = delete;  // the broad phase asks the bodies
+  ContactFinder(const ContactFinder&) = delete;  // broad_phase_ refers to this
   ContactFinder& operator=(const ContactFinder&) = delete;
 
   const ContactBodies& bodies() const { return bodies_; }
@@ -56,17 +56,17 @@ class ContactFinder {
   }
 
   /// Call at p*. Replaces the contacts of the last step by those of this one, sorted by bodies and place; contacts that
-  /// last keep their impulses. Returns false, and finds none, where p* is not finite.
+  /// persist keep their impulses. Returns false and finds none if p* is not finite.
   bool find(const Scene& scene, std::vector<Contact>& contacts);
 
   /// The bodies' axes as they are now, those of obstacles at the end of the step.
   void place(const Scene& scene, std::vector<CapsuleAxis>& axes) const { bodies_.place(scene, end_s_, axes); }
 
-  /// With these axes.
+  /// The gap with these axes. Updates the contact's normal.
   Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const { return follow(contact, axes, end_s_); }
   const std::vector<CapsuleAxis>& start() const { return start_; }
 
-  /// By how much an obstacle, or a half-space from -1 downwards, moves in the step.
+  /// The motion of an obstacle in the step; half-space i is obstacle -1 - i.
   Vector3 motion(int obstacle) const;
 
  private:
@@ -87,7 +87,7 @@ class ContactFinder {
   double recovery_;
   double start_s_ = 0, end_s_ = 0;         ///< of the step
   std::vector<CapsuleAxis> start_, free_;  ///< at p and p*
-  std::vector<double> reach_;              ///< of every body, how far from its axis its contacts begin [m]
+  std::vector<double> reach_;              ///< per body: distance from its axis at which contacts begin [m]
   std::vector<Box> boxes_;
   std::vector<Contact> found_;
 };

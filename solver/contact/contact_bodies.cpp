@@ -13,17 +13,17 @@ namespace {
 
 constexpr double half_pi = 1.57079632679489661923;
 
-/// In r_a + r_b, how near segments at rest are beyond which others may overlap: in a fork of an angle theta, the way
-/// from one that overlaps to the node and back leads as far as 1 / sin(theta) away.
+/// In units of r_a + r_b: the search goes on beyond segments that are nearer at rest. In a fork of angle theta, the
+/// path between two overlapping segments may reach 1 / sin(theta) away.
 constexpr double far = 3;
 
-/// Of a segment, where no joint is strained.
+/// The pose of a segment while no joint is strained.
 struct RestPose {
   Vector3 centre{0, 0, 0};
   Quaternion orientation = Quaternion::Identity();
 };
 
-/// Of the other segment of a joint.
+/// The rest pose of the other segment of a joint.
 RestPose beyond(const Joint& joint, int from, const RestPose& pose) {
   const bool forwards = from == joint.a;
   const Quaternion turned = pose.orientation * (forwards ? joint.rest : joint.rest.conjugate());
@@ -73,7 +73,7 @@ void ContactBodies::connect(const Rod& rod, int first_body) {
 
 void ContactBodies::add(const Obstacle& obstacle) {
   const auto add = [this](const Vector3& from, const Vector3& to, double radius, const Vector3& velocity) {
-    if (!from.allFinite() || !to.allFinite()) throw SceneError("an obstacle's place is not finite");
+    if (!from.allFinite() || !to.allFinite()) throw SceneError("an obstacle's position is not finite");
     if (!velocity.allFinite()) throw SceneError("an obstacle's velocity is not finite");
     if (!(radius > 0) || !std::isfinite(radius))
       throw SceneError("an obstacle's radius is " + std::to_string(radius) + "; must be positive and finite");
@@ -86,8 +86,8 @@ void ContactBodies::add(const Obstacle& obstacle) {
     add(capsule->from_m, capsule->to_m, capsule->radius_m, capsule->velocity_m_s);
 }
 
-// Shortest ways (Dijkstra) over the joints from each segment, no farther than the widest pair needs, but onwards from
-// what is near at rest. Poses at rest are in the frame of the segment at which the ways start.
+// Shortest paths (Dijkstra) over the joints from each segment, as long as the widest pair needs, and longer beyond
+// segments that are near at rest. Rest poses are in the frame of the segment at which the paths start.
 void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
   struct Place {
     int joint;
@@ -104,8 +104,8 @@ void ContactBodies::exclude_neighbours(const Rod& rod, int first_body) {
 
   struct Reached {
     double way = HUGE_VAL;
-    int from = 0;   ///< the segment through which
-    RestPose pose;  ///< its
+    int from = 0;   ///< the last segment of the path
+    RestPose pose;  ///< of that segment
   };
   using Way = std::pair<double, int>;  // length, joint
   std::priority_queue<Way, std::vector<Way>, std::greater<>> open;

@@ -3,7 +3,7 @@
 // end. A segment without radius (an exact wall) has no contacts.
 //
 // Two segments of a rod can be in contact only if the path between them along the rod, from joint to joint, is at least
-// (pi / 2) (r_a + r_b): nearer ones could touch only where the rod is bent more tightly than its own radius. This
+// (pi / 2) (r_a + r_b): nearer ones could touch only if the rod is bent more tightly than its own radius. This
 // excludes neighbours and all segments that meet in one point. If segments are shorter than they are wide, it also
 // excludes the next neighbours, whose capsules overlap in a straight rod. Farther segments are excluded too if their
 // capsules overlap at rest, as beside a node where rods meet at a sharp angle. Two static bodies are never in contact.
@@ -20,9 +20,9 @@
 namespace rodsweep {
 
 struct Body {
-  int rod, segment;  ///< -1 of an obstacle
+  int rod, segment;  ///< -1 for an obstacle
   double radius, half_length;
-  bool is_free;  ///< to move
+  bool is_free;  ///< not static
 };
 
 class ContactBodies {
@@ -32,7 +32,7 @@ class ContactBodies {
   int count() const { return static_cast<int>(bodies_.size()); }
   const Body& body(int i) const { return bodies_[static_cast<std::size_t>(i)]; }
 
-  /// What motions of a contact are relative to; of `a` alone where b is a half-space, below 0.
+  /// The reference length of a contact's motions; the radius of `a` if b is a half-space, below 0.
   double smaller_radius(int a, int b) const {
     return b < 0 ? body(a).radius : std::min(body(a).radius, body(b).radius);
   }
@@ -42,17 +42,17 @@ class ContactBodies {
 
   /// The continuation of a rod at an end of a segment: the next segment, and the direction into it along its axis.
   struct Next {
-    int end;   ///< of the segment: -1 or 1
-    int body;  ///< the next
+    int end;   ///< end of the segment: -1 or 1
+    int body;  ///< the next segment
     int into;  ///< -1 or 1
   };
   const std::vector<Next>& next(int i) const { return next_[static_cast<std::size_t>(i)]; }
 
-  /// Axes in the current state of the scene, one for each body; those of obstacles at a time.
+  /// Axes in the current state of the scene, one for each body, with obstacles at `time_s`.
   void place(const Scene& scene, double time_s, std::vector<CapsuleAxis>& axes) const;
   void place(const Scene& scene, std::vector<CapsuleAxis>& axes) const { place(scene, scene.time_s, axes); }
 
-  /// Of an obstacle [m/s].
+  /// Velocity of an obstacle [m/s].
   const Vector3& velocity(int obstacle) const {
     return obstacles_[static_cast<std::size_t>(obstacle) - (bodies_.size() - obstacles_.size())].velocity;
   }
@@ -69,7 +69,7 @@ class ContactBodies {
   };
   std::vector<Moving> obstacles_;
   std::vector<std::vector<Next>> next_;     ///< of every body
-  std::vector<std::vector<int>> excluded_;  ///< of every segment, the later ones that it cannot touch, sorted
+  std::vector<std::vector<int>> excluded_;  ///< per segment: the later ones that it cannot touch, sorted
 };
 
 }  // namespace rodsweep

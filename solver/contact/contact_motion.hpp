@@ -16,28 +16,28 @@ class ContactMotion {
  public:
   ContactMotion(Scene& scene, const ContactBodies& bodies);
 
-  /// W of a body's point, `arm` from its centre: what an impulse there moves the point by [1/kg].
+  /// W of a body's point, `arm` from its centre: the point's motion per impulse there [1/kg].
   Matrix3 mobility(int body, const Vector3& arm, const CapsuleAxis& axis) const;
 
   /// An impulse at a body's point: force times dt_c^2 [kg m].
   void push(int body, const Vector3& arm, const Vector3& impulse, const CapsuleAxis& axis);
 
-  /// Of a body's point.
+  /// The motion of a body's point.
   Vector3 of(int body, const Vector3& arm) const;
 
   void settle(double constraint_dt);
 
-  /// What has settled, once: afterwards nothing is in motion. With the balance of momentum kept, joints keep their
-  /// forces in the world (momentum_balance.hpp).
+  /// Moves the bodies by the settled motions, then resets all motions. With the balance of momentum kept, joints keep
+  /// their forces in the world (momentum_balance.hpp).
   void apply(bool keeps_balance);
 
-  /// Forgets all pushes since nothing was in motion; none of them has settled.
+  /// Discards all pushes. None of them may have settled.
   void clear();
 
  private:
   struct Coupled {
     int first_body;
-    std::optional<RodResponse> response{};  ///< once it was touched
+    std::optional<RodResponse> response{};  ///< after the first push
     bool pushed = false, assembled = false;
   };
   const Segment& segment(const Body& of) const;
@@ -46,7 +46,7 @@ class ContactMotion {
   const ContactBodies& bodies_;
   std::vector<Coupled> rods_;
   std::vector<Lane8> motion_;   ///< of every body: dx in lanes 0..2, dtheta in lanes 3..5
-  std::vector<Lane8> settled_;  ///< what the joints have left of it
+  std::vector<Lane8> settled_;  ///< after the joints' response
 };
 
 }  // namespace rodsweep

@@ -10,7 +10,7 @@
 namespace rodsweep {
 namespace {
 
-constexpr double worse = 1.5;  ///< than the best since the last restart
+constexpr double worse = 1.5;  ///< limit of a sweep's motion, relative to the least since the last restart
 
 void check_least(const char* what, double value, double least) {
   if (!(value >= least) || !std::isfinite(value))
@@ -40,7 +40,7 @@ void ContactProjection::start_step(double end_s) {
 }
 
 bool ContactProjection::find(bool keeps_balance) {
-  contacts_ = last_;  // Newton may have come to nothing since the step began
+  contacts_ = last_;  // an earlier Newton iteration of this step may have failed
   if (!finder_.find(scene_, contacts_)) return false;
   fresh_ = true;
   keeps_balance_ = keeps_balance;
@@ -79,8 +79,8 @@ bool ContactProjection::project(double constraint_dt) {
   return false;
 }
 
-// Contacts that last are pressed at once as they were in the last step, unless the balance of momentum has them
-// already. Returns whether that moves anything.
+// Applies the last step's impulses to contacts that persist, unless the balance of momentum already includes them.
+// Returns whether anything moves.
 bool ContactProjection::press(double constraint_dt) {
   if (!fresh_) return false;
   fresh_ = false;
@@ -122,7 +122,7 @@ void ContactProjection::linearise() {
   }
 }
 
-// Returns the largest motion that a contact asked for, relative to its segments' radius.
+// Returns the largest motion of a contact's correction, relative to the smaller radius.
 double ContactProjection::sweep() {
   double most = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -142,7 +142,7 @@ double ContactProjection::sweep() {
   return most;
 }
 
-// The last one, none of which has settled.
+// Reverts the last sweep, which must not have settled.
 void ContactProjection::undo_sweep() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c].impulse = before_[c];
   motion_.clear();
@@ -153,8 +153,8 @@ void ContactProjection::restart(double moved) {
   least_moved_ = moved;
 }
 
-// Onwards along the last way, unless the sweep went back against it (adaptive restart, O'Donoghue & Candes 2015), or
-// contacts are worse off than before: friction is no gradient, and can keep an accelerated iteration going in circles.
+// Extrapolates the last change. Restarts if the sweep went against it (adaptive restart, O'Donoghue & Candes 2015) or
+// if the motion grows: friction is not a gradient, so an accelerated iteration may cycle.
 void ContactProjection::accelerate(double moved) {
   double against = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -179,7 +179,7 @@ void ContactProjection::push(const Contact& contact, const Linear& at, const Vec
   if (contact.b >= 0) motion_.push(contact.b, at.arm_b, -impulse, axes_[static_cast<std::size_t>(contact.b)]);
 }
 
-// How far the body's material at a point has come since the start of the step.
+// The motion of the body's material at a point since the start of the step.
 Vector3 ContactProjection::slip(int body, const Vector3& point) const {
   const Body& of = finder_.bodies().body(body);
   if (of.rod < 0) return finder_.motion(body);
@@ -190,7 +190,7 @@ Vector3 ContactProjection::slip(int body, const Vector3& point) const {
   return point - (old.position + old.orientation * arm);
 }
 
-// Of all contacts, where they were linearised last.
+// Sets the rods' contact impulses, at the last linearisation.
 void ContactProjection::tell_impulses() {
   for (Rod& rod : scene_.rods) rod.contact_impulse.assign(rod.segments.size(), Vector6::Zero());
   const auto tell = [this](int body, const Vector3& arm, const Vector3& impulse) {
@@ -214,7 +214,7 @@ ContactState ContactProjection::state() {
     return state;
   }
   linearise();
-  if (!keeps_balance_) tell_impulses();  // else they stay told as they acted, wherever the contacts have gone since
+  if (!keeps_balance_) tell_impulses();  // else they stay as they acted, though contacts moved since
   for (const Linear& at : linear_) state.penetration = std::max(state.penetration, -at.width / at.size);
   state.residual = sweep();
   undo_sweep();

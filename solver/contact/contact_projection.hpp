@@ -1,6 +1,6 @@
 // Contacts within a time step, as complementarity with Coulomb friction (coulomb_contact.hpp), solved by projected
 // Gauss-Seidel (Jean 1999) on accumulated multipliers (XPBD, Macklin et al. 2016), after the projection of the rods.
-// Gaps count from what is allowed (contact.hpp), slips from the start of the step.
+// Gaps are relative to the allowed gap (contact.hpp), slips to the start of the step.
 //
 // In every Newton iteration the contacts are linearised at the current positions: normal, gap, and one common point
 // midway between the surfaces, at which equal and opposite impulses act on both segments. Then the multipliers are
@@ -10,10 +10,11 @@
 // once. Joints open by second-order terms only, which the next Newton iteration closes. Linear momentum is kept to
 // rounding, angular momentum to O(dtheta^2), the error of one rotation update.
 //
-// Multipliers of contacts that last start from those of the last step; a converged result does not depend on the start.
+// Multipliers of contacts that persist start from those of the last step; a converged result does not depend on the
+// start.
 //
-// Allocates only for more contacts than ever before, for a rod that is touched for the first time, and in a search of
-// the broad phase.
+// Allocates only for more contacts than in any step before, for the first contact of a rod, and in a search of the
+// broad phase.
 #pragma once
 
 #include "solver/contact/contact.hpp"
@@ -25,18 +26,18 @@ namespace rodsweep {
 /// Relative to the smaller radius of two bodies; 0 without contacts.
 struct ContactState {
   double penetration = 0;  ///< the deepest overlap
-  double residual = 0;     ///< the farthest that a contact wants to move its bodies; below the tolerance: converged
+  double residual = 0;     ///< largest correction of a contact; converged if below the tolerance
 };
 
 class ContactProjection {
  public:
   ContactProjection(Scene& scene, const ContactSettings& settings);
 
-  /// Call before the scene leaves p, with the time at the end of the step.
+  /// Call at p, with the time at the end of the step.
   void start_step(double end_s);
 
   /// Call at p*, or at another start of Newton's iteration: finds the contacts of the step. Returns false if p* is not
-  /// finite. Where the balance of momentum is kept, the impulses of contacts that last count in it from now on.
+  /// finite. With `keeps_balance`, impulses of contacts that persist count in the balance of momentum from now on.
   bool find(bool keeps_balance);
 
   /// Call after the rods' projection. Returns whether the contacts had converged: then no body is moved.
@@ -54,7 +55,7 @@ class ContactProjection {
     Vector3 arm_a, arm_b;  ///< from the centres to the common point
     double width;          ///< of the gap [m]
     Vector3 slip;          ///< of a's material against b's at the common point, since the start of the step
-    double size;           ///< that motions are relative to: the smaller radius
+    double size;           ///< the smaller radius, the reference of motions
   };
   void linearise();
   bool press(double constraint_dt);
@@ -84,7 +85,7 @@ class ContactProjection {
   std::vector<Vector3> before_;  ///< impulses before the sweep
   std::vector<Vector3> swept_;   ///< impulses after the last sweep
   double momentum_ = 1;          ///< Nesterov's t
-  double least_moved_ = 0;       ///< by a sweep since its last restart
+  double least_moved_ = 0;       ///< by a sweep since the last restart
 };
 
 }  // namespace rodsweep

@@ -18,7 +18,7 @@ class CoulombContact {
   /// `normal`: unit; `mobility`: W [1/kg]; `friction`: mu.
   CoulombContact(const Vector3& normal, const Matrix3& mobility, double friction);
 
-  /// From the impulse so far, and from the gap (negative: overlap) and slip that this leaves.
+  /// The new impulse, from the impulse so far and the gap (negative: overlap) and slip that remain with it.
   Vector3 relaxed(const Vector3& impulse, double gap, const Vector3& slip) const;
 
   /// The projection into the friction cone: the normal part, and the friction that it allows.

@@ -3,8 +3,8 @@
 //
 //   A dlambda = -J R^T u,   u <- u + R M^-1 J^T dlambda,   A = J M^-1 J^T + alpha~
 //
-// so that constraints and multipliers stay consistent, J R^T u + alpha~ dlambda = 0; R turns from the segments' frames
-// into the world, where contacts push. With u = M^-1 f this is H f, where, except for R,
+// so that constraints and multipliers stay consistent, J R^T u + alpha~ dlambda = 0; R rotates from the segments'
+// frames into the world, where contacts push. With u = M^-1 f this is H f, where, without R,
 // H = M^-1 - M^-1 J^T A^-1 J M^-1, which is at most M^-1: a rod moves no more than its free segments would.
 // A response costs O(n) on chains and trees, with the factor of A kept. Nothing allocates after the first assembly.
 #pragma once
@@ -20,12 +20,12 @@ class RodResponse {
  public:
   explicit RodResponse(const Rod& rod);
 
-  /// At the rod's positions. Multipliers start from zero. Does not check that A is positive definite: the rod's
-  /// projection has just solved with nearly the same A. Gauss-Seidel projections have no A; a response that is not
-  /// finite then shows in the state.
+  /// Assembles at the rod's positions. Multipliers start from zero. Does not check that A is positive definite: the
+  /// rod's projection has just solved with nearly the same A. Gauss-Seidel projections have no A. With them, a response
+  /// that is not finite appears in the state.
   void assemble(const Rod& rod, double dt);
 
-  /// `motion`: dx and dtheta of every segment, lanes 0..2 and 3..5, in the world; of static ones zero.
+  /// `motion`: dx and dtheta of every segment, lanes 0..2 and 3..5, in the world; zero for static segments.
   void respond(const Rod& rod, Lane8* motion);
 
   /// dlambda of all responses since the assembly.

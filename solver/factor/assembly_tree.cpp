@@ -6,7 +6,7 @@
 namespace rodsweep {
 namespace {
 
-/// A front while supernodes are still merged.
+/// A front during the merging of supernodes.
 struct Front {
   std::vector<int> columns{};  ///< of the elimination tree
   int parent = -1;             ///< front
@@ -19,7 +19,7 @@ struct Front {
   }
 };
 
-/// Is a front that is padded like this worth having? Zeros cost less than the edges of small fronts.
+/// Whether a merged front with this padding is cheaper. Zeros cost less than the edges of small fronts.
 bool worth_merging(std::int64_t columns, std::int64_t stored, std::int64_t zeros) {
   const double share = static_cast<double>(zeros) / static_cast<double>(stored);
   return share < (columns <= 4 ? 0.5 : columns <= 8 ? 0.25 : columns <= 16 ? 0.1 : 0.05);
@@ -45,7 +45,8 @@ std::vector<Front> fundamental(const EliminationTree& tree) {
   return fronts;
 }
 
-/// Every front, from the leaves on, takes in those of its children that are worth it; what is taken in has no columns.
+/// Every front, from the leaves on, takes in its children where that is cheaper. A child that was merged has no
+/// columns.
 void merge(std::vector<Front>& fronts) {
   std::vector<std::vector<int>> children(fronts.size());
   std::vector<int> into(fronts.size());
@@ -85,7 +86,7 @@ void merge(std::vector<Front>& fronts) {
   }
 }
 
-/// Children before parents; among siblings first the one that leaves most of its memory behind.
+/// Children before parents; among siblings first the one that releases the most memory.
 std::vector<int> order_of_fronts(const std::vector<Front>& fronts) {
   std::vector<std::vector<int>> children(fronts.size());
   std::vector<double> peak(fronts.size(), 0);

@@ -4,12 +4,12 @@
 //   [ P  .  ]   P: its columns, `columns` block columns wide         (the pivots)
 //   [ R  U  ]   R: their later rows, U: their update of the rest     (added to the parent's front)
 //
-// A child is merged into its parent where that adds few zeros to the parent's rows: small fronts cost more than these
+// A child is merged into its parent if that adds few zeros to the parent's rows: small fronts cost more than these
 // zeros. Siblings are ordered so that pending updates need the least memory (Liu 1986). Updates are kept on two stacks,
 // by the parity of their depth, so that a parent's U does not overlap those of its children.
 //
-// P, R and U are stored in tiles of four block rows, 24 entries of one column after the other. P and R each begin with
-// a new tile, the last tile is padded with zeros, and only the lower triangle of U's tiles is stored.
+// P, R and U are stored in tiles of four block rows: 24 entries per column, column after column. P and R each begin
+// with a new tile, the last tile is padded with zeros, and only the lower triangle of U's tiles is stored.
 #pragma once
 
 #include <array>
@@ -25,23 +25,23 @@ inline constexpr int tile_blocks = 4, tile_rows = 6 * tile_blocks;
 
 inline constexpr int tiles_of(int block_rows) { return (block_rows + tile_blocks - 1) / tile_blocks; }
 
-/// Where the tiles of U of a front begin: tile t has the columns of tiles 0 .. t.
+/// Offset of tile t of a front's U. It has the columns of tiles 0 .. t.
 inline constexpr std::size_t update_tile(int t) {
   return static_cast<std::size_t>(tile_rows) * tile_rows * (static_cast<std::size_t>(t) * (t + 1) / 2);
 }
 
 struct Supernode {
   int first, columns;          ///< block columns of L
-  int parent;                  ///< -1 of a root
+  int parent;                  ///< -1 for a root
   int row_begin, row_count;    ///< R: entries of AssemblyTree::rows, and of ::in_parent
   int child_begin, child_end;  ///< entries of AssemblyTree::children
-  std::size_t panel;           ///< place of its panel in the factor
-  std::size_t update;          ///< place of U on its stack
+  std::size_t panel;           ///< offset of its panel in the factor
+  std::size_t update;          ///< offset of U on its stack
   int stack;                   ///< 0 or 1
 
   int pivot_tiles() const { return tiles_of(columns); }
   int row_tiles() const { return tiles_of(row_count); }
-  /// Six rows of a block row of the front, P's first: where they begin in the panel.
+  /// Offset in the panel of a block row of the front, P's first.
   std::size_t block_offset(int local) const {
     const int of = local < columns ? local : local - columns + tile_blocks * pivot_tiles();
     return tile_size() * static_cast<std::size_t>(of / tile_blocks) + static_cast<std::size_t>(6 * (of % tile_blocks));
@@ -53,7 +53,7 @@ struct Supernode {
 
 class AssemblyTree {
  public:
-  /// Fronts without their rows: enough for the cost and memory.
+  /// Fronts without their rows, which suffices for the cost and the memory.
   explicit AssemblyTree(const EliminationTree& tree);
 
   /// Finds the rows of all fronts; `pattern` is that of the elimination tree.
@@ -62,13 +62,13 @@ class AssemblyTree {
   std::vector<Supernode> supernodes;  ///< children first
   std::vector<int> row;               ///< block row of A of every column of L
   std::vector<int> children;
-  std::vector<int> rows;       ///< columns of L that the rows of R are, ascending
-  std::vector<int> in_parent;  ///< their places in the parent's front: below its `columns`, in P; else in R
+  std::vector<int> rows;       ///< rows of R as columns of L, ascending
+  std::vector<int> in_parent;  ///< their places in the parent's front: in P if < `columns`, else in R
 
   std::size_t panel_size = 0;               ///< doubles
   std::array<std::size_t, 2> stack_size{};  ///< doubles
   std::int64_t blocks = 0;                  ///< of L, padding of fronts included
-  /// Of a factor: panels and stacks.
+  /// Memory of a factor: panels and stacks.
   double bytes() const {
     return static_cast<double>(sizeof(double)) * static_cast<double>(panel_size + stack_size[0] + stack_size[1]);
   }

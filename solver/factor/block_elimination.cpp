@@ -9,7 +9,7 @@
 namespace rodsweep {
 namespace {
 
-/// X^T b of the rows of X.
+/// X^T b, from the rows of X.
 inline Lane8 combined(const Block6& x, const Lane8& b) {
   Lane8 sum = x.column[0] * b[0];
 #pragma GCC unroll 6
@@ -24,7 +24,7 @@ BlockElimination::BlockElimination(const BlockMatrix& pattern, const std::vector
   std::vector<int> position(n);
   for (std::size_t i = 0; i < n; ++i) position[static_cast<std::size_t>(order[i])] = static_cast<int>(n - 1 - i);
 
-  // The later neighbours of every column: those that it has in A, and those of the columns whose first one it is.
+  // The later neighbours of every column: those in A, and those of the columns whose first later neighbour it is.
   std::vector<std::vector<int>> children(n);
   std::vector<int> seen_by(n, -1), later;
   for (std::size_t i = 0; i < n; ++i) {
@@ -89,7 +89,7 @@ SolveOutcome BlockElimination::solve(const BlockMatrix& a, const VectorX& b, Vec
     const Column& column = columns_[i];
     if (column.off_begin < column.off_end) {
       Lane8 terms[6]{};
-      Lane8 keep = Lane8{1, 1, 1, 1, 1, 1, 1, 0};  // y stands in lane 6 of every X_p: count it once
+      Lane8 keep = Lane8{1, 1, 1, 1, 1, 1, 1, 0};  // lane 6 of every X_p holds y: add it once
       for (int p = column.off_begin; p < column.off_end; ++p) {
         const Block6& off = off_work_[static_cast<std::size_t>(p)];
         const Lane8 known = keep * solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];

@@ -1,7 +1,7 @@
 // Block elimination A = L D L^T from the leaves of a rod to its root: O(n) on chains and trees, which have no fill-in.
 // With little fill-in (rings, small nets) every update of one block by another is listed.
 //
-// Per joint k, with S = L D L^T the block left on the diagonal and B_p the blocks towards the joints p eliminated
+// Per joint k, with S = L D L^T the remaining diagonal block and B_p the blocks towards the joints p eliminated
 // later:
 //   W_p = L^-1 B_p,  U_p = D^-1 W_p,  X_p = L^-T U_p,  y = S^-1 b_k,
 //   A_pp -= W_p^T U_p,  A_pq -= X_p^T B_q,  b_p -= X_p^T b_k     and backwards   x_k = y - sum_p X_p x_p.
@@ -21,7 +21,7 @@ class BlockElimination {
   /// `order`: block rows, eliminated from the last to the first.
   BlockElimination(const BlockMatrix& pattern, const std::vector<int>& order);
 
-  /// The same functions as those of BlockFactor.
+  /// As in BlockFactor.
   SolveOutcome solve(const BlockMatrix& a, const VectorX& b, VectorX& x);
   bool factorise(const BlockMatrix& a);
   void substitute(VectorX& x);
@@ -39,15 +39,15 @@ class BlockElimination {
     int position;  ///< of the neighbour in the elimination order
     int source;    ///< block of A whose columns are this block's rows; -1 for fill
     bool updated;  ///< by earlier eliminations: then it is in off_work_
-    bool first;    ///< to update the neighbour's diagonal block
+    bool first;    ///< whether it updates the neighbour's diagonal block first
   };
   struct Update {
     int target;  ///< of A_pq -= B_p^T X_q: entry of off_
-    bool first;  ///< to update it
+    bool first;  ///< whether it updates the target first
   };
   void list_updates();
   template <bool keep_inverse>
-  bool eliminate(const BlockMatrix& a, const double* b);  ///< null: none
+  bool eliminate(const BlockMatrix& a, const double* b);  ///< b null: no right-hand side
 
   std::vector<Column> columns_;
   std::vector<Off> off_;

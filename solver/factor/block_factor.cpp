@@ -8,7 +8,7 @@
 namespace rodsweep {
 namespace {
 
-/// From about as many joints on, a matrix comes from memory, which likes to be read along the rod: branch after branch.
+/// A matrix of more joints exceeds the cache. Memory is read fastest along the rod: branch after branch.
 constexpr int most_in_cache = 4096;
 
 std::variant<BlockElimination, MultifrontalFactor> factor_of(const BlockMatrix& pattern, EliminationPlan plan) {
@@ -27,7 +27,7 @@ std::vector<int> root_to_leaf_order(const Rod& rod) {
   }
   std::vector<std::size_t> left(rod.segments.size());  // joints of a segment that are not eliminated
   for (std::size_t s = 0; s < left.size(); ++s) left[s] = joints_of[s].size();
-  std::deque<int> free;  // joints that no other one waits for
+  std::deque<int> free;  // joints that can be eliminated now
   std::vector<bool> seen(rod.joints.size(), false);
   const auto see = [&](int k) {
     if (!seen[static_cast<std::size_t>(k)]) free.push_back(k);
@@ -50,7 +50,7 @@ std::vector<int> root_to_leaf_order(const Rod& rod) {
     }
   };
   eliminate_free();
-  for (int k = 0; k < rod.joint_count(); ++k) see(k);  // of loops, and between them
+  for (int k = 0; k < rod.joint_count(); ++k) see(k);  // joints of loops, and between loops
   eliminate_free();
   std::reverse(order.begin(), order.end());
   return order;

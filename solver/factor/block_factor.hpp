@@ -4,7 +4,7 @@
 // neighbours of an eliminated joint share a segment with it and are already coupled, so there is no fill-in (as in the
 // body-and-joint tree of Deul et al. 2018). Consecutive joints of the order are independent: a chain is eliminated from
 // both ends at once, and the processor overlaps the two. (Long rods are eliminated one branch after the other, for the
-// caches.) Where joints close loops (rings, nets, lattices), elimination_plan.hpp finds the order with the least
+// caches.) If joints close loops (rings, nets, lattices), elimination_plan.hpp finds the order with the least
 // fill-in. With little fill-in blocks are eliminated one by one (block_elimination.hpp), else in dense fronts
 // (multifrontal_factor.hpp).
 #pragma once
@@ -33,10 +33,10 @@ class BlockFactor {
   /// Factorises and solves. `a` has the pattern of construction. x is valid only if the outcome is `converged`.
   SolveOutcome solve(const BlockMatrix& a, const VectorX& b, VectorX& x);
 
-  /// Factorises for substitute(). Returns false where `a` is not positive definite.
+  /// Factorises for substitute(). Returns false if `a` is not positive definite.
   bool factorise(const BlockMatrix& a);
 
-  /// x <- A^-1 x with the matrix of the last factorise(), no other call between.
+  /// x <- A^-1 x with the matrix of the last factorise(), without another call in between.
   void substitute(VectorX& x);
 
   /// Off-diagonal blocks that are not in the matrix; zero for chains and trees.

@@ -14,7 +14,7 @@ struct LaneSide {
   Lane shift[3][3], rotation[3][6];
 };
 
-/// Six rows of C J, of which three or all are not zero.
+/// A column of C J: its first `rows` entries; the others are zero.
 template <int rows>
 struct Weighted {
   Lane row[rows];
@@ -36,7 +36,7 @@ Weighted<rows> weighted(const Lane (&c)[6], const Lane* column) {
   return out;
 }
 
-/// A column of J^T C J', of which J' has `column` as its own: entry(i) for the rows i.
+/// A column of J^T C J' from `column`, the same column of C J': calls entry(i, value) for the rows i.
 template <int rows, class Entry>
 void put_column(const LaneSide& side, const Weighted<rows>& column, int first_row, const Entry& entry) {
 #pragma GCC unroll 6
@@ -112,7 +112,7 @@ Condensation::Condensation(const Rod& rod)
       stiffness_(rod.joints.size()),
       inverse_mass_(rod.segments.size()),
       motion_(rod.segments.size()) {
-  // Struts of a length together, and as S has them, so that memory is read and written in order.
+  // Sorts struts by length, then by their place in S, so that memory is read and written in order.
   std::stable_sort(graph_.struts.begin(), graph_.struts.end(), [](const Strut& one, const Strut& other) {
     return std::make_pair(one.segments.size(), std::max(one.begin, one.end)) <
            std::make_pair(other.segments.size(), std::max(other.begin, other.end));
@@ -179,7 +179,7 @@ LaneMask Condensation::eliminate(const Batch& batch) {
       const Strut& of = strut(batch, lane);
       const int k = of.joints[at(joint)];
       for (int i = 0; i < 6; ++i) out.c[i][lane] = k < 0 ? 0 : stiffness_[at(k)][i];
-      if (k < 0) continue;  // nothing there
+      if (k < 0) continue;  // no joint
       const bool b_is_before = joint > 0 ? rod_->joints[at(k)].b == of.segments[at(joint - 1)]
                                          : rod_->joints[at(k)].a == of.segments.front();
       put(linearization_->joints[at(k)], b_is_before, lane, out.before);

@@ -6,14 +6,15 @@
 // (Woodbury). K couples segments that share a joint, so struts (strut_graph.hpp) are eliminated exactly, one after the
 // other, and a matrix S of the crossings remains,
 //   S y_c = g,   S = K_cc - K_ci K_ii^-1 K_ic,   g = f_c - K_ci K_ii^-1 f_i,   f = J^T C r
-// (static condensation: Guyan 1965; Przemieniecki 1963). Where struts are long it has far fewer rows than A. It has no
+// (static condensation: Guyan 1965; Przemieniecki 1963). If struts are long, it has far fewer rows than A. It has no
 // self-stresses, and struts are solved exactly. With p = g - S y_c, which is zero in struts, the residual of A is
 //   r - A d = -J M^-1 p,
 // without a product with A. Stretch and bending must have a compliance above zero. Nearly inextensible rods lose digits
 // in the ratio of alpha~ to J M^-1 J^T. M is that of the rod, stiffened in iterations that keep the balance of
 // momentum.
 //
-// Struts with equally many segments are eliminated together, one in each lane. Nothing allocates after construction.
+// Struts with the same number of segments are eliminated together, one in each lane. Nothing allocates after
+// construction.
 #pragma once
 
 #include <vector>
@@ -29,23 +30,23 @@ class Condensation {
  public:
   explicit Condensation(const Rod& rod);
 
-  /// S of a rod's linearization. False where K is not positive definite.
+  /// Assembles S of a rod's linearization. Returns false if K is not positive definite.
   bool assemble(const Rod& rod, const Linearization& linearization, double dt);
 
   const BlockMatrix& matrix() const { return matrix_; }  ///< S, a block row per crossing
   const StrutGraph& graph() const { return graph_; }
 
-  /// g of a residual r, six per joint.
+  /// Sets g from a residual r, six per joint.
   void condense(const VectorX& r, VectorX& g);
 
-  /// d of the residual last condensed, from y_c.
+  /// Sets d for the residual last condensed, from y_c.
   void expand(const VectorX& r, const double* y, VectorX& d);
 
   /// |J M^-1 p|, p six per crossing.
   double residual_norm(const double* p) const;
 
  private:
-  /// Struts with equally many segments, one in each lane; unused lanes repeat the last.
+  /// Struts with the same number of segments, one in each lane; unused lanes repeat the last.
   struct Batch {
     std::size_t first_strut, first_inner;
     int count, segments;
@@ -53,7 +54,7 @@ class Condensation {
   /// The block of a segment of each strut after the elimination of those before it.
   struct Inner {
     LaneFactor factor;
-    LaneVector6 to_begin[6], to_next[6];  ///< the factor's answers to the columns that couple it to the strut's begin,
+    LaneVector6 to_begin[6], to_next[6];  ///< solutions for the columns that couple it to the strut's begin,
                                           ///< and to the next segment or the strut's end
     LaneVector6 f;
   };
@@ -74,7 +75,7 @@ class Condensation {
   std::vector<int> near_;       ///< joints of crossings
   std::vector<Batch> batches_;
   std::vector<Inner> inner_;
-  // Of the last assembly:
+  // From the last assembly:
   const Rod* rod_ = nullptr;
   const Linearization* linearization_ = nullptr;
   std::vector<Lane8> stiffness_;     ///< C of each joint

@@ -16,7 +16,8 @@ bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order) {
     for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k)
       if (place_of(pattern.column(k)) < place_of(row)) left.push_back(pattern.column(k));
     if (left.empty()) continue;
-    // Enough that the next of them knows the others: whom that leaves uncoupled is found at its own elimination.
+    // It suffices that the next of them is coupled with the others. It finds their missing couplings at its
+    // elimination.
     const int next =
         *std::max_element(left.begin(), left.end(), [&](int a, int b) { return place_of(a) < place_of(b); });
     for (const int other : left)
@@ -41,7 +42,7 @@ std::vector<int> minimum_degree_order(const BlockMatrix& pattern) {
 
 namespace {
 
-/// The part of the pattern that hangs together with `first`, appended to `order`; returns where the last distance of it
+/// Appends the connected part of the pattern around `first` to `order`, by distance; returns where the last distance
 /// begins.
 std::size_t append_part(const BlockMatrix& pattern, int first, std::vector<bool>& seen, std::vector<int>& order) {
   const auto degree = [&](int row) { return pattern.row_end(row) - pattern.row_begin(row); };
@@ -74,7 +75,7 @@ std::vector<int> breadth_first_order(const BlockMatrix& pattern) {
     if (seen[static_cast<std::size_t>(row)]) continue;
     const std::size_t begin = order.size();
     int first = row;
-    for (int tries = 0; tries < 3; ++tries) {  // from the far end of the last try, where the rim is
+    for (int tries = 0; tries < 3; ++tries) {  // from the far end of the last try, which is peripheral
       const std::size_t last = append_part(pattern, first, seen, order);
       first = *std::min_element(order.begin() + static_cast<std::ptrdiff_t>(last), order.end(), [&](int a, int b) {
         return pattern.row_end(a) - pattern.row_begin(a) < pattern.row_end(b) - pattern.row_begin(b);

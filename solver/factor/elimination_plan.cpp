@@ -11,8 +11,8 @@
 namespace rodsweep {
 namespace {
 
-// Measured on nets and lattices, in flops of the fronts' dense kernels: what a flop of the elimination block by block
-// costs, and what a block of L costs the fronts besides its flops.
+// Measured on nets and lattices, in flops of the fronts' dense kernels: the cost of a flop of block-by-block
+// elimination, and the cost of a block of L in fronts besides its flops.
 constexpr double flop_of_single_blocks = 2.2, block_of_fronts = 8000;
 
 double cost_in_fronts(const EliminationTree& tree) {

@@ -1,4 +1,4 @@
-// How a matrix is best factorised, and the cost of it, before any memory is allocated.
+// The cheapest factorisation of a matrix and its cost, before any memory is allocated.
 //
 // An order without fill-in is kept: chains and trees. Otherwise minimum degree (elimination_order.hpp) and nested
 // dissection (nested_dissection.hpp) are compared by the cost that the elimination tree gives (elimination_tree.hpp).
@@ -16,7 +16,7 @@
 
 namespace rodsweep {
 
-/// Most memory of one factor: about the share of a core on a cluster. A lattice of 100,000 joints needs half of it.
+/// Memory limit of one factor: about the share of a core on a cluster. A lattice of 100,000 joints needs half of it.
 inline constexpr double most_factor_bytes = 4.0 * 1024 * 1024 * 1024;
 
 struct EliminationPlan {
@@ -36,7 +36,7 @@ struct FactorTooLarge : std::runtime_error {
   double bytes;
 };
 
-/// Throws FactorTooLarge.
+/// Throws FactorTooLarge if the factor needs more than `most_bytes`.
 void refuse_too_large(const EliminationPlan& plan, double most_bytes = most_factor_bytes);
 
 }  // namespace rodsweep

@@ -12,7 +12,7 @@ std::vector<int> inverse(const std::vector<int>& order) {
   return place;
 }
 
-/// Parents of columns that stand in the order of their elimination.
+/// Parents of columns that are in the order of elimination.
 std::vector<int> parents(const BlockMatrix& pattern, const std::vector<int>& row, const std::vector<int>& place) {
   std::vector<int> parent(row.size(), -1), ancestor(row.size(), -1);
   for (int k = 0; k < static_cast<int>(row.size()); ++k)
@@ -25,8 +25,8 @@ std::vector<int> parents(const BlockMatrix& pattern, const std::vector<int>& row
   return parent;
 }
 
-/// Counts blocks of the columns of L by the row subtrees: column j is a leaf of that of row i where A has (i, j) and no
-/// descendant of j does.
+/// Counts blocks of the columns of L by the row subtrees: column j is a leaf of row i's subtree if A has (i, j) and no
+/// descendant of j has it.
 class ColumnCounts {
  public:
   ColumnCounts(const BlockMatrix& pattern, const EliminationTree& tree)

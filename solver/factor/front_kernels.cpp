@@ -9,11 +9,11 @@
 namespace rodsweep {
 namespace {
 
-constexpr int depth_at_once = 144;  // columns of a tile that stay in the first cache
-constexpr int tiles_at_once = 12;   // of that depth, in the second one
-constexpr int blocks_at_once = 8;   // of a panel: what is left of it is updated by all earlier ones together
+constexpr int depth_at_once = 144;  // columns of a tile that fit the first cache
+constexpr int tiles_at_once = 12;   // tiles of that depth that fit the second cache
+constexpr int blocks_at_once = 8;   // blocks of a panel that all earlier ones update together
 
-/// After so many products of blocks.
+/// Checks for an interruption after this many products of blocks.
 void look_up(std::int64_t products) {
   constexpr std::int64_t product_ns = 20;
   check_interrupted(product_ns * products);
@@ -23,7 +23,7 @@ void look_up(std::int64_t products) {
 struct Pivot {
   double l[6][6], inverse[6];
 
-  /// `block`: its first column in a tile, from its first row on. Returns false where it is not positive definite.
+  /// `block`: its first entry in a tile. Returns false if it is not positive definite.
   bool factorise(const double* block) {
     for (int c = 0; c < 6; ++c)
       for (int r = c; r < 6; ++r) l[r][c] = block[c * tile_rows + r];
@@ -83,7 +83,7 @@ bool Panel::factorise(double* inverse_pivot) const {
         if (!pivot.factorise(column(block_row(block), 6 * block))) return false;
         pivot.solve(column(tile(t), 6 * block));
         std::copy_n(pivot.inverse, 6, inverse_pivot + 6 * block);
-        // What lies above the diagonal was computed along with the rest.
+        // Entries above the diagonal were computed with the rest.
         for (int c = 0; c < 6; ++c) std::fill_n(column(tile(t), 6 * block + c), 6 * (block % tile_blocks) + c, 0.0);
       }
   }

@@ -14,7 +14,7 @@ namespace rodsweep {
 
 inline constexpr int tile_lanes = lane_width == 8   ? 3
                                   : lane_width == 4 ? 2
-                                                    : 4;  ///< six times as many sums fit in registers
+                                                    : 4;  ///< six times this many sums fit in registers
 inline constexpr int strip_rows = tile_lanes * lane_width;
 static_assert(tile_rows % strip_rows == 0);
 

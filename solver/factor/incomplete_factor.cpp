@@ -19,7 +19,7 @@ Lane8f folded(const TwoRows& v) {
          __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
-/// Lanes 2i and 2i + 1, eight times each: what two rows are multiplied by.
+/// Lanes 2i and 2i + 1, eight times each: the factors of two rows.
 template <int i>
 TwoRows factors(const Lane8f& v) {
   constexpr int a = 2 * i, b = a + 1;
@@ -31,7 +31,7 @@ TwoRows row_sums_twice(const TwoRows (&t)[3]) {
   const TwoRows u = __builtin_shufflevector(t[0], t[1], 0, 16, 2, 18, 4, 20, 6, 22, 8, 24, 10, 26, 12, 28, 14, 30) +
                     __builtin_shufflevector(t[0], t[1], 1, 17, 3, 19, 5, 21, 7, 23, 9, 25, 11, 27, 13, 29, 15, 31);
   const TwoRows w = t[2] + __builtin_shufflevector(t[2], t[2], 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
-  // In every group of four lanes, sums of as many: of t[0], of t[1], and of t[2] twice.
+  // In every group of four lanes, sums of four lanes: of t[0], of t[1], and of t[2] twice.
   const TwoRows v = __builtin_shufflevector(u, w, 0, 1, 16, 16, 4, 5, 20, 20, 8, 9, 24, 24, 12, 13, 28, 28) +
                     __builtin_shufflevector(u, w, 2, 3, 18, 18, 6, 7, 22, 22, 10, 11, 26, 26, 14, 15, 30, 30);
   const TwoRows s = v + __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11);
@@ -46,7 +46,7 @@ TwoRows joined(const Lane8f& a, const Lane8f& b) {
 
 constexpr double least_shift = 1e-4, shift_growth = 4, most_shift = 20;
 
-/// Later neighbours of every position in the order of elimination, ascending, with the fill that `levels` keep.
+/// Later neighbours of every position in the order of elimination, ascending, with fill up to `levels`.
 std::vector<std::map<int, int>> later_neighbours(const BlockMatrix& pattern, const std::vector<int>& position,
                                                  int levels) {
   std::vector<std::map<int, int>> later(position.size());  // and the levels of their couplings

@@ -2,10 +2,10 @@
 //
 // Elimination couples all later neighbours of a block row. The level of fill of a new coupling is one plus the least
 // sum of the levels of the two couplings that cause it; couplings up to `levels` are kept (Saad 2003, Iterative Methods
-// for Sparse Linear Systems, 10.3.3). At level 0 none is kept. Without fill-in, as on chains and trees eliminated from
-// their leaves, P is A at every level. With loops the order matters: in reverse Cuthill-McKee (breadth_first_order() of
-// elimination_order.hpp) a level of fill mostly leaves a quarter to half of the iterations that it leaves in the
-// joints' own order (on lattices and nets; on stiff ones it may leave more).
+// for Sparse Linear Systems, 10.3.3). At level 0 no new coupling is kept. Without fill-in, as on chains and trees
+// eliminated from their leaves, P is A at every level. With loops the order matters: in reverse Cuthill-McKee
+// (breadth_first_order() of elimination_order.hpp) a level of fill mostly leaves a quarter to half of the iterations
+// that it leaves in the joints' own order (on lattices and nets; on stiff ones it may leave more).
 //
 // P may be indefinite although A is positive definite. Then a multiple of A's diagonal is added to A, the least of
 // 1e-4, 4e-4, 1.6e-3, ... that gives a definite P (Manteuffel 1980, Math. Comp. 34). Every multiple tried costs a
@@ -51,7 +51,7 @@ class IncompleteFactor {
   struct Off {
     int position;  ///< of the neighbour in the elimination order
     int source;    ///< block of A whose columns are this block's rows; -1 for fill
-    int updates;   ///< how many of the column's updates are A_pq -= B_p^T X_q with this q
+    int updates;   ///< number of the column's updates A_pq -= B_p^T X_q with this q
   };
   struct Update {
     int p, target;  ///< entries of off_
@@ -65,7 +65,7 @@ class IncompleteFactor {
   std::vector<Block6> diagonal_work_, off_work_;  ///< rows of the remaining A
   std::vector<FloatBlock> inverse_, factor_;      ///< S^-1 of every column, X_p of its neighbours (block_factor.hpp)
   std::vector<TwoRows> solution_;                 ///< forward: two halves to be added; backward: both the same
-  double scale_ = 1;                              ///< factor of the stored S^-1: floats end at 1e38
+  double scale_ = 1;                              ///< factor of the stored S^-1, so that it fits a float
   double shift_ = 0;
 };
 

@@ -91,7 +91,7 @@ bool MultifrontalFactor::factorise(const BlockMatrix& a) {
   return true;
 }
 
-/// U of a child to where its rows are in the front of its parent.
+/// Adds U of a child to its rows in the parent's front.
 void MultifrontalFactor::add_update(const Supernode& child, const Supernode& node) {
   const Panel panel(node, entries(panels_) + node.panel);
   const double* const from = update_of(child);
@@ -119,7 +119,7 @@ void MultifrontalFactor::substitute(VectorX& x) {
   each([](double* own, double* of_x) { std::copy_n(own, 6, of_x); });
 }
 
-/// y <- L^-1 y of the columns of a front, and what they take from its later rows.
+/// y <- L^-1 y of the columns of a front, which updates its later rows.
 void MultifrontalFactor::forward(const Supernode& node) {
   const Panel panel(node, entries(panels_) + node.panel);
   const int width = 6 * node.columns;
@@ -150,7 +150,7 @@ void MultifrontalFactor::forward(const Supernode& node) {
 void MultifrontalFactor::backward(const Supernode& node) {
   const Panel panel(node, entries(panels_) + node.panel);
   double* const own = solution_.data() + 6 * node.first;
-  double* const known = entries(known_);  // of every row of the panel; zero until it is
+  double* const known = entries(known_);  // solution of every row of the panel; zero until known
   std::fill_n(known, node.panel_size() / at(6 * node.columns), 0.0);
   for (int r = 0; r < node.row_count; ++r)
     std::copy_n(solution_.data() + 6 * tree_.rows[at(node.row_begin + r)], 6,

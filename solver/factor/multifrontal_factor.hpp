@@ -18,7 +18,7 @@ class MultifrontalFactor {
   /// `pattern` is that of the elimination tree from which `tree` was made.
   MultifrontalFactor(const BlockMatrix& pattern, AssemblyTree tree);
 
-  /// Returns false where `a` is not positive definite; the factor is invalid then.
+  /// Returns false if `a` is not positive definite; the factor is invalid then.
   bool factorise(const BlockMatrix& a);
 
   /// x <- A^-1 x with the matrix of the last factorise().
@@ -38,14 +38,14 @@ class MultifrontalFactor {
   static double* entries(std::vector<Lane8>& of) { return reinterpret_cast<double*>(of.data()); }
 
   AssemblyTree tree_;
-  std::vector<Source> sources_;          ///< front after front
+  std::vector<Source> sources_;          ///< sorted by front
   std::vector<std::size_t> source_end_;  ///< of every front
   std::vector<Lane8> panels_;
   std::array<std::vector<Lane8>, 2> stacks_;
   std::vector<double> inverse_pivot_;
   std::vector<double> solution_;  ///< in the order of elimination
-  std::vector<Lane8> pivots_;     ///< of one front, of the solution
-  std::vector<Lane8> known_;      ///< of one front's rows, of the solution
+  std::vector<Lane8> pivots_;     ///< solution at one front's pivots
+  std::vector<Lane8> known_;      ///< solution at one front's rows
 };
 
 }  // namespace rodsweep

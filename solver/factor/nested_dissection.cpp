@@ -10,8 +10,8 @@
 namespace rodsweep {
 namespace {
 
-/// METIS puts handlers of its own in the place of SIGTERM's and SIGABRT's while it works, and draws from the C
-/// library's one generator: one call at a time, and a request to stop waits for its end.
+/// METIS replaces the handlers of SIGTERM and SIGABRT during a call and uses the C library's global random generator.
+/// Therefore one call runs at a time, and SIGTERM is blocked until its end.
 class MetisCall {
  public:
   MetisCall() : one_(mutex()) {

@@ -11,7 +11,7 @@
 
 namespace rodsweep {
 
-/// Block rows, to be eliminated from the last to the first; empty where the library was built without METIS.
+/// Block rows, to be eliminated from the last to the first; empty if the library was built without METIS.
 std::vector<int> nested_dissection_order(const BlockMatrix& pattern);
 
 }  // namespace rodsweep

@@ -23,7 +23,7 @@ class Walk {
 
   StrutGraph graph() {
     number_crossings();
-    for (int s = 0; s < rod_.segment_count(); ++s)  // from what ends a strut on its other side
+    for (int s = 0; s < rod_.segment_count(); ++s)  // from a segment at an end of a strut
       if (is_inner(s) && ends_at(s)) add_strut(s);
     for (int s = 0; s < rod_.segment_count(); ++s)  // rings
       if (is_inner(s)) {
@@ -50,7 +50,7 @@ class Walk {
     return false;
   }
 
-  /// Those of a node after each other, nodes by their first segment.
+  /// Numbers crossings by node, nodes by their first segment.
   void number_crossings() {
     out_.place.assign(crossing_.size(), -1);
     std::vector<int> queue;
@@ -72,11 +72,11 @@ class Walk {
     }
   }
 
-  /// From a segment next to whatever ends it.
+  /// Adds the strut that begins at segment s, next to one of its ends.
   void add_strut(int s) {
     Strut strut;
     const std::vector<int>& own = joints_of_[at(s)];
-    int before = -1;  // the joint that the walk comes from: one to something that ends the strut, or none at a free end
+    int before = -1;  // the joint at the strut's begin; none at a free end
     if (own.size() > 1)
       for (const int k : own)
         if (before < 0 && !is_strut_segment(beyond(k, s))) before = k;

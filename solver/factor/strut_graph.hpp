@@ -27,7 +27,7 @@ struct StrutGraph {
   std::vector<int> node;       ///< of each crossing: joined by links without arms
   std::vector<Strut> struts;
   std::vector<int> links;  ///< joints
-  std::vector<int> place;  ///< of each segment among the crossings, -1 of others
+  std::vector<int> place;  ///< of each segment among the crossings, -1 for others
 
   int nodes() const { return node.empty() ? 0 : node.back() + 1; }
 };

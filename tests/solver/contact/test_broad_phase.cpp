@@ -179,7 +179,7 @@ TEST_CASE("obstacles that are none are refused") {
   scene.obstacles = {Ball{{0, 0, 0}, 0}};
   CHECK_THROWS_WITH(ContactBodies(scene), "an obstacle's radius is 0.000000; must be positive and finite");
   scene.obstacles = {Ball{{0, NAN, 0}, 1}};
-  CHECK_THROWS_WITH(ContactBodies(scene), "an obstacle's place is not finite");
+  CHECK_THROWS_WITH(ContactBodies(scene), Catch::Contains("not finite"));
 }
 
 }  // namespace rodsweep::test_broad_phase
