@@ -4,7 +4,7 @@
 // It solves A d = r for the correction of multipliers with residual r. The convergence test uses the norm of A's
 // residual, so the accuracy is that of ConjugateGradient. The first iteration is the elimination of struts: residuals
 // are known before it (entry 0 of the history), and after every further one. PETSc must be initialised. Throws
-// PetscError when a call fails.
+// PetscError if a call fails.
 #pragma once
 
 #include <memory>

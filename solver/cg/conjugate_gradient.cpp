@@ -91,7 +91,7 @@ struct ConjugateGradient::Impl {
   KSP ksp = nullptr;
   std::unique_ptr<BlockPreconditioner> own;  ///< null: PETSc's
   bool own_positive = true;                  ///< at the last set-up
-  PC plain = nullptr, shell = nullptr;  ///< the preconditioner; with projections, once used
+  PC plain = nullptr, shell = nullptr;       ///< the preconditioner; with projections, once used
   Projected projected;
   Vec b = nullptr, x = nullptr, scratch = nullptr;
   VectorX residual;

@@ -4,7 +4,7 @@
 //   A dlambda = -J R^T u,   u <- u + R M^-1 J^T dlambda,   A = J M^-1 J^T + alpha~
 //
 // so that constraints and multipliers stay consistent, J R^T u + alpha~ dlambda = 0; R rotates from the segments'
-// frames into the world, where contacts push. With u = M^-1 f this is H f, where, without R,
+// frames to the world, in which contacts act. With u = M^-1 f this is H f, where, without R,
 // H = M^-1 - M^-1 J^T A^-1 J M^-1, which is at most M^-1: a rod moves no more than its free segments would.
 // A response costs O(n) on chains and trees, with the factor of A kept. Nothing allocates after the first assembly.
 #pragma once

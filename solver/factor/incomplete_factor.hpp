@@ -3,12 +3,12 @@
 // Elimination couples all later neighbours of a block row. The level of fill of a new coupling is one plus the least
 // sum of the levels of the two couplings that cause it; couplings up to `levels` are kept (Saad 2003, Iterative Methods
 // for Sparse Linear Systems, 10.3.3). At level 0 no new coupling is kept. Without fill-in, as on chains and trees
-// eliminated from their leaves, P is A at every level. With loops the order matters: in reverse Cuthill-McKee
-// (breadth_first_order() of elimination_order.hpp) a level of fill mostly leaves a quarter to half of the iterations
-// that it leaves in the joints' own order (on lattices and nets; on stiff ones it may leave more).
+// eliminated from their leaves, P is A at every level. With loops the order matters: on lattices and nets, a level of
+// fill in reverse Cuthill-McKee (breadth_first_order() of elimination_order.hpp) mostly needs a quarter to half of the
+// iterations of the joints' own order. Stiff ones may need more.
 //
 // P may be indefinite although A is positive definite. Then a multiple of A's diagonal is added to A, the least of
-// 1e-4, 4e-4, 1.6e-3, ... that gives a definite P (Manteuffel 1980, Math. Comp. 34). Every multiple tried costs a
+// 1e-4, 4e-4, 1.6e-3, ... that gives a definite P (Manteuffel 1980, Math. Comp. 34). Every trial costs a
 // set-up, and a large one costs many iterations.
 //
 // Computed in double and stored in single precision: a solve is bound by reading the factor, and P is an approximation.

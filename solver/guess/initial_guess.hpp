@@ -1,10 +1,10 @@
 // Initial guesses for the CG solve of A dlambda = b, behind one interface.
 //
-// prepare() comes once before a solve, propose() writes x0, accept() is told the solution after it. Sequences are kept
-// per (rod, Newton iteration): a history guess of Newton iteration j extrapolates the solutions of iteration j of the
+// prepare() is called once before a solve, propose() writes x0, accept() receives the solution. Histories are kept per
+// (rod, Newton iteration): a history guess of Newton iteration j extrapolates the solutions of iteration j of the
 // last steps,
 //   previous  x1,      linear  2 x1 - x2,      quadratic  3 x1 - 3 x2 + x3        (x1 the newest),
-// and falls back to fewer terms, in the end to zero, where consecutive steps have no solution at that iteration.
+// and uses fewer terms, or zero, if consecutive steps have no solution at that iteration.
 // A learned guess is one more implementation of this interface.
 #pragma once
 
@@ -22,11 +22,11 @@ namespace rodsweep {
 
 struct Proposal {
   bool nonzero = false;               ///< false: x0 is zero
-  int products = 0;                   ///< products with A that the guess itself took
-  const VectorX* residual = nullptr;  ///< b - A x0, where the guess knows it; until it proposes for the rod again
-  bool renewed = false;               ///< it made anew what serves later systems too
+  int products = 0;                   ///< products with A in the guess itself
+  const VectorX* residual = nullptr;  ///< b - A x0, if known; valid until the rod's next proposal
+  bool renewed = false;               ///< the guess renewed data that later systems reuse
 
-  /// What CG starts from, and the products with A before its first iteration.
+  /// The start of CG, and the products with A before its first iteration.
   CgStart start() const { return {nonzero, residual}; }
   int start_products() const { return products + (nonzero && !residual ? 1 : 0); }
 };
@@ -34,13 +34,13 @@ struct Proposal {
 class InitialGuess {
  public:
   virtual ~InitialGuess() = default;
-  /// Once before a system's first propose(): what proposing again need not repeat, so that it can be timed once.
+  /// Called once before a system's first propose(): the work that further proposals do not repeat, so it is timed once.
   virtual void prepare(const SolvePosition&) {}
   /// Writes x0. Calling it again for the same system gives the same x0.
   virtual Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) = 0;
-  /// The solution of the system last proposed for.
+  /// Receives the solution of the system last proposed for.
   virtual void accept(const SolvePosition& at, const VectorX& solution) = 0;
-  /// What CG is to project out of the residuals of the system last proposed for; null: nothing.
+  /// The space that CG projects out of the residuals of the system last proposed for; null: none.
   virtual Deflation* deflation() { return nullptr; }
 };
 
@@ -66,7 +66,7 @@ class ExtrapolationGuess : public InitialGuess {
   struct History {
     std::vector<VectorX> solutions;
     int newest = -1;
-    int consecutive = 0;  ///< how many of the last steps, without a gap, are stored
+    int consecutive = 0;  ///< number of consecutive last steps that are stored
     int last_step = -2;
   };
   History& history(const SolvePosition& at);
@@ -74,8 +74,8 @@ class ExtrapolationGuess : public InitialGuess {
   std::vector<History> histories_;
 };
 
-/// The exact solution plus a random error e of given relative A-norm, ||e||_A = error ||x||_A: what a guess of known
-/// quality would save. It solves the system itself, so its time means nothing.
+/// The exact solution plus a random error e of given relative A-norm, ||e||_A = error ||x||_A: the savings of a guess
+/// of known quality. It solves the system itself, so its time has no meaning.
 class OracleGuess : public InitialGuess {
  public:
   /// With w of independent standard normal entries: white, e ~ w; smooth, e ~ A^-1 w, dominated by the modes of the
@@ -93,7 +93,7 @@ class OracleGuess : public InitialGuess {
   std::vector<VectorX> noise_, scratch_;  ///< per rod
 };
 
-/// Uses another guess only where sqrt(r^T D^-1 r) of r = b - A x0 is below `threshold` times that of b, D the diagonal
+/// Uses another guess only if sqrt(r^T D^-1 r) of r = b - A x0 is below `threshold` times that of b, D the diagonal
 /// of A (the natural norm of Jacobi-preconditioned CG); else zero.
 class GuardedGuess : public InitialGuess {
  public:
@@ -108,7 +108,8 @@ class GuardedGuess : public InitialGuess {
   std::vector<VectorX> scratch_;  ///< per rod
 };
 
-/// Another guess at the first Newton iteration of a step, zero at the others: for what was learned of those alone.
+/// Uses another guess at the first Newton iteration of a step, zero at the others: for guesses trained on first ones
+/// only.
 class FirstGuess : public InitialGuess {
  public:
   explicit FirstGuess(std::unique_ptr<InitialGuess> inner) : inner_(std::move(inner)) {}

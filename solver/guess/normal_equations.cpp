@@ -26,7 +26,7 @@ NormalEquations::NormalEquations(int most, double smallest_pivot)
 
 void NormalEquations::factorise(int count, double damping) {
   count_ = count;
-  std::fill(scale_.begin(), scale_.end(), Lane8{});  // what is beyond `count` in a column is scaled away
+  std::fill(scale_.begin(), scale_.end(), Lane8{});  // zeros remove entries beyond `count`
   for (int k = 0; k < count; ++k) {
     const double squared = gram(k, k);
     entries(scale_, 0)[k] = squared > 0 ? 1 / std::sqrt(squared) : 0;

@@ -1,8 +1,8 @@
-// The few normal equations of a guess that combines stored vectors v_k, G c = g with their Gram matrix G in some inner
-// product, in the order of preference. Scaled to a unit diagonal, G = L D L^T is factorised in that order, and a vector
-// that the ones before it span already (pivot, the squared share of it that they leave, below `smallest_pivot`) is
-// dropped. A whole column at a time, since one entry after the other would cost as much as forming G on a short rod.
-// Nothing allocates after construction.
+// The normal equations G c = g of a guess that combines a few stored vectors v_k in order of preference, with their
+// Gram matrix G in some inner product. Scaled to a unit diagonal, G = L D L^T is factorised in that order. A vector
+// that those before it nearly span is dropped: its pivot, the squared share of it outside their span, is below
+// `smallest_pivot`. Kernels process a whole column at a time: entry by entry would cost as much as forming G on a short
+// rod. Nothing allocates after construction.
 #pragma once
 
 #include <vector>
@@ -16,13 +16,13 @@ class NormalEquations {
   /// Below 1e-12 a pivot is rounding error.
   explicit NormalEquations(int most, double smallest_pivot = 1e-12);
 
-  /// The first `count` of them: both triangles of G, and g.
+  /// Entries of G, of which both triangles are set, and of g.
   double& gram(int row, int column) { return entries(gram_, column)[row]; }
   double& right_side(int row) { return entries(coefficients_, 0)[row]; }
 
-  /// `damping` d adds d^2 sum c_k^2 |v_k|^2 to what is minimised (Tikhonov).
+  /// `damping` d adds d^2 sum c_k^2 |v_k|^2 to the minimised function (Tikhonov).
   void factorise(int count, double damping = 0);
-  /// c in place of g; 0 of what is dropped, and of vectors without length. Of one factorisation as often as wanted.
+  /// Replaces g by c, which is 0 for dropped vectors and vectors of length zero. One factorisation allows many solves.
   void solve();
   double coefficient(int row) const { return reinterpret_cast<const double*>(coefficients_.data())[row]; }
 

@@ -1,14 +1,14 @@
 // Projected initial guesses: the best approximation, in the energy norm, of the solution within the span of earlier
-// ones (Fischer 1998, Comput. Methods Appl. Mech. Engrg. 163), always of the current matrix A:
+// ones (Fischer 1998, Comput. Methods Appl. Mech. Engrg. 163), for the current matrix A:
 //   x0 = V E^-1 V^T b,   E = V^T A V,   V the stored solutions of one (rod, Newton iteration).
-// A changes from solve to solve, so A V is formed anew: as many products with A as there are solutions, all in one pass
-// (stored_vectors.hpp). Newer solutions go before older ones (normal_equations.hpp).
+// A changes from solve to solve, so A V is formed again: as many products with A as there are solutions, all in one
+// pass (stored_vectors.hpp). Newer solutions go before older ones (normal_equations.hpp).
 //
-// A deflating guess has CG project the same span out of every residual r too (deflation.hpp),
+// With deflation, CG also projects the same span out of every residual r (deflation.hpp),
 //   c = E^-1 V^T r,  r <- r - A V c;   z <- z - V (E^-1 (A V)^T z - c):
-// search directions are A-orthogonal to all stored solutions then, and what CG would find of them again, at the small
-// eigenvalues that it finds last, it need not look for. V leaves out what is nearly spanned by newer solutions (pivot
-// below 1e-6), which the guess itself has use for. An iteration costs four passes over V more.
+// Then search directions are A-orthogonal to all stored solutions, so CG does not find these components again. They
+// belong to the small eigenvalues, which CG finds last. Deflation drops solutions that newer ones nearly span (pivot
+// below 1e-6), which the guess itself uses. An iteration costs four more passes over V.
 #pragma once
 
 #include <vector>
@@ -54,7 +54,7 @@ class SubspaceGuess : public InitialGuess, private Deflation {
   NormalEquations equations_, deflating_equations_;
   VectorX of_residual_;                  ///< V^T r, then E^-1 of it
   std::vector<StoredVectors> products_;  ///< per rod: A V; empty unless deflating
-  History* deflating_ = nullptr;         ///< of the system last proposed for, where its span is to be projected out
+  History* deflating_ = nullptr;         ///< of the system last proposed for, if deflating
   StoredVectors* deflating_products_ = nullptr;
 };
 

@@ -1,9 +1,9 @@
-// Another guess, with a history of whole steps: for the first Newton iteration it hears, in place of that iteration's
-// own solutions, the sum of a step's increments,
+// Gives another guess a history of whole steps: for the first Newton iteration it receives the sum of a step's
+// increments instead of that iteration's own solution,
 //   x_n = sum_j dlambda_j of step n.
-// In a closed loop an iteration's solution is as inexact as its solve, and the iterations after it correct it: what the
-// first system of the step needed is known best at its end. That is known at the next step's first system: the inner
-// guess hears of it in prepare(). Later iterations keep their own histories.
+// In a closed loop the first iteration's solution is inexact, and later iterations correct it: the sum is the best
+// known solution of the step's first system. It is complete at the next step's first system, when prepare() passes it
+// to the inner guess. Later iterations keep their own histories.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ class TotalsGuess : public InitialGuess {
   struct Total {
     VectorX sum;
     int step = -1;     ///< of the sum
-    bool told = true;  ///< whether the inner guess knows it
+    bool told = true;  ///< whether the inner guess received it
   };
   std::unique_ptr<InitialGuess> inner_;
   std::vector<Total> totals_;  ///< per rod

@@ -35,7 +35,7 @@ struct RowSlice {
 #pragma GCC unroll 6
     for (int r = 0; r < 6; ++r) row[r] = slice_of(rows.column[r], slice);
   }
-  /// Of the slice that has it.
+  /// Copies lane 6 into the slice that contains it.
   void take_lane_6(const Block6& rows) {
     const auto lane_6 = slice_of(in_lane_6(1), 6 / lane_width) > 0;
 #pragma GCC unroll 6
@@ -47,7 +47,7 @@ struct RowSlice {
   }
 };
 
-/// b <- L^-1 b, of the first `columns` columns of L.
+/// b <- L^-1 b, with the first `columns` columns of L.
 inline void forward(const RowFactor& factor, RowSlice& b, int columns = 6) {
 #pragma GCC unroll 6
   for (int j = 0; j < columns; ++j)
@@ -69,7 +69,7 @@ inline void backward(const RowFactor& factor, RowSlice& b) {
     for (int k = 0; k < j; ++k) b.row[k] -= factor.l[j][k] * b.row[j];
 }
 
-/// The factors of S; s <- L^-1 s. Returns false at a pivot that is not positive, or where the last one is NaN.
+/// The factors of S; s <- L^-1 s. Returns false at a pivot that is not positive, or if the last one is NaN.
 inline bool decompose(Block6& s, RowFactor& out) {
   double smallest = 1;
 #pragma GCC unroll 4
@@ -100,7 +100,7 @@ inline bool decompose(Block6& s, RowFactor& out) {
   return smallest > 0;
 }
 
-/// S^-1 b of the rows L^-1 S that decompose() leaves, b in lane 6.
+/// S^-1 b from the rows L^-1 S of decompose(), with b in lane 6.
 inline Lane8 solution(const RowFactor& factor, const Block6& s) {
   constexpr int slice = 6 / lane_width, lane = 6 % lane_width;
   RowSlice rows(s, slice);

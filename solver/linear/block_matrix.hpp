@@ -13,7 +13,7 @@ namespace rodsweep {
 class BlockMatrix {
  public:
   BlockMatrix() = default;
-  /// The pattern: `couplings` are pairs of block rows, in any order and repeated or not; diagonals are always present.
+  /// The pattern: `couplings` are pairs of block rows, in any order, possibly repeated; diagonals are always present.
   BlockMatrix(int block_rows, const std::vector<std::pair<int, int>>& couplings);
 
   int block_rows() const { return static_cast<int>(diagonal_.size()); }

@@ -29,7 +29,7 @@ inline void transpose(Lane (&v)[W]) {
   }
 }
 
-/// Six numbers of every joint of a group, and two that do not count.
+/// Six numbers of every joint of a group, and two that are not used.
 struct Sextuples {
   Lane lanes[8];
 
@@ -41,7 +41,7 @@ inline Sextuples joined(const Triple<Lane>& a, const Triple<Lane>& b) {
   return {{a.x, a.y, a.z, b.x, b.y, b.z, Lane{}, Lane{}}};
 }
 
-/// Of the records of W joints.
+/// From the records of W joints.
 template <class RecordOf>
 inline Sextuples gathered(const RecordOf& record_of) {
   Sextuples out;
@@ -69,7 +69,7 @@ inline void spread(const Sextuples& from, Lane8 (&records)[W]) {
   }
 }
 
-/// Two more doubles than six are read.
+/// Reads two more doubles than six.
 inline Lane8 load8(const double* from) {
   Lane8 out;
   std::memcpy(&out, from, sizeof out);
@@ -78,7 +78,7 @@ inline Lane8 load8(const double* from) {
 
 }  // namespace
 
-/// What impulses() looks at of it.
+/// The parts that impulses() uses.
 JointShape<Lane> ConstraintProduct::Group::shape() const {
   JointShape<Lane> out{};
   out.arm_a = arm_a;

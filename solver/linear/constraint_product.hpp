@@ -1,6 +1,6 @@
 // y = A x without A: y = J (M^-1 (J^T x)) + alpha~ x, from the turns of joints and the arms of their segments.
 //
-// J of a joint follows from d, its half turn H, the arms and 1/l (linearization.hpp): some twenty numbers, where A has
+// J of a joint follows from d, its half turn H, the arms and 1/l (linearization.hpp): about twenty numbers, while A has
 // four or five blocks of 36 in a row. If the blocks do not fit into the near caches, their product is bound by memory.
 // Both passes process as many joints at once as a register has lanes. Several joints share a segment, so impulses and
 // motions of segments are stored one after the other. Equal to BlockMatrix::multiply() up to rounding. Allocates
@@ -44,7 +44,7 @@ class ConstraintProduct {
 
   std::vector<Group> groups_;
   std::vector<Ends> ends_;         ///< segments of every joint
-  std::vector<Lane8> mobility_;    ///< M^-1 of every segment, zero where it is static
+  std::vector<Lane8> mobility_;    ///< M^-1 of every segment, zero if static
   VectorX softness_;               ///< alpha~
   mutable std::vector<Lane8> at_;  ///< impulses, then motions, of every segment
 };

@@ -11,7 +11,7 @@ struct Waiting {
   const std::function<bool()>* unwanted = nullptr;
   std::int64_t done = 0;
   bool interrupted = false;
-  std::exception_ptr failure;  ///< of finding out
+  std::exception_ptr failure;  ///< thrown by `unwanted`
 };
 thread_local Waiting waiting;
 

@@ -1,7 +1,7 @@
 // Cancelling of long computations: a task may exceed its time limit, or its sweep may be stopped. The caller creates an
-// Interruptible with a function that tells whether to stop; one may exist per thread at a time. Long loops (iterations
-// of CG, fronts of a factorisation, sweeps over contacts) report their work, and call that function about every two
-// milliseconds of it. Without an Interruptible nothing is interrupted.
+// Interruptible with a function that returns whether to stop; one may exist per thread at a time. Long loops
+// (iterations of CG, fronts of a factorisation, sweeps over contacts) report their work, and call that function about
+// every two milliseconds of it. Without an Interruptible nothing is interrupted.
 #pragma once
 
 #include <cstdint>

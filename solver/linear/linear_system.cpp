@@ -18,7 +18,7 @@ LinearSystem::LinearSystem(const Rod& rod)
       balancing_(rod.segments.size()) {
   const std::int64_t a_third_ns = 500ll * rod.joint_count();  // with a million joints this lasts seconds
   check_interrupted(a_third_ns);
-  refuse_static_joints(rod);  // their rows would be alpha~ alone, and must not be singular
+  refuse_static_joints(rod);  // their rows would be alpha~ alone, which may be zero
   std::vector<std::vector<Side>> by_segment(rod.segments.size());
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
@@ -161,8 +161,8 @@ void displace(Rod& rod, std::size_t segment, const Lane8& displacement) {
 }
 
 double LinearSystem::largest_rhs() const {
-  // maxCoeff() does not promise to see a NaN; the sum does.
-  if (rhs_.size() == 0) return 0;  // a single segment has nothing to satisfy
+  // maxCoeff() may miss a NaN; the sum does not.
+  if (rhs_.size() == 0) return 0;  // a single segment has no constraints
   return std::isfinite(rhs_.sum()) ? rhs_.lpNorm<Eigen::Infinity>() : std::numeric_limits<double>::quiet_NaN();
 }
 

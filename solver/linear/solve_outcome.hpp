@@ -1,4 +1,4 @@
-// How a linear solve ended. Non-convergence is data: these values travel to the user's file.
+// How a linear solve ended. Non-convergence is data: these values are stored in the user's file.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ enum class SolveOutcome : std::int8_t {
   not_run = 0,          ///< the row was never solved (Newton had converged, or the task ended early)
   converged = 1,        ///< the tolerance was met
   zero_rhs = 2,         ///< b is zero to rounding: nothing to solve, zero iterations
-  iteration_limit = 3,  ///< the cap on iterations was reached first
-  diverged = 4,         ///< the residual grew past the divergence limit
+  iteration_limit = 3,  ///< the limit of iterations was reached first
+  diverged = 4,         ///< the residual exceeded the divergence limit
   indefinite = 5,       ///< the matrix or the preconditioner is not positive definite
   not_a_number = 6,     ///< a NaN or infinity appeared
 };

@@ -5,7 +5,7 @@
 namespace rodsweep {
 namespace {
 
-// What a register holds of a panel. Where that is a half, sums of single vectors would have no registers left.
+// The part of a panel in a register. If it is a half, no registers are left for the sums of single vectors.
 #ifdef __AVX512F__
 using Lanes = Lane8;
 constexpr int most_singles = 3;
@@ -53,17 +53,17 @@ inline void add_outer(const Lane8* v, const Lanes (&h)[6], Lanes (&sums)[8]) {
     for (int k = 0; k < 8; ++k) sums[k] += doubles(&v[r])[k] * h[r];
 }
 
-/// Lane c is a half, those beyond it one, those before it zero.
+/// Lane c is a half, later lanes are one, earlier lanes zero.
 constexpr Lane8 half_from[6] = {{0.5, 1, 1, 1, 1, 1, 0, 0}, {0, 0.5, 1, 1, 1, 1, 0, 0}, {0, 0, 0.5, 1, 1, 1, 0, 0},
                                 {0, 0, 0, 0.5, 1, 1, 0, 0}, {0, 0, 0, 0, 0.5, 1, 0, 0}, {0, 0, 0, 0, 0, 0.5, 0, 0}};
 
-/// h += (D_ii / 2 + L_ii) v_i of a vector that stands alone.
+/// h += (D_ii / 2 + L_ii) v_i of a single vector.
 inline void add_half(const Block6& block, const Lane8& v, Lane8& h) {
 #pragma GCC unroll 6
   for (int c = 0; c < 6; ++c) h += half_from[c] * block.column[c] * doubles(&v)[c];
 }
 
-/// p += A_ij v_j of a vector that stands alone.
+/// p += A_ij v_j of a single vector.
 inline void add_product(const Block6& block, const Lane8& v, Lane8& p) {
 #pragma GCC unroll 6
   for (int c = 0; c < 6; ++c) p += block.column[c] * doubles(&v)[c];

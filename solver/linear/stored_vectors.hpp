@@ -5,7 +5,8 @@
 //
 // As A is symmetric, V^T A V = G + G^T with G = V^T H, H = (D / 2 + L) V, D the diagonal of A and L its part below the
 // diagonal: half the blocks, and half the entries of the diagonal ones. A pass forms H and G of one panel in registers,
-// and its products with all other panels: 57 + 48 eight-lane multiply-adds a block row, 25 more for each single vector.
+// and its products with all other panels: 57 + 48 eight-lane multiply-adds per block row, 25 more for each single
+// vector.
 #pragma once
 
 #include <vector>
@@ -20,10 +21,10 @@ class StoredVectors {
 
   void set(int index, const VectorX& v);
 
-  /// Sets gram to V^T A V and right_side to V^T b. Sized by the caller: count.
+  /// Sets gram to V^T A V and right_side to V^T b. The caller sizes them for `count`.
   void project(const BlockMatrix& a, const VectorX& b, Eigen::MatrixXd& gram, VectorX& right_side);
 
-  /// Sets these vectors to A V of equally many others.
+  /// Sets these vectors to A V of as many others.
   void multiply(const BlockMatrix& a, const StoredVectors& v);
 
   /// c = V^T x.
@@ -51,7 +52,7 @@ class StoredVectors {
   int count_, panel_count_, single_count_;
   std::vector<Lane8> entries_;     ///< [panel, unknown]
   std::vector<Lane8> singles_;     ///< [single, block row]
-  std::vector<Lane8> half_;        ///< [vector, panel] G; of single vectors all of V^T A V
+  std::vector<Lane8> half_;        ///< [vector, panel] G; for single vectors all of V^T A V
   Eigen::Matrix3d among_singles_;  ///< lower triangle of V^T A V
   std::vector<Lane8> dots_;        ///< [vector in lanes] V^T b, or c
 };

@@ -1,8 +1,8 @@
 // 6x6 blocks and vectors of six of several rods at once, one rod per lane: the kernels of a block LDL^T.
 //
-// Of symmetric blocks only the lower triangle is touched, by rows; other blocks are arrays of six columns. L is unit
-// lower triangular, its rows below the diagonal one after the other. Loops over the entries of a triangle unroll, so
-// that they live in registers; those over columns don't, so that no more than a triangle and a column do.
+// Symmetric blocks store only the lower triangle, by rows; other blocks are arrays of six columns. L is unit lower
+// triangular, stored by rows below the diagonal. Loops over the entries of a triangle unroll, which keeps them in
+// registers. Loops over columns do not unroll, so that only a triangle and a column need registers.
 #pragma once
 
 #include "solver/numbers/lane_math.hpp"
@@ -32,8 +32,8 @@ struct LaneFactor {
   Lane& at(int row, int column) { return l[row * (row - 1) / 2 + column]; }
 };
 
-/// S = L D L^T; overwrites s. Returns where all pivots are positive (false for NaN). Pivots come in pairs, the second
-/// as the determinant of both over the first, so that it need not wait for the first division.
+/// S = L D L^T; overwrites s. Returns the lanes in which all pivots are positive (false for NaN). Pivots come in pairs,
+/// the second as the determinant of both over the first, so that it does not depend on the first division.
 inline LaneMask factorise(LaneBlock& s, LaneFactor& out) {
   LaneMask positive = Lane{} < 1;
 #pragma GCC unroll 3

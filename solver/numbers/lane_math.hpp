@@ -1,6 +1,6 @@
-// Vectors and quaternions of as many segments as a register has lanes, each in a lane of every number: segments of one
-// rod next to each other (lane_records.hpp), or the same one of as many rods (batch/). What a single joint needs as
-// well takes any number T, a double or a Lane.
+// Vectors and quaternions of as many segments as a register has lanes, one segment per lane: neighbours on one rod
+// (lane_records.hpp), or the same segment of several rods (batch/). Functions for single joints as well are templates
+// of the number T, a double or a Lane.
 //
 // The rotation maps are those of rotation.hpp.
 #pragma once
@@ -58,7 +58,7 @@ inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Per lane `where` ? a : b; what is not chosen may be NaN.
+/// Per lane `where` ? a : b; the other one may be NaN.
 inline LaneVector select(const LaneMask& where, const LaneVector& a, const LaneVector& b) {
   return {where ? a.x : b.x, where ? a.y : b.y, where ? a.z : b.z};
 }
@@ -77,9 +77,9 @@ inline bool any(const LaneMask& mask) {
 inline Lane absolute(const Lane& value) { return value < 0 ? -value : value; }
 inline Lane larger(const Lane& a, const Lane& b) { return a < b ? b : a; }
 
-/// cos(2 pi t), to 1e-13: the sine of a quarter less the distance to the next whole number, by its series.
+/// cos(2 pi t), to 1e-13: the sine series of 2 pi (1/4 - |t - round(t)|).
 inline Lane cosine_of_turns(const Lane& t) {
-  constexpr double whole = 0x1.8p52;  // what is added to it has no fraction
+  constexpr double whole = 0x1.8p52;  // adding it removes the fraction
   const Lane angle = 2 * pi * (0.25 - absolute(t - ((t + whole) - whole)));
   Lane sum{};
   for (int n = 19; n > 1; n -= 2) sum = -angle * angle / (n * (n - 1)) * (1 + sum);
@@ -101,7 +101,7 @@ inline Quad<T> operator*(const T& s, const Quad<T>& q) {
   return {s * q.w, s * q.x, s * q.y, s * q.z};
 }
 
-/// q or -q, whichever is in the hemisphere of `pole`.
+/// q or -q, the one in the hemisphere of `pole`.
 template <class T>
 inline Quad<T> in_hemisphere_of(const Quad<T>& pole, const Quad<T>& q) {
   const T sign = dot(pole, q) < 0 ? T{} - 1 : T{} + 1;

@@ -1,5 +1,5 @@
-// Vectors and quaternions between memory, where they stand one after the other, and lanes, one in each: transpositions
-// of as many records as a register has lanes, or of fewer at the end of an array.
+// Transposes vectors and quaternions between memory (record after record) and lanes (one record per lane): as many
+// records as a register has lanes, or fewer at the end of an array.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace rodsweep {
 
 /// Registers and lanes of a run of records of three or four entries: entry `e` of the run is entry e % size of record
-/// e / size. What a shuffle takes of its first operand comes first, so W = lane_width marks the second.
+/// e / size. A shuffle numbers the lanes of its first operand first, so W = lane_width marks the second.
 namespace lane_records {
 
 inline constexpr int W = lane_width;
@@ -25,7 +25,7 @@ inline Lane component(const Lane (&v)[3], std::integer_sequence<int, lane...>) {
   return __builtin_shufflevector(pair, v[2], (3 * lane + c < 2 * W ? lane : 3 * lane + c - W)...);
 }
 
-/// Of four: half of the records are in either pair of registers.
+/// Of records of four: each pair of registers has half of them.
 template <int c, int... lane>
 inline Lane component(const Lane (&v)[4], std::integer_sequence<int, lane...>) {
   const Lane low = __builtin_shufflevector(v[0], v[1], (4 * lane + c) % (2 * W)...);
@@ -50,8 +50,8 @@ inline Lane part(const Lane (&v)[4], std::integer_sequence<int, i...>) {
 template <int size>
 using Registers = std::array<Lane, size>;
 
-/// The components of as many records of `size` entries as a register has lanes, of at most `count`: lanes that are too
-/// many have the last.
+/// The components of as many records of `size` entries as a register has lanes, of at most `count`: surplus lanes
+/// repeat the last record.
 template <int size, class Record, int... c>
 inline Registers<size> components(const Record* from, int count, std::integer_sequence<int, c...>) {
   Record copies[W];
@@ -87,7 +87,7 @@ inline void store(const Lane (&v)[size], Record* to, int count) {
 
 }  // namespace lane_records
 
-/// The first of `count` vectors, one in each lane; lanes that are too many have the last.
+/// The first of `count` vectors, one in each lane; surplus lanes repeat the last.
 inline LaneVector load(const Vector3* from, int count) {
   const auto [x, y, z] = lane_records::components<3>(from, count);
   return {x, y, z};
@@ -97,13 +97,13 @@ inline LaneQuaternion load(const Quaternion* from, int count) {
   return {w, x, y, z};
 }
 
-/// To at most `count`.
+/// Stores at most `count` records.
 inline void store(const LaneVector& v, Vector3* to, int count) { lane_records::store({v.x, v.y, v.z}, to, count); }
 inline void store(const LaneQuaternion& q, Quaternion* to, int count) {
   lane_records::store({q.x, q.y, q.z, q.w}, to, count);
 }
 
-/// Of records of four that stand `stride` doubles apart, all of them. `Register` is Lane.
+/// Stores all records of four, `stride` doubles apart. `Register` is Lane.
 template <class Register>
 inline void scatter(const Register (&v)[4], double* to, std::ptrdiff_t stride) {
   const auto records = lane_records::run(v);

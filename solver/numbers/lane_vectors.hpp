@@ -14,7 +14,7 @@ inline Lane4 lanes(const Quaternion& q) {
   return out;
 }
 
-/// Of the first three lanes; that of the fourth ones is zero.
+/// The cross product of the first three lanes; the fourth lane is zero.
 inline Lane4 cross(const Lane4& a, const Lane4& b) {
   const Lane4 c = a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
   return __builtin_shufflevector(c, c, 1, 2, 0, 3);
@@ -22,7 +22,7 @@ inline Lane4 cross(const Lane4& a, const Lane4& b) {
 
 inline double sum(const Lane4& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 
-// Quaternions come from memory, from where single entries fill all lanes at no cost.
+// Quaternions are in memory: loading a single entry into all lanes costs nothing.
 
 /// R(q) v.
 inline Lane4 turned(const Quaternion& q, const Lane4& v) {

@@ -14,7 +14,7 @@ namespace rodsweep {
 using Lane8 = double __attribute__((vector_size(64)));
 using Lane4 = double __attribute__((vector_size(32)));  ///< a vector or quaternion
 
-// What one register of the processor holds of a Lane8.
+// The part of a Lane8 in one register of the processor.
 #if defined(__AVX512F__)
 inline constexpr int lane_width = 8;
 #elif defined(__AVX__)
@@ -30,7 +30,7 @@ inline double entry(const Lanes& value, int i) {
   return reinterpret_cast<const double*>(&value)[i];
 }
 
-/// Of a Lane8, or of a Lane4 one of the slices that it has: what the register holds beyond four lanes is zero.
+/// One slice of a Lane8 or a Lane4; lanes beyond the four of a Lane4 are zero.
 template <class Lanes, class Register = Lane>
 inline Register slice_of(const Lanes& value, [[maybe_unused]] int slice) {
   if constexpr (sizeof(Register) > sizeof value) {
@@ -45,7 +45,7 @@ inline void set_slice(Lane8& value, int slice, const Lane& to) {
   std::memcpy(reinterpret_cast<Lane*>(&value) + slice, &to, sizeof to);
 }
 
-/// A 6x6 block: six columns (or six rows, where said so) of six entries and two zeros.
+/// A 6x6 block: six columns (or six rows, if stated) of six entries and two zeros.
 struct Block6 {
   Lane8 column[6];
 };

@@ -22,8 +22,8 @@ inline Vector3 rotation(const Quaternion& q, const Quaternion& q_old) {
   return (2 / d.w()) * d.vec();
 }
 
-/// The shortest turn that takes the direction of one vector to that of another; of opposite ones, about some axis
-/// across them. In place of Eigen's, whose singular value decomposition for those takes seconds to compile.
+/// The shortest rotation from the direction of one vector to that of another; for opposite vectors, about any axis
+/// across them. Replaces Eigen's function, whose singular value decomposition takes seconds to compile.
 Quaternion turn_between(const Vector3& from, const Vector3& to);
 
 /// R e_z of a unit quaternion: the world direction of a segment.

@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-/// The increment of its counter from one number to the next.
+/// The increment of the counter from one number to the next.
 inline constexpr std::uint64_t split_mix_increment = 0x9e3779b97f4a7c15u;
 
 /// The number after the counter `z`.
@@ -19,7 +19,7 @@ inline std::uint64_t split_mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// Its numbers one after the other.
+/// The sequence of numbers from a seed.
 class SplitMix {
  public:
   explicit SplitMix(std::uint64_t seed) : state_(seed) {}

@@ -1,5 +1,5 @@
-// The constraint of one joint (linearization.hpp's equations) on any number T: a double for one joint, a Lane for as
-// many as a register has lanes. Lengths are over l.
+// The constraint of one joint (equations: linearization.hpp) for any number type T: a double for one joint, a Lane for
+// as many as a register has lanes. Lengths are over l.
 #pragma once
 
 #include <utility>
@@ -58,8 +58,8 @@ struct Wrench {
   Triple<T> force, torque;
 };
 
-/// J^T y on the segments of a joint, y turned into the frame of the second one: its stretch-shear rows `on_b` there,
-/// and `on_a`, R(d) on_b, in the frame of the first.
+/// J^T y on the segments of a joint. y's stretch-shear rows are `on_b` in the frame of the second segment, and `on_a`,
+/// R(d) on_b, in the frame of the first.
 template <class T>
 inline std::pair<Wrench<T>, Wrench<T>> impulses(const Quad<T>& d, const JointShape<T>& shape, const Triple<T>& on_a,
                                                 const Triple<T>& on_b, const Triple<T>& bend) {

@@ -6,13 +6,13 @@
 
 namespace rodsweep {
 
-/// Three lanes and zeros.
+/// Three lanes, then zeros.
 inline Lane8 widened(const Lane4& v) { return __builtin_shufflevector(v, Lane4{}, 0, 1, 2, 4, 4, 4, 4, 4); }
 
 /// One side of a joint.
 struct JointSide {
   const Lane8* rotation;  ///< columns of dC/dphi
-  const Lane4* shift;     ///< of dC_s/du
+  const Lane4* shift;     ///< columns of dC_s/du
   double inverse_length;
 
   JointSide(const JointJacobian& jacobian, bool is_b)
@@ -48,7 +48,7 @@ inline void add_product(const JointSide& side, const JointSide& other, const Seg
   }
 }
 
-/// block = or += J M^-1 J^T of one side, to whose diagonal `diagonal` is added.
+/// block = J M^-1 J^T of one side plus `diagonal`, or block += J M^-1 J^T.
 template <bool first>
 inline void add_square(const JointSide& side, const Segment& segment, const double* diagonal, Block6& block) {
   const double weight[3] = {segment.turn_mobility, segment.turn_mobility, segment.inverse_inertia_axial};
@@ -92,7 +92,7 @@ inline Lane8 constraint_change(const JointJacobian& jacobian, const Lane8& of_a,
   return change;
 }
 
-/// How far the frame R_m of one joint turns, in itself and to first order: the mean of its segments' turns. H^T and -H
+/// The rotation of a joint's frame R_m, in itself and to first order: the mean of its segments' rotations. H^T and -H
 /// are l dC_s/du.
 inline Lane4 frame_turn(const JointJacobian& jacobian, const Lane8& of_a, const Lane8& of_b) {
   Lane4 twice{};
@@ -100,7 +100,7 @@ inline Lane4 frame_turn(const JointJacobian& jacobian, const Lane8& of_a, const 
   return twice * (0.5 / jacobian.inverse_length);
 }
 
-/// M^-1 (or (M + K)^-1) times the impulse on a segment; zero where it is static.
+/// M^-1 (or (M + K)^-1) times the impulse on a segment; zero if it is static.
 inline Lane8 motion(const Segment& segment, const Lane8& impulse) {
   const double m = segment.inverse_mass, transverse = segment.turn_mobility;
   return impulse * Lane8{m, m, m, transverse, transverse, segment.inverse_inertia_axial, 0, 0};

@@ -8,7 +8,7 @@
 namespace rodsweep {
 namespace {
 
-/// A Jacobian by columns of its parts, on any number.
+/// A Jacobian by columns of its parts, for any number type.
 template <class T>
 struct JacobianParts {
   Triple<T> shift_a[3], shift_b[3];    // of dC_s/du
@@ -60,7 +60,7 @@ inline void write(const Triple<double> (&upper)[3], const Triple<double> (&lower
 
 constexpr std::ptrdiff_t stride = sizeof(JointJacobian) / sizeof(double);
 
-/// Of as many joints as there are lanes, the first of which has `to`.
+/// Writes as many joints as there are lanes; `to` belongs to the first.
 inline void write(const LaneVector (&column)[3], Lane4 (&to)[3]) {
   for (int c = 0; c < 3; ++c)
     scatter({column[c].x, column[c].y, column[c].z, Lane{}}, reinterpret_cast<double*>(&to[c]), stride);

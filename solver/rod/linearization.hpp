@@ -4,14 +4,14 @@
 //   stretch-shear  C_s = R_m^T (x_a + R_a arm_a - x_b - R_b arm_b) / l,   R_m = R_a H = R_b H^T
 // C_b is l (Omega - Omega0) with the Darboux vector Omega = (2/l) Im(d)  (Kugelstadt & Schoemer 2016; Deul et al. 2018,
 // who measure the gap in the world). The joint's frame R_m is half-way between those of its segments, H = R(d^(1/2)) =
-// w I + [v]x + v v^T / (1 + w): z along the rod, and the same one for a joint whose segments change places.
+// w I + [v]x + v v^T / (1 + w): z along the rod. Exchanging the segments gives the same frame.
 //
 // Segments move by u and turn by phi, both in their own frame: dx = R u, q <- normalise(q (1 + [0, phi] / 2)). Then
 //   dC_s/du_a = H^T/l,   dC_s/dphi_a = -H^T [arm_a]x / l,   dC_b/dphi_a = -(w I - [v]x)
 //   dC_s/du_b = -H/l,    dC_s/dphi_b =  H [arm_b]x / l,     dC_b/dphi_b =   w I + [v]x
 // depend on d alone: J and C do not depend on the position and orientation of a scene. J neglects that R_m turns with
 // the segments: that term is proportional to the gap, and without it Newton's iterates are those of C_s in the world.
-// (H is singular where w = -1: a joint turned all round from a rest that folds it back.)
+// (H is singular at w = -1: a full turn of a joint whose rest rotation is half a turn.)
 #pragma once
 
 #include <vector>
@@ -26,15 +26,15 @@ namespace rodsweep {
 /// stretch-shear, in lanes 0..2.
 struct JointJacobian {
   Lane8 rotation_a[3], rotation_b[3];  ///< dC/dphi
-  Lane4 shift_a[3], shift_b[3];        ///< dC_s/du, minus the transpose of the other's
+  Lane4 shift_a[3], shift_b[3];        ///< dC_s/du, each minus the transpose of the other
   double inverse_length;               ///< 1/l [1/m]
 };
 
 struct Linearization {
-  std::vector<JointJacobian> joints;     ///< whole registers of them: copies of the last one fill up
+  std::vector<JointJacobian> joints;     ///< padded to whole registers with copies of the last
   VectorX constraint;                    ///< C, six per joint
-  std::vector<JointShape<Lane>> shapes;  ///< of as many joints as a register has lanes
-  std::vector<JointTurn<Lane>> turns;    ///< of the same
+  std::vector<JointShape<Lane>> shapes;  ///< each of as many joints as a register has lanes
+  std::vector<JointTurn<Lane>> turns;    ///< of the same joints
 
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };

@@ -10,9 +10,9 @@
 namespace rodsweep {
 namespace {
 
-constexpr double slightest = 1e-6;  ///< of a segment's length: joints that move theirs by less carry nothing
+constexpr double slightest = 1e-6;  ///< of a segment's length: smaller motions do not count as loads
 
-/// |force|^2 in lane 0 and |torque|^2 over a squared length in lane 3; the others hold nothing larger.
+/// |force|^2 in lane 0 and |torque|^2 over a squared length in lane 3; the other lanes are not larger.
 Lane8 squared_sizes(const Lane8& wrench, double inverse_squared_length) {
   const double i = inverse_squared_length;
   const Lane8 squares = wrench * wrench * Lane8{1, 1, 1, i, i, i, 0, 0};
@@ -48,7 +48,7 @@ void subtract_contacts(const Rod& rod, MomentumBalance& out) {
   }
 }
 
-/// The largest that a joint carries.
+/// Subtracts the joints' impulses. Returns the largest.
 double subtract_joints(const Rod& rod, const Linearization& at, MomentumBalance& out) {
   std::fill(out.pull.begin(), out.pull.end(), Lane4{});
   Lane8 carried{};

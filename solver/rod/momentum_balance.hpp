@@ -2,21 +2,21 @@
 //
 //   g = M (p - p*) - J^T lambda - f_c
 //
-// and the geometric stiffness with which Newton's iteration for g = 0 converges. p - p* is R^T (x - x*) and 2 Im(d) /
-// Re(d), d = conj(q*) q, the rotation vector that the time step's update undoes (rotation.hpp; its axis is the same in
-// both frames); f_c are the contacts' impulses. With g = 0 a rod at rest is in equilibrium whatever the time step: p* -
-// p is then M^-1 dt_c^2 times the loads. The step of Deul et al. 2018 and Shao et al. 2021 does not use g: there p - p*
-// = sum_j M^-1 J_j^T dlambda_j, with J at each Newton iteration's own positions.
+// and the geometric stiffness with which Newton's iteration for g = 0 converges. p - p* consists of R^T (x - x*) and
+// 2 Im(d) / Re(d), d = conj(q*) q, the rotation vector that the time step's update undoes (rotation.hpp; its axis is
+// the same in both frames). f_c are the contacts' impulses. With g = 0 a rod at rest is in equilibrium for any time
+// step: p* - p is then M^-1 dt_c^2 times the loads. The step of Deul et al. 2018 and Shao et al. 2021 does not use g:
+// there p - p* = sum_j M^-1 J_j^T dlambda_j, with J at each Newton iteration's own positions.
 //
-// Geometric stiffness K = -d(J^T lambda)/dp: under the force f of a joint at its arm r a segment turns back by
+// Geometric stiffness K = -d(J^T lambda)/dp: the force f of a joint at its arm r resists a rotation of the segment by
 // (f.r) I - f r^T. Only the diagonal part across the axis is kept, the sum of (f.r) over its joints, tension times
 // length on a rod: M + K stays diagonal in the segment's frame and A keeps its pattern (Tournier et al. 2015, Stable
 // Constrained Dynamics; Andrews et al. 2017, Geometric Stiffness for Real-time Constrained Multibody Dynamics).
 // Compression is limited to half of the inertia, so that M + K stays positive.
 //
-// Stretch-shear multipliers represent forces: Newton turns the joints' frames, and balanced iterations keep the force,
-// so they turn the multipliers back. With displacements this is done to second order (turned_back); contacts have no
-// displacements and use the poses before and after (with_forces_held).
+// Stretch-shear multipliers represent forces: Newton rotates the joints' frames, and balanced iterations keep the
+// force, so they rotate the multipliers back. With displacements this is done to second order (turned_back). Contacts
+// have no displacements and use the poses before and after (with_forces_held).
 #pragma once
 
 #include <vector>
@@ -46,45 +46,44 @@ inline Wrench<T> impulse_between(const SegmentPose<T>& free, const SegmentPose<T
           {across * d.x, across * d.y, inertia.axial * scale * d.z}};
 }
 
-/// M + K across the axis of a segment on which joints pull by f.r in all.
+/// M + K across the axis of a segment; `pull` is the sum of f.r over its joints.
 template <class T>
 inline T stiffened(const T& inertia, const T& pull) {
-  constexpr double least_turning = 0.5;  // of the inertia that is left under compression
+  constexpr double least_turning = 0.5;  // share of the inertia that remains under compression
   const T least = (least_turning - 1) * inertia;
   return inertia + (pull < least ? least : pull);
 }
 
 struct MomentumBalance {
-  std::vector<Lane8> defect;  ///< g: lanes 0..2 [kg m], 3..5 [kg m^2]; zero where static
-  std::vector<Lane4> pull;    ///< of each segment, the sum of force times arm by components: f.r is that of its lanes
-  /// The largest |force| of g, or |torque| over the segment's length, relative to the largest that a joint carries (or
-  /// that moves its segment by a millionth of its length, where joints carry less). 0 of a rod without joints.
+  std::vector<Lane8> defect;  ///< g: lanes 0..2 [kg m], 3..5 [kg m^2]; zero if static
+  std::vector<Lane4> pull;    ///< per segment: sum of force times arm, by components; f.r is the sum of its lanes
+  /// The largest |force| of g, or |torque| over the segment's length, relative to the largest that a joint carries. If
+  /// joints carry less than what moves a segment by a millionth of its length, relative to that. 0 without joints.
   double residual = 0;
 
   explicit MomentumBalance(const Rod& rod);  ///< sized, not evaluated
 
-  /// What never changes of as many neighbours as a register has lanes.
+  /// Constants of as many neighbours as a register has lanes.
   std::vector<Inertia<Lane>> inertia;
-  std::vector<double> inverse_squared_length;  ///< 1/L^2 of each segment; 0 where static
-  double least;                                ///< what the residual is relative to at least [kg m]
+  std::vector<double> inverse_squared_length;  ///< 1/L^2 of each segment; 0 if static
+  double least;                                ///< lower limit of the residual's reference [kg m]
 };
 
-/// At the linearisation's positions. Allocates nothing.
+/// Evaluates `out` at the linearisation's positions. Allocates nothing.
 void balance_momentum(const Rod& rod, const Linearization& at, MomentumBalance& out);
 
 /// Sets the segments' turn_mobility to that of M + K.
 void stiffen(Rod& rod, const MomentumBalance& balance);
-void unstiffen(Rod& rod);  ///< that of M again
+void unstiffen(Rod& rod);  ///< resets it to that of M
 
-/// A vector of a frame that turns by delta, of which it has that much, and stays as it is in the world: to second
-/// order.
+/// The components of a vector that is constant in the world while its frame rotates by delta, to second order.
 template <class T>
 inline Triple<T> turned_back(const Triple<T>& v, const Triple<T>& delta) {
   const Triple<T> across = cross(v, delta), again = cross(across, delta);
   return {v.x + across.x + 0.5 * again.x, v.y + across.y + 0.5 * again.y, v.z + across.z + 0.5 * again.z};
 }
 
-/// Runs `move`, which moves segments, and keeps the forces of stretch-shear as they are in the world.
+/// Runs `move`, which moves segments, and keeps the stretch-shear forces constant in the world.
 template <class Move>
 void with_forces_held(Rod& rod, const Move& move) {
   const auto turn = [&rod](auto&& turned) {

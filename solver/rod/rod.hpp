@@ -39,16 +39,16 @@ struct JointSpec {
   int a = 0, b = 0;                            ///< segments
   Vector3 arm_a_m{0, 0, 0}, arm_b_m{0, 0, 0};  ///< from the segments' centres to the shared point, local frames
   Vector6 compliance_per_j = Vector6::Zero();  ///< stretch-shear rows, then bend-twist rows
-  std::optional<Quaternion> rest;              ///< conj(q_a) q_b at rest; empty: as given by the initial orientations
+  std::optional<Quaternion> rest;              ///< conj(q_a) q_b at rest; empty: from the initial orientations
 };
 
 struct Segment {
   double length_m, radius_m, density_kg_m3;
   double mass;                                                             ///< [kg]
   double inertia_transverse, inertia_axial;                                ///< [kg m^2]
-  double inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;  ///< all zero when static
+  double inverse_mass, inverse_inertia_transverse, inverse_inertia_axial;  ///< all zero if static
   bool is_static;
-  double turn_mobility;  ///< of turns across the axis, in A: inverse_inertia_transverse, or stiffened in a Newton
+  double turn_mobility;  ///< of rotations across the axis, in A: inverse_inertia_transverse, or stiffened in a Newton
                          ///< iteration that keeps the balance of momentum (momentum_balance.hpp)
 };
 
@@ -76,8 +76,8 @@ class Rod {
   std::vector<Quaternion> orientation;
   VectorX lambda;
 
-  // Of the step: the positions p* of segments without joints and contacts, and the impulses of contacts on them: force
-  // and torque about the centre, in the world, times dt_c^2; none in a scene without contact.
+  // For the step: the positions p* of segments without joints and contacts, and the impulses of contacts on them: force
+  // and torque about the centre, in the world, times dt_c^2; empty without contact.
   std::vector<Vector3> free_position;
   std::vector<Quaternion> free_orientation;
   std::vector<Vector6> contact_impulse;
@@ -99,11 +99,11 @@ Section elliptic_section(double half_axis_x_m, double half_axis_y_m, double youn
 Section circular_section(double radius_m, double youngs_modulus_pa, double torsion_modulus_pa);
 
 /// kappa = (6 + 12 nu + 6 nu^2) / (7 + 12 nu + 4 nu^2) of a circular cross-section (Timoshenko 1922; Kaneko 1975),
-/// where nu = E / 2G - 1 is kept within 0 and 1/2, since E and G may be given independently of each other.
+/// where nu = E / 2G - 1 is limited to 0 .. 1/2, because E and G are independent parameters.
 double shear_coefficient(double youngs_modulus_pa, double torsion_modulus_pa);
 
-/// Of a joint: `stretch` for the three stretch-shear rows, or physical stretch, 1 / (kappa G A l) across the rod and
-/// 1 / (E A l) along it; and bend-twist compliance (l/EI, l/EI, l/GJ).
+/// Compliance of a joint: `stretch` for the three stretch-shear rows, or physical stretch, 1 / (kappa G A l) across the
+/// rod and 1 / (E A l) along it; and bend-twist compliance (l/EI, l/EI, l/GJ).
 Vector6 joint_compliance(double length_m, const Section& section, double stretch_per_j);
 Vector6 joint_compliance(double length_m, double radius_m, double youngs_modulus_pa, double torsion_modulus_pa,
                          double stretch_per_j);

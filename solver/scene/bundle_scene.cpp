@@ -7,7 +7,7 @@
 namespace rodsweep {
 namespace {
 
-/// The first places of a hexagonal lattice, of unit distance, from the middle outwards ring by ring.
+/// The first positions of a hexagonal lattice of unit distance, ring by ring from the middle.
 std::vector<Vector3> hexagonal_places(int count) {
   std::vector<Vector3> places{Vector3::Zero()};
   for (int ring = 1; static_cast<int>(places.size()) < count; ++ring)

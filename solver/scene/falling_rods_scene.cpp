@@ -6,7 +6,7 @@
 namespace rodsweep {
 namespace {
 
-constexpr double golden_turn = 2.39996322972865332;  // of the sunflower's seeds
+constexpr double golden_turn = 2.39996322972865332;  // the golden angle [rad]
 
 }  // namespace
 

@@ -8,7 +8,7 @@ namespace rodsweep {
 namespace {
 
 constexpr double depth = 1.2;  // of the crossings
-constexpr double aside = 0.5;  // by which the ends pass each other
+constexpr double aside = 0.5;  // distance at which the ends pass each other
 constexpr double leading = 4;  // length of the straight ends
 
 /// A trefoil, (sin t + 2 sin 2t, cos t - 2 cos 2t, -depth sin 3t), opened at (0, -3, 0), where it runs along x.
@@ -18,7 +18,7 @@ Vector3 trefoil(double t) {
           -depth * std::sin(3 * t) * level - aside * u};
 }
 
-/// The whole curve, finely.
+/// The whole curve, finely sampled.
 std::vector<Vector3> fine_knot() {
   constexpr int pieces = 2000;
   std::vector<Vector3> curve{trefoil(pi) - Vector3(leading, 0, 0)};
@@ -52,9 +52,9 @@ std::vector<Vector3> cut(const std::vector<Vector3>& curve, int pieces, double l
   return vertices;
 }
 
-/// A knot's length, of the least that is loose enough, in radii.
+/// The least length of a loose knot, in radii.
 double loose_knot_radii() {
-  // Strands cross at a distance of at least two radii and a tenth.
+  // Strands cross at a distance of at least 2.1 radii.
   static const double radii = [] {
     constexpr int pieces = 400;
     const std::vector<Vector3> curve = cut(fine_knot(), pieces, 1);
@@ -83,7 +83,8 @@ void Knot::build(Scene& scene) const {
   std::vector<SegmentSpec> rod = segments_through(cut(fine_knot(), segments, length_m), *this);
   rod.front().is_static = rod.back().is_static = true;
   const Section section = circular_section(radius_m, youngs_modulus_pa, torsion_modulus_pa);
-  const double tightest = 4 * section.bending_x_nm2 / (radius_m * radius_m);  // EI / (2 r)^2, and as much again
+  const double tightest =
+      4 * section.bending_x_nm2 / (radius_m * radius_m);  // 16 times EI / (2 r)^2, that of a tight knot
   scene.rods.push_back(chain(rod, *this, weight(rod, *this) + tightest, true));
   move_clamp(scene, 0, Vector3(-pull_m_s, 0, 0));
   move_clamp(scene, segments - 1, Vector3(pull_m_s, 0, 0));

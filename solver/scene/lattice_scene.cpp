@@ -20,8 +20,8 @@ Vector3 vector(const Place& place, double mesh_m) { return mesh_m / 2 * Vector3(
 
 bool all_even(const Place& p) { return p[0] % 2 == 0 && p[1] % 2 == 0 && p[2] % 2 == 0; }
 
-/// From a node to the next, for every family of parallel rods; z first, so that its frame differs from the others' by a
-/// turn about an axis of it. No two are more than a right angle apart where that can be.
+/// From a node to the next, for every family of parallel rods. z is first, so that the other frames differ from its
+/// frame by a rotation about one of its axes. If possible, no two are more than a right angle apart.
 std::vector<Place> directions(Lattice::Cell cell) {
   switch (cell) {
     case Lattice::Cell::cubic: return {{0, 0, 2}, {2, 0, 0}, {0, 2, 0}};
@@ -92,8 +92,8 @@ bool is_held(const Lattice& p, const Place& last, const Place& at) {
 
 int segments_of(const Lattice& p, const Line& line) { return (line.nodes - 1) * p.segments + 1; }
 
-/// Calls joint(a, b) for every pair of neighbours along a rod and crossing(a, b) for every joint of a node, by numbers
-/// of segments, but for those between two that are held; held(s) before.
+/// Calls held(s) for held segments, then joint(a, b) for neighbours along a rod and crossing(a, b) for joints of a
+/// node, all with numbers of segments. Omits pairs of held segments.
 template <class Held, class Joint, class Crossing>
 void connect(const Lattice& p, const Layout& layout, const Held& held, const Joint& joint, const Crossing& crossing) {
   std::map<Place, std::vector<int>> nodes;  // segments at each

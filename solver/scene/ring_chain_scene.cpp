@@ -6,7 +6,7 @@
 namespace rodsweep {
 namespace {
 
-constexpr double open_ring_radii = 40;  // around the smallest ring through which the next one fits
+constexpr double open_ring_radii = 40;  // circumference of the smallest ring through which the next fits
 
 void displace(Rod& rod, const Quaternion& turn, const Vector3& shift) {
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
@@ -35,8 +35,8 @@ void RingChain::build(Scene& scene) const {
   ring.segments = segments;
   ring.length_m = length_m;
   ring.rest_shape = Ring::RestShape::circle;
-  // From the top of a ring to that of the next: the inner diameter less the next one's own thickness. Twice the
-  // apothem, since rings hang from the middle of a side; a tenth of a radius is left free.
+  // From the top of a ring to that of the next: the inner diameter minus the next ring's thickness. The diameter is
+  // twice the apothem, because rings hang from the middle of a side; a tenth of a radius remains free.
   const double drop = length_m / segments / std::tan(pi / segments) - 2.1 * radius_m;
   for (int k = 0; k < rings; ++k) {
     ring.clamp = k == 0 ? Clamp::segment : Clamp::free;

@@ -11,18 +11,17 @@ namespace rodsweep {
 /// A segment of the scene's material.
 SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, double length_m, const RodParameters& p);
 
-/// Segments a and b end to end (the local z axis of both points from a to b), as stiff as the material. `force_n`: what
-/// an "inextensible" joint has to hold.
+/// Segments a and b end to end (the local z axis of both points from a to b), with the material's stiffness. `force_n`:
+/// the force that an "inextensible" joint has to hold.
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p, double force_n);
 
-/// Two segments with one centre, with the given stiffness about every axis [Nm] and compliance of the three
-/// stretch-shear rows [1/J]. If the two differ at rest by an angle theta about an axis, the bend-twist constraint
-/// measures a turn about it times cos(theta / 2) only: the compliance compensates for that if it is an axis of the
-/// frames.
+/// Two segments with one centre, with the given stiffness about every axis [Nm] and compliance of the stretch-shear
+/// rows [1/J]. If the two differ at rest by an angle theta about an axis, the bend-twist constraint measures only
+/// cos(theta / 2) of a rotation about it. The compliance compensates for that if it is an axis of the frames.
 JointSpec crossing_between(const std::vector<SegmentSpec>& segments, int a, int b, double stiffness_nm,
                            double stretch_per_j);
 
-/// Weight of the segments, under standard gravity at least [N].
+/// Weight of the segments, under at least standard gravity [N].
 double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p);
 
 /// A straight line from one point to another, cut into equal pieces.
@@ -31,16 +30,16 @@ std::vector<Vector3> straight_line(const Vector3& from, const Vector3& to, int p
 /// Segments whose ends lie on `vertices`; orientations are parallel-transported along them.
 std::vector<SegmentSpec> segments_through(const std::vector<Vector3>& vertices, const RodParameters& p);
 
-/// Joins each segment to the next; they are at rest as they are, or straight. `force_n` as above.
+/// Joins each segment to the next. The rest shape is the given one, or straight. `force_n` as above.
 Rod chain(const std::vector<SegmentSpec>& segments, const RodParameters& p, double force_n, bool straight = false);
 
-/// Moves a held segment of the first rod at a velocity, from its place.
+/// Moves a held segment of the first rod at a velocity, from its position.
 void move_clamp(Scene& scene, int segment, const Vector3& velocity_m_s);
 
-/// `why`: an explanation, with the punctuation before it; or empty.
+/// `why`: an explanation that begins with its punctuation, or empty.
 void check_least(const char* quantity, int value, int least, const char* why = "");
 
-/// The bound on the size of a scene.
+/// Checks the limit on the size of a scene.
 void check_segments(const char* scene, double segments);
 
 }  // namespace rodsweep

@@ -12,8 +12,7 @@ void validate(const SceneSpec& spec) {
   const SceneSize size = size_of(spec);
   if (size.rods > most_rods)
     throw SceneError(std::string(size.rods_key) + " is " + std::to_string(size.rods) + "; must be at most " +
-                     std::to_string(most_rods) +
-                     ", since results number rods in 16 bits: take fewer, in several scenes");
+                     std::to_string(most_rods) + ", because results number rods in 16 bits; use several scenes");
 }
 
 Scene build_scene(const SceneSpec& spec) {

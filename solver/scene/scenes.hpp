@@ -2,7 +2,7 @@
 // 2021, a ring, nets and lattices, trees, and rods in contact. A scene's struct has its name in jobs and, in a source
 // of its own:
 //
-//   check()  throws SceneError where parameters do not fit together, with the bound
+//   check()  throws SceneError with the bound if parameters do not fit together
 //   size()   counts segments, joints and rods without building them
 //   build()  adds its rods, loads, solids and moving clamps to an empty scene
 #pragma once
@@ -25,12 +25,12 @@ struct SceneSize {
   int segments = 0;               ///< graph nodes
   int joints = 0;                 ///< graph edges
   int rods = 1;                   ///< at most `most_rods`
-  const char* rods_key = "rods";  ///< which of the scene's keys say so
+  const char* rods_key = "rods";  ///< the scene's keys that set it
 };
 
 enum class Clamp {
   segment,  ///< holds the whole first segment: free length L - L/N
-  wall,     ///< adds a static segment of zero length and a first joint of half length: an exact clamp, not of a ring
+  wall,     ///< adds a static segment of zero length and a first joint of half length: an exact clamp, not for a ring
   free      ///< holds nothing
 };
 
@@ -48,10 +48,10 @@ struct RodParameters {
   Vector3 gravity_m_s2{0, -9.81, 0};
   double damping_per_s = 0;
   Stretch stretch = Stretch::inextensible;
-  std::optional<double> stretch_compliance_per_j;  ///< of the three stretch-shear rows [1/J], in place of `stretch`
+  std::optional<double> stretch_compliance_per_j;  ///< of the three stretch-shear rows [1/J], instead of `stretch`
   std::optional<WindParameters> wind;
   std::optional<ContactSettings> contact;
-  std::vector<Obstacle> obstacles;  ///< besides a scene's own floor
+  std::vector<Obstacle> obstacles;  ///< in addition to a scene's own floor
 };
 
 /// A rod with two ends.
@@ -82,8 +82,8 @@ struct Helix : OpenRod {
   void build(Scene& scene) const;
 };
 
-/// A closed regular polygon in the vertical xy-plane below the origin, the middle of its first and topmost side. It is
-/// naturally straight or circular, and twisted by a total angle before its ends are joined.
+/// A closed regular polygon in the vertical xy-plane below the origin, which is the middle of its first and topmost
+/// side. It is naturally straight or circular, and twisted by a total angle before its ends are joined.
 struct Ring : RodParameters {
   static constexpr const char* name = "ring";
   enum class RestShape { straight, circle };
@@ -104,7 +104,7 @@ enum class Held {
   free      ///< nothing
 };
 
-/// `rows` rods along x and `columns` rods along z in the horizontal plane, the first ones crossing in the origin; where
+/// `rows` rods along x and `columns` rods along z in the horizontal plane, the first ones crossing at the origin. Where
 /// rods cross, the centres of their segments are joined at the angle that they have there, with the stiffness EI / l
 /// about every axis: one rod of many loops.
 struct Net : RodParameters {
@@ -118,14 +118,14 @@ struct Net : RodParameters {
   void build(Scene& scene) const;
 };
 
-/// Straight rods through all nodes of a crystal lattice in a box, the first corner in the origin; the box is raised by
+/// Straight rods through all nodes of a crystal lattice in a box, the first corner at the origin; the box is raised by
 /// `initial_angle_deg` about z, from x towards y. Where rods cross, the centres of their segments are joined to that of
-/// the first of them, each joint as stiff as `node_stiffness` rods two radii long: kappa G A / 2r against shifting, EI
-/// / 2r against turning, on the mean over the axes. In the cubic lattice it is that about every axis; in the others,
-/// where the axis by which two rods differ is none of their frames', it is 0.36 to 1.5 times that (body-centred) or
-/// 0.31 to 1.58 times (octet) about some. Every rod goes half a segment beyond its last nodes, so the material of a
-/// node counts once for every rod through it. One rod of many loops, with more constraints than freedoms: stretch is
-/// `physical` unless a job says otherwise, since multipliers of joints that do not give way are not unique.
+/// the first of them. Each joint is as stiff as `node_stiffness` rods two radii long: kappa G A / 2r against shifting,
+/// EI / 2r against rotation, on average over the axes. In the cubic lattice the stiffness is equal about every axis. In
+/// the others, where the axis between two rods is not an axis of their frames, it is 0.36 to 1.5 times that about some
+/// axes (body-centred), or 0.31 to 1.58 times (octet). Every rod extends half a segment beyond its last nodes, so the
+/// material of a node counts once for every rod through it. The lattice is one rod of many loops with more constraints
+/// than degrees of freedom. Stretch is `physical` by default, because multipliers of rigid joints are not unique.
 struct Lattice : RodParameters {
   static constexpr const char* name = "lattice";
   enum class Cell {
@@ -135,7 +135,7 @@ struct Lattice : RodParameters {
   };
   Cell cell = Cell::cubic;
   int nodes_x = 4;               ///< corners of cells along x
-  int nodes_y = 0, nodes_z = 0;  ///< 0: as many
+  int nodes_y = 0, nodes_z = 0;  ///< 0: as nodes_x
   double mesh_m = 0.2;           ///< edge of a cell
   int segments = 3;              ///< from one node to the next
   Held held = Held::corners;
@@ -148,12 +148,12 @@ struct Lattice : RodParameters {
   void build(Scene& scene) const;
 };
 
-/// Grown (tree_skeleton.hpp), a segment for every edge, standing on the ground by an exact clamp (a static segment of
+/// A grown tree (tree_skeleton.hpp) with a segment for every edge, on the ground in an exact clamp (a static segment of
 /// zero length at the root). Both moduli of an edge of radius r are those of the widest edge at the ground times (r /
-/// its radius)^`modulus_exponent`. A joint is half of one edge and half of the next behind each other; where it rests
-/// bent by an angle theta, it is softer by cos(theta / 2)^2 about the axis of that bend, since its constraint measures
-/// so much of it. An "inextensible" joint is made to hold the weight above it. The shape is that without load: trees
-/// have grown against gravity, and sag a little under it at first.
+/// its radius)^`modulus_exponent`. A joint is half of one edge and half of the next in series. If it is bent by theta
+/// at rest, it is softer by cos(theta / 2)^2 about the axis of that bend, because its constraint measures only that
+/// share. An "inextensible" joint can hold the weight above it. The initial shape is without load, as trees grow
+/// against gravity: at first it sags a little.
 struct Tree : RodParameters {  ///< radius and moduli: those of the trunk at the ground
   static constexpr const char* name = "tree";
   TreeShape shape;
@@ -163,8 +163,8 @@ struct Tree : RodParameters {  ///< radius and moduli: those of the trunk at the
   void build(Scene& scene) const;
 };
 
-/// Trees of one shape and as many seeds on a grid along x and z, the first one near the origin, each off its place by
-/// up to half of `jitter` spacings along both; a rod each.
+/// Trees of one shape with different seeds on a grid along x and z, the first near the origin. Each is displaced by up
+/// to half of `jitter` spacings along both axes. Each tree is a rod.
 struct Forest : Tree {
   static constexpr const char* name = "forest";
   int rows = 3, columns = 3;  ///< along z and x
@@ -175,11 +175,11 @@ struct Forest : Tree {
   void build(Scene& scene) const;
 };
 
-/// A tree that was measured. Its radii are the skeleton's.
+/// A measured tree. Its radii are the skeleton's.
 struct SkeletonTree : RodParameters {
   static constexpr const char* name = "skeleton";
   std::shared_ptr<const Skeleton> skeleton;
-  double unit_m = 1;  ///< in which its lengths are
+  double unit_m = 1;  ///< unit of its lengths
   Up up = Up::y;
   double modulus_exponent = 0;
   void check() const;
@@ -187,7 +187,7 @@ struct SkeletonTree : RodParameters {
   void build(Scene& scene) const;
 };
 
-/// Horizontal ones, each `height_m` above the one below or the floor y = 0, turned against it by `turn_deg`.
+/// Horizontal rods, each `height_m` above the one below or the floor y = 0, rotated against it by `turn_deg`.
 struct FallingRods : RodParameters {
   static constexpr const char* name = "falling_rods";
   int rods = 8;
@@ -200,8 +200,8 @@ struct FallingRods : RodParameters {
   void build(Scene& scene) const;
 };
 
-/// Vertical, straight but for a hundredth of a turn of a helix as wide as itself, its lower end `height_m` above the
-/// floor y = 0; its first and topmost segment is held and goes down at `feed_m_s`.
+/// A vertical rod, straight except for a hundredth of a turn of a helix of its own radius. Its lower end is `height_m`
+/// above the floor y = 0. Its first and topmost segment is held and moves down at `feed_m_s`.
 struct CoilingRod : RodParameters {
   static constexpr const char* name = "coiling_rod";
   int segments = 60;
@@ -213,8 +213,8 @@ struct CoilingRod : RodParameters {
   void build(Scene& scene) const;
 };
 
-/// An overhand knot, loose at first (an opened trefoil between straight ends along x), of a rod that is naturally
-/// straight; its end segments are held and go apart along x, each at `pull_m_s`.
+/// An overhand knot in a naturally straight rod, loose at first (an opened trefoil between straight ends along x). Its
+/// end segments are held and move apart along x, each at `pull_m_s`.
 struct Knot : RodParameters {
   static constexpr const char* name = "knot";
   int segments = 80;
@@ -259,7 +259,7 @@ const OpenRod* open_rod(const SceneSpec& spec);
 /// The parameters that all scenes share.
 const RodParameters& rod_parameters(const SceneSpec& spec);
 
-/// Throws SceneError where parameters do not fit together, and for more than `most_rods`; build_scene() does so too.
+/// Throws SceneError if parameters do not fit together, and for more than `most_rods`; build_scene() does so too.
 void validate(const SceneSpec& spec);
 
 Scene build_scene(const SceneSpec& spec);

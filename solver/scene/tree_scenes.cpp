@@ -27,7 +27,7 @@ class Wood {
   double exponent_, trunk_radius_m_ = 0;
 };
 
-/// Half of a and half of b behind each other. A wall is no length of anything.
+/// Half of a and half of b in series. A wall has no length.
 JointSpec series_joint(const SegmentSpec& a, const SegmentSpec& b, const Wood& wood, const RodParameters& p,
                        double force_n) {
   const double half_a = a.length_m / 2, half_b = b.length_m / 2, length = half_a + half_b;

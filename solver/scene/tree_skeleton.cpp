@@ -28,7 +28,7 @@ class Growth {
     turned_ = 2 * pi * random_.uniform();
   }
 
-  /// A branch from a node, along the local z of `frame`, and all that grows on it.
+  /// A branch from a node, along the local z of `frame`, and all its descendants.
   void branch(int node, const Quaternion& frame, double length, double radius, int level) {
     const Vector3 step = length / shape_.segments * (frame * Vector3::UnitZ());
     for (int i = 0; i < shape_.segments; ++i) {
@@ -38,7 +38,7 @@ class Growth {
       node = static_cast<int>(out_.size()) - 1;
     }
     if (level == shape_.depth) return;
-    std::vector<Quaternion> frames;  // of all children before any of them grows: neighbours in the spiral
+    std::vector<Quaternion> frames;  // drawn for all children before any of them grows: neighbours in the spiral
     for (int child = 0; child < shape_.branches; ++child) frames.push_back(frame * turn());
     const double child_radius =
         out_.back().radius_m * std::pow(static_cast<double>(shape_.branches), -1 / shape_.pipe_exponent);
@@ -71,7 +71,7 @@ std::optional<SkeletonFault> fault(const Skeleton& skeleton) {
     const SkeletonNode& node = skeleton[static_cast<std::size_t>(i)];
     std::ostringstream text;
     if (!(node.radius_m > 0)) text << "radius is " << node.radius_m << "; must be positive";
-    if (edge(i).norm() == 0) text << "stands where its parent does; must be elsewhere";
+    if (edge(i).norm() == 0) text << "position is that of its parent; must be different";
     const Vector3 below = edge(std::max(node.parent, 1));
     const double turn = std::atan2(below.cross(edge(i)).norm(), below.dot(edge(i)));
     if (turn > widest_turn)
@@ -98,7 +98,7 @@ void validate(const TreeShape& p) {
   require(p.length_m > 0, "length_m", p.length_m, "positive");
   require(p.length_ratio > 0, "length_ratio", p.length_ratio, "positive");
   require(p.taper > 0 && p.taper <= 1, "taper", p.taper, "above 0 and at most 1");
-  require(p.taper == 1 || p.segments > 1, "taper", p.taper, "1 where a branch is one segment");
+  require(p.taper == 1 || p.segments > 1, "taper", p.taper, "1 if a branch has one segment");
   require(p.pipe_exponent > 0, "pipe_exponent", p.pipe_exponent, "positive");
   const double widest = std::abs(p.branching_angle_deg) + std::abs(p.angle_spread_deg);
   require(widest <= 150, "branching_angle_deg with angle_spread_deg", widest, "at most 150");

@@ -1,12 +1,12 @@
 // The skeleton of a tree: nodes with parents, and how one is grown from a few numbers.
 //
-// An edge leads to every node but the root, as a cylinder of the node's radius (as in SWC files: Cannon et al. 1998).
-// Growth: a trunk along +y; every branch of `segments` edges ends in `branches` new ones, `length_ratio` as long,
-// `depth` times over:
+// Every node except the root has an edge from its parent, a cylinder of the node's radius (as in SWC files: Cannon et
+// al. 1998). Growth: a trunk along +y; every branch of `segments` edges ends in `branches` new ones, `length_ratio` as
+// long, repeated `depth` times:
 //   edges = segments (1 + b + ... + b^depth)
-// A child leaves at branching_angle_deg, give or take up to angle_spread_deg, in a direction around its parent that
-// goes on by the golden angle from child to child (phyllotaxis), or at random. Radii follow the pipe model (Shinozaki
-// et al. 1964; Leonardo's rule at exponent 2): of the edge below a branching and those above it,
+// A child leaves at branching_angle_deg, plus or minus up to angle_spread_deg. Its direction around the parent advances
+// by the golden angle from child to child (phyllotaxis), or is random. Radii follow the pipe model (Shinozaki et al.
+// 1964; Leonardo's rule at exponent 2): for the edge below a branching and those above it,
 //   r^e = sum of r_i^e,   so r_i = r b^(-1/e);
 // within a branch they fall linearly from its first edge to `taper` times that at its last. Lengths in m.
 // Throws SceneError with the value that is out of bounds.
@@ -22,14 +22,14 @@
 namespace rodsweep {
 
 struct SkeletonNode {
-  int parent = -1;  ///< a node before this one; -1 of the root alone, which is the first
+  int parent = -1;  ///< an earlier node; -1 only for the root, which is the first
   Vector3 position_m{0, 0, 0};
   double radius_m = 0;  ///< of the edge from the parent
 };
 
 using Skeleton = std::vector<SkeletonNode>;
 
-/// Why a skeleton cannot become a rod, at the first such node.
+/// The first node at which a skeleton cannot become a rod, and the reason.
 struct SkeletonFault {
   int node;
   std::string text;
@@ -47,7 +47,7 @@ Skeleton placed(const Skeleton& skeleton, double unit_m, Up up);
 struct TreeShape {
   enum class Phyllotaxis { golden, random };
   int depth = 4;        ///< branchings between the ground and a twig
-  int branches = 3;     ///< at each
+  int branches = 3;     ///< per branching
   int segments = 4;     ///< of each branch, and of the trunk
   double length_m = 1;  ///< of the trunk
   double length_ratio = 0.75;
@@ -58,13 +58,13 @@ struct TreeShape {
   std::uint64_t seed = 0;  ///< of angles and directions
 };
 
-/// Throws SceneError where a value is out of bounds.
+/// Throws SceneError if a value is out of bounds.
 void validate(const TreeShape& shape);
 
 int edge_count(const TreeShape& shape);
 
-/// Branch by branch, each as a whole before the next; parents come first. The root is the origin. `radius_m`: of the
-/// trunk at the ground.
+/// Nodes are in order of branches, each branch as a whole; parents come first. The root is the origin. `radius_m`: of
+/// the trunk at the ground.
 Skeleton grow(const TreeShape& shape, double radius_m);
 
 }  // namespace rodsweep

@@ -3,7 +3,7 @@
 //   u(x, t) = U h(y) (1 + g sin(2 pi t / T)) + sum over m of a_m cos(k_m . (x - U t) + w_m t + phi_m)
 //
 // U mean, g and T strength and period of gusts, h = (y / y_ref)^p a power law above the ground (p = 0: 1). The sum is
-// turbulence in the way of Kraichnan (1970): a_m is perpendicular to k_m, so its divergence is zero; it drifts with the
+// turbulence after Kraichnan (1970): a_m is perpendicular to k_m, so its divergence is zero; it drifts with the
 // mean (Taylor's frozen turbulence) and changes by itself. k_m is drawn from a normal distribution of deviation 1/L in
 // each component, w_m from one of deviation sigma |k_m|; all |a_m| are sigma sqrt(6 / modes). So <u'.u'> = 3 sigma^2,
 // and with more and more modes correlations over a distance r, and over a time t in the drifting air, tend to
@@ -51,12 +51,12 @@ class Wind {
 
   Vector3 velocity(const Vector3& position_m, double time_s) const;
 
-  /// On a segment that is free, in a step of dt.
+  /// Drag on a free segment, in a step of dt.
   Vector3 drag(const Segment& segment, const Vector3& position_m, const Vector3& direction, const Vector3& velocity_m_s,
                double time_s, double dt) const;
 
  private:
-  /// A mode in each lane; rate w - k . U. Angles are in turns, an amplitude is zero where there is no mode.
+  /// A mode in each lane; rate w - k . U. Angles are in turns, unused lanes have zero amplitude.
   struct Modes {
     Lane amplitude[3], wave[3], rate, phase;
   };

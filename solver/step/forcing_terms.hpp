@@ -1,7 +1,7 @@
 // The tolerance of a Newton iteration's linear solve: forcing terms of Eisenstat & Walker (1996, SIAM J. Sci. Comput.
 // 17, choice 2 with its safeguard), relative residuals eta_j of the linear solve,
 //   eta_0 given,   eta_j = gamma (|b_j| / |b_{j-1}|)^2,   gamma = 0.9,
-// at least gamma eta_{j-1}^2 where that exceeds 0.1, at most eta_0, and not below the tolerance at which the residual
+// at least gamma eta_{j-1}^2 if that exceeds 0.1, at most eta_0, and not below the tolerance at which the residual
 // is half of Newton's own tolerance. The iterations converge superlinearly; with a fixed tolerance they converge
 // linearly.
 #pragma once
@@ -14,7 +14,7 @@ class ForcingTerms {
  public:
   ForcingTerms(int rods, double first, double newton_tolerance);
 
-  /// eta of this iteration's solve, asked once for each, in order; `norm` is |b|, `residual` max |b|.
+  /// eta of this iteration's solve, to be called once per iteration, in order; `norm` is |b|, `residual` max |b|.
   double next(int rod, int newton, double norm, double residual);
 
  private:

@@ -10,7 +10,7 @@
 namespace rodsweep {
 namespace {
 
-/// The joint's shared point as its side on a (or b) sees it.
+/// The joint's shared point from its segment a (or b).
 Vector3 point_on_a(const Rod& rod, const Joint& j) {
   const std::size_t a = static_cast<std::size_t>(j.a);
   return rod.position[a] + rod.orientation[a] * j.arm_a;
@@ -37,7 +37,7 @@ Linearization linearized(const Rod& rod) {
 }  // namespace
 
 double rod_length(const Rod& rod) {
-  // Each segment's ends: the midpoints of the joints there, or its own end where no joint is.
+  // Each segment's ends: the midpoints of the joints there, or its own end if it has no joint.
   const std::size_t n = rod.segments.size();
   std::vector<Vector3> tail(n), head(n);
   for (std::size_t s = 0; s < n; ++s) {

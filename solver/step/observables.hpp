@@ -8,7 +8,7 @@ namespace rodsweep {
 
 /// Length of a rod through its joint midpoints: a joint's midpoint is its shared point as seen from both sides,
 /// averaged. From midpoint to midpoint within each segment, plus from the outermost midpoints to the free ends. A
-/// polyline of segment centres would read bending as drift. A joint within a segment, as where the rods of a net cross,
+/// polyline of segment centres would show bending as drift. A joint within a segment, as where the rods of a net cross,
 /// does not end it: the length of a net is that of all its rods together, that of a ring its circumference.
 double rod_length(const Rod& rod);
 
@@ -17,12 +17,12 @@ double joint_gap(const Rod& rod);
 
 /// max |C + alpha~ lambda|, alpha~ = alpha / constraint_dt^2 (TimeStepper::constraint_dt): the residual of Newton.
 double newton_residual(const Rod& rod, double constraint_dt);
-double newton_residual(const Rod& rod, const Linearization& at, double constraint_dt);  ///< linearised here already
+double newton_residual(const Rod& rod, const Linearization& at, double constraint_dt);  ///< with a known linearisation
 
 /// The largest imbalance of forces on a segment, relative to the largest force of a joint (MomentumBalance::residual).
 double momentum_residual(const Rod& rod);
 
-/// Sum over joints of C^T alpha^-1 C / 2 [J]; rows of zero compliance store nothing.
+/// Sum over joints of C^T alpha^-1 C / 2 [J]; rows of zero compliance store no energy.
 double elastic_energy(const Rod& rod);
 double elastic_energy(const Rod& rod, const Linearization& at);
 

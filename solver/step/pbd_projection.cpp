@@ -10,7 +10,7 @@ void turn(Rod& rod, std::size_t segment, const Vector3& theta) {
   if (!rod.segments[segment].is_static) rod.orientation[segment] = rotated(rod.orientation[segment], theta);
 }
 
-/// Returns |C_s| as it was.
+/// Returns |C_s| before the correction.
 double correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
   const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
   const Segment &segment_a = rod.segments[a], &segment_b = rod.segments[b];
@@ -27,7 +27,7 @@ double correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
   return gap.norm() / joint.length;
 }
 
-/// Returns C_b as it was.
+/// Returns C_b before the correction.
 Vector3 correct_bend_twist(Rod& rod, const Joint& joint, double stiffness) {
   const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
   const Quaternion d = relative_turn(rod, joint);

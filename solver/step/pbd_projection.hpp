@@ -6,14 +6,15 @@
 // and then
 //   t = k_b R_a (d_w C_b + Im(d) x C_b) / (i_a + i_b)             bend-twist
 //   dtheta_a = i_a t,   dtheta_b = -i_b t
-// w = 1/m, i the transverse inverse inertia, k_s and k_b in [0, 1], applied anew in every iteration: the rod is the
-// stiffer the more of them, the smaller the steps and the fewer the segments, whatever its moduli.
+// w = 1/m, i the transverse inverse inertia, k_s and k_b in [0, 1] act in every iteration: more iterations, smaller
+// steps and fewer segments make the rod stiffer, for any moduli.
 //
-// What differs from Kugelstadt & Schoemer: there particles sit at the ends of quaternions and a stretch-shear
-// constraint has two particles and one quaternion; here positions and orientations are those of segment centres, so
-// that it has two of each and meets at the joint, as in `direct`. Weights are not free: w is the segment's, and
-// a quaternion's is i/4, for which q moves as the segment would under a torque across its axis. Their denominators
-// follow (w_q 4 r^2 = i r^2), their corrections too but for the part along q, which renormalising takes away.
+// Differences from Kugelstadt & Schoemer: their particles are at the ends of quaternions, and a stretch-shear
+// constraint has two particles and one quaternion. Here positions and orientations are those of segment centres, so a
+// constraint has two of each and acts at the joint, as in `direct`. Weights are not free: w is the segment's. A
+// quaternion's weight is i/4, with which q moves as the segment does under a torque across its axis. Then their
+// denominators follow (w_q 4 r^2 = i r^2), and their corrections except for the part along q, which normalisation
+// removes.
 #pragma once
 
 #include "solver/step/gauss_seidel.hpp"
@@ -31,7 +32,7 @@ class PbdProjection : public GaussSeidelProjection {
       : GaussSeidelProjection(scene), stiffness_(stiffness) {}
 
  private:
-  /// The residual is max |C|, of a gap its length: multipliers stay zero.
+  /// The residual is max |C|, with the length of C_s; multipliers stay zero.
   Iteration iterate(Rod& rod, const std::vector<int>& order, double dt) const override;
 
   PbdStiffness stiffness_;

@@ -1,8 +1,8 @@
 // One Newton iteration of the time step on one rod, behind one interface.
 //
-// Projection moves a rod towards its constraints. LinearProjection is the family that assembles A dlambda = b, has a
-// LinearSolve solve it and applies the result: the direct solve, CG, and the paired evaluation that tries many guesses
-// on the same system. Virtual calls are per solve, never per segment.
+// Projection moves a rod towards its constraints. LinearProjection assembles A dlambda = b, calls a LinearSolve and
+// applies the solution: the direct solve, CG, and the paired evaluation that tries many guesses on the same system.
+// Virtual calls are per solve, never per segment.
 #pragma once
 
 #include <memory>
@@ -26,13 +26,13 @@ struct SolvePosition {
 struct ProjectionReport {
   SolveOutcome outcome = SolveOutcome::not_run;
   double newton_residual = 0;    ///< max |C + alpha~ lambda| before the projection
-  double momentum_residual = 0;  ///< of the balance, where it is kept
+  double momentum_residual = 0;  ///< of the balance, if it is kept
 };
 
 class Projection {
  public:
   virtual ~Projection() = default;
-  /// Projects unless the residual is below `newton_tolerance` already (outcome not_run).
+  /// Projects unless the residual is below `newton_tolerance` (outcome not_run).
   virtual ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) = 0;
   /// Whether Newton's iteration continues until momentum is in balance as well (momentum_balance.hpp). Returns whether
   /// this projection supports that.
@@ -49,9 +49,9 @@ class LinearSolve {
 
 class LinearProjection : public Projection {
  public:
-  /// `momentum_tolerance`, on the residual of the balance of momentum: can keep it.
+  /// With a `momentum_tolerance` (for the residual of the balance of momentum), the projection can keep the balance.
   LinearProjection(const Scene& scene, LinearSolve& solve, std::optional<double> momentum_tolerance = {});
-  /// With the balance kept, not_run where it holds too.
+  /// If the balance is kept, not_run also requires the momentum tolerance.
   ProjectionReport project(Rod& rod, const SolvePosition& at, double dt, double newton_tolerance) override;
   bool keep_balance(bool wanted) override { return keeps_balance_ = wanted && momentum_tolerance_; }
 

@@ -1,4 +1,4 @@
-// Wall time of a few statements [s], from a monotonic clock or from one that a test moves by hand.
+// Wall time of a few statements [s], from a monotonic clock or a test's clock.
 #pragma once
 
 #include <chrono>

@@ -81,11 +81,11 @@ bool TimeStepper::is_lost() const { return !(newton_residual_ < lost_joints && m
 
 void TimeStepper::start_from_last_step() {
   for (std::size_t r = 0; r < scene_.rods.size(); ++r)
-    if (!scene_.rods[r].joints.empty())  // without, Newton has nothing to do, and p* is where the rod goes
+    if (!scene_.rods[r].joints.empty())  // without joints Newton does nothing, and p* is the result
       flights_[r].extrapolate(scene_.rods[r], settings_.dt);
 }
 
-/// To p*, without multipliers.
+/// Resets the rods to p*, with zero multipliers.
 void TimeStepper::take_back() {
   for (Rod& rod : scene_.rods) {
     rod.position = rod.free_position;
@@ -95,7 +95,7 @@ void TimeStepper::take_back() {
   }
 }
 
-// From the iteration that the report has come to until that many have been made.
+// Iterates from the report's number of iterations up to `until`.
 TimeStepper::Newton TimeStepper::iterate(Projection& projection, int until, StepReport& report) {
   const double dt_c = constraint_dt();
   for (int newton = report.newton_iterations; newton < until; ++newton) {
@@ -124,7 +124,7 @@ TimeStepper::Newton TimeStepper::iterate(Projection& projection, int until, Step
 }
 
 double constraint_dt(const Scene& scene, double dt) {
-  // Drag slows the constraints' forces like the loads', so that it cancels at rest and cannot shift an equilibrium.
+  // Drag scales the constraints' forces like the loads, so that it cancels at rest and does not shift an equilibrium.
   return dt / std::sqrt(1 + scene.damping_per_s * dt);
 }
 

@@ -1,16 +1,16 @@
 // One time step of position-based Cosserat rods, the algorithm of Shao et al. 2021 (after Deul et al. 2018):
 //
-//   free flight from v, w to x*, q* (free_flight.hpp); held segments go to their pose at the end of the step
+//   free flight from v, w to x*, q* (free_flight.hpp); held segments move to their pose at the end of the step
 //   contacts, if the scene has any, are found from x and x*
 //   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance, then the contacts
 //   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
-//   v, w of what moved (free_flight.hpp)
-// Where the projection keeps the balance of momentum (momentum_balance.hpp), Newton starts from the last step's lambda,
+//   v, w from the motion (free_flight.hpp)
+// If the projection keeps the balance of momentum (momentum_balance.hpp), Newton starts from the last step's lambda,
 // from x + dt (2 v - v_before) and q likewise, and ends when momentum is in balance as well. If two thirds of the
 // iterations do not come near that (a slender rod that hits the floor end-on can fold in many ways), the step is undone
 // and made as above.
 // Loads: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
-// allocates after construction, but for contacts (contact_projection.hpp).
+// allocates after construction, except for contacts (contact_projection.hpp).
 #pragma once
 
 #include <memory>
@@ -25,25 +25,25 @@ namespace rodsweep {
 
 struct StepSettings {
   double dt = 0.02;                ///< [s]
-  int newton_iterations = 6;       ///< at most
+  int newton_iterations = 6;       ///< limit
   double newton_tolerance = 1e-9;  ///< on max |C + alpha~ lambda|
 };
 
 struct StepReport {
   SolveOutcome outcome = SolveOutcome::converged;  ///< the last failure of a solve, else converged
-  int newton_iterations = 0;                       ///< solves used, the most of any rod, or those of the contacts
+  int newton_iterations = 0;                       ///< solves used: maximum over rods and contacts
   bool balanced = false;                           ///< kept the balance of momentum
-  int contacts = 0;                                ///< places where bodies are near each other
+  int contacts = 0;                                ///< number of contacts
   double penetration = 0, contact_residual = 0;    ///< at the end of the step, see ContactState
 };
 
-/// Of the iterations of a step those in which it may come near the balance of momentum before it is taken back; all
-/// where there are too few to share.
+/// The iterations of a step that may keep the balance of momentum before the attempt is undone; all if there are too
+/// few to share.
 int balancing_iterations(int most);
-/// What it is taken back for: joints that open farther than this, or as much of the forces lacking.
+/// The attempt is undone if max |C + alpha~ lambda| or the momentum residual is not below these.
 constexpr double lost_joints = 1e-6, lost_momentum = 0.1;
 
-/// dt_c, which turns compliances into alpha~ and multipliers into forces, of steps of dt.
+/// dt_c for steps of dt: it converts compliances to alpha~ and multipliers to forces.
 double constraint_dt(const Scene& scene, double dt);
 
 class TimeStepper {
@@ -66,7 +66,7 @@ class TimeStepper {
   void take_back();
   Newton iterate(Projection& projection, int until, StepReport& report);
   double end_of_step() const { return start_time_s_ + (steps_ + 1) * settings_.dt; }
-  bool is_lost() const;  ///< Newton, on its way to the balance
+  bool is_lost() const;  ///< whether the balanced attempt must be undone
 
   Scene& scene_;
   StepSettings settings_;
@@ -74,8 +74,8 @@ class TimeStepper {
   int steps_ = 0;
   std::vector<FreeFlight> flights_;                     ///< of every rod
   std::vector<SegmentLoads> loads_;                     ///< point loads and wind
-  double newton_residual_ = 0, momentum_residual_ = 0;  ///< the largest that the last iteration met
-  std::unique_ptr<ContactProjection> contact_;          ///< null in a scene without
+  double newton_residual_ = 0, momentum_residual_ = 0;  ///< maxima of the last iteration
+  std::unique_ptr<ContactProjection> contact_;          ///< null in a scene without contacts
 };
 
 }  // namespace rodsweep

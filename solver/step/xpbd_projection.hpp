@@ -4,10 +4,9 @@
 // A joint's six rows are solved together, linearised at the current positions:
 //   (J M^-1 J^T + alpha~) dlambda = -C - alpha~ lambda    of that joint alone (6x6)
 //   lambda += dlambda,   (u, phi) = M^-1 J^T dlambda of its two segments
-// The paper solves row by row; a block converges in fewer iterations, as stretch-shear and bend-twist of a joint pull
-// at the same segments. A fixed point is one of Newton's iteration too, C + alpha~ lambda = 0; but forces act along the
-// J of the positions on the way there, so two steps from one state differ by O(dt^4) in positions, O(dt^3) in
-// velocities.
+// The paper solves row by row. A block converges in fewer iterations, because stretch-shear and bend-twist of a joint
+// act on the same segments. A fixed point is also one of Newton's iteration, C + alpha~ lambda = 0. But forces act
+// along J at the positions in between, so the results of a step differ by O(dt^4) in positions, O(dt^3) in velocities.
 #pragma once
 
 #include "solver/step/gauss_seidel.hpp"
