@@ -1,5 +1,4 @@
-// The inputs of a COPINGNet from a linear system and its base guess, and the units of its outputs: one interface for
-// all encodings.
+// The inputs of a COPINGNet from a linear system and its base guess, and the units of its outputs.
 //
 // The network corrects x_base: x = x_base + unit * y, entry by entry.
 //   paper, paper_residual   features of segments and joints (graph_encoding.hpp), with a base guess also x_base of the

@@ -1,5 +1,4 @@
-// Features of nodes (segments) and edges (joints) for message passing, which depend on the rod's position: the inputs
-// of Shao et al. 2021.
+// Features of nodes (segments) and edges (joints) for message passing: the inputs of Shao et al. 2021.
 //
 // At the positions p^j of Newton iteration j:
 //   paper            node 14: x [m], q (w, x, y, z; the hemisphere w >= 0), r [m], rho [kg/m^3], segment length [m],
@@ -40,7 +39,7 @@ class GraphEncoding {
   /// Throws std::invalid_argument unless is_of_graphs(encoding).
   GraphEncoding(Encoding encoding, const Rod& rod);
 
-  /// Writes [node_features, segments] and [edge_features, joints]; `system` is assembled at the rod's state. Allocates
+  /// Writes [node_features, segments] and [edge_features, joints]; `system` is that of the rod's state. Allocates
   /// nothing.
   void encode(const Rod& rod, const LinearSystem& system, int newton, Eigen::Ref<Tensor<float>> nodes,
               Eigen::Ref<Tensor<float>> edges) const;

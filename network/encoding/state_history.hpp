@@ -2,8 +2,7 @@
 //
 //   x_n = x_{n-1} + dt v_n,   q_n = rotated(q_{n-1}, dt w_n)     v and w as in the time step (free_flight.hpp)
 //
-// so that a recorded simulation needs to store velocities only. Velocities before the first step are taken equal to
-// those at its start.
+// so that a recorded simulation stores velocities only. Velocities before the first step equal those at its start.
 #pragma once
 
 #include <array>

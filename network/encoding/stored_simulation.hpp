@@ -47,8 +47,7 @@ void restore(const StoredSystem& system, Rod& rod);
 /// The same, and assembles the system that was solved, with or without the balance of momentum.
 void assemble_again(const StoredSystem& stored, double constraint_dt_s, Rod& rod, LinearSystem& system);
 
-/// Repeats a simulation without solving: sets one rod after the other to the state of a stored system, and assembles
-/// that system again.
+/// Repeats a simulation without solving: sets one rod after the other to a stored state and assembles its system.
 class Replay {
  public:
   explicit Replay(const StoredSimulation& simulation);  ///< `simulation` must outlive this

@@ -1,5 +1,4 @@
-// An unbranched rod as functions of its arc length, without units, so that rods of any size and division are
-// comparable.
+// An unbranched rod as functions of its arc length, without units: rods of any size and division are comparable.
 //
 // sigma in [0, 1] runs over the free segments from the static end (if none or both are static: from the end with the
 // lower number); static segments have no length. Units: the free length L, the free mass m, the magnitude a of the

@@ -15,8 +15,8 @@ namespace rodsweep {
 
 class KnnGuess : public InitialGuess {
  public:
-  /// `scene` is the one that the solves move. Throws SceneError if a rod is not a chain, std::invalid_argument if
-  /// neighbours < 1.
+  /// `scene` is the one that the solves move. Throws SceneError if a rod is not a chain, and
+  /// std::invalid_argument if neighbours < 1.
   KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, double dt_c, int neighbours);
 
   /// Proposes zero for Newton iterations without systems in the training set. Allocates nothing.

@@ -128,8 +128,8 @@ void CoupledInference::send_messages() {
       store_narrow(x_.col(k).data() + r, load_lane(sums_.col(k).data() + r));
 }
 
-/// Writes a layer's activations and, below them, their sums over later places per side. If `out` is null, writes only
-/// the activations, to g_.
+/// Writes a layer's activations and, below them, their sums over later places per side; if `out` is null, only
+/// activations, to g_.
 template <class Start>
 void CoupledInference::activate(const Start& start, NarrowColumns* out) {
   const Eigen::Index h = before_.rows();

@@ -12,8 +12,7 @@ bool within_bound(const Column<T>& state) {
   return sum<T>(state * state) < CoupledPasses<T>::longest_state * CoupledPasses<T>::longest_state;
 }
 
-/// Calls each(place, begin, end) for every place, in ascending or descending order. [begin, end) are its row's
-/// couplings.
+/// Calls each(place, begin, end) for places in ascending or descending order. [begin, end) are a row's couplings.
 template <class Each>
 void ascending(const std::vector<SystemPattern::Coupling>& couplings, Eigen::Index places, const Each& each) {
   std::size_t begin = 0;

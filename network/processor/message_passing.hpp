@@ -33,8 +33,8 @@ class MessagePassing {
   const Sizes& sizes() const { return sizes_; }
 
   /// x_nodes [node_in, nodes], x_edges [edge_in, edges]; sets y_edges [edge_out, edges] and, if given, y_nodes
-  /// [node_out, nodes]; without y_nodes the last node update is skipped. Allocates nothing if the tape was used for a
-  /// graph of the same size.
+  /// [node_out, nodes]; without y_nodes the last node update is skipped. Allocates nothing for a graph of the last
+  /// size.
   void forward(const Parameters<T>& p, const RodGraph& graph, const TensorIn<T>& x_nodes, const TensorIn<T>& x_edges,
                Tape& tape, Tensor<T>& y_edges, Tensor<T>* y_nodes = nullptr) const;
   /// Adds to `gradient`; dy_nodes is given if forward() had y_nodes. Derivatives of inputs are not computed.

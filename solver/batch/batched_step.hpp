@@ -14,8 +14,7 @@ namespace rodsweep {
 
 class BatchedStepper {
  public:
-  /// Copies the scenes' rods. Throws as BatchedRods does. With a `momentum_tolerance` steps keep the balance of
-  /// momentum.
+  /// Copies the scenes' rods. Throws as BatchedRods does. `momentum_tolerance`: steps keep the balance of momentum.
   BatchedStepper(const std::vector<Scene>& scenes, const StepSettings& settings,
                  std::optional<double> momentum_tolerance = {});
 

@@ -1,8 +1,8 @@
 // Conjugate gradients on A x = b with a history of residuals: the interface of two solvers. The unknowns are the
 // joints' multipliers (conjugate_gradient.hpp) or the motions of crossings (condensed_cg.hpp).
 //
-// Convergence: the norm of A's residual relative to that of b (`reference`), also with a nonzero guess. One solver per
-// guess and rod.
+// Convergence: the norm of A's residual relative to that of b (`reference`), also with a guess. One solver per guess
+// and rod.
 #pragma once
 
 #include <cstdint>

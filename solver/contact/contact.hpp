@@ -31,7 +31,7 @@ struct Contact {
   double s;                  ///< on a's axis, unless closest
   Vector3 normal;            ///< n
   double allowed = 0;        ///< lower limit of the gap |x_a - x_b| - R, at most 0 [m]
-  Vector3 impulse{0, 0, 0};  ///< on a, in this step so far, starting from the last: force times dt_c^2 [kg m]
+  Vector3 impulse{0, 0, 0};  ///< on a, in this step so far, starting from the last step's: force times dt_c^2 [kg m]
 };
 
 /// The gap of a contact where its capsules are nearest, along its normal, which follows() updates.

@@ -31,7 +31,7 @@ class ContactMotion {
   /// their forces in the world (momentum_balance.hpp).
   void apply(bool keeps_balance);
 
-  /// Discards all pushes. None of them may have settled.
+  /// Discards all pushes, which must not have settled.
   void clear();
 
  private:

@@ -40,7 +40,7 @@ void ContactProjection::start_step(double end_s) {
 }
 
 bool ContactProjection::find(bool keeps_balance) {
-  contacts_ = last_;  // an earlier Newton iteration of this step may have failed
+  contacts_ = last_;  // an earlier attempt of this step may have changed them
   if (!finder_.find(scene_, contacts_)) return false;
   fresh_ = true;
   keeps_balance_ = keeps_balance;

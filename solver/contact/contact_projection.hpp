@@ -10,11 +10,9 @@
 // once. Joints open by second-order terms only, which the next Newton iteration closes. Linear momentum is kept to
 // rounding, angular momentum to O(dtheta^2), the error of one rotation update.
 //
-// Multipliers of contacts that persist start from those of the last step; a converged result does not depend on the
-// start.
+// Multipliers of contacts that persist start from those of the last step. A converged result does not depend on them.
 //
-// Allocates only for more contacts than in any step before, for the first contact of a rod, and in a search of the
-// broad phase.
+// Allocates only for more contacts than before, for the first contact of a rod, and in the broad phase.
 #pragma once
 
 #include "solver/contact/contact.hpp"

@@ -45,8 +45,7 @@ std::vector<Front> fundamental(const EliminationTree& tree) {
   return fronts;
 }
 
-/// Every front, from the leaves on, takes in its children where that is cheaper. A child that was merged has no
-/// columns.
+/// Merges children into every front, from the leaves on, if that is cheaper. A merged child has no columns left.
 void merge(std::vector<Front>& fronts) {
   std::vector<std::vector<int>> children(fronts.size());
   std::vector<int> into(fronts.size());

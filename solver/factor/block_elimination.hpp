@@ -39,11 +39,11 @@ class BlockElimination {
     int position;  ///< of the neighbour in the elimination order
     int source;    ///< block of A whose columns are this block's rows; -1 for fill
     bool updated;  ///< by earlier eliminations: then it is in off_work_
-    bool first;    ///< whether it updates the neighbour's diagonal block first
+    bool first;    ///< whether this is the first update of the neighbour's diagonal block
   };
   struct Update {
     int target;  ///< of A_pq -= B_p^T X_q: entry of off_
-    bool first;  ///< whether it updates the target first
+    bool first;  ///< whether this is the target's first update
   };
   void list_updates();
   template <bool keep_inverse>

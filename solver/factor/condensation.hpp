@@ -10,11 +10,9 @@
 // self-stresses, and struts are solved exactly. With p = g - S y_c, which is zero in struts, the residual of A is
 //   r - A d = -J M^-1 p,
 // without a product with A. Stretch and bending must have a compliance above zero. Nearly inextensible rods lose digits
-// in the ratio of alpha~ to J M^-1 J^T. M is that of the rod, stiffened in iterations that keep the balance of
-// momentum.
+// in the ratio of alpha~ to J M^-1 J^T. M is stiffened in iterations that keep the balance of momentum.
 //
-// Struts with the same number of segments are eliminated together, one in each lane. Nothing allocates after
-// construction.
+// Struts with the same number of segments are eliminated together, one per lane. Nothing allocates after construction.
 #pragma once
 
 #include <vector>

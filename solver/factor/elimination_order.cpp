@@ -16,8 +16,7 @@ bool fills_in(const BlockMatrix& pattern, const std::vector<int>& order) {
     for (int k = pattern.row_begin(row); k < pattern.row_end(row); ++k)
       if (place_of(pattern.column(k)) < place_of(row)) left.push_back(pattern.column(k));
     if (left.empty()) continue;
-    // It suffices that the next of them is coupled with the others. It finds their missing couplings at its
-    // elimination.
+    // It suffices to check the next of them against the others: pairs of others are checked at its elimination.
     const int next =
         *std::max_element(left.begin(), left.end(), [&](int a, int b) { return place_of(a) < place_of(b); });
     for (const int other : left)
@@ -42,8 +41,7 @@ std::vector<int> minimum_degree_order(const BlockMatrix& pattern) {
 
 namespace {
 
-/// Appends the connected part of the pattern around `first` to `order`, by distance; returns where the last distance
-/// begins.
+/// Appends the connected part around `first` to `order`, by distance; returns where the last distance begins.
 std::size_t append_part(const BlockMatrix& pattern, int first, std::vector<bool>& seen, std::vector<int>& order) {
   const auto degree = [&](int row) { return pattern.row_end(row) - pattern.row_begin(row); };
   std::size_t level = order.size(), next_level = level + 1;

@@ -27,8 +27,7 @@ class IncompleteFactor {
   /// `order`: block rows, eliminated from the last to the first.
   IncompleteFactor(const BlockMatrix& pattern, const std::vector<int>& order, int levels);
 
-  /// `a` has the pattern of construction. Returns false if no multiple of the diagonal helps; the factor is invalid
-  /// then.
+  /// `a` has the pattern of construction. Returns false if no multiple of the diagonal helps; then it is invalid.
   bool factorise(const BlockMatrix& a);
 
   /// z = P^-1 r.

@@ -3,8 +3,7 @@
 // Crossings are the segments with more than two joints, those at a joint without arms (where rods cross; also at the
 // corners of a net, so that all of its crossings are alike), and one segment of every ring. All other free segments
 // form struts: chains from a crossing to another crossing, to a held segment or to a free end. Eliminating the segments
-// of a strut couples its two ends. Links are the joints between two crossings, or between a crossing and a held
-// segment.
+// of a strut couples its two ends. Links are the joints between two crossings, or a crossing and a held segment.
 //
 // A rod without crossings consists of struts without ends.
 #pragma once

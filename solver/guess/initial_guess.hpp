@@ -108,8 +108,7 @@ class GuardedGuess : public InitialGuess {
   std::vector<VectorX> scratch_;  ///< per rod
 };
 
-/// Uses another guess at the first Newton iteration of a step, zero at the others: for guesses trained on first ones
-/// only.
+/// Uses another guess at the first Newton iteration of a step, zero at the others: for guesses trained on first ones.
 class FirstGuess : public InitialGuess {
  public:
   explicit FirstGuess(std::unique_ptr<InitialGuess> inner) : inner_(std::move(inner)) {}

@@ -16,7 +16,7 @@ class NormalEquations {
   /// Below 1e-12 a pivot is rounding error.
   explicit NormalEquations(int most, double smallest_pivot = 1e-12);
 
-  /// Entries of G, of which both triangles are set, and of g.
+  /// Entries of G and g for the first `count` vectors; set both triangles of G.
   double& gram(int row, int column) { return entries(gram_, column)[row]; }
   double& right_side(int row) { return entries(coefficients_, 0)[row]; }
 

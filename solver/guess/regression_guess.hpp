@@ -6,8 +6,7 @@
 // (Tikhonov). If A did not change, this is exact for every b in the span of the b_k. If A changes, SubspaceGuess is the
 // best combination of the same solutions, at a product with A for each.
 //
-// The normal equations cost one pass over the stored right-hand sides: their dot products with each other are known
-// from earlier steps.
+// The normal equations cost one pass over the stored right-hand sides. Earlier steps give their dot products.
 #pragma once
 
 #include <vector>

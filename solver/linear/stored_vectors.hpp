@@ -5,7 +5,7 @@
 //
 // As A is symmetric, V^T A V = G + G^T with G = V^T H, H = (D / 2 + L) V, D the diagonal of A and L its part below the
 // diagonal: half the blocks, and half the entries of the diagonal ones. A pass forms H and G of one panel in registers,
-// and its products with all other panels: 57 + 48 eight-lane multiply-adds per block row, 25 more for each single
+// and its products with all other panels: 57 + 48 multiply-adds of eight lanes per block row, 25 more per single
 // vector.
 #pragma once
 
@@ -40,8 +40,7 @@ class StoredVectors {
   const Lane8* single(int index) const { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
   Lane8* single(int index) { return singles_.data() + static_cast<std::size_t>(index) * unknowns_ / 6; }
 
-  /// The products of A and one panel, or a part of it: its rows of half_ and dots_, and all those of the single
-  /// vectors.
+  /// Sets the rows of half_ and dots_ of one panel or a part of it, and of all single vectors.
   template <int singles>
   void pass(const BlockMatrix& a, const VectorX& b, int panel, int part);
   /// Calls take(block row, its six entries of V c).

@@ -1,6 +1,6 @@
 // Vectors and quaternions of as many segments as a register has lanes, one segment per lane: neighbours on one rod
-// (lane_records.hpp), or the same segment of several rods (batch/). Functions for single joints as well are templates
-// of the number T, a double or a Lane.
+// (lane_records.hpp), or the same segment of several rods (batch/). Functions that single joints use as well are
+// templates of the number type T, a double or a Lane.
 //
 // The rotation maps are those of rotation.hpp.
 #pragma once

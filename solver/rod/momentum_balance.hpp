@@ -8,7 +8,7 @@
 // step: p* - p is then M^-1 dt_c^2 times the loads. The step of Deul et al. 2018 and Shao et al. 2021 does not use g:
 // there p - p* = sum_j M^-1 J_j^T dlambda_j, with J at each Newton iteration's own positions.
 //
-// Geometric stiffness K = -d(J^T lambda)/dp: the force f of a joint at its arm r resists a rotation of the segment by
+// Geometric stiffness K = -d(J^T lambda)/dp: the force f of a joint at its arm r gives the segment the stiffness
 // (f.r) I - f r^T. Only the diagonal part across the axis is kept, the sum of (f.r) over its joints, tension times
 // length on a rod: M + K stays diagonal in the segment's frame and A keeps its pattern (Tournier et al. 2015, Stable
 // Constrained Dynamics; Andrews et al. 2017, Geometric Stiffness for Real-time Constrained Multibody Dynamics).

@@ -152,8 +152,8 @@ struct Lattice : RodParameters {
 /// zero length at the root). Both moduli of an edge of radius r are those of the widest edge at the ground times (r /
 /// its radius)^`modulus_exponent`. A joint is half of one edge and half of the next in series. If it is bent by theta
 /// at rest, it is softer by cos(theta / 2)^2 about the axis of that bend, because its constraint measures only that
-/// share. An "inextensible" joint can hold the weight above it. The initial shape is without load, as trees grow
-/// against gravity: at first it sags a little.
+/// share. An "inextensible" joint is stiff enough for the weight above it. The initial shape is without load: at
+/// first gravity makes it sag a little.
 struct Tree : RodParameters {  ///< radius and moduli: those of the trunk at the ground
   static constexpr const char* name = "tree";
   TreeShape shape;

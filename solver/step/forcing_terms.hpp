@@ -2,8 +2,7 @@
 // 17, choice 2 with its safeguard), relative residuals eta_j of the linear solve,
 //   eta_0 given,   eta_j = gamma (|b_j| / |b_{j-1}|)^2,   gamma = 0.9,
 // at least gamma eta_{j-1}^2 if that exceeds 0.1, at most eta_0, and not below the tolerance at which the residual
-// is half of Newton's own tolerance. The iterations converge superlinearly; with a fixed tolerance they converge
-// linearly.
+// is half of Newton's own tolerance. Convergence is superlinear; with a fixed tolerance it is linear.
 #pragma once
 
 #include <vector>

@@ -13,8 +13,7 @@
 // constraint has two particles and one quaternion. Here positions and orientations are those of segment centres, so a
 // constraint has two of each and acts at the joint, as in `direct`. Weights are not free: w is the segment's. A
 // quaternion's weight is i/4, with which q moves as the segment does under a torque across its axis. Then their
-// denominators follow (w_q 4 r^2 = i r^2), and their corrections except for the part along q, which normalisation
-// removes.
+// denominators follow (w_q 4 r^2 = i r^2), and their corrections except the part along q, which normalisation removes.
 #pragma once
 
 #include "solver/step/gauss_seidel.hpp"
