@@ -33,8 +33,8 @@ class StateHistory {
   /// The motion `ago` steps before the last.
   const Motion& motion(std::size_t segment, std::size_t ago = 0) const { return motion_[segment][ago]; }
 
-  /// A copy with a random walk added to the free segments' velocities, of these standard deviations at its end, and
-  /// with the positions that follow from them.
+  /// A copy with a random walk added to the free segments' velocities, and with the positions that follow from them.
+  /// The walk's standard deviations at its end are `velocity_noise` and `spin_noise`.
   StateHistory disturbed(const Rod& rod, double velocity_noise, double spin_noise, SplitMix& random) const;
 
  private:

@@ -1,5 +1,5 @@
 // A recorded simulation for training: for every stored linear system the state from which it was assembled and its
-// exact solution, so that A, b and every feature can be formed again, bit for bit.
+// exact solution. From these A, b and every feature can be formed again, bit for bit.
 //
 //   assemble_again(system, constraint_dt_s, rod, linear_system)   gives A and b, and A solution = b
 #pragma once

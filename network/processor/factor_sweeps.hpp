@@ -1,7 +1,7 @@
 // A learned block factorisation: an operator that is linear and symmetric, as A^-1 is.
 //
 // Block elimination of a tree's joints from the tips to the root (solver/factor/block_factor.hpp) needs the inverses of
-// the Schur complements S_k = A_kk - sum over children c of B_c^T S_c^-1 B_c, where B_c is A's block of a child's row
+// the Schur complements S_k = A_kk - sum over children c of B_c^T S_c^-1 B_c. B_c is A's block of a child's row
 // and its parent's column. It then solves A y = r by two passes. Here a network replaces S_k^-1 by symmetric matrices,
 // N_k on the diagonal and T_k beside B_k. It predicts them for all joints at once from three generations of the tree:
 //   e_k = ramp(W a_k + V t_k + b),   t_k = exp(-height_k / 1, 4, 16, 64), beside_k / 4

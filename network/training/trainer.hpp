@@ -1,5 +1,5 @@
-// Trains a COPINGNet on examples: mini-batches in a fixed number of shards, whose gradients are summed in a fixed
-// order, so that any distribution of the shards over processes gives the same bits.
+// Trains a COPINGNet on examples. Mini-batches have a fixed number of shards, whose gradients are summed in a fixed
+// order. Therefore any distribution of the shards over processes gives the same bits.
 //
 // Threads share the shards of a step, and the batches of losses(). All read the same examples.
 //

@@ -1,4 +1,4 @@
-// The time step of time_step.hpp with the direct solve, for as many equal chains at once as a register has lanes, which
+// The time step of time_step.hpp with the direct solve, for as many equal chains at once as a register has lanes. This
 // makes data generation fast. A rod's result equals that of a single rod up to rounding, and has the same bits in every
 // batch: a converged lane does not change while the others iterate, and a lane whose solve failed does not change
 // again. Nothing allocates after construction.

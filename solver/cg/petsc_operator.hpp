@@ -1,7 +1,7 @@
 // A BlockMatrix as a PETSc matrix that has only a product, with or without the blocks, and a diagonal.
 //
-// It is its own matrix class, not a MATSHELL: that looks up its context by name and checks for scalings and shifts in
-// every product, which costs as much as the product itself on short rods.
+// It is its own matrix class, not a MATSHELL. A MATSHELL looks up its context by name and checks for scalings and
+// shifts in every product. On short rods that costs as much as the product itself.
 #pragma once
 
 #include <petscmat.h>

@@ -5,7 +5,7 @@
 // In every Newton iteration the contacts are linearised at the current positions: normal, gap, and one common point
 // midway between the surfaces, at which equal and opposite impulses act on both segments. Then the multipliers are
 // iterated: a sweep in a fixed order treats every segment as free, and then the joints respond (contact_motion.hpp).
-// The mobility of a rod is at most that of its free segments, so both together are a step of a projected gradient
+// The mobility of a rod is at most that of its free segments. So both together are a step of a projected gradient
 // method with a safe metric, to which Nesterov's acceleration applies (APGD, Mazhar et al. 2015). Then all bodies move
 // once. Joints open by second-order terms only, which the next Newton iteration closes. Linear momentum is kept to
 // rounding, angular momentum to O(dtheta^2), the error of one rotation update.

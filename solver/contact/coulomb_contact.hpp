@@ -5,7 +5,7 @@
 //
 // A relaxation updates the normal part first, then friction (Jean 1999): the friction that stops the slip, if it is
 // within the cone, else a step of projected gradient descent. Its step size is that of the larger eigenvalue of W
-// across the normal, which is safe in every direction, also if a body rolls much more easily than it slides.
+// across the normal. It is safe in every direction, also if a body rolls much more easily than it slides.
 #pragma once
 
 #include "solver/numbers/types.hpp"

@@ -1,5 +1,5 @@
-// The normal equations G c = g of a guess that combines a few stored vectors v_k in order of preference, with their
-// Gram matrix G in some inner product. Scaled to a unit diagonal, G = L D L^T is factorised in that order. A vector
+// The normal equations G c = g of a guess that combines a few stored vectors v_k in order of preference. G is their
+// Gram matrix in some inner product. Scaled to a unit diagonal, G = L D L^T is factorised in that order. A vector
 // that those before it nearly span is dropped: its pivot, the squared share of it outside their span, is below
 // `smallest_pivot`. Kernels process a whole column at a time: entry by entry would cost as much as forming G on a short
 // rod. Nothing allocates after construction.

@@ -9,7 +9,7 @@
 //   (u, phi) = (M + K)^-1 (J^T dlambda - g)
 //
 // All in the segments' and joints' own frames (linearization.hpp): rotating or shifting a rod changes neither A nor b
-// (Deul et al. 2018; Shao et al. 2021). A is symmetric positive definite, with one 6x6 block row per joint, which is
+// (Deul et al. 2018; Shao et al. 2021). A is symmetric positive definite, with one 6x6 block row per joint. A joint is
 // coupled to all joints that share a dynamic segment with it, siblings at a branching included. Nothing allocates after
 // construction.
 #pragma once

@@ -22,8 +22,8 @@ void Ring::check() const {
 SceneSize Ring::size() const { return {segments, segments}; }
 
 // The frames are those of the untwisted polygon, in which all joints bend equally. The twist is in the rest shape: the
-// material of segment i is rotated back by i times the twist of a joint relative to its frame, so that the rest
-// rotation of a joint stays small, also where the ends were joined. For a circular cross-section that is the same rod.
+// material of segment i is rotated back by i times the twist of a joint relative to its frame. So the rest rotation of
+// a joint stays small, also where the ends were joined. For a circular cross-section that is the same rod.
 void Ring::build(Scene& scene) const {
   const double side = length_m / segments, turn = 2 * pi / segments, twist = twist_deg * pi / 180 / segments;
   const Quaternion top = turn_between(Vector3::UnitZ(), Vector3::UnitX());

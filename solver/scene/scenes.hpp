@@ -72,8 +72,8 @@ struct BendingRod : OpenRod {
   void build(Scene& scene) const;
 };
 
-/// Joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi windings], so its axis is vertical (y)
-/// and it hangs from its first segment; the rest shape is the initial shape.
+/// Joints on the curve (R cos t, -H t / (2 pi windings), R sin t), t in [0, 2 pi windings]. The axis is vertical (y),
+/// and the rod hangs from its first segment; the rest shape is the initial shape.
 struct Helix : OpenRod {
   static constexpr const char* name = "helix";
   double helix_radius_m = 0.5;
@@ -122,7 +122,7 @@ struct Net : RodParameters {
 /// `initial_angle_deg` about z, from x towards y. Where rods cross, the centres of their segments are joined to that of
 /// the first of them. Each joint is as stiff as `node_stiffness` rods two radii long: kappa G A / 2r against shifting,
 /// EI / 2r against rotation, on average over the axes. In the cubic lattice the stiffness is equal about every axis. In
-/// the others, where the axis between two rods is not an axis of their frames, it is 0.36 to 1.5 times that about some
+/// the others, the axis between two rods is not an axis of their frames. There it is 0.36 to 1.5 times that about some
 /// axes (body-centred), or 0.31 to 1.58 times (octet). Every rod extends half a segment beyond its last nodes, so the
 /// material of a node counts once for every rod through it. The lattice is one rod of many loops with more constraints
 /// than degrees of freedom. Stretch is `physical` by default, because multipliers of rigid joints are not unique.

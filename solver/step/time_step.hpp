@@ -6,9 +6,9 @@
 //   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
 //   v, w from the motion (free_flight.hpp)
 // If the projection keeps the balance of momentum (momentum_balance.hpp), Newton starts from the last step's lambda,
-// from x + dt (2 v - v_before) and q likewise, and ends when momentum is in balance as well. If two thirds of the
+// from x + dt (2 v - v_before) and q likewise. It ends when momentum is in balance as well. If two thirds of the
 // iterations do not come near that (a slender rod that hits the floor end-on can fold in many ways), the step is undone
-// and made as above.
+// and repeated as above.
 // Loads: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
 // allocates after construction, except for contacts (contact_projection.hpp).
 #pragma once
