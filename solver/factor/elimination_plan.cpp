@@ -52,8 +52,8 @@ EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<i
 }
 
 FactorTooLarge::FactorTooLarge(int rows, double needed, double most)
-    : std::runtime_error("a direct solve of " + std::to_string(rows) + " joints would need " + gibibytes(needed) +
-                         " for its factor; the most is " + gibibytes(most)),
+    : std::runtime_error("a direct solve of " + std::to_string(rows) + " joints needs " + gibibytes(needed) +
+                         " for its factor; the limit is " + gibibytes(most)),
       block_rows(rows),
       bytes(needed) {}
 

@@ -106,8 +106,7 @@ void check_least(const char* quantity, int value, int least, const char* why) {
 
 void check_segments(const char* scene, double segments) {
   if (segments > most_segments)
-    throw SceneError(std::string(scene) + " of so many segments is too large; the most is " +
-                     std::to_string(most_segments));
+    throw SceneError(std::string(scene) + " has too many segments; the limit is " + std::to_string(most_segments));
 }
 
 }  // namespace rodsweep

@@ -183,8 +183,8 @@ TEST_CASE("a scene whose factor needs too much memory is refused before it runs,
   };
   Json job = job_with_scene(R"("type": "lattice", "nodes_x": 4, "segments": 2, "mesh_m": 0.2, "radius_m": 0.01)");
   CHECK_THAT(refusal_of_factors(job),
-             Catch::Contains("solve: task 0: a direct solve of 400 joints would need 0.00") &&
-                 Catch::Contains("; the most is 0.000931 GiB; must be a smaller scene, or method \"cg\" with "
+             Catch::Contains("solve: task 0: a direct solve of 400 joints needs 0.00") &&
+                 Catch::Contains("0.000931 GiB; must be a smaller scene, or method \"cg\" with "
                                  "\"reference\": \"cg\" (no factorisation)"));
   job["solve"]["reference"] = "cg";
   CHECK(refusal_of_factors(job) == "");

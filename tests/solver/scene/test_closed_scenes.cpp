@@ -157,7 +157,7 @@ TEST_CASE("rings and nets that cannot be are refused by what is wrong with them"
   CHECK_NOTHROW(build_scene(net));
   net.rows = net.columns = 1000;
   net.segments = 1000;
-  CHECK_THROWS_WITH(validate(net), "a net of so many segments is too large; the most is 10000000");
+  CHECK_THROWS_WITH(validate(net), Catch::StartsWith("a net ") && Catch::EndsWith(" 10000000"));
   BendingRod both = test::bending_rod(4);
   both.stretch = Stretch::physical;
   both.stretch_compliance_per_j = 1e-6;
