@@ -1,4 +1,4 @@
-# rodsweep: every target does its own set-up, packages included. `make help` lists them.
+# rodsweep: each target does its own set-up, including packages. `make help` lists the targets.
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
@@ -17,14 +17,14 @@ FUZZ_SECONDS  ?= 600
 
 yes = $(filter-out 0 no off,$(1))
 packages = $(if $(call yes,$(SKIP_PACKAGES)),true,cmake/packages.sh packages.txt $(1))
-# $(call configure,PRESET,FOLDER): CMakePresets.json says how; quiet unless it fails; a folder that exists keeps its generator.
+# $(call configure,PRESET,FOLDER): by CMakePresets.json, quiet unless it fails. An existing folder keeps its generator.
 configure = generator=$$(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' $(2)/CMakeCache.txt 2>/dev/null) || true; \
   log=$$(cmake --preset $(1) -B $(2) $${generator:+"-G$$generator"} $(if $(BUILD_TYPE),-DCMAKE_BUILD_TYPE=$(BUILD_TYPE)) \
   $(if $(call yes,$(PORTABLE)),-DRODSWEEP_NATIVE=OFF) $(if $(call yes,$(CHECKS)),-DRODSWEEP_CHECKS=ON) 2>&1) \
   || { echo "$$log"; exit 1; }
-# $(call job,NAME): its file; the shell looks for it, since NAME may be one of its variables.
+# $(call job,NAME): the file of a job. The shell searches for it, since NAME may be a shell variable.
 job = $$(ls jobs/$(1).json jobs/*/$(1).json 2>/dev/null)
-# $(call study,NAME): a job that is done is not run again, one that was stopped goes on.
+# $(call study,NAME): runs a job; continues it if it was stopped, does nothing if it is done.
 study = [ -e results/$(1).h5 ] && resume=--resume || resume=; \
   cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run $(call job,$(1)) -o results/$(1).h5 $$resume </dev/null || [ $$? = 3 ]
 studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
@@ -72,7 +72,7 @@ configure:
 build: configure
 	@cmake --build $(BUILD) -j $(CORES) --target rodsweep
 
-# One worker on every core and the master, which sleeps, beside them. Exit code 3: some tasks failed, the rest has figures.
+# One worker per core; the master sleeps, so it shares a core. Exit code 3: some tasks failed, the rest has figures.
 demo: build
 	@mkdir -p results; resume=; [ ! -e results/demo.h5 ] || resume=--resume; \
 	code=0; cmake/mpi-env.sh mpirun -n $$(($(CORES) + 1)) $(BUILD)/rodsweep run jobs/demo.json -o results/demo.h5 $$resume </dev/null || code=$$?; \
@@ -81,7 +81,7 @@ demo: build
 	$(PYTHON) analysis/summary.py results/demo.h5; \
 	exit $$code
 
-# Of the demo, which is run if it wasn't, and of those studies that are there; data sets have nothing to compare.
+# Of the demo, which runs first if necessary, and of the studies that exist. Data sets have nothing to compare.
 report:
 	@[ -e results/demo.h5 ] || $(MAKE) demo || [ -e results/demo.h5 ]
 	@$(call packages,build)
@@ -90,28 +90,28 @@ report:
 	done; \
 	$(PYTHON) analysis/report.py $$files --skip --title 'What the sweeps found' -o results/report.html --force
 
-# Everything under analysis/results but its README.
+# Draws everything in analysis/results except its README.
 studies: build
 	@mkdir -p results; for study in $(studies); do \
 	  $(call study,$$study); \
 	done
 	@analysis/results/draw.sh results
 
-# The settings of rods.h5 and lattices.h5, changed one at a time: what was chosen on validation, and what each costs.
+# Variants of rods.h5 and lattices.h5 with one setting changed each: their validation results and their costs.
 variants: build
 	@mkdir -p results; $(call study,rods_data); $(call study,lattices_data)
 	@for family in rods lattices; do analysis/results/variants.py $(BUILD)/rodsweep results $$family; done
 	@$(call study,rods_front)
 	@analysis/results/draw.sh results variants
 
-# What the network of the paper owes to each of its settings.
+# The effect of each setting on the network of the paper.
 ablation: build
 	@mkdir -p results; for data in bending_data bending_data_100 helix_data helix_data_100; do $(call study,$$data); done
 	@for scene in bending helix; do analysis/results/variants.py $(BUILD)/rodsweep results ablation_$$scene; \
 	  for study in ablation_$$scene ablation_$${scene}_step; do $(call study,$$study); done; done; $(call study,ablation_long_term)
 	@analysis/results/draw.sh results ablation
 
-# By job and task; a film of the forest would take as long as all of these. What exists is not drawn again.
+# By job and task. A film of the forest would take as long as all of these. Existing films are kept.
 picture_jobs = pictures side_by_side lattice_sag lattice_dropped lattice_pressed net_wind
 pictures = pictures:0:helix:along pictures:1:net:rod pictures:2:ring:along pictures:3:tree:radius \
   pictures:4:falling:rod pictures:5:knot:along pictures:6:drape:rod side_by_side:0:side_by_side:rod \
@@ -129,7 +129,7 @@ pictures: build
 	  done; \
 	done
 
-# Three tests on two cores, since those under mpirun wait for it.
+# Three tests per two cores, since tests under mpirun mostly wait.
 test: configure
 	@cmake --build $(BUILD) -j $(CORES)
 	@ctest --preset default --test-dir $(BUILD) -j $$((3 * $(CORES) / 2))
@@ -140,20 +140,20 @@ test-long: configure
 	@ctest --preset long --test-dir $(BUILD) -j $(CORES)
 	@$(MAKE) sanitize
 
-# A Slurm and hosts of their own, in namespaces that end with the test. One after the other, since their times are told.
+# With its own Slurm and hosts, in namespaces that end with the test. Runs tests one by one, since they report times.
 test-cluster: configure
 	@$(call packages,cluster)
 	@cmake --build $(BUILD) -j $(CORES) --target program_tests
 	@ctest --preset cluster --test-dir $(BUILD)
 
-# Two doubles in a register, another rounding and another compiler's code: what `make test` on x86 doesn't see.
+# Finds what `make test` on x86 does not: two doubles per register, other rounding, another compiler's code.
 test-arm:
 	@$(call packages,build arm)
 	@$(call configure,arm,$(BUILD)-arm)
 	@cmake --build $(BUILD)-arm -j $(CORES)
 	@ctest --preset arm --test-dir $(BUILD)-arm -j $(CORES)
 
-# The bench programs are outside of `all`: only this target builds and runs them.
+# Only this target builds and runs the bench programs; they are not in `all`.
 bench:
 	@$(call packages,build run develop)
 	@$(call configure,bench,$(BUILD))
@@ -165,7 +165,7 @@ sanitize:
 	@cmake --build $(BUILD)-sanitize -j $(CORES) --target unit_tests
 	@ctest --preset sanitize --test-dir $(BUILD)-sanitize -j $(CORES)
 
-# By clang, whose coverage guides what is tried.
+# Uses clang, whose coverage guides the search.
 fuzz: export CC = clang
 fuzz: export CXX = clang++
 fuzz:
@@ -178,7 +178,7 @@ schema: build
 	@$(BUILD)/rodsweep schema >$(BUILD)/schema.json && mv $(BUILD)/schema.json jobs/schema.json
 	@docs/tools/keys.py --update
 
-# README.md, docs/claims.md and others, of the templates beside them and the tables of analysis/results.
+# Writes README.md, docs/claims.md and others from the templates beside them and the tables of analysis/results.
 pages:
 	@docs/tools/pages.py
 
@@ -194,14 +194,14 @@ format-check:
 	@$(call packages,format)
 	@clang-format --dry-run -Werror $(sources) && echo 'format: clean'
 
-# Reads how things are compiled from a folder of its own: clang has no use for the compiler's precompiled headers.
+# Has its own build folder, since clang cannot read the compiler's precompiled headers.
 tidy:
 	@$(call packages,build run develop)
 	@$(call configure,tidy,$(BUILD)-tidy)
 	@cmake --build $(BUILD)-tidy --target revision_header
 	@run-clang-tidy -quiet -p $(BUILD)-tidy -j $(CORES) '^$(CURDIR)/(solver|network|runner)/.*\.cpp$$'
 
-# The list of what was installed stays with it, for `make uninstall`.
+# `make uninstall` reads the list of installed files, which is installed with them.
 installed = share/rodsweep/installed.txt
 install: build
 	@prefix=$$(realpath -m -- "$(PREFIX)"); cmake --install $(BUILD) --prefix "$$prefix"; \

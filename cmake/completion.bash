@@ -1,4 +1,4 @@
-# Completes rodsweep in bash: its commands and options, as --help lists them, job files and results files.
+# Bash completion for rodsweep: commands and options as in --help, job files, results files.
 _rodsweep() {
   local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} files='!*.h5'
   if [ "$COMP_CWORD" = 1 ]; then

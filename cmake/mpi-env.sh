@@ -1,16 +1,16 @@
 #!/bin/sh
-# mpi-env.sh COMMAND...: runs a command with the Open MPI settings that one machine, container or not, root or not, needs.
-# make demo and every test go through it. What the user has set already wins. Clusters don't need it: see jobs/slurm.
+# mpi-env.sh COMMAND...: runs a command with Open MPI settings for one machine, with or without a container or root.
+# make demo and every test use it. Settings of the user have priority. Clusters do not need it: see jobs/slurm.
 set -eu
 default() { eval "export $1=\"\${$1:-$2}\""; }
 
 default OMPI_ALLOW_RUN_AS_ROOT 1
 default OMPI_ALLOW_RUN_AS_ROOT_CONFIRM 1
-default OMPI_MCA_rmaps_base_oversubscribe 1               # workers on every core, and the master beside them
+default OMPI_MCA_rmaps_base_oversubscribe 1               # one worker per core, and the master
 default OMPI_MCA_hwloc_base_binding_policy none           # --bind-to none: the master must not share one worker's core
 default OMPI_MCA_mpi_yield_when_idle 1
 default OMPI_MCA_btl_vader_single_copy_mechanism none     # containers forbid process_vm_readv
-default OMPI_MCA_pml ob1                                  # no search for network hardware: start-up in half the time
+default OMPI_MCA_pml ob1                                  # no search for network hardware: halves the start-up time
 default OMPI_MCA_btl self,vader
-default OMPI_MCA_orte_execute_quiet 1                     # no banner of mpirun's about how ranks ended, whose own words it buries
+default OMPI_MCA_orte_execute_quiet 1                     # no banner of mpirun after the messages of the ranks
 exec "$@"

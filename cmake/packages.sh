@@ -1,6 +1,6 @@
 #!/bin/sh
-# packages.sh LIST GROUP...: installs the Debian packages of these groups of LIST that are missing. Silent when none is.
-# Root installs with apt-get; for anyone else it prints the line to run and fails.
+# packages.sh LIST GROUP...: installs the missing Debian packages of these groups of LIST. No output if none is missing.
+# Root installs with apt-get; for other users it prints the command to run and fails.
 set -eu
 list=$1
 shift

@@ -1,4 +1,4 @@
-// A clock that tests move by hand, as a TimeSource.
+// A TimeSource that tests advance by hand.
 #pragma once
 
 #include "solver/step/stopwatch.hpp"
@@ -12,7 +12,7 @@ class HandClock {
   static TimePoint now() { return time_; }
   static void pass(Seconds time) { time_ += std::chrono::duration_cast<TimePoint::duration>(time); }
 
-  /// Moves on by `tick` whenever it is read.
+  /// The time by which each call of ticking() advances the clock.
   static void set_tick(Seconds tick) { tick_ = tick; }
   static TimePoint ticking() {
     pass(tick_);

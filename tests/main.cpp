@@ -1,4 +1,4 @@
-// For what needs neither MPI nor PETSc.
+// For tests without MPI and PETSc.
 #include "tests/run_cases.hpp"
 
 int main(int argc, char** argv) { return run_cases(argc, argv); }

@@ -1,4 +1,4 @@
-// Test programs that solve: MPI and PETSc start once, around all cases.
+// For test programs that solve: one MPI and PETSc session around all cases.
 #include "solver/cg/petsc_session.hpp"
 #include "tests/run_cases.hpp"
 

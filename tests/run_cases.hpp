@@ -1,6 +1,6 @@
-// Catch2 compiled once for all test programs (it takes longer than any test of ours); each has a main() of its own
-// around it.
+// Compiles Catch2 once for all test programs, since that takes longer than any of our tests. Each program has its own
+// main().
 #pragma once
 
-/// Runs the cases that the command line chooses; returns the exit code.
+/// Runs the cases that the command line selects; returns the exit code.
 int run_cases(int argc, char** argv);

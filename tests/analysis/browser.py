@@ -37,12 +37,12 @@ class Browser:
         self.folder.cleanup()
 
     def send(self, method, **parameters):
-        """The result of a command of the DevTools protocol."""
+        """Runs a command of the DevTools protocol; returns its result."""
         return self.driver.execute_cdp_cmd(method, parameters)
 
     def open(self, path, width=1280, height=900, dark=False, still=True, phone=False):
-        """Shows a file and waits until its scripts have run and its frames are drawn."""
-        for log in ("browser", "performance"):    # empties them
+        """Shows a file; waits until its scripts have run and its frames are drawn."""
+        for log in ("browser", "performance"):    # empties the logs
             self.driver.get_log(log)
         self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=phone)
         features = {"prefers-color-scheme": "dark" if dark else "light",
@@ -52,22 +52,22 @@ class Browser:
         self.settle()
 
     def settle(self):
-        """Until what was changed is drawn."""
+        """Waits until changes are drawn."""
         self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(null))))")
 
     def run(self, code):
-        """The value of a JavaScript expression in the page; of a promise, the value that it resolves to."""
+        """The value of a JavaScript expression in the page; of a promise, its resolved value."""
         found = self.send("Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True)
         if "exceptionDetails" in found:
             raise RuntimeError(found["exceptionDetails"].get("exception", found["exceptionDetails"]).get("description"))
         return found["result"].get("value")
 
     def complaints(self):
-        """Errors and warnings of the page's console, uncaught exceptions among them."""
+        """Errors, warnings and uncaught exceptions on the page's console."""
         return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
 
     def requests(self):
-        """Addresses that the page requested, without those of data within it."""
+        """Addresses that the page requested, except data URLs."""
         events = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         urls = [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
         return [url for url in urls if not url.startswith("data:")]
@@ -96,6 +96,6 @@ class Browser:
         self.settle()
 
     def paper(self):
-        """What is printed: the bytes of a PDF."""
+        """The printed page: the bytes of a PDF."""
         printed = self.send("Page.printToPDF", printBackground=True, preferCSSPageSize=True)
         return base64.b64decode(printed["data"])

@@ -1,4 +1,4 @@
-"""Bases of the tests of analysis/: planted files in a folder of their own, and scripts run on them as a user does."""
+"""Base classes for tests of analysis/: planted files in a temporary folder, and scripts run on them as by a user."""
 
 import contextlib
 import importlib
@@ -19,15 +19,15 @@ HEADS = {".pdf": b"%PDF", ".png": b"\x89PNG"}
 
 
 def laid_out(page, folder, name, *_):
-    """In the place of Page.save(): draws without pixels and files, in a fifth of the time."""
+    """Replaces Page.save(): lays out without pixels and files, in a fifth of the time."""
     page.figure.draw_without_rendering()
     sys.modules["rodsweep.drawing.layout"].plt.close(page.figure)
     return [os.path.join(folder, name + ending) for ending in HEADS]
 
 
 def run(name, *arguments, files=False):
-    """What a script prints and its exit code, in this process: a start of Python with its libraries takes a second.
-    files: figures are written and looked at, not only laid out."""
+    """Runs a script in this process, since a new Python takes a second to start. Returns its output and exit code.
+    files: write the figures instead of laying them out only."""
     script = importlib.import_module(name.removesuffix(".py"))
     out, error, code = io.TextIOWrapper(io.BytesIO(), "utf-8", write_through=True), io.StringIO(), 0
     with contextlib.ExitStack() as around:
@@ -59,13 +59,13 @@ class Folder(unittest.TestCase):
         self.folder, self.path = folder.name, os.path.join(folder.name, "sweep.h5")
 
     def open(self, **settings):
-        """A planted sweep, until the next one is opened or this one is changed."""
+        """A planted sweep; valid until the next open() or changed()."""
         self.close()
         synthetic.Sweep(**settings).write(self.path)
         return self.opened()
 
     def changed(self, change):
-        """The open file after change(its h5py.File)."""
+        """The file, opened again after change(its h5py.File)."""
         self.close()
         with synthetic.h5py.File(self.path, "r+") as h5:
             change(h5)
@@ -81,7 +81,7 @@ class Folder(unittest.TestCase):
             self.file.h5.close()
 
     def simulations(self, **settings):
-        """A planted sweep and all its simulations that are complete."""
+        """A planted sweep and all its complete simulations."""
         file = self.open(**settings)
         return file, measures.simulations(file, np.ones(file.task_count, dtype=bool))
 
@@ -102,7 +102,7 @@ class Scripts(Folder):
         return done
 
     def refused(self, name, *arguments, words):
-        """In one line, with these words: the line."""
+        """Checks that the script fails with one line that contains these words; returns the line."""
         error = self.run_script(name, *arguments, code=2).stderr
         self.assertEqual(error.count("\n"), 1, error)
         self.assertTrue(error.startswith(f"{name}: "), error)

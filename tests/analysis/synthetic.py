@@ -1,7 +1,7 @@
 """Results files with planted numbers, in the layout of runner/file/columns.cpp, for the tests of the analysis scripts.
 
-Every solve of simulation s with N segments takes Plant.zero_iterations() from zero and that times Plant.ratio() with a
-guess; the times are planted in the same way. Put first among a test's imports: it makes analysis/ importable.
+Every solve of simulation s with N segments takes Plant.zero_iterations() from zero, and that times Plant.ratio() with a
+guess. Times are planted in the same way. Import this module first in a test: it makes analysis/ importable.
 """
 
 import itertools
@@ -16,13 +16,13 @@ sys.path.insert(0, ANALYSIS)
 import h5py  # noqa: E402
 
 GUESSES = ("zero", "previous", "quadratic", "oracle(0.1)")
-LEVELS = ("newton_residual", "joint_gap")   # before every solve, and at the end of a step
+LEVELS = ("newton_residual", "joint_gap")   # before every solve, and after the last iteration of a step
 ALONG = ("length_drift", "kinetic_energy_j", "potential_energy_j", "elastic_energy_j")
 TOLERANCES = tuple(10.0 ** -k for k in range(1, 9))
 
 
 class Plant:
-    """Known qualities. Override what a test needs; `draw` is the number of the sample."""
+    """Known qualities; tests override some. `draw` is the number of the sample."""
 
     quality = {"zero": 1.0, "previous": 0.5, "linear": 0.6, "quadratic": 0.25, "oracle(0.1)": 0.1, "oracle(0.01)": 0.05}
 
@@ -39,7 +39,7 @@ class Plant:
         return 0.0 if guess == "zero" else 1e-7 * segments
 
     def at_step(self, guess, step):
-        """A factor of the iterations, by step."""
+        """A factor of the iterations in each step."""
         return np.ones(len(step))
 
     def length_drift(self, step, steps, draw, guess):
@@ -63,7 +63,7 @@ class Plant:
     rest_s = 3e-6
     drift = 1e-3
     gap = 2e-3
-    penetration = None   # a number: that of every step, in a file of rods that touch
+    penetration = None   # a number: the penetration in every step of a file with contact
     reached = staticmethod(lambda guess, tolerance, newton, segments, draw: True)
 
 
@@ -79,17 +79,17 @@ class Sweep:
     newton: int = 3
     closed_loop: bool = False
     method: str = "cg"
-    model: str = ""   # of end_to_end
+    model: str = ""   # for end_to_end
     solves: bool = True
     plant: Plant = field(default_factory=Plant)
     pending: tuple = ()
     failed: dict = field(default_factory=dict)       # task: outcome
     oversubscribed: bool = False
-    counts_in_rows: bool = False   # planted counts in rows of /solves; else 10 in all, as the planted times would have
+    counts_in_rows: bool = False   # True: planted counts in rows of /solves; else 10 in all, as the planted times have
     attributes: dict = field(default_factory=lambda: {"program": "rodsweep", "schema_version": 2})
 
     def tasks(self):
-        """(scene, grid values, draw, own guess, point) of every task in order."""
+        """(scene, grid values, draw, own guess, point) of every task, in order."""
         found, point = [], 0
         for scene in self.scenes:
             for values in itertools.product(*self.grid.values()):
@@ -152,7 +152,7 @@ class Sweep:
             item.attrs.update({"unit": unit, "meaning": f"the {key}", "swept": len(set(values)) > 1})
 
     def _results(self, tasks, guesses, done, rows_per_task):
-        """All datasets of results; rows of pending tasks are zero, as the file's unwritten bytes are."""
+        """All datasets of results. Rows of pending tasks are zero, like unwritten bytes of a file."""
         parts = []
         for t, (_, values, draw, own, _) in enumerate(tasks):
             mine, leading = (range(len(guesses)), "") if own < 0 else ([own], guesses[own])
@@ -165,7 +165,7 @@ class Sweep:
         return found
 
     def _steps(self, draw, guess):
-        """The rows of /steps of a task."""
+        """A task's rows of /steps."""
         plant, step = self.plant, np.arange(self.steps)
         end = plant.level("newton_residual", np.array([self.newton]), draw, guess)
         found = {"time_s": 0.02 * (step + 1), "joint_gap": np.full(len(step), plant.gap),
@@ -178,7 +178,7 @@ class Sweep:
                 "timing/steps/rest_s": np.full(len(step), plant.rest_s, dtype=np.float32)}
 
     def _solves(self, guesses, mine, segments, draw, leading, with_rows):
-        """The sums and, with_rows, the rows of /solves of a task that tries the guesses `mine`."""
+        """The sums of /solves of a task with the guesses `mine`; its rows too, if with_rows."""
         plant, shape = self.plant, (len(guesses), len(TOLERANCES))
         j, at = np.tile(np.arange(self.newton), self.steps), np.repeat(np.arange(self.steps), self.newton)
         sums = {f"tasks/{name}{which}": np.full((1,) + shape, -1, dtype=np.int64)
@@ -206,7 +206,7 @@ class Sweep:
 
 
 def write_large(path, tasks, steps, newton, closed_loop=False):
-    """A packed file of about so many tasks: copies of those of one draw, which differ in their random parameter."""
+    """A packed file of about `tasks` tasks: copies of the tasks of one draw, with different random parameters."""
     Sweep(scenes=("helix",), grid={"scene.segments": [10]}, samples=1, steps=steps, newton=newton,
           closed_loop=closed_loop, counts_in_rows=True).write(path + ".one")
     with h5py.File(path + ".one") as one, h5py.File(path, "w") as h5:
@@ -223,7 +223,7 @@ def write_large(path, tasks, steps, newton, closed_loop=False):
             elif rows:
                 made = h5.create_dataset(name, (copies * len(values),) + values.shape[1:], values.dtype, shuffle=True,
                                          compression="gzip", compression_opts=1, chunks=(4096,) + values.shape[1:])
-                some = max(1, (1 << 16) // len(values))    # copies at once
+                some = max(1, (1 << 16) // len(values))    # copies written at once
                 for first in range(0, copies, some):
                     block = np.concatenate(min(some, copies - first) * [values])
                     made[first * len(values):first * len(values) + len(block)] = block

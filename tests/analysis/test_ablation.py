@@ -1,4 +1,4 @@
-"""ablation.py: which setting a model changes, panels in the order of values, planted ratios in the table and the figure."""
+"""ablation.py: the setting that a model changes, panels in order of values, planted ratios in table and figure."""
 
 import os
 from dataclasses import replace
@@ -49,7 +49,7 @@ class Ablation(Scripts):
         self.assertEqual(changed["energy"], {"loss": "energy"})
         self.assertEqual(changed["factors"], {"processor": "factors"})
         self.assertEqual(changed["both"], {"loss": "energy", "global state": "on"})
-        # The base's job says nothing of the iterations that it learned from.
+        # The base's job does not name the iterations that it learned from.
         self.assertEqual(changed["all"], {"Newton iterations learned": "all"})
 
     def test_networks_that_differ_in_their_seed_alone_are_trainings_of_one(self):

@@ -1,4 +1,4 @@
-"""balance.py: errors against the finest step in balance, their times, and what is refused."""
+"""balance.py: errors against the finest step in balance, their times, refusals."""
 
 import unittest
 
@@ -21,12 +21,12 @@ class Balance(running.Scripts):
             planted = np.repeat([OFF[size, kind] for size in sizes for kind in KINDS], SAMPLES)
             position = np.zeros((count, FRAMES, SEGMENTS, 3))
             position[..., 2] = np.linspace(0, 1, SEGMENTS)
-            position[:, :-1, :, 0] = 7    # the way there does not count
+            position[:, :-1, :, 0] = 7    # intermediate frames do not count
             position[:, 0, :, 0] = 0
             position[:, -1, :, 0] += np.resize(planted, count)[:, None]
             h5["trajectories/position_m"] = position.reshape(-1, 3)
             h5["trajectories/first_row"] = np.arange(count * FRAMES).reshape(count, FRAMES) * SEGMENTS
-            lacking = np.tile([1.0, 0.2, 0.3, 0.1], count)    # that of the first step does not count
+            lacking = np.tile([1.0, 0.2, 0.3, 0.1], count)    # the value of the first step does not count
             h5["steps/momentum_residual"] = lacking
 
     def table(self, **files):

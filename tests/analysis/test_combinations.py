@@ -1,4 +1,4 @@
-"""combinations.py: the cheapest combination of preconditioner and guess of each kind, and what it is faster by."""
+"""combinations.py: the cheapest combination of preconditioner and guess of each kind, and its speedup."""
 
 import unittest
 
@@ -12,7 +12,7 @@ JOINTS = {10: 60, 40: 240}
 
 class Combinations(running.Scripts):
     def write(self, **settings):
-        """icc takes half of Jacobi's time and iterations; a net's joints are six times its segments."""
+        """icc takes half of Jacobi's time and iterations; a net has six times as many joints as segments."""
         super().write(**{"scenes": ("net",), "samples": 5, "random": {},
                          "grid": {"scene.segments": list(JOINTS), "solve.preconditioner": ["jacobi", "icc"]},
                          **settings})
@@ -49,22 +49,22 @@ class Combinations(running.Scripts):
         self.assertIn("classical guess icc from quadratic 9", {line.split(" [")[0] for line in found[240]})
         oracle = next(line for line in found[60] if line.startswith("free oracle"))
         values = [part.split(" ")[-1] for part in oracle.split(" [")[:-1]]
-        self.assertEqual(values, ["0.5", "4.5", "10", "16"])   # over 2.25, 5 and 8 us
+        self.assertEqual(values, ["0.5", "4.5", "10", "16"])   # 2.25, 5 and 8 us over 0.5 us
 
     def test_iterations_and_ratios_are_those_of_the_same_preconditioner(self):
         self.write()
         lines = self.blocks("--tolerance", "1e-2")[60]
         row = next(line for line in lines if line.startswith("icc from quadratic"))
-        self.assertIn("] 25.0 0.248 [", row)   # of 202 a quarter, 50, and halves
+        self.assertIn("] 25.0 0.248 [", row)   # a quarter of 202 is 50; icc halves it
 
     def test_closed_loops_have_whole_steps(self):
         self.write(closed_loop=True, guesses=("zero", "quadratic"))
         line = next(line for line in self.blocks()[60] if line.startswith("icc from zero"))
-        # three systems a step, 2 us of assembly each, CG of 5 us at first and 2.5 us later, and 3 us for the rest
+        # Three systems a step with 2 us of assembly each; CG takes 5 us first, then 2.5 us each; the rest takes 3 us.
         self.assertEqual(line.split()[3], "19")
 
     def test_a_combination_that_failed_once_is_not_the_cheapest(self):
-        self.write(failed={5: "torn"})   # the first of icc at 10 segments
+        self.write(failed={5: "torn"})   # the first task of icc at 10 segments
         lines = {line.split(" [")[0] for line in self.blocks()[60]}
         self.assertIn("from zero jacobi from zero 10", lines)
 

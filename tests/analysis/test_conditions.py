@@ -1,4 +1,4 @@
-"""--select, export.py --where and rodsweep.open() read conditions as tests/conditions.json says, of tasks and rows."""
+"""--select, export.py --where and rodsweep.open() read conditions on tasks and rows as in tests/conditions.json."""
 
 import json
 import os
@@ -16,7 +16,7 @@ with open(os.path.join(synthetic.ANALYSIS, "..", "tests", "conditions.json"), en
 
 class Conditions(Folder):
     def setUp(self):
-        """Six tasks with the columns of the table among their parameters."""
+        """Six tasks whose parameters include the columns of the table."""
         def plant(h5):
             for name, column in CASES["columns"].items():
                 (kind, values), = column.items()

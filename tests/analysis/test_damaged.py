@@ -1,6 +1,6 @@
-"""Scripts on files that are cut short or lack something: one plain line and exit code 2, or the figures, never a traceback.
+"""Scripts on truncated or incomplete files: one plain line and exit code 2, or the figures, never a traceback.
 
-Bytes are not flipped here: libhdf5 1.10 itself crashes on some such files, and the process with it."""
+Bytes are not flipped here: on some such files libhdf5 1.10 crashes, and with it the process."""
 
 import random
 import unittest

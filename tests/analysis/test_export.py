@@ -1,4 +1,4 @@
-"""export.py: the rows of rodsweep.open() (test_results.py has their numbers); choices, compressed output, refusals."""
+"""export.py: rows as in rodsweep.open() (their numbers: test_results.py); options, compressed output, refusals."""
 
 import csv
 import gzip

@@ -1,4 +1,4 @@
-"""The figures: planted numbers are drawn, no text overlaps another or leaves the page, styles tell guesses apart."""
+"""The figures: planted numbers are drawn, no text overlaps another or leaves the page, styles identify guesses."""
 
 import argparse
 import itertools
@@ -17,7 +17,7 @@ from running import Folder
 
 class Drawn(Folder):
     def study(self, width="174", newton="first", x="scene.segments", **settings):
-        """Of a planted sweep, and its times."""
+        """The study of a planted sweep, and its times."""
         self.addCleanup(pyplot.close, "all")
         file = self.open(**{"steps": 2, **settings})
         options = argparse.Namespace(select=[], scene=None, guess=None, x=x, newton=newton, width=width)
@@ -25,16 +25,16 @@ class Drawn(Folder):
         return study, timings.times(study.file, study.sims)
 
     def page_texts(self, page):
-        """With single blanks."""
+        """All texts of a page, separated by single blanks."""
         return " ".join(word for text in page.figure.findobj(match=pyplot.Text) for word in text.get_text().split())
 
     def line(self, axes, guess_style):
-        """The drawn values of a guess: the errorbar's line, or its open markers."""
+        """The drawn lines of a guess: those with its colour, its marker and more than one point."""
         return [line for line in axes.lines if line.get_color() == guess_style.colour and len(line.get_xdata()) > 1
                 and line.get_marker() == guess_style.marker]
 
     def legible(self, page):
-        """No two texts overlap (by more than the room around letters) and none leaves the page."""
+        """No two texts overlap (except in the space around letters) and none leaves the page."""
         figure = page.figure
         figure.draw_without_rendering()
         renderer = figure.canvas.get_renderer()
@@ -116,7 +116,7 @@ class Values(Drawn):
         page = figures.time_figure(study, times)
         bars = [(patch.get_y(), patch.get_height()) for patch in page.axes[0][1].patches]
         tops = sorted(y + height for y, height in bars)[-3:]
-        assembly, guess, cg = 2 / 10, 0.1, 0.5  # of "previous" per segment at N = 10, where assembly weighs most
+        assembly, guess, cg = 2 / 10, 0.1, 0.5  # of "previous" per segment at N = 10, where assembly is largest
         self.assertAlmostEqual(max(tops), assembly + guess + cg, places=3)
         self.assertEqual(len(bars), 9)
 
@@ -188,7 +188,7 @@ def linear_light(colour):
 
 
 def seen_by(colour, deficiency):
-    """Linear-light colour as seen with full deuteranopia or protanopia (Machado, Oliveira and Fernandes 2009)."""
+    """A colour in linear light as seen with full deuteranopia or protanopia (Machado, Oliveira and Fernandes 2009)."""
     matrices = {"deuteranopia": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413],
                                  [-0.011820, 0.042940, 0.968881]],
                 "protanopia": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216],

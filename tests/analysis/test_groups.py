@@ -50,7 +50,7 @@ class Groups(running.Folder):
         file, sims = self.simulations(grid={"scene.segments": [10], "guesses[1]": ["previous", "oracle"],
                                      "guesses[1].oracle.error": [np.nan, 0.1, 0.2]}, scenes=("helix",), samples=2)
         tasks = file.parameter("guesses[1]").values == "previous"
-        keep = tasks == np.isnan(file.parameter("guesses[1].oracle.error").values)  # a previous guess has no error
+        keep = tasks == np.isnan(file.parameter("guesses[1].oracle.error").values)  # "previous" has no error parameter
         sims = sims.subset(np.flatnonzero(keep[sims.any_task]))
         for panels in (groups.panels(file, sims, "scene.segments"), groups.panels(file, sims, None, pooled="scene.")):
             self.assertEqual([panel.settings for panel in panels],

@@ -1,4 +1,4 @@
-"""Imports of analysis/ run one way, scripts, drawing, reading, and without circles; numbers need no program to draw."""
+"""Imports of analysis/ go from scripts to drawing to reading, without cycles; numbers need no drawing library."""
 
 import ast
 import subprocess
@@ -9,15 +9,15 @@ from pathlib import Path
 
 import synthetic
 
-# Each may use those before it: `rodsweep` is what stands in the package itself, and the scripts are on top.
+# Each may import those before it. `rodsweep` means the modules directly in the package; "" means the scripts.
 ROOMS = ("rodsweep.reading", "rodsweep.writing", "rodsweep.drawing", "rodsweep.report", "rodsweep", "")
-DRAW = {"matplotlib", "PIL"}          # what reading and writing do without
+DRAW = {"matplotlib", "PIL"}          # not imported by reading and writing
 
 
 def imports(root):
-    """(file, line, importing module, imported one) of all of them below root; by name in full: rodsweep.reading.measures."""
+    """(file, line, importing module, imported module) of files below root; full names: rodsweep.reading.measures."""
     files = {".".join(path.relative_to(root).with_suffix("").parts): path for path in sorted(root.rglob("*.py"))
-             if path.relative_to(root).parts[0] != "build"}    # pip's
+             if path.relative_to(root).parts[0] != "build"}    # made by pip
     for module, path in files.items():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             names = [alias.name for alias in node.names] if isinstance(node, (ast.Import, ast.ImportFrom)) else []

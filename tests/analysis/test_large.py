@@ -1,4 +1,4 @@
-"""Every script on files of ROWS rows of /solves (10^7 unless RODSWEEP_LARGE_ROWS says otherwise), in under 500 MB."""
+"""Every script on files of ROWS rows of /solves (default 10^7; RODSWEEP_LARGE_ROWS changes it), in under 500 MB."""
 
 import os
 import subprocess
@@ -16,7 +16,7 @@ BY_SIZE = ("--x", "scene.segments", "--y", "tolerance")
 
 class Large(unittest.TestCase):
     def measured(self, *command):
-        """Runs a script of analysis/; prints and bounds its largest resident memory."""
+        """Runs a script of analysis/; prints its largest resident memory and checks the bound."""
         begin = time.monotonic()
         with open(os.path.join(self.folder, "out.txt"), "wb") as out:
             process = subprocess.Popen([sys.executable, os.path.join(synthetic.ANALYSIS, command[0]), *command[1:]],

@@ -1,4 +1,4 @@
-"""loss.py: planted losses and CG ratios are drawn and printed, models are told apart, and what is no model is refused."""
+"""loss.py: planted losses and CG ratios are drawn and printed, models are distinguished, other files are refused."""
 
 import json
 import os
@@ -20,7 +20,7 @@ NETWORK = {"encoding": "paper", "processor": "message_passing", "base": "none", 
 
 
 def plant(path, name="net", ending="complete", epochs=EPOCHS, factor=1.0, job=None, network=None, simulations=256):
-    """A model file with what loss.py reads: losses fall but for the last epoch, ratios are measured in every third."""
+    """A model file for loss.py: losses fall except in the last epoch, every third epoch has ratios."""
     number = np.arange(1, epochs + 1)
     ratio = np.full((epochs, 4), np.nan)
     ratio[2::3] = factor * np.array([0.1, 0.2, 0.4, 0.8]) * (1 + 1 / number[2::3, None])
@@ -63,7 +63,7 @@ class Figures(Drawn):
         losses, first, *_, rate = page.axes[0]
         np.testing.assert_allclose(losses.lines[0].get_ydata(), 0.6 / np.arange(1, EPOCHS + 1))
         np.testing.assert_allclose(losses.lines[1].get_ydata()[-2:], [0.5 / 11, 2 * 0.5 / 12])
-        self.assertEqual(losses.lines[2].get_xdata()[0], EPOCHS - 1)  # the model kept
+        self.assertEqual(losses.lines[2].get_xdata()[0], EPOCHS - 1)  # the epoch of the saved model
         np.testing.assert_array_equal(first.lines[0].get_xdata(), [3, 6, 9, 12])
         np.testing.assert_allclose(first.lines[0].get_ydata()[0], 0.1 * (1 + 1 / 3))
         self.assertEqual(first.lines[1].get_ydata()[0], 0.3)  # the base guess alone

@@ -1,4 +1,4 @@
-"""Derived numbers against planted ones: CG ratios, times, speedups, steps; paired and closed loop; what is left out."""
+"""Derived numbers against planted ones: CG ratios, times, speedups, steps; paired and closed loop; excluded rows."""
 
 import unittest
 
@@ -11,7 +11,7 @@ ONE_SIZE = {"grid": {"scene.segments": [20]}, "scenes": ("helix",), "steps": 5, 
 
 
 class Varied(synthetic.Plant):
-    """Qualities that differ between simulations, so that a ratio of sums is no mean of ratios."""
+    """Qualities that differ between simulations, so that a ratio of sums differs from a mean of ratios."""
 
     def zero_iterations(self, segments, tolerance):
         return 100 * segments
@@ -142,7 +142,7 @@ class Times(Folder):
 
 
 class Changes(Folder):
-    """Times before and after a change of the rows of single solves."""
+    """Times before and after a change to rows of single solves."""
 
     def times(self, change, **settings):
         file, sims = self.simulations(**{**ONE_SIZE, **settings})
@@ -150,7 +150,7 @@ class Changes(Folder):
 
     @staticmethod
     def punch(h5, rows, guesses):
-        """The solves that were not run."""
+        """Marks these solves as not run."""
         for name in ("guess_s", "cg_s"):
             values = h5[f"timing/solves/{name}"][:]
             values[rows, guesses] = np.nan
@@ -159,7 +159,7 @@ class Changes(Folder):
 
 class Holes(Changes):
     def test_rows_that_were_not_run_count_for_nobody(self):
-        """Newton converged early: NaN in the row of every guess."""
+        """Newton converged early: the row of every guess is NaN."""
         _, times, _ = self.times(lambda h5: self.punch(h5, slice(2, 15, 3), slice(None)))
         np.testing.assert_array_equal(times["all"].solves[0], 10)
         np.testing.assert_allclose(timings.speedups(times, "all")["cg"][0, 1], 2, rtol=1e-5)
@@ -203,7 +203,7 @@ class Interruptions(Changes):
             renewed = np.zeros(h5["timing/solves/cg_s"].shape, dtype="i1")
             renewed[[0, 6, 12]] = 1     # the first Newton iterations of steps 0, 2 and 4
             h5["solves/renewed"] = renewed
-            for row in (0, 6, 12, 9):   # and one of step 3
+            for row in (0, 6, 12, 9):   # and the first one of step 3
                 h5["timing/solves/cg_s"][row, 0] += 1e-3
 
         times = self.times(renew)[1]["all"]
@@ -211,7 +211,7 @@ class Interruptions(Changes):
         np.testing.assert_allclose(times.cg_s[0, 0], (3e-3 + 4 * 20e-6) * 5 / 4 + 10 * 10e-6, rtol=1e-5)
 
     def test_a_guess_that_is_slow_at_the_first_newton_iteration_loses_nothing_there(self):
-        """k nearest neighbours of a data set of first iterations: 40 times as long there as later."""
+        """Like k nearest neighbours of a data set of first iterations: the first iteration takes 40 times as long."""
         def slow(h5):
             h5["timing/solves/guess_s"][0::3, 2] *= 40
             h5["timing/solves/guess_s"][3, 2] = 4e-3  # interrupted as well
@@ -228,18 +228,18 @@ class Interruptions(Changes):
             renewed[0:120:24, 2] = 1
             h5["solves/renewed"] = renewed
             h5["timing/solves/guess_s"][0:120:24, 2] *= 40
-            h5["timing/solves/guess_s"][3, 2] = 4e-3   # interrupted, where nothing is made anew
-            h5["timing/solves/guess_s"][24, 2] = 40e-3  # and where it is
+            h5["timing/solves/guess_s"][3, 2] = 4e-3   # an interruption without renewal
+            h5["timing/solves/guess_s"][24, 2] = 40e-3  # and one with renewal
 
         before, after, _ = self.times(slow, steps=40)
         self.assertEqual(after["all"].interrupted[0, 0], 2)
         np.testing.assert_allclose(after["first"].cg_s, before["first"].cg_s, rtol=1e-6)
         ratio = after["first"].guess_s[0, 2] / before["first"].guess_s[0, 2]
-        np.testing.assert_allclose(ratio, (4 * 40 + 34) / 38, rtol=1e-6)  # scaled from 38 rows, 4 of which are slow
+        np.testing.assert_allclose(ratio, (4 * 40 + 34) / 38, rtol=1e-6)  # scaled from 38 rows; 4 of them are slow
 
     def test_an_iteration_that_few_steps_reach_is_judged_by_the_one_before_it(self):
         def change(h5):
-            self.punch(h5, slice(5, 60, 3), slice(None))    # of the first task, all third iterations but one
+            self.punch(h5, slice(5, 60, 3), slice(None))    # all third iterations of the first task, except one
             h5["timing/solves/cg_s"][2, 1] = 4e-3
 
         self.assertEqual(self.times(change, steps=20)[1]["all"].interrupted[0, 0], 1)
@@ -276,7 +276,7 @@ class Steps(Folder):
     def test_largest_drift_and_gap_and_mean_newton_iterations(self):
         file, sims = self.simulations(pending=(3,))
         figures = measures.step_figures(file, sims)
-        np.testing.assert_allclose(figures.length_drift, 1e-3)  # planted negative: magnitudes count
+        np.testing.assert_allclose(figures.length_drift, 1e-3)  # planted negative: the magnitude is measured
         np.testing.assert_allclose(figures.joint_gap, 2e-3)
         np.testing.assert_allclose(figures.newton_iterations, 3)
         self.assertTrue(np.isnan(figures.penetration).all())

@@ -1,4 +1,4 @@
-"""analysis/example.ipynb runs as it stands, on a planted file, and shows what was planted; it has no outputs."""
+"""analysis/example.ipynb runs unchanged on a planted file, shows the planted numbers, and is stored without outputs."""
 
 import ast
 import json
@@ -19,7 +19,7 @@ class Notebook(Scripts):
             self.whole = json.load(file)
 
     def shown(self):
-        """Runs the cells of code, in this process and without Jupyter: what each shows, None for nothing."""
+        """Runs the code cells in this process without Jupyter; returns the value that each shows, or None."""
         names, values = {"__name__": "__main__"}, []
         for cell in self.whole["cells"]:
             if cell["cell_type"] == "code":

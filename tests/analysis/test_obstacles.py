@@ -1,4 +1,4 @@
-"""Obstacles: which ones a task has, where they are in pictures, their surfaces; floors that belong to a scene."""
+"""Obstacles: those of a task, their place and surface in pictures; floors that belong to a scene."""
 
 import unittest
 

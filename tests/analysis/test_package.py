@@ -1,4 +1,4 @@
-"""analysis/pyproject.toml: nothing is left out, the version is the program's, and what pip installs works."""
+"""analysis/pyproject.toml: it includes all files, has the program's version, and installs with pip."""
 
 import importlib.util
 import os
@@ -41,7 +41,7 @@ class Package(unittest.TestCase):
             python = os.path.join(programs, "python3")
             left_out = shutil.ignore_patterns("results", "__pycache__", "build", "*.egg-info")
             shutil.copytree(ROOT, source, ignore=left_out)
-            venv.create(os.path.join(folder, "environment"), system_site_packages=True)    # whose pip is Debian's
+            venv.create(os.path.join(folder, "environment"), system_site_packages=True)    # includes Debian's pip
 
             def said(*command):
                 return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, check=True,
@@ -60,7 +60,7 @@ class Package(unittest.TestCase):
             self.assertEqual(ok, "12")
 
     def offline(self):
-        """The line for pip without network, as the page writes it."""
+        """The page's pip command that works without a network."""
         page = (ROOT.parent / "docs" / "python.md").read_text(encoding="utf-8")
         return re.search(r"`(pip install [^`]*--no-index [^`]*)`", page)[1]
 

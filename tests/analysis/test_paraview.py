@@ -1,4 +1,4 @@
-"""paraview.py: every number that the XDMF points at is there, and is what the reader hands out; lines join segments."""
+"""paraview.py: all numbers that the XDMF refers to exist and equal the reader's; lines join segments."""
 
 import os
 import unittest
@@ -18,12 +18,12 @@ BALL = {"centre_m": (1, 2, 3), "radius_m": 0.25}
 
 class Paraview(trajectories.Planted):
     def document(self, *arguments, name="sweep-task0.xdmf"):
-        """The root element of what the script writes."""
+        """The root element of the script's output."""
         self.assertEqual(self.run_script("paraview.py", "sweep.h5", *arguments).stdout, name + "\n")
         return ElementTree.parse(os.path.join(self.folder, name)).getroot()
 
     def values(self, parent, folder):
-        """What a reader of XDMF finds under an element: rows of the dataset that it names."""
+        """The rows of the dataset under an element, as an XDMF reader selects them."""
         slab, = parent.findall("DataItem")
         selection, whole = slab.findall("DataItem")
         start, stride, count = np.array(selection.text.split(), dtype=int).reshape(
@@ -80,7 +80,7 @@ class Paraview(trajectories.Planted):
                                ([(a, b), (b, c), (c, a)], [[0, 1], [0, 2], [1, 2]]),
                                ([((-1, 0, 0), a), ((0, -1, 0), b)], [[0, 1]]), ([(o, a), (b, c)], np.empty((0, 2)))):
             np.testing.assert_array_equal(joints.pairs(shape(ends)), expected)
-        self.assertEqual(len(joints.pairs(shape([(c, o), (o, a)], rod=np.array([0, 1])))), 0)   # two rods that touch
+        self.assertEqual(len(joints.pairs(shape([(c, o), (o, a)], rod=np.array([0, 1])))), 0)   # a contact of two rods
 
     def test_segments_without_joints_are_points(self):
         self.plant(rods=6)

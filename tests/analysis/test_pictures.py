@@ -1,4 +1,4 @@
-"""render.py: what POV-Ray is given, what the camera sees, what comes out; films; mistakes."""
+"""render.py: POV-Ray's input, the camera, the output; films; errors."""
 
 import hashlib
 import io
@@ -26,7 +26,7 @@ def opened_picture(picture):
 
 
 def drawn(shown, *stages, frames=(0,)):
-    """Pictures of all stages and frames, together: POV-Ray sleeps most of the 0.7 s that it takes."""
+    """Pictures of all stages and frames, in parallel: POV-Ray sleeps for most of its 0.7 s."""
     colours = tints.colours(shown, "rod")
     scenes = [(povray.scene(shown, stage, colours, frame), stage.camera.size) for stage in stages for frame in frames]
     with ThreadPoolExecutor(len(scenes)) as pool:
@@ -34,7 +34,7 @@ def drawn(shown, *stages, frames=(0,)):
 
 
 def plain_picture(text, size, threads=1, fine=False):
-    """In the place of povray.picture(): of one colour, that of the scene."""
+    """Replaces povray.picture(): one colour that depends on the scene."""
     out = io.BytesIO()
     Image.new("RGB", size, "#" + hashlib.sha1(text.encode()).hexdigest()[:6]).save(out, "PNG")
     return out.getvalue()
@@ -81,7 +81,7 @@ class Geometry(Planted):
                      if line.startswith("cylinder")]
         plate = [c for c in cylinders if c[6] > 0.06]
         self.assertEqual((len(cylinders), len(plate)), (6, 1))
-        self.assertLess(plate[0][0], plate[0][3])   # thick towards -x, where no rod is
+        self.assertLess(plate[0][0], plate[0][3])   # thick towards -x, where there is no rod
         reach = staging.WALL_RADII * 0.05
         self.assertAlmostEqual(plate[0][6] ** 2 + (plate[0][3] - plate[0][0]) ** 2, reach ** 2, places=6)
 
@@ -175,7 +175,7 @@ class Pictures(Planted):
         self.assertGreater(found[1], max(0.95, found[0]))
 
     def test_handedness_x_is_to_the_right_from_the_front_and_z_is_near(self):
-        shown = self.shown()  # rods at z = 0 and, nearer, at 0.5
+        shown = self.shown()  # rods at z = 0 and at 0.5, which is nearer
         stage = self.stage(shown, view=(0, 30), floor="none")
         picture, = drawn(shown, stage)
         for segment, rod in ((2, 0), (5, 1)):
@@ -205,7 +205,7 @@ class Pictures(Planted):
         self.refused("render.py", "sweep.h5", *size, "-o", "sweep.h5", "--force", words="already exists")
         self.run_script("render.py", "sweep.h5", *size, "--force")
         with open("figures/sweep-task0-frame0003.png", "rb") as a, open("some/sweep-task0-frame0003.png", "rb") as b:
-            self.assertNotEqual(a.read(), b.read())   # seen from another place: two frames must fit
+            self.assertNotEqual(a.read(), b.read())   # from another view, since two frames must fit
         self.assertEqual(sorted(os.listdir(self.folder)), ["figures", "out", "some", "sweep.h5"])
 
 
@@ -257,7 +257,7 @@ class Films(Planted):
                 np.testing.assert_array_equal(np.asarray(film.convert("RGB")), opened_picture(picture))
 
     def with_programs(self, **scripts):
-        """A PATH with stand-ins for programs, and with povray."""
+        """A PATH with replacements of programs, and with povray."""
         os.makedirs("programs")
         if "povray" not in scripts:
             os.symlink(shutil.which("povray"), "programs/povray")

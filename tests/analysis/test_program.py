@@ -1,4 +1,4 @@
-"""The scripts on files of the program itself: RODSWEEP names it. Derived numbers against the rows they come from."""
+"""The scripts on files of the program itself (RODSWEEP): derived numbers against the rows that they come from."""
 
 import json
 import os
@@ -27,7 +27,7 @@ JOB = {"name": "analysis", "kind": "sweep", "seed": 3, "samples": 2, "scene": {"
 
 
 def program(*words):
-    """What it prints."""
+    """The output of the program."""
     return subprocess.run([os.environ["RODSWEEP"], *words], check=True, capture_output=True,
                           stdin=subprocess.DEVNULL).stdout
 
@@ -43,7 +43,7 @@ class Program(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
 
     def run_job(self, name, *options, **changes):
-        """Path of the results of JOB with changes, made once; a change to None takes a key away."""
+        """Path of the results of JOB with changes; run once. A change to None removes a key."""
         job, results = (os.path.join(self.folder.name, name + ending) for ending in (".json", ".h5"))
         if not os.path.exists(results):
             with open(job, "w", encoding="utf-8") as text:

@@ -1,4 +1,4 @@
-"""query.py: which tasks and columns it shows, in which form and order; mistakes. On a running sweep: tests/command."""
+"""query.py: tasks and columns, their format and order; errors. On a running sweep: tests/command."""
 
 import json
 import unittest
@@ -38,7 +38,7 @@ class Query(Scripts):
         self.plant()
         words = ("scene.segments>=20", "--where", "task<3", "--columns", "task", "--csv")
         self.assertEqual(self.query(*words).stdout, "task\n2\n")
-        self.assertEqual(self.rows("outcome=diverged"), [])    # is no error
+        self.assertEqual(self.rows("outcome=diverged"), [])    # no match is not an error
         rows = self.rows("--sort", "scene.youngs_modulus_pa", "--descending", "--limit", "3")
         self.assertEqual([row["task"] for row in rows], [1, 3, 0])
         self.assertEqual(list(self.rows("--columns", f"task,{PREVIOUS}@1e-3")[0]), ["task", f"{PREVIOUS}@1e-3"])

@@ -1,4 +1,4 @@
-"""The report: sentences and tables are summary.py's numbers, charts the planted ones, and it says what is wrong."""
+"""The report: sentences and tables have summary.py's numbers, charts have the planted ones, faults are reported."""
 
 import base64
 import html.parser
@@ -82,7 +82,7 @@ class Numbers(Report):
             self.assertEqual(rows[guess][8], written("speedup_step", guess))
         self.assertEqual(rows["direct"][7], written("speedup_guess_cg", "direct"))
         said = parsed.text()
-        self.assertIn(f"left with quadratic {written('cg_ratio', 'quadratic', 0.01)[5:]}", said)    # no oracle wins
+        self.assertIn(f"left with quadratic {written('cg_ratio', 'quadratic', 0.01)[5:]}", said)    # never an oracle
         self.assertIn("the fewest of 2 guesses", said)
         self.assertIn(f"CG with the fastest guess has {written('speedup_over_direct_guess_cg', 'quadratic')} times", said)
 
@@ -104,7 +104,7 @@ class Numbers(Report):
         speed = np.array(axis["panels"][1]["values"]["speedup_cg"][0], dtype=float).reshape(2, 3, len(labels))
         np.testing.assert_allclose(speed[0, :, 2], 4, rtol=1e-3)
         np.testing.assert_allclose(speed[0, :, -1], np.array([10, 20, 40]) / 8, rtol=1e-3)
-        newton = {measure["name"]: measure["newton"] for measure in family["measures"]}    # once where it is no choice
+        newton = {measure["name"]: measure["newton"] for measure in family["measures"]}    # [""]: there is no choice
         self.assertEqual((newton["ratio"], newton["iterations"], newton["speedup_step"]), (["first", "all"], [""], [""]))
 
     def test_of_simulations_without_guesses_there_are_steps_and_the_direct_solve(self):
@@ -170,7 +170,7 @@ class Honesty(Report):
             return tuple(words in sentence for words in ("same systems", "its own", "time", "direct solve"))
 
         undirected = synthetic.Plant()
-        undirected.direct_s = np.nan    # as "reference": "cg" leaves it
+        undirected.direct_s = np.nan    # as with "reference": "cg"
         for settings, expected in (({}, (True, False, True, True)), ({"plant": undirected}, (True, False, True, False)),
                                    ({"solves": False}, (True, False, False, False)),
                                    ({"closed_loop": True, "plant": undirected}, (False, True, True, False))):

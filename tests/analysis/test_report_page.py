@@ -1,4 +1,4 @@
-"""The report in a browser: it complains of nothing and asks for nothing, and all controls do what they say."""
+"""The report in a browser: no console errors, no requests, and all controls work."""
 
 import os
 import re
@@ -41,7 +41,7 @@ class Page(unittest.TestCase):
                        ".map(one => one.innerText.trim().replace(/\\s+/g, ' '))")
 
     def choose(self, label, value):
-        """As a reader does: of the select with this label."""
+        """Selects a value in the list with this label, as a reader does."""
         self.js(f"""(() => {{
           const label = [...document.querySelectorAll('.explorer label')].find(one => one.innerText === {label!r});
           const select = document.getElementById(label.htmlFor);
@@ -51,7 +51,7 @@ class Page(unittest.TestCase):
         self.browser.settle()
 
     def value_at(self, line, point, chart=0):
-        """What a chart shows: the value that a dot's height stands for, by the labels of the axis."""
+        """The value of a chart at a point: the height of the dot on the scale of the axis labels."""
         return self.js(f"""(() => {{
           const plot = document.querySelectorAll('.chart svg:not(.swatch)')[{chart}];
           const shift = (element) => Number(element.getAttribute('transform').match(/,\\s*([-\\d.]+)\\)/)[1]);
@@ -133,12 +133,12 @@ class Charts(Page):
         self.choose("Scene", "helix")
         self.assertEqual(self.texts(".chart figcaption"), ["Helix CG iterations of a solve"])
         self.choose("Over", "Young's modulus (Pa)")
-        self.assertEqual(len(self.texts(CHART)), 6)     # of two scenes and three numbers of segments
+        self.assertEqual(len(self.texts(CHART)), 6)     # two scenes with three numbers of segments each
         self.assertIn("number of segments N", self.texts(".explorer .filters label"))
         self.assertIn("over Young's modulus (Pa), 6 charts", self.texts(".explorer [role=status]")[0])
 
     def test_what_is_said_of_a_choice_counts_the_lines_that_it_shows(self):
-        """Of four guesses and the direct solve, which has no CG ratio."""
+        """There are four guesses, and the direct solve, which has no CG ratio."""
         self.browser.click('.explorer input[value="all"] + label')
         self.assertRegex(self.texts(".explorer [role=status]")[0], r"^CG ratio .*, 2 charts, 4 lines$")
         self.choose("Show", "speedup of CG alone")

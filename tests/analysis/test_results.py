@@ -1,4 +1,4 @@
-"""rodsweep.open(): frames, blocks and datasets against the planted file; units, what is missing, plain refusals."""
+"""rodsweep.open(): frames, blocks and datasets against the planted file; units, missing values, plain refusals."""
 
 import os
 import subprocess
@@ -19,7 +19,7 @@ PLANT.reached = lambda guess, tolerance, newton, segments, draw: guess != "previ
 
 class Opened(Folder):
     def open(self, **settings):
-        self.path = os.path.join(self.folder, f"{len(os.listdir(self.folder))}.h5")    # the one before may be open
+        self.path = os.path.join(self.folder, f"{len(os.listdir(self.folder))}.h5")    # the previous file may be open
         usual = {"plant": PLANT, "counts_in_rows": True, "failed": {3: "diverged"}, "pending": (4,), "steps": 2}
         synthetic.Sweep(**{**usual, **settings}).write(self.path)
         with synthetic.h5py.File(self.path, "r+") as h5:

@@ -1,4 +1,4 @@
-"""spatial.py, front.py and summary.py as a user runs them: files made, numbers printed, plain errors with exit code 2."""
+"""spatial.py, front.py and summary.py as run by a user: files, printed numbers, plain errors with exit code 2."""
 
 import csv
 import io
@@ -89,7 +89,7 @@ class Summary(Scripts):
             self.assertIn(words, said)
         rows = {line.split()[0]: line.split() for line in said.splitlines() if line.startswith("  previous")}
         self.assertIn("2.00", rows["previous"])
-        table = said.split("\n\n")[2].splitlines()    # whose columns are aligned
+        table = said.split("\n\n")[2].splitlines()    # the table with aligned columns
         beside = next(k for k, line in enumerate(table) if line.startswith("  the same"))
         for part in (table[:beside], table[beside:]):
             self.assertEqual(len({len(line) for line in part}), 1, part)
@@ -99,14 +99,14 @@ class Summary(Scripts):
         with h5py.File("sweep.h5", "a") as h5:
             for which in ("", "_all"):
                 spent = h5[f"tasks/iterations_sum{which}"][:]
-                spent[:, 2] += spent[:, 0]      # quadratic's own products are as many as CG from zero takes
+                spent[:, 2] += spent[:, 0]      # products of quadratic itself: as many as CG from zero takes
                 h5[f"tasks/matvecs_sum{which}"] = spent
         lines = self.summary().splitlines()
         begin = next(k for k, line in enumerate(lines) if line.startswith("  the same"))
         self.assertEqual(lines[begin].split()[3:9], ["1e-1", "products", "1e-1", "all", "j", "1e-1"])
         quadratic = lines[begin + 2].split()
         self.assertEqual(quadratic[:2], ["quadratic", "1.25"])
-        self.assertEqual([float(value) for value in quadratic[2:4]], [0.68, 1.68])   # (1 + 2 * .9) / 3 of all, and 1 more
+        self.assertEqual([float(value) for value in quadratic[2:4]], [0.68, 1.68])   # (1 + 2 * .9) / 3 of all, plus 1
 
     def test_csv_and_json_hold_the_same_numbers(self):
         self.write(failed={3: "diverged"}, samples=5)
@@ -143,7 +143,7 @@ class Summary(Scripts):
                     self.assertIn(one, said)
                 for one in absent:
                     self.assertNotIn(one, said)
-        self.summary("--csv")    # of nothing
+        self.summary("--csv")    # no simulations
         self.summary("--json")
 
     def test_unreached_tolerances_are_marked_and_counted(self):

@@ -1,4 +1,4 @@
-"""side_by_side.py: planted trajectories that part by a known distance; render.py --beside."""
+"""side_by_side.py: planted trajectories that separate by a known distance; render.py --beside."""
 
 import unittest
 
@@ -14,7 +14,7 @@ from running import Scripts
 
 class Planted(Scripts):
     def plant(self, parts=0.0, **settings):
-        """Three closed loops of one start; those of the second method move away by `parts` a frame."""
+        """Three closed loops from one start; the second method moves away by `parts` per frame."""
         self.write(scenes=("helix",), grid={"scene.segments": [6]}, samples=1, guesses=("zero", "previous", "quadratic"),
                    closed_loop=True, solves=False)
         trajectories.plant(self.path, rods=1, **settings)

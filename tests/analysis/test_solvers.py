@@ -1,4 +1,4 @@
-"""solvers.py and accuracy.py: errors, costs and the cheapest way, of planted trajectories and times."""
+"""solvers.py and accuracy.py: errors, costs and the cheapest method for planted trajectories and times."""
 
 import unittest
 

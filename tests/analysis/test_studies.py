@@ -1,4 +1,4 @@
-"""Every number of temporal, heatmap, long_term and newton against planted qualities; what is missing is left out."""
+"""All numbers of temporal, heatmap, long_term and newton against planted ones; missing values are excluded."""
 
 import argparse
 import csv
@@ -18,7 +18,7 @@ EVERYTHING = {"select": [], "scene": None, "guess": None, "tolerance": None, "ne
 
 class Studies(Scripts):
     def table(self, *words):
-        """The rows that a script prints with --csv, by method."""
+        """The rows of a script's --csv output, by method."""
         rows = csv.DictReader(io.StringIO(self.run_script(*words, "--csv").stdout))
         return {row["method"]: row for row in rows}
 
@@ -27,7 +27,7 @@ class Studies(Scripts):
 
 
 class Fading(synthetic.Plant):
-    """A guess that is good in the first half of the run and useless in the second; draws differ in size and quality."""
+    """A guess that is good in the first half of a run and useless in the second; draws differ in size and quality."""
 
     def zero_iterations(self, segments, tolerance):
         return 100
@@ -44,7 +44,7 @@ class Temporal(Studies):
                 "counts_in_rows": True}
 
     def windows(self, newton="first", width=1, tolerances=(0,), **settings):
-        """Of a planted sweep: file, simulations, windows, the estimate of the ratio."""
+        """File, simulations, windows and estimated ratio of a planted sweep."""
         file, sims = self.simulations(**{**self.TEMPORAL, "plant": Fading(), **settings})
         found = along_time.windows(file, sims, newton, [0, 1], list(tolerances), width)
         return file, sims, found, temporal.estimate(sims, found, 0, relative=True)
@@ -58,7 +58,7 @@ class Temporal(Studies):
             np.testing.assert_allclose(e.value[:10, 1], 0.4)
             np.testing.assert_allclose(e.value[10:, 1], 0.8)
             self.assertTrue((e.low[:, 1] < e.value[:, 1]).all() and (e.value[:, 1] < e.high[:, 1]).all())
-            self.assertGreaterEqual(e.low[0, 1].min(), 0.2 - 1e-9)   # no draw is better or worse than this
+            self.assertGreaterEqual(e.low[0, 1].min(), 0.2 - 1e-9)   # the best draw
             self.assertLessEqual(e.high[0, 1].max(), 0.6 + 1e-9)
 
     def test_all_newton_iterations_and_iterations_per_solve(self):
@@ -109,7 +109,7 @@ class Temporal(Studies):
 
 
 class Cells(synthetic.Plant):
-    """previous wins at 10 segments, quadratic at 40; the oracle beats both; the draw shifts all a little."""
+    """previous is best at 10 segments, quadratic at 40; the oracle beats both; the draw shifts all a little."""
 
     def zero_iterations(self, segments, tolerance):
         return 1000 if tolerance > 0.05 else 2000
@@ -124,7 +124,7 @@ class Heatmap(Studies):
             "grid": {"scene.segments": [10, 40], "time.step_s": [0.01, 0.02, 0.04]}}
 
     def planes(self, measure, x, y, **settings):
-        """Of the open file."""
+        """The planes of the open file."""
         options = self.options(measure=measure, x=x, y=y, each=False, **settings)
         shown, tolerances, guesses = heatmap.chosen(self.file, options)
         return heat.planes(shown, measure, x, y, guesses, tolerances)
@@ -133,7 +133,7 @@ class Heatmap(Studies):
         self.open(plant=Cells(), **self.HEAT)
         plane, = self.planes("ratio", "time.step_s", "scene.segments")
         np.testing.assert_allclose(plane.cells.value, [[0.3] * 3, [0.5] * 3])
-        self.assertEqual(plane.guess.tolist(), [[1] * 3, [2] * 3])   # the oracle takes no part
+        self.assertEqual(plane.guess.tolist(), [[1] * 3, [2] * 3])   # the oracle is excluded
         self.assertTrue(((plane.cells.low <= plane.cells.value) & (plane.cells.value <= plane.cells.high)).all())
         self.assertTrue((plane.cells.high - plane.cells.low < 0.04).all())
         np.testing.assert_array_equal(plane.cells.count, 5)
@@ -156,7 +156,7 @@ class Heatmap(Studies):
 
     def test_speedups_of_three_kinds_and_residuals(self):
         self.open(grid={"scene.segments": [10, 20], "time.step_s": [0.01, 0.02]}, scenes=("helix",), steps=2)
-        # us, j = 0 of N = 20: CG 20 from zero, 5 with quadratic; guess 2; step: 3 assemblies of 2, rest 3
+        # us at j = 0 of N = 20: CG 20 from zero, 5 with quadratic; guess 2; step: 3 assemblies of 2, rest 3
         for measure, value in (("speedup-cg", 4), ("speedup-guess-cg", 20 / 7),
                                ("speedup-step", (6 + 40 + 3) / (6 + 6 + 10 + 3))):
             plane, = self.planes(measure, "time.step_s", "scene.segments")
@@ -189,7 +189,7 @@ class Heatmap(Studies):
 
 
 class Drifting(synthetic.Plant):
-    """Drift grows by a known amount per step, more for quadratic; one spike in the middle of one step."""
+    """Drift grows by a known amount per step, faster for quadratic; one step has a spike in its middle."""
     per_step = {"zero": 1e-6, "previous": 1e-6, "quadratic": 3e-6, "oracle(0.1)": 1e-6, "": 5e-7}
 
     def length_drift(self, step, steps, draw, guess):
@@ -201,7 +201,7 @@ class Drifting(synthetic.Plant):
 class LongTerm(Studies):
     LONG = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 1200, "newton": 1, "samples": 3,
             "solves": False, "closed_loop": True}
-    ONE = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 50}    # group of simulations
+    ONE = {"scenes": ("helix",), "grid": {"scene.segments": [10]}, "steps": 50}    # one group of simulations
 
     def test_slopes_largest_and_final_values_are_the_planted_ones(self):
         file, sims = self.simulations(plant=Drifting(), **self.LONG)
@@ -211,7 +211,7 @@ class LongTerm(Studies):
         np.testing.assert_allclose(found.largest["length_drift"][at], 1199e-6 * (1 + 0.1 * sims.sample))
         spiked = found.rows(sims.task[2, 2])
         self.assertEqual(found.largest["length_drift"][spiked], 0.25)
-        self.assertEqual((found.high["length_drift"][spiked] == 0.25).sum(), 1)   # no envelope loses a spike
+        self.assertEqual((found.high["length_drift"][spiked] == 0.25).sum(), 1)   # the envelope keeps the spike
         self.assertAlmostEqual(found.final["length_drift"][spiked], -3e-6 * 1.2 * 1199)
         np.testing.assert_allclose(found.low["momentum_kg_m_s"][at], 5)
         np.testing.assert_allclose(found.first["energy_j"], 3)
@@ -273,7 +273,7 @@ class LongTerm(Studies):
         self.assertIn("previous", methods)
         low, high, line = long_term._envelope(found, "length_drift", "previous", methods["previous"][1], {})
         self.assertTrue(np.isfinite(line[0]) and np.isnan(line[-1]))
-        self.assertEqual(len(sims), 3)     # of those that ended well
+        self.assertEqual(len(sims), 3)     # complete simulations
 
     def test_figure_with_either_time_axis_and_of_a_paired_sweep(self):
         self.write(plant=Drifting(), **self.LONG)
@@ -303,7 +303,7 @@ class LongTerm(Studies):
 
 
 class Converging(synthetic.Plant):
-    """The residual is squared by every iteration and differs between draws; gaps fall by a factor of ten."""
+    """Each iteration squares the residual, which differs between draws; gaps fall by a factor of ten."""
 
     def level(self, name, newton, draw, guess):
         if name == "joint_gap":
@@ -320,7 +320,7 @@ class Newton(Studies):
         self.assertEqual(found.tasks.tolist(), [0, 2])
         for row, draw in enumerate((0, 2)):
             expected = (0.1 / (1 + draw)) ** (2.0 ** np.arange(4))
-            for k in range(4):   # quartiles, median and largest agree: all steps are alike
+            for k in range(4):   # quartiles, median and largest are equal, since all steps are
                 np.testing.assert_allclose(found.values["newton_residual"][row, :, k], expected)
         np.testing.assert_allclose(found.values["joint_gap"][0, :3, 1], [0.1, 0.01, 0.001])
         np.testing.assert_allclose(found.share, 1)
@@ -328,13 +328,13 @@ class Newton(Studies):
     def test_quartiles_and_the_largest_over_steps(self):
         def change(h5):
             h5["solves/newton_residual"][:12:3] = [1, 2, 3, 4]   # j = 0 of task 0
-            h5["solves/newton"][3 * 3 + 2], h5["solves/newton_residual"][3 * 3 + 2] = -1, np.nan  # never reached
+            h5["solves/newton"][3 * 3 + 2], h5["solves/newton_residual"][3 * 3 + 2] = -1, np.nan  # not reached
             h5["steps/newton_iterations"][3], h5["steps/newton_residual"][3] = 2, 9
         self.open(plant=Converging(), **self.NEWTON)
         found = newton_levels.levels(self.changed(change), [0])
         np.testing.assert_allclose(found.values["newton_residual"][0, 0], [1.75, 2.5, 3.25, 4])
         np.testing.assert_allclose(found.share[0], [1, 1, 1, 0.75])
-        for level in (2, 3):    # a step that ended early stays with what it ended with
+        for level in (2, 3):    # a step that ended early keeps its last value
             self.assertEqual(found.values["newton_residual"][0, level, 3], 9)
 
     def test_observed_orders(self):

@@ -1,4 +1,4 @@
-"""The reader: what it refuses and with which words, masking by state, parameters, selection, rows in bounded blocks."""
+"""The reader: refusals and their words, masking by state, parameters, selection, rows in bounded blocks."""
 
 import os
 import unittest
@@ -59,7 +59,7 @@ class Refusals(Folder):
     def test_the_file_is_closed_after_a_refusal(self):
         h5py.File(self.path, "w").close()
         self.refused()
-        h5py.File(self.path, "w").close()  # fails while somebody has it open
+        h5py.File(self.path, "w").close()  # fails while the file is open
 
 
 class Masking(Folder):
@@ -99,7 +99,7 @@ class Parameters(Folder):
             self.assertIn(f"{asked!r} is not in the file; did you mean {answer}?", caught.exception.args[0])
 
     def test_the_nearest_is_near(self):
-        """The program's own cases (tests/runner/job/test_job_parts.cpp), and those of names with a point."""
+        """The cases of the program (tests/runner/job/test_job_parts.cpp), and names with a point."""
         known = ["length_m", "segments", "step_s", "gravity_m_s2", "zero", "previous", "scene.type", "evaluation",
                  "0.01"]
         for word, wanted in (("lenght_m", "length_m"), ("Segment", "segments"), ("steps", "step_s"), ("zreo", "zero"),

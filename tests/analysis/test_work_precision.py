@@ -1,4 +1,4 @@
-"""work_precision.py: which way is cheapest for an error, and what its figure has panels and lines of."""
+"""work_precision.py: the cheapest method for an error, panels and lines of its figure."""
 
 import argparse
 import unittest
@@ -16,14 +16,14 @@ ICC = ("CG icc from previous to 1e-1, Newton 1", "CG icc from previous to 1e-2, 
 
 class WorkPrecision(ways.Planted):
     def table(self, *arguments, files=False, **settings):
-        """Its rows, with single blanks."""
+        """The rows of the printed table, with single blanks."""
         self.write(**settings)
         said = self.run_script("work_precision.py", "sweep.h5", *arguments, files=files).stdout
         self.assertTrue(said.rstrip().endswith("sweep-work-precision.png"))
         return [" ".join(line.split()) for line in said.split("\n\n")[0].splitlines()]
 
     def rows(self):
-        """The rows of panels of the figure: titles, names of the lines of all points, and of the legend."""
+        """Rows of panels of the figure: titles, and names of the lines and of the legend."""
         options = argparse.Namespace(select=[], scene=None, guess=None, newton="first", width="174")
         with SweepFile(self.path) as file:
             shown = study.of_tasks(file, options)

@@ -1,4 +1,4 @@
-"""A planted trajectory in a file of synthetic.py: rods whose every pose is known."""
+"""Planted trajectories in a file of synthetic.py, with known poses."""
 
 import h5py
 import numpy as np
@@ -11,8 +11,8 @@ AXES = {"x": (HALF, 0, HALF, 0), "y": (HALF, -HALF, 0, 0), "z": (1, 0, 0, 0)}   
 
 
 def plant(path, segments=6, frames=4, radius=0.05, length=0.2, rods=2, walls=0, along="x", last=None):
-    """`rods` straight rods of `segments` in all, side by side along z at heights y = 1, that rise by 0.1 m a frame and
-    lie along `along`; the first `walls` segments have neither length nor radius. `last`: frames of task 0 (others -1).
+    """`rods` straight rods, `segments` in all, along the axis `along`, side by side along z at height y = 1; they rise
+    by 0.1 m a frame. The first `walls` segments have no length and no radius. `last`: frames of task 0 (others -1).
     All tasks of the file are alike."""
     each = segments // rods
     lengths = np.full(segments, float(length))
@@ -41,13 +41,13 @@ def plant(path, segments=6, frames=4, radius=0.05, length=0.2, rods=2, walls=0, 
 
 
 def obstacle(number, kind, **values):
-    """The columns of an obstacle."""
+    """The columns of one obstacle."""
     return {f"obstacles[{number}].{kind}.{name}": value for name, value in values.items()}
 
 
 class Planted(Scripts):
     def plant(self, columns=None, scene="helix", **settings):
-        """Three tasks with trajectories and these parameters of the scene: a list of their values, or one for all."""
+        """Three tasks with trajectories and these columns: each a list of three values, or one value for all."""
         self.close()
         self.write(scenes=(scene,), grid={"scene.segments": [6]}, samples=3, solves=False)
         plant(self.path, **settings)
@@ -57,6 +57,6 @@ class Planted(Scripts):
                 h5[f"tasks/parameters/scene.{name}"] = np.array(values, dtype=float)
 
     def shown(self, columns=None, **settings):
-        """The first task's Trajectory."""
+        """The Trajectory of the first task."""
         self.plant(columns, **settings)
         return trajectory.of_task(self.opened(), 0)

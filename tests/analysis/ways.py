@@ -1,5 +1,5 @@
-"""Planted rods that many ways move, each with its distance from the converged trajectory and its time: for the tests of
-solvers.py and work_precision.py."""
+"""Planted rods moved by several methods, each with a known distance from the converged trajectory and a known time. For
+tests of solvers.py and work_precision.py."""
 
 import h5py
 import numpy as np
@@ -26,7 +26,7 @@ ASSEMBLE_S, DIRECT_S, GUESS_S, CG_S = 5e-6, 1e-5, 2e-6, 8e-6
 
 class Planted(running.Scripts):
     def write(self, **settings):
-        """Two rods of every scene by every way, a row of /solves per step, and trajectories."""
+        """Two rods of every scene for every method, with one row of /solves per step and with trajectories."""
         super().write(**{"method": "direct", "scenes": ("bending_rod",), "samples": SAMPLES, "steps": STEPS,
                          "grid": {"time.newton_iterations": tuple(way.newton or 6 for way in WAYS)}, **settings})
         with h5py.File(self.path, "a") as h5:
@@ -50,7 +50,7 @@ def _columns(count, way):
     own = of(lambda w: GUESSES.index(w.guess) if w.guess else -1)
     mine = np.repeat(own, STEPS)[:, None] == np.arange(len(GUESSES))
     times = np.repeat(STEP_S[way], STEPS)
-    times[::STEPS] += 1     # a hiccup of the machine
+    times[::STEPS] += 1     # an interruption by the machine
     position = np.zeros((count, FRAMES, SEGMENTS, 3))
     position[..., 2] = np.linspace(0, 1, SEGMENTS)
     position[:, 1, :, 0] += OFF[way, None]
@@ -63,7 +63,7 @@ def _columns(count, way):
             "tasks/parameters/solve/preconditioner": of(lambda w: w.preconditioner or "jacobi").astype("S32"),
             "timing/steps/rest_s": times - np.where(linear, ASSEMBLE_S + DIRECT_S, 0),
             "timing/solves/assemble_s": np.where(linear, ASSEMBLE_S, np.nan),
-            "timing/solves/direct_s": np.where(linear, np.where(cg, 1, DIRECT_S), np.nan),    # no cost of CG
+            "timing/solves/direct_s": np.where(linear, np.where(cg, 1, DIRECT_S), np.nan),    # not a cost of CG
             "timing/solves/guess_s": np.where(mine, GUESS_S, np.nan),
             "timing/solves/cg_s": np.where(mine, CG_S, np.nan),
             "trajectories/position_m": position.reshape(-1, 3),

@@ -1,5 +1,5 @@
-// The yardstick of CG's cost: Jacobi-preconditioned conjugate gradients as one plain Eigen loop, the same arithmetic as
-// KSPCG with the true-residual norm, and nothing else.
+// Reference for the cost of CG: Jacobi-preconditioned conjugate gradients as one plain Eigen loop. The arithmetic is
+// that of KSPCG with the true-residual norm.
 #pragma once
 
 #include "solver/linear/block_matrix.hpp"
@@ -9,7 +9,7 @@ namespace rodsweep {
 class BareCg {
  public:
   explicit BareCg(const BlockMatrix& a);
-  /// `iterations` steps from zero; returns the last residual's norm.
+  /// Runs `iterations` iterations from zero; returns the norm of the last residual.
   double run(const VectorX& b, VectorX& x, int iterations);
 
  private:

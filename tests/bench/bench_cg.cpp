@@ -1,5 +1,5 @@
-// What a CG iteration costs. Google Benchmark times the cases; at the end one table sets their medians beside the
-// target, as ratios measured in this run.
+// The cost of a CG iteration. Google Benchmark times the cases; a final table compares their medians with the target,
+// as ratios from this run.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -49,7 +49,7 @@ void multiply(benchmark::State& state) {
   }
 }
 
-/// `cg_iterations` of them on a random right-hand side, which none of the sizes solves exactly by then.
+/// Runs `cg_iterations` iterations on a random right-hand side; none of the sizes converges exactly by then.
 struct CgCase {
   Scene scene;
   LinearSystem system;

@@ -1,5 +1,5 @@
-// What contact costs: the broad phase, finding contacts and projecting them, over the number of segments of a heap
-// whose density stays the same. Google Benchmark times the cases; at the end a table sets their medians per segment.
+// The cost of contact over the number of segments of a heap of constant density: broad phase, finding contacts,
+// projection. Google Benchmark times the cases; a final table has the medians per segment.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using namespace rodsweep;
 
 constexpr int sizes[] = {1000, 10000, 100000};
 
-/// Layers of parallel rods of ten segments, each layer at right angles to the one below and a little inside it.
+/// Layers of parallel rods of ten segments. Each layer crosses the one below at right angles and overlaps it a little.
 Scene heap(int segments) {
   RodParameters p;
   p.radius_m = 0.05;
@@ -38,7 +38,7 @@ Scene heap(int segments) {
   return scene;
 }
 
-/// A heap, fallen for a step of 0.01 s from rest.
+/// A heap after a fall of one step of 0.01 s from rest.
 struct Fallen {
   Scene scene;
   ContactProjection projection;
@@ -78,7 +78,7 @@ void search(benchmark::State& state) {
   }
 }
 
-/// Where the pairs of an earlier step still hold.
+/// Reuses the pairs of an earlier step.
 void find(benchmark::State& state) {
   Fallen& fallen = Fallen::of(state);
   for (auto _ : state) fallen.projection.find(false);

@@ -1,5 +1,4 @@
-// Null tasks dispatched per second: mpirun -n 3 bench_dispatch [tasks]. What a sweep of very short tasks can reach at
-// most.
+// Null tasks dispatched per second, an upper bound for sweeps of very short tasks: mpirun -n 3 bench_dispatch [tasks].
 #include <fmt/format.h>
 
 #include <cstdlib>

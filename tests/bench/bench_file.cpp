@@ -1,6 +1,6 @@
-// What the results file costs: expanding a plan of 100,000 tasks and creating its file (targets: 5 s, 500 MB of
-// memory), finding them all in an earlier file that is extended, writing a task, and writing beside running real tasks
-// (target: at most 2 % of a sweep's time). bench_file [folder]; the files are removed again.
+// The cost of the results file: expanding a plan of 100,000 tasks and creating its file (targets: 5 s, 500 MB of
+// memory), finding all tasks in an earlier file to extend, writing a task, and writing while tasks run (target: at most
+// 2 % of a sweep's time). bench_file [folder]; removes its files.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -46,7 +46,7 @@ ResultsFile create(const fs::path& path, const Plan& plan) {
   return ResultsFile::create(path, plan, provenance_of_this_process("bench_file"), MPI_COMM_SELF);
 }
 
-/// First of all, since peak memory never falls again.
+/// Runs first, since peak memory never decreases.
 void bench_creation(const fs::path& path, bool rows) {
   const auto begin = Clock::now();
   const Plan plan = plan_of(10, 10, 1, 100000, false, rows);
@@ -75,7 +75,7 @@ void bench_extension(const fs::path& path) {
              extension.count(Extension::Use::copy), plan.size(), seconds_since(begin), peak_megabytes());
 }
 
-/// Records with nothing but sentinels: the bytes are what counts.
+/// Writes records of sentinels only, since only the bytes matter.
 void bench_writing(const fs::path& path, const char* name, const Plan& plan) {
   ResultsFile file = create(path, plan);
   const auto size = static_cast<double>(fs::file_size(path)) / static_cast<double>(plan.size());

@@ -1,5 +1,5 @@
-// What guesses cost on one rod in motion: classical ones to propose x0 and hear of the solution, a learned one by
-// parts, base guess, features, network, and all that proposes x0.
+// The cost of guesses for one rod in motion. Classical ones: propose x0 and accept the solution. Learned ones: base
+// guess, features, network, and the whole proposal.
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -21,7 +21,7 @@ using namespace rodsweep;
 constexpr std::array<int, 2> sizes{50, 100};  // segments
 constexpr std::array<int, 4> latents{16, 32, 48, 64};
 
-/// Learned guesses: those of rods-large.h5 and of rods.h5 but for their latent size.
+/// Learned guesses: the settings of rods-large.h5 and of rods.h5, except the latent size.
 struct Kind {
   const char* name;
   const char* words;
@@ -62,7 +62,7 @@ constexpr std::array<std::pair<const char*, MakeGuess>, 7> classical_guesses{{
     {"subspace 10", guess_of<SubspaceGuess, 10, sliding>},
 }};
 
-/// The step of a classical guess, with the history that 30 steps make.
+/// One step of a classical guess with a history of 30 steps.
 template <class Make>
 void classical(benchmark::State& state, Make make) {
   BendingRod spec;
@@ -92,7 +92,7 @@ void classical(benchmark::State& state, Make make) {
   }
 }
 
-/// A bending rod after some steps, and guesses that know its history.
+/// A bending rod after some steps, and guesses with its history.
 struct Case {
   Scene scene;
   std::unique_ptr<LinearSystem> system;
@@ -127,7 +127,7 @@ struct Case {
   }
 };
 
-/// `lag`: with the factors of an earlier step.
+/// `lag`: reuses the factors of an earlier step.
 template <int corrections, bool lag = false>
 void whole(benchmark::State& state, const Kind& kind) {
   Case c(kind, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), {corrections, lag ? 1000000 : 0, 0});

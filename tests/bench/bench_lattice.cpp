@@ -1,8 +1,8 @@
-// What the linear system of nets and lattices costs over their size: its pattern, the plan of its factorisation, its
-// assembly, a product with A, a direct solve, and a learned guess of all couplings (latent 32, not trained, from zero:
-// features, factors, one correction, both products; and with factors of an earlier step). Google Benchmark times the
-// cases; at the end a table sets them beside the number of joints, and the direct solve beside the product, as ratios
-// of this run.
+// The cost of the linear system of nets and lattices over their size: pattern, plan of the factorisation, assembly,
+// product with A, direct solve, and a learned guess of all couplings. The guess has latent size 32, no training and no
+// base guess: features, factors, one correction, both products; also with factors of an earlier step. Google Benchmark
+// times the cases; a final table has them by number of joints, and the direct solve over the product, as ratios from
+// this run.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -57,7 +57,7 @@ const SceneSpec& scene_of(const benchmark::State& state) {
   return scenes[static_cast<std::size_t>(state.range(0))].second;
 }
 
-/// A system as a step has it.
+/// An assembled system, as in a step.
 struct Assembled {
   Scene scene;
   LinearSystem system;

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""What one master and one file take, however little the tasks do: docs/scale.md says from this where they saturate.
+"""Limits of one master and one file for very small tasks. docs/scale.md derives the saturation from them.
 
 bench_limits.py RODSWEEP MPIRUN [MOST_TASKS]
 
   start   wall time of a sweep of one task, over the number of ranks
   begin   wall time until tasks begin (plan, file), and largest memory of master and worker, over the number of tasks
-  rate    tasks of next to no work a second, over the number of workers, and the processor time that a task takes of
-          the master, which bounds how many a second it can hand out
-  write   MB a second that workers bring into the one file while they write (/timing/tasks/write_s; the page cache takes
-          them first), each and together, over the number of workers
+  rate    tiny tasks per second, over the number of workers, and the master's processor time per task, which bounds
+          the rate of assignment
+  write   MB/s that workers write into the one file (/timing/tasks/write_s; into the page cache first), each and
+          together, over the number of workers
 
-Ranks beyond the cores wait for each other: their times are upper bounds.
+With more ranks than cores, ranks wait for each other: their times are upper bounds.
 """
 
 import json
@@ -30,7 +30,7 @@ JOB = {
     "time": {"step_s": 0.02, "steps": 1, "newton_iterations": 1},
     "guesses": ["zero", "previous"],
 }
-LARGE = {  # records of 11 MB, of little work
+LARGE = {  # records of 11 MB with little work
     **{key: value for key, value in JOB.items() if key != "guesses"}, "scene": {**JOB["scene"], "segments": 2000},
     "time": {**JOB["time"], "steps": 100}, "solve": {"method": "direct"},
     "record": {"trajectory_every": 1, "solves": "summary"},
@@ -42,7 +42,7 @@ class Sweeps:
         self.rodsweep, self.mpirun = rodsweep, mpirun
 
     def run(self, ranks, tasks, *options, job=None):
-        """Wall time, and of every rank the largest resident memory in MB and the processor time. The last file stays."""
+        """Wall time; largest resident memory in MB and processor time of every rank. Keeps the last file."""
         if os.path.exists("out.h5"):
             os.remove("out.h5")
         with open("job.json", "w") as file:
@@ -64,12 +64,12 @@ class Sweeps:
 
 
 def as_rank(command):
-    """Runs what a rank is to run, and writes down what it took."""
+    """Runs a rank's command; writes its memory and its processor time to a file."""
     process = subprocess.Popen(command)
     _, _, usage = os.wait4(process.pid, 0)
     with open(f"rank-{os.environ['OMPI_COMM_WORLD_RANK']}.json", "w") as file:
         json.dump({"mb": usage.ru_maxrss / 1024, "processor_s": usage.ru_utime + usage.ru_stime}, file)
-    sys.exit(0)  # so that mpirun lets the other ranks write down theirs
+    sys.exit(0)  # so that mpirun lets the other ranks write their files
 
 
 def main():

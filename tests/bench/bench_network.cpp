@@ -1,4 +1,4 @@
-// What inference by message passing costs on one rod of 50 segments, and how much of it its matrix products are.
+// The cost of inference by message passing on one rod of 50 segments, and the share of its matrix products.
 #include <array>
 #include <cstdio>
 
@@ -15,7 +15,7 @@ using namespace rodsweep;
 constexpr int segments = 50;
 constexpr std::array<std::array<int, 2>, 4> sizes{{{32, 4}, {32, 6}, {64, 4}, {64, 6}}};  // latent, steps
 
-/// A rod, and a network as it would guess for CG: joints only.
+/// A rod and a network as a guess for CG uses it: outputs for joints only.
 struct Case {
   Scene scene;
   RodGraph graph;
@@ -59,7 +59,7 @@ void message_passing(benchmark::State& state) {
   }
 }
 
-/// Every matrix of the network times 50 columns, and nothing else.
+/// Multiplies every matrix of the network by 50 columns.
 void products(benchmark::State& state) {
   const Case c(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   std::vector<Tensor<float>> x, y;

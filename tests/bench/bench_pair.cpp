@@ -1,16 +1,16 @@
-// What the moves of the paper's guess could be for. Its guess is a pair, moves and multipliers, and CG on A starts from
-// multipliers alone. On the coupled system [M -J^T; J alpha~] the moves are eliminated exactly, M dp = J^T dlambda, so
-// that CG on A, its Schur complement, forgets whatever they were. What is left is Newton: the pair may take the place
-// of its first solve, and the constraints are linearised where the moves lead. Tried here on falling rods, with the
-// network named on the command line (of the loss "mse" with moves; by default network/pretrained/bending-paper.h5):
+// The use of the moves in the paper's guess. The guess is a pair of moves and multipliers, but CG on A starts from
+// multipliers only. The moves are eliminated exactly from the coupled system [M -J^T; J alpha~], M dp = J^T dlambda, so
+// CG on its Schur complement A ignores them. Newton can use the pair instead of its first solve, and linearise the
+// constraints at the moved rod. Cases, on falling rods with a network of the loss "mse" with moves from the command
+// line (default: network/pretrained/bending-paper.h5):
 //   from zero           CG from zero in every iteration
 //   multipliers         at j = 0 CG from the network's multipliers
-//   pair, its moves     at j = 0 the network's multipliers and moves instead of a solve, CG from zero after that
-//   pair, M^-1 J^T      the same, with the moves that belong to its multipliers
-//   free flight         at j = 0 nothing, which costs a Newton iteration: what a pair must beat
-// A table of means over those of 20 rods that lasted 100 steps: Newton iterations to 1e-6 and CG iterations of a step,
-// the distance from the trajectory of direct solves at the end in rod lengths, and how far momentum is out of balance,
-// |M (x - x*) - J^T lambda| over |M (x - x*)|, which no later iteration of the paper's step looks at.
+//   pair, its moves     at j = 0 the network's multipliers and moves without a solve, then CG from zero
+//   pair, M^-1 J^T      the same, with the moves M^-1 J^T of its multipliers
+//   free flight         nothing at j = 0, at the cost of a Newton iteration: the minimum for a pair to beat
+// Prints means over those of 20 rods that lasted 100 steps: Newton iterations to 1e-6 and CG iterations per step, the
+// final distance from the trajectory of direct solves in rod lengths, and the imbalance of momentum
+// |M (x - x*) - J^T lambda| / |M (x - x*)|, which later iterations of the paper's step ignore.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -63,7 +63,7 @@ class PairProjection : public Projection {
     return report;
   }
 
-  /// Of the step that has ended.
+  /// The imbalance of momentum after a step.
   double imbalance(const Rod& rod) {
     system_.displacements(rod, rod.lambda, moves_);
     double lacks = 0, all = 0;

@@ -1,7 +1,7 @@
-// What CG costs on cubic lattices, per joint: a product with and without the blocks of the matrix, an iteration with
-// every preconditioner, its set-up (an iteration of a condensed system counts what every solve of it does first); and a
-// whole solve from zero, set-up included, with its iterations. Google Benchmark
-// times the cases; at the end a table sets their medians beside each other, as measured in this run.
+// The cost of CG on cubic lattices, per joint: a product with and without the blocks of the matrix, an iteration with
+// each preconditioner, its set-up, and a whole solve from zero with set-up and iterations. An iteration of a condensed
+// system includes the start of every solve. Google Benchmark times the cases; a final table compares their medians from
+// this run.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -21,8 +21,8 @@ using namespace rodsweep;
 
 constexpr int product_sizes[] = {3, 4, 5, 8, 12, 18};  // nodes along an edge
 constexpr int sizes[] = {3, 5, 8};
-constexpr int most_for_all_fill = 5;  // beyond, a complete factor takes long to plan
-constexpr int iterations = 3;         // few, for preconditioners that are nearly exact
+constexpr int most_for_all_fill = 5;  // the plan of a complete factor takes long for larger sizes
+constexpr int iterations = 3;         // few, since some preconditioners are almost exact
 constexpr double tolerance = 1e-2;
 
 struct Kind {
@@ -91,7 +91,7 @@ void without_blocks(benchmark::State& state) {
   multiply(state, c, product);
 }
 
-/// With a preconditioner that is made anew, or kept.
+/// `anew`: sets up the preconditioner again.
 void iterate(benchmark::State& state, const Kind& kind, bool anew) {
   Case& c = case_of(static_cast<int>(state.range(0)));
   const std::unique_ptr<CgSolver> cg = cg_of(kind, c, iterations);

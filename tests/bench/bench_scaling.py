@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Two workers against one: the same sweep at 3 and at 2 ranks, in turns; target: at least 1.8 times as fast.
+"""Two workers against one: the same sweep with 3 and with 2 ranks in turns; target: at least 1.8 times as fast.
 
-bench_scaling.py RODSWEEP MPIRUN [REPEATS]; its files go to a folder that is removed again.
+bench_scaling.py RODSWEEP MPIRUN [REPEATS]; it removes its files.
 """
 
 import json
@@ -23,7 +23,7 @@ JOB = {
 
 
 def sweep_seconds(rodsweep, mpirun, ranks):
-    """Wall time of the whole command, start of MPI and file included."""
+    """Wall time of the whole command, including the start of MPI and the file."""
     begin = time.monotonic()
     subprocess.run([mpirun, "-n", str(ranks), rodsweep, "run", "scaling.json", "-o", f"{ranks}.h5"], check=True,
                    stdin=subprocess.DEVNULL, capture_output=True)

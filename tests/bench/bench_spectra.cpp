@@ -1,8 +1,8 @@
-// How good preconditioners are on cubic lattices in motion, and what they cost: IC with levels of fill, PETSc's
-// algebraic multigrids, and the learned incomplete factors of network/pretrained/lattices.h5 (or of the model named on
-// the command line), which could say what IC(0) says. Spectra of P^-1 A are Ritz values of CG from zero on a random
-// right-hand side (Lanczos; Golub & Van Loan 2013, section 11.3), whose ends have come to rest; iterations are to ||b -
-// A x||_2 = 1e-2 and 1e-4 ||b||_2 on the lattice's own; times are the least of some, per joint.
+// Quality and cost of preconditioners on cubic lattices in motion: IC with levels of fill, PETSc's algebraic
+// multigrids, and the learned incomplete factors of network/pretrained/lattices.h5 (or a model from the command line),
+// which can represent IC(0). Spectra of P^-1 A are converged extreme Ritz values of CG from zero on a random right-hand
+// side (Lanczos; Golub & Van Loan 2013, section 11.3). Iterations are to ||b - A x||_2 = 1e-2 and 1e-4 ||b||_2 with the
+// lattice's own b. Times are minima of several runs, per joint.
 #include <Eigen/Eigenvalues>
 #include <cstdio>
 #include <functional>
@@ -49,7 +49,7 @@ struct Case {
   }
 };
 
-/// z = P^-1 r, and how it is made anew.
+/// A preconditioner: its set-up and z = P^-1 r.
 struct Way {
   std::string name;
   std::function<bool()> set_up;
@@ -145,7 +145,7 @@ Way incomplete(const LinearSystem& system, int levels) {
           [own](const VectorX& r, VectorX& z) { own->apply(r.data(), z.data()); }};
 }
 
-/// As a guess uses them (network/guess/coping_net_correction.hpp).
+/// The learned factors as a guess uses them (network/guess/coping_net_correction.hpp).
 class LearnedFactors {
  public:
   LearnedFactors(const Model& model, const Rod& rod, const LinearSystem& system)

@@ -1,6 +1,6 @@
-// What the direct time step costs: its parts, its cost over the number of segments, eight rods at once beside one, and
-// an iteration of Gauss-Seidel beside one of Newton.
-// Google Benchmark times the cases; at the end tables set their medians beside the targets, as ratios of this run.
+// The cost of the direct time step: its parts, its scaling with the number of segments, a batch of eight rods over one
+// rod, and an iteration of Gauss-Seidel over one of Newton.
+// Google Benchmark times the cases; final tables compare their medians with the targets, as ratios from this run.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -23,8 +23,8 @@ int segments_of(const benchmark::State& state) { return static_cast<int>(state.r
 
 const StepSettings one_iteration{0.02, 1, 0};
 
-/// Segments as long as they are wide, whatever their number, all of them in motion: multipliers that fade out along a
-/// rod at rest are denormal numbers, which are slow. `variant` tells the rods of a batch apart.
+/// Segments as long as they are wide, all in motion: along a rod at rest, decaying multipliers become denormal numbers,
+/// which are slow. `variant` differs for each rod of a batch.
 Scene moving_scene(int segments, int variant = 0) {
   BendingRod rod;
   rod.segments = segments;
@@ -37,7 +37,7 @@ Scene moving_scene(int segments, int variant = 0) {
   return scene;
 }
 
-/// A scene with all that its step and its parts need, made once for all cases.
+/// A scene with the objects that its step and the parts of the step need, shared by all cases.
 struct Single {
   Scene scene;
   DirectSolve direct;
@@ -127,14 +127,14 @@ void update(benchmark::State& state) {
   Single& single = Single::of(state);
   Rod rod = single.rod();
   single.system.assemble(rod, one_iteration.dt);
-  single.solution.setConstant(1e-20);  // moves nothing far
+  single.solution.setConstant(1e-20);  // the update hardly moves anything
   for (auto _ : state) {
     single.system.apply(rod, single.solution);
     benchmark::ClobberMemory();
   }
 }
 
-/// One call of project(), on rods that keep moving towards their constraints.
+/// One call of project() on rods that keep moving towards their constraints.
 void iterate(benchmark::State& state, Projection& projection, Rod& rod) {
   for (auto _ : state)
     if (projection.project(rod, {}, one_iteration.dt, 0).outcome == SolveOutcome::indefinite)

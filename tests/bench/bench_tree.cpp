@@ -1,6 +1,6 @@
-// What the step of a tree in the wind costs: of a thousand segments by each projection, by the direct solve over the
-// number of segments, and what of it is the wind. Google Benchmark times the cases; at the end tables set their medians
-// beside the targets, as ratios of this run.
+// The cost of a step of a tree in the wind: a thousand segments by each projection, the direct solve over the number of
+// segments, and the share of the wind. Google Benchmark times the cases; final tables compare their medians with the
+// targets, as ratios from this run.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -23,7 +23,7 @@ using namespace rodsweep;
 constexpr int sweeps = 20;  // of xpbd and pbd
 constexpr double cg_tolerance = 1e-2;
 
-/// Branches end in two others; 1 + 2 + ... + 2^depth of them.
+/// Each branch ends in two others; 1 + 2 + ... + 2^depth branches.
 Tree tree(int depth, int segments) {
   Tree p;
   p.shape.depth = depth;
@@ -57,7 +57,7 @@ class CgSolve : public LinearSolve {
   std::optional<ConjugateGradient> cg_;
 };
 
-/// Steps by a projection, of a tree that direct steps have set in motion. Newton takes one iteration.
+/// Steps by a projection of a tree that direct steps have set in motion. Newton takes one iteration.
 void steps(benchmark::State& state, Scene& scene, Projection& projection, int iterations = 1) {
   {
     DirectSolve direct(scene);

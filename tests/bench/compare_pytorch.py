@@ -52,7 +52,7 @@ def passes(n, m, r):
 
 
 class Passes(torch.autograd.Function):
-    """The same with its gradient by hand: the adjoint of two passes is two passes, and outer products at one go."""
+    """The same with its gradient by hand: the adjoint of two passes is two passes and one batch of outer products."""
 
     @staticmethod
     def forward(context, n, m, r):
@@ -145,7 +145,7 @@ def systems_per_second(latent, places, batch, solve, budget_s=4):
 
 
 def rodsweep_systems_per_second(program, latent, segments):
-    """Of the epochs of a short training on one thread, their validation included."""
+    """Measured over the epochs of a short training on one thread, including validation."""
     rods = {"type": "bending_rod", "segments": segments, "length_m": 2, "initial_angle_deg": {"uniform": [0, 45]},
             "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e5, "torsion_modulus_pa": 1e6}
     data = {"name": "data", "kind": "dataset", "seed": 1, "samples": 24, "scene": rods,

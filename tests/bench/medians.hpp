@@ -1,4 +1,4 @@
-// Benchmarks as medians over interleaved repetitions, for tables that set them beside each other.
+// Medians of benchmarks over interleaved repetitions.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -12,13 +12,13 @@
 
 namespace rodsweep {
 
-/// Prints and keeps [s] the medians only, of processor time: what other programs take meanwhile is not counted.
+/// Prints and stores the medians only [s]. They are processor time, so other programs do not count.
 class Medians : public benchmark::ConsoleReporter {
  public:
   Medians() : ConsoleReporter(OO_None) {}
   void ReportRuns(const std::vector<Run>& runs) override;
 
-  /// Of a benchmark by name and arguments, "multiply/50"; 0 if it did not run.
+  /// The median of a benchmark with its arguments, such as "multiply/50"; 0 if it did not run.
   double operator()(const std::string& name) const;
   double operator()(const std::string& name, std::int64_t argument) const {
     return (*this)(name + "/" + std::to_string(argument));
@@ -30,7 +30,6 @@ class Medians : public benchmark::ConsoleReporter {
 
 using Cases = std::vector<std::pair<const char*, void (*)(benchmark::State&)>>;
 
-/// Registers every case with every argument.
 template <class Arguments>
 void register_cases(const Cases& cases, const Arguments& arguments) {
   for (const auto& [name, function] : cases)
@@ -38,8 +37,8 @@ void register_cases(const Cases& cases, const Arguments& arguments) {
       benchmark::RegisterBenchmark(name, function)->Arg(argument)->Unit(benchmark::kNanosecond);
 }
 
-/// Runs what is registered, then prints tables; the command line wins over the defaults. The exit code: 2 where it is
-/// not understood.
+/// Runs the registered benchmarks, then `print`. The command line overrides the defaults. Returns the exit code: 2 for
+/// an unknown option.
 int run_benchmarks(int argc, char** argv, const std::function<void(const Medians&)>& print);
 
 }  // namespace rodsweep

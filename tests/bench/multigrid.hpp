@@ -1,8 +1,8 @@
-// PETSc's algebraic multigrids as preconditioners of A, to be measured beside ours: GAMG (smoothed aggregation) and
+// PETSc's algebraic multigrids as preconditioners of A, for comparison with ours: GAMG (smoothed aggregation) and
 // hypre's BoomerAMG (systems of six unknowns, "unknown" approach).
 //
-// GAMG's near null space is what A hardly resists: the same force or moment everywhere, lambda = (l R^T f, R^T m) with
-// R the frame of a joint, its second segment's, and l its length.
+// GAMG's near null space: the same force or moment in every joint, lambda = (l R^T f, R^T m). R is the frame of the
+// joint's second segment, l the length of the joint.
 #pragma once
 
 #include <memory>

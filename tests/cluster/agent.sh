@@ -1,6 +1,6 @@
 #!/bin/bash
-# agent.sh [options] HOST COMMAND...: what ssh does, for the hosts of hosts.py, whose first processes' numbers are in files of
-# $HOSTS named after them. A host that is down or cut off does not answer, and ends the attempt after 8 seconds.
+# agent.sh [options] HOST COMMAND...: replaces ssh for the hosts of hosts.py. The file $HOSTS/HOST has the PID of a
+# host's first process. If the host is down or cut off, the attempt fails after 8 seconds.
 while [[ $1 == -* ]]; do shift; done
 host=$1
 shift

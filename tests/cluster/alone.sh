@@ -1,14 +1,14 @@
 #!/bin/bash
-# alone.sh COMMAND...: runs a command as if on a machine of its own, as far as processes, network, mounts and names go. When it
-# ends, however it does, all that it started ends with it, and its mounts and links are gone. Needs root; exit code 77 (CTest:
-# skipped) where the kernel does not let it.
+# alone.sh COMMAND...: runs a command with its own processes, network, mounts and host name. When the command ends, for
+# any reason, all processes that it started end too, and its mounts and links are gone. Needs root. Exit code 77 (CTest:
+# skipped) if the kernel does not permit namespaces.
 set -eu
 spaces=(--mount --pid --net --uts --ipc --fork --kill-child --mount-proc)
 if ! why=$(unshare "${spaces[@]}" true 2>&1); then
   echo "skipped: no namespaces of our own here: $why"
   exit 77
 fi
-# The first process of a PID namespace inherits all orphans; this shell stays there and buries them.
+# The first process of a PID namespace inherits all orphans. This shell stays and reaps them.
 exec unshare "${spaces[@]}" bash -c '
   ip link set lo up
   mount -t tmpfs none /run

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Hosts on one machine: namespaces of the kernel on a bridge, each with processes, a network and a name of its own, and all
-with the same files. They can be cut off (no packet passes, and none is refused), and die with all that runs there.
+"""Hosts on one machine: kernel namespaces on a bridge. Each has its own processes, network and name; they share all
+files. A host can be cut off (all packets are dropped, none is rejected) or die with all its processes.
 
-Within alone.sh, which see. By hand:  alone.sh hosts.py COMMAND...  runs a command with three of them up; mpirun finds them
-through its environment, and $HOSTS/hostfile names them.
+Run within alone.sh. By hand, alone.sh hosts.py COMMAND... runs a command with three hosts up. The environment has
+the settings of mpirun; $HOSTS/hostfile has the names of the hosts.
 """
 
 import os
@@ -31,7 +31,7 @@ class Host:
         self.up()
 
     def up(self):
-        # Its first process buries orphans, as any machine's does.
+        # The first process of the namespace reaps orphans, like init.
         self.process = subprocess.Popen(
             ["unshare", "--net", "--pid", "--uts", "--mount", "--fork", "--kill-child", "--mount-proc",
              "bash", "-c", 'hostname "$0"; ip link set lo up; echo up; sleep infinity & wait', self.name],
@@ -58,12 +58,12 @@ class Host:
         run("ip", "link", "set", self.link, "up")
 
     def die(self):
-        """At once, with all its processes; its network goes with it."""
+        """Kills the host with all its processes; its network goes with it."""
         if self.process.poll() is None:
             os.kill(self.first, signal.SIGKILL)
             self.process.wait()
             self.process.stdout.close()
-            subprocess.run(["ip", "link", "del", self.link], capture_output=True, check=False)  # unless the kernel was faster
+            subprocess.run(["ip", "link", "del", self.link], capture_output=True, check=False)  # unless the kernel did
 
 
 class Hosts(list):
@@ -85,7 +85,7 @@ class Hosts(list):
         os.environ.update(self.environment())
 
     def environment(self):
-        """Of mpirun."""
+        """The environment for mpirun."""
         settings = {"plm": "rsh", "plm_rsh_agent": AGENT, "oob_tcp_if_include": NETWORK, "btl_tcp_if_include": NETWORK,
                     "btl": "tcp,self,vader"}
         return {"HOSTS": self.folder, **{"OMPI_MCA_" + name: value for name, value in settings.items()}}

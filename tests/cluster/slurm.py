@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""A real Slurm whose nodes are the hosts of hosts.py: slurmctld beside them, a slurmd on each, munge between them.
+"""A real Slurm with the hosts of hosts.py as nodes: slurmctld outside, a slurmd on each host, munge for all.
 
-Within alone.sh, which see: all ends with it. By hand:  alone.sh slurm.py COMMAND...  runs a command beside it.
+Run within alone.sh, which ends all of it. By hand, alone.sh slurm.py COMMAND... runs a command with Slurm up.
 """
 
 import os
@@ -12,7 +12,7 @@ import time
 
 from hosts import HEAD, Hosts, run
 
-LOST_AFTER_S = 8  # a node that does not answer is down
+LOST_AFTER_S = 8  # an unresponsive node is down after this time
 
 CONFIGURATION = """\
 ClusterName=test
@@ -59,7 +59,7 @@ class Slurm:
         self.folder = os.path.abspath(folder)
         os.makedirs(os.path.join(self.folder, "state"))
         self.hosts = Hosts(os.path.join(self.folder, "hosts"), hosts)
-        for name in ("OMPI_MCA_plm", "OMPI_MCA_plm_rsh_agent"):  # mpirun asks Slurm
+        for name in ("OMPI_MCA_plm", "OMPI_MCA_plm_rsh_agent"):  # mpirun gets the hosts from Slurm
             os.environ.pop(name)
         self.start_munge()
         os.environ["SLURM_CONF"] = os.path.join(self.folder, "slurm.conf")
@@ -76,7 +76,7 @@ class Slurm:
 
     @staticmethod
     def start_munge():
-        """With a key of its own, in folders that hide the machine's."""
+        """With its own key, in folders that hide the machine's."""
         for folder in ("/etc/munge", "/var/log/munge", "/var/lib/munge"):
             run("mount", "-t", "tmpfs", "none", folder)
         for folder in ("/etc/munge", "/var/log/munge", "/var/lib/munge", "/run/munge"):
@@ -93,13 +93,13 @@ class Slurm:
 
     @staticmethod
     def submit(*words):
-        """The number of the job."""
+        """Submits a job; returns its number."""
         said = subprocess.run(["sbatch", "--parsable", *words], capture_output=True, text=True, check=True)
         return said.stdout.strip()
 
     @staticmethod
     def job(number):
-        """What Slurm says of it: {key: text}."""
+        """Slurm's data of a job: {key: text}."""
         said = subprocess.run(["scontrol", "--oneliner", "show", "job", number], capture_output=True, text=True, check=True).stdout
         return dict(word.split("=", 1) for word in said.split() if "=" in word)
 

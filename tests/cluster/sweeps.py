@@ -1,5 +1,5 @@
-"""Sweeps over the hosts of hosts.py, as seen from outside: who runs where, what was printed when, and how far they are.
-Times are seconds since the sweep was started."""
+"""Sweeps over the hosts of hosts.py, observed from outside: ranks of each host, time of each printed line, task states.
+Times are seconds since the start of the sweep."""
 
 import os
 import re
@@ -21,7 +21,7 @@ def run_undisturbed(job, path, ranks=5):
 
 
 def processes_on(host, name):
-    """Numbers of the processes there of this name."""
+    """PIDs of the host's processes with this name."""
     space, found = os.readlink(f"/proc/{host.first}/ns/pid"), []
     for entry in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -34,7 +34,7 @@ def processes_on(host, name):
 
 
 def ranks_on(host):
-    """Process numbers of the program's ranks there, by rank."""
+    """PIDs of the program's ranks on the host, by rank."""
     ranks = {}
     for pid in processes_on(host, "rodsweep"):
         try:
@@ -46,7 +46,7 @@ def ranks_on(host):
 
 
 def states(path):
-    """Which tasks are done; None while there is no file."""
+    """Whether each task is done; None while there is no file."""
     try:
         with h5py.File(path, "r", locking=False) as file:
             return file["tasks/state"][:] != 0
@@ -55,7 +55,7 @@ def states(path):
 
 
 class HostSweep:
-    """A sweep over all hosts, the master on the first one, and two workers on each; ranks may die alone."""
+    """A sweep with the master on the first host and two workers on each host. A dead rank does not end the others."""
 
     def __init__(self, hosts, job, path, run=(), slots=2):
         self.path, self.begin, self.lines = path, time.monotonic(), []
@@ -79,7 +79,7 @@ class HostSweep:
         return self.process.poll() is None
 
     def said(self, pattern, since=0.0):
-        """When a line matched."""
+        """Time of the first line that matches, or None."""
         return next((when for when, line in list(self.lines) if when >= since and re.search(pattern, line)), None)
 
     def text(self):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Sweeps over three hosts (hosts.py): workers that die or hang, hosts that are cut off or die.
+"""Sweeps over three hosts (hosts.py): workers die or hang, hosts are cut off or die.
 
-Run by CTest within alone.sh. It prints how long recovery took: docs/faults.md has the times of one run.
+Run by CTest within alone.sh. Prints recovery times; docs/faults.md has those of one run.
 """
 
 import os
@@ -12,8 +12,8 @@ from hosts import Hosts
 from sweeps import HostSweep, ranks_on, run_undisturbed
 from program import ALL_DONE, SweepCase, job, status
 
-TIMEOUT_S = 3   # of a worker; two minutes unless told
-# Open MPI notices a dead connection by TCP's keep-alive, here within 7 s.
+TIMEOUT_S = 3   # a worker's; the default is two minutes
+# TCP's keep-alive reports a dead connection to Open MPI, here within 7 s.
 KEEPALIVE = {"time": "4", "intvl": "1", "probes": "3"}
 
 
@@ -37,13 +37,13 @@ class HostsCase(SweepCase):
         return sweep
 
     def assert_done(self, sweep, runs):
-        sweep.end()    # mpirun's exit code is always 0: ranks may die alone
+        sweep.end()    # mpirun always exits with 0, since ranks may die alone
         self.assert_whole(sweep.path)
         self.assert_same_results("whole.h5", sweep.path)
         self.assertEqual([s["exit_code"] for s in status(sweep.path)["runs"]], runs, sweep.text())
 
     def assert_continues(self, sweep, fault_s, lost):
-        """The tasks of lost ranks are reassigned."""
+        """Waits until the tasks of lost ranks are reassigned."""
         sweep.wait_until("the loss is noticed", lambda: all(sweep.said(f"rank {rank} on .* timed out") for rank in lost))
         seconds = sweep.now() - fault_s
         print(f"{self.id().split('.')[-1]}: reassigned after {seconds:.1f} s", flush=True)

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""jobs/slurm/sweep.sbatch under a real Slurm of two nodes (slurm.py): to its end, through time limits, killed workers, scancel and
-lost nodes, always to the bits of an undisturbed run.
+"""jobs/slurm/sweep.sbatch under a real Slurm with two nodes (slurm.py): normal end, time limits, killed workers,
+scancel, lost nodes. Results have the same bits as those of an undisturbed run.
 
-Run by CTest within alone.sh. It prints how long recovery took: docs/faults.md has the times of one run.
+Run by CTest within alone.sh. Prints recovery times; docs/faults.md has those of one run.
 """
 
 import glob
@@ -51,7 +51,7 @@ class SlurmCase(SweepCase):
 
     def wait_for_end(self, number, state="COMPLETED", seconds=300):
         ended = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL")
-        # One that puts itself back into the queue is COMPLETED, or FAILED, for a moment.
+        # A job that requeues itself is COMPLETED or FAILED for a moment.
         wait_until(f"job {number} to end", seconds, lambda: self.slurm.job(number)["JobState"] in ended
                    and (time.sleep(2) or self.slurm.job(number)["JobState"] in ended))
         found = self.slurm.job(number)
@@ -110,7 +110,7 @@ class Slurmed(SlurmCase):
 
 
 class TimeLimits(SlurmCase):
-    """A minute is the shortest that Slurm knows; a sweep stops STOP_S before."""
+    """One minute is Slurm's shortest limit. A sweep stops STOP_S before it."""
 
     def submit_short(self, *words, stop_s, **others):
         os.environ["RODSWEEP_STOP_S"] = str(stop_s)
@@ -167,10 +167,10 @@ class Nodes(SlurmCase):
     def test_a_node_that_is_given_up_and_works_on_is_waited_for(self):
         longer = job("longer", samples=900, segments=(15, 30), steps=40, record={"solves": "all", "norms": "one"})
         run_undisturbed(longer, "longer.h5")
-        number = self.submit(job_file=longer)  # which lasts until the job has begun again
+        number = self.submit(job_file=longer)  # long enough to run until the job restarts
         self.wait_for_tasks(20)
         host = self.host_of(number)
-        for pid in processes_on(host, "slurmd"):  # else it may end its job before the next start looks
+        for pid in processes_on(host, "slurmd"):  # else slurmd may end its job before the restart looks
             os.kill(pid, signal.SIGSTOP)
             self.addCleanup(os.kill, pid, signal.SIGCONT)
         subprocess.run(["scontrol", "update", "NodeName=" + host.name, "State=DOWN", "Reason=test"], check=True)

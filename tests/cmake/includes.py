@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Imports run one way: runner, network, solver; and between the folders of a layer there are no circles.
+"""Includes go from runner to network to solver; folders within a layer include each other without cycles.
 
-includes.py SOURCE_DIR reads every #include of the three layers and prints the lines that break this. It first tries
-itself on planted sources that do.
+includes.py SOURCE_DIR reads every #include of the three layers and prints violations. It first tests itself on planted
+sources with violations.
 """
 import re
 import sys
@@ -14,7 +14,7 @@ INCLUDE = re.compile(r'\s*#\s*include\s*"([^"]+)"')
 
 
 def includes(root):
-    """(file, line number, included file), as paths below `root`, of everything that the layers include of each other."""
+    """(file, line number, included file), as paths below `root`, of all includes within the layers."""
     for layer in LAYERS:
         for path in sorted((root / layer).rglob("*.[ch]pp")):
             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):

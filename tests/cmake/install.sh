@@ -1,6 +1,6 @@
 #!/bin/sh
-# install.sh CMAKE: what is installed works away from the source tree: program, jobs, analysis scripts, Python package,
-# completion, MPI settings. What a tool that is not here would check is skipped, with a word.
+# install.sh CMAKE: the installed program, jobs, analysis scripts, Python package, completion and MPI settings work
+# outside the source tree.
 set -eu
 fail() { echo "FAILED: $*"; exit 1; }
 "$1" --install "$BUILD_DIR" --prefix "$PWD/a prefix" >install.log || { cat install.log; exit 1; }
@@ -22,7 +22,7 @@ done
 "$bin/rodsweep-summary" smoke.h5 | cmp - summary.txt
 "$bin/rodsweep-summary" --help | grep -q '^  rodsweep-summary results/demo.h5'
 PYTHONPATH="$share/analysis" /usr/bin/python3 -c 'import rodsweep; print(rodsweep.open("smoke.h5"))' | grep 'tasks ok, none failed'
-"$bin/rodsweep-report" smoke.h5    # style, scripts and libraries of the page were installed too
+"$bin/rodsweep-report" smoke.h5    # the page's style, scripts and libraries are installed
 grep -q 'Observable Plot' smoke.html
 "$share/mpi-env.sh" "$MPIRUN" -n 2 "../a prefix/bin/rodsweep" --version
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# revision.sh CMAKE: the header that cmake/revision.cmake writes, for clones of our own in every condition.
+# revision.sh CMAKE: the header that cmake/revision.cmake writes, for clones in all conditions.
 set -eu
 cmake=$1
 header() { "$cmake" -D SOURCE_DIR="$PWD/$1" -D OUTPUT="$PWD/revision.hpp" -P "$SOURCE_DIR/cmake/revision.cmake"; }
@@ -17,9 +17,9 @@ git -C clone add file
 git -C clone commit -q -m one
 commit=$(git -C clone rev-parse --short=12 HEAD)
 is "$(revision clone)" "$commit"
-is "$(revision clone/unpacked)" unknown  # sources unpacked inside another repository have no revision of it
+is "$(revision clone/unpacked)" unknown  # sources unpacked inside another repository do not have its revision
 
-# An unchanged revision leaves the header alone, so that nothing is recompiled; an untracked file changes nothing.
+# An unchanged revision does not touch the header, so nothing is recompiled. Untracked files do not count.
 touch -d '2001-01-01' revision.hpp
 echo new >clone/untracked
 is "$(revision clone)" "$(git -C clone describe --always --abbrev=12)"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The recipes for other machines say what CMakeLists.txt and packages.txt say: names, versions, options, files."""
+"""The recipes for other machines agree with CMakeLists.txt and packages.txt: names, versions, options, files."""
 
 import ast
 import json
@@ -16,14 +16,14 @@ SOURCE_DIR = os.environ["SOURCE_DIR"]
 RECIPES = "cmake/recipes"
 PACKAGE = f"{RECIPES}/spack_repo/rodsweep/packages/rodsweep/package.py"
 
-# As CMake, Spack, conda-forge and Debian call it.
+# Names in CMake, Spack, conda-forge and Debian.
 LIBRARIES = [("MPI", "mpi", "openmpi", "libopenmpi-dev"), ("HDF5", "hdf5", "hdf5", "libhdf5-openmpi-dev"),
              ("PETSC", "petsc", "petsc", "libpetsc-real-dev"), ("METIS_LIBRARY", "metis", "metis", "libmetis-dev"),
              ("Eigen3", "eigen", "eigen", "libeigen3-dev"), ("nanoflann", "nanoflann", "nanoflann", "libnanoflann-dev"),
              ("nlohmann_json", "nlohmann-json", "nlohmann_json", "nlohmann-json3-dev"),
              ("CLI11", "cli11", "cli11", "libcli11-dev"), ("fmt", "fmt", "fmt", "libfmt-dev"),
              ("Catch2", "catch2", "catch2", "catch2"), ("PkgConfig", "pkgconfig", "pkg-config", "pkg-config")]
-TOOLCHAIN = {"OpenMP", "benchmark"}  # of the compiler; Spack's variant alone
+TOOLCHAIN = {"OpenMP", "benchmark"}  # of the compiler; a variant in Spack only
 
 
 def text_of(path):
@@ -133,7 +133,7 @@ class Release(unittest.TestCase):
         self.assertEqual(re.search(r"^## \[([\d.]+)\]", text_of("CHANGELOG.md"), re.M)[1], version)
 
     def test_the_citation_keeps_to_the_rules_of_its_format(self):
-        """Of schema 1.2.0: what is required, persons and entities, kinds, how a DOI is written."""
+        """Schema 1.2.0: required keys, persons and entities, types, form of a DOI."""
         citation = yaml.safe_load(text_of("CITATION.cff"))
         self.assertEqual(citation["cff-version"], "1.2.0")
         self.assertLessEqual({"message", "title", "authors"}, citation.keys())

@@ -1,4 +1,4 @@
-"""Running the program from tests: RODSWEEP names it. Files are made in the current, empty folder."""
+"""Runs the program from tests: RODSWEEP is its path. Files are in the current, empty folder."""
 
 import json
 import os
@@ -17,17 +17,17 @@ JOB = {"name": "small", "kind": "sweep", "seed": 3, "samples": 2, "scene": ROD,
        "time": {"step_s": 0.02, "steps": 6, "newton_iterations": 3}, "solve": {"method": "cg", "tolerance": 1e-2},
        "guesses": ["zero", "previous", {"oracle": {"error": 0.1, "label": "oracle 0.1"}}]}
 
-DATA = {"kind": "dataset", "solve": None, "guesses": None}  # the changes that make it a data set
+DATA = {"kind": "dataset", "solve": None, "guesses": None}  # changes that turn JOB into a data set
 
 
 def rodsweep(*words, **options):
-    """Runs to the end: the completed process with its texts, unless `options` send them elsewhere."""
+    """Runs the program to its end; returns the completed process, with its output unless `options` redirect it."""
     return subprocess.run([RODSWEEP, *map(str, words)], stdin=subprocess.DEVNULL, text=True, timeout=600,
                           **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options})
 
 
 def write_job(name, **changes):
-    """Path of JOB with changes, in jobs/. A change to None takes a key away."""
+    """Writes JOB with changes to jobs/; returns its path. A change to None removes a key."""
     os.makedirs("jobs", exist_ok=True)
     path = os.path.join("jobs", name + ".json")
     with open(path, "w", encoding="utf-8") as file:
@@ -37,7 +37,7 @@ def write_job(name, **changes):
 
 
 def sweep(name="small", **changes):
-    """Path of the results of JOB with changes; made once."""
+    """Path of the results of JOB with changes; run once."""
     results = os.path.join("results", name + ".h5")
     if not os.path.exists(results):
         ran = rodsweep("run", write_job(name, **changes))
@@ -46,7 +46,7 @@ def sweep(name="small", **changes):
 
 
 def changed(path, change, name="small"):
-    """`path`, a copy of a sweep's file after change(its h5py.File)."""
+    """Writes to `path` a copy of a sweep's file after change(its h5py.File); returns `path`."""
     shutil.copy(sweep(name), path)
     with h5py.File(path, "r+") as h5:
         change(h5)
@@ -55,17 +55,17 @@ def changed(path, change, name="small"):
 
 class Case(unittest.TestCase):
     def said(self, *words, code=ALL_DONE, **options):
-        """Runs the program to its end, which must be this exit code, and returns its standard output."""
+        """Runs the program, which must exit with this code; returns its standard output."""
         done = rodsweep(*words, **options)
         self.assertEqual(done.returncode, code, f"{done.stdout}\n{done.stderr}")
         return done.stdout
 
     def shown(self, *words):
-        """The value of what it prints as JSON."""
+        """The value of the JSON that the program prints."""
         return json.loads(self.said(*words, "--json"))
 
     def assert_refused(self, words, *texts):
-        """With these words among the errors, and nothing on standard output."""
+        """The program exits with a user error that contains these words, and prints nothing to standard output."""
         done = rodsweep(*words)
         self.assertEqual((done.returncode, done.stdout), (USER_ERROR, ""), done.stderr)
         for text in texts:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands from outside: what they print, write, refuse and exit with."""
+"""The commands from outside: output, files, refusals, exit codes."""
 
 import csv
 import io
@@ -26,7 +26,7 @@ def unfinished():
 
 
 class Query(Case):
-    """Its choices: tests/analysis/test_query.py."""
+    """For its options see tests/analysis/test_query.py."""
 
     def test_csv_holds_what_the_file_holds(self):
         words = ("--columns", "task,scene.segments,scene.length_m", "--columns", "cg_ratio.oracle 0.1@1e-3")
@@ -103,7 +103,7 @@ class Rerun(Case):
             h5["trajectories/position_m"][row, 0] += 1e-12
         said = self.said("rerun", path, 1, "--trajectory-every", 3, "-o", "third.h5", code=DIFFER)
         self.assertIn("/trajectories/position_m", said)
-        # No frame of step 6: step 0 alone is in both.
+        # There is no frame of step 6; only step 0 is in both.
         self.said("rerun", path, 1, "--trajectory-every", 5, "-o", "fifth.h5")
 
     def test_what_differs_is_named_and_makes_exit_code_3(self):
@@ -148,7 +148,7 @@ class Rerun(Case):
     def test_a_signal_ends_it_without_a_file(self):
         path = sweep("endless", samples=1, time={"step_s": 0.02, "steps": 3000}, record={"solves": "summary"},
                      scene={**ROD, "segments": 200}, task_time_limit_s=0.01)
-        with h5py.File(path, "r+") as h5:  # without the limit the sweep would take as long as the rerun
+        with h5py.File(path, "r+") as h5:  # without the limit, the sweep would take as long as the rerun
             text = h5["job/text"][()]
             h5["job/text"][()] = text.replace(b'"task_time_limit_s": 0.01', b'"task_time_limit_s": 0.00')
         process = subprocess.Popen([RODSWEEP, "rerun", path, "0"], stdin=subprocess.DEVNULL,
@@ -183,7 +183,7 @@ class Pack(Case):
                 np.testing.assert_array_equal(one[2]["/solves/iterations"], other[2]["/solves/iterations"])
 
     def test_an_unfinished_sweep_is_packed_with_a_warning(self):
-        """What else is refused or packed: tests/runner/file/test_pack.cpp."""
+        """Other refusals and packed files: tests/runner/file/test_pack.cpp."""
         said = rodsweep("pack", unfinished())
         self.assertEqual(said.returncode, ALL_DONE)
         self.assertRegex(said.stderr, r"\b3 of 4 tasks .*part\.h5")
@@ -228,7 +228,7 @@ class DataSets(Case):
 
 
 class Output(Case):
-    """Standard output that cannot be written."""
+    """Standard output that is not writable."""
 
     def every_command(self):
         path = sweep()
@@ -237,7 +237,7 @@ class Output(Case):
                     ("--version",), ("--help",), ("run", "--help"))
 
     def without_reader(self, *words, of="stdout", **options):
-        """Where nobody reads what the program prints, as after `| head`."""
+        """Runs the program with a closed reader on its output, as after `| head`."""
         reader, writer = os.pipe()
         os.close(reader)
         try:
@@ -250,7 +250,7 @@ class Output(Case):
             with self.subTest(words=words), open("/dev/full", "w", encoding="utf-8") as full:
                 said = rodsweep(*words, stdout=full)
                 self.assertEqual(said.returncode, OUTPUT_LOST if words else USER_ERROR)
-                if words:  # without any the usage is told on stderr
+                if words:  # without words the usage goes to stderr
                     self.assertIn("No space left on device", said.stderr)
 
     def test_the_results_of_a_sweep_are_complete_all_the_same(self):
@@ -271,7 +271,7 @@ class Output(Case):
 
     def test_a_reader_that_has_left_ends_it_without_a_word(self):
         for words in (("schema",), ("--help",), ("status", sweep())):
-            for inherited in (True, False):  # the signal at its default, and ignored
+            for inherited in (True, False):  # the signal's default action, and ignored
                 with self.subTest(words=words, inherited=inherited):
                     said = self.without_reader(*words, restore_signals=inherited)
                     self.assertEqual((said.returncode, said.stderr), (-signal.SIGPIPE, ""))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""rodsweep compare from outside: sweeps that overlap, that differ on purpose, that are the same."""
+"""rodsweep compare from outside: sweeps that overlap, that differ on purpose, that are equal."""
 
 import csv
 import io
@@ -29,7 +29,7 @@ class Compare(Case):
         return tuple(found["tasks"][key] for key in ("both", "only_a", "only_b", "compared", "differing"))
 
     def by_parameters(self, a, b, *words):
-        """In which tasks differ."""
+        """Compares by parameters; the tasks must differ."""
         return self.compare(a, b, "--by", "parameters", *words, code=DIFFER)
 
     def test_a_sweep_is_the_same_as_itself_made_again(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands on damaged files, on disks that fill up and on what a killed program left: plain errors, never a signal."""
+"""The commands on damaged files, on full disks and after a killed program: plain errors, never a signal."""
 
 import os
 import random
@@ -26,7 +26,7 @@ def write(path, contents):
 
 
 def with_room_for(size):
-    """What a child process does first: its files cannot grow further, as on a disk that is full."""
+    """Limits the size of a child process's files, as a full disk does."""
     def limit():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
@@ -44,7 +44,7 @@ class Plain(unittest.TestCase):
 
 class Damaged(Plain):
     def flipped(self, draw, most, *words):
-        """What a command says on a copy of a sweep's file in which one bit among the first `most` bytes is flipped."""
+        """Runs a command on a copy of a sweep's file with one bit flipped among the first `most` bytes."""
         contents = bytearray(contents_of(sweep()))
         contents[draw.randrange(most or len(contents))] ^= 1 << draw.randrange(8)
         write("flipped.h5", contents)
@@ -92,7 +92,7 @@ class Damaged(Plain):
 
 
 class Full(Plain):
-    """A disk that is full when a file is about half written."""
+    """A disk that fills up when a file is about half written."""
 
     def test_nothing_is_left_of_a_file_that_has_no_room(self):
         path = os.path.abspath(sweep("roomy", samples=10, record={"trajectory_every": 1}))
@@ -103,7 +103,7 @@ class Full(Plain):
             with self.subTest(command=words[0]):
                 size = int(room * os.path.getsize(path))
                 said = rodsweep(*words, cwd="full", preexec_fn=with_room_for(size),
-                                env={**os.environ, "PMIX_MCA_gds": "hash"})  # Open MPI needs room for files otherwise
+                                env={**os.environ, "PMIX_MCA_gds": "hash"})  # otherwise Open MPI needs room for files
                 self.assert_plain(said, USER_ERROR)
                 self.assertIn("a.h5", said.stderr)
                 self.assertEqual(os.listdir("full"), [])
@@ -116,7 +116,7 @@ class Full(Plain):
 
 
 class Left(Plain):
-    """X.h5.unfinished-HOST-PROCESS-RANDOM of a program that was killed while it made X.h5."""
+    """X.h5.unfinished-HOST-PROCESS-RANDOM, left by a program that was killed while it wrote X.h5."""
 
     def test_what_a_killed_program_left_is_named(self):
         ended = subprocess.Popen(["true"])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the program says to somebody who mistyped a command, or whose job is sound and not yet right."""
+"""Messages for a mistyped command, and for a valid job whose values or files need attention."""
 
 import json
 import os
@@ -24,7 +24,7 @@ class Mistyped(Case):
 
 
 class Validate(Case):
-    """Words on missing files and on JSON: tests/runner/job/test_input_files.cpp and test_job_refusals.cpp."""
+    """For missing files and JSON see tests/runner/job/test_input_files.cpp and test_job_refusals.cpp."""
 
     def validated(self, *words):
         said = rodsweep("validate", *words)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""jobs/schema.json: up to date, and of one mind with the reader about good and bad jobs."""
+"""jobs/schema.json is up to date and agrees with the reader on good and bad jobs."""
 
 import copy
 import glob
@@ -21,7 +21,7 @@ JOB = {"name": "small", "kind": "sweep", "scene": ROD, "time": {"step_s": 0.02, 
 
 TRAINING = {"kind": "train", "scene": None, "time": None, "guesses": None, "data": "data.h5"}
 
-# Each with changes of JOB: a path of keys and the value there, or None to take it away.
+# Changes of JOB: a path of keys and its value, or None to remove the key.
 GOOD = {
     "nothing changed": {},
     "its schema named": {"$schema": "schema.json"},
@@ -144,7 +144,7 @@ class Schema(unittest.TestCase):
         cls.validator = jsonschema.Draft7Validator(cls.schema)
 
     def read(self, jobs):
-        """Which of the jobs, by name, the program accepts: all in one call."""
+        """Names of the jobs that the program accepts, from one call."""
         paths = {}
         for number, (name, changes) in enumerate(jobs.items()):
             paths[name] = f"{number}.json"

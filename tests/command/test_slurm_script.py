@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What jobs/slurm/sweep.sbatch makes of Slurm's environment, with stand-ins for Slurm and the program. Under a real one:
-tests/cluster.
+"""jobs/slurm/sweep.sbatch with Slurm's environment, and with replacements of Slurm and of the program. For a real Slurm
+see tests/cluster.
 
 Run by CTest in an empty folder, with SOURCE_DIR in the environment.
 """

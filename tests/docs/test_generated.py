@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""docs/tools/pages.py: numbers of tables in pages, and that the pages of this repository are current."""
+"""docs/tools/pages.py: numbers of tables in pages; the pages of this repository are current."""
 
 import os
 import subprocess

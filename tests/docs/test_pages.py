@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The pages of the repository: links, tables and lists hold, all are in the navigation, docs/keys.md has every key."""
+"""Pages of the repository: valid links, tables and lists; all pages are in the navigation; docs/keys.md is complete."""
 
 import glob
 import json
@@ -134,10 +134,10 @@ class Keys(unittest.TestCase):
 
 
 class Extending(unittest.TestCase):
-    """docs/extending.md: what its examples build on is there."""
+    """docs/extending.md: the code that its examples use exists."""
 
-    OWN = {"MeanGuess", "mean_keys", "averaged", "Arch", "span_m"}    # what they add
-    EIGEN = {"isApproxToConstant"}                                    # what only they use of it
+    OWN = {"MeanGuess", "mean_keys", "averaged", "Arch", "span_m"}    # names that the examples add
+    EIGEN = {"isApproxToConstant"}                                    # names of Eigen that only the examples use
 
     def setUp(self):
         self.page = keys.read(os.path.join(ROOT, "docs", "extending.md"))
@@ -187,7 +187,7 @@ class Jobs(unittest.TestCase):
     def test_jobs_in_the_pages_are_sound(self):
         validator, found = jsonschema.Draft7Validator(json.loads(keys.read(keys.SCHEMA))), 0
         for page in links.pages(ROOT):
-            if page == "docs/extending.md":    # of a guess and a scene that are not there
+            if page == "docs/extending.md":    # for a guess and a scene that do not exist
                 continue
             for block in re.findall(r"```json\n(\{.*?)```", keys.read(os.path.join(ROOT, page)), re.S):
                 with self.subTest(page=page, job=block[:60]):
@@ -196,7 +196,7 @@ class Jobs(unittest.TestCase):
         self.assertGreaterEqual(found, 4)
 
     def test_the_page_names_all_sweeps_and_those_that_make_studies_runs(self):
-        """Data sets and trainings have tables of their own."""
+        """Data sets and trainings are in other tables."""
         made = re.search(r"^studies = ((?:.*\\\n)*.*)", keys.read(os.path.join(ROOT, "Makefile")), re.M)[1].split()
         paths = glob.glob(os.path.join(ROOT, "jobs", "**", "*.json"), recursive=True)
         kinds = {os.path.basename(path)[:-5]: json.loads(keys.read(path)).get("kind", "sweep")
@@ -209,7 +209,7 @@ class Jobs(unittest.TestCase):
 
     @staticmethod
     def named(table, known):
-        """Of the first column. `_length` continues the name before it, or takes the place of its last word."""
+        """Names in the first column. `_length` is appended to the previous name or replaces its last word."""
         found = []
         for row in table.splitlines()[2:]:
             for name in re.findall(r"`(\w+)`", row.split("|")[1]):

@@ -1,4 +1,4 @@
-// Job files: bytes as they come, and the shipped jobs with something wrong in them (tests/runner/job_mutations.hpp).
+// Fuzzes the reader of jobs: raw bytes, and the shipped jobs with random changes (tests/runner/job_mutations.hpp).
 #include <fmt/format.h>
 
 #include <cstring>

@@ -1,5 +1,5 @@
-// Preloaded into the program: once the file named by FAIL_FILE exists, writes at an offset (MPI-IO's) of rank FAIL_RANK fail as
-// on a full disk; with FAIL_LOCKS there are no locks, as on some network file systems.
+// Preloaded into the program. Once the file FAIL_FILE exists, pwrite() (used by MPI-IO) on rank FAIL_RANK fails as on a
+// full disk. With FAIL_LOCKS, file locks fail, as on some network file systems.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -1,4 +1,4 @@
-"""Running the program under mpirun from tests: RODSWEEP and MPIRUN name the two. Files go to the current folder."""
+"""Runs the program under mpirun from tests: RODSWEEP and MPIRUN are their paths. Files are in the current folder."""
 
 import hashlib
 import json
@@ -17,7 +17,7 @@ ALL_DONE, USER_ERROR, TASKS_FAILED, STOPPED, TOO_LONG, LOST, DIVERGED = 0, 2, 3,
 
 
 def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):
-    """Writes NAME.json, a sweep of samples x segments tasks, and returns its path. A change to None takes a key away."""
+    """Writes NAME.json, a sweep of samples x segments tasks; returns its path. A change to None removes a key."""
     values = {
         "name": name, "kind": "sweep", "seed": 5, "samples": samples, "evaluation": "paired",
         "scene": {"type": "bending_rod", "segments": {"grid": list(segments)}, "length_m": {"uniform": [1, 5]},
@@ -36,13 +36,13 @@ def job(name="small", samples=3, segments=(6, 9), steps=6, **changes):
 
 
 def data_job(name="data", **changes):
-    """The same as a data set."""
+    """The same job as a data set."""
     return job(name, **{"kind": "dataset", "evaluation": None, "solve": None, "guesses": None,
                         "record": {"solves": "all", "systems": "all"}, **changes})
 
 
 def long_job(name="long", samples=20):
-    """Half a second of work in many tasks: long enough to be hit in the middle."""
+    """Half a second of work in many tasks, enough to interrupt it in the middle."""
     return job(name, samples=samples, segments=(15, 30), steps=40,
                record={"solves": "all", "trajectory_every": 2, "norms": "one"})
 
@@ -52,13 +52,13 @@ def command(ranks, *words):
 
 
 def rodsweep(ranks, *words, timeout=600):
-    """Runs to the end: the completed process with its texts. ranks 0: without mpirun."""
+    """Runs the program to its end; returns the completed process with its output. ranks 0: without mpirun."""
     return subprocess.run(command(ranks, *words), stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           timeout=timeout)
 
 
 def start(ranks, *words):
-    # As in any interactive or batch shell, the program gets signals at their defaults.
+    # The program gets default signal actions, as in an interactive or batch shell.
     return subprocess.Popen(command(ranks, *words), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True)
 
@@ -68,8 +68,8 @@ def status(path):
 
 
 def wait_for_tasks(process, path, count):
-    """Until `count` tasks are in the file; the sweep must still be running then. Reads the file, which is done sooner than
-    starting a program that does: a short sweep is hit in its middle too."""
+    """Waits until `count` tasks are in the file; the sweep must still run then. Reads the file itself, which is faster
+    than a start of the program, so that even a short sweep is interrupted in the middle."""
     deadline = time.monotonic() + 600
     while time.monotonic() < deadline:
         if os.path.exists(path):
@@ -84,7 +84,7 @@ def wait_for_tasks(process, path, count):
 
 
 def ranks_of(mpirun):
-    """Process numbers of mpirun's ranks, by rank."""
+    """PIDs of mpirun's ranks, by rank."""
     ranks = {}
     for entry in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -99,7 +99,7 @@ def ranks_of(mpirun):
 
 
 def rank_of(pid):
-    """Its rank under mpirun, or None."""
+    """The rank of a process under mpirun, or None."""
     with open(f"/proc/{pid}/environ", encoding="utf-8", errors="replace") as file:
         found = re.search(r"\0OMPI_COMM_WORLD_RANK=(\d+)\0", "\0" + file.read())
     return int(found[1]) if found else None
@@ -117,7 +117,7 @@ def checksum(path):
 
 class SweepCase(unittest.TestCase):
     def rodsweep(self, ranks, *words, code=ALL_DONE):
-        """Runs it to the end, which must be this exit code: the completed process."""
+        """Runs the program, which must exit with this code; returns the completed process."""
         process = rodsweep(ranks, *words)
         self.assertEqual(process.returncode, code, f"{process.stdout}\n{process.stderr}")
         return process
@@ -125,7 +125,7 @@ class SweepCase(unittest.TestCase):
     def assert_refused_once(self, ranks, *words, says):
         process = self.rodsweep(ranks, *words, code=USER_ERROR)
         self.assertEqual(process.stderr.count("rodsweep: error:"), 1, process.stderr)
-        self.assertNotIn("Primary job", process.stderr)  # nor does mpirun say it again, in twelve lines
+        self.assertNotIn("Primary job", process.stderr)  # mpirun does not repeat it in twelve lines
         self.assertEqual(process.stdout, "")
         for text in (says,) if isinstance(says, str) else says:
             self.assertIn(text, process.stderr)

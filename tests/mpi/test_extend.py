@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""run --extend: the file of a larger job is what a run from scratch writes, and what the smaller one holds is not computed again.
+"""run --extend writes the same file as a run of the larger job from scratch, without repeating the smaller one's tasks.
 
 Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
 """
@@ -28,7 +28,7 @@ class ExtendCase(SweepCase):
         os.chdir(tempfile.mkdtemp(dir="."))
 
     def old(self, name="old", **changes):
-        """A finished sweep of 4 tasks: its file."""
+        """Runs a sweep of 4 tasks; returns its file."""
         path = self.new(name, **changes)
         self.rodsweep(0, "run", path, "-o", f"{name}.h5")
         return f"{name}.h5"
@@ -37,7 +37,7 @@ class ExtendCase(SweepCase):
         return job(name, **{"samples": 2, "segments": (6, 9), "steps": 5, "guesses": OLD_GUESSES, **changes})
 
     def extend(self, path, old, shared, ranks=(3,)):
-        """Extends `old` to the job, which shares its tasks out so, and compares with a fresh run; the last file."""
+        """Extends `old` to the job with these counts of tasks, compares with a fresh run; returns the last file."""
         name = path.replace(".json", "")
         self.rodsweep(0, "run", path, "-o", f"{name}-fresh.h5")
         before = checksum(old)
@@ -52,7 +52,7 @@ class ExtendCase(SweepCase):
         return file
 
     def assert_shared(self, ran, old, shared):
-        """It says how many tasks there are, are copied, get their new guesses, and are run."""
+        """The message has the numbers of all tasks, of copies, of copies with new guesses, and of tasks to run."""
         said = re.search(rf"\b(\d+) tasks: (\d+) .*{re.escape(old)}, (\d+) .*, (\d+) ", ran.stderr)
         self.assertIsNotNone(said, ran.stderr)
         self.assertEqual(tuple(map(int, said.groups())), shared)
@@ -185,7 +185,7 @@ class Damage(ExtendCase):
 
 
 class Elsewhere(ExtendCase):
-    """The job names a model beside it, and the results lie far away."""
+    """The job names a model next to it; the results are in another folder."""
 
     def setUp(self):
         super().setUp()
@@ -249,7 +249,7 @@ class Refusing(ExtendCase):
         self.assert_refused_once(3, "run", job, "-o", output, "--extend", old, *words, says=says)
 
     def test_jobs_that_differ_otherwise_and_wrong_files(self):
-        """The words of single refusals: tests/runner/file/test_extension.cpp."""
+        """For the words of refusals see tests/runner/file/test_extension.cpp."""
         old = self.old()
         for changes, *says in (({"seed": 6}, "seed: 6 here, 5 in old.h5"),
                                ({"segments": (6, 7)}, "scene.segments: ", "[6,7]", "9 in old.h5")):

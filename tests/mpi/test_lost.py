@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Workers that hang or die: the sweep goes on without them.
+"""Workers hang or die; the sweep continues without them.
 
 Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
 """
@@ -55,7 +55,7 @@ class Silent(LostCase):
         wait_for_tasks(process, "back.h5", 4)
         rank = ranks_of(process)[1]
         os.kill(rank, signal.SIGSTOP)
-        process.stderr.readline()    # how the sweep began
+        process.stderr.readline()    # the first line, about the start
         self.assertIn("timed out", process.stderr.readline())
         os.kill(rank, signal.SIGCONT)
         self.end(process, ALL_DONE)
@@ -74,7 +74,7 @@ class Silent(LostCase):
 
 
 class Recovery(LostCase):
-    """With Open MPI's orte_enable_recovery a rank that dies does not end the others; mpirun then always exits with 0."""
+    """With Open MPI's orte_enable_recovery a dead rank does not end the others, and mpirun always exits with 0."""
 
     def start(self, *words):
         return subprocess.Popen(command(4, "run", self.job, *words), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,

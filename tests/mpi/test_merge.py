@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Shards of a sweep, and the one file that they become: what a single run writes, bit for bit.
+"""Shards of a sweep and their merged file, which equals that of a single run bit for bit.
 
 Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
 """
@@ -18,7 +18,7 @@ class Merging(SweepCase):
         os.chdir(tempfile.mkdtemp(dir="."))
 
     def shards(self, path, of, numbers=None, ranks=0):
-        """Runs them, and returns their files."""
+        """Runs the shards; returns their files."""
         files = []
         for number in numbers or range(1, of + 1):
             self.rodsweep(ranks, "run", path, "--shard", f"{number}/{of}")
@@ -41,7 +41,7 @@ class Merging(SweepCase):
                 self.assertEqual([s["tasks"] for s in starts], [*done, 0])
                 self.assertIn("--shard 2/3", starts[1]["command"])
                 self.assertIn(" merge ", starts[3]["command"])
-                self.rodsweep(0, "merge", *files, "-o", "merged.h5", code=USER_ERROR)  # never overwritten
+                self.rodsweep(0, "merge", *files, "-o", "merged.h5", code=USER_ERROR)  # not overwritten
                 for file in ("single.h5", "merged.h5", *files):
                     os.remove(file)
 
@@ -101,7 +101,7 @@ class Merging(SweepCase):
         self.assertFalse(os.path.exists("merged.h5"))
 
     def test_a_shard_that_is_none_is_refused(self):
-        """Which are none: tests/runner/command/test_command_line.cpp."""
+        """For all invalid shards see tests/runner/command/test_command_line.cpp."""
         refused = self.rodsweep(0, "run", job(), "--shard", "3/2", code=USER_ERROR)
         self.assertIn("3/2", refused.stderr)
 

@@ -1,4 +1,4 @@
-// Dispatch over MPI: the same master and workers as in memory. Run on several numbers of ranks.
+// Dispatch over MPI, with the same master and workers as in memory. Runs on several numbers of ranks.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -13,11 +13,11 @@ using namespace rodsweep;
 
 namespace {
 
-int frees = 0;  ///< of communicators, on this rank
+int frees = 0;  ///< calls of MPI_Comm_free on this rank
 
 }  // namespace
 
-/// MPI's own is PMPI_Comm_free.
+/// Replaces MPI's function, which remains available as PMPI_Comm_free.
 extern "C" int MPI_Comm_free(MPI_Comm* comm) {
   ++frees;
   return PMPI_Comm_free(comm);
@@ -33,7 +33,7 @@ struct World {
   int rank = 0, size = 1;
 };
 
-/// Runs `tasks` tasks; on rank 0 how they ended, on every rank how often each was run anywhere.
+/// Runs `tasks` tasks. Returns on rank 0 their outcomes, on all ranks how often each task ran on any rank.
 std::pair<Dispatch, std::vector<int>> run(int tasks, const std::function<int()>& signal) {
   const World world;
   MpiChannel channel(MPI_COMM_WORLD);
@@ -99,7 +99,7 @@ TEST_CASE("a channel's communicator is freed by all ranks together, so not by on
   CHECK_THROWS(unwound());
   CHECK(frees == before + 1);
 
-  // An exception that was under way before is none of the channel's.
+  // The channel is created during unwinding: the exception is not its own.
   struct Late {
     ~Late() { const MpiChannel channel(MPI_COMM_WORLD); }
   };

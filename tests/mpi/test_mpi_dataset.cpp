@@ -1,4 +1,4 @@
-// One data set and several ranks, of which one alone can see the file: run in an empty folder.
+// One data set on several ranks when only one rank can see the file. Runs in an empty folder.
 #include <catch2/catch.hpp>
 
 #include "runner/dataset/dataset_reader.hpp"
@@ -19,7 +19,7 @@ Json ragged_job() {
   return job;
 }
 
-/// Over all numbers of all systems and of the scene.
+/// Checksum of all numbers of all systems and of the scene.
 std::string fingerprint(const StoredSimulation& simulation) {
   Checksum sum;
   const auto add = [&](const auto& values) { sum.add(values.data(), values.size() * sizeof(*values.data())); };

@@ -1,4 +1,4 @@
-// One results file and several ranks: run in an empty folder that all ranks share.
+// One results file and several ranks. Runs in an empty folder that all ranks share.
 #include <catch2/catch.hpp>
 #include <fstream>
 

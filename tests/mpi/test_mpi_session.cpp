@@ -1,5 +1,4 @@
-// Setting up together: one rank's error is everybody's, and is the same text everywhere. Run on several numbers of
-// ranks.
+// Collective set-up: after an error on one rank, all ranks report the same text. Runs on several numbers of ranks.
 #include <catch2/catch.hpp>
 
 #include "runner/mpi/mpi_session.hpp"

@@ -1,4 +1,4 @@
-// Shards on 1, 2 and 4 ranks: whoever computes one, all get all of them in order.
+// Shards on 1, 2 and 4 ranks: every rank gets all shards in order, whichever rank computes them.
 #include <catch2/catch.hpp>
 
 #include "runner/training/shard_exchange.hpp"

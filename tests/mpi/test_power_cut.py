@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A power cut in the middle of a sweep: the file system under the results is shut down as if the machine had died.
+"""A power cut in the middle of a sweep: the results' file system is shut down as if the machine had died.
 
-An ext4 on a loop device, cut off without its journal's last words (EXT4_IOC_SHUTDOWN): what was not synced is lost, in
-whatever order the kernel was writing back. Then it is mounted again and the sweep goes on. Needs root and a loop
-device; without, it is skipped and says so.
+An ext4 on a loop device, shut down without a flush of its journal (EXT4_IOC_SHUTDOWN): unsynced data are lost, in the
+order of the kernel's write-back. Then the test mounts it again and continues the sweep. Without root and a loop device
+the test is skipped.
 """
 
 import fcntl
@@ -22,7 +22,7 @@ EXT4_IOC_SHUTDOWN, NO_LOG_FLUSH = 0x8004587D, 2
 
 
 class Disk:
-    """A file system of its own in `folder`."""
+    """A file system in `folder`."""
 
     def __init__(self, folder, megabytes=96):
         self.image, self.folder = os.path.abspath(folder + ".img"), os.path.abspath(folder)
@@ -59,7 +59,7 @@ def run(*command):
 
 
 def datasets(path):
-    """{path: bytes} of all that two runs of a job must have in common."""
+    """{path: bytes} of all datasets that must be equal in two runs of a job."""
     found = {}
     with h5py.File(path) as file:
         file.visititems(lambda name, item: found.update({name: item[()].tobytes()})
@@ -83,7 +83,7 @@ class PowerCut(SweepCase):
         path = os.path.join(self.disk.folder, f"cut-{seed}.h5")
         sweep = start(3, "run", self.job, "-o", path)
         wait_for_tasks(sweep, path, tasks)
-        # Some pages on their way, in no order: as when a machine dies while it writes back.
+        # Starts a write-back, so that pages are lost in no order, as on a real machine.
         writing_back = threading.Thread(target=subprocess.run, args=(["sync", "-f", self.disk.folder],),
                                         kwargs={"capture_output": True, "check": False})
         writing_back.start()
@@ -98,7 +98,7 @@ class PowerCut(SweepCase):
             kept = int((file["tasks/state"][:] != 0).sum())
         self.assertGreaterEqual(kept, 1)
         resumed = self.rodsweep(3, "run", self.job, "-o", path, "--resume")
-        self.assertNotIn("checksum", resumed.stderr)   # what was said to be done was done
+        self.assertNotIn("checksum", resumed.stderr)   # all tasks marked as done are intact
         self.assertEqual(datasets(path), self.whole)
         os.remove(path)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Sweeps under mpirun, from outside: the same on any number of ranks and after any interruption, refusals, exit codes.
+"""Sweeps under mpirun, from outside: equal results on any number of ranks and after interruptions, refusals, exits.
 
 Run by CTest in an empty folder, with RODSWEEP, MPIRUN and FAILING_DISK in the environment.
 """
@@ -42,13 +42,13 @@ class InterruptedCase(SweepCase):
         self.sweep(long_job())
 
     def sweep(self, path):
-        """The job to interrupt, and what it gives when nothing interrupts it."""
+        """Sets the job to interrupt, and runs it once without interruption."""
         self.job, self.whole = path, path.replace(".json", "-whole.h5")
         if not os.path.exists(self.whole):
             self.rodsweep(3, "run", path, "-o", self.whole)
 
     def interrupt(self, path, ranks, hit):
-        """Starts the sweep, calls hit(process) in the middle of it, and returns exit code and texts."""
+        """Starts the sweep, calls hit(process) in its middle; returns exit code and output."""
         process = start(ranks, "run", self.job, "-o", path)
         wait_for_tasks(process, path, 4)
         hit(process)
@@ -116,11 +116,11 @@ class Signalled(InterruptedCase):
         self.assert_stopped("forwarded", 3, lambda p: p.send_signal(signal.SIGUSR1))
 
     def test_after_sigterm_to_mpirun_which_kills_soon_after(self):
-        self.sweep(long_job("longer", 100))  # mpirun takes a second to pass it on
-        for name, number in (("term.h5", signal.SIGTERM), ("typed.h5", signal.SIGINT)):  # the second as Ctrl-C sends it
+        self.sweep(long_job("longer", 100))  # mpirun takes a second to forward the signal
+        for name, number in (("term.h5", signal.SIGTERM), ("typed.h5", signal.SIGINT)):  # SIGINT is Ctrl-C
             _, _, stderr = self.interrupt(name, 3, lambda p: p.send_signal(number))
             self.assertRegex(stderr, r"mpirun \(SIGTERM\).*--resume")
-            self.resume(name, 3)  # mpirun may kill the ranks before they note how the run ended
+            self.resume(name, 3)  # mpirun may kill the ranks before they record the end
 
     def test_without_mpirun_one_signal_or_a_second_one_during_the_stop(self):
         def twice(process):
@@ -133,10 +133,10 @@ class Signalled(InterruptedCase):
 
 
 class Killers(SweepCase):
-    """A task that ends its worker whenever it runs, as one that takes all memory does."""
+    """A task that kills its worker in every run, as one that exceeds the memory does."""
 
     def test_a_killer_is_tried_last_then_alone_and_then_named(self):
-        # Many short tasks, and one that is longer and comes first.
+        # Many short tasks, and a longer one that comes first.
         killer = 100
         path = job("killer", samples=1, segments=[20 + n // 50 for n in range(killer)] + [200], steps=40,
                    record={"solves": "summary", "norms": "one"})
@@ -152,24 +152,24 @@ class Killers(SweepCase):
                 self.assertEqual(starts[killer], attempt + 1)
                 accused.append(np.flatnonzero(starts))
                 done.append(int(file["/tasks/state"][:].sum()))
-        self.assertLess(done[0], killer // 2)     # tried first when nothing was known of it,
+        self.assertLess(done[0], killer // 2)     # first, while nothing is known of it,
         self.assertGreater(done[1], killer // 2)  # then last, perhaps beside the last of the others,
-        self.assertEqual(list(accused[2]), [killer])  # then alone: no other task has lost a worker and is not done
+        self.assertEqual(list(accused[2]), [killer])  # then alone: no other incomplete task has lost a worker
 
         last = self.rodsweep(3, "run", path, "-o", "killer.h5", "--resume", code=TASKS_FAILED)
         after = status("killer.h5")
         self.assertEqual(after["outcomes"], {"ok": killer, "crashed": 1})
         self.assertEqual([(f["task"], f["outcome"]) for f in after["failures"]], [(killer, "crashed")])
-        self.assertRegex(after["failures"][0]["message"], r"\b3\b")  # tries
+        self.assertRegex(after["failures"][0]["message"], r"\b3\b")  # number of starts
         self.assertIn("--retry-failed", last.stdout)
         self.assert_whole("killer.h5")
 
-        # Left alone it is a task like any other.
+        # Without a killer it is a normal task.
         self.rodsweep(3, "run", path, "-o", "killer.h5", "--resume", "--retry-failed")
         self.assert_same_results("undisturbed.h5", "killer.h5")
 
     def kill_who_runs(self, process, path, task):
-        """Waits until a worker has begun the task, once more than before, and kills it."""
+        """Waits until a worker starts the task once more, then kills the worker."""
         deadline = time.monotonic() + 600
         before = None
         while time.monotonic() < deadline and process.poll() is None:
@@ -222,7 +222,7 @@ class Watching(SweepCase):
         for pid in ranks.values():
             os.kill(pid, signal.SIGSTOP)
         before = time.time() - 200
-        os.utime("hung.h5", (before, before))  # as if it had been so for long
+        os.utime("hung.h5", (before, before))  # the last write was long ago
         said = rodsweep(0, "status", "hung.h5").stdout
         for pid in [process.pid, *ranks.values()]:
             os.kill(pid, signal.SIGKILL)
@@ -231,7 +231,7 @@ class Watching(SweepCase):
 
 
 class Refusals(SweepCase):
-    """Their words: tests/runner/file/test_file_refusals.cpp."""
+    """For their words see tests/runner/file/test_file_refusals.cpp."""
 
     def test_what_is_there_stays_as_it_is(self):
         path, other = job(), job("second", steps=7)
@@ -247,14 +247,14 @@ class Refusals(SweepCase):
     def test_where_there_are_no_locks_a_file_that_is_being_written_is_known_by_its_time(self):
         failing = {"LD_PRELOAD": os.environ["FAILING_DISK"], "FAIL_LOCKS": "1"}
         self.enterContext(unittest.mock.patch.dict(os.environ, failing))
-        path = long_job("longer", 200)  # the second run is to find the first one at work
+        path = long_job("longer", 200)  # long enough for the second run to see the first one
         first = start(3, "run", path, "-o", "unlocked.h5")
         wait_for_tasks(first, "unlocked.h5", 1)
         self.assert_refused_once(2, "run", path, "-o", "unlocked.h5", "--resume", says="unlocked.h5 seems to be")
         _, stderr = first.communicate(timeout=600)
         self.assertEqual((first.returncode, stderr.count("file system without locks")), (ALL_DONE, 1), stderr)
         with h5py.File("unlocked.h5", "r+") as file:
-            file["runs/end"][0] = b""  # killed, then
+            file["runs/end"][0] = b""  # as if it was killed
         before = time.time() - 31
         os.utime("unlocked.h5", (before, before))
         self.rodsweep(2, "run", path, "-o", "unlocked.h5", "--resume")
@@ -296,8 +296,8 @@ class Outcomes(SweepCase):
     def test_a_task_that_no_start_has_time_for_is_named_and_ends_the_sweep_once_the_others_are_done(self):
         path = job("lengthy", samples=1, segments=[6, 8, 2000], guesses=["zero"], record={"solves": "summary"},
                    time={"step_s": 0.001, "steps": 1000})
-        limit = ("--time-limit", "5")    # ten times what the short ones take
-        self.rodsweep(2, "run", path, *limit, code=STOPPED)  # it comes first, and nothing is known of it
+        limit = ("--time-limit", "5")    # ten times the time of the short tasks
+        self.rodsweep(2, "run", path, *limit, code=STOPPED)  # it comes first, since no pace is known
         second = self.rodsweep(2, "run", path, *limit, "--resume", code=TOO_LONG)
         self.assertEqual(status("results/lengthy.h5")["outcomes"], {"ok": 2})
         self.assertRegex(second.stderr, r"limit of 5\.0 s.*\btask 2\b")
@@ -317,7 +317,7 @@ class Outcomes(SweepCase):
     def test_tasks_whose_results_do_not_fit_into_memory_are_left_out_and_named(self):
         path = job("record", samples=1, segments=[6, 4000], guesses=["zero"],
                    time={"step_s": 0.02, "steps": 2000, "newton_iterations": 1},
-                   record={"solves": "summary", "trajectory_every": 1})  # of 460 MB, of which none is written
+                   record={"solves": "summary", "trajectory_every": 1})  # a record of 460 MB that is not written
         bounded = self.rodsweep(2, "run", path, "--memory-limit-gb", "0.3", code=TOO_LONG)
         self.assertRegex(bounded.stderr, r"task 1 .*\b4\d\d MB.*\b2\d\d MB")
         self.assertIn("--resume", bounded.stderr)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Training under mpirun: the same bits on any number of ranks, after a stop and after being killed; what is refused and said.
+"""Training under mpirun: equal bits on any number of ranks, after a stop and after a kill; refusals and messages.
 
 Run by CTest in an empty folder, with RODSWEEP and MPIRUN in the environment.
 """
@@ -16,7 +16,7 @@ from program import DIVERGED, STOPPED, SweepCase, checksum, data_job, kill_all, 
 
 
 def train_job(name="train", **changes):
-    """A toy that learns in a second."""
+    """A small training of a second."""
     training = {"epochs": 3, "batch": 8, "shards": 4, "ratio_every_epochs": 2, "ratio_simulations": 5}
     values = {"name": name, "kind": "train", "seed": 5, "data": "data.h5", "validation_simulations": 6,
               "network": {"base_size": 3, "latent": 16}, **changes}
@@ -32,7 +32,7 @@ class TrainingCase(SweepCase):
             self.rodsweep(0, "run", data_job(samples=12, steps=10, record={"systems": "first"}), "-o", "data.h5")
 
     def start(self, ranks, path, results, epochs):
-        """A training that has ended so many epochs."""
+        """Starts a training; returns its process after this many epochs."""
         process = start(ranks, "run", path, "-o", results)
         for _ in range(600):
             if os.path.exists(results) and status(results)["epochs"] >= epochs:
@@ -80,7 +80,7 @@ class Learning(TrainingCase):
 
 
 class Stopping(TrainingCase):
-    """A training of a second or two, hit in the middle."""
+    """A training of one to two seconds, interrupted in the middle."""
 
     def setUp(self):
         super().setUp()
@@ -143,7 +143,7 @@ class Refused(TrainingCase):
         self.assertFalse(os.path.exists("results/lost.h5"))
 
     def stopped_training(self, name):
-        """A training that has not ended, in NAME.h5: its job."""
+        """An unfinished training in NAME.h5; returns its job."""
         path = train_job(name, training={"epochs": 1000000})
         process = self.start(0, path, f"{name}.h5", 1)
         process.send_signal(signal.SIGTERM)

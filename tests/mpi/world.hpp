@@ -1,4 +1,4 @@
-// Where a test stands among the ranks that run it.
+// Rank and number of ranks of a test.
 #pragma once
 
 #include <mpi.h>

@@ -19,8 +19,8 @@ inline Matrix random_matrix(int rows, int columns, unsigned seed) {
   return out;
 }
 
-/// Largest difference between `gradient` and central differences of `loss` over `values`, relative to the largest.
-template <class Values, class Gradient = std::vector<double>>  // braces are a vector
+/// Largest difference between `gradient` and the central differences of `loss`, over the largest entry of `gradient`.
+template <class Values, class Gradient = std::vector<double>>  // accepts a braced list
 double gradient_error(Values& values, const Gradient& gradient, const std::function<double()>& loss) {
   constexpr double step = 1e-5;
   double worst = 0, largest = 0;

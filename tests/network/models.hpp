@@ -1,4 +1,4 @@
-// Networks with random weights for tests: what they say means nothing, but they say it in the right shapes.
+// Networks with random weights for tests. Outputs have the right shapes but no meaning.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ inline std::shared_ptr<Model> random_model(const CopingNetSettings& settings, st
             {no_change(node_features(settings)), no_change(edge_features(settings)), no_change(6), no_change(6)}});
 }
 
-/// A small one of message passing, on nothing.
+/// A small message-passing network without a base guess.
 inline CopingNetSettings message_passing(Encoding encoding, bool moves) {
   CopingNetSettings settings;
   settings.encoding = encoding;
@@ -30,7 +30,7 @@ inline CopingNetSettings message_passing(Encoding encoding, bool moves) {
   return settings;
 }
 
-/// A small one of every kind.
+/// A small network for every valid combination of encoding, processor, base guess and couplings.
 inline std::vector<CopingNetSettings> kinds_of_networks() {
   std::vector<CopingNetSettings> out;
   for (const Encoding encoding : {Encoding::paper, Encoding::paper_residual, Encoding::linear_system})

@@ -1,4 +1,4 @@
-// Simulations with all that a data set would hold of them, and examples made of these.
+// Simulations as a data set stores them, and training examples made from them.
 #pragma once
 
 #include "network/training/example_builder.hpp"
@@ -7,7 +7,7 @@
 
 namespace rodsweep::test {
 
-/// Direct solves, recorded as a data set records them.
+/// Steps the scene by direct solves and records every system.
 inline StoredSimulation stored_simulation(Scene scene, int steps, int newton_iterations = 2) {
   StoredSimulation out;
   out.scene = scene;
@@ -23,7 +23,7 @@ inline StoredSimulation stored_simulation(Scene scene, int steps, int newton_ite
   return out;
 }
 
-/// A rod of some stiffness and angle that differ with `number`.
+/// A rod whose segments, stiffness and initial angle depend on `number`.
 inline Scene sample_scene(int number) {
   BendingRod rod = bending_rod(4 + number % 3);
   rod.initial_angle_deg = 10 + 7 * (number % 5);
@@ -36,7 +36,7 @@ struct Examples {
   FeatureScales scales;
 };
 
-/// Normalised by themselves.
+/// Examples of several simulations, normalised by their own scales.
 inline Examples sample_examples(const CopingNetSettings& settings, int simulations, int steps) {
   Examples out;
   for (int i = 0; i < simulations; ++i) add_examples(settings, stored_simulation(sample_scene(i), steps), out.examples);

@@ -1,20 +1,20 @@
-// For tests of evaluated tasks and of what reads data sets: records, and files made by one process.
+// For tests of evaluated tasks and of readers of data sets: records, and files written by one process.
 #pragma once
 
 #include "tests/runner/file_examples.hpp"
 
 namespace rodsweep {
 
-/// What a task's evaluation records; an exception if it is abandoned.
+/// The record of an evaluated task; throws if the evaluation is cancelled.
 TaskRecord record_of(const Plan& plan, std::int64_t task = 0);
 
-/// Rows of the solves that were run.
+/// Rows of the solves that ran.
 std::vector<std::size_t> rows_run(const TaskRecord& record);
 
-/// Five steps of the small job.
+/// The small job with five steps.
 Json five_steps(const std::string& guesses, const std::string& solve = "{}");
 
-/// The file of a job, of which tasks from `failing` on fail, or are left out where `pending`.
+/// Writes the file of a job. Tasks from `failing` on diverge; with `pending` they are not written.
 Plan make_data_set(const std::filesystem::path& path, const Json& job, std::int64_t failing = 1000,
                    bool pending = false);
 

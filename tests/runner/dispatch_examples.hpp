@@ -1,4 +1,4 @@
-// A sweep in one process: master, workers and a network that tests can play by hand.
+// A sweep in one process: the master, and a network in memory through which tests act as workers.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace rodsweep::examples {
 
-/// Master over `workers` workers (ranks 1 ...), silent.
+/// A master of `workers` workers (ranks 1 ...) without console output.
 struct Sweep {
   Sweep(int workers, std::vector<PendingTask> tasks, const Timeouts& timeouts = {}, Callbacks callbacks = {})
       : network(workers + 1),
@@ -22,7 +22,7 @@ struct Sweep {
   MemoryNetwork network;
   Console console;
   Progress progress;
-  int signal = 0;  ///< that the master's rank received
+  int signal = 0;  ///< received by the master's rank
   Master master;
 };
 
@@ -32,7 +32,7 @@ inline std::vector<PendingTask> tasks_of_cost(const std::vector<double>& costs) 
   return tasks;
 }
 
-/// The tasks that have been assigned to this rank since the last call; other messages are counted.
+/// Reads the messages of a rank: assigned() returns the tasks since the last call; other messages are counted.
 struct Inbox {
   explicit Inbox(Channel& of) : channel(&of) {}
 

@@ -1,5 +1,5 @@
-// For tests of results files: a folder that goes away, plans with every kind of dataset, records with a distinct value
-// in every place.
+// For tests of results files: a temporary folder, plans with every kind of dataset, and records whose values identify
+// their place.
 #pragma once
 
 #include <filesystem>
@@ -27,13 +27,13 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// 6 tasks of 4, 5 and 7 segments; rows in every group of a sweep's file.
+/// 6 tasks of 4, 5 and 7 segments, with rows in every group of a sweep's file.
 Json full_job();
 
-/// The same as a data set, whose file has /systems in place of what is of guesses.
+/// The same job as a data set: the file has /systems instead of the groups of guesses.
 Json full_data_job();
 
-/// Every value of every column differs from its neighbours and from the same place in other tasks.
+/// Every value differs from its neighbours and from the same place in other columns and tasks.
 TaskRecord synthetic_record(const Plan& plan, std::int64_t index);
 
 Provenance test_provenance();
@@ -41,7 +41,7 @@ Provenance test_provenance();
 /// A closed file of `plan` in which the first `done` tasks are complete.
 void make_file(const std::filesystem::path& path, const Plan& plan, std::int64_t done);
 
-/// A file of a job in a folder of its own.
+/// A results file in its own temporary folder.
 struct FullFile {
   explicit FullFile(std::int64_t done, const Json& job = full_job()) : plan(plan_of(job)) {
     make_file(path, plan, done);
@@ -52,7 +52,7 @@ struct FullFile {
   std::filesystem::path path = folder / "a.h5";
 };
 
-/// Replaces an attribute of an open file's object.
+/// Replaces an attribute of an object in an open file.
 template <class Value>
 void set_attribute(hid_t file, const char* object, const char* name, const Value& value) {
   H5Adelete_by_name(file, object, name, H5P_DEFAULT);

@@ -1,4 +1,4 @@
-// Jobs for tests: a small valid one to alter, and the text with which an altered one is refused.
+// Jobs for tests: a small valid job, functions that change it, and its error message after a change.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,15 +14,15 @@ Json bending_scene();
 
 Json helix_scene();
 
-/// Two small trees, a rod each.
+/// Two small trees, one rod each.
 Json forest_scene();
 
 Json small_job();
 
-/// The same rod as a data set.
+/// The small job as a data set.
 Json data_job();
 
-/// A network that learns from a data set.
+/// Trains a network on a data set.
 Json train_job();
 
 /// The small job with the JSON text `value` at a JSON pointer such as "/scene/segments".
@@ -37,7 +37,7 @@ Json uniform(double a, double b);
 Job job_of(const Json& job);
 Plan plan_of(const Json& job);
 
-/// The text of the `Error` that `call` throws, "" if it throws none.
+/// The message of the `Error` that `call` throws; "" if it throws none.
 template <class Error, class Call>
 std::string message_of(Call&& call) {
   try {
@@ -48,7 +48,7 @@ std::string message_of(Call&& call) {
   return "";
 }
 
-/// What the user is told, "" if nothing is wrong.
+/// The error message for the text of a job; "" if the job is valid.
 std::string refusal_of_text(const std::string& text);
 
 std::string refusal(const Json& job);

@@ -1,4 +1,4 @@
-// For tests of jobs that name files: a folder with a job in it, which goes away.
+// For tests of jobs that name files: a temporary folder with a job.
 #pragma once
 
 #include <unistd.h>
@@ -11,7 +11,7 @@
 
 namespace rodsweep {
 
-/// A folder with a job in it and files beside.
+/// A temporary folder for job.json and the files that the job names.
 class JobFolder {
  public:
   JobFolder() : path_(std::filesystem::temp_directory_path() / ("rodsweep-inputs-" + std::to_string(::getpid()))) {

@@ -54,8 +54,8 @@ void change(Json& job, std::mt19937_64& random) {
   std::vector<Json*> nodes;
   collect(job, nodes);
   Json& node = *any_of(nodes, random);
-  const Json copy = *any_of(nodes, random);    // of what stands elsewhere
-  switch (&node == &job ? 8 : random() % 9) {  // the whole has no key that a message could name
+  const Json copy = *any_of(nodes, random);    // a value from another place
+  switch (&node == &job ? 8 : random() % 9) {  // the root has no key for a message to name
     case 0: node = any_of(odd_values(), random); return;
     case 1: node = copy; return;
     case 2: node = Json{{random() % 2 ? "grid" : "zip", {node, copy}}}; return;

@@ -1,5 +1,5 @@
-// All cases inside one MPI session: for what opens results files. Under mpirun every rank runs the same cases, and
-// the program fails if a rank does.
+// For tests of results files: one MPI session around all cases. Under mpirun all ranks run the same cases; the program
+// fails if any rank fails.
 #include "runner/mpi/mpi_session.hpp"
 #include "tests/run_cases.hpp"
 

@@ -1,4 +1,4 @@
-// For tests of refusals: tables of jobs with something wrong in them, and of what is said of each.
+// For tests of refusals: tables of invalid jobs and their error messages.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -10,8 +10,7 @@
 
 namespace rodsweep {
 
-/// The texts that a job's refusal must hold: the key's path and its value, which follow the file; the bound; and what
-/// to do instead.
+/// Texts that the error message must contain: after the file, the key's path and value; the bound; the advice.
 struct RefusedJob {
   Json job;
   std::string path_value;

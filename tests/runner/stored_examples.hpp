@@ -1,4 +1,4 @@
-// For tests of data sets: a solve that keeps its systems, to compare with those that were recorded.
+// For tests of data sets: a solve that keeps its systems, for comparison with the recorded ones.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -8,7 +8,7 @@
 
 namespace rodsweep {
 
-/// The direct solve, which keeps what it was given and what it found.
+/// The direct solve; keeps every system and its solution.
 class SolveProbe : public LinearSolve {
  public:
   struct Solved {
@@ -30,7 +30,7 @@ class SolveProbe : public LinearSolve {
     return outcome;
   }
 
-  /// Of every step.
+  /// Of every step, the solves of the first `count` Newton iterations.
   std::vector<Solved> first_iterations(int count) const {
     std::vector<Solved> chosen;
     for (const Solved& s : solved_)
@@ -55,7 +55,7 @@ inline bool same_bits(const BlockMatrix& a, const BlockMatrix& b) {
   return true;
 }
 
-/// Each system, put into a rod of `scene` and assembled again, is the one that was solved; its solution solves it.
+/// Assembles each stored system again in a rod of `scene` and compares it with the solved one, bit for bit.
 inline void check_same(const std::vector<StoredSystem>& systems, Scene scene, double constraint_dt_s,
                        const std::vector<SolveProbe::Solved>& solved) {
   REQUIRE(systems.size() == solved.size());

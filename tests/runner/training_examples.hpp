@@ -1,4 +1,4 @@
-// For tests of trainings: a toy job, its data set, and a training without files.
+// For tests of training: a small job, its data set, and training without model files.
 #pragma once
 
 #include "runner/training/training.hpp"
@@ -6,16 +6,16 @@
 
 namespace rodsweep {
 
-/// Eight short simulations of rods that differ.
+/// Eight short simulations of random rods.
 Json toy_data_job();
 
-/// The same of trees in the wind.
+/// Eight short simulations of random trees in the wind.
 Json toy_tree_data_job();
 
 /// Four epochs of three steps.
 Json toy_train_job();
 
-/// A job with its data, read once, and trainings of it in this process.
+/// A training job and its data, which are read once. Each begin() starts a training in this process.
 struct Toy {
   TemporaryFolder folder;
   Job job;
@@ -26,7 +26,7 @@ struct Toy {
   explicit Toy(const Json& values = toy_train_job(), const Json& rods = toy_data_job());
 
   Training begin() const;
-  Training run() const;  ///< to its end
+  Training run() const;  ///< begin() and finish()
   static void finish(Training& training);
 };
 

@@ -5,7 +5,7 @@
 
 namespace {
 
-thread_local long count = 0;  // MPI has threads of its own, which ask for memory when they like
+thread_local long count = 0;  // per thread, since threads of MPI allocate at any time
 
 }  // namespace
 
@@ -17,7 +17,7 @@ long allocations() { return count; }
 
 #ifdef __SANITIZE_ADDRESS__
 
-// As in <sanitizer/allocator_interface.h>, which GCC does not install.
+// Declared in <sanitizer/allocator_interface.h>, which GCC does not install.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
                                                          void (*free_hook)(const volatile void*));
 
@@ -32,7 +32,7 @@ const int installed = __sanitizer_install_malloc_and_free_hooks([](const volatil
 
 extern "C" {
 
-// The C library's own, under the names that it keeps for this purpose.
+// Exported by the C library under these names for replacements of malloc.
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t items, std::size_t size);
 void* __libc_realloc(void* old, std::size_t size);

@@ -1,7 +1,7 @@
-// How often this thread has asked for memory: malloc and its relatives, from any library, operator new included.
+// Counts the memory allocations of this thread: malloc and its variants, also through operator new or a library.
 //
-// The program's own malloc stands before the C library's, so that Eigen, the standard library and PETSc are counted
-// alike. Under the address sanitizer, which has its own, the sanitizer's hook counts instead.
+// The program's own malloc replaces the C library's, so that Eigen, the standard library and PETSc are counted.
+// Under the address sanitizer, the sanitizer's hook counts instead.
 #pragma once
 
 namespace rodsweep::test {

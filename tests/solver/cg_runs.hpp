@@ -1,4 +1,4 @@
-// Systems to solve by CG, and a solve with everything that it reports.
+// Systems for tests of CG, and a solve with its report, solution and history.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -35,7 +35,7 @@ struct Case {
   const VectorX& b() const { return system.rhs(); }
 };
 
-/// A chain in motion whose next prediction violates its constraints.
+/// A moving chain after an unconstrained motion of 0.02 s, so that its constraints are violated.
 inline Case moving_chain(int segments = 12) {
   Rod rod = moving_scene(segments).rods.front();
   for (int s = 0; s < rod.segment_count(); ++s)
@@ -50,7 +50,7 @@ struct Run {
   std::vector<double> history;
 };
 
-/// From a guess, if one is given, whose residual may be known.
+/// Solves from `guess`, or from zero without one; `residual` is the residual of the guess, if known.
 inline Run run(CgSolver& cg, const VectorX& b, double tolerance, const VectorX* guess = nullptr,
                const VectorX* residual = nullptr) {
   Run out{{}, guess ? *guess : VectorX(VectorX::Zero(b.size())), {}};

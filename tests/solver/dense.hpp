@@ -1,5 +1,5 @@
-// Dense matrices as the reference of what the solver does in blocks: Eigen's decompositions, which take seconds to
-// compile, in one source for all tests.
+// Dense reference solutions for the solver's block algorithms. One source file compiles Eigen's decompositions for all
+// tests, since that takes seconds.
 #pragma once
 
 #include "solver/numbers/types.hpp"
@@ -8,22 +8,22 @@ namespace rodsweep::test {
 
 using MatrixX = Eigen::MatrixXd;
 
-/// Solution of the symmetric positive definite system by Eigen; throws std::runtime_error where A is not.
+/// Solves A x = b with A symmetric positive definite; throws std::runtime_error if A is not.
 VectorX dense_solve(const MatrixX& a, const VectorX& b);
 MatrixX product(const MatrixX& a, const MatrixX& b);
 VectorX least_squares(const MatrixX& a, const VectorX& b);
 double determinant(const MatrixX& a);
-/// Of a symmetric matrix, ascending.
+/// Eigenvalues of a symmetric matrix, ascending.
 VectorX eigenvalues(const MatrixX& a);
 
 struct Modes {
   VectorX values;   ///< ascending
-  MatrixX vectors;  ///< a column each
+  MatrixX vectors;  ///< one per column
 };
-/// K v = value M v, both symmetric, M positive definite.
+/// Solves K v = value M v with K, M symmetric and M positive definite.
 Modes modes(const MatrixX& k, const MatrixX& m);
 
-/// Of D^-1/2 A D^-1/2, D the diagonal of A.
+/// The smallest eigenvalue of D^-1/2 A D^-1/2, where D is the diagonal of A.
 double smallest_scaled_eigenvalue(const MatrixX& a);
 /// max |A_ij - B_ij| / sqrt(A_ii A_jj).
 double scaled_difference(const MatrixX& a, const MatrixX& b);

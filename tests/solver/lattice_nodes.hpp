@@ -1,4 +1,4 @@
-// Where a lattice has its nodes, independently of how it is built.
+// The nodes of a lattice, computed independently of the lattice builder.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace rodsweep::test {
 
 inline constexpr Lattice::Cell cells[] = {Lattice::Cell::cubic, Lattice::Cell::body_centred, Lattice::Cell::octet};
 
-/// A place in halves of a cell's edge.
+/// A point in units of half a cell edge.
 using Place = std::array<int, 3>;
 
 inline Place moved(const Place& p, const Place& by, int times = 1) {
@@ -21,7 +21,7 @@ inline Place moved(const Place& p, const Place& by, int times = 1) {
 
 inline Vector3 point(const Place& at, const Lattice& p) { return p.mesh_m / 2 * Vector3(at[0], at[1], at[2]); }
 
-/// The ways from a node to its nearest neighbours in a lattice without end.
+/// The vectors from a node to its nearest neighbours in an infinite lattice.
 inline std::set<Place> ways_of(Lattice::Cell cell) {
   const int square = cell == Lattice::Cell::cubic ? 4 : cell == Lattice::Cell::body_centred ? 3 : 2;  // of the distance
   std::set<Place> out;
@@ -32,12 +32,12 @@ inline std::set<Place> ways_of(Lattice::Cell cell) {
   return out;
 }
 
-/// The place of the last corner.
+/// The corner with the largest coordinates.
 inline Place last_corner(const Lattice& p) {
   return {2 * p.nodes_x - 2, 2 * (p.nodes_y ? p.nodes_y : p.nodes_x) - 2, 2 * (p.nodes_z ? p.nodes_z : p.nodes_x) - 2};
 }
 
-/// Corners of cells, their centres, or the centres of their faces, and from each the ways to its nearest neighbours.
+/// All nodes (corners of cells, their centres or face centres), each with the vectors to its nearest neighbours.
 inline std::map<Place, std::set<Place>> nodes_of(const Lattice& p) {
   const Place last = last_corner(p);
   std::map<Place, std::set<Place>> nodes;

@@ -1,7 +1,7 @@
 // Frequency and decay of a sampled oscillation.
 //
-// Implicit Euler turns exp(i w dt) into 1 / (1 - i w dt): the frequency seen is atan(w dt) / dt, and a step keeps
-// (1 + w^2 dt^2)^-1/2 of the amplitude.
+// Implicit Euler replaces exp(i w dt) by 1 / (1 - i w dt): the observed frequency is atan(w dt) / dt, and each step
+// multiplies the amplitude by (1 + w^2 dt^2)^-1/2.
 #pragma once
 
 #include <cmath>
@@ -13,8 +13,8 @@
 
 namespace rodsweep {
 
-/// exp of the mean phase and logarithm of amplitude per step of a sampled oscillation y'' ~ -w^2 y: the least-squares
-/// fit of y(k + 1) - 2 Re(z) y(k) + |z|^2 y(k - 1) = 0 to every `stride`-th sample.
+/// The complex factor z per step of a sampled oscillation y'' ~ -w^2 y. Least-squares fit of
+/// y(k + 1) - 2 Re(z) y(k) + |z|^2 y(k - 1) = 0 to every `stride`-th sample.
 inline std::complex<double> factor_per_step(const std::vector<double>& samples, std::size_t stride) {
   const std::size_t rows = samples.size() - 2 * stride;
   test::MatrixX known(rows, 2);
@@ -31,7 +31,7 @@ inline std::complex<double> factor_per_step(const std::vector<double>& samples, 
                     std::acos(fit[0] / (2 * size)) / static_cast<double>(stride));
 }
 
-/// The same of a small free oscillation of a scene's rod, watched through the velocities that it starts with.
+/// The factor of a small free oscillation of a scene's rod. Samples are displacements weighted by initial velocities.
 inline std::complex<double> factor_per_step(Scene scene, double dt, int steps, std::size_t stride) {
   const std::vector<Vector3> weight = scene.rods.front().velocity, rest = scene.rods.front().position;
   Simulation simulation(std::move(scene), dt);

@@ -1,4 +1,4 @@
-// What tests share that advance a scene by direct solves: how it is stepped, and how it is brought to rest.
+// Scenes advanced by direct solves, and their relaxation to rest.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 
 namespace rodsweep {
 
-/// Where a chain of segments ends.
+/// The free end of a chain of segments.
 inline Vector3 tip(const Rod& rod) {
   return rod.position.back() + rod.segments.back().length_m / 2 * director(rod.orientation.back());
 }
 
-/// A straight rod along +x from the origin, whose first and last segments are held. `force_n`: see joint_between().
+/// A straight rod along +x from the origin; its first and last segments are held. `force_n`: see joint_between().
 inline Rod rod_held_at_both_ends(int segments, double length_m, const RodParameters& p, double force_n) {
   const Vector3 end(length_m, 0, 0);
   std::vector<SegmentSpec> specs = segments_through(straight_line(Vector3::Zero(), end, segments), p);
@@ -29,14 +29,14 @@ inline Rod rod_held_at_both_ends(int segments, double length_m, const RodParamet
 
 class Simulation {
  public:
-  /// With a tolerance on it, the balance of momentum is kept.
+  /// With a momentum tolerance, steps keep the balance of momentum.
   Simulation(Scene initial, const StepSettings& settings, std::optional<double> momentum_tolerance = {})
       : scene(std::move(initial)),
         dt_(settings.dt),
         direct_(scene),
         projection_(scene, direct_, momentum_tolerance),
         stepper_(scene, settings) {}
-  /// Newton runs to its floor: the tolerance is that of rounding.
+  /// Newton iterates to rounding: its tolerance is 1e-14.
   Simulation(Scene initial, double dt, int newton_iterations = 12, std::optional<double> momentum_tolerance = {})
       : Simulation(std::move(initial), StepSettings{dt, newton_iterations, 1e-14}, momentum_tolerance) {}
   Simulation(const Simulation&) = delete;
@@ -52,9 +52,8 @@ class Simulation {
     for (int i = 0; i < steps; ++i) step();
   }
 
-  /// Dynamic relaxation: a step after which velocities are zeroed, so that it is an implicit one of M x' = dt F. Steps
-  /// of seconds are stable, and what they leave alone is the static equilibrium. Returns the largest motion of the step
-  /// (m, rad).
+  /// Dynamic relaxation: takes a step, then zeroes the velocities. This is an implicit step of M x' = dt F, stable for
+  /// steps of seconds, and its fixed point is the static equilibrium. Returns the largest motion of the step (m, rad).
   double relax_once() {
     step();
     double moved = 0;
@@ -85,7 +84,7 @@ class Simulation {
   TimeStepper stepper_;
 };
 
-/// A solve by a function of the system, its place and the solution that returns the outcome.
+/// A LinearSolve that calls a function of the system, its position and the solution; the function returns the outcome.
 template <class Function>
 class SolveBy : public LinearSolve {
  public:
@@ -98,7 +97,7 @@ class SolveBy : public LinearSolve {
   Function function_;
 };
 
-/// Steps the scene by direct solves; `look` sees every system, its place and its solution.
+/// Steps the scene by direct solves; calls `look` with every system, its position and its solution.
 template <class Look>
 void observe(Scene& scene, const StepSettings& settings, int steps, const Look& look) {
   DirectSolve direct(scene);

@@ -1,5 +1,4 @@
-// What the tests of projections share: one step of a scene by a projection, what it reported, and how far two scenes
-// are apart.
+// For tests of projections: one step of a scene, the reports of its projections, and the distance of two scenes.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +8,7 @@
 
 namespace rodsweep::test {
 
-/// Passes projections on and keeps what they report.
+/// Calls another projection and keeps its reports.
 class Recorder : public Projection {
  public:
   explicit Recorder(Projection& inner) : inner_(inner) {}
@@ -30,7 +29,7 @@ class Recorder : public Projection {
   Projection& inner_;
 };
 
-/// The scene after one step of Newton with direct solves, run to its floor.
+/// The scene after one step with direct solves; Newton iterates to rounding.
 inline Scene after_newton(Scene scene, double dt) {
   DirectSolve direct(scene);
   LinearProjection projection(scene, direct);
@@ -38,7 +37,7 @@ inline Scene after_newton(Scene scene, double dt) {
   return scene;
 }
 
-/// The scene after one step of a Gauss-Seidel projection, of up to so many iterations.
+/// The scene after one step of a Gauss-Seidel projection with at most `iterations` iterations.
 template <class GaussSeidel, class... Settings>
 Scene after(Scene scene, double dt, int iterations, const Settings&... settings) {
   GaussSeidel projection(scene, settings...);
@@ -46,7 +45,7 @@ Scene after(Scene scene, double dt, int iterations, const Settings&... settings)
   return scene;
 }
 
-/// The largest difference between two scenes' vectors of one kind, such as &Rod::position.
+/// The largest difference between vectors of two scenes; `of` is a member such as &Rod::position.
 inline double distance(const Scene& one, const Scene& other, std::vector<Vector3> Rod::*of) {
   double most = 0;
   for (std::size_t r = 0; r < one.rods.size(); ++r)

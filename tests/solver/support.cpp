@@ -10,7 +10,7 @@
 namespace rodsweep::test {
 namespace {
 
-/// The rod with degree of freedom `dof` of one segment moved as a Newton update would.
+/// The rod after a change of degree of freedom `dof` of one segment, applied as a Newton update.
 Rod nudged(Rod rod, int segment, int dof, double by) {
   if (dof < 3)
     rod.position[segment][dof] += by;
@@ -41,7 +41,7 @@ Edges chain(int segments) {
 
 Edges tree(int depth, int branching) {
   Edges out;
-  int first = 0, last = 0;  // of the level above
+  int first = 0, last = 0;  // of the previous level
   for (int level = 0; level < depth; ++level) {
     int next = last + 1;
     for (int parent = first; parent <= last; ++parent)
@@ -117,7 +117,7 @@ Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsi
     j.arm_a_m = random.vector(0.1);
     j.arm_b_m = random.vector(0.1);
     for (double& row : j.compliance_per_j) row = std::pow(10, random.uniform(-6, -3));
-    // Not near the boundary between the hemispheres, where finite differences would jump.
+    // Away from the boundary between the hemispheres, where finite differences would jump.
     const Quaternion d = segments[a].orientation.conjugate() * segments[b].orientation;
     do j.rest = random.quaternion();
     while (std::abs(d.dot(*j.rest)) < 0.1);
@@ -186,7 +186,7 @@ Scene moving_scene(int segments, int steps) {
 
 namespace {
 
-/// Half the turn from segment a to segment b, the way round that is nearer to the turn at rest.
+/// Half the rotation from segment a to segment b, on the side nearer to the rest rotation.
 Matrix3 half_way(const Rod& rod, const Joint& joint) {
   Quaternion d = rod.orientation[joint.a].conjugate() * rod.orientation[joint.b];
   if (d.dot(joint.rest) < 0) d.coeffs() *= -1;

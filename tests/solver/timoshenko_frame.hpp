@@ -1,11 +1,11 @@
-// A space frame of straight Timoshenko beams, to hold lattices against: two-node elements whose shapes solve the beam's
-// equations exactly (Przemieniecki 1968; Friedman & Kosmatka 1993), with
+// A space frame of straight Timoshenko beams, the reference for lattices. Two-node elements whose shapes solve the
+// beam's equations exactly (Przemieniecki 1968; Friedman & Kosmatka 1993):
 //   Phi = 12 EI / (kappa G A L^2),   x = s / L,
 //   v  = [2x^3 - 3x^2 - Phi x + 1 + Phi,  L (x^3 - (2 + Phi/2) x^2 + (1 + Phi/2) x),
 //         -2x^3 + 3x^2 + Phi x,           L (x^3 - (1 - Phi/2) x^2 - Phi/2 x)] / (1 + Phi)
 //   psi = [6 (x^2 - x) / L,  3x^2 - (4 + Phi) x + 1 + Phi,  -6 (x^2 - x) / L,  3x^2 - (2 - Phi) x] / (1 + Phi)
-// of (v_1, psi_1, v_2, psi_2) in either plane, linear ones of stretch and twist. Stiffness is B^T D B and consistent
-// mass N^T rho N, rotary inertia included, both integrated exactly (four Gauss points). Small displacements; SI.
+// for (v_1, psi_1, v_2, psi_2) in both planes; stretch and twist are linear. Stiffness is B^T D B, consistent mass
+// N^T rho N with rotary inertia, both integrated exactly (four Gauss points). Small displacements; SI.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -20,7 +20,7 @@
 
 namespace rodsweep::test {
 
-/// What a beam is made of.
+/// Stiffness and mass of a beam.
 struct BeamSection {
   Section stiffness;
   double mass_per_m;          ///< rho A
@@ -35,7 +35,7 @@ inline BeamSection round_beam(double radius_m, double density_kg_m3, double youn
           density_kg_m3 * second_moment, 2 * density_kg_m3 * second_moment};
 }
 
-/// Six freedoms a node: shift, then turn, in the world.
+/// Six degrees of freedom per node: displacement, then rotation, in the world.
 class TimoshenkoFrame {
  public:
   explicit TimoshenkoFrame(const BeamSection& section) : section_(section) {}
@@ -45,7 +45,7 @@ class TimoshenkoFrame {
     held_.push_back(false);
     return static_cast<int>(nodes_.size()) - 1;
   }
-  /// The one within a millionth of a metre of a point.
+  /// The node within 1e-6 m of a point.
   int node_at(const Vector3& point) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       if ((nodes_[i] - point).norm() < 1e-6) return static_cast<int>(i);
@@ -54,7 +54,7 @@ class TimoshenkoFrame {
   void hold(int node) { held_[node] = true; }
   void add_beam(int a, int b) { beams_.push_back({a, b}); }
 
-  /// To be called when all is there.
+  /// Call after all nodes and beams are added.
   void assemble() {
     freedom_.assign(nodes_.size(), -1);
     int count = 0;
@@ -74,7 +74,7 @@ class TimoshenkoFrame {
   }
 
   VectorX no_load() const { return VectorX::Zero(k_.rows()); }
-  /// The six entries of a free node in a vector over all free ones.
+  /// The six entries of a free node in a vector over all free nodes.
   auto of(VectorX& all, int node) const { return all.segment<6>(freedom_[node]); }
   Vector6 at(const VectorX& all, int node) const {
     const int first = freedom_[node];
@@ -85,9 +85,9 @@ class TimoshenkoFrame {
 
   struct Mode {
     double angular_frequency;
-    VectorX shape;  ///< its greatest entry 1
+    VectorX shape;  ///< largest entry 1
   };
-  /// The lowest one that a start is not at right angles to, by inverse iteration.
+  /// The lowest mode that is not orthogonal to `start`, by inverse iteration.
   Mode lowest_mode(VectorX start) const {
     double square = 0;
     for (int i = 0; i < 200; ++i) {
@@ -108,7 +108,7 @@ class TimoshenkoFrame {
     int a, b;
   };
 
-  // Frame: columns across, across, along the beam; shift and turn of its ends in it.
+  // Local frame: x and y across the beam, z along it. Unknowns: displacement and rotation of both ends.
   std::pair<Matrix12, Matrix12> matrices(const Beam& beam) const {
     const Vector3 way = nodes_[beam.b] - nodes_[beam.a];
     const double length = way.norm();
@@ -134,7 +134,7 @@ class TimoshenkoFrame {
     return {to_local.transpose() * k * to_local, to_local.transpose() * m * to_local};
   }
 
-  /// N: shift and turn at x of those of the ends; B: the strains. Shift along local y goes with a turn about -x.
+  /// N: displacement and rotation at x from those of the ends; B: the strains. Bending along local y rotates about -x.
   static std::pair<Shapes, Shapes> shapes(double x, double length, double phi) {
     const double f = 1 / (1 + phi), l = length;
     const Eigen::Vector4d v = f * Eigen::Vector4d(2 * x * x * x - 3 * x * x - phi * x + 1 + phi,
@@ -183,7 +183,7 @@ class TimoshenkoFrame {
   std::vector<Vector3> nodes_;
   std::vector<char> held_;
   std::vector<Beam> beams_;
-  std::vector<int> freedom_;  ///< the first of a node, -1 where it is held
+  std::vector<int> freedom_;  ///< first unknown of a node; -1 if held
   Eigen::SparseMatrix<double> k_, m_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };

@@ -1,5 +1,4 @@
-// What the tests of contacts share: capsules and straight rods anywhere, a scene of them advanced by direct solves, and
-// how near its bodies are.
+// For tests of contacts: capsules and straight rods, scenes of them advanced by direct solves, and distances.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +20,7 @@ inline Rod straight_rod(const Vector3& from, const Vector3& to, int segments, co
   return rodsweep::chain(specs, p, weight(specs, p));
 }
 
-/// A free rigid capsule on its way.
+/// A free rigid capsule with a velocity.
 inline Rod capsule(const Vector3& from, const Vector3& to, const Vector3& velocity, const RodParameters& p = {}) {
   Rod rod = straight_rod(from, to, 1, p);
   rod.velocity[0] = velocity;
@@ -41,7 +40,7 @@ class Touching : public Simulation {
  public:
   Touching(Scene initial, double dt, int newton_iterations = 10, std::optional<double> momentum_tolerance = {})
       : Simulation(std::move(initial), StepSettings{dt, newton_iterations, 1e-9}, momentum_tolerance) {}
-  /// Returns the deepest penetration after any of the steps.
+  /// Returns the deepest penetration after any step.
   double run(int steps) {
     double deepest = 0;
     for (int i = 0; i < steps; ++i) deepest = std::max(deepest, step().penetration);
@@ -49,7 +48,7 @@ class Touching : public Simulation {
   }
 };
 
-/// The least of |axis - axis| / R over all pairs that can touch: 1 where they do.
+/// The smallest distance of two axes over the sum of their radii, over all pairs that can touch. 1 means contact.
 inline double nearest(const Scene& scene) {
   const ContactBodies bodies(scene);
   std::vector<CapsuleAxis> axes;

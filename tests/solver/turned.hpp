@@ -1,4 +1,4 @@
-// Scenes to turn and shift as a whole, with all that acts on them, and their systems on the way.
+// Scenes that turn and shift as a whole, loads, clamps and floors included, and the systems of their steps.
 #pragma once
 
 #include <variant>
@@ -41,11 +41,11 @@ inline Scene moved(Scene scene, const RigidMotion& to) {
   return scene;
 }
 
-// The mirror image across x = 0, of segments' frames too: R' = S R S, S = diag(-1, 1, 1).
+// Mirror image across x = 0. It mirrors the segments' frames too: R' = S R S, S = diag(-1, 1, 1).
 inline Vector3 mirrored(const Vector3& v) { return {-v.x(), v.y(), v.z()}; }
-inline Vector3 mirrored_axis(const Vector3& v) { return {v.x(), -v.y(), -v.z()}; }  ///< of a turn
+inline Vector3 mirrored_axis(const Vector3& v) { return {v.x(), -v.y(), -v.z()}; }  ///< an axis of rotation
 inline Quaternion mirrored(const Quaternion& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
-/// Of a joint's six rows, which are in its frame: a vector, then an axis.
+/// Signs of a joint's six rows in its frame: a vector, then an axis.
 inline const Vector6 mirrored_rows = (Vector6() << -1, 1, 1, 1, -1, -1).finished();
 
 inline Scene mirrored(Scene scene) {
@@ -76,8 +76,8 @@ inline Scene mirrored(Scene scene) {
   return scene;
 }
 
-/// The same rod with all segments' frames rolled about their axes by one angle. (By angles of their own, joints would
-/// be twisted at rest, and a finite twist is not measured as a small one.)
+/// The same rod with all segments' frames rolled about their axes by one angle. Different angles would twist joints at
+/// rest, and finite and small twists are not measured alike.
 inline Rod rolled(Rod rod, double angle) {
   const Quaternion roll(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
   for (Quaternion& q : rod.orientation) q = q * roll;
@@ -89,7 +89,7 @@ inline Rod rolled(Rod rod, double angle) {
   return rod;
 }
 
-/// Six steps of three Newton iterations; `look` sees every system.
+/// Six steps of three Newton iterations; calls `look` with every system.
 template <class Look>
 void observe(Scene& scene, const Look& look) {
   rodsweep::observe(scene, {0.02, 3, 0}, 6,

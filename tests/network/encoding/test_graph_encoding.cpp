@@ -1,4 +1,4 @@
-// Features of nodes and edges: values by hand, and which of them move with the rod.
+// Features of nodes and edges: values computed by hand, and the features that move with the rod.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -23,11 +23,11 @@ Encoded encoded(Encoding encoding, const Rod& rod, int newton = 0) {
   return out;
 }
 
-/// About x, so that a segment along z turns towards -y.
+/// A rotation about x; a segment along z turns towards -y.
 Quaternion about_x(double angle) { return {std::cos(angle / 2), std::sin(angle / 2), 0, 0}; }
 
-/// Three segments of 1 m, 1 m and 2 m along +z, hung by the first and bent about x by 0.3 and -0.2; the first joint is
-/// straight at rest, the second bent by 0.1. Y = 2e5 Pa, T = 3e6 Pa.
+/// Three segments of 1 m, 1 m and 2 m along +z, hung by the first and bent about x by 0.3 and -0.2. At rest the first
+/// joint is straight, the second bent by 0.1. Y = 2e5 Pa, T = 3e6 Pa.
 Rod bent_rod() {
   RodParameters p;
   p.youngs_modulus_pa = 2e5;
@@ -54,8 +54,8 @@ void check_column(const Tensor<float>& features, int column, const std::vector<d
   }
 }
 
-// Hand computation. Centres: (0, 5, .5); end of the first (0, 5, 1), direction of the second (0, -sin .3, cos .3);
-// its end, then the third's direction (0, -sin .1, cos .1), half of 2 m on. Bends: l C_b = 2 sin(angle / 2).
+// By hand. Centres: (0, 5, .5); then the end of the first (0, 5, 1) plus half the second along (0, -sin .3, cos .3);
+// then the second's end plus half of 2 m along (0, -sin .1, cos .1). Bends: l C_b = 2 sin(angle / 2).
 const double y1 = 5 - 0.5 * std::sin(0.3), z1 = 1 + 0.5 * std::cos(0.3);
 const double y2 = 5 - std::sin(0.3) - std::sin(0.1), z2 = 1 + std::cos(0.3) + std::cos(0.1);
 const double bend0 = 2 * std::sin(0.15), bend1 = 2 * std::sin(-0.1), rest1 = 2 * std::sin(0.05);
@@ -90,7 +90,7 @@ TEST_CASE("paper_residual: from the second Newton iteration on, edges have -C - 
   CHECK(e.edges(8, 1) == Approx(-(bend1 - rest1) - compliance * 1e-3));
 }
 
-/// Features that differ by more than rounding in some column.
+/// Rows of features in which some column differs by more than rounding.
 std::vector<int> changed(const Tensor<float>& a, const Tensor<float>& b) {
   std::vector<int> out;
   for (int i = 0; i < a.rows(); ++i)

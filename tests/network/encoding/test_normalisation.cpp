@@ -50,7 +50,7 @@ TEST_CASE("a component that hardly varies is divided by a tenth of its group's d
 TEST_CASE("a group that does not vary is divided by its size, or by one where it is zero") {
   Tensor<float> x(3, 100);
   x.row(0).setConstant(1e6F);
-  for (int i = 0; i < 100; ++i) x(0, i) = std::nextafter(1e6F, i % 2 ? 0.F : 2e6F);  // rounding is no variation
+  for (int i = 0; i < 100; ++i) x(0, i) = std::nextafter(1e6F, i % 2 ? 0.F : 2e6F);  // varies by rounding only
   x.row(1).setConstant(-20);
   x.row(2).setZero();
   FeatureStatistics statistics({1, 1, 1});

@@ -1,4 +1,4 @@
-// A linear system as features and as training data, and the loss of a correction against dense algebra.
+// The features and training data of a linear system, and the loss of a correction against dense algebra.
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -10,7 +10,7 @@ namespace rodsweep::test_scaled_system {
 
 using test::Matrix;
 
-/// A random rod's system with a base guess, dense and scaled, both in the places of the forest.
+/// A random rod's system with a base guess, dense and scaled, in the order of the forest.
 struct Case {
   Rod rod;
   JointForest forest;
@@ -42,7 +42,7 @@ struct Case {
         a.block<6, 6>(6 * i, 6 * k) =
             unscaled.block<6, 6>(6 * forest.order[std::size_t(i)], 6 * forest.order[std::size_t(k)]);
   }
-  /// d = scale * d^ of the network's output.
+  /// d = scale * d^, where d^ is the network's output.
   VectorX unscaled(const Matrix& d) const {
     VectorX out(solution.size());
     for (int i = 0; i < forest.size(); ++i) {
@@ -93,8 +93,8 @@ TEST_CASE("a residual of zero has features, a scale and a loss without NaN") {
 }
 
 TEST_CASE("features do not change with the units of length, mass and time") {
-  // Another unit of length changes neither the dimensionless constraints' A^ nor r^: scaled segments, arms and
-  // compliances; the compliance and 1/mass scale alike.
+  // Scales segments, arms and compliances to another unit of length and mass; compliance and 1/mass scale alike. A^ and
+  // r^ of the dimensionless constraints do not change.
   const Rod rod = test::random_rod(test::chain(5), {0}, 4);
   std::vector<SegmentSpec> segments;
   std::vector<JointSpec> joints;
@@ -119,7 +119,7 @@ TEST_CASE("features do not change with the units of length, mass and time") {
   CHECK((features(rod) - features(other)).norm() < 1e-5 * features(rod).norm());
 }
 
-/// The loss by dense algebra: the best multiple of d added to the base, then k steps of CG, all in double precision.
+/// The loss by dense algebra in double precision: adds the best multiple of d to the base, then takes k steps of CG.
 double dense_loss(const Case& c, const VectorX& d, int steps) {
   const Eigen::MatrixXd a = c.system.matrix().dense();
   VectorX x = c.base + d.dot(c.residual) / d.dot(a * d) * d;

@@ -1,4 +1,4 @@
-// The encoding `linear_system`: turning or mirroring a scene, or rolling its frames, does not change it.
+// The encoding `linear_system` is invariant when a scene turns or is mirrored, or when its frames roll.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -28,7 +28,7 @@ CopingNetSettings of_all_couplings() {
   return settings;
 }
 
-/// What a network with random weights leaves of each system's error, in the energy norm, over the error of zero.
+/// Errors of a guess with random weights over the errors of zero, squared energy norms, for each system.
 std::vector<double> left(Scene scene, const CopingNetSettings& settings) {
   CopingNetGuess guess(test::random_model(settings), scene, 3);
   std::vector<double> out;
@@ -48,12 +48,12 @@ TEST_CASE("to a network with canonical frames turned, mirrored and rolled scenes
   const CopingNetSettings settings =
       GENERATE(settings_of(Processor::message_passing), settings_of(Processor::factors), of_all_couplings());
   for (const test::TurnedCase& each : test::turned_cases()) {
-    if (std::string(each.name) == "ring") continue;  // its residual has neither an axis nor a hand but by rounding
+    if (std::string(each.name) == "ring") continue;  // only rounding gives its residual an axis and a handedness
     const bool lattice = std::string(each.name) == "lattice";
     INFO(each.name);
     const std::vector<double> original = left(each.scene, settings);
     std::vector<Scene> images{test::mirrored(each.scene)};
-    if (!lattice) {  // at its nodes, compliance belongs to the axes of its frames
+    if (!lattice) {  // compliance at its nodes depends on the axes of its frames
       images.push_back(rolled(each.scene));
       images.push_back(rolled(test::mirrored(each.scene)));
     }
@@ -61,8 +61,8 @@ TEST_CASE("to a network with canonical frames turned, mirrored and rolled scenes
     for (const Scene& image : images) {
       const std::vector<double> same = left(image, settings);
       REQUIRE(same.size() == original.size());
-      // In the first step a helix's residual is in one plane, and its hand that of rounding, to which random factors
-      // answer strongly; a lattice's is its own mirror image.
+      // In the first step a helix's residual is planar: its handedness is rounding, and random factors amplify it. A
+      // lattice's residual is its own mirror image.
       const bool handed = settings.processor != Processor::factors && !lattice;
       for (std::size_t i = handed ? 0 : 3; i < same.size(); ++i)
         CHECK(same[i] == Approx(original[i]).epsilon(i < 3 ? 2e-2 : 1e-3));
@@ -77,7 +77,7 @@ TEST_CASE("frames are orthogonal, and units come back") {
     FeatureEncoder encoder(settings_of(Processor::message_passing), rod, system.matrix());
     Tensor<float> nodes(0, 6), edges(SystemEncoding::size, 5);
     encoder.encode(rod, system, 0, VectorX(), system.rhs(), nodes, edges);
-    CHECK(edges.topRows(6).squaredNorm() / 30 == Approx(1).epsilon(1e-5));  // r^ has a root mean square of one
+    CHECK(edges.topRows(6).squaredNorm() / 30 == Approx(1).epsilon(1e-5));  // the root mean square of r^ is one
     const Lane8 v = {0.3, -1, 2, 0.7, 5, -0.2, 0, 0};
     for (int place = 0; place < 5; ++place) {
       const CanonicalFrame& frame = encoder.system()->frames().frame(place);

@@ -65,7 +65,7 @@ TEST_CASE("however many loops, every joint has one place, below a joint that sha
     const auto [c, d] = edges[forest.order[up]];
     CHECK((a == c || a == d || b == c || b == d));
   }
-  CHECK(roots == 1);  // one of the joints of the corner that is held; the other is reached all round
+  CHECK(roots == 1);  // one joint at the held corner; paths around the loops reach the other
 }
 
 TEST_CASE("side by side, forests keep their parents and share levels") {

@@ -1,4 +1,4 @@
-// Rods as graphs, alone and side by side.
+// Rods as graphs, single and side by side.
 #include <catch2/catch.hpp>
 
 #include "network/graph/rod_graph.hpp"

@@ -1,4 +1,4 @@
-// Rods as functions of arc length: where joints are, what does not depend on division, what is refused.
+// Rods as functions of arc length: positions of joints, independence of the number of segments, refusals.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <utility>
@@ -72,7 +72,7 @@ TEST_CASE("the weight of the rod hangs on its first joint, however it is divided
     rod.orientation[0] = rod.orientation[1];
     for (Joint& joint : rod.joints) joint.rest = Quaternion::Identity();
     const double dt = 0.02;
-    for (std::size_t s = 1; s < rod.segments.size(); ++s) rod.position[s] += dt * dt * gravity;  // a step's fall
+    for (std::size_t s = 1; s < rod.segments.size(); ++s) rod.position[s] += dt * dt * gravity;  // free fall of a step
     const LinearSystem system = test::assembled(rod, dt);
     VectorX solution(system.rhs().size());
     DirectSolve(scene).solve(system, {}, 0, solution);

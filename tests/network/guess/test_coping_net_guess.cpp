@@ -1,4 +1,4 @@
-// COPINGNet as an initial guess, in moving simulations: what it may never do, and what it costs.
+// COPINGNet as an initial guess in moving simulations: its guarantees and its cost.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
@@ -35,7 +35,7 @@ TEST_CASE("with the best length what is left of the error is A-orthogonal to the
       CHECK((system.rhs() - product - *with.residual).norm() < 1e-11 * system.rhs().norm() + 1e-24);
       const double before = energy_error(system, alone, solution), after = energy_error(system, x0, solution);
       CHECK(after <= before * (1 + 1e-6) + 1e-24);
-      // Any other length of the same correction is worse: (x0 - x) is A-orthogonal to it.
+      // The correction has optimal length: (x0 - x) is A-orthogonal to it.
       const VectorX correction = x0 - alone;
       system.matrix().multiply(correction.data(), product.data());
       const double length = std::sqrt(correction.dot(product));
@@ -93,7 +93,7 @@ TEST_CASE("where loops are cut a network proposes what lowers the residual, or n
     const Proposal proposal = guess.propose(system, {}, x0);
     proposed += proposal.nonzero;
     CHECK(x0.allFinite());
-    if (settings.processor == Processor::message_passing || has_all_couplings(settings)) continue;  // which see loops
+    if (settings.processor == Processor::message_passing || has_all_couplings(settings)) continue;  // these see loops
     system.matrix().multiply(x0.data(), residual.data());
     residual = system.rhs() - residual;
     CHECK(jacobi_norm_squared(system.matrix(), residual) <= jacobi_norm_squared(system.matrix(), system.rhs()));
@@ -127,8 +127,8 @@ TEST_CASE("factors that lag are those of the first solve of every so many steps"
     return x0;
   };
   CopingNetGuess lagging(model, scene, 1, {1, 3}), always(model, scene, 1);
-  CHECK(proposed(lagging, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // there are none before
-  CHECK(proposed(lagging, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // and again
+  CHECK(proposed(lagging, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // no earlier factors exist
+  CHECK(proposed(lagging, 0, {4, 1, 0}) == proposed(always, 0, {4, 1, 0}));  // the same again
   const VectorX later = proposed(lagging, 1, {4, 2, 0});
   CHECK(later == proposed(lagging, 1, {6, 0, 0}));
   CHECK(later != proposed(always, 1, {6, 0, 0}));
@@ -148,10 +148,10 @@ TEST_CASE("corrections stop where the residual is small enough") {
     const Proposal proposal = guess.propose(system, {}, x0);
     return std::pair(proposal.products, proposal.residual->norm() / system.rhs().norm());
   };
-  CHECK(left(1, 100) == std::pair(0, 1.0));  // zero is good enough
+  CHECK(left(1, 100) == std::pair(0, 1.0));  // zero meets the tolerance
   const auto [products, residual] = left(0.1, 100);
   CHECK(residual <= 0.1);
-  CHECK(left(0.1, products - 1).second > 0.1);  // no correction too many
+  CHECK(left(0.1, products - 1).second > 0.1);  // one correction less misses the tolerance
 }
 
 TEST_CASE("corrections with factors are steps of conjugate gradients: each lowers the energy, all of them solve") {
@@ -168,7 +168,7 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
     CopingNetGuess guess(test::random_model(settings), scene, 1, {corrections});
     VectorX x0(exact.size());
     const Proposal proposal = guess.propose(system, {}, x0);
-    CHECK((corrections < 200 ? proposal.products == corrections : proposal.products < 200));  // solved long before
+    CHECK((corrections < 200 ? proposal.products == corrections : proposal.products < 200));  // converges before 200
     error = x0 - exact;
     const double left = energy_norm_squared(system.matrix(), error, scratch);
     CHECK(left < before);
@@ -183,14 +183,14 @@ TEST_CASE("corrections with factors are steps of conjugate gradients: each lower
 }
 
 TEST_CASE("the joints' order does not matter") {
-  // A tree whose joints are numbered otherwise: the same corrections, in the other order.
+  // A tree with its joints numbered in reverse gets the same corrections in reverse order.
   const Rod rod = test::random_rod(test::tree(2, 2), {0}, 5);
   Rod other = rod;
   std::reverse(other.joints.begin(), other.joints.end());
   const int count = rod.joint_count();
   for (int j = 0; j < count; ++j) other.lambda.segment<6>(6 * (count - 1 - j)) = rod.lambda.segment<6>(6 * j);
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
-    if (has_all_couplings(settings)) continue;  // which of two siblings is eliminated first is theirs to say
+    if (has_all_couplings(settings)) continue;  // the numbering decides which of two siblings is eliminated first
     const auto model = test::random_model(settings);
     const auto guess_of = [&](const Rod& one) {
       const LinearSystem system = test::assembled(one);

@@ -1,4 +1,4 @@
-// A network instead of the solve: what is applied, to which segments, and what is refused.
+// A network instead of the solve: the increments that are applied, the segments that they move, refusals.
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -12,7 +12,7 @@
 
 namespace rodsweep::test_end_to_end {
 
-/// A network that always knows the answer.
+/// An increment source that returns the exact solution.
 class ExactIncrements : public IncrementSource {
  public:
   explicit ExactIncrements(const Scene& scene) : direct_(scene) {}
@@ -71,7 +71,7 @@ TEST_CASE("without moves of its own a network moves the segments as its multipli
   for (const CopingNetSettings& settings : test::kinds_of_networks()) {
     CAPTURE(static_cast<int>(settings.encoding), static_cast<int>(settings.processor), static_cast<int>(settings.base));
     Scene scene = test::moving_scene(8);
-    for (Vector3& x : scene.rods[0].position) x += Vector3(0, 0.01 * x.x() * x.x(), 0);  // a residual to answer
+    for (Vector3& x : scene.rods[0].position) x += Vector3(0, 0.01 * x.x() * x.x(), 0);  // a nonzero residual
     const auto model = test::random_model(settings);
     Rod expected = scene.rods[0];
     LinearSystem system(expected);

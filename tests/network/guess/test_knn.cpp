@@ -1,4 +1,4 @@
-// Nearest neighbours: who is found, how their solutions are put together, and what it costs.
+// Nearest neighbours: the neighbours found, the interpolation of their solutions, the cost.
 #include <catch2/catch.hpp>
 
 #include "network/guess/knn_guess.hpp"
@@ -15,7 +15,7 @@ std::shared_ptr<const KnnSet> set_of(const std::vector<StoredSimulation>& simula
   return set;
 }
 
-/// What the guess says where a recorded system was solved, at a rod of `scene` in that state.
+/// The proposal for a recorded system, at a rod of `scene` in the recorded state.
 VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const StoredSystem& where, int k,
                  double dt = 0.02, Proposal* proposal = nullptr) {
   Rod& rod = scene.rods[0];
@@ -27,7 +27,7 @@ VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const St
   return x0;
 }
 
-/// A straight rod at rest whose velocity and solution are planted.
+/// A system of a straight rod at rest with this velocity and this solution.
 StoredSystem planted(const Rod& rod, const Vector3& velocity, const VectorX& solution) {
   return {{},
           rod.position,
@@ -62,7 +62,7 @@ TEST_CASE("neighbours weigh by the inverse of their distance") {
   simulation.systems = {planted(scene.rods[0], Vector3::Zero(), near), planted(scene.rods[0], 3 * u, far)};
   const StoredSystem between = planted(scene.rods[0], u, near);
   const auto set = set_of({simulation});
-  for (const int k : {2, 5}) {  // no more than there are
+  for (const int k : {2, 5}) {  // 5 is more than the set has
     const VectorX x0 = guess_at(set, scene, between, k);
     CHECK((x0 - (2 * near + far) / 3).norm() < 1e-5 * x0.norm());
   }

@@ -1,4 +1,4 @@
-// The learned guess asks for no memory after a rod's first solves: not in its base guess, features or layers.
+// The learned guess allocates nothing after a rod's first solves: not in base guess, features or layers.
 #include <catch2/catch.hpp>
 
 #include "network/guess/coping_net_guess.hpp"

@@ -1,4 +1,4 @@
-// A simulator that updates states: what it remembers, what it sees of turned scenes, and what its answers do to rods.
+// A simulator that updates states: its history, its features of turned scenes, the effect of its output on rods.
 #include <catch2/catch.hpp>
 
 #include "network/guess/state_network.hpp"
@@ -15,7 +15,7 @@ using namespace test;
 
 CopingNetSettings of_states() { return message_passing(Encoding::state, true); }
 
-/// As random weights say it, but of a size that leaves rods in one piece.
+/// A model with random weights and outputs small enough to keep rods intact.
 std::shared_ptr<Model> small_answers() {
   auto model = random_model(of_states());
   model->scales.moves.deviation *= 0.01F;
@@ -54,7 +54,7 @@ TEST_CASE("examples hold what leads to the next velocities, whatever the noise i
     const std::size_t n = i / 3;
     CHECK(example.edge_target.rows() == 0);
     for (Eigen::Index s = 0; s < example.nodes.cols(); ++s) {
-      // Lengths of vectors are the same in every frame.
+      // The length of a vector is the same in every frame.
       const Eigen::Vector3f next = example.nodes.col(s).head<3>() + example.node_target.col(s).head<3>();
       const Vector3& recorded = steps[n + 1]->velocity[s];
       if (s > 0) CHECK(next.norm() == Approx(recorded.norm()).margin(1e-5));

@@ -15,7 +15,7 @@ TEST_CASE("the gradients of an MLP are those of central differences, for weights
   WeightSource source(1);
   const Mlp<double> mlp(p, "mlp", 4, 7, 3, source, 1, hidden_layers);
   REQUIRE(static_cast<int>(p.entries().size()) == 4 + 2 * (hidden_layers - 1));
-  for (double& v : p.values()) v += 0.1;  // biases too
+  for (double& v : p.values()) v += 0.1;  // also gives biases nonzero values
   std::vector<double> inputs(4 * 5);
   Eigen::Map<Matrix> x(inputs.data(), 4, 5);
   x = random_matrix(4, 5, 2);

@@ -1,4 +1,4 @@
-// The product of narrow layers against Eigen's, for every shape of tile.
+// The product of narrow layers against Eigen's, for all tile shapes.
 #include "network/layers/narrow_product.hpp"
 #include "network/layers/product.hpp"
 #include "tests/network/gradient_check.hpp"
@@ -12,7 +12,7 @@ TEMPLATE_TEST_CASE("W x + b is Eigen's, whatever the numbers of rows, items and 
     for (const int items : {1, 2, 3, 5, 8, 13, 50})
       for (const int depth : {1, 2, 5, 33}) {
         CAPTURE(rows, items, depth);
-        // Parts of larger matrices, so that columns have gaps; the weights end where their memory does.
+        // Blocks of larger matrices, so that columns have gaps; the weights end at the end of their memory.
         const Tensor<TestType> whole = random_matrix(rows + 3, depth, 1).cast<TestType>();
         const Tensor<TestType> inputs = random_matrix(depth + 2, items, 2).cast<TestType>();
         const Tensor<TestType> bias = random_matrix(rows, 1, 3).cast<TestType>();

@@ -1,5 +1,5 @@
-// Factors of all couplings: gradients, what their answers have in common with those of A^-1, incomplete Cholesky among
-// them, and inference.
+// Factors of all couplings: gradients, the properties that they share with A^-1, incomplete Cholesky as a special case,
+// inference.
 #include <catch2/catch.hpp>
 
 #include <Eigen/Dense>
@@ -19,7 +19,7 @@ using namespace test;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using System = ScaledSystem<double>;
 
-/// The system of a rod as a network sees it, with a random residual.
+/// The scaled system of a rod, with a random residual.
 ScaledSystem<float> system_of(const Rod& rod, unsigned seed = 1) {
   const CopingNetSettings settings;
   const LinearSystem system = assembled(rod);
@@ -61,7 +61,7 @@ Matrix dense(const System& a) {
   return out;
 }
 
-/// The matrix that answers are of.
+/// The matrix that `answer` applies.
 template <class Answer>
 Matrix operators(const Answer& answer, Eigen::Index places) {
   Matrix out(6 * places, 6 * places);
@@ -73,8 +73,8 @@ Matrix operators(const Answer& answer, Eigen::Index places) {
   return out;
 }
 
-/// Incomplete block Cholesky without fill, from the last place to the first: pivots' inverses and what stands in the
-/// place of each coupling's block, by row and column.
+/// Incomplete block Cholesky without fill, eliminated from the last place to the first. Has the inverse of each pivot,
+/// and for each coupling its block by row and column.
 struct Incomplete {
   std::vector<Matrix6> pivot_inverse;
   std::map<std::pair<int, int>, Matrix6> block;
@@ -99,7 +99,7 @@ Incomplete incomplete(const System& a) {
   return out;
 }
 
-/// The factors that are those of incomplete Cholesky: T from one coupling of each side.
+/// The factors that represent incomplete Cholesky: one coupling per side determines T.
 Matrix factors_of(const System& a, const Incomplete& cholesky) {
   Matrix out = Matrix::Zero(CoupledPasses<double>::size, a.diagonal.cols());
   for (Eigen::Index k = 0; k < out.cols(); ++k)
@@ -120,7 +120,7 @@ TEST_CASE("two matrices a joint say all that incomplete Cholesky says, wherever 
     for (const auto& c : a.couplings) {
       const Matrix6 expected = cholesky.pivot_inverse[c.row] * cholesky.block.at({c.row, c.column});
       const Matrix6 found = Eigen::Map<const Matrix6>(&factors(21 + 36 * c.side, c.row)) * coupling(a, c);
-      CHECK((found - expected).norm() < 1e-3 * expected.norm());  // blocks come in single precision
+      CHECK((found - expected).norm() < 1e-3 * expected.norm());  // blocks have single precision
     }
   }
 }
@@ -142,7 +142,7 @@ struct Net {
   CoupledFactors<T> factors;
   typename CoupledFactors<T>::Tape tape;
 
-  /// With weights unlike those at the start, where T = 0.
+  /// Shifts the weights away from their start, where T = 0.
   explicit Net(int latent, std::uint64_t seed = 1) {
     WeightSource source(seed);
     factors = CoupledFactors<T>(weights, latent, source);

@@ -1,4 +1,4 @@
-// Learned factors: gradients, what their answers have in common with those of A^-1, and inference.
+// Learned factors: gradients, the properties that they share with A^-1, inference.
 #include <catch2/catch.hpp>
 
 #include "network/encoding/feature_encoder.hpp"
@@ -10,7 +10,7 @@ namespace rodsweep::test_factor_sweeps {
 
 using namespace test;
 
-/// Two trees, a chain and a ring that is cut, side by side.
+/// Two trees, a chain and a cut ring side by side.
 JointForest some_forest() {
   const JointForest a = joint_forest(random_rod(tree(2, 3), {0}, 1)), b = joint_forest(random_rod(chain(6), {0}, 2)),
                     c = joint_forest(random_rod(tree(3, 2), {}, 3)), d = joint_forest(random_rod(ring(5), {}, 4));
@@ -23,7 +23,7 @@ struct Net {
   FactorSweeps<T> sweeps;
   typename FactorSweeps<T>::Tape tape;
 
-  /// With weights unlike those at the start, where T = 0.
+  /// Shifts the weights away from their start, where T = 0.
   explicit Net(int latent, std::uint64_t seed = 1) {
     WeightSource source(seed);
     sweeps = FactorSweeps<T>(weights, latent, source);
@@ -36,7 +36,7 @@ struct Net {
   }
 };
 
-/// Features in places; couplings are small, as those of scaled systems.
+/// Features in the order of places; couplings are small, as in scaled systems.
 Matrix features(const JointForest& forest, unsigned seed, double size = 0.3) {
   return size * random_matrix(57, forest.size(), seed);
 }
@@ -53,7 +53,7 @@ TEST_CASE("the gradients of factors are those of central differences") {
   Parameters<double> twice = gradient;
   loss();
   net.sweeps.backward(net.weights, forest, x, net.tape, weights, twice);
-  for (std::size_t i = 0; i < twice.values().size(); ++i)  // a second backward adds the same
+  for (std::size_t i = 0; i < twice.values().size(); ++i)  // a second backward pass adds the same
     CHECK(twice.values()[i] == Approx(2 * gradient.values()[i]).margin(1e-14));
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("inference of factors gives the training code's answers, as exactly as
       FeatureEncoder encoder(settings, rod, system.matrix());
       const JointForest& forest = encoder.topology().forest;
       Net<float> net(latent);
-      net.weights[net.sweeps.layers().factors.weight()] *= 0.02F;  // or states grow too long to be carried on
+      net.weights[net.sweeps.layers().factors.weight()] *= 0.02F;  // keeps the states of long chains bounded
       FactorInference inference(net.sweeps, net.weights, forest, encoder.pattern());
       Tensor<float> nodes(0, rod.segment_count()), x(SystemEncoding::size, forest.size());
       for (const unsigned seed : {2U, 9U}) {

@@ -1,4 +1,4 @@
-// Message passing: its gradients, what an output sees, and that neither numbering nor neighbours matter.
+// Message passing: gradients, receptive field of an output, independence of numbering and of graphs side by side.
 #include <algorithm>
 #include <numeric>
 
@@ -20,7 +20,7 @@ RodGraph some_graphs() {
   return side_by_side(std::vector<const RodGraph*>{&a, &b, &c, &d});
 }
 
-/// A network with biases that are not zero, its inputs and outputs.
+/// A network with nonzero biases, its inputs and outputs.
 struct Case {
   RodGraph graph;
   Parameters<double> p;
@@ -87,7 +87,7 @@ TEST_CASE("edge outputs don't depend on whether nodes are decoded beside them") 
   Matrix alone;
   c.net.forward(c.p, c.graph, c.x_nodes, c.x_edges, c.tape, alone);
   CHECK((alone - c.y_edges).norm() < 1e-13);
-  // And a tape that has held both gives the gradient of the edges alone.
+  // A tape of a run with node outputs gives the same gradient of the edges.
   const Matrix d_edges = random_matrix(2, c.graph.edges(), 4), none = Matrix::Zero(2, c.graph.nodes);
   const Parameters<double> of_edges = c.gradient(d_edges, nullptr);
   c.run();
@@ -99,7 +99,7 @@ TEST_CASE("edge outputs don't depend on whether nodes are decoded beside them") 
 TEST_CASE("renumbering nodes and edges renumbers the outputs") {
   Case c(graph_of(net(3, 3)), 3, 2, true);
   std::vector<int> node(static_cast<std::size_t>(c.graph.nodes)), edge(static_cast<std::size_t>(c.graph.edges()));
-  std::iota(node.begin(), node.end(), 0);  // new number of each
+  std::iota(node.begin(), node.end(), 0);  // maps old numbers to new ones
   std::iota(edge.begin(), edge.end(), 0);
   std::mt19937 engine(5);
   std::shuffle(node.begin(), node.end(), engine);

@@ -1,4 +1,4 @@
-// Training: that it learns, and that its bits depend on nothing but its settings.
+// Training reduces the loss, and its bits depend on its settings only.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -29,7 +29,7 @@ CopingNetSettings small_network(Processor processor = Processor::factors) {
   return settings;
 }
 
-/// One step, its shards computed in the order of `ranks` that take turns; its loss.
+/// One step; returns its loss. Computes the shards as `ranks` ranks would, the last rank first.
 double step(Trainer& trainer, int shards, int ranks = 1) {
   std::vector<std::vector<float>> contributions(static_cast<std::size_t>(shards));
   for (int rank = ranks - 1; rank >= 0; --rank)
@@ -179,7 +179,7 @@ TEST_CASE("every example is seen once in an epoch, in another order in the next 
   std::vector<Example> examples = sample_examples(network, 3, 4).examples;
   TrainingSettings settings = small_training();
   settings.batch = settings.shards = 1;
-  settings.rate = 1e-30;  // a loss names its example
+  settings.rate = 1e-30;  // weights stay constant, so that a loss identifies its example
   const auto losses = [&](std::uint64_t seed) {
     settings.seed = seed;
     CopingNet<float> net(network, 1);

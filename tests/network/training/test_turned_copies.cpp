@@ -1,4 +1,4 @@
-// Copies of examples, turned about gravity and shifted: what moves with the rod, and what no turn changes.
+// Copies of examples, turned about gravity and shifted: the features that change and those that do not.
 #include <catch2/catch.hpp>
 
 #include "network/training/turn.hpp"
@@ -68,7 +68,7 @@ TEST_CASE("examples may be those of first Newton iterations alone") {
   add_examples(settings, simulation, first, {}, true);
   CHECK(all.size() == 12);
   REQUIRE(first.size() == 4);
-  for (std::size_t i = 0; i < 4; ++i)  // whose base guess has seen the others all the same
+  for (std::size_t i = 0; i < 4; ++i)  // base guesses also use the other iterations
     CHECK(first[i].edge_target == all[3 * i].edge_target);
 }
 

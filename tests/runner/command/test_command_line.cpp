@@ -1,4 +1,4 @@
-// What the user types, and what the program makes of it.
+// Command lines and their parsed commands, errors and printed command lines.
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Core-hours from probes, with an evaluation whose time is known.
+// Core-hours estimated by probes with a known evaluation time.
 #include <catch2/catch.hpp>
 
 #include "runner/command/plan_estimate.hpp"
@@ -8,7 +8,7 @@ using namespace rodsweep;
 
 namespace test_plan_estimate {
 
-/// Pretends to take `seconds_per_cost` for every unit of Task::cost of the steps asked for.
+/// Pretends that the requested steps take `seconds_per_cost` per unit of Task::cost.
 Evaluate taking(double seconds_per_cost) {
   return [=](const Task& task, const TaskSpec& spec, TaskRecord& record, const StopRequested&) {
     record.outcome = TaskOutcome::ok;

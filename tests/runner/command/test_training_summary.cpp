@@ -1,4 +1,4 @@
-// What is said of a training.
+// The printed summary of a training.
 #include <catch2/catch.hpp>
 #include <fstream>
 

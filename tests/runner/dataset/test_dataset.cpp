@@ -1,4 +1,4 @@
-// Data sets in files: what is read back, and which files are refused.
+// Data sets in files: reading back, refused files.
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -38,7 +38,7 @@ std::string refusal_of(const fs::path& path) {
 TEST_CASE("every system of a file gives the A and b of the simulation again, bit for bit") {
   const TemporaryFolder folder;
   Json loaded = ragged_job();
-  loaded["scene"]["tip_force_n"] = {0, 0.1, 0};  // evaluated alone, by the same steps as below
+  loaded["scene"]["tip_force_n"] = {0, 0.1, 0};  // evaluated alone, by the steps of the loop below
   Json balanced = loaded;
   balanced["time"]["balance"] = true;
   for (const auto& [systems, scenes] : {std::pair("first", loaded), std::pair("all", loaded),
@@ -119,7 +119,7 @@ TEST_CASE("the hash is that of the data: the same for the same job and in a pack
   CHECK(hash.size() == 16);
   CHECK(DatasetReader(folder / "again.h5").hash() == hash);
   CHECK(DatasetReader(folder / "packed.h5").hash() == hash);
-  CHECK(DatasetReader(folder / "packed.h5").read(1).systems.size() == 4);  // with the checksums of the original
+  CHECK(DatasetReader(folder / "packed.h5").read(1).systems.size() == 4);  // verified by the checksums of the original
   CHECK(DatasetReader(folder / "other.h5").hash() != hash);
 }
 

@@ -1,4 +1,4 @@
-// Systems written into a record and read back: A and b assembled again, against those that were solved.
+// Systems in a record: A and b, assembled again after reading, equal those of the solve.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -20,7 +20,7 @@ TEST_CASE("A, b, velocities and solution of a tree and a chain of another size c
   constexpr int steps = 3, iterations = 2;
   const bool balance = GENERATE(false, true);
   Scene scene;
-  scene.damping_per_s = 2;  // so that the constraints' dt is not the step
+  scene.damping_per_s = 2;  // so that the constraints' dt differs from the step
   scene.rods = {test::random_rod(test::tree(2, 2), {0}, 1), test::random_rod(test::chain(4), {}, 2)};
   if (balance)
     for (Rod& rod : scene.rods)
@@ -67,7 +67,7 @@ TEST_CASE("a data set's record has the first system of every step, or all") {
 
 TEST_CASE("Newton iterations that were not needed stay marked and are not read") {
   Json job = data_job();
-  job["scene"]["gravity_m_s2"] = {0, 0, 0};  // nothing to solve for
+  job["scene"]["gravity_m_s2"] = {0, 0, 0};  // the first residual is zero
   job["record"] = {{"systems", "all"}};
   const Plan plan = plan_of(job);
   const TaskRecord record = evaluated(plan);

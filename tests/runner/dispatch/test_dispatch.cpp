@@ -1,4 +1,4 @@
-// Master and workers over the network in memory.
+// The master and its workers over a network in memory.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
@@ -17,7 +17,7 @@ int no_signal() { return 0; }
 
 TaskResult succeed(std::int64_t, const StopRequested&) { return {TaskOutcome::ok, ""}; }
 
-/// Runs the sweep with one worker; its tasks in the order in which it runs them.
+/// Runs the sweep with one worker; returns the tasks in the order of their runs.
 std::vector<std::int64_t> order_of(Sweep& sweep) {
   std::vector<std::int64_t> order;
   Worker worker(
@@ -38,7 +38,7 @@ std::vector<std::unique_ptr<Worker>> workers_of(Sweep& sweep, int count, const T
   return workers;
 }
 
-/// Steps master and workers in a random order until the master is finished, then lets the workers leave.
+/// Steps master and workers in a random order until the master has finished; then each worker finishes.
 void play(Sweep& sweep, std::vector<std::unique_ptr<Worker>>& workers, unsigned seed) {
   std::mt19937 random(seed);
   for (bool finished = false; !finished;) {
@@ -73,7 +73,7 @@ TEST_CASE("tasks that lost their workers come last, and again lost ones with not
         order.push_back(task);
         running[task] = &inbox;
       }
-    if (!running.empty()) {  // one report at a time, so that workers are out of step
+    if (!running.empty()) {  // one report at a time, so that workers get out of step
       const auto last = std::prev(running.end());
       last->second->report(last->first);
       running.erase(last);
@@ -187,7 +187,7 @@ TEST_CASE("what a worker's body throws ends the worker") {
 TEST_CASE("tasks of a batch are handed out together, eight at most and all of one batch") {
   std::vector<PendingTask> tasks;
   for (std::int64_t i = 0; i < 11; ++i) tasks.push_back({i, 5, i % 5 == 0 ? 1 : 0});  // 0, 5, 10 are of batch 1
-  tasks.push_back({11, 9, 1});                                                        // so is this, of another cost
+  tasks.push_back({11, 9, 1});                                                        // so is 11, with another cost
   tasks.push_back({12, 1, -1});
   tasks.push_back({13, 1, -1});
   Sweep sweep(1, tasks);

@@ -1,5 +1,5 @@
-// When a worker may hold a second task in its hand, and how long workers idle at the end: simulated time, workers that
-// take as long as they are told, and costs that are estimates.
+// Second tasks held by workers, and idle time at the end of a sweep. Time is simulated, workers take given times, and
+// costs are estimates.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,20 +15,20 @@ namespace test_dispatch_idle {
 
 struct Played {
   double end = 0;        ///< when the last task was finished
-  double first_end = 0;  ///< when the first worker had nothing more to do
+  double first_end = 0;  ///< when the first worker ran out of tasks
   double work = 0;
-  std::int64_t waits = 0;        ///< times a worker with an empty hand had to wait for the master
-  double idle_beside_hoard = 0;  ///< time in which a worker idled while a task waited in another's hand
+  std::int64_t waits = 0;        ///< times that a worker without a task got one
+  double idle_beside_hoard = 0;  ///< time with an idle worker while another worker holds a second task
 
   double idle_share() const { return 1 - first_end / end; }
 };
 
-/// Plays the sweep event by event; `seconds` tells how long a task really takes.
+/// Simulates the sweep event by event; `seconds` has the true duration of each task.
 Played play(int workers, const std::vector<PendingTask>& tasks, const std::vector<double>& seconds) {
   Sweep sweep(workers, tasks);
   struct Rank {
     Inbox inbox;
-    std::deque<std::int64_t> hand;  // the first one runs
+    std::deque<std::int64_t> hand;  // the first task runs
     double end = 0;
   };
   std::vector<Rank> ranks;

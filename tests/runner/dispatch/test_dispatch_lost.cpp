@@ -18,7 +18,7 @@ constexpr Seconds timeout{4};
 
 void alive(Inbox& worker) { worker.channel->send(0, Alive{}); }
 
-/// Lets time pass until workers that send nothing are lost; the others send heartbeats.
+/// Advances time until silent workers are lost; the others send heartbeats.
 template <class... Workers>
 void time_out(Sweep& sweep, Workers&... others) {
   for (int quarter = 0; quarter < 6; ++quarter) {
@@ -28,7 +28,7 @@ void time_out(Sweep& sweep, Workers&... others) {
   }
 }
 
-/// Lets this worker run what is left; the order of its tasks.
+/// Lets this worker run the remaining tasks; returns their order.
 std::vector<std::int64_t> run_rest(Sweep& sweep, Inbox& worker) {
   std::vector<std::int64_t> order;
   for (bool finished = false; !finished;) {
@@ -52,11 +52,11 @@ TEST_CASE("a silent worker's task goes to another, the one in its hand as if not
 
   const std::vector<std::int64_t> order = run_rest(sweep, other);
   REQUIRE(order.size() == 12);
-  CHECK(order.back() == held[0]);  // it may be to blame: last
+  CHECK(order.back() == held[0]);  // it may be the cause, so it comes last
   CHECK(order[1] != held[1]);
   CHECK(std::count(order.begin(), order.end(), held[1]) == 1);
   CHECK(silent.assigned().empty());
-  CHECK(silent.finishes == 0);  // nothing is sent to a rank that may be dead
+  CHECK(silent.finishes == 0);  // the rank may be dead
   CHECK(other.assigned().empty());
   CHECK((other.finishes == 1 && other.ranks_lost));
   CHECK(sweep.master.dispatch().ranks_lost);
@@ -70,7 +70,7 @@ TEST_CASE("a lost worker that is heard again is ignored, and dismissed with the 
   CHECK(slow.assigned() == std::vector<std::int64_t>{0});
   CHECK(other.assigned() == std::vector<std::int64_t>{1});
   time_out(sweep, other);
-  slow.report(0);  // its results have the same bits as those that others will write
+  slow.report(0);  // bit for bit what another worker will write
   other.report(1);
   sweep.master.step();
   CHECK(slow.assigned().empty());
@@ -89,7 +89,7 @@ TEST_CASE("a worker that is dismissed while it works abandons its tasks") {
       [&](std::int64_t, const StopRequested& stop) -> TaskResult {
         ++runs;
         network[0].send(1, Finish{true});
-        test::HandClock::pass(Seconds(1));  // so that it reads its messages
+        test::HandClock::pass(Seconds(1));  // so that the worker reads its messages
         return stop() ? TaskResult{} : TaskResult{TaskOutcome::ok, ""};
       },
       [] { return 0; }, {}, {}, test::HandClock::now);
@@ -111,7 +111,7 @@ TEST_CASE("what a lost worker finished and had not brought to disk is done again
   lost.report(2, TaskOutcome::torn);
   sweep.master.step();
   CHECK(lost.assigned() == std::vector<std::int64_t>{3});
-  lost.channel->send(0, Alive{1});  // task 0 is on disk, and 2 is not
+  lost.channel->send(0, Alive{1});  // task 0 is on disk, task 2 is not
   CHECK(other.assigned() == std::vector<std::int64_t>{1});
   other.report(1);
   time_out(sweep, other);
@@ -222,27 +222,27 @@ TEST_CASE("a master that was away itself loses nobody") {
 TEST_CASE("with a time limit no task is begun that would not end before it, and what runs then is abandoned") {
   Timeouts limited;
   limited.time = TimeBudget(Seconds(0.3), Seconds(0.3));
-  // A unit of cost turns out to take a second: the long tasks cannot be done, the short ones can.
+  // A unit of cost takes a second: the long tasks exceed the limit, the short ones do not.
   Sweep sweep(1, {{0, 0.02}, {1, 50}, {2, 0.001}, {3, 40}, {4, 0.001}}, limited);
   std::vector<std::int64_t> begun;
   Worker worker(
       sweep.network[1],
       [&](std::int64_t task, const StopRequested& stop) -> TaskResult {
         begun.push_back(task);
-        if (task == 1) return {TaskOutcome::error, "at once"};  // nothing is known of costs before
+        if (task == 1) return {TaskOutcome::error, "at once"};  // no pace is known yet
         test::HandClock::pass(Seconds(0.02));
         return stop() ? TaskResult{} : TaskResult{TaskOutcome::ok, ""};
       },
       [] { return 0; }, {}, {}, test::HandClock::now);
   while (sweep.master.step() != Master::Step::finished) worker.step();
-  CHECK(sweep.master.dispatch().left == 0);  // the first task told that costs mean nothing
+  CHECK(sweep.master.dispatch().left == 0);  // the first task gives no pace
   CHECK(begun == std::vector<std::int64_t>{1, 3, 0, 2, 4});
 
   Sweep slow(1, {{0, 0.02}, {1, 50}, {2, 0.001}, {3, 40}, {4, 0.001}}, limited);
   Inbox inbox(slow.network[1]);
   slow.master.step();
   REQUIRE(inbox.assigned() == std::vector<std::int64_t>{1});
-  slow.network[1].send(0, Report(1, TaskOutcome::ok, 50, ""));  // a second for each unit of cost
+  slow.network[1].send(0, Report(1, TaskOutcome::ok, 50, ""));  // a second per unit of cost
   std::vector<std::int64_t> order;
   while (slow.master.step() != Master::Step::finished)
     for (const std::int64_t task : inbox.assigned())
@@ -251,7 +251,7 @@ TEST_CASE("with a time limit no task is begun that would not end before it, and 
   CHECK(slow.master.dispatch().left == 1);
   CHECK(slow.master.dispatch().late);
   CHECK_FALSE(slow.master.dispatch().ranks_lost);
-  REQUIRE(slow.master.dispatch().too_long);  // at forty seconds of three tenths
+  REQUIRE(slow.master.dispatch().too_long);  // 40 s against a limit of 0.3 s
   CHECK(slow.master.dispatch().too_long->index == 3);
   CHECK(slow.master.dispatch().too_long_s > 30);
 
@@ -268,7 +268,7 @@ TEST_CASE("with a time limit no task is begun that would not end before it, and 
   }
   CHECK(endless.master.dispatch().late);
   CHECK(endless.master.dispatch().left == 1);
-  CHECK_FALSE(endless.master.dispatch().too_long);  // it may be done by the next start: nothing is known
+  CHECK_FALSE(endless.master.dispatch().too_long);  // the pace is unknown, so the next start may finish it
 }
 
 }  // namespace test_dispatch_lost

@@ -1,4 +1,4 @@
-// Signals: what runs is abandoned, what is in hand comes back, nothing more is handed out, everybody leaves.
+// Signals: running tasks are cancelled, held tasks come back, none is assigned, all workers leave.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,13 +24,13 @@ TEST_CASE("a signal to the master stops the sweep, and every task is accounted f
   REQUIRE(twos.size() == 2);
 
   sweep.signal = SIGTERM;
-  one.report(ones[0]);  // finished just before
+  one.report(ones[0]);  // finished just before the stop
   CHECK(sweep.master.step() == Master::Step::worked);
   CHECK(one.assigned().empty());
   CHECK(two.assigned().empty());
   CHECK(one.stops == 1);
   CHECK(two.stops == 1);
-  CHECK(told == std::vector<int>{SIGTERM});  // at once: it may be killed before the others have answered
+  CHECK(told == std::vector<int>{SIGTERM});  // at once: the process may be killed before the workers reply
 
   one.report(ones[1], TaskOutcome::pending);
   two.report(twos[0], TaskOutcome::pending);

@@ -1,4 +1,4 @@
-// What fits into a start's time limit: by the pace of what is known, and by what was tried in vain.
+// Tasks that fit into the time limit of a start, by the known pace and by failed attempts.
 #include <catch2/catch.hpp>
 
 #include "runner/dispatch/time_budget.hpp"
@@ -27,7 +27,7 @@ TEST_CASE("without a limit everything fits") {
 
 TEST_CASE("a task takes what its cost says at the pace of what is known, two thirds of what is left at most") {
   TimeBudget time(Seconds(100), Seconds(1000));
-  CHECK(time.fits(of_cost(1e9), Seconds(0)));  // nothing is known
+  CHECK(time.fits(of_cost(1e9), Seconds(0)));  // no pace is known
   time.learn(10, Seconds(20));
   CHECK(time.expected(of_cost(5)).count() == Approx(10));
   CHECK(time.fits(of_cost(33), Seconds(0)));
@@ -42,9 +42,9 @@ TEST_CASE("the part of a task that was done before it was given up tells the pac
   TimeBudget time(Seconds(100), Seconds(100));
   time.learn_part(50, 0.1, Seconds(100));
   CHECK(time.expected(of_cost(50)).count() == Approx(1000));
-  time.learn_part(50, 0, Seconds(100));  // not one step
+  time.learn_part(50, 0, Seconds(100));  // without a complete step
   CHECK(time.expected(of_cost(50)).count() == Approx(1000));
-  CHECK(time.ever_fits(of_cost(49)));  // but not of cheaper ones
+  CHECK(time.ever_fits(of_cost(49)));  // cheaper tasks may fit
   time.learn(5, Seconds(5));
   CHECK(time.expected(of_cost(49)).count() == Approx(49));
 }
@@ -69,7 +69,7 @@ TEST_CASE("a task's own limit bounds what it is expected to take") {
   CHECK(time.expected(task).count() == Approx(30));
   CHECK(time.fits(task, Seconds(0)));
   CHECK_FALSE(time.fits(task, Seconds(60)));
-  task.limit_s = 95;  // more than before, when it was given up after 80 s
+  task.limit_s = 95;  // more than its last attempt of 80 s
   task.tried_s = 80;
   CHECK(time.ever_fits(task));
   task.limit_s = 10;  // less
@@ -90,7 +90,7 @@ TEST_CASE("a sweep whose tasks ran for a whole limit in vain says which is the l
   worker.assigned();
   REQUIRE(worker.stops == 1);
   Report report(0, TaskOutcome::pending, 0.1, "");
-  report.share = 0.1;  // so a second, and the other one too
+  report.share = 0.1;  // so the task takes a second, and so does the other
   sweep.network[1].send(0, report);
   while (sweep.master.step() != Master::Step::finished) {
   }

@@ -1,4 +1,4 @@
-// Nearest neighbours and a network instead of the solve, from their files, in whole tasks.
+// Whole tasks with baselines from files: nearest neighbours, and a network instead of the solve.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -13,7 +13,7 @@ namespace test_baselines {
 
 namespace fs = std::filesystem;
 
-/// A network of random weights times `factor`; of a simulator, with units of one.
+/// A network with random weights times `factor`. Scales of a state network are one.
 void write_model(const fs::path& path, float factor, bool of_states = false) {
   CopingNetSettings settings;
   settings.base = BaseGuess::none;
@@ -37,7 +37,7 @@ void write_model(const fs::path& path, float factor, bool of_states = false) {
   ModelFile(path, false).save(card, model, std::nullopt);
 }
 
-/// The records of a job in `folder`.
+/// Evaluates all tasks of a job in `folder`; returns their records.
 std::vector<TaskRecord> evaluated(const TemporaryFolder& folder, const Json& job) {
   const Plan plan(parse_job(job.dump(), folder / "job.json"));
   std::vector<TaskRecord> records;
@@ -108,7 +108,7 @@ TEST_CASE("a simulator of states moves rods without any solve; its steps are dat
   job["time"]["steps"] = 5;
   const TaskRecord record = evaluated(folder, job).front();
   CHECK(record.outcome == TaskOutcome::ok);
-  CHECK(record.steps.kinetic_energy_j.back() < 1e-20);  // it has not learned of gravity
+  CHECK(record.steps.kinetic_energy_j.back() < 1e-20);  // an untrained network has no gravity
   CHECK(record.steps.joint_gap.back() < 1e-12);
   CHECK(std::isnan(record.solves.newton_residual.front()));
   CHECK(record.timing.rest_s.front() > 0);

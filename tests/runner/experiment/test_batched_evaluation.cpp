@@ -1,4 +1,4 @@
-// Simulations of data sets, several at once: each as alone to the bit, and as the time step makes it to rounding.
+// Data-set simulations in a batch: bit for bit as alone, and equal to the time step up to rounding.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace test_batched_evaluation {
 
 bool never() { return false; }
 
-/// Eight simulations of random rods of nine segments, all systems recorded.
+/// Eight simulations of random rods of nine segments; all systems are recorded.
 Json random_data(bool balance = false) {
   Json job = data_job();
   job["time"]["balance"] = balance;
@@ -49,7 +49,7 @@ struct Evaluated {
   std::vector<TaskRecord> records;
 };
 
-/// The datasets outside /timing in which two records differ in any bit.
+/// The datasets outside /timing in which two records differ.
 std::vector<std::string> differing(const TaskRecord& a, const TaskRecord& b) {
   std::vector<std::string> out;
   for (const Column& column : columns())
@@ -87,7 +87,7 @@ TEST_CASE("records are those of the time step, to rounding") {
   const Json data = random_data(GENERATE(false, true));
   Evaluated batch(data);
   REQUIRE(batch.together({0, 1, 2, 3, 4, 5, 6, 7}));
-  Json sweep = data;  // the same seed and key paths: the same rods
+  Json sweep = data;  // the same seed and key paths give the same rods
   sweep["kind"] = "sweep";
   sweep["solve"] = {{"method", "direct"}};
   sweep["evaluation"] = "closed_loop";
@@ -135,7 +135,7 @@ TEST_CASE("recorded systems are solved by what is recorded as their solutions") 
 TEST_CASE("a member that fails ends alone, with its reason") {
   Json job = random_data();
   job["samples"] = 1;
-  job["scene"]["gravity_m_s2"] = grid({{0, -9.81, 0}, {0, -1e6, 0}, {0, -1, 0}});  // the second one is torn apart
+  job["scene"]["gravity_m_s2"] = grid({{0, -9.81, 0}, {0, -1e6, 0}, {0, -1, 0}});  // the second tears the rod
   Evaluated alone(job), together(job);
   alone.alone();
   REQUIRE(together.together({0, 1, 2}));

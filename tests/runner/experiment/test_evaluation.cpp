@@ -1,4 +1,4 @@
-// One task evaluated: what is counted, for guesses of known quality.
+// Evaluation of one task: counters, for guesses of known quality.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -36,7 +36,7 @@ TEST_CASE("an exact guess takes no iteration, one product with the matrix for ea
     CHECK(r.tasks.counted_all.matvecs[t] == r.tasks.counted_all.iterations[t]);  // from zero, b is the first residual
     CHECK(r.tasks.counted_all.iterations[t] > 0);
   }
-  for (std::size_t t = 0; t < 7; ++t) {  // the tightest, 1e-8, is where rounding may need an iteration
+  for (std::size_t t = 0; t < 7; ++t) {  // at 1e-8, the tightest, rounding may cost an iteration
     CHECK(r.tasks.counted_all.cg_ratio[tolerances + t] == 0);
     CHECK(r.tasks.counted_other_norm.cg_ratio[tolerances + t] == 0);
     CHECK(r.tasks.counted_all.matvecs[tolerances + t] == solves_of(r));
@@ -45,7 +45,7 @@ TEST_CASE("an exact guess takes no iteration, one product with the matrix for ea
 
 TEST_CASE("a time limit and a stop are met in the middle of a solve") {
   Json job = with("/scene/segments", "300", five_steps(R"(["zero"])", R"({"reference": "cg"})"));
-  const auto looks_of_one_step = [&] {  // at the clock, which moves on by a second each time
+  const auto looks_of_one_step = [&] {  // at the clock, which advances by a second per call
     Json one = job;
     one["time"]["steps"] = 1;
     one["task_time_limit_s"] = 1e9;
@@ -64,7 +64,7 @@ TEST_CASE("a time limit and a stop are met in the middle of a solve") {
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
   int asked = 0;
-  const auto stop = [&] { return record.tasks.steps_done[0] == 0 && ++asked > 2; };  // once everything is built
+  const auto stop = [&] { return record.tasks.steps_done[0] == 0 && ++asked > 2; };  // after set-up
   CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, stop));
   CHECK(record.tasks.steps_done[0] == 0);
 }
@@ -83,7 +83,7 @@ TEST_CASE("a time limit and a stop are met while scene and systems are built") {
   TaskRecord record;
   record.prepare(plan.task(0), axis_sizes(plan));
   CHECK_FALSE(evaluate(plan.task(0), plan.spec(0), record, [] { return true; }));
-  CHECK(record.tasks.steps_done[0] == -1);  // not so far as to log anything
+  CHECK(record.tasks.steps_done[0] == -1);  // stopped too early for a log entry
 }
 
 TEST_CASE("with CG as the reference the counts are those beside the direct solve, which is not run") {
@@ -152,7 +152,7 @@ TEST_CASE("the other norm's counts are those of a job in that norm") {
   CHECK(in_natural.tasks.counted_other_norm.iterations == in_2_norm.tasks.counted.iterations);
   CHECK(in_2_norm.tasks.counted.iterations != in_natural.tasks.counted.iterations);
   const TaskRecord bare = evaluated(five_steps(guesses, R"({"preconditioner": "none", "max_iterations": 2000})"));
-  for (std::size_t t = 0; t < 2; ++t)  // without P the norms are one; later, rounding makes unpreconditioned CG erratic
+  for (std::size_t t = 0; t < 2; ++t)  // equal norms without P; later, rounding makes unpreconditioned CG erratic
     CHECK(bare.tasks.counted_other_norm.iterations[t] == bare.tasks.counted.iterations[t]);
 }
 
@@ -250,7 +250,7 @@ TEST_CASE("a guess that no solve can start from fails the task by its name, and 
   record.prepare(plan.task(0), axis_sizes(plan));
   Scene scene = build_scene(spec.scene);
   Rod& rod = scene.rods.front();
-  rod.position.back().x() = 1e150;  // a million times as much has a norm, but not in doubles
+  rod.position.back().x() = 1e150;  // the norm of a vector a million times as large overflows
   LinearSystem system(rod);
   system.assemble(rod, constraint_dt(scene, spec.time.step_s));
   MeasuredSolve solve(scene, spec, record);

@@ -1,4 +1,4 @@
-// One task evaluated: what its record says of guesses with a history, of solves that miss a tolerance, of the motion.
+// Records of one evaluated task: guesses with a history, solves that miss a tolerance, the motion.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -105,7 +105,7 @@ TEST_CASE("a recorded trajectory says how long, thick and free its segments are,
   job["record"] = {{"trajectory_every", 2}};
   const TaskRecord r = evaluated(job);
   std::vector<double> lengths(11, 0.2), radii(11, 0.05);  // a rod of 2 m, ten segments
-  lengths[0] = radii[0] = 0;                              // and its wall
+  lengths[0] = radii[0] = 0;                              // its wall
   REQUIRE(r.trajectories.segments.length_m.size() == lengths.size());
   for (std::size_t i = 0; i < lengths.size(); ++i)
     CHECK(r.trajectories.segments.length_m[i] == Approx(lengths[i]).margin(1e-15));
@@ -121,7 +121,7 @@ TEST_CASE("contacts and the deepest penetration are recorded where rods touch, a
   job["scene"] = Json::parse(R"({"type": "falling_rods", "rods": 1, "segments": 4, "length_m": 1, "height_m": 0.11,
                                  "radius_m": 0.05, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6,
                                  "torsion_modulus_pa": 1e6, "contact": {"grid": ["none", {}]}})");
-  job["time"]["steps"] = 10;  // 6 cm of air take 0.11 s
+  job["time"]["steps"] = 10;  // falling through 6 cm of air takes 0.11 s
   const TaskRecord none = evaluated(job, 0), touching = evaluated(job, 1);
   CHECK(none.steps.contacts == std::vector<std::int32_t>(10, -1));
   CHECK(std::isnan(none.steps.penetration.back()));

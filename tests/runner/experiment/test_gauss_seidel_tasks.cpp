@@ -1,4 +1,4 @@
-// Whole tasks that Gauss-Seidel advances: what their records hold, beside the direct solve's.
+// Whole tasks by Gauss-Seidel: their records, compared with those of the direct solve.
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// What goes wrong in a task is an outcome that is written; what goes wrong in writing is not.
+// An error in a task becomes an outcome in the file; an error while writing does not.
 #include <catch2/catch.hpp>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// What a guess is charged for, with one that takes its time.
+// The measured time of a guess, with a guess of known durations.
 #include <catch2/catch.hpp>
 #include <memory>
 
@@ -9,7 +9,7 @@
 namespace rodsweep {
 namespace test_timed_guess {
 
-/// Takes as long as it is told to.
+/// A guess that sleeps for given times.
 class Slow : public InitialGuess {
  public:
   Slow(int prepare_ms, int propose_ms, int accept_ms)

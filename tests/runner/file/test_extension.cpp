@@ -10,7 +10,7 @@ using Catch::Matchers::StartsWith;
 
 namespace test_extension {
 
-/// What is said against `job` as an extension of `before`, as far as the advice; "" if nothing is.
+/// The error message for `job` as an extension of `before`, up to its advice; "" if it is valid.
 std::string objection(const Json& job, const Json& before) {
   const std::string text = message_of<JobError>(
       [&] { check_extends(parse_job(job.dump(), "new.json"), parse_job(before.dump(), "old.h5")); });
@@ -99,7 +99,7 @@ TEST_CASE("a task is the same in another plan only where all that its results de
     CHECK(plan_of(with(pointer, value, full_job())).identity(0).trajectory != trajectory);
   }
   CHECK(plan_of(with("/record/trajectory_every", "1", full_job())).identity(0).record != small.identity(0).record);
-  // No simulation depends on how long it was allowed to take.
+  // A time limit does not change a simulation.
   CHECK(plan_of(with("/task_time_limit_s", "5", full_job())).identity(0).trajectory == trajectory);
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("what is taken over stands at its new rows, and a simulation that diff
   large["guesses"] = {"linear", "previous", "zero"};
   const Plan plan = plan_of(large);
   const Extension extension(folder / "old.h5", plan);
-  CHECK(extension.count(Extension::Use::complete) == 5);  // of two samples of three grid points, the last is not done
+  CHECK(extension.count(Extension::Use::complete) == 5);  // two samples of three grid points, the last one not done
   CHECK(extension.count(Extension::Use::copy) == 0);
   CHECK(extension.count(Extension::Use::run) == 4);
   CHECK(extension.source(4) == 3);
@@ -140,7 +140,7 @@ TEST_CASE("what is taken over stands at its new rows, and a simulation that diff
   CHECK(taken.trajectories.first_row[0] == written.trajectories.first_row[0] + task.rows[Rows::frame_segment].first -
                                                before.task(3).rows[Rows::frame_segment].first);
 
-  TaskRecord record = taken;  // as if simulated again, with other guesses
+  TaskRecord record = taken;  // as if simulated again with other guesses
   for (auto& iterations : record.solves.iterations) iterations = 7;
   CHECK(complete(task, record, taken) == "");
   CHECK(record.solves.iterations[0] == 7);

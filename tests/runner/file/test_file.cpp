@@ -31,7 +31,7 @@ bool holds(const std::filesystem::path& path, const std::string& dataset) {
   return hdf5::exists(hdf5::open_file(path, H5F_ACC_RDONLY).id(), dataset);
 }
 
-/// The rows of one task in a dataset; none where the file leaves it out.
+/// The rows of one task in a dataset; empty if the file does not have the dataset.
 template <class T>
 std::vector<T> task_rows(const hdf5::File& file, const Column& column, const Task& task, const AxisSizes& sizes) {
   if (!hdf5::exists(file.id(), column.path)) return {};
@@ -216,12 +216,12 @@ TEST_CASE("the predicted size of the file is within 5 % of its real size") {
     make_file(path, plan, 0);
     const auto real = static_cast<double>(std::filesystem::file_size(path));
     CHECK(static_cast<double>(file_bytes(plan)) == Approx(real).epsilon(0.05));
-    CHECK(static_cast<double>(file_bytes(plan)) >= real);  // or the free-space check would promise too much
+    CHECK(static_cast<double>(file_bytes(plan)) >= real);  // the free-space check must not underestimate
   }
 }
 
 TEST_CASE("a file of more bytes than any disk has is refused with the dataset and its sizes") {
-  Json job = small_job();  // 10^15 solves, and for each guess 8 counts of 2 bytes and 19 bytes more
+  Json job = small_job();  // 10^15 solves; per guess 8 counts of 2 bytes and 19 more bytes
   job["scene"] = Json::parse(
       R"({"type": "falling_rods", "rods": 1000, "segments": 500, "length_m": 1, "height_m": 0.3, "turn_deg": 70,
           "radius_m": {"uniform": [0.004, 0.005]}, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6,

@@ -90,7 +90,7 @@ TEST_CASE("a path that the system or MPI-IO cannot take is refused with the reas
   CHECK_THAT(resume_refusal(folder / std::string(231, 'a'), plan_of(full_job())), Contains("at most 230"));
   std::error_code error;
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec, error);
-  if (geteuid() != 0) {  // root may write everywhere
+  if (geteuid() != 0) {  // root can write anywhere
     const std::string text = creation_refusal(folder / "a.h5", plan_of(full_job()));
     CHECK(text == (folder / "a.h5").native() + " cannot be created: Permission denied");
   }

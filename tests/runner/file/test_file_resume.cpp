@@ -39,7 +39,7 @@ TEST_CASE("a resumed file knows what is done and is the same in the end as one w
     CHECK(file.run_index() == 1);
     CHECK(file.note() == "");
     file.write(plan.task(5), synthetic_record(plan, 5));
-  }  // without close(): as good
+  }  // without close()
   {
     ResultsFile file = resume(folder / "parts.h5", plan);
     CHECK(file.done() == std::vector<std::uint8_t>{1, 1, 0, 0, 0, 1});
@@ -177,7 +177,7 @@ TEST_CASE("status can be read while the sweep writes") {
   failed.timing.elapsed_s.assign(1, std::numeric_limits<double>::quiet_NaN());
   file.write(plan.task(4), failed);
   file.end_run("2025-01-02T03:04:05Z", 4);
-  CHECK(inspect(folder / "a.h5").done == 1);  // the first was brought to disk at once, the second waits for others
+  CHECK(inspect(folder / "a.h5").done == 1);  // the first task is written at once, the second waits for others
   file.commit();
   summary = inspect(folder / "a.h5");
   CHECK(summary.done == 2);

@@ -1,4 +1,4 @@
-// Packed copies: the same data in fewer bytes, verified, never half a file; and what must not be continued.
+// Packed copies: the same data in fewer bytes, verified, never partial; files that cannot be continued.
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -14,14 +14,14 @@ namespace test_pack {
 
 namespace fs = std::filesystem;
 
-/// Long enough that every group has datasets worth compressing.
+/// A job whose groups all have datasets worth compressing.
 Json roomy_job() {
   Json job = full_job();
   job["time"]["steps"] = 60;
   return job;
 }
 
-/// The values of every dataset of the plan's layout, and its unit.
+/// Values and unit of every dataset in the plan's layout.
 std::map<std::string, std::string> contents(const fs::path& path, const Plan& plan) {
   std::map<std::string, std::string> all;
   const hdf5::File file = hdf5::open_file(path, H5F_ACC_RDONLY);

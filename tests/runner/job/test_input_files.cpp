@@ -1,4 +1,4 @@
-// Files that a job names: found beside the job, refused with a reason, part of what a task is.
+// Files that a job names: paths relative to the job, refusals, effect on a task's identity.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Jobs with the baselines that need files: nearest neighbours as a guess, a network instead of the solve.
+// Jobs with baselines that need files: nearest neighbours as a guess, a network instead of the solve.
 #include <catch2/catch.hpp>
 
 #include "tests/runner/job_folder.hpp"

@@ -1,4 +1,4 @@
-// Jobs of kind "dataset": their keys, their plan, and where their systems stand in the file.
+// Jobs of kind "dataset": keys, plan, rows of their systems.
 #include <catch2/catch.hpp>
 
 #include "runner/file/record.hpp"

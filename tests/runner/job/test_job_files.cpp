@@ -11,7 +11,7 @@ TEST_CASE("every job file of the project is valid and named like its file") {
     if (entry.path().extension() != ".json" || entry.path().filename() == "schema.json") continue;
     ++files;
     INFO(entry.path());
-    const Job job = read_job(entry.path(), MissingFiles::accepted);  // a study may need the results of another
+    const Job job = read_job(entry.path(), MissingFiles::accepted);  // a study may need results of another study
     CHECK(job.name == entry.path().stem());
     if (!is_training(job)) CHECK(Plan(job).size() > 0);
   }

@@ -1,4 +1,4 @@
-// Jobs with Gauss-Seidel in the place of linear solves.
+// Jobs with Gauss-Seidel instead of linear solves.
 #include <catch2/catch.hpp>
 
 #include "tests/runner/refused_jobs.hpp"

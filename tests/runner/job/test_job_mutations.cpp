@@ -1,4 +1,4 @@
-// Every job of the project with something wrong in it: refused in plain words, or a job like any other.
+// Every shipped job after random changes is valid or is refused in plain words.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -26,7 +26,7 @@ TEST_CASE("what is wrong with a job is said in plain words with its file and key
   for (const fs::path& path : shipped_jobs()) {
     std::ifstream in(path);
     Json job = Json::parse(in);
-    job["samples"] = 2;  // or plans would take the time
+    job["samples"] = 2;  // keeps plans short
     for (int i = 0; i < 8; ++i) {
       const std::string text = mutated(job, random).dump();
       INFO(text);

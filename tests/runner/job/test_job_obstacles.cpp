@@ -1,4 +1,4 @@
-// Obstacles in jobs: what they become, how they are swept, and what is refused before anything runs.
+// Obstacles in jobs: scenes made from them, sweeps over them, refusals before the run.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -7,7 +7,7 @@
 namespace rodsweep {
 namespace test_job_obstacles {
 
-/// The small job with contact and these obstacles.
+/// The small job with contact and with these obstacles.
 Json job_with(const std::string& obstacles) {
   return with("/scene/obstacles", obstacles, with("/scene/contact", R"({"friction": 0.3})"));
 }

@@ -47,7 +47,7 @@ TEST_CASE("random numbers of neighbouring counters, seeds and streams are uncorr
 
 namespace test_job_parts {
 
-/// Calls check(key) for a key and all that is within it.
+/// Calls check(key) for a key and all keys within it.
 template <class Check>
 void for_every_key(const Key& key, const Check& check) {
   check(key);

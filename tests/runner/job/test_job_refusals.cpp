@@ -9,7 +9,7 @@ namespace test_job_refusals {
 
 Json guesses(const std::string& list) { return with("/guesses", list); }
 
-/// Zero and another guess.
+/// The guesses "zero" and `guess`.
 Json with_guess(const std::string& guess) { return guesses("[\"zero\", " + guess + "]"); }
 
 TEST_CASE("a value that its key does not take is refused with what is allowed") {

@@ -1,5 +1,5 @@
-// Rings, nets, lattices and physical stretch in jobs: what they become, and what is refused before anything runs. Their
-// defaults: jobs/schema.json.
+// Rings, nets, lattices and physical stretch in jobs: scenes made from them, refusals before the run. jobs/schema.json
+// has their defaults.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -11,7 +11,7 @@ using namespace rodsweep;
 
 namespace test_job_scenes {
 
-/// The small job with a scene of these keys, of one material.
+/// The small job with a scene of these keys and one material.
 Json job_with_scene(const std::string& keys) {
   return with("/scene",
               "{" + keys + R"(, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 5e5})");
@@ -27,7 +27,7 @@ Json lattice_job() {
   return job_with_scene(R"("type": "lattice", "nodes_x": 3, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05)");
 }
 
-/// What check_guesses() says of a job, "" if nothing.
+/// The error message of check_guesses() for a job; "" if there is none.
 std::string refusal_of_loops(const Json& job) {
   return message_of<JobError>([&] { check_guesses(plan_of(job)); });
 }
@@ -72,7 +72,7 @@ TEST_CASE("a lattice's keys become a lattice, whose joints the plan counts") {
   CHECK(plain.segments == 2);
   CHECK(plain.mesh_m == 0.5);
   CHECK(plan.task(0).segments == 27 * 5);
-  CHECK(plan.task(0).joints == 27 * 4 + 27 * 2 - 8 * 2);  // what is held at the corners is not joined
+  CHECK(plan.task(0).joints == 27 * 4 + 27 * 2 - 8 * 2);  // no joint connects segments held at the corners
 
   Json job = with("/scene/cell", R"({"grid": ["body_centred", "octet"]})", lattice_job());
   job["scene"].update({{"nodes_y", 2},
@@ -125,7 +125,7 @@ TEST_CASE("scenes whose values do not fit together are refused with what is wron
 }
 
 TEST_CASE("guesses that need rods without loops are refused before anything runs") {
-  const Json knn = {{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}};  // the data are not read yet
+  const Json knn = {{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}};  // the file is not read yet
   Json ring = ring_job(), rod = small_job();
   ring["guesses"].push_back(knn);
   rod["guesses"].push_back(knn);
@@ -194,7 +194,7 @@ TEST_CASE("a scene whose factor needs too much memory is refused before it runs,
   job["scene"]["contact"] = Json::object();
   CHECK_THAT(refusal_of_factors(job), Catch::Contains("scene.contact: task 0: ") && Catch::Contains("without contact"));
   CHECK_NOTHROW(check_factors(plan_of(job)));
-  // Chains and trees need in proportion to their size, and are not looked at.
+  // The memory of chains and trees grows linearly, so they are not checked.
   CHECK(refusal_of_factors(with("/scene/segments", "100000")) == "");
 }
 

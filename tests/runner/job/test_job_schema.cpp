@@ -1,5 +1,5 @@
-// The JSON Schema follows the table of keys. Whether it accepts and refuses what the reader does is checked with a real
-// validator, on the committed schema, in tests/command/test_schema.py.
+// The JSON Schema follows the table of keys. tests/command/test_schema.py checks the committed schema against the
+// reader with a real validator.
 #include <catch2/catch.hpp>
 
 #include "runner/job/guess_keys.hpp"

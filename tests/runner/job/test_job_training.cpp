@@ -1,4 +1,4 @@
-// Jobs of kind "train": their keys, what they mean, and what is refused.
+// Jobs of kind "train": keys, their meaning, refusals.
 #include <catch2/catch.hpp>
 
 #include "runner/job/training_job.hpp"
@@ -12,7 +12,7 @@ using Paths = std::vector<std::filesystem::path>;
 
 TrainingJob training_of(const Json& job) { return training_job(job_of(job)); }
 
-/// The training job with that value.
+/// The training job with the JSON text `value` at `pointer`.
 Json training_with(const std::string& pointer, const std::string& value) {
   Json job = train_job();
   job["network"] = Json::object();
@@ -167,8 +167,8 @@ TEST_CASE("the settings of every kind of network are the same after a round trip
                            R"({"encoding": "state", "processor": "message_passing", "base": "none", "moves": true})"}) {
     Json values =
         job_of(with("/training", R"({"loss": "mse"})", with("/network", text, train_job()))).values["network"];
-    if (values.value("couplings", "") == "tree") values.erase("couplings");    // written only where they are all
-    if (values.value("hidden_layers", 0) == 1) values.erase("hidden_layers");  // likewise
+    if (values.value("couplings", "") == "tree") values.erase("couplings");    // the default is not written
+    if (values.value("hidden_layers", 0) == 1) values.erase("hidden_layers");  // nor this one
     const Json written = network_json(network_settings(values));
     CHECK(network_json(network_settings(written)) == written);
     CHECK(written.size() == values.size());

@@ -1,4 +1,4 @@
-// Trees, skeletons from files and wind in jobs: what they become, and what is refused before anything runs.
+// Trees, skeletons from files and wind in jobs: scenes made from them, refusals before the run.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -159,7 +159,7 @@ TEST_CASE("a skeleton that is none is refused with file, line, value and bound")
 
 TEST_CASE("nearest neighbours are refused on a tree, but not on a trunk") {
   const auto refusal_of_neighbours = [](Json job) {
-    job["guesses"].push_back({{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}});  // the data are not read yet
+    job["guesses"].push_back({{"knn", {{"data", RODSWEEP_JOBS "/ring.json"}}}});  // the file is not read yet
     return message_of<JobError>([&] { check_guesses(plan_of(job)); });
   };
   check_refused({{tree_job(), "guesses[2]: \"knn\" ", "rods with branches", "27 segments of task 0"}},

@@ -72,7 +72,7 @@ TEST_CASE("draws depend on seed, sample and key path alone") {
   const auto lengths = numbers(plan_of(job), "scene.length_m");
   CHECK(numbers(plan_of(job), "scene.length_m") == lengths);
 
-  Json more = job;  // other random values, other grids and more samples leave them as they are
+  Json more = job;  // new random values, grids and samples do not change existing values
   more["samples"] = 6;
   more["scene"]["radius_m"] = uniform(0.01, 0.02);
   more["time"]["step_s"] = grid({0.01, 0.02});
@@ -106,7 +106,7 @@ TEST_CASE("draws fill their range evenly and never leave it") {
   CHECK(*std::max_element(lengths.begin(), lengths.end()) <= 5);
   CHECK(*std::min_element(moduli.begin(), moduli.end()) >= 1e4);
   CHECK(*std::max_element(moduli.begin(), moduli.end()) <= 1e6);
-  for (int k = 0; k < 4; ++k) {  // 1000 expected in each, standard deviation 27
+  for (int k = 0; k < 4; ++k) {  // expected: 1000 in each, standard deviation 27
     CHECK(std::abs(quarter(lengths, 1 + k, 2 + k) - 1000) < 120);
     CHECK(std::abs(quarter(moduli, std::pow(10, 4 + 0.5 * k), std::pow(10, 4.5 + 0.5 * k)) - 1000) < 120);
     CHECK(std::abs(std::count(segments.begin(), segments.end(), 3 + k) - 1000) < 120);
@@ -286,7 +286,7 @@ TEST_CASE("a whole guess is swept, and columns say which one each task had, with
   CHECK(thresholds[2] == 1);
   CHECK(thresholds[3] == 2);
   CHECK(texts(plan, "guesses[2].guarded.guess") == std::vector<std::string>{"", "", "linear", "linear"});
-  CHECK_FALSE(has_column(plan, "guesses[1].oracle.error"));  // 0.7 in all tasks: in its label
+  CHECK_FALSE(has_column(plan, "guesses[1].oracle.error"));  // 0.7 in all tasks, so it is in the label
 }
 
 TEST_CASE("rows of the file follow one another without gaps") {
@@ -303,7 +303,7 @@ TEST_CASE("rows of the file follow one another without gaps") {
     CHECK(task.rows[Rows::segment].first == segments);
     CHECK(task.rows[Rows::segment].count == task.segments);
     CHECK(task.rows[Rows::solve].count == 3 * task.steps);
-    CHECK(task.frames == (task.steps == 10 ? 2 : 3));  // the initial state too
+    CHECK(task.frames == (task.steps == 10 ? 2 : 3));  // includes the initial state
     CHECK(task.cost == static_cast<double>(task.segments * task.rows[Rows::solve].count));
     steps += task.steps;
     solves += task.rows[Rows::solve].count;
@@ -326,7 +326,7 @@ TEST_CASE("rows of the file follow one another without gaps") {
 }
 
 TEST_CASE("rows are counted with the last task's, and with those of a task that overflow") {
-  Json job = small_job();  // 1000 rods x 10^7 steps x 1000 iterations: 10^13 rows of solves in a task
+  Json job = small_job();  // 1000 rods x 10^7 steps x 1000 iterations: 10^13 rows of solves per task
   job["scene"] = Json::parse(
       R"({"type": "falling_rods", "rods": 1000, "segments": 500, "length_m": 1, "height_m": 0.3, "turn_deg": 70,
           "radius_m": {"uniform": [0.004, 0.005]}, "density_kg_m3": 1000, "youngs_modulus_pa": 1e6,

@@ -1,4 +1,4 @@
-// Values that look like another unit are warned of, and no job of the project has one.
+// Values that seem to be in another unit cause a warning; the shipped jobs have none.
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -10,7 +10,7 @@ namespace test_plausible {
 
 using Texts = std::vector<std::string>;
 
-/// What its only warning says, by the parts that a reader needs.
+/// The job has one warning with these parts.
 void check_warning(const Json& job, const Texts& parts) {
   const Texts warnings = job_of(job).warnings;
   REQUIRE(warnings.size() == 1);

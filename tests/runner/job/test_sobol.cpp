@@ -17,7 +17,7 @@ std::vector<double> drawn(const Plan& plan, const std::string& path) {
   return {};
 }
 
-/// Two random keys, of [0, 1] each.
+/// Two random keys in [0, 1].
 Json job_with(const char* sampling, int samples, int seed = 0) {
   Json job = with("/sampling", fmt::format("\"{}\"", sampling));
   job["scene"]["initial_angle_deg"] = uniform(0, 1);
@@ -28,7 +28,7 @@ Json job_with(const char* sampling, int samples, int seed = 0) {
 }
 
 TEST_CASE("without a shift the points are Sobol's, with the direction numbers of Joe and Kuo") {
-  // new-joe-kuo-6.21201, points 0 to 7 of the first four dimensions
+  // new-joe-kuo-6.21201, points 0 to 7, first four dimensions.
   const double known[8][4] = {{0, 0, 0, 0},
                               {0.5, 0.5, 0.5, 0.5},
                               {0.75, 0.25, 0.25, 0.25},

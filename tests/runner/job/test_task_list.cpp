@@ -1,4 +1,4 @@
-// Tasks in a few bytes each are the tasks that were put in, and their rows follow each other.
+// A compact task list returns the tasks that were added, with consecutive rows.
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <tuple>
@@ -10,7 +10,7 @@ using namespace rodsweep;
 
 namespace test_task_list {
 
-/// Of a few shapes, in no order; what a list gives for them is `index` and the first rows.
+/// Tasks of a few shapes in no order, with the `index` and the first rows that a list assigns.
 std::vector<Task> some_tasks(int count) {
   std::vector<Task> tasks;
   PerRows<std::int64_t> first{};

@@ -1,4 +1,4 @@
-// Progress, summaries and the words they are put in.
+// Progress, summaries and their words.
 #include <catch2/catch.hpp>
 #include <csignal>
 
@@ -28,7 +28,7 @@ TEST_CASE("the time left is weighted by the cost of tasks") {
   Console silent(false);
   Progress progress(silent, {3, 0, 0, 100, 2}, start);
   CHECK_FALSE(progress.seconds_left(start + seconds(1)));
-  progress.finished(TaskOutcome::ok, 80, 160);  // 2 s a unit: 200 s of work, 100 s for two workers
+  progress.finished(TaskOutcome::ok, 80, 160);  // 2 s per unit: 200 s of work, 100 s for two workers
   CHECK(progress.seconds_left(start + seconds(90)).value() == Approx(10));
   CHECK_FALSE(progress.seconds_left(start + seconds(101)));
 }

@@ -1,4 +1,4 @@
-// Model files: what is read is what was written, and what is no model is refused.
+// Model files: what is written is read back; other files are refused.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,12 +41,12 @@ ModelCard some_card() {
   card.ratio_simulations = 50;
   card.scenes = {{"helix", {0.1, 0.3, 0.5, 0.7}, {0.2, 0.4, 0.6, 0.8}}, {"knot", {0, 0, 0, 1}, {1, 1, 1, 1}}};
   card.runs = {{test_provenance(), "2025-11-21T16:05:09Z", 4}, {test_provenance(), "", -1}};
-  for (TrainingRunRow& run : card.runs) run.provenance.begin_utc = "2026-01-02T03:04:05Z";  // not now
+  for (TrainingRunRow& run : card.runs) run.provenance.begin_utc = "2026-01-02T03:04:05Z";  // a fixed time
   card.runs[1].provenance.oversubscribed = true;
   return card;
 }
 
-/// A model all of whose numbers differ.
+/// A model whose numbers all differ.
 std::shared_ptr<Model> some_model(const CopingNetSettings& settings, unsigned seed = 1) {
   const std::shared_ptr<Model> model = test::random_model(settings, seed);
   const auto vary = [&](Normalisation& scale) {
@@ -180,14 +180,14 @@ TEST_CASE("an earlier state of the file is replaced, another file never") {
              EndsWith("was replaced by another program and is not overwritten"));
   CHECK_THAT(message_of<FileError>([&] { save(folder / "model.h5", *other); }), Contains("exists already"));
   CHECK(model_hash(*read_model(folder / "model.h5").model) == model_hash(*model));
-  CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // nothing unfinished is left
+  CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // no temporary file remains
 }
 
 std::string refusal_of(const fs::path& path) {
   return message_of<FileError>([&] { read_model(path); });
 }
 
-/// A file of a small model, changed by `change`.
+/// The error message for the file of a small model after `change`.
 template <class Change>
 std::string refusal_after(Change&& change) {
   const TemporaryFolder folder;

@@ -1,5 +1,5 @@
-// Trainings in one process: what they keep, when they end, and that an interruption leaves no trace. Several ranks are
-// the matter of tests/mpi/test_training.py.
+// Training in one process: its results, its end, and bits that an interruption does not change. For several ranks see
+// tests/mpi/test_training.py.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -69,7 +69,7 @@ TEST_CASE("a model of several kinds of scene is judged on each, one of a single 
   REQUIRE(card.scenes.size() == 2);
   CHECK(card.scenes[0].scene == "bending_rod");
   CHECK(card.scenes[1].scene == "tree");
-  for (std::size_t t = 0; t < card.cg_ratio.size(); ++t) {  // two simulations of each
+  for (std::size_t t = 0; t < card.cg_ratio.size(); ++t) {  // two simulations of each scene
     CHECK(card.cg_ratio[t] == Approx((card.scenes[0].cg_ratio[t] + card.scenes[1].cg_ratio[t]) / 2));
     CHECK(card.base_cg_ratio[t] == Approx((card.scenes[0].base_cg_ratio[t] + card.scenes[1].base_cg_ratio[t]) / 2));
   }
@@ -100,7 +100,7 @@ TEST_CASE("several data sets are learned from one after the other, and judged by
   CHECK(judged[0].systems[3].solution == toy.simulations[0].systems[3].solution);
   CHECK(judged[2].systems[3].solution == toy.simulations[1].systems[3].solution);
   REQUIRE(both.training.size() > toy.data.training.size());
-  for (std::size_t i = 0; i < toy.data.training.size(); i += 5)  // made by two threads, in order
+  for (std::size_t i = 0; i < toy.data.training.size(); i += 5)  // two threads make them, in the same order
     CHECK(both.training[i].system.residual == toy.data.training[i].system.residual);
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("data that are missing or too few are refused with what to do") {
 TEST_CASE("losses fall, the model kept is that of the least validation loss") {
   Json job = toy_train_job();
   job["training"]["epochs"] = 30;
-  job["training"]["rate"] = 0.05;  // rough, so that the last epoch need not be the best
+  job["training"]["rate"] = 0.05;  // large, so that the last epoch need not be the best
   const Toy toy(job);
   Training training = toy.run();
   CHECK(training.card().ending == Ending::complete);
@@ -156,7 +156,7 @@ TEST_CASE("CG ratios are measured in the epochs that the job asks for, and of th
   training.end();
   REQUIRE(training.card().best_epoch == 4);
   CHECK(training.card().cg_ratio == training.card().epochs.back().cg_ratio);
-  for (const double ratio : training.card().base_cg_ratio) CHECK(ratio == 1);  // its base is no guess
+  for (const double ratio : training.card().base_cg_ratio) CHECK(ratio == 1);  // the base guess is zero
 }
 
 TEST_CASE("a training that was interrupted anywhere ends with the same bits") {
@@ -188,7 +188,7 @@ TEST_CASE("a rank that wants to stop is heard, and its step counts") {
 
 TEST_CASE("without a better validation loss the training ends when its patience does") {
   Json job = toy_train_job();
-  job["training"]["rate"] = 1e-30;  // nothing changes
+  job["training"]["rate"] = 1e-30;  // weights stay constant
   job["training"]["epochs"] = 50;
   job["training"]["patience_epochs"] = 3;
   const Toy toy(job);

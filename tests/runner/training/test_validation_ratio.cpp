@@ -1,4 +1,4 @@
-// CG ratios on recorded simulations are those that a sweep measures.
+// CG ratios on recorded simulations equal those of a sweep.
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// A batch of equal chains steps as each of them would alone.
+// A batch of equal chains takes the same steps as each chain alone.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -41,7 +41,7 @@ Scene helix_scene(int segments, int variant) {
   return build_scene(helix);
 }
 
-// One for each lane.
+// One scene per lane.
 std::vector<Scene> bending_scenes(int segments) {
   std::vector<Scene> scenes;
   for (int r = 0; r < lanes; ++r) scenes.push_back(bending_scene(segments, r));
@@ -53,7 +53,7 @@ std::vector<Scene> helix_scenes(int segments) {
   return scenes;
 }
 
-/// The largest distance of positions [m], and of orientations as quaternions up to sign.
+/// The largest difference of positions [m], and of orientations as quaternions up to sign.
 double distance(const Rod& a, const Rod& b) {
   double out = 0;
   for (std::size_t s = 0; s < a.position.size(); ++s) {
@@ -63,8 +63,8 @@ double distance(const Rod& a, const Rod& b) {
   return out;
 }
 
-/// The largest difference of velocities [1/s]. An angular one is 2/dt tan(half the angle of a step), which answers a
-/// change of that angle by 1 + tan^2 as much: of a segment that turned half round within the step, nothing is known.
+/// The largest difference of velocities [1/s]. An angular velocity is 2/dt tan(half the step's angle), whose slope in
+/// the angle is 1 + tan^2; its difference is divided by that. After a half turn it tells nothing.
 double velocity_distance(const Rod& a, const Rod& b, double dt) {
   double out = 0;
   for (std::size_t s = 0; s < a.position.size(); ++s) {
@@ -83,7 +83,7 @@ bool same_bits(const Rod& a, const Rod& b) {
          same(a.angular_velocity, b.angular_velocity) && same(a.lambda, b.lambda);
 }
 
-/// Steps the scenes together and alone; checks all reports, then states and times.
+/// Steps the scenes in a batch and alone; compares reports, states and times.
 void check_equal(std::vector<Scene> scenes, int steps, double bound, const StepSettings& s = settings,
                  std::optional<double> momentum_tolerance = {}) {
   std::vector<std::unique_ptr<Simulation>> alone;
@@ -165,11 +165,11 @@ TEST_CASE("any arms, rest rotations, compliances and held segments") {
   std::vector<Scene> scenes;
   for (unsigned r = 0; r < static_cast<unsigned>(lanes); ++r)
     scenes.push_back(test::scene_of(test::random_rod(test::chain(7), held, 10 + r)));
-  check_equal(scenes, 1, 1e-9, {1e-3, 3, 1e-9});  // metres of gap to close
+  check_equal(scenes, 1, 1e-9, {1e-3, 3, 1e-9});  // gaps of metres to close
 }
 
 TEST_CASE("a rod that has converged waits, unchanged, for those that have not") {
-  // So coarse a tolerance that another iteration would show.
+  // A tolerance so coarse that one iteration too many would change the result.
   const StepSettings coarse{0.02, 6, 1e-3};
   std::vector<Scene> scenes = bending_scenes(10);
   scenes.back().gravity_m_s2.setZero();

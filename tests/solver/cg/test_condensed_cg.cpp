@@ -1,4 +1,4 @@
-// CG on condensed systems: the solution and the accuracy of CG on all joints, in fewer iterations.
+// CG on condensed systems: same solution and accuracy as CG on all joints, fewer iterations.
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -14,7 +14,7 @@ Case lattice(int nodes, double modulus, Lattice::Cell cell = Lattice::Cell::cubi
   p.radius_m = 0.01;
   p.youngs_modulus_pa = modulus;
   p.torsion_modulus_pa = 0.4 * modulus;
-  Rod rod = build_scene(p).rods.front();  // about to fall
+  Rod rod = build_scene(p).rods.front();  // at rest, before it falls
   test::Random random(1);
   for (int s = 0; s < rod.segment_count(); ++s)
     if (!rod.segments[s].is_static) rod.position[s] += Vector3(0, -0.004, 0) + random.vector(1e-4);

@@ -1,4 +1,4 @@
-// KSPCG as instrumented here: solutions, preconditioners, histories and iteration counts.
+// CG by PETSc's KSPCG: solutions, preconditioners, histories and iteration counts.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -53,7 +53,7 @@ TEST_CASE("complete Cholesky is exact on a net, where incomplete is not, but the
 }
 
 TEST_CASE("Jacobi preconditioners divide by the diagonal and by its 6x6 blocks") {
-  // From zero, the first iterate is along P^-1 b.
+  // From zero, the first iterate is a multiple of P^-1 b.
   const Case c = moving_chain();
   const MatrixX a = c.a().dense();
   MatrixX blocks = MatrixX::Zero(a.rows(), a.cols());
@@ -86,7 +86,7 @@ TEST_CASE("the history starts at the norm of b, ends at the test, and has an ent
       CHECK(solved.history.back() <= 1e-6 * reference);
       for (std::size_t i = 0; i + 1 < solved.history.size(); ++i) CHECK(solved.history[i] > 1e-6 * reference);
     }
-  CHECK(b == c.b());  // not written to
+  CHECK(b == c.b());  // not modified
   ConjugateGradient cg(c.a(), {});
   CHECK(cg.norm_of(b) == b.norm());
   const CgReport report = run(cg, b, 1e-4).report;
@@ -102,7 +102,7 @@ TEST_CASE("the iteration limit is an outcome, and the recorded norm of its itera
     CHECK(stopped.report.iterations == iterations);
     CHECK(static_cast<int>(stopped.history.size()) == iterations + 1);
     CHECK(stopped.history.back() == Approx(residual).epsilon(1e-9));
-    // the natural norm, of the same iterate
+    // The natural norm of the same iterate.
     const Run natural = run(c.a(), {Preconditioner::jacobi, Norm::natural, iterations}, c.b(), 0);
     const VectorX r = c.b() - c.a().dense() * natural.x;
     CHECK(natural.history.back() ==

@@ -1,4 +1,4 @@
-// Every way for a CG solve to end other than well, and what a solver keeps from one solve to the next.
+// Every failure of a CG solve, and the state that a solver keeps between solves.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <type_traits>
@@ -16,7 +16,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 TEST_CASE("a guess whose residual is known saves the product, and is solved from in as many iterations") {
   const Case c = moving_chain();
   const VectorX guess = 0.9 * c.exact;
-  VectorX residual(guess.size());  // by the product that CG takes: the fiftieth iteration of plain CG feels rounding
+  VectorX residual(guess.size());  // same product as CG's: rounding changes the fiftieth iteration of plain CG
   c.a().multiply(guess.data(), residual.data());
   residual = c.b() - residual;
   for (const Preconditioner p : preconditioners)
@@ -95,7 +95,7 @@ TEST_CASE("without a guess, what x held does not matter") {
 TEST_CASE("a guess whose residual is not finite is an outcome, without a history that could be read") {
   const Case c = moving_chain();
   for (const double entry :
-       {nan, std::numeric_limits<double>::infinity(), 1e200})  // the last one's square is not finite
+       {nan, std::numeric_limits<double>::infinity(), 1e200})  // the square of the last value overflows
     for (const Preconditioner p : preconditioners)
       for (const Norm norm : norms) {
         INFO(name(p) << ", " << entry);
@@ -117,7 +117,7 @@ TEST_CASE("an indefinite matrix is called indefinite, unless the preconditioner 
       for (const Norm norm : norms) {
         const Run ended = run(bad, {p, norm, 0}, c.b(), 1e-8);
         INFO(name(p) << ", block " << row << ": " << to_string(ended.report.outcome));
-        if (p == Preconditioner::icc)  // PETSc's LDL^T does not look at D's sign
+        if (p == Preconditioner::icc)  // PETSc's LDL^T ignores the sign of D
           CHECK((c.b() - bad.dense() * ended.x).norm() < 1e-7 * c.b().norm());
         else
           CHECK(ended.report.outcome == SolveOutcome::indefinite);
@@ -162,8 +162,8 @@ TEST_CASE("a solver that failed solves the next system as if new") {
 }
 
 TEST_CASE("after matrix_changed() the preconditioner is that of the new matrix") {
-  // The same rod in two poses, the second one crumpled, since joints that turn little change the diagonal little. An
-  // old preconditioner still converges, only later: that is what to look for.
+  // Two poses of one rod. The second is crumpled, since small turns of joints hardly change the diagonal. An old
+  // preconditioner still converges, but needs more iterations.
   const Case first = moving_chain();
   Rod bent = first.rod;
   for (int s = 1; s < bent.segment_count(); ++s)
@@ -182,7 +182,7 @@ TEST_CASE("after matrix_changed() the preconditioner is that of the new matrix")
     const Run fresh = run(second.a(), settings, second.b(), 1e-8), now = run(told, second.b(), 1e-8);
     CHECK(now.report.iterations == fresh.report.iterations);
     CHECK(now.x == fresh.x);
-    // Jacobi's is the mildest: a sixth more.
+    // Jacobi needs the fewest more: a sixth.
     CHECK(run(forgot, second.b(), 1e-8).report.iterations > 1.1 * fresh.report.iterations);
     if (p == Preconditioner::cholesky || p == Preconditioner::icc) CHECK(now.report.iterations == 1);
   }
@@ -217,7 +217,7 @@ TEST_CASE("solvers move, and leave a source that can be destroyed or given a new
   second = ConjugateGradient(c.a(), {Preconditioner::cholesky, Norm::true_residual, 0});
   CHECK(run(second, c.b(), 1e-8).report.iterations == 1);
   std::vector<ConjugateGradient> many;
-  for (int i = 0; i < 5; ++i) many.emplace_back(c.a(), CgSettings{});  // reallocation moves them
+  for (int i = 0; i < 5; ++i) many.emplace_back(c.a(), CgSettings{});  // growing the vector moves them
   for (ConjugateGradient& cg : many) CHECK(run(cg, c.b(), 1e-8).x == expected);
 }
 

@@ -1,4 +1,4 @@
-// Pairs of boxes against brute force, what is kept between steps, and which segments of a rod can touch.
+// Pairs of boxes against brute force, pairs kept between steps, and segments of a rod that can touch.
 #include <catch2/catch.hpp>
 #include <optional>
 #include <set>
@@ -26,7 +26,7 @@ std::set<std::pair<int, int>> set_of(const std::vector<Pair>& pairs) {
   return out;
 }
 
-/// Of all pairs but those of two odd numbers.
+/// True for all pairs except two odd numbers.
 bool matters(int a, int b) { return a % 2 == 0 || b % 2 == 0; }
 std::set<std::pair<int, int>> searched(const std::vector<Box>& boxes, double margin) {
   std::set<std::pair<int, int>> out;
@@ -68,7 +68,7 @@ TEST_CASE("pairs are searched anew only when a box has left its margin, and none
   CHECK(broad_phase.searches() == 2);
 }
 
-/// How many segments from segment 0 the first is that can touch it, of a straight rod of such segments.
+/// The first segment of a straight rod that can touch segment 0.
 int first_that_matters(double segment_length_m, double radius_m) {
   BendingRod p;
   p.segments = 40;
@@ -81,10 +81,10 @@ int first_that_matters(double segment_length_m, double radius_m) {
 }
 
 TEST_CASE("segments less than pi radii apart along their rod never touch") {
-  CHECK(first_that_matters(1, 0.1) == 2);      // only joint neighbours are excluded
+  CHECK(first_that_matters(1, 0.1) == 2);      // excludes joint neighbours only
   CHECK(first_that_matters(1, 0.31) == 2);     // one segment between: 1 > 0.97
   CHECK(first_that_matters(1, 0.33) == 3);     // 1 < 1.04
-  CHECK(first_that_matters(0.05, 0.05) == 5);  // three between: 3 < pi, but not four
+  CHECK(first_that_matters(0.05, 0.05) == 5);  // three between: 3 < pi, four: 4 > pi
 }
 
 TEST_CASE("static pairs and segments without radius never touch; branches that leave one point do not either") {
@@ -107,13 +107,13 @@ TEST_CASE("static pairs and segments without radius never touch; branches that l
   CHECK_FALSE(ContactBodies(fork).matter(1, 2));
   joints[1].arm_a_m = {0, 0, 0.3};
   fork.rods = {Rod(segments, joints)};
-  CHECK_FALSE(ContactBodies(fork).matter(1, 2));  // inside each other
+  CHECK_FALSE(ContactBodies(fork).matter(1, 2));  // they start inside each other
   joints[1].rest = Quaternion(Eigen::AngleAxisd(pi / 2, Vector3::UnitX()));
   fork.rods = {Rod(segments, joints)};
   CHECK(ContactBodies(fork).matter(1, 2));
 }
 
-/// Pairs that are to be kept apart although they overlap.
+/// Number of pairs that can touch and that overlap.
 int overlapping_pairs(const Scene& scene) {
   const ContactBodies bodies(scene);
   std::vector<CapsuleAxis> axes;

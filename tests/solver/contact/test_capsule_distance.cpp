@@ -1,4 +1,4 @@
-// Closest points of axes against brute force, and first touches against closed forms.
+// Closest points of axes against brute force, first contacts against closed forms.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace rodsweep::test_capsule_distance {
 
-/// The least distance over a fine grid of one axis, exact along the other.
+/// The smallest distance over a fine grid on one axis, exact along the other.
 double searched_distance(const CapsuleAxis& a, const CapsuleAxis& b) {
   double least = HUGE_VAL;
   for (int i = -4000; i <= 4000; ++i) {
@@ -26,8 +26,8 @@ void check_closest(const CapsuleAxis& a, const CapsuleAxis& b) {
   const AxisPoints at = closest_points(a, b);
   CHECK(std::max(std::abs(at.s), std::abs(at.t)) <= 1);
   const double found = (a.at(at.s) - b.at(at.t)).norm(), searched = searched_distance(a, b);
-  CHECK(found <= searched + 1e-6);  // of axes that are parallel but for that
-  CHECK(found >= searched - 5e-4);  // as fine as the grid is
+  CHECK(found <= searched + 1e-6);  // nearly parallel axes differ by 1e-7
+  CHECK(found >= searched - 5e-4);  // resolution of the grid
   CHECK(separation(b, a).norm() == Approx(found).margin(1e-12));
 }
 
@@ -39,9 +39,9 @@ TEST_CASE("closest points of axes are as near as any, however they lie") {
     check_closest(a, {a.centre + random.vector(1), random.uniform(-2, 2) * a.half});          // parallel
     check_closest(a, {a.centre + random.vector(1), a.half + 1e-7 * random.vector(1)});        // nearly
     check_closest(a, {a.centre + random.uniform(-3, 3) * a.half, a.half});                    // in one line
-    check_closest(a, {random.vector(1), Vector3::Zero()});                                    // a point
+    check_closest(a, {random.vector(1), Vector3::Zero()});                                    // axis and point
     check_closest({random.vector(1), Vector3::Zero()}, {random.vector(1), Vector3::Zero()});  // two points
-    check_closest(a, {a.at(random.uniform(-1, 1)), random.vector(1)});                        // they meet
+    check_closest(a, {a.at(random.uniform(-1, 1)), random.vector(1)});                        // intersecting
   }
 }
 
@@ -69,7 +69,7 @@ TEST_CASE("axes that fly at each other first touch when they have come as near a
   CHECK(*touch == Approx((3 - 0.6) / 6).epsilon(1e-3));
   CHECK(separation(a, between(from, to, *touch)).norm() == Approx(0.6).epsilon(2e-3));
   CHECK_FALSE(first_touch(a, a, from, {{0, 1, 0}, {0, 0, 1}}, 0.6));
-  CHECK_FALSE(first_touch(a, a, {{3, 3, 0}, {0, 0, 1}}, {{3, -3, 0}, {0, 0, 1}}, 0.6));  // past its end
+  CHECK_FALSE(first_touch(a, a, {{3, 3, 0}, {0, 0, 1}}, {{3, -3, 0}, {0, 0, 1}}, 0.6));  // past the end of the axis
   CHECK(*first_touch(a, a, {{0, 0.1, 0}, {0, 0, 1}}, to, 0.6) == 0);
 }
 

@@ -1,4 +1,4 @@
-// Collisions: impulses of rigid bodies, momentum, energy, and that nothing passes through anything.
+// Collisions: impulses of rigid bodies, momentum, energy, no tunnelling.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -14,7 +14,7 @@ using test::Touching;
 
 constexpr double r = 0.05;  // of RodParameters
 
-/// For closed forms.
+/// A tolerance for closed forms.
 Scene exact(Scene scene) {
   scene.contact->tolerance = 1e-9;
   return scene;
@@ -36,7 +36,7 @@ TEST_CASE("two rods that meet head-on go on together, with their common momentum
   CHECK(test::nearest(t.scene) == Approx(1).epsilon(1e-6));
 }
 
-/// One step of a capsule along y, which meets one along z at a distance `arm` from its centre while they touch.
+/// One step of a capsule along y that hits a capsule along z at a distance `arm` from its centre.
 Scene after_impact(double arm, double dt) {
   Touching t(exact(contact_scene({capsule({0, -0.5, arm}, {0, 0.5, arm}, {1, 0, 0}),
                                   capsule({2 * r, 0, -1}, {2 * r, 0, 1}, {0, 0, 0})})),
@@ -77,7 +77,7 @@ TEST_CASE("an impact keeps angular momentum to first order in the step, with fri
   CHECK(lost(5e-4) < 0.6 * lost(1e-3));
 }
 
-/// Capsules in a box of 1 m, all on their way to its middle.
+/// Capsules in a box of 1 m, all moving towards its middle.
 Scene swarm(unsigned seed, double friction) {
   test::Random random(seed);
   std::vector<Rod> rods;
@@ -101,7 +101,7 @@ TEST_CASE("collisions never give kinetic energy, and keep linear momentum to rou
         const StepReport report = t.step();
         CHECK(report.penetration < 0.01);
         const double now = test::kinetic_energy(t.scene);
-        CHECK(now < energy + 1e-3 * start);  // one step integrates rotation to first order
+        CHECK(now < energy + 1e-3 * start);  // the step integrates rotation to first order
         energy = now;
       }
       CHECK(energy < 0.5 * start);
@@ -123,7 +123,7 @@ TEST_CASE("rods that collide keep linear momentum, stay whole and give no energy
   const Vector3 momentum = test::linear_momentum(t.scene), angular = test::angular_momentum(t.scene);
   const double start = test::kinetic_energy(t.scene);
   CHECK(t.run(150) < 0.01);
-  const double size = start / 2;  // of momenta: the rods move at 2.8 m/s, less than a metre from the middle
+  const double size = start / 2;  // scale of momenta: the rods move at 2.8 m/s, less than a metre from the middle
   CHECK((test::linear_momentum(t.scene) - momentum).norm() < 1e-10 * size);
   CHECK((test::angular_momentum(t.scene) - angular).norm() < 0.02 * size);
   double energy = test::kinetic_energy(t.scene);
@@ -134,7 +134,7 @@ TEST_CASE("rods that collide keep linear momentum, stay whole and give no energy
   CHECK(energy < 0.5 * start);
 }
 
-/// A rod shot at another one, `radii` per step, at an angle between them; whether it ended before it.
+/// Shoots a rod at another one, `radii` per step, at an angle between them; true if it hits and does not pass.
 bool stays_before(double angle_deg, double radii, double offset, int segments) {
   const double dt = 0.01, angle = angle_deg * pi / 180;
   const Vector3 along(0, std::sin(angle), std::cos(angle));
@@ -145,7 +145,7 @@ bool stays_before(double angle_deg, double radii, double offset, int segments) {
                                   segments, p);
   for (Vector3& v : bullet.velocity) v = {radii * r / dt, 0, 0};
   Touching t(contact_scene({bullet, target}, 0.2), dt);
-  const auto crossed = [&t] {  // the sides of two long rods that cross near their middles
+  const auto crossed = [&t] {  // two long rods that cross near their middles have changed sides
     for (std::size_t a = 0; a < t.scene.rods[0].segments.size(); ++a)
       for (std::size_t b = 0; b < t.scene.rods[1].segments.size(); ++b) {
         const Rod &one = t.scene.rods[0], &other = t.scene.rods[1];
@@ -157,18 +157,18 @@ bool stays_before(double angle_deg, double radii, double offset, int segments) {
     return false;
   };
   const int flight = static_cast<int>(std::ceil(5.3 / radii));
-  for (int i = 0; i < flight + 3; ++i) {  // later they may well turn about each other
+  for (int i = 0; i < flight + 3; ++i) {  // few steps more: later they may turn about each other
     t.step();
     if (crossed()) return false;
   }
-  return linear_momentum(t.scene.rods[1]).x() > 0;  // it did hit
+  return linear_momentum(t.scene.rods[1]).x() > 0;  // the target was hit
 }
 
 TEST_CASE("a rod shot at another at one radius per step, and faster, never passes through") {
   for (const int segments : {1, 8, 20})
     for (const double angle : {0.0, 1.0, 10.0, 30.0, 45.0, 90.0})
       for (const double radii : {1.0, 1.7, 9.0}) {
-        if (segments > 1 && radii > 2) continue;  // soft rods are torn up by such impacts
+        if (segments > 1 && radii > 2) continue;  // such impacts tear soft rods
         INFO(segments << " segments at " << angle << " degrees, " << radii << " radii per step");
         CHECK(stays_before(angle, radii, 0.06, segments));
       }
@@ -186,7 +186,7 @@ TEST_CASE("a rod that folds comes to lie on itself") {
     t.step();
     nearest = std::min(nearest, test::nearest(t.scene));
   }
-  CHECK(nearest < 1.001);  // it did touch itself
+  CHECK(nearest < 1.001);  // it touched itself
   CHECK(nearest > 0.99);
 }
 

@@ -12,7 +12,7 @@ using test::Touching;
 
 constexpr double r = 0.05, g = 9.81, dt = 0.005;
 
-/// A capsule on the plane y = 0 that is tilted down towards +x, after 40 steps from rest.
+/// A capsule 40 steps after rest, on the plane y = 0 with gravity tilted towards +x.
 Scene on_slope(double slope, double friction, const Vector3& axis) {
   const Vector3 at(0, r, 0);
   Scene scene = contact_scene({capsule(at - axis, at + axis, {0, 0, 0})}, friction,
@@ -69,7 +69,7 @@ TEST_CASE("a capsule hung over a fixed one by friction stays, and slips off with
   }
 }
 
-/// How far a limp rod over a fixed capsule slips in half a second, its ends pulled down with 1 N and `ratio` N.
+/// How far a limp rod over a fixed capsule slips in half a second. Its ends are pulled down with 1 N and `ratio` N.
 double slip_of_rope(double friction, double ratio) {
   RodParameters p;
   p.radius_m = 0.01;

@@ -1,4 +1,4 @@
-// Rods at rest on each other and on obstacles: no deeper than 1 % of the radius.
+// Rods at rest on each other and on obstacles penetrate by at most 1 % of the radius.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -41,7 +41,7 @@ TEST_CASE("a stack of rods comes to rest and does not sink in") {
     t.run(40);
     const Scene settled = t.scene;
     CHECK(t.run(40) < 0.01);
-    for (std::size_t rod = 0; rod < settled.rods.size(); ++rod)  // they may roll, since nothing resists that
+    for (std::size_t rod = 0; rod < settled.rods.size(); ++rod)  // rolling is free
       for (std::size_t s = 0; s < 10; ++s)
         CHECK(std::abs(t.scene.rods[rod].position[s].y() - settled.rods[rod].position[s].y()) < 0.02 * 0.02);
     for (const Rod& rod : t.scene.rods)
@@ -82,7 +82,7 @@ TEST_CASE("a beam on two supports bends between them and sinks into neither") {
   Touching t(scene, 0.01);
   t.run(150);
   CHECK(t.run(20) < 0.01);
-  // 5 q L^4 / 384 EI of the span, less what the overhanging ends lift: q a^2 / 2 L^2 / 8 EI.
+  // 5 q L^4 / 384 EI of the span, minus the lift by the overhanging ends: q a^2 / 2 L^2 / 8 EI.
   const double area = pi * r * r, ei = 1e8 * pi * std::pow(r, 4) / 4, q = 1000 * 9.81 * area;
   const double sag = q / ei * (5 * std::pow(0.8, 4) / 384 - 0.1 * 0.1 / 2 * 0.8 * 0.8 / 8);
   const Rod& rod = t.scene.rods[0];

@@ -1,4 +1,4 @@
-// Steps with contacts from the outside: what they report, what they remember, how they end.
+// Steps with contacts: their reports, the state that they keep, their failures.
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -12,7 +12,7 @@ using test::Touching;
 
 constexpr double r = 0.05;  // of RodParameters
 
-/// Two rods of six segments, one on a floor and one falling on it crosswise.
+/// Two rods of six segments, one on a floor, the other falls on it crosswise.
 Scene crossed(int sweeps) {
   RodParameters p;
   p.youngs_modulus_pa = 1e6;
@@ -40,7 +40,7 @@ TEST_CASE("a step says how far its contacts are from where they want to be") {
 }
 
 TEST_CASE("contacts that part and meet again remember nothing: the step is that of a new simulation, bit for bit") {
-  Touching t(crossed(100), 0.01, 2);  // too few iterations to forget where they started
+  Touching t(crossed(100), 0.01, 2);  // too few iterations for a result that is independent of the start
   t.run(10);
   const Scene touching = t.scene;
   for (Rod& rod : t.scene.rods)
@@ -61,7 +61,7 @@ TEST_CASE("what is not finite ends the step before it can touch anything") {
     Scene scene =
         contact_scene({capsule({0, r, 0}, {1, r, 0}, {0, 0, 0}), capsule({0, 3 * r, 0}, {1, 3 * r, 0}, {0, 0, 0})});
     scene.obstacles = {HalfSpace{}, Ball{{0.5, -1, 0}, 1}};
-    scene.rods[1].velocity[0].x() = wild;  // of a single segment, which nothing is solved for
+    scene.rods[1].velocity[0].x() = wild;  // of a single segment, which has no linear system
     DirectSolve direct(scene);
     LinearProjection projection(scene, direct);
     TimeStepper stepper(scene, {});

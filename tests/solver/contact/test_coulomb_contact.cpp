@@ -1,4 +1,4 @@
-// The law of one contact: what a relaxation settles on, for any effective mass.
+// The law of one contact: the fixed point of the relaxation, for any effective mass.
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
@@ -8,7 +8,7 @@
 
 namespace rodsweep::test_coulomb_contact {
 
-/// Symmetric and positive definite, with the given stretches in random directions.
+/// A symmetric positive definite matrix with these eigenvalues and random axes.
 Matrix3 mobility(test::Random& random, const Vector3& stretches) {
   const Matrix3 turn = random.quaternion().toRotationMatrix();
   return turn * stretches.asDiagonal() * turn.transpose();

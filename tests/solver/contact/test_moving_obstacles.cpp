@@ -1,4 +1,4 @@
-// Obstacles that move: what they carry, push, drag and press.
+// Moving obstacles that carry, push, drag and press rods.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -19,7 +19,7 @@ Scene lying(const Vector3& velocity, double friction, const Obstacle& on) {
   return scene;
 }
 
-/// A plane y = 0 that moves.
+/// A moving plane y = 0.
 HalfSpace plate(const Vector3& velocity) { return {{0, 0, 0}, {0, 1, 0}, velocity}; }
 
 TEST_CASE("a plate that rises lifts a rod at its velocity") {
@@ -52,7 +52,7 @@ TEST_CASE("a plate that slides along a rod drags it by friction, at mu g until i
 TEST_CASE("a rod on a belt across it rolls") {
   Touching across(lying({0, 0, 0}, 0.4, plate({0, 0, 0.3})), dt);
   across.run(100);
-  const Rod& rod = across.scene.rods[0];  // it rolls on the belt: a third of its velocity, the rest is spin
+  const Rod& rod = across.scene.rods[0];  // it rolls on the belt: a third of the belt's velocity, the rest is spin
   CHECK(rod.velocity[0].z() == Approx(0.1).epsilon(0.02));
   CHECK(rod.angular_velocity[0].x() * r == Approx(-0.2).epsilon(0.02));
 }
@@ -88,7 +88,7 @@ TEST_CASE("a scene that moves along with its obstacle is the one at rest") {
   }
 }
 
-/// Force on all segments above or below the middle along y by contacts [N].
+/// Contact force along y on all segments above or below the middle [N].
 double contact_force(const Scene& scene, double middle, bool above, double step) {
   double sum = 0;
   const Rod& rod = scene.rods.front();
@@ -111,7 +111,7 @@ TEST_CASE("a lattice between two plates is squeezed, and the plates press alike"
     p.obstacles = {HalfSpace{{0, -0.12, 0}, {0, 1, 0}, {0, 0.1, 0}}, HalfSpace{{0, 0.32, 0}, {0, -1, 0}, {0, -0.1, 0}}};
     const double step = 0.002;
     Touching t(build_scene(p), step);
-    CHECK(t.run(600) < 1e-4);  // until the plates are 0.2 m apart, the lattice 0.24 m high without them
+    CHECK(t.run(600) < 1e-4);  // until the plates are 0.2 m apart; the free lattice is 0.24 m high
     CAPTURE(cell);
     const double up = contact_force(t.scene, 0.1, false, step), down = contact_force(t.scene, 0.1, true, step);
     CHECK(up > 1);

@@ -1,4 +1,4 @@
-// How rods give way to impulses, against dense algebra and rigid bodies.
+// The response of rods to impulses, against dense algebra and rigid bodies.
 #include <catch2/catch.hpp>
 
 #include "solver/contact/rod_response.hpp"
@@ -38,7 +38,7 @@ TEST_CASE("a response is that of dense algebra, on any graph, and responses add 
       multipliers += back;
       std::vector<Lane8> moved = lanes(motion);
       response.respond(rod, moved.data());
-      CHECK((entries(moved) - expected).norm() < 1e-7 * motion.norm());  // differences make the dense Jacobian
+      CHECK((entries(moved) - expected).norm() < 1e-7 * motion.norm());  // the dense Jacobian is a finite difference
       CHECK((response.multipliers() - multipliers).norm() < 1e-6 * multipliers.norm());
     }
   }

@@ -1,4 +1,4 @@
-// The block elimination against Eigen's dense Cholesky, its order and its refusals.
+// The block elimination against Eigen's dense Cholesky; its order; refusals.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <string>
@@ -46,7 +46,7 @@ std::vector<Graph> all_graphs() {
   return all;
 }
 
-/// Any matrix with the pattern of a rod's system.
+/// A random matrix with the pattern of a rod's system.
 BlockMatrix matrix_like(const Rod& rod, unsigned seed) {
   const BlockMatrix pattern = LinearSystem(rod).matrix();
   Edges couplings;
@@ -75,7 +75,7 @@ TEST_CASE("systems of rods are solved to rounding") {
     const Solved solved = solve(factor, system.matrix(), system.rhs());
     CHECK(solved.outcome == SolveOutcome::converged);
     const MatrixX a = system.matrix().dense();
-    // Nets are over-constrained, their condition numbers near 1e6: the dense reference is known to some 1e-10 itself.
+    // Nets are over-constrained with condition numbers near 1e6: the dense reference itself is accurate to about 1e-10.
     const double rounding = std::string(graph.name).rfind("net", 0) == 0 ? 1e-9 : 1e-10;
     CHECK((system.rhs() - a * solved.x).norm() < rounding * system.rhs().norm());
     CHECK(test::energy_error(a, solved.x, test::dense_solve(a, system.rhs())) < rounding);

@@ -1,4 +1,4 @@
-// Struts and crossings of a rod, and the system that is left when struts are eliminated.
+// Struts and crossings of a rod, and the condensed system after elimination of the struts.
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -22,7 +22,7 @@ Rod lattice(Lattice::Cell cell, int nodes, int segments, Held held) {
   return rod_of(p);
 }
 
-/// Of every kind: chains, trees, rings, nets, lattices, held and free.
+/// Chains, trees, rings, nets and lattices, held and free.
 std::vector<Rod> rods() {
   Net net;
   net.segments = 3;
@@ -40,7 +40,7 @@ std::vector<Rod> rods() {
           lattice(Lattice::Cell::octet, 2, 2, Held::side)};
 }
 
-/// Segments moved about, so that no two joints are alike.
+/// Moves segments at random, so that all joints differ.
 Rod shaken(Rod rod, unsigned seed) {
   test::Random random(seed);
   for (int s = 0; s < rod.segment_count(); ++s) {
@@ -92,7 +92,7 @@ TEST_CASE("a condensed system has the answer of the whole one") {
     CAPTURE(rod.joint_count());
     CHECK((d - exact).norm() < 1e-8 * exact.norm());
 
-    // What is missing of the crossings' motions is missing of the whole system.
+    // The residual of the crossings is the residual of the whole system.
     const VectorX other = y + 0.1 * y.norm() * test::Random(3).entries(static_cast<int>(y.size()));
     const VectorX p = g - s * other;
     condensation.expand(r, other.data(), d);

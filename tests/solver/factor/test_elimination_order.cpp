@@ -1,4 +1,4 @@
-// Orders of elimination: what fills in, and that minimum degree keeps it low where it cannot be avoided.
+// Orders of elimination: their fill, and the low fill of minimum degree.
 #include <catch2/catch.hpp>
 
 #include "solver/factor/block_factor.hpp"
@@ -10,12 +10,12 @@ namespace rodsweep::test_elimination_order {
 
 using test::Edges;
 
-/// Couples block rows as the joints of a rod with these segments do.
+/// The pattern of a rod with these segments.
 BlockMatrix pattern_of(const Edges& edges, const std::vector<int>& held = {}) {
   return LinearSystem(test::random_rod(edges, held, 1)).matrix();
 }
 
-/// Pairs of rows that elimination from the last to the first couples anew.
+/// Number of pairs of rows that elimination from the last row to the first newly couples.
 int fill_of(const BlockMatrix& pattern, const std::vector<int>& order) {
   int coupled = 0;
   for (const auto& column : test::later_neighbours(pattern, {order.rbegin(), order.rend()}))
@@ -54,7 +54,7 @@ TEST_CASE("a ring of n joints fills in n - 3 blocks, the fewest that a cycle can
   for (const int n : {3, 4, 9, 50}) {
     const BlockMatrix pattern = pattern_of(test::ring(n));
     CHECK(BlockFactor(pattern, minimum_degree_order(pattern)).fill_in() == n - 3);
-    // Held, it is a chain: nothing couples through a segment that cannot move.
+    // A ring with a held segment is a chain: a held segment couples nothing.
     CHECK(BlockFactor(pattern_of(test::ring(n), {1}), minimum_degree_order(pattern)).fill_in() == 0);
   }
 }
@@ -79,7 +79,7 @@ TEST_CASE("breadth first: every row once, neighbours near each other, from an en
     const BlockMatrix pattern = pattern_of(edges);
     CHECK_FALSE(fills_in(pattern, breadth_first_order(pattern)));
   }
-  // A net 3 cells wide and 11 long: neighbours are at most two fronts of it apart.
+  // A net 3 cells wide and 11 long: neighbours are at most two fronts apart in the order.
   const BlockMatrix pattern = pattern_of(test::net(3, 11));
   const std::vector<int> order = breadth_first_order(pattern);
   std::vector<int> place(order.size());

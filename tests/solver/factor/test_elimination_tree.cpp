@@ -1,4 +1,4 @@
-// Elimination trees against an elimination by sets: parents, counts, costs; what a plan makes of them.
+// Elimination trees against elimination of sets: parents, counts, costs, and the plan of a factorisation.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -86,7 +86,7 @@ TEST_CASE("nested dissection names every row once and the same way every time") 
   if (order.empty()) return;  // built without METIS
   CHECK(nested_dissection_order(pattern) == order);
   CHECK(test::names_each_once(order, pattern.block_rows()));
-  CHECK(nested_dissection_order(test::random_matrix({}, 3, 1)).empty());  // nothing to part
+  CHECK(nested_dissection_order(test::random_matrix({}, 3, 1)).empty());  // nothing to divide
 }
 
 TEST_CASE("a factor that would need too much memory is refused with its size, before it asks for any") {

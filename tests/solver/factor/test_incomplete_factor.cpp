@@ -1,4 +1,4 @@
-// Incomplete factors against dense matrices: what they approximate, and what makes them preconditioners.
+// Incomplete factors against dense matrices: accuracy and quality as preconditioners.
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -27,7 +27,7 @@ MatrixX applied(IncompleteFactor& factor, int unknowns) {
   return out;
 }
 
-/// How far P^-1 A is from the identity at its ends: its smallest and largest eigenvalue.
+/// The smallest and the largest eigenvalue of P^-1 A.
 std::pair<double, double> spectrum(IncompleteFactor& factor, const BlockMatrix& a) {
   const Eigen::VectorXcd values = (applied(factor, a.unknowns()) * a.dense()).eigenvalues();
   return {values.real().minCoeff(), values.real().maxCoeff()};
@@ -62,7 +62,7 @@ TEST_CASE("with all fill it is the inverse, in any order, and on chains and tree
     REQUIRE(factor.factorise(a));
     CHECK(factor.shift() == 0);
     const auto [least, largest] = spectrum(factor, a);
-    CHECK(least > 0.95);  // what single precision leaves of the inextensible joints' condition
+    CHECK(least > 0.95);  // limited by single precision and the condition of inextensible joints
     CHECK(largest < 1.05);
     return factor.off_diagonal_blocks();
   };

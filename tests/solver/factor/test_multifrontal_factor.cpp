@@ -1,4 +1,4 @@
-// The factorisation in fronts against Eigen's dense Cholesky, and its refusals.
+// The multifrontal factorisation against Eigen's dense Cholesky; refusals.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <numeric>
@@ -26,13 +26,13 @@ std::vector<int> in_order(int rows) {
   return order;
 }
 
-/// All rows from `first` to `last` coupled to each other.
+/// Couples all rows from `first` to `last` with each other.
 void couple_all(int first, int last, Edges& couplings) {
   for (int i = first; i < last; ++i)
     for (int j = first; j < i; ++j) couplings.emplace_back(i, j);
 }
 
-/// ||x - A^-1 b|| over ||A^-1 b||, largest entries.
+/// Largest entry of x - A^-1 b over the largest entry of A^-1 b.
 double error_of(MultifrontalFactor& factor, const BlockMatrix& a, unsigned seed) {
   const VectorX b = test::Random(seed).entries(a.unknowns());
   VectorX x = b;
@@ -56,7 +56,7 @@ TEST_CASE("fronts solve as a dense Cholesky does, whatever the graph and order")
 TEST_CASE("fronts wider than everything that is done at once solve as a dense Cholesky does") {
   Edges one, two;
   couple_all(0, 61, one);
-  couple_all(0, 55, two);  // 35 rows stay for the other's front
+  couple_all(0, 55, two);  // 35 rows remain for the other front
   couple_all(20, 75, two);
   for (const auto& [couplings, rows] : {std::pair{one, 61}, std::pair{two, 75}}) {
     const BlockMatrix a = test::random_matrix(couplings, rows, 1);

@@ -1,4 +1,4 @@
-// Deflated CG: on planted spectra, and with stored solutions.
+// Deflated CG with known spectra and with stored solutions.
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -36,7 +36,7 @@ TEST_CASE(
   SubspaceGuess guess = deflating(one.scene, 4);
   SubspaceGuess subspace(one.scene, 1, 4, SubspaceGuess::Window::sliding);
   std::vector<VectorX> stored;
-  for (int step = 0; step < 6; ++step) {  // the first two are forgotten
+  for (int step = 0; step < 6; ++step) {  // the first two leave the window
     stored.push_back(one.exact + 2 * random.entries(one.size()).cwiseProduct(one.exact));
     guess.accept({step, 0, 0}, stored.back());
     subspace.accept({step, 0, 0}, stored.back());
@@ -49,7 +49,7 @@ TEST_CASE(
   VectorX z = random.entries(one.size());
   const VectorX before = z;
   REQUIRE(guess.deflation() != nullptr);
-  // Of a residual that has a part in V: it is solved for there, and what M sees has none.
+  // For a residual with a part in V, complete() solves for that part, and reduce() removes it from what M sees.
   const VectorX r = random.entries(one.size());
   VectorX reduced = r;
   guess.deflation()->reduce(reduced.data());
@@ -70,7 +70,7 @@ TEST_CASE(
 
 TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations, with the same solution") {
   OneRod one;
-  // Of D^-1/2 A D^-1/2, which Jacobi makes of A.
+  // Eigenvectors of D^-1/2 A D^-1/2, the matrix with Jacobi's preconditioner.
   const VectorX s = one.a.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<MatrixX> modes(s.asDiagonal() * one.a * s.asDiagonal());
   SubspaceGuess guess = deflating(one.scene, 12);
@@ -83,8 +83,7 @@ TEST_CASE("CG deflated by the modes that it finds last ends in fewer iterations,
   CHECK(with.outcome == SolveOutcome::converged);
   CHECK(with.iterations < 0.8 * without.iterations);
   CHECK((one.system.rhs() - one.a * deflated).norm() < 1e-7 * one.system.rhs().norm());
-  // Without the projection it finds again, in rounding, what the guess has taken away already; one iteration more or
-  // less is rounding itself.
+  // Without the projection, rounding brings the deflated part back. One iteration more or less is rounding.
   CHECK(with.iterations <= solve(one, undeflated, true, 1e-8, nullptr).iterations + 1);
 }
 

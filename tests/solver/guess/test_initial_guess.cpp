@@ -1,4 +1,4 @@
-// The guesses: what each proposes, when it falls back to zero, and that none remembers what it should not.
+// The guesses: their proposals, their fallback to zero, and the state that they must not keep.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ using test::MatrixX;
 
 constexpr auto white = OracleGuess::Error::white, smooth = OracleGuess::Error::smooth;
 
-/// Two rods of different size, and the assembled systems of both.
+/// Two rods of different size and their assembled systems.
 struct TwoRods {
   Scene scene;
   std::vector<LinearSystem> systems;
@@ -39,12 +39,12 @@ struct Proposed : Proposal {
 };
 
 Proposed propose(InitialGuess& guess, TwoRods& rods, const SolvePosition& at) {
-  VectorX x0 = VectorX::Constant(rods.size(at.rod), 123);  // what x0 held must not matter
+  VectorX x0 = VectorX::Constant(rods.size(at.rod), 123);  // propose() must overwrite x0
   const Proposal proposal = guess.propose(rods.systems[at.rod], at, x0);
   return {proposal, x0};
 }
 
-/// A solution that is a polynomial in the step, in numbers that floating point holds exactly.
+/// A solution that is a polynomial in the step, in numbers that are exact in floating point.
 VectorX polynomial(int size, int degree, int step) {
   VectorX out(size);
   for (int i = 0; i < size; ++i)
@@ -112,7 +112,7 @@ TEST_CASE("every Newton iteration of every rod has a history of its own") {
   for (int step = 0; step < 4; ++step)
     for (int newton = 0; newton < 3; ++newton)
       for (const int rod : {0, 1}) {
-        if (newton == 2 && step == 2) continue;  // Newton was done early in one step
+        if (newton == 2 && step == 2) continue;  // Newton converged early in one step
         const Proposed proposed = propose(guess, rods, {step, newton, rod});
         INFO("step " << step << ", Newton " << newton << ", rod " << rod);
         if (newton == 2 && step == 3)
@@ -143,13 +143,13 @@ TEST_CASE("guesses from history are zero, at no cost, at an iteration without on
     CHECK_FALSE(proposed(0, 1));
     for (const int step : {0, 1}) {
       guess->accept({step, 1, 0}, one.exact);
-      CHECK_FALSE(proposed(step + 1, 0));  // the other Newton iteration has had none
+      CHECK_FALSE(proposed(step + 1, 0));  // the other Newton iteration has no history
       CHECK(proposed(step + 1, 1));
     }
     CHECK_FALSE(proposed(3, 1));
     guess->accept({3, 1, 0}, one.exact);
     CHECK(proposed(4, 1));
-    CHECK(products <= 1);  // a subspace's, of one solution
+    CHECK(products <= 1);  // only the subspace with its one solution takes one
     CHECK((x0 - one.exact).norm() < 1e-9 * x0.norm());
   }
 }
@@ -162,7 +162,7 @@ TEST_CASE("the oracle's error has the requested size in the energy norm") {
       const Proposed proposed = propose(guess, rods, {3, 1, rod});
       CHECK(proposed.nonzero);
       const double measured = test::energy_error(rods.systems[rod].matrix().dense(), proposed.x0, rods.exact(rod));
-      CHECK(measured == Approx(error).epsilon(error < 1e-3 ? 1e-7 : 1e-10));  // x itself is known to about 1e-13
+      CHECK(measured == Approx(error).epsilon(error < 1e-3 ? 1e-7 : 1e-10));  // x itself is accurate to about 1e-13
     }
   OracleGuess perfect(rods.scene, 0, white, 7);
   CHECK(propose(perfect, rods, {0, 0, 0}).x0 == rods.exact(0));
@@ -229,7 +229,7 @@ TEST_CASE("the oracle proposes zero where the system cannot be solved") {
   CHECK(proposed.x0.isZero(0));
 }
 
-/// Proposes a given vector and notes what it is told.
+/// Proposes a fixed vector; stores the solution that it accepts.
 class Fixed : public InitialGuess {
  public:
   explicit Fixed(VectorX x, VectorX* told = nullptr) : x_(std::move(x)), told_(told) {}
@@ -257,7 +257,7 @@ TEST_CASE("guarded passes a guess on just below its threshold and replaces it by
   GuardedGuess above(rods.scene, std::make_unique<Fixed>(x0), ratio * (1 + 1e-9));
   const Proposed kept = propose(above, rods, {0, 0, 0});
   CHECK(kept.nonzero);
-  CHECK(kept.products == 4);  // the inner guess's, and one for the residual
+  CHECK(kept.products == 4);  // the inner guess's products and one for the residual
   CHECK((*kept.residual - r).norm() < 1e-12 * b.norm());
   CHECK(kept.x0 == x0);
   GuardedGuess below(rods.scene, std::make_unique<Fixed>(x0), ratio * (1 - 1e-9));
@@ -273,7 +273,7 @@ TEST_CASE("guarded rejects a guess that is not a number, tells it the solution, 
   GuardedGuess guard(rods.scene, std::make_unique<Fixed>(bad), 1e9);
   CHECK_FALSE(propose(guard, rods, {0, 0, 0}).nonzero);
   CHECK(propose(guard, rods, {0, 0, 0}).x0.isZero(0));
-  VectorX told;  // of a guess that was rejected too
+  VectorX told;  // the solution also reaches a guess that was rejected
   GuardedGuess strict(rods.scene, std::make_unique<Fixed>(rods.exact(0), &told), 0);
   CHECK_FALSE(propose(strict, rods, {0, 0, 0}).nonzero);
   strict.accept({0, 0, 0}, rods.exact(0));

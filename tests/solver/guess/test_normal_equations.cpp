@@ -1,4 +1,4 @@
-// The few normal equations of a guess against dense algebra.
+// The small normal equations of guesses against dense algebra.
 #include <catch2/catch.hpp>
 #include <limits>
 

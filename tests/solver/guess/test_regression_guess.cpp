@@ -1,4 +1,4 @@
-// A guess by regression on earlier right-hand sides: exact where it can be, least squares where not, never a product.
+// A guess by regression on earlier right-hand sides: exact if possible, else least squares; no matrix product.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace rodsweep::test_regression_guess {
 
 using test::MatrixX;
 
-/// Systems of one matrix: their right-hand sides -C - alpha~ lambda follow the multipliers.
+/// Systems with one matrix; their right-hand sides -C - alpha~ lambda depend on the multipliers.
 struct OneMatrix : test::OneRod {
   DirectSolve direct{scene};
   test::Random random;
@@ -28,7 +28,7 @@ struct OneMatrix : test::OneRod {
     REQUIRE(direct.solve(system, {}, 0, out) == SolveOutcome::converged);
     return out;
   }
-  /// Proposes for these multipliers at a step, then tells the solution.
+  /// Proposes at a step with these multipliers, then accepts the solution.
   void pass(RegressionGuess& guess, int step, const VectorX& lambda) {
     VectorX x0(size());
     guess.propose(with(lambda), {step, 0, 0}, x0);
@@ -40,7 +40,7 @@ TEST_CASE("a right-hand side that the last ones make up has its solution found, 
   OneMatrix one(3);
   RegressionGuess guess(one.scene, 1, 3, 0);
   std::vector<VectorX> lambda;
-  for (int step = 0; step < 5; ++step) {  // the first two are forgotten
+  for (int step = 0; step < 5; ++step) {  // the first two leave the window
     lambda.push_back(one.draw());
     one.pass(guess, step, lambda.back());
   }
@@ -83,7 +83,7 @@ TEST_CASE("noise in the stored solutions is not blown up by coefficients of oppo
       guess->accept({step, 0, 0}, found);
     }
   }
-  one.with(lambda + 50 * change);  // 50 x2 - 49 x1, exactly
+  one.with(lambda + 50 * change);  // exactly 50 x2 - 49 x1
   const VectorX exact = one.solution();
   trusting.propose(one.system, {2, 0, 0}, x0);
   CHECK((x0 - exact).norm() > 20 * noise * exact.norm());

@@ -1,4 +1,4 @@
-// Projected guesses: optimal within the span of earlier solutions, for the current matrix.
+// Projected guesses: optimal in the span of earlier solutions, for the current matrix.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace rodsweep::test_subspace_guess {
 using Window = SubspaceGuess::Window;
 using test::OneRod;
 
-/// e^T A v / (|e|_A |v|_A) with e the error of x0.
+/// e^T A v / (|e|_A |v|_A), where e is the error of x0.
 double error_along(const OneRod& one, const VectorX& x0, const VectorX& v) {
   const VectorX e = x0 - one.exact;
   return e.dot(one.a * v) / std::sqrt(e.dot(one.a * e) * v.dot(one.a * v));
@@ -93,7 +93,7 @@ TEST_CASE("fischer and subspace beat zero on a slowly changing rod, and subspace
     of_subspace += error[1][k] / 20;
     CHECK(error[1][k] <= error[2][k] * (1 + 1e-9));
   }
-  CHECK(of_fischer < 0.1);  // zero's is 1
+  CHECK(of_fischer < 0.1);  // 1 for a guess of zero
   CHECK(of_subspace < 0.02);
   CHECK(of_subspace < of_fischer);
 }

@@ -1,4 +1,4 @@
-// What a guess hears of whole steps.
+// A guess that receives the sums of whole steps.
 #include <catch2/catch.hpp>
 #include <tuple>
 #include <vector>
@@ -14,7 +14,7 @@ struct Told {
   VectorX solution;
 };
 
-/// Writes down what it is told; proposes the number of things told so far.
+/// Records all accepted solutions; proposes their number.
 class Listener : public InitialGuess {
  public:
   explicit Listener(std::vector<Told>& told) : told_(told) {}
@@ -111,7 +111,7 @@ TEST_CASE("a regression combines totals as the first right-hand sides of their s
     guess.propose(system, {step, 1, 0}, x0);
     guess.accept({step, 1, 0}, later[step]);
   }
-  rod.lambda = 3 * lambda[0] - 2 * lambda[1];  // b is -C - alpha~ lambda, and C is that of all steps: zero
+  rod.lambda = 3 * lambda[0] - 2 * lambda[1];  // b is -C - alpha~ lambda with C = 0 in all steps
   system.assemble(rod, 0.02);
   guess.prepare({2, 0, 0});
   guess.propose(system, {2, 0, 0}, x0);

@@ -1,4 +1,4 @@
-// The block matrix and the eight-lane kernels that it is made of.
+// The block matrix and its eight-lane kernels.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -12,7 +12,7 @@ using test::Random;
 TEST_CASE("sum_lanes adds all eight lanes of each vector and leaves the spare lanes zero") {
   Lane8 v[6];
   for (int r = 0; r < 6; ++r)
-    for (int lane = 0; lane < 8; ++lane) v[r][lane] = std::ldexp(1, lane) * (r + 1);  // every lane tells
+    for (int lane = 0; lane < 8; ++lane) v[r][lane] = std::ldexp(1, lane) * (r + 1);  // lanes differ
   const Lane8 sum = sum_lanes(v);
   for (int r = 0; r < 6; ++r) CHECK(sum[r] == 255.0 * (r + 1));
   CHECK(sum[6] == 0);
@@ -36,7 +36,7 @@ TEST_CASE("the pattern holds each coupling once, both ways, sorted, and every di
   const BlockMatrix a(4, {{3, 1}, {1, 3}, {1, 3}, {0, 1}, {1, 1}});
   CHECK(a.block_rows() == 4);
   CHECK(a.unknowns() == 24);
-  CHECK(a.block_count() == 8);  // four diagonals and two couplings both ways
+  CHECK(a.block_count() == 8);  // four diagonal blocks and two couplings with both directions
   for (int row = 0; row < 4; ++row) {
     CHECK(a.column(a.diagonal(row)) == row);
     CHECK(a.find(row, row) == a.diagonal(row));
@@ -56,7 +56,7 @@ TEST_CASE("the block product equals the dense one") {
   for (const int rows : {1, 2, 5, 17}) {
     BlockMatrix a(rows, rows > 4 ? test::ring(rows) : test::chain(rows));
     Random random(static_cast<unsigned>(rows));
-    for (Block6& block : a.blocks)  // not symmetric: a transposed block would show
+    for (Block6& block : a.blocks)  // not symmetric, to detect a transposed block
       for (Lane8& column : block.column) column = load6(random.entries(6).eval().data());
     const VectorX x = random.entries(a.unknowns());
     VectorX y = VectorX::Constant(a.unknowns() + 2, 99);

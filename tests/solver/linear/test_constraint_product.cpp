@@ -1,4 +1,4 @@
-// The product without the matrix against the one with it.
+// The matrix-free product against the product with the matrix.
 #include <catch2/catch.hpp>
 
 #include "solver/linear/linear_system.hpp"

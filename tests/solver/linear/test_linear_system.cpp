@@ -1,4 +1,4 @@
-// A, b and the update against dense matrices built from finite differences and world inertia tensors.
+// A, b and the update against dense matrices from finite differences and world inertia tensors.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -86,7 +86,7 @@ TEST_CASE("applying a solution moves the rod by M^-1 J^T dlambda, but no static 
     Rod rod = before;
     LinearSystem system = test::assembled(rod, dt);
     const DenseSystem dense = test::dense_system(rod, dt);
-    for (int again = 0; again < 2; ++again) {  // the second must not remember the first one's impulses
+    for (int again = 0; again < 2; ++again) {  // the second run must not keep impulses of the first
       rod = before;
       const VectorX dl = 1e-3 * test::Random(30 + again).entries(6 * rod.joint_count());
       system.apply(rod, dl);
@@ -104,7 +104,7 @@ TEST_CASE("applying a solution moves the rod by M^-1 J^T dlambda, but no static 
         worst = std::max(worst, (rod.position[s] - before.position[s] - shift).norm());
         worst = std::max(worst, (rod.orientation[s].coeffs() - rotated(before.orientation[s], turn).coeffs()).norm());
         if (!rod.segments[s].is_static) continue;
-        CHECK(rod.position[s] == before.position[s]);  // not by a bit
+        CHECK(rod.position[s] == before.position[s]);  // bit for bit
         CHECK(rod.orientation[s].coeffs() == before.orientation[s].coeffs());
       }
       REQUIRE(moved.lpNorm<Eigen::Infinity>() > 1e-3);

@@ -1,4 +1,4 @@
-// Vectors side by side against dense algebra, for every way of laying them out.
+// Vectors side by side against dense algebra, for every memory layout.
 #include <catch2/catch.hpp>
 
 #include "solver/linear/stored_vectors.hpp"

@@ -1,4 +1,4 @@
-// The two rotation maps of the time step, and the turn between two directions.
+// The two rotation maps of the time step, and the rotation between two directions.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -15,7 +15,7 @@ TEST_CASE("rotation() gives back exactly the vector that rotated() was given, sm
     for (int i = 0; i < 50; ++i) {
       const Quaternion q = random.quaternion();
       const Vector3 theta = size * random.vector(1);
-      // The rounding of q limits what a small angle can carry.
+      // Rounding of q limits the accuracy of small angles.
       CHECK((rotation(rotated(q, theta), q) - theta).norm() <= 1e-15 + 1e-13 * theta.norm() * (1 + theta.norm()));
     }
 }
@@ -56,7 +56,7 @@ TEST_CASE("turn_between() takes one direction to the other by the shortest way, 
     const Quaternion turn = turn_between(from, to);
     CHECK(turn.norm() == Approx(1).epsilon(1e-14));
     CHECK((turn * from.normalized() - to.normalized()).norm() < 1e-12);
-    CHECK(std::abs(turn.vec().dot(from)) < 1e-12 * from.norm());  // about an axis across both
+    CHECK(std::abs(turn.vec().dot(from)) < 1e-12 * from.norm());  // the axis is perpendicular to both
     CHECK(turn.w() >= 0);
   }
 }

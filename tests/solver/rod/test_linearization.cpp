@@ -1,4 +1,4 @@
-// Constraints and Jacobians against central differences, and what rigid motion does to them.
+// Constraints and Jacobians against central differences, and under rigid motion.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -29,7 +29,7 @@ MatrixX jacobian_of(const JointJacobian& j) {
   return out;
 }
 
-/// The same for motions in the world, dx_a, dtheta_a, dx_b, dtheta_b.
+/// The same for motions in the world: dx_a, dtheta_a, dx_b, dtheta_b.
 MatrixX world_jacobian(const Rod& rod, int joint, const JointJacobian& j) {
   MatrixX out = jacobian_of(j);
   const int segments[] = {rod.joints[joint].a, rod.joints[joint].b};
@@ -71,7 +71,7 @@ TEST_CASE("Jacobians equal central differences of the constraints under the Newt
 }
 
 TEST_CASE("bending by more than half a turn of the rest rotation is measured the short way round") {
-  // Relative turns of 2 pi - 0.2 and of -0.2 are the same pose, and must give the same small constraint.
+  // Relative turns of 2 pi - 0.2 and -0.2 are the same pose and must give the same small constraint.
   Rod rod = build_scene(test::bending_rod(2, Clamp::free)).rods.front();
   rod.orientation[1] = rod.orientation[0] * Eigen::AngleAxisd(2 * pi - 0.2, Vector3::UnitX());
   const VectorX c = linearized(rod).constraint;

@@ -1,4 +1,4 @@
-// Physical stretching and shearing: compliance, energy, closed forms of a pulled and of a sheared rod.
+// Physical stretching and shearing: compliance, energy, closed forms for pulled and sheared rods.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 
 namespace rodsweep::test_physical_stretch {
 
-/// Weightless, held by a wall, along +x.
+/// A weightless rod along +x, held by a wall.
 BendingRod rod_of(int segments, double youngs_modulus, double torsion_modulus, Stretch stretch) {
   BendingRod p;
   p.segments = segments;
@@ -21,7 +21,7 @@ BendingRod rod_of(int segments, double youngs_modulus, double torsion_modulus, S
   return p;
 }
 
-/// Where its tip comes to rest under a force on its last segment's centre, which turns no segment in the prediction.
+/// The tip at rest under a force on the last segment's centre. The prediction of such a force turns no segment.
 Vector3 settled_tip(const BendingRod& p, const Vector3& force) {
   Scene scene = build_scene(p);
   scene.loads.push_back({0, scene.rods.front().segment_count() - 1, force, Vector3::Zero(), Vector3::Zero()});
@@ -64,7 +64,7 @@ TEST_CASE("physical stretch is a compliance of shear across a joint and of stret
 TEST_CASE("elastic energy of physical stretch is EA and kappa G A times half the squared strains") {
   BendingRod p = rod_of(2, 3e6, 1e6, Stretch::physical);
   p.clamp = Clamp::free;
-  Rod rod = build_scene(p).rods.front();  // joint length 1
+  Rod rod = build_scene(p).rods.front();  // joint of length 1
   const double area = pi * 0.0025;
   rod.position[1] += Vector3(3e-3, 0, 0);
   CHECK(elastic_energy(rod) == Approx(3e6 * area * 9e-6 / 2).epsilon(1e-10));
@@ -76,7 +76,7 @@ TEST_CASE("a pulled rod stretches by F L / EA, but for half a segment at its end
   const double e = 1e7, area = pi * 0.0025, force = 1e-3 * e * area;
   for (const int n : {1, 5, 40}) {
     const double law =
-        force / (e * area) * (2 - 1.0 / n);  // joints: half a segment's length at the wall, then one each
+        force / (e * area) * (2 - 1.0 / n);  // lengths of the joints: half a segment at the wall, then one each
     const Vector3 end = settled_tip(rod_of(n, e, 4e6, Stretch::physical), force * Vector3::UnitX());
     CHECK(end.x() - 2 == Approx(law).epsilon(1e-8));
     CHECK(std::abs(end.y()) + std::abs(end.z()) < 1e-10);
@@ -89,7 +89,7 @@ TEST_CASE("a rod under its own weight stretches by w L^2 / 2 EA") {
   p.gravity_m_s2 = Vector3(0, -9.81, 0);
   Simulation simulation(build_scene(p), 1);
   simulation.relax(1e-11);
-  // Joint k carries n - k segments over the length l, that of the wall over l / 2: sum = w L^2 / 2 EA exactly.
+  // Joint k carries n - k segments over the length l (the wall's joint over l / 2): the sum is w L^2 / 2 EA exactly.
   const double law = 1000 * 9.81 * 4 / 2 / 1e7;
   CHECK(-tip(simulation.rod()).y() - 2 == Approx(law).epsilon(1e-6));
 }

@@ -1,4 +1,4 @@
-// Rings and nets: geometry, rest states, what is held, counts, length, refusals.
+// Rings and nets: geometry, rest states, held segments, counts, length, refusals.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -64,10 +64,10 @@ TEST_CASE("the twist of a ring is spread evenly, also over the joint that closes
       const VectorX c = constraint_of(rod);
       const double per_joint = twist * pi / 180 / n;
       for (int k = 0; k < n; ++k) {
-        // 2 sin(phi / 2) cos(theta / 2) of a joint that is twisted by phi and bent by theta where it rests bent.
+        // 2 sin(phi / 2) cos(theta / 2): the joint is twisted by phi and bent by theta, its bend at rest.
         const double bend = shape == Ring::RestShape::circle ? pi / n : 0;
         CHECK(c[6 * k + 5] == Approx(2 * std::sin(per_joint / 2) * std::cos(bend)).epsilon(1e-10));
-        if (shape == Ring::RestShape::straight)  // a natural bend turns with the twist, against the ring's
+        if (shape == Ring::RestShape::straight)  // a curved rest shape would turn with the twist
           CHECK(c.segment<6>(6 * k).norm() == Approx(c.segment<6>(0).norm()).epsilon(1e-10));
         CHECK(rod.joints[k].rest.w() > 0.5);
       }
@@ -126,7 +126,7 @@ TEST_CASE("a net is held at a side, at its corners, or not at all") {
     for (int s = 0; s < rod.segment_count(); ++s)
       if (rod.segments[s].is_static) far = std::max(far, rod.position[s].z());
     CHECK(far == Approx(held == Held::corners ? 2 * p.mesh_m : 0).margin(1e-14));
-    CHECK_NOTHROW(LinearSystem(rod));  // no joint between two that are held
+    CHECK_NOTHROW(LinearSystem(rod));  // no joint connects two held segments
   }
 }
 

@@ -1,5 +1,5 @@
-// Lattices: nodes and rods against neighbours found by their distance, rest state, what is held and loaded, how nodes
-// turn, refusals.
+// Lattices: nodes and rods against nearest neighbours; rest state, held and loaded segments, stiffness of nodes,
+// refusals.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -45,7 +45,7 @@ const std::vector<Lattice>& shapes() {
   return all;
 }
 
-/// Rods through a node: ways that are opposite belong to one.
+/// Number of rods through a node; opposite directions belong to one rod.
 int rods_through(const std::set<Place>& ways) {
   int rods = 0;
   for (const Place& way : ways) rods += !ways.count(opposite(way)) || way < opposite(way);
@@ -59,7 +59,7 @@ bool in_interior(const Lattice& p, const Place& at) {
   return true;
 }
 
-/// Segments whose centres are within a millionth of a metre of a point.
+/// Segments with their centre within 1e-6 m of a point.
 std::vector<int> segments_at(const Rod& rod, const Vector3& at) {
   std::vector<int> out;
   for (int s = 0; s < rod.segment_count(); ++s)
@@ -71,7 +71,7 @@ TEST_CASE("the nodes of a lattice are where its cell has them, with a rod for ev
   for (const Lattice& p : shapes()) {
     const Rod rod = build_scene(p).rods.front();
     const auto nodes = nodes_of(p);
-    int between = 0, at_nodes = 0, joints = 0;  // segments of struts but for their ends, segments at nodes
+    int between = 0, at_nodes = 0, joints = 0;  // segments of struts without their ends, segments at nodes
     for (const auto& [at, ways] : nodes) {
       const int rods = rods_through(ways);
       const std::vector<int> segments = segments_at(rod, point(at, p));
@@ -187,7 +187,7 @@ TEST_CASE("a raised lattice is the level one turned about z") {
   }
 }
 
-/// Stiffness of a joint against small turns of its second segment, in that one's frame [Nm].
+/// Stiffness of a joint against small rotations of its second segment, in the frame of that segment [Nm].
 Matrix3 turning_stiffness(const Rod& rod, const Joint& joint) {
   JointJacobian jacobian;
   double constraint[6];
@@ -203,7 +203,7 @@ Matrix3 turning_stiffness(const Rod& rod, const Joint& joint) {
 }
 
 TEST_CASE("a node turns against EI / 2r of each of its joints, on the mean over all axes; in cubic cells about each") {
-  // What the others are off by at the nodes inside and on the boundaries.
+  // Bounds of the relative stiffness about any axis. Nodes on the boundary are farthest from 1.
   const std::map<Cell, std::pair<double, double>> bounds{
       {Cell::cubic, {1, 1}}, {Cell::body_centred, {0.358, 1.5}}, {Cell::octet, {0.308, 1.576}}};
   for (Lattice p : shapes()) {

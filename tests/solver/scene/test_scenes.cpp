@@ -74,7 +74,7 @@ TEST_CASE("compliances are l / EI, l / EI and l / GJ of a circular cross-section
 }
 
 TEST_CASE("the inextensible compliance opens a joint by 1e-7 of its length under its force") {
-  // alpha l F in units of l
+  // alpha l F, in units of l.
   CHECK(inextensible_compliance(0.1, 50) * 0.1 * 50 == Approx(1e-7).epsilon(1e-14));
 }
 

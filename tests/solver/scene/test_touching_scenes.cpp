@@ -1,4 +1,4 @@
-// Scenes made for contact: geometry, and that they do what they are named for. The knot stays one.
+// Scenes for contact: their geometry and what each demonstrates. The knot stays a knot.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace rodsweep::test_touching_scenes {
 
-/// The determinant of a knot, from the crossings of a closed polygon seen along z: 1 of the unknot, 3 of a trefoil. A
-/// row for every crossing: 2 for the arc above, -1 for the two that end below it; any one row and column left out.
+/// The determinant of a knot from the crossings of a closed polygon seen along z: 1 for the unknot, 3 for a trefoil.
+/// One row per crossing: 2 for the upper arc, -1 for both arcs that end below it. One row and column are dropped.
 long knot_determinant(const std::vector<Vector3>& polygon) {
   struct Passing {
     double place;  // along the polygon
@@ -49,7 +49,7 @@ long knot_determinant(const std::vector<Vector3>& polygon) {
   return std::lround(std::abs(test::determinant(colours.topLeftCorner(m, m))));
 }
 
-/// A rod's axis, closed far around its ends, which point to -x and x; seen from a direction of no symmetry.
+/// A rod's axis as a polygon closed far beyond its ends at -x and x, rotated into a general direction.
 std::vector<Vector3> closed_up(const Rod& rod) {
   std::vector<Vector3> polygon;
   for (std::size_t s = 0; s < rod.segments.size(); ++s)
@@ -143,7 +143,7 @@ TEST_CASE("falling rods heap up on the floor") {
       CHECK(at.y() > 0.99 * 0.03);
       top = std::max(top, at.y());
     }
-  CHECK(top > 0.1);  // they lie on each other
+  CHECK(top > 0.1);  // they lie on top of each other
   CHECK(top < 0.4);
 }
 
@@ -198,7 +198,7 @@ TEST_CASE("the rings of a chain are linked, hang in each other and stay so") {
   CHECK(segment_count(p) == 36);
   test::Touching t(start, 0.01);
   CHECK(t.run(80) < 0.01);
-  for (int ring = 1; ring < 3; ++ring)  // the top of each is still well above the bottom of the one before
+  for (int ring = 1; ring < 3; ++ring)  // the top of each ring is well above the bottom of the one before
     CHECK(t.scene.rods[ring].position[0].y() > t.scene.rods[ring - 1].position[6].y());
   CHECK(t.scene.rods[2].position[6].y() < -0.6);
 }

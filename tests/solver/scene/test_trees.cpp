@@ -1,4 +1,4 @@
-// Trees: how many segments, which radii and directions, their joints, their statics and symmetry, forests, refusals.
+// Trees: segment counts, radii, directions, joints, statics, symmetry; forests; refusals.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -158,15 +158,15 @@ TEST_CASE("a tree without branches is a tapered cantilever: its tip sinks as the
   p.radius_m = 0.02;
   p.shape.taper = 0.4;
   p.modulus_exponent = 1;
-  p.gravity_m_s2 = {9.81, 0, 0};  // the trunk stands along y
+  p.gravity_m_s2 = {9.81, 0, 0};  // across the trunk, which is along y
   p.youngs_modulus_pa = 1e10;
   Simulation simulation(build_scene(p), 0.3);
   simulation.relax();
-  // E I y'' = M, M(s) the moment of the weight beyond s; radii are linear in s through the middles of the edges.
+  // E I y'' = M, where M(s) is the moment of the weight beyond s. Radii are linear in s through the edges' midpoints.
   const int n = 64, steps = 6400;
   const double h = 1.0 / steps;
   const auto radius = [&](double s) { return p.radius_m * (1 - (1 - p.shape.taper) * (s * n - 0.5) / (n - 1)); };
-  double shear = 0, moment = 0, sag = 0;  // from the tip down: the tip moves by curvature times its distance
+  double shear = 0, moment = 0, sag = 0;  // from the tip: each curvature moves the tip by its distance
   for (int i = steps - 1; i >= 0; --i) {
     const double s = (i + 0.5) * h, load = 1000 * 9.81 * pi * std::pow(radius(s), 2);
     moment += h * (shear + h * load / 2);
@@ -198,7 +198,7 @@ TEST_CASE("a symmetric tree moves symmetrically") {
     CHECK((rod.position[i] - mirror.cwiseProduct(rod.position[i + 5])).norm() < 1e-9);
     CHECK(rod.segments[i].radius_m == 0.03);
   }
-  CHECK((rod.position[6] - Vector3(0.675, 1.4, 0)).norm() > 0.01);  // it did move
+  CHECK((rod.position[6] - Vector3(0.675, 1.4, 0)).norm() > 0.01);  // it moved
 }
 
 TEST_CASE(

@@ -1,4 +1,4 @@
-// Wind: what the field is like, what drag does to free segments and to what resists it.
+// Wind: properties of the field, and drag on free and on elastic segments.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -25,7 +25,7 @@ WindParameters breeze(const Vector3& mean) {
   return p;
 }
 
-/// One free segment along x, without weight.
+/// One free weightless segment along x.
 Scene floating_segment() {
   BendingRod p;
   p.segments = 1;
@@ -39,7 +39,7 @@ Scene floating_segment() {
 /// 1/2 rho C_d d l / m.
 double drag_per_mass(const Segment& s) { return 0.5 * 1.2 * 1.2 * 2 * s.radius_m * s.length_m / s.mass; }
 
-/// Speed of a falling segment after a second, over that which it tends to.
+/// Speed of a falling segment after a second over its terminal speed.
 double falling(double dt, double terminal) {
   Scene scene = floating_segment();
   const double k = drag_per_mass(scene.rods[0].segments[0]);
@@ -81,8 +81,8 @@ TEST_CASE("turbulence has no divergence") {
 }
 
 TEST_CASE("turbulence is as strong as asked for, and forgets over its length and time") {
-  // Means over space of many fields. In the drifting air a mode keeps its phase but for w t: <cos(w t)> over w and k
-  // is (1 + (sigma t / L)^2)^(-3/2).
+  // Spatial means over many fields. In the moving air, time changes a mode's phase by w t: the mean of cos(w t) over w
+  // and k is (1 + (sigma t / L)^2)^(-3/2).
   test::Random random(5);
   double size = 0, along[2] = {0, 0}, later = 0;
   Vector3 squares = Vector3::Zero();

@@ -1,4 +1,4 @@
-// After its first steps, a time step asks for no memory: not in our code, not in Eigen, not in PETSc.
+// After its first steps, a time step allocates nothing: not in our code, Eigen or PETSc.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <memory>
@@ -20,7 +20,7 @@
 
 namespace rodsweep::test_allocations {
 
-/// CG from a guess, with its history recorded, as the paired evaluation and closed loops use it.
+/// CG from a guess, with its history recorded, as in paired evaluation and closed loops.
 class CgSolve : public LinearSolve {
  public:
   CgSolve(const CgSettings& settings, std::unique_ptr<InitialGuess> guess)
@@ -47,7 +47,7 @@ class CgSolve : public LinearSolve {
   std::unique_ptr<ConjugateGradient> cg_;
 };
 
-/// Allocations of ten steps after five.
+/// Allocations in ten steps after the first five.
 long allocations_of(Scene& scene, Projection& projection) {
   TimeStepper stepper(scene, {0.02, 4, 1e-9});
   long before = 0;
@@ -108,7 +108,7 @@ TEST_CASE("the count sees PETSc") {
   LinearSystem system(scene.rods[0]);
   const long before = test::allocations();
   const ConjugateGradient cg(system.matrix(), {});
-  CHECK(test::allocations() - before > 10);  // only one of them is ours
+  CHECK(test::allocations() - before > 10);  // one is ours, the others are PETSc's
 }
 
 TEST_CASE("a direct step allocates nothing, in the balance of momentum too, nor does one by Gauss-Seidel") {

@@ -1,4 +1,4 @@
-// Steps that keep the balance of momentum, with CG in the place of the direct solve.
+// Steps that keep the balance of momentum, with CG instead of the direct solve.
 #include <catch2/catch.hpp>
 #include <optional>
 

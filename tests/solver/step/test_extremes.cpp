@@ -1,4 +1,4 @@
-// Numerical care: signs of quaternions, segments shorter than thick, moduli far off, both ends held.
+// Numerical extremes: signs of quaternions, segments shorter than thick, extreme moduli, both ends held.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -8,14 +8,14 @@
 
 namespace rodsweep::test_extremes {
 
-/// The scene's rod built again with every second quaternion negated, which is the same orientation.
+/// The scene with every second quaternion negated, which is the same orientation.
 Scene with_signs_flipped(Scene scene) {
   Rod& rod = scene.rods.front();
   for (std::size_t s = 0; s < rod.orientation.size(); s += 2) rod.orientation[s].coeffs() *= -1;
   return scene;
 }
 
-/// Straight along +x, held at its first segment and, if asked, at its last one, with this stretch compliance.
+/// A straight rod along +x with this stretch compliance; its first and, if asked, its last segment are held.
 Rod straight_rod(int n, bool both_ends, double stretch) {
   BendingRod p = test::bending_rod(n);
   p.initial_angle_deg = 0;
@@ -63,7 +63,7 @@ TEST_CASE("a rod whose segments are shorter than thick sags as any other") {
 TEST_CASE("moduli from 1 Pa to 1e15 Pa keep rods together and Newton converging") {
   for (const double modulus : {1.0, 1e3, 1e9, 1e12, 1e15})
     for (const Stretch stretch : {Stretch::inextensible, Stretch::physical}) {
-      if (stretch == Stretch::physical && modulus < 1e6) continue;  // its own weight tears such a rod apart
+      if (stretch == Stretch::physical && modulus < 1e6) continue;  // its own weight tears such a rod
       BendingRod p = test::bending_rod(12);
       p.youngs_modulus_pa = p.torsion_modulus_pa = modulus;
       p.stretch = stretch;
@@ -75,7 +75,7 @@ TEST_CASE("moduli from 1 Pa to 1e15 Pa keep rods together and Newton converging"
       }
       CHECK(is_finite(simulation.rod()));
       CHECK(joint_gap(simulation.rod()) < 1e-4);
-      if (modulus >= 1e12)  // all but rigid
+      if (modulus >= 1e12)  // almost rigid
         CHECK((tip(simulation.rod()) - tip(build_scene(p).rods.front())).norm() < 1e-4);
     }
 }

@@ -1,4 +1,4 @@
-// Eisenstat and Walker's forcing terms, by their formulas and by what Newton makes of them.
+// Eisenstat and Walker's forcing terms: their formulas and their effect on Newton.
 #include <catch2/catch.hpp>
 
 #include "solver/cg/conjugate_gradient.hpp"
@@ -12,18 +12,18 @@ namespace rodsweep::test_forcing_terms {
 TEST_CASE("forcing terms follow the square of what the last iteration achieved, from the first one given") {
   ForcingTerms forcing(2, 0.5, 0);
   CHECK(forcing.next(0, 0, 1, 1) == 0.5);
-  CHECK(forcing.next(0, 1, 0.1, 0.1) == Approx(0.9 * 0.25));    // 0.009, but 0.9 0.5^2 exceeds 0.1: heeded
-  CHECK(forcing.next(0, 2, 0.02, 0.02) == Approx(0.9 * 0.04));  // 0.9 0.225^2 does not
-  CHECK(forcing.next(0, 3, 0.06, 0.06) == 0.5);                 // it grew: no more than the first
-  CHECK(forcing.next(1, 1, 0.001, 0.001) == 0.5);               // another rod, of which nothing is known
+  CHECK(forcing.next(0, 1, 0.1, 0.1) == Approx(0.9 * 0.25));    // not 0.009, since the safeguard 0.9 0.5^2 exceeds 0.1
+  CHECK(forcing.next(0, 2, 0.02, 0.02) == Approx(0.9 * 0.04));  // the safeguard 0.9 0.225^2 is below 0.1
+  CHECK(forcing.next(0, 3, 0.06, 0.06) == 0.5);                 // the residual grew: at most the first term
+  CHECK(forcing.next(1, 1, 0.001, 0.001) == 0.5);               // another rod without history
   CHECK(forcing.next(0, 0, 1e-5, 1e-5) == 0.5);                 // another step
 }
 
 TEST_CASE("no solve does more than Newton's tolerance asks for") {
   ForcingTerms forcing(1, 0.1, 1e-6);
   CHECK(forcing.next(0, 0, 1, 1) == 0.1);
-  CHECK(forcing.next(0, 1, 1e-3, 1e-3) == Approx(5e-4));  // half of 1e-6 over 1e-3, where 9e-7 would follow
-  CHECK(forcing.next(0, 2, 1e-6, 1e-7) == 0.1);           // nothing is left to do
+  CHECK(forcing.next(0, 1, 1e-3, 1e-3) == Approx(5e-4));  // half of 1e-6 over 1e-3, instead of 9e-7
+  CHECK(forcing.next(0, 2, 1e-6, 1e-7) == 0.1);           // already converged
 }
 
 struct Counts {
@@ -33,7 +33,7 @@ struct Counts {
 TEST_CASE(
     "with forcing terms Newton converges in fewer iterations than to their first tolerance, with fewer of CG's "
     "than to a tight one") {
-  const auto run = [](double tolerance, bool forced) {  // by CG from zero, to forcing terms or to one tolerance
+  const auto run = [](double tolerance, bool forced) {  // CG from zero, with forcing terms or with one tolerance
     Scene scene = build_scene(test::bending_rod(20));
     ForcingTerms forcing(1, tolerance, 1e-9);
     Counts counts;

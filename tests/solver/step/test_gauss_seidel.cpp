@@ -1,4 +1,4 @@
-// What both Gauss-Seidel projections keep and refuse, on any graph of joints.
+// What both Gauss-Seidel projections conserve and refuse, on any graph of joints.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -18,7 +18,7 @@ std::unique_ptr<Projection> make(const std::string& name, const Scene& scene) {
   return std::make_unique<PbdProjection>(scene, PbdStiffness{0.8, 0.5});
 }
 
-/// Segments in random poses, at rest, every joint halfway between its two; in motion.
+/// Moving segments in random poses; each joint is at rest, halfway between its segments.
 Scene jointed(const test::Edges& edges, const std::vector<int>& static_segments) {
   test::Random random(11);
   std::vector<SegmentSpec> segments;

@@ -1,4 +1,4 @@
-// The balance of momentum: what it measures, and steps that keep it.
+// The balance of momentum: its residual, and steps that keep it.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@ namespace rodsweep::test_momentum_balance {
 
 constexpr double tolerance = 1e-5;
 
-/// With contacts' impulses, and anywhere but in balance.
+/// A rod with impulses of contacts, out of balance.
 Rod disturbed_rod(unsigned seed) {
   Rod rod = test::random_rod(test::tree(2, 2), {0}, seed);
   test::Random random(seed + 100);
@@ -25,7 +25,7 @@ Rod disturbed_rod(unsigned seed) {
   return rod;
 }
 
-/// g in the world, by matrices.
+/// g in the world, by dense matrices.
 VectorX dense_defect(const Rod& rod, const test::DenseSystem& dense) {
   VectorX g(6 * rod.segment_count());
   for (int s = 0; s < rod.segment_count(); ++s) {
@@ -171,7 +171,7 @@ TEST_CASE(
   }
 }
 
-/// |tip - exact| / L of a weightless cantilever of 50 segments under the tip load alpha = P L^2 / EI, after 30 s.
+/// |tip - exact| / L after 30 s of a weightless cantilever of 50 segments under the tip load alpha = P L^2 / EI.
 double elastica_error(double alpha, const Vector3& exact, double dt, std::optional<double> momentum_tolerance) {
   BendingRod p;
   p.clamp = Clamp::wall;
@@ -186,10 +186,10 @@ double elastica_error(double alpha, const Vector3& exact, double dt, std::option
 }
 
 TEST_CASE("in balance the elastica under a tip load does not know the time step") {
-  const Vector3 exact(0.6123716392755629, -0.7137915236119119, 0);  // alpha = 5, a boundary value problem's
+  const Vector3 exact(0.6123716392755629, -0.7137915236119119, 0);  // for alpha = 5, from a boundary value problem
   for (const double dt : {0.005, 0.01, 0.02, 0.05}) {
     INFO("dt " << dt);
-    CHECK(elastica_error(5, exact, dt, tolerance) == Approx(2.40e-4).epsilon(0.01));  // spatial, of 50 segments
+    CHECK(elastica_error(5, exact, dt, tolerance) == Approx(2.40e-4).epsilon(0.01));  // error of 50 segments
   }
   CHECK(elastica_error(5, exact, 0.02, {}) > 4e-3);
 }
@@ -270,7 +270,7 @@ TEST_CASE("a step that is taken back finds contacts as the last step left them")
   for (const bool astray : {false, true}) {
     Scene scene = start;
     DirectSolve direct(scene);
-    bool goes_astray = false;  // and answers balanced systems with nonsense
+    bool goes_astray = false;  // returns wrong solutions of balanced systems
     SolveBy solve([&](const LinearSystem& system, const SolvePosition& at, VectorX& x) {
       const SolveOutcome outcome = direct.solve(system, at, 0, x);
       if (goes_astray && system.keeps_balance()) x *= -3;

@@ -11,14 +11,14 @@ namespace rodsweep::test_observables {
 
 using test::move_rigidly, test::Random, test::set_rigid_velocity;
 
-/// Straight, of length 2, along +x.
+/// A straight rod along +x, of length 2.
 Rod straight(int segments, Clamp clamp) {
   BendingRod spec = test::bending_rod(segments, clamp);
   spec.initial_angle_deg = 0;
   return build_scene(spec).rods.front();
 }
 
-/// A straight free rod bent into an arc: every joint closed and turned by `angle` about the same local axis.
+/// A free rod bent into an arc: every joint is closed and turned by `angle` about the same local axis.
 Rod bent(int segments, double angle) {
   Rod rod = straight(segments, Clamp::free);
   for (int s = 1; s < segments; ++s) {
@@ -49,7 +49,7 @@ TEST_CASE("a stretched rod is longer by its gaps, and the largest counts as the 
   Rod rod = straight(4, Clamp::free);
   for (int s = 2; s < 4; ++s) rod.position[s].x() += 0.01;
   rod.position[3].x() += 0.002;
-  // Midpoints share each gap; all of it lies within the rod.
+  // Each gap counts half on both sides; all of it lies within the rod.
   CHECK(rod_length(rod) == Approx(2.012).epsilon(1e-13));
   CHECK(joint_gap(rod) == Approx(0.01 / 0.5).epsilon(1e-12));
   CHECK(joint_gap(bent(5, 0.4)) < 1e-15);
@@ -68,7 +68,7 @@ TEST_CASE("elastic energy of a uniformly bent rod is EI kappa^2 / 2 times the le
   const double stiffness = 1e6 * pi * std::pow(0.05, 4) / 4;  // E of bending_rod()
   const Rod rod = bent(segments, angle);
   CHECK(elastic_energy(rod) == Approx(stiffness * kappa * kappa / 2 * (2 - l)).epsilon(1e-6));
-  // and for any angle, the discrete law: C = 2 sin(angle / 2)
+  // For any angle, the discrete law: C = 2 sin(angle / 2).
   const double c = 2 * std::sin(0.7 / 2);
   CHECK(elastic_energy(bent(segments, 0.7)) == Approx((segments - 1) * stiffness / l * c * c / 2).epsilon(1e-12));
   CHECK(elastic_energy(straight(5, Clamp::wall)) < 1e-20);
@@ -100,7 +100,7 @@ TEST_CASE("a rod that turns rigidly has the energy and angular momentum of one l
   const double mass = 1000 * pi * 0.05 * 0.05 * 2, r2 = 0.05 * 0.05;
   const double transverse = mass * (3 * r2 + 4) / 12, axial = mass * r2 / 2;
   Rod rod = straight(6, Clamp::free);
-  move_rigidly(rod, Quaternion::Identity(), {-1, 0, 0});  // its centre in the origin
+  move_rigidly(rod, Quaternion::Identity(), {-1, 0, 0});  // its centre at the origin
   const Vector3 w(0.7, -1.1, 2);
   set_rigid_velocity(rod, Vector3::Zero(), w);
   const Vector3 spin(axial * w.x(), transverse * w.y(), transverse * w.z());

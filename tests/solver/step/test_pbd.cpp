@@ -1,4 +1,4 @@
-// PBD's corrections in closed form, and what its rods are: rigid ones, as far as the iterations go.
+// PBD's corrections in closed form. PBD rods are rigid in the limit of many iterations.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
@@ -22,7 +22,7 @@ Scene pair() {
   return scene;
 }
 
-/// One iteration on the first rod as it stands.
+/// One iteration on the first rod.
 ProjectionReport iterate(Scene& scene, const PbdStiffness& stiffness) {
   return PbdProjection(scene, stiffness).project(scene.rods[0], {}, 0.02, 0);
 }

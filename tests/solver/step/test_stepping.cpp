@@ -1,4 +1,4 @@
-// How a time step runs its solves: Newton's end, limits, failures, several rods, and what it refuses.
+// Control flow of a time step: convergence of Newton, limits, failures, several rods, refusals.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@
 
 namespace rodsweep::test_stepping {
 
-/// Solves directly, but reports something else at one position.
+/// Solves directly, but reports another outcome at one position.
 class Failing : public LinearSolve {
  public:
   Failing(const Scene& scene, SolvePosition where, SolveOutcome outcome)
@@ -74,7 +74,7 @@ TEST_CASE("a scene at rest needs no solve") {
 }
 
 TEST_CASE("multipliers start from zero in every step and end as the forces that hold the joints") {
-  // A rod at rest under gravity: the first joint carries the weight of all that is free, J^T lambda / dt_c^2.
+  // A rod at rest under gravity: its first joint carries the weight of all free segments, J^T lambda / dt_c^2.
   BendingRod spec = test::bending_rod(6);
   spec.damping_per_s = 40;
   spec.youngs_modulus_pa = 1e8;

@@ -1,5 +1,5 @@
-// The time step's mechanics: free bodies, loads and clamps against closed forms. Free fall, momenta and the order of a
-// rod's motion are in validation/test_validation_motion.cpp.
+// Mechanics of the time step: free bodies, loads and clamps against closed forms. Free fall, momenta and the order of
+// the motion are in validation/test_validation_motion.cpp.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -25,7 +25,7 @@ TEST_CASE("a body spinning about a principal axis keeps its spin, whatever the s
       sim.rod().angular_velocity[0] = 5 * axis;
       sim.run(50);
       CHECK((sim.rod().angular_velocity[0] - 5 * axis).norm() < 1e-11);
-      // Turned by 2 atan(w dt / 2) a step.
+      // Each step turns by 2 atan(w dt / 2).
       const double angle = 50 * 2 * std::atan(5 * dt / 2);
       const Quaternion expected = Eigen::AngleAxisd(angle, axis) * free_body().rods[0].orientation[0];
       CHECK(sim.rod().orientation[0].angularDistance(expected) < 1e-7);
@@ -41,7 +41,7 @@ TEST_CASE("a torque-free top precesses about its angular momentum at |L| / I_t, 
     Rod& rod = sim.rod();
     const Vector3 axis = director(rod.orientation[0]), across = rod.orientation[0] * Vector3::UnitX();
     rod.angular_velocity[0] = 6 * axis + 2 * across;
-    const Vector3 spin = angular_momentum(rod);  // at rest: no orbital part
+    const Vector3 spin = angular_momentum(rod);  // no orbital part, since the centre is at rest
     const double rate = spin.norm() / rod.segments[0].inertia_transverse;
     REQUIRE(rate * duration > 1);
     sim.run(steps);
@@ -135,7 +135,7 @@ TEST_CASE("a moving clamp is where its pose says at the end of every step, and t
   };
   scene.clamps.push_back({0, 0, [pose](double t) {
                             Pose p = pose(t);
-                            p.orientation.coeffs() *= 3;  // normalised by the step
+                            p.orientation.coeffs() *= 3;  // the step normalises it
                             return p;
                           }});
   Simulation sim(scene, dt);
@@ -159,7 +159,7 @@ TEST_CASE("a clamp that turns steadily turns a straight rod rigidly") {
   spec.initial_angle_deg = 0;
   Scene scene = build_scene(spec);
   Rod& rod = scene.rods[0];
-  // About the rod's own axis: no inertial force bends it.
+  // A rotation about the rod's own axis: no inertial force bends the rod.
   const Quaternion start = rod.orientation[0];
   for (Vector3& w : rod.angular_velocity) w = Vector3(2, 0, 0);
   const double dt = 0.01, angle = 2 * std::atan(2 * dt / 2);
@@ -182,7 +182,7 @@ TEST_CASE("static segments without a moving clamp stay, with no velocity") {
   CHECK(sim.rod().position[0] == position);
   CHECK(sim.rod().orientation[0].coeffs() == orientation.coeffs());
   CHECK(sim.rod().velocity[0].norm() == 0);
-  CHECK(sim.rod().angular_velocity[0].norm() < 1e-13);  // q times its conjugate is 1 to rounding
+  CHECK(sim.rod().angular_velocity[0].norm() < 1e-13);  // q times its conjugate is 1 up to rounding
   CHECK(sim.rod().velocity[4].norm() > 0.1);
 }
 

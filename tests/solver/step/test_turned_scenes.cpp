@@ -1,5 +1,4 @@
-// A scene that is turned and shifted as a whole, with all that acts on it, is the same scene: its linear systems are,
-// to rounding, and it moves alike.
+// A scene that is turned and shifted as a whole has the same linear systems, up to rounding, and moves alike.
 #include <catch2/catch.hpp>
 #include <optional>
 
@@ -58,7 +57,7 @@ TEST_CASE("a mirrored scene has the same systems, but for the signs of rows") {
   }
 }
 
-/// The largest distance of `other` from where `image` has the points of `start`, both stepped.
+/// The largest distance of points of `other` from the images of those of `start`, after both took steps.
 template <class Image, class P>
 double apart_from_image(const Scene& start, Scene other, const Image& image, P project) {
   Scene scene = start;
@@ -75,7 +74,7 @@ double apart_after_steps(const Scene& start, const RigidMotion& motion, P projec
   return apart_from_image(start, moved(start, motion), motion, project);
 }
 
-// Ten steps.
+// Takes ten steps.
 void directly(Scene& scene, std::optional<double> momentum_tolerance) {
   Simulation simulation(scene, {0.01, 20, 1e-12}, momentum_tolerance);
   simulation.run(10);

@@ -1,4 +1,4 @@
-// XPBD against Newton with direct solves: how it gets there, and to which order of the step they agree.
+// XPBD against Newton with direct solves: convergence, and the order in the step at which they agree.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace rodsweep::test_xpbd {
 
-/// A rod of six segments that has fallen smoothly for 0.1 s.
+/// A rod of six segments after a smooth fall of 0.1 s.
 Scene falling(double modulus_pa, std::optional<double> stretch_compliance_per_j = std::nullopt) {
   BendingRod spec = test::bending_rod(6);
   spec.youngs_modulus_pa = spec.torsion_modulus_pa = modulus_pa;
@@ -21,7 +21,7 @@ Scene falling(double modulus_pa, std::optional<double> stretch_compliance_per_j 
   return simulation.scene;
 }
 
-/// The order at which the distance of one step's outcome from Newton's falls as the step is halved, from each step on.
+/// Orders in the step of the distance of one XPBD step from Newton's, for three halvings of `longest_s`.
 std::vector<double> orders(const Scene& start, std::vector<Vector3> Rod::*of, double longest_s, int iterations) {
   std::vector<double> found;
   double before = 0;
@@ -61,7 +61,7 @@ TEST_CASE("with a single joint an XPBD iteration is a Newton iteration") {
 }
 
 TEST_CASE("converged XPBD is Newton's step, to O(dt^4) in positions and O(dt^3) in velocities") {
-  // They differ by the positions whose J the forces acted along on the way, which are O(dt^2) apart.
+  // They differ in the positions at which J is evaluated. These are O(dt^2) apart.
   const Scene start = falling(1e6);
   for (const double order : orders(start, &Rod::position, 0.01, 5000)) CHECK(order == Approx(4).margin(0.6));
   for (const double order : orders(start, &Rod::velocity, 0.01, 5000)) CHECK(order == Approx(3).margin(0.6));
@@ -70,7 +70,7 @@ TEST_CASE("converged XPBD is Newton's step, to O(dt^4) in positions and O(dt^3) 
 }
 
 TEST_CASE("where steps resolve all stiffness, every XPBD iteration gains two orders of the step on Newton") {
-  // alpha~ = alpha/dt^2 outgrows J M^-1 J^T: an iteration leaves a share of O(dt^2) of a correction of O(dt^2).
+  // alpha~ = alpha/dt^2 outgrows J M^-1 J^T: an iteration leaves a fraction O(dt^2) of a correction of O(dt^2).
   const Scene start = falling(1e4, 1e-4);
   for (const double order : orders(start, &Rod::position, 1e-3, 1)) CHECK(order == Approx(4).margin(0.5));
   for (const double order : orders(start, &Rod::position, 2e-3, 2)) CHECK(order == Approx(6).margin(0.7));

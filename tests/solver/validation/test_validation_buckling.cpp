@@ -1,5 +1,5 @@
-// Localised helical buckling of a long twisted rod whose ends are clamped and brought closer (Coyne 1990; van der
-// Heijden & Thompson 2000). Away from the ends the angle phi of the tangent from the axis obeys
+// Localised helical buckling of a long twisted rod whose clamped ends approach each other (Coyne 1990; van der
+// Heijden & Thompson 2000). Away from the ends, the angle phi between tangent and axis obeys
 //   (cos phi - cos phi0) / (1 - cos phi0) = tanh^2(s / s*),  s* = (2 EI / M) sqrt((1 + cos phi0) / (1 - cos phi0)),
 //   M^2 = 2 EI T (1 + cos phi0),
 // with the largest angle phi0 at s = 0, the twisting moment M and the tension T.
@@ -14,9 +14,9 @@
 namespace rodsweep::test_validation_buckling {
 
 constexpr double length = 4, radius = 0.01, youngs_modulus = 1e9, torsion_modulus = 5e9;  // GJ = 10 EI
-constexpr double shortening = 0.2, end_turn = 9.02;  // of phi0 near 60 degrees, s* = L / 20
-// Newton leaves out how forces turn with the rod: in steps of 3 ms the twisting moment spins it for ever. Along the rod
-// nothing holds the helix, so it creeps by micrometres a step and a tolerance would not end the relaxation.
+constexpr double shortening = 0.2, end_turn = 9.02;  // phi0 is near 60 degrees, s* = L / 20
+// Newton ignores how forces turn with the rod: at steps of 3 ms the twisting moment spins the rod without end. The
+// helix is free to move along the rod and creeps by micrometres a step, so a tolerance would not end the relaxation.
 constexpr double loading_time = 2, step = 1e-3;
 constexpr int settling_steps = 2000;
 
@@ -31,7 +31,7 @@ Scene twisted_rod(int n) {
   scene.rods.push_back(rod_held_at_both_ends(n, length, p, 1000));
   const Vector3 end = scene.rods[0].position.back();
   const Quaternion along_x = scene.rods[0].orientation.back();
-  // The least disturbance says to which side and where it buckles.
+  // A small disturbance selects the side and the place of buckling.
   for (int i = 1; i < n - 1; ++i) scene.rods[0].position[i].y() = 1e-4 * std::exp(-std::pow((i - n / 2) * l / 0.2, 2));
   scene.clamps.push_back({0, n - 1, [=](double time) {
                             const double part = std::min(1.0, time / loading_time);
@@ -44,7 +44,7 @@ Scene twisted_rod(int n) {
 struct Buckled {
   double envelope_error;  ///< largest deviation from tanh^2
   double largest_angle;   ///< phi0
-  double tension_error;   ///< of M^2 = 2 EI T (1 + cos phi0), relative
+  double tension_error;   ///< relative error of M^2 = 2 EI T (1 + cos phi0)
 };
 
 Buckled buckled(int n) {
@@ -55,7 +55,7 @@ Buckled buckled(int n) {
   const Rod& rod = simulation.rod();
   std::vector<double> cosine;
   for (const Quaternion& q : rod.orientation) cosine.push_back(director(q).x());
-  // The least cosine and its place by the parabola through the three lowest.
+  // The smallest cosine, by a parabola through the three smallest values.
   const auto lowest = std::min_element(cosine.begin() + 1, cosine.end() - 1);
   const double before = lowest[-1], here = lowest[0], after = lowest[1], bend = before - 2 * here + after;
   const double offset = (before - after) / (2 * bend);

@@ -1,5 +1,5 @@
-// What the time step makes of energy and momenta over long runs: implicit Euler dissipates in the first order of the
-// step, never gains, and leaves linear momentum alone.
+// Energy and momenta of the time step over long runs: implicit Euler dissipates energy to first order in the step,
+// never gains any, and conserves linear momentum.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,7 +17,7 @@ double energy(const Scene& scene) {
   return kinetic_energy(rod) + gravitational_energy(rod, scene.gravity_m_s2) + elastic_energy(rod);
 }
 
-/// A stiff short rod that swings from its clamp.
+/// A short stiff rod that swings about its clamp.
 Scene swinging_rod() {
   BendingRod p;
   p.segments = 6;
@@ -26,11 +26,11 @@ Scene swinging_rod() {
   return build_scene(p);
 }
 
-/// Of momenta: none for the paper's step, and for one that keeps their balance.
+/// Momentum tolerances: none for the paper's step, 1e-9 for a step that keeps the balance.
 using Balance = std::optional<double>;
 const Balance kinds[] = {std::nullopt, 1e-9};
 
-/// Energy lost in half a second, over the energy that moves.
+/// Energy lost in half a second over the largest kinetic energy.
 double dissipation(double dt, Balance balance) {
   Simulation simulation(swinging_rod(), dt, 12, balance);
   const double start = energy(simulation.scene);
@@ -42,7 +42,7 @@ double dissipation(double dt, Balance balance) {
   return (start - energy(simulation.scene)) / largest;
 }
 
-/// Free and weightless, bent, turning and flying.
+/// A free, weightless, bent scene in flight and rotation.
 Scene tumbling(Scene scene) {
   scene.gravity_m_s2.setZero();
   Rod& rod = scene.rods.front();

@@ -1,5 +1,5 @@
-// A straight rod held at both ends, one of which is turned by a moving clamp: pure bending and pure torsion. Both ends
-// are static segments; after the turn the rod relaxes (see simulation.hpp). No gravity.
+// A straight rod held at both ends: a moving clamp turns one end, for pure bending and pure torsion. Both ends are
+// static segments. After the turn the rod relaxes (simulation.hpp). No gravity.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -21,7 +21,7 @@ Rod held_rod() {
   return rod_held_at_both_ends(count, count * segment_length, p, 100);
 }
 
-/// Turns the last segment as `pose_at` (of the angle) says, up to `angle`, and relaxes.
+/// Moves the last segment to `pose_at(angle)`, from zero up to `angle`, and relaxes.
 template <typename PoseAt>
 Rod turned(double angle, const PoseAt& pose_at) {
   Scene scene;
@@ -35,7 +35,7 @@ Rod turned(double angle, const PoseAt& pose_at) {
   return simulation.rod();
 }
 
-/// conj(q_a) q_b as a rotation vector, a's frame.
+/// conj(q_a) q_b as a rotation vector in the frame of a.
 Vector3 joint_turn(const Rod& rod, const Joint& j) {
   const Eigen::AngleAxisd turn(rod.orientation[j.a].conjugate() * rod.orientation[j.b]);
   return turn.angle() * turn.axis();
@@ -44,7 +44,7 @@ Vector3 joint_turn(const Rod& rod, const Joint& j) {
 TEST_CASE("A rod bent by its end turns by the same angle in every joint") {
   const double angle = GENERATE(0.3, pi / 2, pi);
   const Quaternion along_x = turn_between(Vector3::UnitZ(), Vector3::UnitX());
-  // The end of a polygon of equal sides and equal turns.
+  // The end of a polygon with equal sides and equal turns.
   const auto end_of_polygon = [&](double total) {
     Vector3 vertex(0, 0, 0), side(0, 0, 0);
     for (int i = 0; i < count; ++i) {
@@ -76,12 +76,12 @@ TEST_CASE("A rod twisted by its end has uniform twist and the torque of its join
   linearize(rod, at);
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
     CHECK((joint_turn(rod, rod.joints[k]) - joint_angle * Vector3::UnitZ()).norm() < 1e-8);
-    // J^T lambda / dt^2 is what the joint does to its second segment: it holds back the turn.
+    // J^T lambda / dt^2 is the torque of the joint on its second segment. It opposes the turn.
     Vector3 on_b(0, 0, 0);
     for (int c = 0; c < 3; ++c)
       for (int row = 0; row < 6; ++row)
         on_b[c] += at.joints[k].rotation_b[c][row] * rod.lambda[static_cast<Eigen::Index>(6 * k) + row] / (step * step);
-    CHECK((on_b + torque * Vector3::UnitZ()).norm() < 1e-8 * torque);  // in its own frame
+    CHECK((on_b + torque * Vector3::UnitZ()).norm() < 1e-8 * torque);  // in the frame of b
     CHECK(-on_b.z() ==
           Approx(torsion_modulus * second_moment * angle / free_length).epsilon(joint_angle * joint_angle));
   }

@@ -1,7 +1,7 @@
-// Lattices against frames of Timoshenko beams (timoshenko_frame.hpp): cantilevers of stiff nodes under end loads and
-// their first bending frequency; exact states of strain; what a free lattice keeps; symmetric sag.
+// Lattices against frames of Timoshenko beams (timoshenko_frame.hpp): cantilevers with stiff nodes under end loads,
+// their first bending frequency, exact states of strain, conservation by free lattices, symmetric sag.
 //
-// A frame has the rods' half segments beyond the last nodes as beams of their own, so that its mass is the lattice's.
+// The frame includes the rods' half segments beyond the last nodes as beams, so that both have the same mass.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -19,7 +19,7 @@ using Cell = Lattice::Cell;
 using test::cells, test::constraint_of, test::is_crossing, test::moved, test::nodes_of, test::Place, test::point;
 using test::TimoshenkoFrame;
 
-/// Held at its side, of stiff nodes, weightless.
+/// A weightless lattice with stiff nodes, held at one side.
 Lattice cantilever(Cell cell, int nodes_x, int across, int segments) {
   Lattice p = test::lattice_of(cell, nodes_x, segments, Held::side);
   p.nodes_y = p.nodes_z = across;
@@ -31,7 +31,7 @@ Lattice cantilever(Cell cell, int nodes_x, int across, int segments) {
   return p;
 }
 
-/// The frame of a lattice, and where it has the lattice's nodes.
+/// The frame of a lattice and the frame's number of each lattice node.
 struct LatticeFrame {
   TimoshenkoFrame frame;
   std::map<Place, int> nodes;
@@ -44,7 +44,7 @@ struct LatticeFrame {
     }
     for (const auto& [at, node] : nodes)
       for (const Place& way : test::ways_of(p.cell)) {
-        if (way < Place{}) continue;  // of any two that are opposite, one
+        if (way < Place{}) continue;  // one of two opposite directions
         const bool there = nodes.count(moved(at, way)), before = nodes.count(moved(at, way, -1));
         if (there) {
           int last = node;
@@ -61,7 +61,7 @@ struct LatticeFrame {
     frame.assemble();
   }
 
-  /// Shared by the nodes with the greatest x.
+  /// A force shared by the nodes with the largest x.
   VectorX end_load(const Lattice& p, const Vector3& force) {
     VectorX loads = frame.no_load();
     int count = 0;
@@ -72,12 +72,12 @@ struct LatticeFrame {
   }
 };
 
-/// Of the face with the greatest x: how far it sinks, and the slope of the straight line that fits it best.
+/// The face with the largest x: its mean deflection, and the slope of its best straight line.
 struct End {
   double sinking = 0, slope = 0;
 };
 
-/// `shift_of`: of a place.
+/// `shift_of` maps a place to its displacement.
 template <class Shift>
 End end_of(const Lattice& p, const Shift& shift_of) {
   double count = 0, sinking = 0, height = 0, height_square = 0, along = 0, product = 0;
@@ -95,7 +95,7 @@ End end_of(const Lattice& p, const Shift& shift_of) {
   return {sinking / count, (product - height * along / count) / (height_square - height * height / count)};
 }
 
-/// A segment at every node.
+/// The segment at each node.
 std::map<Place, int> segments_at_nodes(const Lattice& p, const Rod& rod) {
   std::map<Place, int> out;
   for (const auto& [at, ways] : nodes_of(p))
@@ -104,8 +104,8 @@ std::map<Place, int> segments_at_nodes(const Lattice& p, const Rod& rod) {
   return out;
 }
 
-/// End of the lattice over that of its frame, minus one, under an end load across it that lets it sink by a thousandth
-/// of its length.
+/// Relative error of the lattice's end against its frame's, under a transverse end load that deflects it by a
+/// thousandth of its length.
 End static_error(Lattice p) {
   LatticeFrame frame(p, 1);
   const Vector3 down(0, -1, 0);
@@ -126,15 +126,15 @@ End static_error(Lattice p) {
   return {found.sinking / (force * expected.sinking) - 1, found.slope / (force * expected.slope) - 1};
 }
 
-/// Angular frequency of the first bending mode over that of the frame, minus one: of a small free oscillation from the
-/// frame's shape.
+/// Relative error of the first bending frequency against the frame's, from a small free oscillation in the frame's mode
+/// shape.
 double frequency_error(const Lattice& p) {
-  LatticeFrame frame(p, p.segments);  // nodes of the frame at the centres of segments
+  LatticeFrame frame(p, p.segments);  // frame nodes at the centres of segments
   const TimoshenkoFrame::Mode mode = frame.frame.lowest_mode(frame.end_load(p, Vector3(0, -1, 0)));
   const double w = mode.angular_frequency, dt = 2 * pi / w / 200;
   Scene scene = build_scene(p);
   Rod& start = scene.rods.front();
-  const double amplitude = 1e-5 * p.mesh_m;  // of the mode's greatest entry [m, rad]
+  const double amplitude = 1e-5 * p.mesh_m;  // of the mode's largest entry [m, rad]
   for (std::size_t s = 0; s < start.segments.size(); ++s) {
     if (start.segments[s].is_static) continue;
     const Vector6 shape = amplitude * w * frame.frame.at(mode.shape, frame.frame.node_at(start.position[s]));
@@ -145,12 +145,12 @@ double frequency_error(const Lattice& p) {
   return std::tan(std::arg(z)) / dt / w - 1;
 }
 
-/// From the errors of N and 2 N segments.
+/// Order of convergence from the errors of N and 2 N segments.
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
-/// Of an error in 1 / N^2 and 1 / N^4, that for ever more segments.
+/// Limit for infinitely many segments of an error in 1 / N^2 and 1 / N^4.
 double limit(double coarse, double fine) { return (4 * fine - coarse) / 3; }
 
-/// Three nodes along every edge, free.
+/// A free lattice with three nodes along every edge.
 Lattice block(Cell cell, int segments = 2) {
   Lattice p = cantilever(cell, 3, 3, segments);
   p.held = Held::free;
@@ -158,7 +158,7 @@ Lattice block(Cell cell, int segments = 2) {
   return p;
 }
 
-/// Force along the rod in every joint [N], and the greatest of all other forces and moments (over a radius) [N].
+/// Axial force in every joint [N], and the largest of all other forces and moments (over a radius) [N].
 struct Tension {
   std::vector<double> along;
   double other = 0;
@@ -178,7 +178,7 @@ Tension tension_of(const Rod& rod, const Lattice& p) {
   return out;
 }
 
-/// On its way, turning about its middle.
+/// Flies and turns about the origin.
 Scene thrown(const Lattice& p) {
   Scene scene = build_scene(p);
   test::set_rigid_velocity(scene.rods.front(), {1, 2, 3}, {0.3, 1, 2});
@@ -218,7 +218,7 @@ TEST_CASE("A single beam of a frame bends, stretches and twists as Timoshenko's,
 
 TEST_CASE("A slender beam of a frame swings as Euler and Bernoulli's, less Rayleigh's part") {
   const double length = 1, e = 1e7, radius = 0.01, b = 1.875104;
-  TimoshenkoFrame frame(test::round_beam(radius, 1000, e, 1e12));  // does not shear
+  TimoshenkoFrame frame(test::round_beam(radius, 1000, e, 1e12));  // no shear
   frame.hold(frame.add_node(Vector3::Zero()));
   for (int i = 1; i <= 8; ++i) {
     frame.add_node(i / 8.0 * Vector3::UnitX());
@@ -346,13 +346,13 @@ TEST_CASE("A free lattice falls as a stone does") {
     Simulation simulation(build_scene(p), 0.01);
     const std::vector<Vector3> start = simulation.rod().position;
     simulation.run(50);
-    const double fallen = 9.81 * 1e-4 * 50 * 51 / 2;  // of implicit Euler
+    const double fallen = 9.81 * 1e-4 * 50 * 51 / 2;  // by implicit Euler
     for (std::size_t s = 0; s < start.size(); ++s)
       CHECK((simulation.rod().position[s] - start[s] + Vector3(0, fallen, 0)).norm() < 1e-11);
   }
 }
 
-// Of stiff nodes: soft ones know which rod is the first, since any two others are joined by way of it.
+// Nodes are stiff: soft nodes distinguish the first rod, since it joins all others.
 TEST_CASE("A lattice held at its corners sags symmetrically") {
   for (const Cell cell : cells) {
     Lattice p = block(cell);

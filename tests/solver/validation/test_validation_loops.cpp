@@ -1,4 +1,4 @@
-// Rods that close: Michell's instability of a twisted ring, and rings and nets that hold their weight.
+// Closed rods: Michell's instability of a twisted ring; rings and nets under their weight.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace rodsweep::test_validation_loops {
 
-constexpr double michell_deg = 360 * 1.7320508075688772;  // 2 pi sqrt(3) of a total twist, where EI = GJ
+constexpr double michell_deg = 360 * 1.7320508075688772;  // total twist of 2 pi sqrt(3), for EI = GJ
 
-/// Free, weightless, naturally straight, EI = GJ.
+/// A free, weightless, naturally straight ring with EI = GJ.
 Ring isotropic_ring(int segments, double twist_deg) {
   Ring p;
   p.segments = segments;
@@ -31,7 +31,7 @@ double out_of_plane(const Rod& rod) {
   return std::sqrt(square / static_cast<double>(rod.position.size()));
 }
 
-/// The ring with its segments moved out of its plane by `amplitude` cos 2 theta, the mode that goes unstable first.
+/// The ring displaced out of its plane by `amplitude` cos 2 theta, the first unstable mode.
 Scene disturbed_ring(int segments, double twist_deg, double amplitude) {
   Scene scene = build_scene(isotropic_ring(segments, twist_deg));
   Rod& rod = scene.rods.front();
@@ -39,21 +39,20 @@ Scene disturbed_ring(int segments, double twist_deg, double amplitude) {
   return scene;
 }
 
-/// Where dt^2 k / m of that mode is about 0.1: Newton leaves out how forces turn with the rod, and larger steps feel
-/// it.
+/// dt^2 k / m of that mode is about 0.1. Newton ignores how forces turn with the rod, which matters at larger steps.
 constexpr double overdamped_step = 0.05;
 
-/// Rate at which a small disturbance grows in overdamped steps of dt: a mode of stiffness k and mass m is multiplied by
-/// 1 / (1 + dt^2 k / m) in each, and this is -dt^2 k / m. Zero where the planar ring loses its stability.
+/// Growth rate of a small disturbance in overdamped steps of dt: each step multiplies a mode of stiffness k and mass m
+/// by 1 / (1 + dt^2 k / m); this is -dt^2 k / m. It is zero where the planar ring becomes unstable.
 double growth(int segments, double twist_deg) {
   Simulation simulation(disturbed_ring(segments, twist_deg, 1e-5), overdamped_step);
-  for (int i = 0; i < 100; ++i) simulation.relax_once();  // until the mode is alone
+  for (int i = 0; i < 100; ++i) simulation.relax_once();  // until other modes have decayed
   const double before = out_of_plane(simulation.rod());
   for (int i = 0; i < 20; ++i) simulation.relax_once();
   return 1 - std::pow(before / out_of_plane(simulation.rod()), 1.0 / 20);
 }
 
-/// The twist at which growth() is zero, over Michell's: a secant from both sides.
+/// The twist at which growth() is zero over Michell's, by a secant between both sides.
 double critical_twist(int segments) {
   double low = 0.97, high = 1.03, at_low = growth(segments, low * michell_deg),
          at_high = growth(segments, high * michell_deg);
@@ -68,7 +67,7 @@ double critical_twist(int segments) {
   return low - at_low * (high - low) / (at_high - at_low);
 }
 
-/// What the joints do to the static segments: minus the sum of the forces by which these hold the rod.
+/// Force of the joints on the static segments.
 Vector3 force_on_held(const Rod& rod, double constraint_dt) {
   Vector3 total = Vector3::Zero();
   for (std::size_t k = 0; k < rod.joints.size(); ++k) {
@@ -85,7 +84,7 @@ double potential_energy(const Scene& scene) {
   return gravitational_energy(scene.rods.front(), scene.gravity_m_s2) + elastic_energy(scene.rods.front());
 }
 
-/// Its rods stretch: taut and inextensible they would pull so hard that only steps of a millisecond come to rest.
+/// Its rods can stretch: taut inextensible rods pull so hard that only steps of a millisecond come to rest.
 Net small_net() {
   Net p;
   p.rows = p.columns = 5;
@@ -97,7 +96,7 @@ Net small_net() {
 
 constexpr double settling_step = 0.01;
 
-/// The scene after drag has brought it to rest.
+/// The scene at rest, after strong drag.
 std::unique_ptr<Simulation> settle(Scene scene) {
   scene.damping_per_s = 25;
   auto simulation = std::make_unique<Simulation>(std::move(scene), settling_step);
@@ -124,7 +123,7 @@ TEST_CASE("A twisted ring stays planar below Michell's twist of 2 pi sqrt 3 and 
 
   Simulation above(disturbed_ring(40, 1.1 * michell_deg, 1e-3), overdamped_step);
   for (int i = 0; i < 600; ++i) above.relax_once();
-  CHECK(out_of_plane(above.rod()) > 0.1);  // of a radius of 1
+  CHECK(out_of_plane(above.rod()) > 0.1);  // the ring's radius is 1
   CHECK(joint_gap(above.rod()) < 1e-5);
 }
 
@@ -151,8 +150,7 @@ TEST_CASE("A straight rod bent into a ring is in equilibrium, wherever it is cut
   Ring p = isotropic_ring(30, 0);
   Simulation simulation(build_scene(p), 0.5);
   CHECK(simulation.relax_once() < 1e-9);
-  // Bent by theta in every joint: elastic energy N (EI / l) (2 sin(theta / 2))^2 / 2, close to EI / (2 R^2) times 2 pi
-  // R.
+  // Each joint is bent by theta: elastic energy N (EI / l) (2 sin(theta / 2))^2 / 2, close to EI / (2 R^2) 2 pi R.
   const double stiffness = 1e7 * pi * std::pow(0.05, 4) / 4, turn = 2 * pi / 30;
   CHECK(elastic_energy(simulation.rod()) ==
         Approx(30 * stiffness / turn * std::pow(2 * std::sin(turn / 2), 2) / 2).epsilon(1e-9));
@@ -175,7 +173,7 @@ TEST_CASE("A hanging ring and hanging nets settle, and what holds them carries t
     const double energy = potential_energy(settled->scene);
     CHECK(energy < before);
     CHECK(joint_gap(rod) < 1e-3);
-    // The least energy near by: a disturbance adds to it and is forgotten.
+    // A local minimum of the energy: a disturbance adds energy and decays.
     Scene disturbed = settled->scene;
     for (std::size_t s = 0; s < rod.position.size(); ++s)
       if (!rod.segments[s].is_static)
@@ -186,7 +184,7 @@ TEST_CASE("A hanging ring and hanging nets settle, and what holds them carries t
 
 TEST_CASE("A net held at its corners sags symmetrically") {
   const std::unique_ptr<Simulation> settled = settle(build_scene(small_net()));
-  // Rods along x, row by row: the crossing (row, column) of a net with one segment a mesh.
+  // Rods along x, row by row: crossing (row, column) of a net with one segment per mesh.
   const auto height = [&](int row, int column) { return settled->rod().position[5 * row + column].y(); };
   CHECK(height(2, 2) < -1e-3);
   for (int r = 0; r < 5; ++r)

@@ -1,7 +1,7 @@
-// Small vibrations: frequencies and decay of a clamped-free beam and of a hanging rope, mode by mode.
+// Small vibrations: frequency and decay of the modes of a clamped-free beam and of a hanging rope.
 //
-// A mode is started by its velocities and watched through its own shape (oscillation.hpp: what implicit Euler makes of
-// its frequency and amplitude).
+// Initial velocities start a mode; its own shape projects the motion (oscillation.hpp has the effect of implicit Euler
+// on frequency and amplitude).
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
@@ -11,7 +11,7 @@
 
 namespace rodsweep::test_validation_modes {
 
-/// Gives a straight wall-clamped rod the transverse velocities `at_vertices` (in `direction`), segments moving rigidly.
+/// Gives a straight wall-clamped rod the transverse velocities `at_vertices` along `direction`; segments move rigidly.
 void set_transverse_velocity(Rod& rod, const VectorX& at_vertices, const Vector3& direction) {
   for (std::size_t s = 1; s < rod.segments.size(); ++s) {
     const double before = at_vertices[static_cast<Eigen::Index>(s) - 1],
@@ -22,7 +22,7 @@ void set_transverse_velocity(Rod& rod, const VectorX& at_vertices, const Vector3
   }
 }
 
-/// The factor per step of a mode: `cycles` periods of about `frequency` from a small start in its shape.
+/// The factor per step of a mode over `cycles` periods of about `frequency`, from a small start in its shape.
 std::complex<double> mode_factor(Scene scene, const VectorX& shape, const Vector3& direction, double frequency,
                                  double dt, double cycles) {
   const double amplitude = 1e-5;  // of the displacement [m]; small enough for linearity to 1e-9
@@ -64,11 +64,11 @@ double beam_frequency(const BendingRod& p, int k) {
 
 struct Modes {
   VectorX frequency;      ///< [rad/s], ascending
-  Eigen::MatrixXd shape;  ///< deflections at the vertices, a column per mode
+  Eigen::MatrixXd shape;  ///< deflections at the vertices, one mode per column
 };
 
-/// Plane modes of a chain of N rigid cylinders on a wall, EI/l in its joints and 2 EI/l in the wall's; the unknowns are
-/// the segments' angles, so that the joints hold exactly.
+/// Plane modes of a chain of N rigid cylinders on a wall, with EI/l in its joints and 2 EI/l at the wall. Unknowns are
+/// the segments' angles, so joints hold exactly.
 Modes chain_modes(const BendingRod& p) {
   const int n = p.segments;
   const double l = p.length_m / n, area = pi * p.radius_m * p.radius_m, mass = p.density_kg_m3 * area * l;
@@ -118,7 +118,7 @@ TEST_CASE("A finely divided beam has the first frequency that rotary inertia giv
     return std::tan(std::arg(mode_factor(build_scene(p), beam_mode(0, n), Vector3::UnitY(), w, dt, 2))) / dt / w;
   };
   const double limit = (4 * frequency(200) - frequency(100)) / 3;  // without the error in 1/N^2
-  // Rayleigh: -(1/2) (I / A) times the integral of phi'^2 over that of phi^2, 4.6478 / L^2 in mode 1.
+  // Rayleigh's correction: -(1/2) (I / A) times int phi'^2 / int phi^2, which is 4.6478 / L^2 for mode 1.
   const BendingRod p = beam(200);
   CHECK(limit == Approx(1 - 4.6478 / 2 * std::pow(p.radius_m / (2 * p.length_m), 2)).epsilon(5e-6));
 }

@@ -1,5 +1,5 @@
-// Motion against what every discretisation of this kind must keep: free fall, momenta, first order in dt, Newton's
-// quadratic convergence.
+// Motion against the invariants of every such discretisation: free fall, momenta, first order in dt, quadratic
+// convergence of Newton.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@
 
 namespace rodsweep::test_validation_motion {
 
-/// As the bending rods of Shao et al. 2021: N = 20, 2 m, r = 0.05 m, held by its first segment, at 20 degrees at first.
+/// A bending rod of Shao et al. 2021: N = 20, 2 m, r = 0.05 m, first segment held, initial angle 20 degrees.
 BendingRod deck_rod() {
   BendingRod p;
   p.segments = 20;
@@ -20,7 +20,7 @@ BendingRod deck_rod() {
   return p;
 }
 
-/// A free rod in the void, bending in two planes, spinning and drifting; its segments' velocities fit together.
+/// A free rod without gravity that bends in two planes, spins and drifts. Velocities of segments are compatible.
 Scene tumbling_rod() {
   BendingRod p = deck_rod();
   p.clamp = Clamp::free;
@@ -41,7 +41,7 @@ Scene tumbling_rod() {
   return scene;
 }
 
-/// Change of the angular momentum of the tumbling rod in half a second, relative.
+/// Relative change of the angular momentum of the tumbling rod in half a second.
 double angular_momentum_drift(double dt) {
   Simulation simulation(tumbling_rod(), dt);
   const Vector3 before = angular_momentum(simulation.rod());
@@ -89,7 +89,7 @@ TEST_CASE("A free rod without gravity keeps its linear momentum, and its angular
   Simulation simulation(tumbling_rod(), 0.01);
   const Vector3 before = linear_momentum(simulation.rod());
   simulation.run(100);
-  CHECK(elastic_energy(simulation.rod()) > 1e-3);  // it did bend
+  CHECK(elastic_energy(simulation.rod()) > 1e-3);  // it bent
   CHECK((linear_momentum(simulation.rod()) - before).norm() < 1e-12 * before.norm());
 
   const double coarse = angular_momentum_drift(4e-3), fine = angular_momentum_drift(2e-3);
@@ -106,7 +106,7 @@ TEST_CASE("The time step is of first order") {
 
 TEST_CASE("Newton's residual falls quadratically to the floor of rounding") {
   BendingRod p = deck_rod();
-  p.youngs_modulus_pa = 1e4;  // a hard one: six solves
+  p.youngs_modulus_pa = 1e4;  // a difficult case: six solves
   Scene scene = build_scene(p);
   DirectSolve direct(scene);
   LinearProjection projection(scene, direct);
@@ -119,13 +119,13 @@ TEST_CASE("Newton's residual falls quadratically to the floor of rounding") {
     const std::vector<double> r = recorder.residuals();
     REQUIRE(r.size() == 9);
     for (std::size_t k = 1; k + 1 < r.size(); ++k) {
-      if (r[k] > 3e-3) continue;  // not yet where the quadratic term rules
+      if (r[k] > 3e-3) continue;  // before quadratic convergence
       CHECK(r[k + 1] < 30 * r[k] * r[k] + floor);
       if (r[k + 1] > floor) ++quadratic;
     }
     CHECK(r.back() < floor);
   }
-  CHECK(quadratic > 30);  // iterations that showed it, above the floor
+  CHECK(quadratic > 30);  // iterations with quadratic convergence above the floor
 }
 
 }  // namespace rodsweep::test_validation_motion

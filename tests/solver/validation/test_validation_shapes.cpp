@@ -1,4 +1,4 @@
-// Rest shapes that are curved, and cross-sections that are not round: closed forms and invariances.
+// Curved rest shapes and non-circular cross-sections: closed forms and invariances.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -8,8 +8,8 @@
 
 namespace rodsweep::test_validation_shapes {
 
-/// A wall-clamped straight rod of n segments along +x whose joints have this section and this rest turn for each length
-/// of a joint (radians per metre, local frame). Local x lies along `local_x`.
+/// A wall-clamped straight rod of n segments along +x with this section and this rest curvature (radians per metre of
+/// joint, local frame). Local x is along `local_x`.
 Rod rod_with(int n, double length, const Section& section, const Vector3& rest_curvature,
              const Vector3& local_x = Vector3::UnitY()) {
   BendingRod p;
@@ -44,7 +44,7 @@ TEST_CASE("A straight rod with a curved rest shape curls into an arc of that cur
   for (std::size_t s = 2; s < arc.position.size(); ++s) {
     const double turn = std::acos(director(arc.orientation[s]).dot(director(arc.orientation[s - 1])));
     CHECK(turn == Approx(curvature * l).epsilon(1e-6));
-    CHECK(director(arc.orientation[s]).dot(arc.orientation[0] * Vector3::UnitX()) == Approx(0).margin(1e-9));  // plane
+    CHECK(director(arc.orientation[s]).dot(arc.orientation[0] * Vector3::UnitX()) == Approx(0).margin(1e-9));  // planar
   }
   simulation.run(100);
   for (std::size_t s = 0; s < arc.position.size(); ++s)
@@ -60,7 +60,7 @@ TEST_CASE("A cantilever whose axes are askew to its weight sags sideways too, as
   const Vector3 local_x(0, std::sin(angle), std::cos(angle)), local_y = Vector3::UnitX().cross(local_x);
   Simulation simulation(scene_of(rod_with(n, length, flat, Vector3::Zero(), local_x), Vector3(0, -9.81 / 300, 0)), 1);
   simulation.relax();
-  // A load along local y bends about local x and the other way round; the rod deflects in the load's direction.
+  // A load along local y bends about local x, and vice versa.
   const Vector3 load = w * std::pow(length, 4) / 8 * law * -Vector3::UnitY();
   const Vector3 expected =
       load.dot(local_y) / flat.bending_x_nm2 * local_y + load.dot(local_x) / flat.bending_y_nm2 * local_x;

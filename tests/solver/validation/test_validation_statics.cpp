@@ -1,5 +1,5 @@
-// Rods at rest under their weight and under loads, against closed forms and quadratures (all reached by relaxation,
-// see simulation.hpp, except where a test says otherwise). E = Young's modulus, w = rho A g.
+// Rods at rest under their weight and under loads, against closed forms and quadratures. Relaxation (simulation.hpp)
+// reaches rest unless a test says otherwise. E = Young's modulus, w = rho A g.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -36,9 +36,9 @@ Vector3 heavy_elastica(double gamma, int segments, double dt = 0.3, double dampi
   return tip(simulation.rod()) / p.length_m;
 }
 
-/// Deflection and shortening of a weightless rod with a transverse tip load alpha = P L^2 / EI, over L. Settled by
-/// viscous drag in short steps: a load off a segment's centre turns it in the prediction, which moves the equilibrium
-/// by O(dt^2); a thick rod has the inertia to keep that small.
+/// Deflection and shortening over L of a weightless rod with a transverse tip load alpha = P L^2 / EI. Viscous drag and
+/// short steps: a load off a segment's centre turns it in the prediction, which moves the equilibrium by O(dt^2). The
+/// inertia of a thick rod keeps that small.
 Vector3 tip_loaded_elastica(double alpha, int segments, double dt) {
   BendingRod p = cantilever(segments, 1e6);
   p.radius_m = 0.2;
@@ -55,7 +55,7 @@ Vector3 tip_loaded_elastica(double alpha, int segments, double dt) {
   return {1 - end.x(), -end.y(), end.z()};
 }
 
-/// Drop of a hanging helix' free end, over the Castigliano value at the same weight.
+/// Drop of the free end of a hanging helix over Castigliano's value at the same weight.
 double helix_drop(int segments, double g) {
   Helix p;
   p.segments = segments;
@@ -81,7 +81,7 @@ TEST_CASE("A stiff cantilever sags as the discrete law of its clamp says") {
     return -tip(simulation.rod()).y() / (euler * law);
   };
   CHECK(sag_over_law() == Approx(1).epsilon(5e-4));
-  p.gravity_m_s2 /= 30;  // leaves of the difference what is not geometry: shear in the "inextensible" rows, 3e-6
+  p.gravity_m_s2 /= 30;  // the rest is not geometry: shear in the "inextensible" rows, 3e-6
   CHECK(sag_over_law() == Approx(1).epsilon(1e-5));
 }
 
@@ -135,7 +135,7 @@ TEST_CASE("A rod under an end moment bends by the same angle in every joint, who
   scene.loads.push_back({0, p.segments, Vector3::Zero(), Vector3(0, 0, moment), Vector3::Zero()});
   Simulation simulation(std::move(scene), dt);
   simulation.run(4000);
-  double heading = std::asin(moment * l / (2 * stiffness));  // the wall's joint is of half length
+  double heading = std::asin(moment * l / (2 * stiffness));  // the wall's joint has half the length
   for (std::size_t s = 1; s < simulation.rod().segments.size(); ++s) {
     const Vector3 along = director(simulation.rod().orientation[s]);
     CHECK(std::atan2(along.y(), along.x()) == Approx(heading).epsilon(1e-3));
