@@ -67,8 +67,8 @@ void SystemEncoding::encode(const SystemPattern& pattern, const BlockMatrix& a, 
       std::fill(out, out + 36, 0.F);
       continue;
     }
-    const SystemPattern::Coupling& coupling = pattern.couplings[at(k)];
-    see<0>(a.blocks[at(coupling.block)], frame, ScaledFrame(frames_, coupling.column), seen);
+    const SystemPattern::Coupling& to_parent = pattern.couplings[at(k)];
+    see<0>(a.blocks[at(to_parent.block)], frame, ScaledFrame(frames_, to_parent.column), seen);
     for (const FloatLane8& column : seen) out = put<6>(out, column);
   }
 }
