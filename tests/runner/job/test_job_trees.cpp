@@ -144,7 +144,7 @@ TEST_CASE("a skeleton that is none is refused with file, line, value and bound")
       {"2 0 0 1 0 1 -1\n", "2: parent is -1; " + id_above},
       {"1 0 0 1 0 1 1\n", "2: id is 1, as in line 1; must be another"},
       {"\n2 0 0 1 0 0 1\n", "3: radius is 0; must be positive"},
-      {"2 0 0 0 0 1 1\n", "2: position is that of its parent"},
+      {"2 0 0 0 0 1 1\n", "2: position is that of its parent; must be different"},
       {"2 0 0 1 0 1 1\n3 0 0 0.5 0 1 2\n", "3: turns back onto the edge below by 180 degrees; must be at most 160"},
   };
   for (const auto& [lines, says] : after_first_line)
