@@ -49,7 +49,7 @@ class PairProjection : public Projection {
     report.outcome = SolveOutcome::converged;
     if (at.newton == 0 && first_ == First::nothing) return report;
     const bool asks = at.newton == 0 && first_ != First::zero;
-    if (asks && !network_.predict(rod, system_, at, dt_c, x_, moves_)) return {SolveOutcome::not_a_number};
+    if (asks && !network_.predict(rod, system_, at, x_, moves_)) return {SolveOutcome::not_a_number};
     if (asks && first_ != First::multipliers) {
       if (first_ == First::consistent_moves) system_.displacements(rod, x_, moves_);
       displace(rod, moves_, x_);
