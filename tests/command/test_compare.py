@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""rodsweep compare from outside: sweeps that overlap, that differ on purpose, that are equal."""
+"""rodsweep compare on sweeps that overlap, that differ on purpose, that are equal. Most of it runs in this process, since
+a new Python takes a second or two to start."""
 
 import csv
 import io
@@ -8,8 +9,10 @@ import os
 import sys
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "analysis"))
+TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path[:0] = [os.path.join(TESTS, "..", "analysis"), os.path.join(TESTS, "analysis")]
 import numpy as np
+import running
 from program import ALL_DONE, DATA, DIFFER, ROD, USER_ERROR, Case, changed, rodsweep, sweep
 from rodsweep.reading import intervals
 from rodsweep.reading.sweepfile import SweepFile
@@ -19,7 +22,9 @@ MANY = {"samples": 8, "scene": {**ROD, "segments": 8}}
 
 class Compare(Case):
     def compare(self, a, b, *words, code=ALL_DONE):
-        return self.said("compare", a, b, *words, code=code)
+        done = running.run("compare.py", a, b, *words)
+        self.assertEqual(done.code, code, f"{done.stdout}\n{done.stderr}")
+        return done.stdout
 
     def found(self, a, b, *words, code=ALL_DONE):
         return json.loads(self.compare(a, b, *words, "--json", code=code))
@@ -38,6 +43,7 @@ class Compare(Case):
         found = self.found(sweep(), "again.h5")
         self.assertEqual((found["keys"], self.counts(found)), ([], (4, 0, 0, 4, 0)))
         said = self.compare(sweep(), "again.h5")
+        self.assertEqual(self.said("compare", sweep(), "again.h5"), said)
         self.assertNotIn("outcomes", said)
         self.assertRegex(said, r"CG ratio at 1e-2.*\n +guess +A +B +B - A +95 % +tasks\n"
                                r"  previous +0\.\d+ +0\.\d+ +\+0 +- +4\n")
@@ -55,7 +61,7 @@ class Compare(Case):
         self.assertEqual({row["guess"] for row in found["cg_ratio"]}, {"previous"})
         self.assertIn("/solves (12 columns)", self.compare(sweep(), other))
 
-    def test_what_differs_is_counted_by_column_and_makes_exit_code_3(self):
+    def test_what_differs_is_counted_by_column_and_makes_exit_code_8(self):
         a, b = sweep(), sweep("iterations", time={"step_s": 0.02, "steps": 6, "newton_iterations": 2})
         self.compare(a, b, code=USER_ERROR)
         found = json.loads(self.by_parameters(a, b, "--json"))
