@@ -243,7 +243,7 @@ TEST_CASE("weights that cannot be are refused") {
   CHECK_THAT(refusal_after([](hid_t file) { H5Ldelete(file, "/model/weights/decode_edges.1.bias", H5P_DEFAULT); }),
              Contains("decode_edges.1.bias"));
   CHECK_THAT(refusal_after(
-                 [](hid_t file) { hdf5::write_all(file, "/model/scales/edges/deviation", std::vector<float>(11, 0)); }),
+                 [](hid_t file) { hdf5::write_all(file, "/model/scales/edges/deviation", std::vector<float>(17, 0)); }),
              Contains("/model/scales/edges/deviation is not above 0 everywhere"));
 }
 
