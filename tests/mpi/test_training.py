@@ -12,7 +12,7 @@ import unittest
 
 import h5py
 import numpy as np
-from program import DIVERGED, STOPPED, SweepCase, checksum, data_job, kill_all, ranks_of, rodsweep, start, status
+from program import DIVERGED, STOPPED, SweepCase, USER_ERROR, checksum, data_job, kill_all, ranks_of, rodsweep, start, status
 
 
 def train_job(name="train", **changes):
@@ -136,6 +136,7 @@ class Refused(TrainingCase):
                 (0, "first.h5", "rerun", "first.h5", "0")):
             with self.subTest(words=words):
                 self.assert_refused_once(ranks, *words, says=says)
+        self.assertIn("first.h5", self.rodsweep(0, "query", "first.h5", code=USER_ERROR).stderr)
         self.assertEqual(checksum("first.h5"), before)
         again = self.rodsweep(2, "run", path, "-o", "first.h5", "--resume")
         self.assertIn("already ended", again.stderr)
