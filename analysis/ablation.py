@@ -230,7 +230,7 @@ ORDERED = ("training simulations", "message-passing steps", "latent size", "hidd
 
 def described(model):
     network = model.network
-    return (f"encoding {network['encoding']}, {SETTINGS['processor'](model)} with {network.get('steps', '?')} steps, "
+    return (f"encoding {network['encoding']}, {network['processor'].replace('_', ' ')} with {network.get('steps', '?')} steps, "
             f"latent size {network['latent']}, {_loss(model)}, {model.learned_from} simulations")
 
 

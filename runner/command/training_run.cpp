@@ -108,7 +108,7 @@ class TrainingRun {
   std::optional<Training> training_;
   std::optional<ModelFile> file_;
   std::optional<ProgressLine> progress_;
-  std::vector<TrainingRunRow> starts_;
+  std::vector<TrainingRunRow> runs_;
   Stopwatch since_begin_, since_save_;  ///< since the first step; since the last save
   double save_s_ = 0;                   ///< duration of the last save
   std::int64_t first_step_ = 0;
@@ -129,12 +129,12 @@ void TrainingRun::prepare(const std::optional<StoredModel>& earlier) {
   collectively(mpi_.world(),
                [&] { training_.emplace(job_, training_job_, data_, std::move(simulations), threads_, mpi_.world()); });
   if (earlier) {
-    starts_ = earlier->card.runs;
+    runs_ = earlier->card.runs;
     training_->restore(earlier->card, *earlier->model, *earlier->checkpoint);
   }
   first_step_ = training_->trainer().step();
 
-  starts_.push_back({provenance_of(options_, mpi_, where_), "", -1});
+  runs_.push_back({provenance_of(options_, mpi_, where_), "", -1});
   collectively(mpi_.world(), [&] {
     if (!writes()) return;
     file_.emplace(path_, earlier.has_value());
@@ -177,8 +177,8 @@ ExitCode TrainingRun::run(const StopSignal& signal) {
   if (training_->ended() && training_->card().best_epoch > 0) training_->end();
   const ExitCode code = exit_code_of(training_->card().ending);
   if (!writes()) return code;
-  starts_.back().end_utc = utc_now();
-  starts_.back().exit_code = static_cast<int>(code);
+  runs_.back().end_utc = utc_now();
+  runs_.back().exit_code = static_cast<int>(code);
   save();
   report(signal);
   return code;
@@ -216,7 +216,7 @@ bool TrainingRun::save_is_due() const {
 void TrainingRun::save() {
   const Stopwatch watch;
   ModelCard card = training_->card();
-  card.runs = starts_;
+  card.runs = runs_;
   std::optional<Checkpoint> checkpoint;
   if (!training_->ended()) checkpoint = training_->checkpoint();
   file_->save(card, training_->kept(), checkpoint);

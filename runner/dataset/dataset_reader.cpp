@@ -93,6 +93,7 @@ Task DatasetReader::task(std::int64_t simulation) const {
 StoredSimulation DatasetReader::read(std::int64_t simulation) const {
   const std::int64_t index = task(simulation).index;
   TaskRecord record;
+  record.prepare(plan_->task(index), axis_sizes(*plan_));
   by_rank_0(ranks_, [&] {
     if (reader_->read_intact(index, record)) return;
     throw FileError(
@@ -100,12 +101,7 @@ StoredSimulation DatasetReader::read(std::int64_t simulation) const {
   });
   if (ranks_)
     for (const Column& column : columns())
-      std::visit(
-          [this](auto* values) {
-            broadcast(*values, *ranks_);
-            broadcast(values->extent.data(), sizeof values->extent, *ranks_);
-          },
-          column.values(record));
+      std::visit([this](auto* values) { broadcast(*values, *ranks_); }, column.values(record));
   const TaskSpec spec = plan_->spec(index);
   StoredSimulation result;
   result.scene = build_scene(spec.scene);

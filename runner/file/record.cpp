@@ -20,14 +20,11 @@ void TaskRecord::prepare(const Task& task, const AxisSizes& sizes) {
   outcome = TaskOutcome::pending;
   message.clear();
   for (const Column& column : columns()) {
-    const auto size = static_cast<std::size_t>(task.rows[column.rows].count * row_width(column, sizes));
-    const std::vector<std::int64_t> extent = row_extent(column, sizes);
     std::visit(
         [&](auto* values) {
           using T = typename std::decay_t<decltype(*values)>::value_type;
           constexpr T sentinel = std::is_floating_point_v<T> ? std::numeric_limits<T>::quiet_NaN() : static_cast<T>(-1);
-          values->assign(size, sentinel);
-          std::copy(extent.begin(), extent.end(), values->extent.begin());
+          values->reset(task.rows[column.rows].count, row_extent(column, sizes), sentinel);
         },
         column.values(*this));
   }

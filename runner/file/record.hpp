@@ -5,6 +5,7 @@
 // not_run for outcomes. So rows not reached cannot be mistaken for results.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,13 +41,20 @@ class Cells : public std::vector<T> {
   T* row(std::size_t row) { return &(*this)(row); }
   const T* row(std::size_t row) const { return &(*this)(row); }
 
-  std::array<std::size_t, 2> extent{1, 1};  ///< of the axes after the row
+  /// `rows` rows of the axes `extent`, with `value` everywhere. Keeps its memory.
+  void reset(std::int64_t rows, const std::vector<std::int64_t>& extent, T value) {
+    extent_ = {1, 1};
+    std::copy(extent.begin(), extent.end(), extent_.begin());
+    this->assign(static_cast<std::size_t>(rows) * extent_[0] * extent_[1], value);
+  }
 
  private:
   std::size_t place(std::size_t row, std::size_t i, std::size_t j) const {
-    if (i >= extent[0] || j >= extent[1]) throw std::out_of_range("Cells: an index beyond an axis of its column");
-    return (row * extent[0] + i) * extent[1] + j;
+    if (i >= extent_[0] || j >= extent_[1]) throw std::out_of_range("Cells: an index beyond an axis of its column");
+    return (row * extent_[0] + i) * extent_[1] + j;
   }
+
+  std::array<std::size_t, 2> extent_{1, 1};  ///< of the axes after the row
 };
 
 /// Sums over the solves of a task: [1, guess, tolerance]. Solves that missed the tolerance count all their iterations.

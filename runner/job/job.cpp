@@ -9,7 +9,7 @@
 
 #include "runner/job/job_keys.hpp"
 #include "runner/job/job_reader.hpp"
-#include "runner/job/scene_part_keys.hpp"
+#include "runner/job/scene_keys.hpp"
 #include "runner/job/strict_json.hpp"
 #include "runner/job/sweep_space.hpp"
 #include "runner/job/training_job.hpp"
@@ -66,7 +66,8 @@ Job parsed(std::string text, const std::filesystem::path& path, Look look) {
   const SweepSpace space(job.values, path);
   check_guesses(job, space);
   check_samples(job, space);
-  check_obstacles(job.values["scene"], "scene", path);
+  check_obstacles(job.values["scene"], path);
+  for (std::string& warning : thick_rods(job.values["scene"], path)) job.warnings.push_back(std::move(warning));
   return job;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "runner/job/job.hpp"
 #include "runner/job/sweep.hpp"
@@ -50,37 +49,6 @@ std::string sweep_advice(const Key& key, const Json& value) {
   return advice;
 }
 
-bool is_plausible(const Key& key, double value) {
-  const double size = std::abs(value);
-  return size == 0 || (size >= key.plausible->least && size <= key.plausible->most);
-}
-
-/// "; did you mean 50 mm, which is 0.05?" if the value is plausible in another unit and at most `most`.
-std::string other_unit(const Key& key, double value, double most) {
-  struct Unit {
-    const char* of;  ///< the key's unit
-    const char* name;
-    double size;
-  };
-  static constexpr Unit units[]{{"m", "mm", 1e-3},         {"m", "um", 1e-6},         {"Pa", "GPa", 1e9},
-                                {"Pa", "MPa", 1e6},        {"Pa", "kPa", 1e3},        {"kg/m^3", "g/cm^3", 1e3},
-                                {"kg/m^3", "g/m^3", 1e-3}, {"m/s^2", "mm/s^2", 1e-3}, {"m/s", "km/h", 1 / 3.6},
-                                {"m/s", "mm/s", 1e-3},     {"s", "ms", 1e-3},         {"s", "us", 1e-6}};
-  for (const Unit& unit : units)
-    if (key.unit == unit.of && is_plausible(key, value * unit.size) && std::abs(value * unit.size) <= most)
-      return fmt::format("; did you mean {:g} {}, which is {:g}?", value, unit.name, value * unit.size);
-  return "";
-}
-
-/// The numbers that a key can take in a validated job, each with its path.
-void visit_numbers(const Json& value, const std::string& path,
-                   const std::function<void(double, const std::string&)>& visit) {
-  if (value.is_number()) return visit(value, path);
-  if (value.is_array())
-    for (std::size_t i = 0; i < value.size(); ++i) visit_numbers(value[i], element(path, i), visit);
-  if (const std::string word = sweep_word(value); !word.empty()) visit_numbers(value[word], member(path, word), visit);
-}
-
 bool within(const Key& key, double value) {
   return std::isfinite(value) && value <= key.high && (key.above_low ? value > key.low : value >= key.low);
 }
@@ -114,28 +82,6 @@ void JobReader::warn_if_implausible(const Key& key, double value, const std::str
                 fmt::format("{:g} {} is outside the plausible range, {:g} to {:g} {}{}{}", value, key.unit, least, most,
                             key.unit, known.empty() ? "" : fmt::format(" ({})", known), other_unit(key, value, most)))
           .what());
-}
-
-/// A rod that is thicker than what it is made of is long, at the worst of a sweep's values.
-void JobReader::warn_if_thick(const Key& scene_key, const Json& scene, const std::string& path) {
-  const Key* radius = find_key(scene_key.keys, "radius_m");
-  if (!radius || !radius->plausible || !scene.contains("radius_m")) return;
-  double thickest = 0;
-  std::string place;
-  visit_numbers(scene["radius_m"], member(path, "radius_m"), [&](double number, const std::string& at) {
-    if (number > thickest) thickest = number, place = at;
-  });
-  for (const char* across : {"length_m", "helix_radius_m", "mesh_m"}) {
-    double shortest = INFINITY;
-    if (scene.contains(across))
-      visit_numbers(scene[across], "",
-                    [&](double number, const std::string&) { shortest = std::min(shortest, number); });
-    if (2 * thickest > shortest)
-      warnings_.emplace_back(job_error(file_, place,
-                                       fmt::format("{:g} m makes a rod thicker than long: {} is {:g} m{}", thickest,
-                                                   across, shortest, other_unit(*radius, thickest, shortest / 2)))
-                                 .what());
-  }
 }
 
 void JobReader::throw_mistakes() const {

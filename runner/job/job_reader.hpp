@@ -47,7 +47,6 @@ class JobReader {
   void fill_absent(const Key& key, const std::string& path, Json& result);
   bool applies(const Key& key) const;
   void warn_if_implausible(const Key& key, double value, const std::string& path);
-  void warn_if_thick(const Key& scene_key, const Json& scene, const std::string& path);
   void refuse(const Key& key, const Json& value, const std::string& path, const std::string& remark = "");
   void mistake(const std::string& path, const std::string& text);
 

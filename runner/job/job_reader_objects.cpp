@@ -127,7 +127,6 @@ Json JobReader::read_object(const Key& key, const Json& value, const std::string
       result[child_key->name] = read(*child_key, child, member(path, name));
   }
   fill_absent(key, path, result);
-  warn_if_thick(key, result, path);
   tag_ = outer;
   return result;
 }

@@ -209,6 +209,27 @@ bool belongs(const Key& key, const std::string& tag_value) {
   return key.only_for.empty() || std::find(key.only_for.begin(), key.only_for.end(), tag_value) != key.only_for.end();
 }
 
+bool is_plausible(const Key& key, double value) {
+  const double size = std::abs(value);
+  return size == 0 || (size >= key.plausible->least && size <= key.plausible->most);
+}
+
+std::string other_unit(const Key& key, double value, double most) {
+  struct Unit {
+    const char* of;  ///< the key's unit
+    const char* name;
+    double size;
+  };
+  static constexpr Unit units[]{{"m", "mm", 1e-3},         {"m", "um", 1e-6},         {"Pa", "GPa", 1e9},
+                                {"Pa", "MPa", 1e6},        {"Pa", "kPa", 1e3},        {"kg/m^3", "g/cm^3", 1e3},
+                                {"kg/m^3", "g/m^3", 1e-3}, {"m/s^2", "mm/s^2", 1e-3}, {"m/s", "km/h", 1 / 3.6},
+                                {"m/s", "mm/s", 1e-3},     {"s", "ms", 1e-3},         {"s", "us", 1e-6}};
+  for (const Unit& unit : units)
+    if (key.unit == unit.of && is_plausible(key, value * unit.size) && std::abs(value * unit.size) <= most)
+      return fmt::format("; did you mean {:g} {}, which is {:g}?", value, unit.name, value * unit.size);
+  return "";
+}
+
 const Key* find_key(const std::vector<Key>& keys, const std::string& name) {
   for (const Key& key : keys) {
     if (key.name == name || (!key.alias.empty() && key.alias == name)) return &key;

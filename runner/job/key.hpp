@@ -123,6 +123,12 @@ bool belongs(const Key& key, const std::string& tag_value);
 /// The default value.
 std::optional<nlohmann::ordered_json> preset_of(const Key& key, const std::string& tag_value);
 
+/// Whether a value is 0 or in the plausible range, which the key must have.
+bool is_plausible(const Key& key, double value);
+
+/// "; did you mean 50 mm, which is 0.05?" if the value is plausible in another unit and at most `most` there.
+std::string other_unit(const Key& key, double value, double most);
+
 /// A number as written in a job: 1 instead of 1.0.
 nlohmann::ordered_json number(double value);
 

@@ -1,7 +1,16 @@
 #include "runner/job/scene_keys.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "runner/job/job.hpp"
 #include "runner/job/scene_part_keys.hpp"
 #include "runner/job/skeleton_file.hpp"
+#include "runner/job/sweep.hpp"
+#include "runner/text/key_path.hpp"
 
 namespace rodsweep {
 
@@ -17,6 +26,7 @@ static void read_value(const Place& at, std::shared_ptr<const Skeleton>& skeleto
 
 namespace {
 
+using Json = nlohmann::ordered_json;
 using Table = KeyTable<SceneSpec>;
 using Rods = RodParameters;
 
@@ -213,6 +223,24 @@ void add_touching(Table& table) {
                  &Knot::pull_m_s);
 }
 
+/// Calls `visit(scene, path)` for each scene of a sweep of scenes.
+template <class Visit>
+void visit_scenes(const Json& scenes, const std::string& path, const Visit& visit) {
+  const std::string word = sweep_word(scenes);
+  if (word.empty()) return visit(scenes, path);
+  for (std::size_t i = 0; i < scenes[word].size(); ++i)
+    visit_scenes(scenes[word][i], element(member(path, word), i), visit);
+}
+
+/// The numbers that a key can take in a validated job, each with its path.
+void visit_numbers(const Json& value, const std::string& path,
+                   const std::function<void(double, const std::string&)>& visit) {
+  if (value.is_number()) return visit(value, path);
+  if (value.is_array())
+    for (std::size_t i = 0; i < value.size(); ++i) visit_numbers(value[i], element(path, i), visit);
+  if (const std::string word = sweep_word(value); !word.empty()) visit_numbers(value[word], member(path, word), visit);
+}
+
 }  // namespace
 
 const KeyTable<SceneSpec>& scene_keys() {
@@ -236,6 +264,38 @@ Key scene_key() {
   std::vector<Key> keys{type};
   keys.insert(keys.end(), scene_keys().keys().begin(), scene_keys().keys().end());
   return object_key("scene", "the rods that are simulated", std::move(keys), type.name.c_str());
+}
+
+void check_obstacles(const Json& scenes, const std::filesystem::path& file) {
+  visit_scenes(scenes, "scene", [&](const Json& scene, const std::string& path) {
+    if (scene["contact"] == "none" && !scene["obstacles"].empty())
+      throw job_error(file, member(path, "obstacles"),
+                      "rods without \"contact\" pass through obstacles; give the scene \"contact\": "
+                      "{\"friction\": 0.3}, or remove this key");
+  });
+}
+
+std::vector<std::string> thick_rods(const Json& scenes, const std::filesystem::path& file) {
+  const Key& radius = *find_key(scene_keys().keys(), "radius_m");
+  std::vector<std::string> warnings;
+  visit_scenes(scenes, "scene", [&](const Json& scene, const std::string& path) {
+    double thickest = 0;
+    std::string place;
+    visit_numbers(scene.value("radius_m", Json()), member(path, "radius_m"), [&](double number, const std::string& at) {
+      if (number > thickest) thickest = number, place = at;
+    });
+    for (const char* across : {"length_m", "helix_radius_m", "mesh_m"}) {
+      double shortest = INFINITY;
+      visit_numbers(scene.value(across, Json()), "",
+                    [&](double number, const std::string&) { shortest = std::min(shortest, number); });
+      if (2 * thickest > shortest)
+        warnings.emplace_back(job_error(file, place,
+                                        fmt::format("{:g} m makes a rod thicker than long: {} is {:g} m{}", thickest,
+                                                    across, shortest, other_unit(radius, thickest, shortest / 2)))
+                                  .what());
+    }
+  });
+  return warnings;
 }
 
 }  // namespace rodsweep

@@ -3,6 +3,11 @@
 // automatically.
 #pragma once
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
 #include "runner/job/key_table.hpp"
 #include "solver/scene/scenes.hpp"
 
@@ -11,5 +16,12 @@ namespace rodsweep {
 const KeyTable<SceneSpec>& scene_keys();
 
 Key scene_key();
+
+/// Throws JobError if a scene has obstacles without contact. `scenes`: the scene of a validated job, or a sweep of them.
+/// If contact is swept, obstacles are allowed: "none" is then the case to compare with.
+void check_obstacles(const nlohmann::ordered_json& scenes, const std::filesystem::path& file);
+
+/// A warning for each scene with a rod thicker than long, at the worst of a sweep's values.
+std::vector<std::string> thick_rods(const nlohmann::ordered_json& scenes, const std::filesystem::path& file);
 
 }  // namespace rodsweep

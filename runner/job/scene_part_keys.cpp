@@ -3,12 +3,8 @@
 #include <string>
 #include <tuple>
 
-#include "runner/job/sweep.hpp"
-
 namespace rodsweep {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 template <class Solid>
 struct SolidKind {
@@ -144,17 +140,6 @@ void read_value(const Place& list, std::vector<Obstacle>& obstacles) {
     const Place item{list.point, list.job, element(list.path, obstacles.size())};
     if (!item.point.has(item.path)) return;
     obstacles.push_back(obstacle(item));
-  }
-}
-
-void check_obstacles(const Json& scene, const std::string& path, const std::filesystem::path& file) {
-  if (const std::string word = sweep_word(scene); !word.empty()) {
-    for (std::size_t i = 0; i < scene[word].size(); ++i)
-      check_obstacles(scene[word][i], element(member(path, word), i), file);
-  } else if (scene["contact"] == "none" && !scene["obstacles"].empty()) {
-    throw job_error(file, member(path, "obstacles"),
-                    "rods without \"contact\" pass through obstacles; give the scene \"contact\": {\"friction\": 0.3}, "
-                    "or remove this key");
   }
 }
 

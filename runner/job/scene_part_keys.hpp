@@ -1,7 +1,6 @@
 // The keys of the parts of a scene in a job: `scene.wind`, `scene.contact`, `scene.obstacles`.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -22,9 +21,5 @@ void read_value(const Place& list, std::vector<Obstacle>& obstacles);
 inline nlohmann::ordered_json written(const Key&, const std::vector<Obstacle>&) {
   return nlohmann::ordered_json::array();  // default: none
 }
-
-/// Throws JobError if a scene has obstacles without contact. `scene`: of a validated job, or a sweep of scenes.
-/// If contact is swept, obstacles are allowed: "none" is then the case to compare with.
-void check_obstacles(const nlohmann::ordered_json& scene, const std::string& path, const std::filesystem::path& file);
 
 }  // namespace rodsweep
