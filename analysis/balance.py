@@ -22,7 +22,7 @@ from rodsweep.reading.sweepfile import SweepFile
 EXAMPLES = """examples:
   analysis/balance.py results/balance.h5
   analysis/balance.py results/balance.h5 --scene helix"""
-KINDS = {"false": "the paper's step", "true": "in balance"}
+KINDS = {0: "the paper's step", 1: "in balance"}    # by time.balance
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def main():
         shown = study.of_tasks(file, options)
         panels = by_panel(file, np.unique(shown.sims.any_task))
         print("\n".join(table(panels)) + "\n")
-        if any(len(lines["true"].step_s) == 1 for lines in panels.values()):
+        if any(len(lines[1].step_s) == 1 for lines in panels.values()):
             return  # one time step gives no line to draw
         study.save(file, options, {"balance": figure(shown, panels)})
 
@@ -75,16 +75,15 @@ def _scenes(file, tasks):
 
 
 def _line(file, tasks, kind):
-    step_s, balance = file.parameters["time.step_s"].values, file.parameters["time.balance"]
+    step_s, balance = file.parameters["time.step_s"].values, file.parameters["time.balance"].values[tasks]
     finest = step_s[tasks].min()
-    texts_of = np.array([balance.text(task) for task in tasks])
     exact = {int(file.sample[task]): accuracy.positions(file, task)
-             for task in tasks[(texts_of == "true") & (step_s[tasks] == finest)]}
+             for task in tasks[(balance == 1) & (step_s[tasks] == finest)]}
     line = Line([], [], [], [], [])
     for size in sorted(set(step_s[tasks].tolist()), reverse=True):
-        of = [task for task in tasks[(texts_of == kind) & (step_s[tasks] == size)] if int(file.sample[task]) in exact]
+        of = [task for task in tasks[(balance == kind) & (step_s[tasks] == size)] if int(file.sample[task]) in exact]
         draws = file.sample[of]
-        is_reference = kind == "true" and size == finest
+        is_reference = kind == 1 and size == finest
         line.step_s.append(size)
         line.second_ms.append(intervals.median([1e3 * accuracy.step_s(file, task) / size for task in of], draws))
         line.error.append(None if is_reference else intervals.median(
@@ -106,10 +105,10 @@ def _steps(file, task, name):
 def table(panels):
     rows = [["", "time step (s)", "step", "error", "ms per simulated second", "Newton iterations", "momentum residual"]]
     for title, lines in panels.items():
-        for k, size in enumerate(lines["true"].step_s):
+        for k, size in enumerate(lines[1].step_s):
             for kind, line in lines.items():
                 error = f"{float(line.error[k].value):.2g}" if line.error[k] else "reference"
-                rows.append([title if not (k or kind == "true") else "", f"{size:g}" if kind == "false" else "",
+                rows.append([title if not (k or kind == 1) else "", f"{size:g}" if kind == 0 else "",
                              KINDS[kind], error, *(f"{float(values[k].value):.2g}"
                                                    for values in (line.second_ms, line.iterations, line.lacking))])
     return texts.aligned(rows)
@@ -119,7 +118,7 @@ def figure(shown, panels):
     looks = dict(zip(KINDS, style.series_styles(len(KINDS))))
     points = [error for lines in panels.values() for line in lines.values() for error in line.error if error]
     notes = [f"Medians of {study.sample_text(points, mark='')}. Along a line the time step halves from point to point, "
-             f"from {max(next(iter(panels.values()))['true'].step_s):g} s on the left to twice the reference's. "
+             f"from {max(next(iter(panels.values()))[1].step_s):g} s on the left to twice the reference's. "
              "Reference: the smallest step in balance.", shown.about()]
     page = layout.Page(shown.width_mm, ["Error at the end"], len(panels), 3 if shown.wide else 1, 44,
                        [look.handle(KINDS[kind]) for kind, look in looks.items()], notes, shown.timing_warning(),

@@ -8,8 +8,8 @@ import numpy as np
 import running
 
 STEPS, FRAMES, SEGMENTS, SAMPLES = 4, 3, 5, 2
-SIZES, KINDS = (0.02, 0.01), ("false", "true")
-OFF = {(0.02, "false"): 0.3, (0.02, "true"): 0.2, (0.01, "false"): 0.1, (0.01, "true"): 0}    # of a rod's length
+SIZES, KINDS = (0.02, 0.01), (0, 1)
+OFF = {(0.02, 0): 0.3, (0.02, 1): 0.2, (0.01, 0): 0.1, (0.01, 1): 0}    # of a rod's length
 
 
 class Balance(running.Scripts):
