@@ -30,7 +30,7 @@ study = [ -e results/$(1).h5 ] && resume=--resume || resume=; \
 studies = spatial_bending spatial_helix newton stiffness step_size long_term bending_data helix_data \
   temporal_bending temporal_helix side_by_side learned_bending learned_helix deck_bending deck_helix learned_closed_loop \
   generalisation_stiffness generalisation_length generalisation_step guarded long_term_learned \
-  solvers work_precision balance balance_scenes tree_wind forest tree_long_term \
+  solvers work_precision integrators balance balance_scenes tree_wind forest tree_long_term \
   learned_rods learned_rods_length learned_rods_closed learned_rods_preconditioned \
   lattice_swing lattice_preconditioners lattice_impact lattice_cells lattice_closed lattice_impact_closed \
   lattice_work_precision net_gusts net_closed \

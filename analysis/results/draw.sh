@@ -90,6 +90,7 @@ figures work_precision lattice_work_precision >"$out/lattice_work_precision.txt"
 figures newton newton >"$out/newton.txt"
 figures solvers solvers >"$out/solvers.txt"
 figures work_precision work_precision >"$out/work_precision.txt"
+figures integrators integrators --energy-step 0.01 >$out/integrators.txt
 figures balance balance >"$out/balance.txt"
 script balance balance_scenes >"$out/balance_scenes.txt"
 figures long_term long_term >"$out/long_term.txt"

@@ -17,6 +17,7 @@ void restore(const StoredSystem& system, Rod& rod) {
   rod.velocity = system.velocity;
   rod.angular_velocity = system.angular_velocity;
   rod.lambda = system.lambda;
+  rod.constraint_dt = system.constraint_dt_s;
   unstiffen(rod);
   if (!system.balance) return;
   rod.free_position = system.balance->free_position;
@@ -24,12 +25,12 @@ void restore(const StoredSystem& system, Rod& rod) {
   rod.contact_impulse = system.balance->contact_impulse;
 }
 
-void assemble_again(const StoredSystem& stored, double constraint_dt_s, Rod& rod, LinearSystem& system) {
+void assemble_again(const StoredSystem& stored, Rod& rod, LinearSystem& system) {
   restore(stored, rod);
   if (stored.balance)
-    system.assemble_balanced(rod, constraint_dt_s);
+    system.assemble_balanced(rod, rod.constraint_dt);
   else
-    system.assemble(rod, constraint_dt_s);
+    system.assemble(rod, rod.constraint_dt);
 }
 
 Replay::Replay(const StoredSimulation& simulation) : simulation_(simulation), scene_(simulation.scene) {

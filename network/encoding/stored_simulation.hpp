@@ -1,7 +1,7 @@
 // A recorded simulation for training: for every stored linear system the state from which it was assembled and its
 // exact solution. From these A, b and every feature can be formed again, bit for bit.
 //
-//   assemble_again(system, constraint_dt_s, rod, linear_system)   gives A and b, and A solution = b
+//   assemble_again(system, rod, linear_system)   gives A and b, and A solution = b
 #pragma once
 
 #include <optional>
@@ -23,6 +23,7 @@ struct StoredBalance {
 /// One linear system. Vectors have an entry per segment, `lambda` and `solution` six per joint.
 struct StoredSystem {
   SolvePosition at;
+  double constraint_dt_s = 0;     ///< constraint_dt of the rod's step
   std::vector<Vector3> position;  ///< where the system was assembled [m]
   std::vector<Quaternion> orientation;
   std::vector<Vector3> velocity;           ///< at the start of the step [m/s]
@@ -35,7 +36,6 @@ struct StoredSystem {
 struct StoredSimulation {
   Scene scene;                        ///< at its start, with the constant masses, joints and loads
   double step_s = 0;                  ///< time step
-  double constraint_dt_s = 0;         ///< constraint_dt(scene, step_s)
   int newton_iterations = 0;          ///< limit per step
   std::vector<StoredSystem> systems;  ///< in the order in which they were solved
 };
@@ -45,7 +45,7 @@ struct StoredSimulation {
 void restore(const StoredSystem& system, Rod& rod);
 
 /// The same, and assembles the system that was solved, with or without the balance of momentum.
-void assemble_again(const StoredSystem& stored, double constraint_dt_s, Rod& rod, LinearSystem& system);
+void assemble_again(const StoredSystem& stored, Rod& rod, LinearSystem& system);
 
 /// Repeats a simulation without solving: sets one rod after the other to a stored state and assembles its system.
 class Replay {
@@ -60,7 +60,7 @@ class Replay {
   void run(Visit visit) {
     for (const StoredSystem& stored : simulation_.systems) {
       const auto r = static_cast<std::size_t>(stored.at.rod);
-      assemble_again(stored, simulation_.constraint_dt_s, scene_.rods[r], systems_[r]);
+      assemble_again(stored, scene_.rods[r], systems_[r]);
       visit(stored, std::as_const(scene_.rods[r]), std::as_const(systems_[r]));
     }
   }

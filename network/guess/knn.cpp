@@ -74,8 +74,8 @@ void KnnSet::add(const StoredSimulation& simulation) {
     const auto r = static_cast<std::size_t>(stored.at.rod), j = static_cast<std::size_t>(stored.at.newton);
     state.resize(ChainProfile::state_size, rod.joint_count());
     loads.resize(6, rod.joint_count());
-    profiles[r].state(rod, system, simulation.constraint_dt_s, state);
-    profiles[r].loads(stored.solution, simulation.constraint_dt_s, loads);
+    profiles[r].state(rod, system, rod.constraint_dt, state);
+    profiles[r].loads(stored.solution, rod.constraint_dt, loads);
     while (iterations_.size() <= j) iterations_.push_back(std::make_unique<Iteration>());
     Iteration& of = *iterations_[j];
     of.queries.push_back(query(profiles[r], state));

@@ -5,8 +5,8 @@
 
 namespace rodsweep {
 
-KnnGuess::KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, double dt_c, int neighbours)
-    : training_(std::move(training)), scene_(scene), dt_c_(dt_c) {
+KnnGuess::KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, int neighbours)
+    : training_(std::move(training)), scene_(scene) {
   if (neighbours < 1)
     throw std::invalid_argument("KnnGuess: neighbours is " + std::to_string(neighbours) + "; must be at least 1");
   const auto k = static_cast<std::size_t>(neighbours);
@@ -19,7 +19,7 @@ KnnGuess::KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, d
 Proposal KnnGuess::propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) {
   RodBuffers& of = rods_[static_cast<std::size_t>(at.rod)];
   x0.setZero();
-  of.profile.state(scene_.rods[static_cast<std::size_t>(at.rod)], system, dt_c_, of.state);
+  of.profile.state(scene_.rods[static_cast<std::size_t>(at.rod)], system, system.dt(), of.state);
   const int found = training_->nearest(at.newton, KnnSet::query(of.profile, of.state), neighbours_);
   if (found == 0) return {};
   constexpr float same = 1e-6F;  // prevents a division by zero for a system of the training set itself
@@ -32,7 +32,7 @@ Proposal KnnGuess::propose(const LinearSystem& system, const SolvePosition& at, 
     add_resampled(loads.arc, loads.values, of.profile.arc(), weight(i) / sum, of.loads);
   }
   if (!of.loads.allFinite()) return {};
-  of.profile.multipliers(of.loads, dt_c_, x0);
+  of.profile.multipliers(of.loads, system.dt(), x0);
   return {true, 0};
 }
 

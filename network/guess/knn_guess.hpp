@@ -17,7 +17,7 @@ class KnnGuess : public InitialGuess {
  public:
   /// `scene` is the one that the solves move. Throws SceneError if a rod is not a chain, and
   /// std::invalid_argument if neighbours < 1.
-  KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, double dt_c, int neighbours);
+  KnnGuess(std::shared_ptr<const KnnSet> training, const Scene& scene, int neighbours);
 
   /// Proposes zero for Newton iterations without systems in the training set. Allocates nothing.
   Proposal propose(const LinearSystem& system, const SolvePosition& at, VectorX& x0) override;
@@ -30,7 +30,6 @@ class KnnGuess : public InitialGuess {
   };
   std::shared_ptr<const KnnSet> training_;
   const Scene& scene_;
-  double dt_c_;
   std::vector<RodBuffers> rods_;
   KnnSet::Neighbours neighbours_;
 };

@@ -13,7 +13,6 @@
 #include "runner/mpi/mpi_session.hpp"
 #include "runner/terminal/text.hpp"
 #include "runner/text/checksum.hpp"
-#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 namespace {
@@ -107,7 +106,6 @@ StoredSimulation DatasetReader::read(std::int64_t simulation) const {
   result.scene = build_scene(spec.scene);
   result.step_s = spec.time.step_s;
   result.newton_iterations = spec.time.newton_iterations;
-  result.constraint_dt_s = constraint_dt(result.scene, result.step_s);
   result.systems = stored_systems(record, result.scene, spec.output.stored_iterations(spec.time.newton_iterations));
   return result;
 }

@@ -30,6 +30,7 @@ void SystemStore::before(const Rod& rod, const SolvePosition& at, bool balanced)
   record_.systems.step[place.system] = at.step;
   record_.systems.newton[place.system] = static_cast<std::int16_t>(at.newton);
   record_.systems.rod[place.system] = narrow<std::int16_t>(at.rod);
+  record_.systems.constraint_dt_s[place.system] = rod.constraint_dt;
   store(rod.position, record_.systems.position_m.row(place.segment));
   store(rod.orientation, record_.systems.orientation.row(place.segment));
   store(rod.velocity, record_.systems.velocity_m_s.row(place.segment));
@@ -82,6 +83,7 @@ std::vector<StoredSystem> stored_systems(const TaskRecord& record, const Scene& 
     if (record.systems.step[row] < 0) continue;
     StoredSystem system;
     system.at = {record.systems.step[row], record.systems.newton[row], record.systems.rod[row]};
+    system.constraint_dt_s = record.systems.constraint_dt_s[row];
     const Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
     const SystemRows::Place place = rows.place(system.at);
     system.position.resize(rod.segments.size());

@@ -91,7 +91,7 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop) {
   std::vector<Scene> scenes;
   for (const Member& member : members) scenes.push_back(member.scene);
   const TimeSpec& time = members.front().run.spec.time;
-  BatchedStepper stepper(scenes, {time.step_s, time.newton_iterations, time.newton_tolerance},
+  BatchedStepper stepper(scenes, step_settings(time),
                          time.balance ? std::optional(time.momentum_tolerance) : std::nullopt);
 
   std::vector<int> left(members.size());  // active lanes
@@ -115,8 +115,7 @@ bool simulate(std::deque<Member>& members, const StopRequested& stop) {
     keep([&](int lane, Member& member) {
       stepper.write(lane, member.scene);
       member.run.record->timing.rest_s[static_cast<std::size_t>(s)] = static_cast<float>(share_s);
-      return member.simulation.finish_step(s, member.scene, reports[static_cast<std::size_t>(lane)],
-                                           constraint_dt(member.scene, time.step_s));
+      return member.simulation.finish_step(s, member.scene, reports[static_cast<std::size_t>(lane)]);
     });
   }
   return true;
@@ -147,6 +146,7 @@ BatchKey batch_key(const TaskSpec& spec) {
   return {rod.segments,
           rod.clamp,
           time.step_s,
+          time.integrator,
           time.steps,
           time.newton_iterations,
           time.newton_tolerance,

@@ -22,7 +22,7 @@ struct TaskRun {
 bool steps_in_batches(const TaskSpec& spec);
 
 /// Tasks with equal keys may share a batch: their segments, clamp, steps and Newton settings agree.
-using BatchKey = std::tuple<int, Clamp, double, int, int, double, double>;
+using BatchKey = std::tuple<int, Clamp, double, Integrator, int, int, double, double>;
 BatchKey batch_key(const TaskSpec& spec);
 
 /// Evaluates one or more tasks with equal keys. Returns false if abandoned on request; then discard all records.

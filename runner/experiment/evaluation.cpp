@@ -31,7 +31,7 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
     storing.emplace(scene, iterations, solve, record);
   const std::unique_ptr<Projection> projection =
       make_projection(scene, spec, record, storing ? static_cast<LinearSolve&>(*storing) : solve);
-  TimeStepper stepper(scene, {spec.time.step_s, spec.time.newton_iterations, spec.time.newton_tolerance});
+  TimeStepper stepper(scene, step_settings(spec.time));
 
   SimulationLog simulation(task, spec, record, scene);
   for (int step = 0; step < spec.time.steps; ++step) {
@@ -42,7 +42,7 @@ bool simulate(const Task& task, const TaskSpec& spec, TaskRecord& record, const 
     const StepReport report = stepper.step(*projection);
     record.timing.rest_s[static_cast<std::size_t>(step)] =
         static_cast<float>(step_watch.seconds() - solve.take_elapsed_s());
-    if (!simulation.finish_step(step, scene, report, stepper.constraint_dt())) break;
+    if (!simulation.finish_step(step, scene, report)) break;
   }
   solve.finish();
   return true;

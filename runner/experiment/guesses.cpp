@@ -9,7 +9,6 @@
 #include "solver/guess/regression_guess.hpp"
 #include "solver/guess/subspace_guess.hpp"
 #include "solver/guess/totals_guess.hpp"
-#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 namespace {
@@ -26,7 +25,6 @@ struct Maker {
   Made subspace(int size, SubspaceGuess::Window window, SubspaceGuess::Use use = SubspaceGuess::Use::guess) const {
     return std::make_unique<SubspaceGuess>(scene, newton_iterations, size, window, use);
   }
-  double dt_c() const { return constraint_dt(scene, task.time.step_s); }
 
   Made operator()(const guess::Zero&) const { return std::make_unique<ZeroGuess>(); }
   Made operator()(const guess::Extrapolation& g) const {
@@ -45,7 +43,7 @@ struct Maker {
                                             FactorUse{g.corrections, g.lag_steps, g.stop_at});
   }
   Made operator()(const guess::Knn& g) const {
-    return std::make_unique<KnnGuess>(shared_knn_set(g.data, g.simulations, g.inputs), scene, dt_c(), g.neighbours);
+    return std::make_unique<KnnGuess>(shared_knn_set(g.data, g.simulations, g.inputs), scene, g.neighbours);
   }
   Made operator()(const guess::Oracle& g) const {
     return std::make_unique<OracleGuess>(scene, g.error, g.kind, task.seed);

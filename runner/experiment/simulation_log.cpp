@@ -66,7 +66,7 @@ SimulationLog::SimulationLog(const Task& task, const TaskSpec& spec, TaskRecord&
 }
 
 /// Writes the observables of a finished step to row `step` of /steps.
-void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepReport& report, double constraint_dt) {
+void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepReport& report) {
   double length = 0, gap = 0, residual = 0, imbalance = 0, kinetic = 0, potential = 0, elastic = 0;
   Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
   for (std::size_t r = 0; r < scene.rods.size(); ++r) {
@@ -76,7 +76,7 @@ void SimulationLog::log_step(std::size_t step, const Scene& scene, const StepRep
     balance_momentum(rod, at, balance);
     length += rod_length(rod);
     gap = std::max(gap, joint_gap(rod));
-    residual = larger_or_nan(residual, newton_residual(rod, at, constraint_dt));
+    residual = larger_or_nan(residual, newton_residual(rod, at, rod.constraint_dt));
     imbalance = larger_or_nan(imbalance, balance.residual);
     kinetic += kinetic_energy(rod);
     potential += gravitational_energy(rod, scene.gravity_m_s2);
@@ -111,7 +111,7 @@ bool SimulationLog::out_of_time(double elapsed_s) {
   return true;
 }
 
-bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt) {
+bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& report) {
   if (report.outcome == SolveOutcome::iteration_limit && record_.outcome == TaskOutcome::ok)
     fail(TaskOutcome::iteration_limit, step, "a solve that advances the rod hit its iteration limit (and others may)");
   else if (report.outcome != SolveOutcome::converged && report.outcome != SolveOutcome::iteration_limit) {
@@ -120,7 +120,7 @@ bool SimulationLog::finish_step(int step, const Scene& scene, const StepReport& 
     return false;
   }
   const auto row = static_cast<std::size_t>(step);
-  log_step(row, scene, report, constraint_dt);
+  log_step(row, scene, report);
   record_.tasks.steps_done[0] = step + 1;
   const int every = spec_.output.trajectory_every;
   if (every > 0 && (step + 1) % every == 0) log_frame(static_cast<std::size_t>((step + 1) / every), scene);

@@ -25,7 +25,7 @@ class SimulationLog {
   bool out_of_time(double elapsed_s);
 
   /// `scene` is the state after the step. Returns false if a failure ends the task.
-  bool finish_step(int step, const Scene& scene, const StepReport& report, double constraint_dt);
+  bool finish_step(int step, const Scene& scene, const StepReport& report);
 
  private:
   /// Intermediate results shared by several observables of a rod.
@@ -33,7 +33,7 @@ class SimulationLog {
     Linearization at;
     MomentumBalance balance;
   };
-  void log_step(std::size_t step, const Scene& scene, const StepReport& report, double constraint_dt);
+  void log_step(std::size_t step, const Scene& scene, const StepReport& report);
   void fail(TaskOutcome outcome, int step, const std::string& why);
   void log_frame(std::size_t frame, const Scene& scene);
 

@@ -168,6 +168,10 @@ std::vector<Column> all_columns() {
       column<&R::systems, &Systems::newton>("/systems/newton", Rows::system, none, "1",
                                             "Newton iteration within the step, from 0"),
       column<&R::systems, &Systems::rod>("/systems/rod", Rows::system, none, "1", "rod within the scene, from 0"),
+      column<&R::systems, &Systems::constraint_dt_s>(
+          "/systems/constraint_dt_s", Rows::system, none, "s",
+          "time by which A has the compliance over its square: h / sqrt(1 + c "
+          "h), with the damping c and h the step, or two thirds of it (bdf2)"),
       column<&R::systems, &Systems::position_m>("/systems/segments/position_m", Rows::system_segment, xyz, "m",
                                                 "segment centre where the system was assembled"),
       column<&R::systems, &Systems::orientation>(

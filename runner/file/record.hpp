@@ -111,6 +111,7 @@ struct TaskRecord {
   struct Systems {
     Cells<std::int32_t> step;                            ///< [system]
     Cells<std::int16_t> newton, rod;                     ///< [system]
+    Cells<double> constraint_dt_s;                       ///< [system]
     Cells<double> position_m, orientation;               ///< [system x segment, 3], [.., 4] (w, x, y, z)
     Cells<double> velocity_m_s, angular_velocity_rad_s;  ///< [system x segment, 3]
     Cells<double> free_position_m, free_orientation;     ///< [balanced segment, 3], [.., 4]

@@ -12,6 +12,7 @@
 #include "solver/cg/conjugate_gradient.hpp"
 #include "solver/scene/scenes.hpp"
 #include "solver/step/pbd_projection.hpp"
+#include "solver/step/time_step.hpp"
 
 namespace rodsweep {
 
@@ -35,12 +36,17 @@ inline bool is_gauss_seidel(Method method) { return method == Method::pbd || met
 
 struct TimeSpec {
   double step_s = 0.02;
+  Integrator integrator = Integrator::euler;
   int steps = 100;
   int newton_iterations = 6;         ///< maximum per step; Gauss-Seidel: its iterations
   double newton_tolerance = 1e-9;    ///< Newton ends when max |C + alpha~ lambda| falls below it
   bool balance = false;              ///< steps balance momentum (solver/rod/momentum_balance.hpp)
   double momentum_tolerance = 1e-4;  ///< with `balance`, Newton also requires its residual below this
 };
+
+inline StepSettings step_settings(const TimeSpec& time) {
+  return {time.step_s, time.newton_iterations, time.newton_tolerance, time.integrator};
+}
 
 /// The solution that guesses are compared with; it advances the rod in a paired evaluation.
 enum class Reference {

@@ -54,6 +54,9 @@ KeyTable<TimeSpec> time_keys() {
                      .plausibly(1e-6, 1)
                      .also_called({"dt", "dt_s", "time_step_s"}),
                  &TimeSpec::step_s);
+  table.optional(
+      choice_key("integrator", "euler: the paper's implicit Euler, first order; bdf2: second order, as costly a step"),
+      Words<Integrator>{{"euler", Integrator::euler}, {"bdf2", Integrator::bdf2}}, &TimeSpec::integrator);
   table.required(integer_key("steps", "number of time steps").from(1, 10000000).one_of_group(run), &TimeSpec::steps);
   table.unbound(number_key("duration_s", "simulated time, a whole number of steps")
                     .in("s")

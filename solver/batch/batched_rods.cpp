@@ -74,21 +74,21 @@ void put(BatchedSegment& out, int lane, const Rod& rod, std::size_t s) {
   put(out.orientation, lane, rod.orientation[s]);
 }
 
-void put(BatchedJoint& out, int lane, const Rod& rod, std::size_t k, double dt) {
+void put(BatchedJoint& out, int lane, const Rod& rod, std::size_t k) {
   const Joint& joint = rod.joints[k];
   put(out.shape.arm_a, lane, joint.arm_a / joint.length);
   put(out.shape.arm_b, lane, joint.arm_b / joint.length);
   out.shape.inverse_length[lane] = 1 / joint.length;
   put(out.shape.rest, lane, joint.rest);
   for (int row = 0; row < 6; ++row) {
-    out.compliance[row][lane] = joint.compliance[row] / (dt * dt);
+    out.alpha[row][lane] = joint.compliance[row];
     out.lambda[row][lane] = rod.lambda[static_cast<Eigen::Index>(6 * k) + row];
   }
 }
 
 }  // namespace
 
-BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double dt) : rods(static_cast<int>(scenes.size())) {
+BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double h) : rods(static_cast<int>(scenes.size())) {
   if (scenes.empty() || rods > lanes)
     throw SceneError("a batch of " + std::to_string(scenes.size()) + " scenes; must be from 1 to " +
                      std::to_string(lanes));
@@ -102,17 +102,24 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double dt) : rods(sta
   free.resize(segments.size());
   for (int lane = 0; lane < lanes; ++lane) {
     const Scene& scene = scenes[static_cast<std::size_t>(std::min(lane, rods - 1))];
-    const double dt_c = constraint_dt(scene, dt);
     for (std::size_t s = 0; s < segments.size(); ++s) put(segments[s], lane, scene.rods.front(), s);
-    for (std::size_t k = 0; k < joints.size(); ++k) put(joints[k], lane, scene.rods.front(), k, dt_c);
+    for (std::size_t k = 0; k < joints.size(); ++k) put(joints[k], lane, scene.rods.front(), k);
     put(gravity, lane, scene.gravity_m_s2);
-    damping[lane] = 1 / (1 + scene.damping_per_s * dt);
+    damping_per_s[lane] = scene.damping_per_s;
   }
+  set_step(h);
   for (std::size_t s = 0; s < segments.size(); ++s) free[s] = {segments[s].position, segments[s].orientation};
   stretches_evenly = std::all_of(joints.begin(), joints.end(), [](const BatchedJoint& joint) {
-    const LaneVector6& c = joint.compliance;
+    const LaneVector6& c = joint.alpha;
     return !any((c[0] != c[1]) | (c[0] != c[2]));
   });
+}
+
+void BatchedRods::set_step(double h) {
+  damping = 1 / (1 + damping_per_s * h);
+  for (int lane = 0; lane < lanes; ++lane) constraint_dt[lane] = rodsweep::constraint_dt(damping_per_s[lane], h);
+  for (BatchedJoint& joint : joints)
+    for (int row = 0; row < 6; ++row) joint.compliance[row] = joint.alpha[row] / (constraint_dt * constraint_dt);
 }
 
 void BatchedRods::write(int lane, Scene& scene) const {
@@ -126,6 +133,7 @@ void BatchedRods::write(int lane, Scene& scene) const {
     rod.free_position[s] = lane_of(free[s].position, lane);
     rod.free_orientation[s] = lane_of(free[s].orientation, lane);
   }
+  rod.constraint_dt = constraint_dt[lane];
   for (std::size_t k = 0; k < joints.size(); ++k)
     for (int row = 0; row < 6; ++row) rod.lambda[static_cast<Eigen::Index>(6 * k) + row] = joints[k].lambda[row][lane];
 }

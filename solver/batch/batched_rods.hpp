@@ -23,22 +23,23 @@ struct BatchedSegment {
   Lane gyration;                                        ///< (axial - transverse) / transverse inertia
   LaneVector position, velocity, angular_velocity;
   LaneQuaternion orientation;
-  LaneVector old_position;  ///< at the start of the step
-  LaneQuaternion old_orientation;
 };
 
 struct BatchedJoint {
   JointShape<Lane> shape;
-  LaneVector6 compliance;  ///< alpha~ [1/(kg m^2)]
+  LaneVector6 alpha;       ///< [1/J]
+  LaneVector6 compliance;  ///< alpha~ = alpha / dt_c^2 [1/(kg m^2)]
   LaneVector6 lambda;
 };
 
 struct BatchedRods {
   static constexpr int lanes = lane_width;
 
-  /// From the states of scenes of one rod each, for steps of dt. Throws SceneError for no scene or more than `lanes`,
+  /// From the states of scenes of one rod each, for steps with h (time_step.hpp). Throws SceneError for no scene or more than `lanes`,
   /// rods that are not equal chains, a joint between static segments, moving clamps, point loads, contact or wind.
-  BatchedRods(const std::vector<Scene>& scenes, double dt);
+  BatchedRods(const std::vector<Scene>& scenes, double h);
+
+  void set_step(double h);  ///< of the next steps
 
   /// Writes the state of rod `lane` and its p* into its scene.
   void write(int lane, Scene& scene) const;
@@ -48,7 +49,9 @@ struct BatchedRods {
   std::vector<BatchedJoint> joints;
   std::vector<SegmentPose<Lane>> free;  ///< p* of the segments
   LaneVector gravity;
-  Lane damping;           ///< 1 / (1 + c dt)
+  Lane damping_per_s;     ///< c
+  Lane damping;           ///< 1 / (1 + c h)
+  Lane constraint_dt;     ///< dt_c
   bool stretches_evenly;  ///< every joint's stretch and shear compliances are equal
 };
 

@@ -18,9 +18,10 @@ BatchedStepper::BatchedStepper(const std::vector<Scene>& scenes, const StepSetti
       running_{},
       balanced_{},
       momentum_tolerance_(momentum_tolerance),
+      history_(rods_.segments.size()),
+      h_(settings.dt),
       steps_(scenes.size(), 0),
       reports_(scenes.size()) {
-  if (momentum_tolerance_) before_.resize(rods_.segments.size());
   for (int rod = 0; rod < rods_.rods; ++rod) {
     sound_[rod] = -1;
     start_time_s_.push_back(scenes[static_cast<std::size_t>(rod)].time_s);
@@ -34,6 +35,7 @@ const std::vector<StepReport>& BatchedStepper::step() {
 }
 
 void BatchedStepper::begin() {
+  remember();
   predict();
   running_ = sound_;
   newton_ = 0;
@@ -90,18 +92,43 @@ void BatchedStepper::write(int rod, Scene& scene) const {
   scene.time_s = start_time_s_[static_cast<std::size_t>(rod)] + steps_taken(rod) * settings_.dt;
 }
 
+// FreeFlight::start().
+void BatchedStepper::remember() {
+  known_ = std::min(known_ + 1, 2);
+  const bool uses_two_steps = settings_.integrator == Integrator::bdf2 && known_ == 2;
+  if (const double h = implicit_dt(settings_.dt, uses_two_steps); h != h_) rods_.set_step(h_ = h);
+  for (std::size_t s = 0; s < rods_.segments.size(); ++s) {
+    const BatchedSegment& segment = rods_.segments[s];
+    History& history = history_[s];
+    history.before = history.now;
+    history.now = {segment.position, segment.orientation, segment.velocity, segment.angular_velocity};
+    history.past = {segment.position, segment.orientation};
+    if (uses_two_steps) history.past = past_pose(history.now, history.before);
+  }
+}
+
+// FreeFlight::predict().
 void BatchedStepper::predict() {
-  const double dt = settings_.dt;
-  const LaneVector gain = all_lanes(dt) * rods_.gravity;
-  for (BatchedSegment& segment : rods_.segments) {
-    segment.old_position = segment.position;
-    segment.old_orientation = segment.orientation;
+  const LaneVector gain = all_lanes(h_) * rods_.gravity;
+  const bool uses_two_steps = h_ != settings_.dt;
+  for (std::size_t s = 0; s < rods_.segments.size(); ++s) {
+    BatchedSegment& segment = rods_.segments[s];
     if (segment.is_static) continue;
-    const LaneVector turn = gyrated(segment.angular_velocity, director(segment.orientation), dt * segment.gyration);
-    segment.position =
-        select(sound_, segment.position + (dt * rods_.damping) * (segment.velocity + gain), segment.position);
-    segment.orientation =
-        select(sound_, rotated(segment.orientation, (dt * rods_.damping) * turn), segment.orientation);
+    const auto& [now, before, past] = history_[s];
+    LaneVector position;
+    LaneQuaternion orientation;
+    if (uses_two_steps) {
+      const Lane h = all_lanes(h_);
+      const Flight flight{segment.gyration, rods_.damping, gain};
+      position = past.position + h * free_velocity(now, before, flight);
+      orientation = rotated(past.orientation, free_turn(now, before, expected(past, now, before, h), flight, h));
+    } else {
+      const LaneVector turn = gyrated(now.spin, director(now.orientation), h_ * segment.gyration);
+      position = now.position + (h_ * rods_.damping) * (now.velocity + gain);
+      orientation = rotated(now.orientation, (h_ * rods_.damping) * turn);
+    }
+    segment.position = select(sound_, position, segment.position);
+    segment.orientation = select(sound_, orientation, segment.orientation);
   }
   for (std::size_t s = 0; s < rods_.free.size(); ++s)
     rods_.free[s] = {rods_.segments[s].position, rods_.segments[s].orientation};
@@ -116,19 +143,15 @@ void BatchedStepper::forget_multipliers(const LaneMask& where) {
 
 // FreeFlight::extrapolate().
 void BatchedStepper::start_from_last_step() {
-  const Lane dt = all_lanes(settings_.dt), twice = all_lanes(2);
+  if (known_ < 2 || rods_.joints.empty()) return;
   for (std::size_t s = 0; s < rods_.segments.size(); ++s) {
     BatchedSegment& segment = rods_.segments[s];
-    Motion& before = before_[s];
-    const Motion now = {segment.velocity, segment.angular_velocity};
-    if (!segment.is_static && has_before_ && !rods_.joints.empty()) {
-      const LaneVector velocity = twice * now.velocity - before.velocity, spin = twice * now.spin - before.spin;
-      segment.position = select(sound_, segment.old_position + dt * velocity, segment.position);
-      segment.orientation = select(sound_, rotated(segment.old_orientation, dt * spin), segment.orientation);
-    }
-    before = now;
+    if (segment.is_static) continue;
+    const auto& [now, before, past] = history_[s];
+    const LaneMotion motion = expected(past, now, before, all_lanes(h_));
+    segment.position = select(sound_, motion.position, segment.position);
+    segment.orientation = select(sound_, motion.orientation, segment.orientation);
   }
-  has_before_ = true;
 }
 
 void BatchedStepper::take_back(const LaneMask& rods) {
@@ -143,13 +166,13 @@ void BatchedStepper::take_back(const LaneMask& rods) {
 }
 
 void BatchedStepper::update_velocities() {
-  const double inverse_dt = 1 / settings_.dt;
-  for (BatchedSegment& segment : rods_.segments) {
-    segment.velocity =
-        select(sound_, all_lanes(inverse_dt) * (segment.position - segment.old_position), segment.velocity);
+  const Lane inverse_h = all_lanes(1 / h_);
+  for (std::size_t s = 0; s < rods_.segments.size(); ++s) {
+    BatchedSegment& segment = rods_.segments[s];
+    const LanePose& past = history_[s].past;
+    segment.velocity = select(sound_, inverse_h * (segment.position - past.position), segment.velocity);
     segment.angular_velocity =
-        select(sound_, all_lanes(inverse_dt) * rotation(segment.orientation, segment.old_orientation),
-               segment.angular_velocity);
+        select(sound_, inverse_h * rotation(segment.orientation, past.orientation), segment.angular_velocity);
   }
 }
 

@@ -41,9 +41,11 @@ class BatchedStepper {
   void write(int rod, Scene& scene) const;
 
  private:
-  struct Motion {
-    LaneVector velocity, spin;
+  struct History {  ///< of a segment, at the start of this step and of the last one
+    LaneMotion now, before;
+    LanePose past;
   };
+  void remember();
   void predict();
   void forget_multipliers(const LaneMask& where);
   void start_from_last_step();
@@ -57,8 +59,9 @@ class BatchedStepper {
   LaneMask running_;   ///< the sound rods that have not converged in this step
   LaneMask balanced_;  ///< the sound rods that keep the balance of momentum
   std::optional<double> momentum_tolerance_;
-  std::vector<Motion> before_;  ///< of the segments, at the last step's start
-  bool has_before_ = false;
+  std::vector<History> history_;
+  int known_ = 0;   ///< motions: 0, 1 (now) or 2 (before)
+  double h_;        ///< of the step (integrator.hpp)
   int newton_ = 0;  ///< solves of this step
   std::vector<double> start_time_s_;
   std::vector<int> steps_;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double reach = 1.2;            ///< contacts begin at this many radii from the axis, plus the motion
 constexpr double most_recovered = 0.01;  ///< limit per step of a penetration's correction, of the smaller radius
+constexpr double least_impact = 0.01;    ///< approach in a step, of the smaller radius
 constexpr double catching = 0.3;         ///< cosine of the angle at which the next segment must approach
 constexpr double side_by_side = 0.1;     ///< of R: limit of the distance's change along the overlap
 
@@ -163,6 +164,13 @@ void ContactFinder::add(Contact contact, bool sided) {
   contact.allowed =
       std::min((1 - recovery_) * width, width + most_recovered * bodies_.smaller_radius(contact.a, contact.b));
   found_.push_back(contact);
+}
+
+bool ContactFinder::closes(Contact contact, const std::vector<CapsuleAxis>& axes) const {
+  const double end = follow(contact, axes, end_s_).width;
+  if (end >= 0) return false;
+  const double start = follow(contact, start_, start_s_).width;
+  return start - end > least_impact * bodies_.smaller_radius(contact.a, contact.b);
 }
 
 Vector3 ContactFinder::motion(int obstacle) const {

@@ -31,7 +31,7 @@ struct Contact {
   double s;                  ///< on a's axis, unless closest
   Vector3 normal;            ///< n
   double allowed = 0;        ///< lower limit of the gap |x_a - x_b| - R, at most 0 [m]
-  Vector3 impulse{0, 0, 0};  ///< on a, in this step so far, starting from the last step's: force times dt_c^2 [kg m]
+  Vector3 impulse{0, 0, 0};  ///< on a, in this step so far, starting from the last step's (contact_motion.hpp) [kg m]
 };
 
 /// The gap of a contact where its capsules are nearest, along its normal, which follows() updates.
@@ -65,6 +65,9 @@ class ContactFinder {
   /// The gap with these axes. Updates the contact's normal.
   Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes) const { return follow(contact, axes, end_s_); }
   const std::vector<CapsuleAxis>& start() const { return start_; }
+
+  /// Whether the bodies touch with these axes and have come nearer by more than a hundredth of the smaller radius.
+  bool closes(Contact contact, const std::vector<CapsuleAxis>& axes) const;
 
   /// The motion of an obstacle in the step; half-space i is obstacle -1 - i.
   Vector3 motion(int obstacle) const;

@@ -35,6 +35,13 @@ ContactMotion::ContactMotion(Scene& scene, const ContactBodies& bodies)
   }
 }
 
+void ContactMotion::start_step(double unit_dt) {
+  for (std::size_t r = 0; r < rods_.size(); ++r) {
+    const double ratio = scene_.rods[r].constraint_dt / unit_dt;
+    rods_[r].share = ratio * ratio;
+  }
+}
+
 const Segment& ContactMotion::segment(const Body& of) const {
   return scene_.rods[static_cast<std::size_t>(of.rod)].segments[static_cast<std::size_t>(of.segment)];
 }
@@ -45,14 +52,15 @@ Matrix3 ContactMotion::mobility(int body, const Vector3& arm, const CapsuleAxis&
   const Segment& of = segment(bodies_.body(body));
   for (int c = 0; c < 3; ++c) w.col(c) = turn(of, arm.cross(Vector3::Unit(c)), axis).cross(arm);
   w.diagonal().array() += of.inverse_mass;
-  return w;
+  return share(bodies_.body(body).rod) * w;
 }
 
 void ContactMotion::push(int body, const Vector3& arm, const Vector3& impulse, const CapsuleAxis& axis) {
   const Body& of = bodies_.body(body);
   if (!of.is_free) return;
   const Segment& pushed = segment(of);
-  const Vector3 dx = pushed.inverse_mass * impulse, dtheta = turn(pushed, arm.cross(impulse), axis);
+  const Vector3 own = share(of.rod) * impulse;
+  const Vector3 dx = pushed.inverse_mass * own, dtheta = turn(pushed, arm.cross(own), axis);
   motion_[static_cast<std::size_t>(body)] += Lane8{dx.x(), dx.y(), dx.z(), dtheta.x(), dtheta.y(), dtheta.z(), 0, 0};
   rods_[static_cast<std::size_t>(of.rod)].pushed = true;
 }
@@ -62,13 +70,13 @@ Vector3 ContactMotion::of(int body, const Vector3& arm) const {
   return Vector3(motion[0], motion[1], motion[2]) + Vector3(motion[3], motion[4], motion[5]).cross(arm);
 }
 
-void ContactMotion::settle(double constraint_dt) {
+void ContactMotion::settle() {
   for (std::size_t r = 0; r < rods_.size(); ++r) {
     Coupled& coupled = rods_[r];
     if (!coupled.pushed) continue;
     const Rod& rod = scene_.rods[r];
     if (!coupled.response) coupled.response.emplace(rod);
-    if (!coupled.assembled) coupled.response->assemble(rod, constraint_dt);
+    if (!coupled.assembled) coupled.response->assemble(rod, rod.constraint_dt);
     coupled.assembled = true;
     coupled.pushed = false;
     Lane8* motion = motion_.data() + coupled.first_body;

@@ -19,13 +19,19 @@ class ContactMotion {
   /// W of a body's point, `arm` from its centre: the point's motion per impulse there [1/kg].
   Matrix3 mobility(int body, const Vector3& arm, const CapsuleAxis& axis) const;
 
-  /// An impulse at a body's point: force times dt_c^2 [kg m].
+  /// Call in each step before the others: impulses are forces times unit_dt^2 [kg m], also between rods whose
+  /// multipliers are forces times the squares of other constraint_dt.
+  void start_step(double unit_dt);
+  /// What a rod gets of an impulse.
+  double share(int rod) const { return rods_[static_cast<std::size_t>(rod)].share; }
+
+  /// An impulse at a body's point.
   void push(int body, const Vector3& arm, const Vector3& impulse, const CapsuleAxis& axis);
 
   /// The motion of a body's point.
   Vector3 of(int body, const Vector3& arm) const;
 
-  void settle(double constraint_dt);
+  void settle();
 
   /// Moves the bodies by the settled motions, then resets all motions. With the balance of momentum kept, joints keep
   /// their forces in the world (momentum_balance.hpp).
@@ -37,6 +43,7 @@ class ContactMotion {
  private:
   struct Coupled {
     int first_body;
+    double share = 1;
     std::optional<RodResponse> response{};  ///< after the first push
     bool pushed = false, assembled = false;
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "solver/linear/interruption.hpp"
 #include "solver/numbers/rotation.hpp"
@@ -20,8 +21,12 @@ void check_least(const char* what, double value, double least) {
 
 }  // namespace
 
-ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settings)
-    : scene_(scene), settings_(settings), finder_(scene, settings.recovery), motion_(scene, finder_.bodies()) {
+ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settings, double unit_dt)
+    : scene_(scene),
+      settings_(settings),
+      unit_dt_(unit_dt),
+      finder_(scene, settings.recovery),
+      motion_(scene, finder_.bodies()) {
   check_least("friction", settings.friction, 0);
   check_least("tolerance", settings.tolerance, 0);
   if (settings.tolerance == 0) throw SceneError("tolerance is 0; must be positive");
@@ -44,6 +49,7 @@ bool ContactProjection::find(bool keeps_balance) {
   if (!finder_.find(scene_, contacts_)) return false;
   fresh_ = true;
   keeps_balance_ = keeps_balance;
+  motion_.start_step(unit_dt_);
   last_.reserve(contacts_.capacity());
   linear_.resize(contacts_.size());
   before_.resize(contacts_.size());
@@ -55,10 +61,32 @@ bool ContactProjection::find(bool keeps_balance) {
   return true;
 }
 
-bool ContactProjection::project(double constraint_dt) {
+const std::vector<char>& ContactProjection::impacts() {
+  hit_.assign(scene_.rods.size(), 0);
+  contacts_ = last_;
+  if (!finder_.find(scene_, contacts_)) return hit_;
+  finder_.place(scene_, axes_);
+  const auto rod_of = [this](int body) { return body < 0 ? -1 : finder_.bodies().body(body).rod; };
+  /// Whether this marks another rod.
+  const auto mark = [this](int rod) { return rod >= 0 && !std::exchange(hit_[static_cast<std::size_t>(rod)], 1); };
+  for (const Contact& contact : contacts_)
+    if (contact.impulse.isZero(0) && finder_.closes(contact, axes_)) mark(rod_of(contact.a)), mark(rod_of(contact.b));
+  for (bool again = true; again;) {
+    again = false;
+    for (const Contact& contact : contacts_) {
+      const int a = rod_of(contact.a), b = rod_of(contact.b);
+      if (a < 0 || b < 0 || hit_[static_cast<std::size_t>(a)] == hit_[static_cast<std::size_t>(b)]) continue;
+      Contact with = contact;
+      if (!contact.impulse.isZero(0) || finder_.follow(with, axes_).width < 0) again |= mark(a) | mark(b);
+    }
+  }
+  return hit_;
+}
+
+bool ContactProjection::project() {
   if (contacts_.empty()) return true;
   linearise();
-  const bool pressed = press(constraint_dt);
+  const bool pressed = press();
   restart(HUGE_VAL);
   for (int i = 0; i < settings_.sweeps; ++i) {
     const double moved = sweep();
@@ -71,7 +99,7 @@ bool ContactProjection::project(double constraint_dt) {
     }
     const bool last = converged || i + 1 == settings_.sweeps;
     if (!last) accelerate(moved);
-    motion_.settle(constraint_dt);
+    motion_.settle();
     if (last) break;
   }
   motion_.apply(keeps_balance_);
@@ -81,7 +109,7 @@ bool ContactProjection::project(double constraint_dt) {
 
 // Applies the last step's impulses to contacts that persist, unless the balance of momentum already includes them.
 // Returns whether anything moves.
-bool ContactProjection::press(double constraint_dt) {
+bool ContactProjection::press() {
   if (!fresh_) return false;
   fresh_ = false;
   bool any = false;
@@ -94,7 +122,7 @@ bool ContactProjection::press(double constraint_dt) {
     push(contact, linear_[c], change);
     any = true;
   }
-  motion_.settle(constraint_dt);
+  motion_.settle();
   return any;
 }
 
@@ -197,8 +225,9 @@ void ContactProjection::tell_impulses() {
     const Body& of = finder_.bodies().body(body);
     if (!of.is_free) return;
     Vector6& on = scene_.rods[static_cast<std::size_t>(of.rod)].contact_impulse[static_cast<std::size_t>(of.segment)];
-    on.head<3>() += impulse;
-    on.tail<3>() += arm.cross(impulse);
+    const double share = motion_.share(of.rod);
+    on.head<3>() += share * impulse;
+    on.tail<3>() += share * arm.cross(impulse);
   };
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];

@@ -75,9 +75,10 @@ class Rod {
   std::vector<Vector3> position, velocity, angular_velocity;
   std::vector<Quaternion> orientation;
   VectorX lambda;
+  double constraint_dt = 0;  ///< [s] of the last step: forces are J^T lambda over its square (time_step.hpp)
 
   // For the step: the positions p* of segments without joints and contacts, and the impulses of contacts on them: force
-  // and torque about the centre, in the world, times dt_c^2; empty without contact.
+  // and torque about the centre, in the world, times constraint_dt^2; empty without contact.
   std::vector<Vector3> free_position;
   std::vector<Quaternion> free_orientation;
   std::vector<Vector6> contact_impulse;

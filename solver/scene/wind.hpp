@@ -15,7 +15,7 @@
 //
 //   F = 1/2 rho C_d d l |u_n| u_n + 1/2 rho C_f pi d l |u_t| u_t
 //
-// TimeStepper evaluates it at the start of the step: first order in dt, exact at rest. The factors k = 1/2 rho C d l
+// TimeStepper evaluates it where a step starts, or by BDF2 where it is expected to end: exact at rest. The factors k = 1/2 rho C d l
 // |u| are limited to m / dt, above which drag would overshoot within a step: so it never accelerates a segment past the
 // air. Implicit drag in the prediction would be as stable, but the multipliers do not contain it: constraints would
 // balance a drag that is too small by 1 + dt k / m.

@@ -4,7 +4,7 @@
 
 namespace rodsweep {
 
-FreeFlight::FreeFlight(const Rod& rod) {
+FreeFlight::FreeFlight(const Rod& rod, Integrator integrator, double dt) : integrator_(integrator), dt_(dt) {
   const int count = rod.segment_count();
   for (int first = 0; first < count; first += lane_width) {
     Group group{};
@@ -20,65 +20,117 @@ FreeFlight::FreeFlight(const Rod& rod) {
   }
 }
 
-void FreeFlight::predict(Rod& rod, double dt, double damping_per_s, const Vector3& gravity_m_s2,
-                         const SegmentLoads* loads) {
-  const double damped_dt = dt / (1 + damping_per_s * dt);
-  const LaneVector gain = {all_lanes(dt * gravity_m_s2.x()), all_lanes(dt * gravity_m_s2.y()),
-                           all_lanes(dt * gravity_m_s2.z())};
+/// Calls visit(group, its first segment, how many it has).
+template <class Groups, class Visit>
+static void visit_groups(Groups& groups, const Rod& rod, Visit visit) {
   std::size_t s = 0;
-  for (Group& group : groups_) {
-    const int count = rod.segment_count() - static_cast<int>(s);
-    const LaneVector position = load(&rod.position[s], count);
-    const LaneQuaternion orientation = load(&rod.orientation[s], count);
-    const LaneVector axis = director(orientation);
-    LaneVector velocity = load(&rod.velocity[s], count) + gain;
-    LaneVector spin = gyrated(load(&rod.angular_velocity[s], count), axis, dt * group.gyration);
+  for (auto& group : groups) {
+    visit(group, s, rod.segment_count() - static_cast<int>(s));
+    s += lane_width;
+  }
+}
+
+/// Moves free segments; the others stay where they are now.
+template <class Group>
+static void move_free(Rod& rod, const Group& group, std::size_t s, int count, const LaneVector& position,
+                      const LaneQuaternion& orientation) {
+  store(select(group.is_free, position, group.now.position), &rod.position[s], count);
+  store(select(group.is_free, orientation, group.now.orientation), &rod.orientation[s], count);
+}
+
+static void set_velocities(Rod& rod, const LaneMotion& motion, std::size_t s, int count) {
+  store(motion.velocity, &rod.velocity[s], count);
+  store(motion.spin, &rod.angular_velocity[s], count);
+}
+
+void FreeFlight::start(Rod& rod) {
+  known_ = std::min(known_ + 1, 2);
+  uses_two_steps_ = integrator_ == Integrator::bdf2 && known_ == 2;
+  const Lane step = all_lanes(h());
+  visit_groups(groups_, rod, [&](Group& group, std::size_t s, int count) {
+    group.before = group.now;
+    group.now = {load(&rod.position[s], count), load(&rod.orientation[s], count), load(&rod.velocity[s], count),
+                 load(&rod.angular_velocity[s], count)};
+    group.past = {group.now.position, group.now.orientation};
+    if (!uses_two_steps_) return;
+    group.past = past_pose(group.now, group.before);
+    const LaneMotion motion = expected(group.past, group.now, group.before, step);
+    move_free(rod, group, s, count, motion.position, motion.orientation);
+    set_velocities(rod, motion, s, count);
+  });
+}
+
+void FreeFlight::start_anew(Rod& rod) {
+  known_ = -1;  // the velocity after this step still has a part of that before the impact
+  uses_two_steps_ = false;
+  visit_groups(groups_, rod, [&](Group& group, std::size_t s, int count) {
+    group.past = {group.now.position, group.now.orientation};
+    move_free(rod, group, s, count, group.now.position, group.now.orientation);
+    set_velocities(rod, group.now, s, count);
+  });
+}
+
+void FreeFlight::predict(Rod& rod, double damping_per_s, const Vector3& gravity_m_s2, const SegmentLoads* loads) {
+  if (uses_two_steps_) return predict_by_two_steps(rod, damping_per_s, gravity_m_s2, loads);
+  const double damped_dt = dt_ / (1 + damping_per_s * dt_);
+  const LaneVector gain = {all_lanes(dt_ * gravity_m_s2.x()), all_lanes(dt_ * gravity_m_s2.y()),
+                           all_lanes(dt_ * gravity_m_s2.z())};
+  visit_groups(groups_, rod, [&](Group& group, std::size_t s, int count) {
+    const LaneMotion& now = group.now;
+    const LaneVector axis = director(now.orientation);
+    LaneVector velocity = now.velocity + gain;
+    LaneVector spin = gyrated(now.spin, axis, dt_ * group.gyration);
     if (loads) {
       const LaneVector torque = load(&loads->torque_nm[s], count);
-      velocity = velocity + (dt * group.inverse_mass) * load(&loads->force_n[s], count);
-      spin = spin + (dt * group.inverse_inertia_transverse) * torque + (dt * group.excess * dot(axis, torque)) * axis;
+      velocity = velocity + (dt_ * group.inverse_mass) * load(&loads->force_n[s], count);
+      spin = spin + (dt_ * group.inverse_inertia_transverse) * torque + (dt_ * group.excess * dot(axis, torque)) * axis;
     }
-    group.old_position = position;
-    group.old_orientation = orientation;
-    store(select(group.is_free, position + all_lanes(damped_dt) * velocity, position), &rod.position[s], count);
-    store(select(group.is_free, rotated(orientation, all_lanes(damped_dt) * spin), orientation), &rod.orientation[s],
-          count);
-    s += lane_width;
-  }
+    move_free(rod, group, s, count, now.position + all_lanes(damped_dt) * velocity,
+              rotated(now.orientation, all_lanes(damped_dt) * spin));
+  });
 }
 
-void FreeFlight::extrapolate(Rod& rod, double dt) {
-  const Lane step = all_lanes(dt), twice = all_lanes(2);
-  std::size_t s = 0;
-  for (Group& group : groups_) {
-    const int count = rod.segment_count() - static_cast<int>(s);
-    const LaneVector velocity = load(&rod.velocity[s], count), spin = load(&rod.angular_velocity[s], count);
-    if (extrapolates_) {
-      const LaneVector position = load(&rod.position[s], count);
-      const LaneQuaternion orientation = load(&rod.orientation[s], count);
-      store(select(group.is_free, group.old_position + step * (twice * velocity - group.velocity_before), position),
-            &rod.position[s], count);
-      store(
-          select(group.is_free, rotated(group.old_orientation, step * (twice * spin - group.spin_before)), orientation),
-          &rod.orientation[s], count);
+void FreeFlight::predict_by_two_steps(Rod& rod, double damping_per_s, const Vector3& gravity_m_s2,
+                                      const SegmentLoads* loads) {
+  const double h = this->h();
+  const Lane step = all_lanes(h);
+  const LaneVector gain = {all_lanes(h * gravity_m_s2.x()), all_lanes(h * gravity_m_s2.y()),
+                           all_lanes(h * gravity_m_s2.z())};
+  visit_groups(groups_, rod, [&](Group& group, std::size_t s, int count) {
+    const LaneMotion motion = expected(group.past, group.now, group.before, step);
+    Flight flight{group.gyration, all_lanes(1 / (1 + damping_per_s * h)), gain};
+    if (loads) {
+      const LaneVector torque = load(&loads->torque_nm[s], count);
+      flight.gain = flight.gain + (h * group.inverse_mass) * load(&loads->force_n[s], count);
+      flight.turning = (h * group.inverse_inertia_transverse) * torque;
+      flight.axial_turning =
+          h * (group.inverse_inertia_transverse + group.excess) * dot(director(motion.orientation), torque);
     }
-    group.velocity_before = velocity;
-    group.spin_before = spin;
-    s += lane_width;
-  }
-  extrapolates_ = true;
+    move_free(rod, group, s, count, group.past.position + step * free_velocity(group.now, group.before, flight),
+              rotated(group.past.orientation, free_turn(group.now, group.before, motion, flight, step)));
+    set_velocities(rod, group.now, s, count);
+  });
 }
 
-void FreeFlight::update_velocities(Rod& rod, double dt) const {
-  const Lane inverse_dt = all_lanes(1 / dt);
-  std::size_t s = 0;
-  for (const Group& group : groups_) {
-    const int count = rod.segment_count() - static_cast<int>(s);
-    store(inverse_dt * (load(&rod.position[s], count) - group.old_position), &rod.velocity[s], count);
-    store(inverse_dt * rotation(load(&rod.orientation[s], count), group.old_orientation), &rod.angular_velocity[s],
+void FreeFlight::extrapolate(Rod& rod) const {
+  if (known_ < 2) return;
+  const Lane step = all_lanes(h());
+  visit_groups(groups_, rod, [&](const Group& group, std::size_t s, int count) {
+    const LaneMotion motion = expected(group.past, group.now, group.before, step);
+    const LaneVector position = load(&rod.position[s], count);
+    const LaneQuaternion orientation = load(&rod.orientation[s], count);
+    store(select(group.is_free, motion.position, position), &rod.position[s], count);
+    store(select(group.is_free, motion.orientation, orientation), &rod.orientation[s], count);
+  });
+}
+
+void FreeFlight::update_velocities(Rod& rod) const {
+  const Lane inverse_h = all_lanes(1 / h());
+  visit_groups(groups_, rod, [&](const Group& group, std::size_t s, int count) {
+    store(inverse_h * (load(&rod.position[s], count) - group.past.position), &rod.velocity[s], count);
+    store(inverse_h * rotation(load(&rod.orientation[s], count), group.past.orientation), &rod.angular_velocity[s],
           count);
-    s += lane_width;
-  }
+  });
 }
 
 }  // namespace rodsweep

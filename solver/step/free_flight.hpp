@@ -1,16 +1,19 @@
-// The two ends of a time step of one rod: free flight before its projections, velocities after them.
+// The two ends of a time step of one rod: free flight before its projections, velocities after them. Euler:
 //
-//   v* = (v + dt (g + f / m)) / (1 + c dt),  w* = (w + dt I^-1 (tau - w x I w)) / (1 + c dt)
-//   x* = x + dt v*,   q* = normalise(q + dt [0, w*] q / 2)        of free segments
-//   v = (x - x_old) / dt,   w = (2 / dt) Im(d) / Re(d),  d = q conj(q_old)
+//   v* = (v + h (g + f / m)) / (1 + c h),  w* = (w + h I^-1 (tau - w x I w)) / (1 + c h)
+//   x* = x + h v*,   q* = normalise(q + h [0, w*] q / 2)        of free segments
+//   v = (x - x_old) / h,   w = (2 / h) Im(d) / Re(d),  d = q conj(q_old)
+//
+// BDF2 has other x_old, q_old, v* and w* (integrator.hpp, two_step_flight.hpp).
 // I is axisymmetric: w x I w = (i_a - i_t) (t.w) w x t is transverse to the axis t, and I^-1 = i_t^-1 + excess t t^T.
 // Processes as many segments at a time as a register has lanes. Nothing allocates after construction.
 #pragma once
 
 #include <vector>
 
-#include "solver/numbers/lane_math.hpp"
 #include "solver/rod/rod.hpp"
+#include "solver/step/integrator.hpp"
+#include "solver/step/two_step_flight.hpp"
 
 namespace rodsweep {
 
@@ -21,29 +24,42 @@ struct SegmentLoads {
 
 class FreeFlight {
  public:
-  explicit FreeFlight(const Rod& rod);
+  FreeFlight(const Rod& rod, Integrator integrator, double dt);
 
-  /// Moves free segments to x*, q* and remembers the state at the start of the step. `loads` may be null.
-  void predict(Rod& rod, double dt, double damping_per_s, const Vector3& gravity_m_s2, const SegmentLoads* loads);
+  /// Starts a step. If it uses two steps, the rod has the motion that is expected at the end of the step from now to
+  /// predict(), since its loads act there.
+  void start(Rod& rod);
+  /// Starts the same step as one of Euler, at the rod's pose before start(): it hits something. So are the next two.
+  void start_anew(Rod& rod);
 
-  /// To be called between these two. Moves free segments to x_old + dt (2 v - v_before), q likewise, with v_before from
-  /// the last call; the first call leaves the rod at p*.
-  void extrapolate(Rod& rod, double dt);
+  bool uses_two_steps() const { return uses_two_steps_; }
+  double h() const { return implicit_dt(dt_, uses_two_steps_); }  ///< of this step
 
-  void update_velocities(Rod& rod, double dt) const;
+  /// Moves free segments to x*, q*. `loads` may be null.
+  void predict(Rod& rod, double damping_per_s, const Vector3& gravity_m_s2, const SegmentLoads* loads);
+
+  /// Moves free segments from there to where they are expected at the end of the step, x^ + h (2 v_n - v_(n-1)), q
+  /// likewise, if the last step is known.
+  void extrapolate(Rod& rod) const;
+
+  void update_velocities(Rod& rod) const;
 
  private:
   struct Group {  ///< neighbours, padded with copies of the last segment
     LaneMask is_free;
     Lane inverse_mass, inverse_inertia_transverse;
-    Lane excess;    ///< of the inverse inertia: axial minus transverse
-    Lane gyration;  ///< (i_a - i_t) / i_t
-    LaneVector old_position;
-    LaneQuaternion old_orientation;
-    LaneVector velocity_before, spin_before;
+    Lane excess;             ///< of the inverse inertia: axial minus transverse
+    Lane gyration;           ///< (i_a - i_t) / i_t
+    LaneMotion now, before;  ///< at the start of this step and of the last one
+    LanePose past;
   };
+  void predict_by_two_steps(Rod& rod, double damping_per_s, const Vector3& gravity_m_s2, const SegmentLoads* loads);
+
+  Integrator integrator_;
+  double dt_;
   std::vector<Group> groups_;
-  bool extrapolates_ = false;  ///< velocities before are known
+  int known_ = 0;  ///< motions since the start or an impact, at most 2: now and before
+  bool uses_two_steps_ = false;
 };
 
 }  // namespace rodsweep

@@ -15,7 +15,7 @@ double rod_length(const Rod& rod);
 /// max over joints of |x_a + rho_a - x_b - rho_b| / l.
 double joint_gap(const Rod& rod);
 
-/// max |C + alpha~ lambda|, alpha~ = alpha / constraint_dt^2 (TimeStepper::constraint_dt): the residual of Newton.
+/// max |C + alpha~ lambda|, alpha~ = alpha / constraint_dt^2 (Rod::constraint_dt): the residual of Newton.
 double newton_residual(const Rod& rod, double constraint_dt);
 double newton_residual(const Rod& rod, const Linearization& at, double constraint_dt);  ///< with a known linearisation
 

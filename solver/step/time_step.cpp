@@ -28,15 +28,16 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
       throw SceneError("a moving clamp needs a static segment; segment " + std::to_string(clamp.segment) + " is free");
   }
   for (const Rod& rod : scene.rods) {
-    flights_.emplace_back(rod);
+    flights_.emplace_back(rod, settings.integrator, settings.dt);
     const std::vector<Vector3> none(rod.segments.size(), Vector3::Zero());
     loads_.push_back({none, none});
   }
-  if (scene.contact) contact_ = std::make_unique<ContactProjection>(scene, *scene.contact);
+  if (scene.contact)
+    contact_ = std::make_unique<ContactProjection>(scene, *scene.contact, rodsweep::constraint_dt(scene, settings.dt));
 }
 
 StepReport TimeStepper::step(Projection& projection) {
-  if (contact_) contact_->start_step(end_of_step());
+  start();
   predict();
   StepReport report;
   report.balanced = projection.keep_balance(true);
@@ -71,7 +72,7 @@ StepReport TimeStepper::step(Projection& projection) {
     report.penetration = state.penetration;
     report.contact_residual = state.residual;
   }
-  for (std::size_t r = 0; r < scene_.rods.size(); ++r) flights_[r].update_velocities(scene_.rods[r], settings_.dt);
+  for (std::size_t r = 0; r < scene_.rods.size(); ++r) flights_[r].update_velocities(scene_.rods[r]);
   ++steps_;
   scene_.time_s = start_time_s_ + steps_ * settings_.dt;
   return report;
@@ -82,7 +83,7 @@ bool TimeStepper::is_lost() const { return !(newton_residual_ < lost_joints && m
 void TimeStepper::start_from_last_step() {
   for (std::size_t r = 0; r < scene_.rods.size(); ++r)
     if (!scene_.rods[r].joints.empty())  // without joints Newton does nothing, and p* is the result
-      flights_[r].extrapolate(scene_.rods[r], settings_.dt);
+      flights_[r].extrapolate(scene_.rods[r]);
 }
 
 /// Resets the rods to p*, with zero multipliers.
@@ -97,14 +98,14 @@ void TimeStepper::take_back() {
 
 // Iterates from the report's number of iterations up to `until`.
 TimeStepper::Newton TimeStepper::iterate(Projection& projection, int until, StepReport& report) {
-  const double dt_c = constraint_dt();
   for (int newton = report.newton_iterations; newton < until; ++newton) {
     bool converged = true;
     newton_residual_ = momentum_residual_ = 0;
     for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
       const SolvePosition at{steps_, newton, static_cast<int>(r)};
       check_interrupted(static_cast<std::int64_t>(scene_.rods[r].joints.size()) * 500);
-      const ProjectionReport done = projection.project(scene_.rods[r], at, dt_c, settings_.newton_tolerance);
+      const ProjectionReport done =
+          projection.project(scene_.rods[r], at, scene_.rods[r].constraint_dt, settings_.newton_tolerance);
       newton_residual_ = larger_or_nan(newton_residual_, done.newton_residual);
       momentum_residual_ = larger_or_nan(momentum_residual_, done.momentum_residual);
       if (done.outcome == SolveOutcome::not_run) continue;
@@ -114,7 +115,7 @@ TimeStepper::Newton TimeStepper::iterate(Projection& projection, int until, Step
       report.outcome = done.outcome;
       if (done.outcome != SolveOutcome::iteration_limit) return Newton::failed;
     }
-    if (contact_ && !contact_->project(dt_c)) {
+    if (contact_ && !contact_->project()) {
       converged = false;
       report.newton_iterations = newton + 1;
     }
@@ -123,19 +124,32 @@ TimeStepper::Newton TimeStepper::iterate(Projection& projection, int until, Step
   return Newton::open;
 }
 
-double constraint_dt(const Scene& scene, double dt) {
+double constraint_dt(double damping_per_s, double h) {
   // Drag scales the constraints' forces like the loads, so that it cancels at rest and does not shift an equilibrium.
-  return dt / std::sqrt(1 + scene.damping_per_s * dt);
+  return h / std::sqrt(1 + damping_per_s * h);
+}
+
+void TimeStepper::start() {
+  if (contact_) contact_->start_step(end_of_step());
+  for (std::size_t r = 0; r < scene_.rods.size(); ++r) flights_[r].start(scene_.rods[r]);
+  if (contact_ && settings_.integrator == Integrator::bdf2) {
+    const std::vector<char>& hit = contact_->impacts();
+    for (std::size_t r = 0; r < scene_.rods.size(); ++r)
+      if (hit[r]) flights_[r].start_anew(scene_.rods[r]);
+  }
+  for (std::size_t r = 0; r < scene_.rods.size(); ++r)
+    scene_.rods[r].constraint_dt = constraint_dt(scene_, flights_[r].h());
 }
 
 void TimeStepper::find_loads() {
   if (scene_.wind)
     for (std::size_t r = 0; r < scene_.rods.size(); ++r) {
       const Rod& rod = scene_.rods[r];
+      const double time_s = flights_[r].uses_two_steps() ? end_of_step() : scene_.time_s;
       for (std::size_t s = 0; s < rod.segments.size(); ++s)
         if (!rod.segments[s].is_static)
           loads_[r].force_n[s] = scene_.wind->drag(rod.segments[s], rod.position[s], director(rod.orientation[s]),
-                                                   rod.velocity[s], scene_.time_s, settings_.dt);
+                                                   rod.velocity[s], time_s, settings_.dt);
     }
   for (const PointLoad& load : scene_.loads) {
     SegmentLoads& loads = loads_[static_cast<std::size_t>(load.rod)];
@@ -156,8 +170,7 @@ void TimeStepper::predict() {
   const bool loaded = scene_.wind || !scene_.loads.empty();
   if (loaded) find_loads();
   for (std::size_t r = 0; r < scene_.rods.size(); ++r)
-    flights_[r].predict(scene_.rods[r], settings_.dt, scene_.damping_per_s, scene_.gravity_m_s2,
-                        loaded ? &loads_[r] : nullptr);
+    flights_[r].predict(scene_.rods[r], scene_.damping_per_s, scene_.gravity_m_s2, loaded ? &loads_[r] : nullptr);
   const double end = end_of_step();
   for (const MovingClamp& clamp : scene_.clamps) {
     Rod& rod = scene_.rods[static_cast<std::size_t>(clamp.rod)];

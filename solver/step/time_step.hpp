@@ -3,14 +3,16 @@
 //   free flight from v, w to x*, q* (free_flight.hpp); held segments move to their pose at the end of the step
 //   contacts, if the scene has any, are found from x and x*
 //   lambda = 0;  Newton: project every rod until max |C + alpha~ lambda| is below the tolerance, then the contacts
-//   with alpha~ = alpha / dt_c^2, dt_c^2 = dt^2 / (1 + c dt): drag is implicit, forces are J^T lambda / dt_c^2
+//   with alpha~ = alpha / dt_c^2, dt_c^2 = h^2 / (1 + c h): drag is implicit, forces are J^T lambda / dt_c^2
 //   v, w from the motion (free_flight.hpp)
+// Here h is dt, or less in a step of BDF2 (integrator.hpp).
 // If the projection keeps the balance of momentum (momentum_balance.hpp), Newton starts from the last step's lambda,
-// from x + dt (2 v - v_before) and q likewise. It ends when momentum is in balance as well. If two thirds of the
+// from x + h (2 v - v_before) and q likewise. It ends when momentum is in balance as well. If two thirds of the
 // iterations do not come near that (a slender rod that hits the floor end-on can fold in many ways), the step is undone
 // and repeated as above.
-// Loads: gravity, point loads, and the wind's drag at the start of the step (wind.hpp). First order in dt. Nothing
-// allocates after construction, except for contacts (contact_projection.hpp).
+// Loads: gravity, point loads, and the wind's drag (wind.hpp), at the start of a step of Euler, at the expected end of
+// one of BDF2. A rod that hits something takes that step and the next two as Euler's: with the velocity before an impact,
+// BDF2 would rebound. Nothing allocates after construction, except for contacts (contact_projection.hpp).
 #pragma once
 
 #include <memory>
@@ -27,6 +29,7 @@ struct StepSettings {
   double dt = 0.02;                ///< [s]
   int newton_iterations = 6;       ///< limit
   double newton_tolerance = 1e-9;  ///< on max |C + alpha~ lambda|
+  Integrator integrator = Integrator::euler;
 };
 
 struct StepReport {
@@ -42,8 +45,9 @@ int balancing_iterations(int most);
 /// The attempt is undone if max |C + alpha~ lambda| or the momentum residual is not below these.
 constexpr double lost_joints = 1e-6, lost_momentum = 0.1;
 
-/// dt_c for steps of dt: it converts compliances to alpha~ and multipliers to forces.
-double constraint_dt(const Scene& scene, double dt);
+/// dt_c of a step with h: it converts compliances to alpha~ and multipliers to forces.
+double constraint_dt(double damping_per_s, double h);
+inline double constraint_dt(const Scene& scene, double h) { return constraint_dt(scene.damping_per_s, h); }
 
 class TimeStepper {
  public:
@@ -54,11 +58,10 @@ class TimeStepper {
 
   int steps_taken() const { return steps_; }
 
-  double constraint_dt() const { return rodsweep::constraint_dt(scene_, settings_.dt); }
-
  private:
   enum class Newton { converged, open, failed };
 
+  void start();
   void find_loads();
   void predict();
   void start_from_last_step();

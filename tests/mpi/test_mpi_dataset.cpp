@@ -24,6 +24,7 @@ std::string fingerprint(const StoredSimulation& simulation) {
   Checksum sum;
   const auto add = [&](const auto& values) { sum.add(values.data(), values.size() * sizeof(*values.data())); };
   for (const StoredSystem& system : simulation.systems) {
+    sum.add(&system.constraint_dt_s, sizeof system.constraint_dt_s);
     add(system.position);
     add(system.orientation);
     add(system.velocity);
@@ -32,7 +33,6 @@ std::string fingerprint(const StoredSimulation& simulation) {
   }
   for (const Segment& segment : simulation.scene.rods.at(0).segments)
     sum.add(&segment.length_m, sizeof segment.length_m);
-  sum.add(&simulation.constraint_dt_s, sizeof simulation.constraint_dt_s);
   return std::to_string(sum.value());
 }
 

@@ -13,12 +13,11 @@ inline StoredSimulation stored_simulation(Scene scene, int steps, int newton_ite
   out.scene = scene;
   out.step_s = 0.02;
   out.newton_iterations = newton_iterations;
-  out.constraint_dt_s = constraint_dt(scene, out.step_s);
   observe(scene, {out.step_s, newton_iterations, 0}, steps,
           [&](const LinearSystem&, const SolvePosition& at, const VectorX& solution) {
             const Rod& rod = scene.rods[at.rod];
-            out.systems.push_back(
-                {at, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, solution});
+            out.systems.push_back({at, rod.constraint_dt, rod.position, rod.orientation, rod.velocity,
+                                   rod.angular_velocity, rod.lambda, solution});
           });
   return out;
 }

@@ -56,7 +56,7 @@ inline bool same_bits(const BlockMatrix& a, const BlockMatrix& b) {
 }
 
 /// Assembles each stored system again in a rod of `scene` and compares it with the solved one, bit for bit.
-inline void check_same(const std::vector<StoredSystem>& systems, Scene scene, double constraint_dt_s,
+inline void check_same(const std::vector<StoredSystem>& systems, Scene scene,
                        const std::vector<SolveProbe::Solved>& solved) {
   REQUIRE(systems.size() == solved.size());
   for (std::size_t i = 0; i < systems.size(); ++i) {
@@ -67,7 +67,7 @@ inline void check_same(const std::vector<StoredSystem>& systems, Scene scene, do
     CHECK(system.at.rod == solved[i].at.rod);
     Rod& rod = scene.rods[static_cast<std::size_t>(system.at.rod)];
     LinearSystem again(rod);
-    assemble_again(system, constraint_dt_s, rod, again);
+    assemble_again(system, rod, again);
     CHECK(again.keeps_balance() == solved[i].balanced);
     CHECK(same_bits(again.matrix(), solved[i].a));
     CHECK(again.rhs() == solved[i].b);

@@ -73,7 +73,7 @@ class Simulation {
   }
 
   Rod& rod() { return scene.rods.front(); }
-  double constraint_dt() const { return stepper_.constraint_dt(); }
+  double constraint_dt() const { return scene.rods.front().constraint_dt; }
 
   Scene scene;
 

@@ -72,8 +72,6 @@ class Point:
 
 def accuracy(file, tasks):
     """The Accuracy of complete tasks. Raises KeyNotFound if the file has no trajectories, times or reference."""
-    if not file.has("/trajectories/position_m"):
-        raise KeyNotFound(f"{file.path} has no trajectories: set record.trajectory_every in the job")
     if not all(file.has(path) for path in (REST, ASSEMBLY, DIRECT)):
         raise KeyNotFound(f"{file.path} has no times of single solves (record.solves is \"summary\")")
     ways = [_way(file, task) for task in tasks]
@@ -154,7 +152,9 @@ def _references(file, tasks, candidate):
 
 
 def positions(file, task):
-    """[frame, segment, 3]"""
+    """[frame, segment, 3]. Raises KeyNotFound if the file has no trajectories."""
+    if not file.has("/trajectories/position_m"):
+        raise KeyNotFound(f"{file.path} has no trajectories: set record.trajectory_every in the job")
     first = file.h5["/trajectories/first_row"][task]
     first = first[first >= 0]
     if len(first) < 2:

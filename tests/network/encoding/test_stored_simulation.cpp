@@ -7,7 +7,8 @@ using namespace rodsweep;
 
 TEST_CASE("a recorded system puts its rod back to the state that it was assembled from") {
   const Rod rod = test::random_rod(test::tree(2, 2), {0}, 3);
-  const StoredSystem system{{}, rod.position, rod.orientation, rod.velocity, rod.angular_velocity, rod.lambda, {}};
+  const StoredSystem system{{},         0.02, rod.position, rod.orientation, rod.velocity, rod.angular_velocity,
+                            rod.lambda, {}};
 
   Rod other = rod;
   for (std::size_t s = 0; s < other.segments.size(); ++s) {

@@ -22,7 +22,7 @@ VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const St
   restore(where, rod);
   const LinearSystem system = test::assembled(rod, dt);
   VectorX x0(system.rhs().size());
-  const Proposal made = KnnGuess(set, scene, dt, k).propose(system, where.at, x0);
+  const Proposal made = KnnGuess(set, scene, k).propose(system, where.at, x0);
   if (proposal) *proposal = made;
   return x0;
 }
@@ -30,6 +30,7 @@ VectorX guess_at(const std::shared_ptr<const KnnSet>& set, Scene scene, const St
 /// A system of a straight rod at rest with this velocity and this solution.
 StoredSystem planted(const Rod& rod, const Vector3& velocity, const VectorX& solution) {
   return {{},
+          0.02,
           rod.position,
           rod.orientation,
           std::vector<Vector3>(rod.segments.size(), velocity),
@@ -58,7 +59,7 @@ TEST_CASE("neighbours weigh by the inverse of their distance") {
   test::Random random(1);
   const VectorX near = random.entries(24), far = random.entries(24);
   const Vector3 u(0.1, 0.2, -0.3);
-  StoredSimulation simulation{scene, 0.02, 0.02, 1, {}};
+  StoredSimulation simulation{scene, 0.02, 1, {}};
   simulation.systems = {planted(scene.rods[0], Vector3::Zero(), near), planted(scene.rods[0], 3 * u, far)};
   const StoredSystem between = planted(scene.rods[0], u, near);
   const auto set = set_of({simulation});
@@ -82,7 +83,7 @@ TEST_CASE("twice as many segments in the same pose are given the same forces and
     }
     return out;
   };
-  StoredSimulation simulation{coarse, dt, dt, 1, {}};
+  StoredSimulation simulation{coarse, dt, 1, {}};
   simulation.systems = {planted(coarse.rods[0], Vector3::Zero(), multipliers(coarse.rods[0], dt))};
   const auto set = set_of({simulation});
   for (const double step : {dt, dt / 2}) {
@@ -104,8 +105,8 @@ TEST_CASE("the tree finds what a look at every system finds") {
   Tensor<float> state(ChainProfile::state_size, rod.joint_count());
   for (const StoredSystem& one : unseen.systems) {
     restore(one, rod);
-    system.assemble(rod, unseen.constraint_dt_s);
-    profile.state(rod, system, unseen.constraint_dt_s, state);
+    system.assemble(rod, rod.constraint_dt);
+    profile.state(rod, system, rod.constraint_dt, state);
     KnnSet::Neighbours few{std::vector<std::uint32_t>(3), std::vector<float>(3)};
     KnnSet::Neighbours all{std::vector<std::uint32_t>(100), std::vector<float>(100)};
     CHECK(set->nearest(0, KnnSet::query(profile, state), few) == 3);
@@ -123,7 +124,7 @@ TEST_CASE("neighbours of shape alone see no velocities") {
   test::Random random(1);
   const VectorX slow = random.entries(24), fast = random.entries(24);
   const Vector3 u(0.1, 0.2, -0.3);
-  StoredSimulation simulation{scene, 0.02, 0.02, 1, {}};
+  StoredSimulation simulation{scene, 0.02, 1, {}};
   simulation.systems = {planted(scene.rods[0], Vector3::Zero(), slow), planted(scene.rods[0], 3 * u, fast)};
   const auto shapes = set_of({simulation}, KnnInputs::shape);
   const VectorX x0 = guess_at(shapes, scene, planted(scene.rods[0], 3 * u, fast), 2);
@@ -166,7 +167,7 @@ TEST_CASE("an unseen rod of the training set's kind is guessed roughly right") {
 
 TEST_CASE("no neighbours is not a number of neighbours") {
   const StoredSimulation simulation = test::stored_simulation(build_scene(test::bending_rod(4)), 1);
-  CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0.02, 0), std::invalid_argument);
+  CHECK_THROWS_AS(KnnGuess(set_of({simulation}), simulation.scene, 0), std::invalid_argument);
 }
 
 }  // namespace rodsweep::test_knn

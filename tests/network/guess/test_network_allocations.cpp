@@ -73,7 +73,7 @@ TEST_CASE("nearest neighbours allocate nothing") {
   set->finish();
   const Scene scene = build_scene(test::bending_rod(20));
   const LinearSystem system = test::assembled(scene.rods.front());
-  KnnGuess guess(set, scene, 0.02, 3);
+  KnnGuess guess(set, scene, 3);
   VectorX x0(system.rhs().size());
   long before = 0;
   for (int step = 0; step < 3; ++step) {

@@ -1,0 +1,347 @@
+// BDF2 against closed forms and itself: second order for turns, twists, trees, loads, wind and drag, in both kinds of
+// step; impacts without rebound; and the symmetries of Euler's step.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "solver/batch/batched_step.hpp"
+#include "solver/step/observables.hpp"
+#include "solver/step/xpbd_projection.hpp"
+#include "tests/solver/simulation.hpp"
+#include "tests/solver/support.hpp"
+#include "tests/solver/touching.hpp"
+#include "tests/solver/turned.hpp"
+
+namespace rodsweep::test_bdf2 {
+
+using Balance = std::optional<double>;
+
+StepSettings bdf2(double dt) { return {dt, 40, 1e-12, Integrator::bdf2}; }
+StepSettings euler(double dt) { return {dt, 40, 1e-12, Integrator::euler}; }
+
+Scene after(const Scene& scene, const StepSettings& settings, double time_s, Balance balance = {}) {
+  Simulation simulation(scene, settings, balance);
+  simulation.run(static_cast<int>(std::lround(time_s / settings.dt)));
+  return simulation.scene;
+}
+
+/// The largest distance of segments, and of the tips of their axes x, a fifth of a metre long, so that twist counts.
+double distance(const Scene& a, const Scene& b) {
+  double most = 0;
+  for (std::size_t r = 0; r < a.rods.size(); ++r)
+    for (std::size_t s = 0; s < a.rods[r].segments.size(); ++s) {
+      const auto tip = [&](const Scene& scene) -> Vector3 {
+        return 0.2 * (scene.rods[r].orientation[s] * Vector3::UnitX());
+      };
+      most = std::max({most, (a.rods[r].position[s] - b.rods[r].position[s]).norm(), (tip(a) - tip(b)).norm()});
+    }
+  return most;
+}
+
+/// log2 of the ratio of the changes by halving the step, twice.
+double order(const Scene& scene, double dt, double time_s, Balance balance = {}) {
+  const Scene coarse = after(scene, bdf2(dt), time_s, balance), middle = after(scene, bdf2(dt / 2), time_s, balance);
+  const Scene fine = after(scene, bdf2(dt / 4), time_s, balance);
+  return std::log2(distance(coarse, middle) / distance(middle, fine));
+}
+
+/// Holds the first segment and moves and turns it smoothly; no other load.
+Scene shaken(Scene scene) {
+  scene.gravity_m_s2.setZero();
+  const Pose at{scene.rods[0].position[0], scene.rods[0].orientation[0]};
+  scene.clamps.push_back({0, 0, [at](double t) {
+                            const double a = std::pow(std::sin(5 * t), 4);
+                            const Eigen::AngleAxisd turn(0.6 * a, Vector3(1, 2, 2) / 3);
+                            return Pose{at.position + a * Vector3(0, 0.1, 0.05), turn * at.orientation};
+                          }});
+  return scene;
+}
+
+BendingRod stiff_rod() {
+  BendingRod rod = test::bending_rod(12, Clamp::segment);
+  rod.youngs_modulus_pa = 1e6;
+  return rod;
+}
+
+Scene free_body() {
+  const SegmentSpec s{{0.3, -0.2, 0.5}, Quaternion(0.4, 0.1, -0.7, 0.3).normalized(), 0.4, 0.1, 800, false};
+  Scene scene = test::scene_of(Rod({s}, {}));
+  scene.gravity_m_s2.setZero();
+  return scene;
+}
+
+TEST_CASE("a torque-free top precesses about its angular momentum with an error of second order") {
+  double error[3];
+  for (int i = 0; i < 3; ++i) {
+    const int steps = 100 << i;
+    const double duration = 0.5;
+    Simulation sim(free_body(), bdf2(duration / steps));
+    Rod& rod = sim.rod();
+    const Vector3 axis = director(rod.orientation[0]), across = rod.orientation[0] * Vector3::UnitX();
+    rod.angular_velocity[0] = 6 * axis + 2 * across;
+    const Vector3 spin = angular_momentum(rod);
+    const double rate = spin.norm() / rod.segments[0].inertia_transverse;
+    sim.run(steps);
+    error[i] = (director(rod.orientation[0]) - Eigen::AngleAxisd(rate * duration, spin.normalized()) * axis).norm();
+  }
+  CAPTURE(error[0], error[1], error[2]);
+  CHECK(error[2] < 1e-4);
+  CHECK(std::log2(error[0] / error[1]) == Approx(2).margin(0.1));
+  CHECK(std::log2(error[1] / error[2]) == Approx(2).margin(0.1));
+}
+
+TEST_CASE("drag slows a free body by exp(-c t), with an error of second order") {
+  double error[2];
+  for (int i = 0; i < 2; ++i) {
+    Scene scene = free_body();
+    scene.damping_per_s = 3;
+    Simulation sim(scene, bdf2(0.01 / (1 << i)));
+    const Vector3 v0(1, -2, 3), w0 = 4 * director(sim.rod().orientation[0]);
+    sim.rod().velocity[0] = v0;
+    sim.rod().angular_velocity[0] = w0;
+    sim.run(50 << i);
+    const double left = std::exp(-1.5);
+    error[i] = (sim.rod().velocity[0] - left * v0).norm() / v0.norm();
+    CHECK((sim.rod().angular_velocity[0] - left * w0).norm() / w0.norm() == Approx(error[i]).epsilon(1e-6));
+  }
+  CHECK(error[1] < 1e-4);
+  CHECK(std::log2(error[0] / error[1]) == Approx(2).margin(0.1));
+}
+
+TEST_CASE("free fall is exact but for the first step, which is one of Euler") {
+  BendingRod p = stiff_rod();
+  p.clamp = Clamp::free;
+  const double dt = 0.02;
+  Simulation simulation(build_scene(p), bdf2(dt));
+  const Vector3 start = simulation.rod().position[3];
+  simulation.run(60);
+  const double t = 60 * dt;
+  CHECK((simulation.rod().velocity[3] - t * p.gravity_m_s2).norm() < 1e-11);
+  const Vector3 late = simulation.rod().position[3] - start - t * t / 2 * p.gravity_m_s2;
+  CHECK((late - 0.75 * dt * dt * p.gravity_m_s2).norm() < 1e-11);  // (1/2)(1 + 1/3 + 1/9 + ...) dt^2
+}
+
+TEST_CASE("rods, helices and trees that are moved smoothly have errors of second order in both kinds of step") {
+  Helix helix;
+  helix.segments = 24;
+  helix.windings = 1;
+  helix.youngs_modulus_pa = helix.torsion_modulus_pa = 1e6;
+  Tree tree;
+  tree.shape.depth = tree.shape.branches = 2;
+  tree.shape.segments = 3;
+  tree.youngs_modulus_pa = tree.torsion_modulus_pa = 1e7;
+  for (const Scene& scene : {build_scene(stiff_rod()), build_scene(helix), build_scene(tree)})
+    for (const Balance balance : {Balance(), Balance(1e-9)}) {
+      CAPTURE(scene.rods[0].segment_count(), balance.has_value());
+      CHECK(order(shaken(scene), 0.005, 0.6, balance) == Approx(2).margin(0.2));
+    }
+}
+
+TEST_CASE("a rod that spins and bends in free space has an error of second order, and so has its angular momentum") {
+  BendingRod p = stiff_rod();
+  p.clamp = Clamp::free;
+  p.gravity_m_s2.setZero();
+  Scene scene = build_scene(p);
+  Rod& rod = scene.rods.front();
+  const Vector3 spin(5, 2, 8);
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    rod.angular_velocity[s] = spin;
+    rod.velocity[s] = spin.cross(rod.position[s]);
+  }
+  CHECK(order(scene, 0.004, 0.4) == Approx(2).margin(0.2));
+  CHECK(order(scene, 0.004, 0.4, 1e-9) == Approx(2).margin(0.2));
+  const auto drift = [&](double dt) {
+    const Scene end = after(scene, bdf2(dt), 0.4);
+    CHECK((linear_momentum(end.rods[0]) - linear_momentum(rod)).norm() < 1e-10 * rod.segments[0].mass);
+    return (angular_momentum(end.rods[0]) - angular_momentum(rod)).norm();
+  };
+  CHECK(std::log2(drift(0.002) / drift(0.001)) == Approx(2).margin(0.3));
+}
+
+/// Positions of all segments, every 0.02 s.
+std::vector<Vector3> path(const Scene& scene, const StepSettings& settings, double time_s, Balance balance) {
+  Simulation simulation(scene, settings, balance);
+  const int every = static_cast<int>(std::lround(0.02 / settings.dt));
+  std::vector<Vector3> out;
+  for (int frame = 0; frame < std::lround(time_s / 0.02); ++frame) {
+    simulation.run(every);
+    out.insert(out.end(), simulation.rod().position.begin(), simulation.rod().position.end());
+  }
+  return out;
+}
+
+double difference(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+TEST_CASE("released under gravity, in wind and under a load, a rod's error at 0.02 s is a quarter of Euler's or less") {
+  BendingRod falling = stiff_rod(), windy = stiff_rod();
+  falling.gravity_m_s2 = {3, -8, 5};
+  windy.wind.emplace();
+  windy.wind->mean_m_s = {2, 0, 6};
+  windy.wind->turbulence_m_s = 1;
+  windy.damping_per_s = 0.5;
+  Scene loaded = build_scene(stiff_rod());
+  loaded.loads.push_back({0, 11, {3, 20, 10}, {0, 0, 0}, {0, 0, 0.05}});
+  for (const Scene& scene : {build_scene(falling), build_scene(windy), loaded})
+    for (const Balance balance : {Balance(), Balance(1e-9)}) {
+      const std::vector<Vector3> exact = path(scene, bdf2(0.02 / 64), 0.8, balance);
+      const auto error = [&](const StepSettings& settings) {
+        return difference(path(scene, settings, 0.8, balance), exact);
+      };
+      CAPTURE(balance.has_value(), error(euler(0.02)), error(bdf2(0.02)), error(bdf2(0.01)));
+      CHECK(error(bdf2(0.02)) < error(euler(0.02)) / 4);
+      CHECK(error(bdf2(0.01)) < error(bdf2(0.02)) / 3);
+    }
+}
+
+TEST_CASE("Gauss-Seidel with enough iterations takes the same steps of BDF2 as the direct solve") {
+  const Scene start = build_scene(test::bending_rod(4, Clamp::segment));
+  Scene scene = start;
+  XpbdProjection projection(scene);
+  TimeStepper stepper(scene, {0.01, 3000, 1e-13, Integrator::bdf2});
+  for (int i = 0; i < 10; ++i) stepper.step(projection);
+  // Each of its corrections moves along another Jacobian.
+  CHECK(distance(scene, after(start, bdf2(0.01), 0.1)) < 2e-3);
+}
+
+TEST_CASE("a chain alone and in a batch takes the same steps of BDF2, in both kinds of step") {
+  for (const Balance balance : {Balance(), Balance(1e-9)}) {
+    std::vector<Scene> scenes;
+    for (int i = 0; i < 3; ++i) {
+      BendingRod rod = test::bending_rod(15, Clamp::segment);
+      rod.gravity_m_s2 = {2, -9.0 + i, 1};
+      rod.damping_per_s = 0.3 * i;
+      scenes.push_back(build_scene(rod));
+    }
+    BatchedStepper batch(scenes, bdf2(0.02), balance);
+    for (int step = 0; step < 40; ++step) batch.step();
+    for (int i = 0; i < 3; ++i) {
+      Scene scene = scenes[i];
+      batch.write(i, scene);
+      const Scene alone = after(scenes[i], bdf2(0.02), 0.8, balance);
+      CHECK(distance(scene, alone) < 1e-8);
+      CHECK(scene.rods[0].constraint_dt == alone.rods[0].constraint_dt);
+    }
+  }
+}
+
+TEST_CASE("turned, shifted and mirrored scenes move alike under BDF2") {
+  for (const test::TurnedCase& each : test::turned_cases())
+    for (const Balance balance : {Balance(), Balance(1e-9)}) {
+      INFO(each.name);
+      const Scene moved = after(each.scene, bdf2(0.01), 0.1, balance);
+      const auto apart = [&](Scene other, const auto& image) {
+        other = after(other, bdf2(0.01), 0.1, balance);
+        double most = 0;
+        for (std::size_t r = 0; r < moved.rods.size(); ++r)
+          for (std::size_t s = 0; s < moved.rods[r].segments.size(); ++s)
+            most = std::max(most, (other.rods[r].position[s] - image(moved.rods[r].position[s])).norm());
+        return most;
+      };
+      for (const test::RigidMotion& motion : test::motions)
+        CHECK(apart(test::moved(each.scene, motion), motion) < 1e-8);
+      CHECK(apart(test::mirrored(each.scene), [](const Vector3& x) { return test::mirrored(x); }) < 1e-8);
+    }
+}
+
+TEST_CASE("a swinging rod keeps its energy better than with Euler, and 20,000 steps do not let it grow") {
+  const Scene start = build_scene(stiff_rod());
+  const auto energy = [](const Scene& scene) {
+    return test::kinetic_energy(scene) + elastic_energy(scene.rods[0]) +
+           gravitational_energy(scene.rods[0], scene.gravity_m_s2);
+  };
+  const double before = energy(start), scale = test::kinetic_energy(after(start, bdf2(0.001), 0.3));
+  const double lost = before - energy(after(start, bdf2(0.005), 0.6));
+  CHECK(lost > 0);
+  CHECK(lost < 0.02 * scale);
+  CHECK(lost < (before - energy(after(start, euler(0.005), 0.6))) / 10);
+
+  Simulation simulation(start, {0.01, 6, 1e-9, Integrator::bdf2});
+  double highest = -HUGE_VAL;
+  for (int step = 0; step < 20000; ++step) {
+    simulation.step();
+    highest = std::max(highest, energy(simulation.scene));
+  }
+  CHECK(highest < before + 1e-3 * scale);
+  CHECK(joint_gap(simulation.rod()) < 1e-5);
+}
+
+TEST_CASE("a capsule that falls on the floor stops without rebound, at whatever part of the step it hits") {
+  for (const double height : {0.5, 0.51, 0.52, 0.53, 0.54, 0.55})
+    for (const Balance balance : {Balance(), Balance(1e-6)}) {
+      Scene scene =
+          test::contact_scene({test::capsule({0, height, 0}, {0.3, height, 0}, {0, 0, 0})}, 0.3, {0, -9.81, 0});
+      scene.obstacles = {HalfSpace{}};
+      Simulation simulation(scene, bdf2(0.01), balance);
+      const double floor = scene.rods[0].segments[0].radius_m;
+      double fastest = 0;
+      bool landed = false;
+      for (int step = 0; step < 100; ++step) {
+        simulation.step();
+        landed |= simulation.rod().position[0].y() < floor + 1e-3;
+        if (landed) fastest = std::max(fastest, simulation.rod().velocity[0].y());
+      }
+      CHECK(landed);
+      CHECK(fastest < 1e-3);
+      CHECK(test::kinetic_energy(simulation.scene) < 1e-6);
+      CHECK(simulation.rod().position[0].y() == Approx(floor).margin(1e-4));
+    }
+}
+
+TEST_CASE("rods that fall on each other come to rest and gain no energy") {
+  FallingRods falling;
+  falling.rods = 3;
+  falling.segments = 6;
+  falling.youngs_modulus_pa = 1e6;
+  falling.damping_per_s = 2;
+  falling.contact.emplace();
+  const Scene start = build_scene(falling);
+  Simulation simulation(start, {0.01, 10, 1e-9, Integrator::bdf2});
+  const auto energy = [&] {
+    double sum = test::kinetic_energy(simulation.scene);
+    for (const Rod& rod : simulation.scene.rods)
+      sum += elastic_energy(rod) + gravitational_energy(rod, start.gravity_m_s2);
+    return sum;
+  };
+  const double before = energy();
+  double penetration = 0, gained = 0, last = before;
+  int impacts = 0;
+  for (int step = 0; step < 300; ++step) {
+    const double dt_c = simulation.constraint_dt();
+    penetration = std::max(penetration, simulation.step().penetration);
+    impacts += simulation.constraint_dt() > dt_c;
+    gained += std::max(0.0, energy() - last);
+    last = energy();
+  }
+  CHECK(impacts > 0);
+  CHECK(gained < 0.02 * (before - last));  // it oscillates where impacts excite what the step does not resolve
+  CHECK(penetration < 0.02);
+  CHECK(test::kinetic_energy(simulation.scene) < 1e-3 * (before - last));
+}
+
+TEST_CASE("bodies that collide in free space keep their momentum, though a third one lies still on another") {
+  const Scene start = test::contact_scene({test::capsule({0, 0, 0}, {0.4, 0, 0}, {0, 0, 0}),
+                                           test::capsule({0, 0, 0.1}, {0.4, 0, 0.1}, {0, 0, 0}),
+                                           test::capsule({0.1, 0, -0.4}, {0.5, 0.1, -0.4}, {0, 0, 2})});
+  Simulation simulation(start, bdf2(0.01));
+  const auto momentum = [&] {
+    Vector3 sum = Vector3::Zero();
+    for (const Rod& rod : simulation.scene.rods) sum += linear_momentum(rod);
+    return sum;
+  };
+  const Vector3 before = momentum();
+  double fastest = 0;
+  for (int step = 0; step < 60; ++step) {
+    simulation.step();
+    fastest = std::max(fastest, simulation.scene.rods[1].velocity[0].z());
+    CHECK((momentum() - before).norm() < 1e-9 * before.norm());
+  }
+  CHECK(fastest > 0.3);  // the push reached the one behind
+}
+
+}  // namespace rodsweep::test_bdf2
