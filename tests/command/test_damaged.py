@@ -39,7 +39,7 @@ class Plain(unittest.TestCase):
         for word in ("std::", "json.exception", "bad_alloc", "Traceback"):
             self.assertNotIn(word, said.stderr)
         if said.returncode == USER_ERROR:
-            self.assertIn("error: ", said.stderr)
+            self.assertRegex(said.stderr, r"error: |^query\.py: ")
 
 
 class Damaged(Plain):
