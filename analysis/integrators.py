@@ -95,13 +95,13 @@ def distance(path, exact):
 
 def table(errors):
     steps = sorted({size for of in errors.values() for line in of.values() for size, *_ in line}, reverse=True)
-    rows = [["error at a step of (s)", ""] + [texts.number_text(size) for size in steps] + ["order"]]
+    rows = [["error at a step of (s)"] + [texts.number_text(size) for size in steps] + ["order"]]
     for title, of in errors.items():
-        for k, (which, line) in enumerate(of.items()):
+        for which, line in of.items():
             known = {size: float(estimate.value) for size, estimate, _ in line}
             order = np.log(known[line[-2][0]] / known[line[-1][0]]) / np.log(line[-2][0] / line[-1][0]) \
                 if len(line) > 1 else np.nan
-            rows.append(["" if k else title, which] + [f"{known[size]:.2g}" if size in known else "-" for size in steps]
+            rows.append([f"{title}, {which}"] + [f"{known[size]:.2g}" if size in known else "-" for size in steps]
                         + [f"{order:.2f}"])
     return texts.aligned(rows)
 

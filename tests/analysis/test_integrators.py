@@ -37,8 +37,8 @@ class Integrators(running.Scripts):
         root = np.sqrt(2)    # one of two frames is off
         self.assertEqual(self.table(), [
             "error at a step of (s) 0.04 0.02 0.01 0.005 order",
-            " ".join(["helix bdf2", *(f"{50 * size ** 2 / root:.2g}" for size in SIZES[:3]), "- 2.00"]),
-            " ".join(["euler", *(f"{size / root:.2g}" for size in SIZES), "1.00"])])
+            " ".join(["helix, bdf2", *(f"{50 * size ** 2 / root:.2g}" for size in SIZES[:3]), "- 2.00"]),
+            " ".join(["helix, euler", *(f"{size / root:.2g}" for size in SIZES), "1.00"])])
 
     def test_the_step_of_the_energies_can_be_chosen(self):
         self.write()
