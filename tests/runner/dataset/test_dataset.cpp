@@ -41,13 +41,16 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
   loaded["scene"]["tip_force_n"] = {0, 0.1, 0};  // evaluated alone, by the steps of the loop below
   Json balanced = loaded;
   balanced["time"]["balance"] = true;
-  for (const auto& [systems, scenes] : {std::pair("first", loaded), std::pair("all", loaded),
-                                        std::pair("all", forest_job()), std::pair("first", balanced)}) {
+  Json second_order = loaded;
+  second_order["time"]["integrator"] = "bdf2";
+  int number = 0;
+  for (const auto& [systems, scenes] :
+       {std::pair("first", loaded), std::pair("all", loaded), std::pair("all", forest_job()),
+        std::pair("first", balanced), std::pair("all", second_order)}) {
     Json job = scenes;
     job["record"] = {{"systems", systems}, {"solves", "summary"}};
     const bool balance = job["time"].value("balance", false);
-    const fs::path path =
-        folder / (systems + job["scene"]["type"].get<std::string>() + (balance ? "_balanced.h5" : ".h5"));
+    const fs::path path = folder / (std::to_string(number++) + ".h5");
     const Plan plan = make_data_set(path, job);
     const DatasetReader data(path);
     REQUIRE(data.size() == plan.size());
@@ -60,7 +63,7 @@ TEST_CASE("every system of a file gives the A and b of the simulation again, bit
       Scene scene = build_scene(plan.spec(i).scene);
       SolveProbe probe(scene);
       LinearProjection projection(scene, probe, balance ? std::optional(1e-4) : std::nullopt);
-      TimeStepper stepper(scene, {0.02, 3, plan.spec(i).time.newton_tolerance});
+      TimeStepper stepper(scene, step_settings(plan.spec(i).time));
       for (int step = 0; step < 4; ++step) stepper.step(projection);
       check_same(simulation.systems, simulation.scene, probe.first_iterations(systems == std::string("first") ? 1 : 3));
     }
