@@ -1,10 +1,11 @@
-// For tests of projections: one step of a scene, the reports of its projections, and the distance of two scenes.
+// For tests of steps: one step of a scene, the reports of its projections, a free body, and the distance of two scenes.
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
 #include "solver/step/time_step.hpp"
+#include "tests/solver/support.hpp"
 
 namespace rodsweep::test {
 
@@ -28,6 +29,14 @@ class Recorder : public Projection {
  private:
   Projection& inner_;
 };
+
+/// One free cylinder without gravity.
+inline Scene free_body() {
+  const SegmentSpec s{{0.3, -0.2, 0.5}, Quaternion(0.4, 0.1, -0.7, 0.3).normalized(), 0.4, 0.1, 800, false};
+  Scene scene = scene_of(Rod({s}, {}));
+  scene.gravity_m_s2.setZero();
+  return scene;
+}
 
 /// The scene after one step with direct solves; Newton iterates to rounding.
 inline Scene after_newton(Scene scene, double dt) {

@@ -11,6 +11,7 @@
 #include "solver/step/observables.hpp"
 #include "solver/step/xpbd_projection.hpp"
 #include "tests/solver/simulation.hpp"
+#include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 #include "tests/solver/touching.hpp"
 #include "tests/solver/turned.hpp"
@@ -66,19 +67,12 @@ BendingRod stiff_rod() {
   return rod;
 }
 
-Scene free_body() {
-  const SegmentSpec s{{0.3, -0.2, 0.5}, Quaternion(0.4, 0.1, -0.7, 0.3).normalized(), 0.4, 0.1, 800, false};
-  Scene scene = test::scene_of(Rod({s}, {}));
-  scene.gravity_m_s2.setZero();
-  return scene;
-}
-
 TEST_CASE("a torque-free top precesses about its angular momentum with an error of second order") {
   double error[3];
   for (int i = 0; i < 3; ++i) {
     const int steps = 100 << i;
     const double duration = 0.5;
-    Simulation sim(free_body(), bdf2(duration / steps));
+    Simulation sim(test::free_body(), bdf2(duration / steps));
     Rod& rod = sim.rod();
     const Vector3 axis = director(rod.orientation[0]), across = rod.orientation[0] * Vector3::UnitX();
     rod.angular_velocity[0] = 6 * axis + 2 * across;
@@ -96,7 +90,7 @@ TEST_CASE("a torque-free top precesses about its angular momentum with an error 
 TEST_CASE("drag slows a free body by exp(-c t), with an error of second order") {
   double error[2];
   for (int i = 0; i < 2; ++i) {
-    Scene scene = free_body();
+    Scene scene = test::free_body();
     scene.damping_per_s = 3;
     Simulation sim(scene, bdf2(0.01 / (1 << i)));
     const Vector3 v0(1, -2, 3), w0 = 4 * director(sim.rod().orientation[0]);

@@ -5,29 +5,22 @@
 
 #include "solver/step/observables.hpp"
 #include "tests/solver/simulation.hpp"
+#include "tests/solver/stepping.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_time_step {
 
-/// One free cylinder without gravity.
-Scene free_body() {
-  const SegmentSpec s{{0.3, -0.2, 0.5}, Quaternion(0.4, 0.1, -0.7, 0.3).normalized(), 0.4, 0.1, 800, false};
-  Scene scene = test::scene_of(Rod({s}, {}));
-  scene.gravity_m_s2.setZero();
-  return scene;
-}
-
 TEST_CASE("a body spinning about a principal axis keeps its spin, whatever the step") {
   for (const double dt : {0.001, 0.1})
     for (const bool axial : {true, false}) {
-      Simulation sim(free_body(), dt);
+      Simulation sim(test::free_body(), dt);
       const Vector3 axis = sim.rod().orientation[0] * (axial ? Vector3::UnitZ() : Vector3::UnitX());
       sim.rod().angular_velocity[0] = 5 * axis;
       sim.run(50);
       CHECK((sim.rod().angular_velocity[0] - 5 * axis).norm() < 1e-11);
       // Each step turns by 2 atan(w dt / 2).
       const double angle = 50 * 2 * std::atan(5 * dt / 2);
-      const Quaternion expected = Eigen::AngleAxisd(angle, axis) * free_body().rods[0].orientation[0];
+      const Quaternion expected = Eigen::AngleAxisd(angle, axis) * test::free_body().rods[0].orientation[0];
       CHECK(sim.rod().orientation[0].angularDistance(expected) < 1e-7);
     }
 }
@@ -37,7 +30,7 @@ TEST_CASE("a torque-free top precesses about its angular momentum at |L| / I_t, 
   for (int i = 0; i < 3; ++i) {
     const int steps = 100 << i;
     const double duration = 0.5;
-    Simulation sim(free_body(), duration / steps);
+    Simulation sim(test::free_body(), duration / steps);
     Rod& rod = sim.rod();
     const Vector3 axis = director(rod.orientation[0]), across = rod.orientation[0] * Vector3::UnitX();
     rod.angular_velocity[0] = 6 * axis + 2 * across;
@@ -55,7 +48,7 @@ TEST_CASE("a torque-free top precesses about its angular momentum at |L| / I_t, 
 }
 
 TEST_CASE("drag slows a free body by (1 + c dt)^-n, in flight and in spin") {
-  Scene scene = free_body();
+  Scene scene = test::free_body();
   scene.damping_per_s = 3;
   const double dt = 0.05;
   Simulation sim(scene, dt);
@@ -72,7 +65,7 @@ TEST_CASE("drag slows a free body by (1 + c dt)^-n, in flight and in spin") {
 
 TEST_CASE("a force on a free body gives it F / m, and a torque I^-1 tau") {
   const double dt = 0.01;
-  Scene scene = free_body();
+  Scene scene = test::free_body();
   const Vector3 force(3, -1, 2), torque(0.1, 0.2, -0.3);
   scene.loads.push_back({0, 0, force, torque, Vector3::Zero()});
   Simulation sim(scene, dt);
@@ -91,7 +84,7 @@ TEST_CASE("a force on a free body gives it F / m, and a torque I^-1 tau") {
 TEST_CASE("a force off the centre turns the body by arm x F, and loads on one segment add up") {
   const double dt = 0.01;
   const Vector3 force(3, -1, 2), torque(0.1, 0.2, -0.3), arm(0.05, 0, 0.2);
-  Scene one = free_body(), two = free_body();
+  Scene one = test::free_body(), two = test::free_body();
   const Vector3 world_arm = one.rods[0].orientation[0] * arm;
   one.loads.push_back({0, 0, force, torque + world_arm.cross(force), Vector3::Zero()});
   two.loads.push_back({0, 0, force / 2, torque, 2 * arm});
