@@ -225,6 +225,12 @@ void check_method(const Point& point, const Job& job) {
                     fmt::format("true is not allowed with solve.method \"{}\", which solves no linear system; must be "
                                 "used with \"direct\" or \"cg\"",
                                 point.text("solve.method")));
+  if (method(point) == Method::state_network && point.text("time.integrator") != "euler")
+    throw job_error(
+        job.path, "time.integrator",
+        fmt::format("\"{}\" is not allowed with solve.method \"state_network\", which takes steps of Euler; "
+                    "must be \"euler\"",
+                    point.text("time.integrator")));
   if (evaluation(point) == Evaluation::closed_loop) return;
   if (point.has("solve.forcing") && point.text("solve.forcing") != "fixed")
     throw job_error(job.path, "solve.forcing",

@@ -32,6 +32,14 @@ DatasetReader opened(const std::filesystem::path& path, const TrainingJob& train
         fmt::format("{} is not allowed: {} holds {} simulations, and {} are for validation",
                     training.training_simulations, path.native(), set.size(), training.validation_simulations));
   }
+  if (!is_guess(training.network)) {
+    for (const Task& task : set.plan().tasks())
+      if (set.plan().spec(task.index).time.integrator != Integrator::euler)
+        throw job_error(job.path, "network.encoding",
+                        fmt::format("\"state\" is not allowed with {}, whose steps are \"bdf2\": it takes steps of "
+                                    "Euler; must be used with data of time.integrator \"euler\"",
+                                    path.native()));
+  }
   return set;
 }
 

@@ -76,6 +76,27 @@ void step(benchmark::State& state) {
       state.SkipWithError("a solve failed");
 }
 
+/// Two Newton iterations, so that joints stay closed. Rods start anew when they have moved for a second.
+void step_by(benchmark::State& state, Integrator integrator) {
+  Scene scene = moving_scene(segments_of(state));
+  const Scene start = scene;
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  std::optional<TimeStepper> stepper;
+  for (auto _ : state) {
+    if (!stepper || stepper->steps_taken() == 50) {
+      state.PauseTiming();
+      scene = start;
+      stepper.emplace(scene, StepSettings{one_iteration.dt, 2, 0, integrator});
+      state.ResumeTiming();
+    }
+    if (stepper->step(projection).outcome != SolveOutcome::converged) state.SkipWithError("a solve failed");
+  }
+}
+
+void step_euler(benchmark::State& state) { step_by(state, Integrator::euler); }
+void step_bdf2(benchmark::State& state) { step_by(state, Integrator::bdf2); }
+
 void step_together(benchmark::State& state, std::map<int, BatchedStepper>& made,
                    std::optional<double> momentum_tolerance) {
   auto at = made.find(segments_of(state));
@@ -205,10 +226,21 @@ void print_balanced(const Medians& median) {
   }
 }
 
+void print_integrators(const Medians& median) {
+  std::printf("\nA step of BDF2 over one of Euler, two Newton iterations (target: at most 1.05)\n");
+  std::printf("%6s %10s %10s %8s\n", "N", "euler [us]", "bdf2 [us]", "ratio");
+  for (const int n : sizes) {
+    const double euler = us(median, "step_euler", n), bdf2 = us(median, "step_bdf2", n);
+    std::printf("%6d %10.3f %10.3f %8.2f\n", n, euler, bdf2, bdf2 / euler);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   register_cases({{"step", step},
+                  {"step_euler", step_euler},
+                  {"step_bdf2", step_bdf2},
                   {"batched_step", batched_step},
                   {"linearize", linearize},
                   {"assemble", assemble},
@@ -223,5 +255,6 @@ int main(int argc, char** argv) {
   return run_benchmarks(argc, argv, [](const Medians& medians) {
     print_summary(medians);
     print_balanced(medians);
+    print_integrators(medians);
   });
 }

@@ -94,6 +94,8 @@ TEST_CASE("a network instead of the solve is refused without a model, among gues
           {with("/solve", R"({"model": "net.h5"})"),
            "solve.model: ", "\"end_to_end\" or \"state_network\", not to \"cg\""},
           {with("/evaluation", "\"closed_loop\"", with("/solve", named)), "guesses: ", "only solve.method \"cg\""},
+          {with("/time/integrator", "\"bdf2\"", end_to_end(R"({"method": "state_network", "model": "net.h5"})")),
+           "time.integrator: \"bdf2\" is not allowed", "must be \"euler\""},
           {with("/evaluation", "\"paired\"", end_to_end(named)), "solve.method: \"end_to_end\" is not allowed",
            "evaluation \"paired\"", "\"closed_loop\""},
       },

@@ -127,6 +127,18 @@ TEST_CASE("data that are missing or too few are refused with what to do") {
              Contains("data: ") && Contains("make the data set first"));
 }
 
+TEST_CASE("a network of states, which takes steps of Euler, is not trained with data of bdf2") {
+  Toy toy;
+  Json data = toy_data_job();
+  data["time"]["integrator"] = "bdf2";
+  make_data_set(toy.folder / "second.h5", data);
+  toy.training.data = {toy.folder / "second.h5"};
+  CHECK(LearningSets(toy.training, toy.job).training().size() == 4);
+  toy.training.network.encoding = Encoding::state;
+  CHECK_THAT(message_of<JobError>([&] { LearningSets(toy.training, toy.job); }),
+             Contains("network.encoding: \"state\" is not allowed") && Contains("second.h5") && Contains("\"euler\""));
+}
+
 TEST_CASE("losses fall, the model kept is that of the least validation loss") {
   Json job = toy_train_job();
   job["training"]["epochs"] = 30;

@@ -130,7 +130,7 @@ TEST_CASE("rods, helices and trees that are moved smoothly have errors of second
   for (const Scene& scene : {build_scene(stiff_rod()), build_scene(helix), build_scene(tree)})
     for (const Balance balance : {Balance(), Balance(1e-9)}) {
       CAPTURE(scene.rods[0].segment_count(), balance.has_value());
-      CHECK(order(shaken(scene), 0.005, 0.6, balance) == Approx(2).margin(0.2));
+      CHECK(order(shaken(scene), 0.0025, 0.6, balance) == Approx(2).margin(0.1));
     }
 }
 
