@@ -54,9 +54,9 @@ void FreeFlight::start(Rod& rod) {
     group.past = {group.now.position, group.now.orientation};
     if (!uses_two_steps_) return;
     group.past = past_pose(group.now, group.before);
-    const LaneMotion motion = expected(group.past, group.now, group.before, step);
-    move_free(rod, group, s, count, motion.position, motion.orientation);
-    set_velocities(rod, motion, s, count);
+    group.expected = expected(group.past, group.now, group.before, step);
+    move_free(rod, group, s, count, group.expected.position, group.expected.orientation);
+    set_velocities(rod, group.expected, s, count);
   });
 }
 
@@ -97,17 +97,16 @@ void FreeFlight::predict_by_two_steps(Rod& rod, double damping_per_s, const Vect
   const LaneVector gain = {all_lanes(h * gravity_m_s2.x()), all_lanes(h * gravity_m_s2.y()),
                            all_lanes(h * gravity_m_s2.z())};
   visit_groups(groups_, rod, [&](Group& group, std::size_t s, int count) {
-    const LaneMotion motion = expected(group.past, group.now, group.before, step);
     Flight flight{group.gyration, all_lanes(1 / (1 + damping_per_s * h)), gain};
     if (loads) {
       const LaneVector torque = load(&loads->torque_nm[s], count);
       flight.gain = flight.gain + (h * group.inverse_mass) * load(&loads->force_n[s], count);
       flight.turning = (h * group.inverse_inertia_transverse) * torque;
       flight.axial_turning =
-          h * (group.inverse_inertia_transverse + group.excess) * dot(director(motion.orientation), torque);
+          h * (group.inverse_inertia_transverse + group.excess) * dot(director(group.expected.orientation), torque);
     }
     move_free(rod, group, s, count, group.past.position + step * free_velocity(group.now, group.before, flight),
-              rotated(group.past.orientation, free_turn(group.now, group.before, motion, flight, step)));
+              rotated(group.past.orientation, free_turn(group.now, group.before, group.expected, flight, step)));
     set_velocities(rod, group.now, s, count);
   });
 }
@@ -116,7 +115,7 @@ void FreeFlight::extrapolate(Rod& rod) const {
   if (known_ < 2) return;
   const Lane step = all_lanes(h());
   visit_groups(groups_, rod, [&](const Group& group, std::size_t s, int count) {
-    const LaneMotion motion = expected(group.past, group.now, group.before, step);
+    const LaneMotion motion = uses_two_steps_ ? group.expected : expected(group.past, group.now, group.before, step);
     const LaneVector position = load(&rod.position[s], count);
     const LaneQuaternion orientation = load(&rod.orientation[s], count);
     store(select(group.is_free, motion.position, position), &rod.position[s], count);

@@ -51,6 +51,7 @@ class FreeFlight {
     Lane excess;             ///< of the inverse inertia: axial minus transverse
     Lane gyration;           ///< (i_a - i_t) / i_t
     LaneMotion now, before;  ///< at the start of this step and of the last one
+    LaneMotion expected;     ///< at the end, if the step uses two
     LanePose past;
   };
   void predict_by_two_steps(Rod& rod, double damping_per_s, const Vector3& gravity_m_s2, const SegmentLoads* loads);

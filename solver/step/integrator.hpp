@@ -6,8 +6,8 @@
 //   euler   first order,   h = dt,       x^ = x_n,                     v^ = v_n, ...
 //   bdf2    second order,  h = 2 dt / 3, x^ = (4 x_n - x_(n-1)) / 3,   v^ = (4 v_n - v_(n-1)) / 3, ...
 //
-// q^ is normalised; L is the angular momentum in the world. So constraints, compliance, damping and contacts only see
-// another time step, h. The first step of BDF2 is one of Euler.
+// L is the angular momentum in the world. So constraints, compliance, damping and contacts only see another time step,
+// h. The first step of BDF2 is one of Euler.
 #pragma once
 
 namespace rodsweep {

@@ -27,11 +27,10 @@ inline LaneVector past(const LaneVector& now, const LaneVector& before) {
   return all_lanes(4.0 / 3) * now - all_lanes(1.0 / 3) * before;
 }
 
-/// x^ and q^.
+/// x^ and q^, which is not normalised: the rotation maps do not see its norm.
 inline LanePose past_pose(const LaneMotion& now, const LaneMotion& before) {
   const LaneQuaternion &q = now.orientation, p = in_hemisphere_of(q, before.orientation);
-  const LaneQuaternion sum = {4 * q.w - p.w, 4 * q.x - p.x, 4 * q.y - p.y, 4 * q.z - p.z};
-  return {past(now.position, before.position), 1 / square_root(dot(sum, sum)) * sum};
+  return {past(now.position, before.position), {4 * q.w - p.w, 4 * q.x - p.x, 4 * q.y - p.y, 4 * q.z - p.z}};
 }
 
 /// Where segments are expected at the end of a step, and how fast, from their motions at its start and a step before.
