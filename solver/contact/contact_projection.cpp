@@ -76,8 +76,7 @@ const std::vector<char>& ContactProjection::impacts() {
     for (const Contact& contact : contacts_) {
       const int a = rod_of(contact.a), b = rod_of(contact.b);
       if (a < 0 || b < 0 || hit_[static_cast<std::size_t>(a)] == hit_[static_cast<std::size_t>(b)]) continue;
-      Contact with = contact;
-      if (!contact.impulse.isZero(0) || finder_.follow(with, axes_).width < 0) again |= mark(a) | mark(b);
+      again |= mark(a) | mark(b);
     }
   }
   return hit_;

@@ -43,7 +43,7 @@ class ContactProjection {
   bool project();
 
   /// The rods that hit something between p and their present positions, those expected at the end of the step, and the
-  /// rods that touch these, directly or through others: a flag each. Bodies hit each other if they come nearer by more
+  /// rods near these, directly or through others, which the blow may reach in the step: a flag each. Bodies hit each other if they come nearer by more
   /// than a hundredth of a radius, touch, and did not press in the last step.
   const std::vector<char>& impacts();
 
