@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
@@ -33,14 +34,18 @@ struct World {
   int rank = 0, size = 1;
 };
 
-/// Runs `tasks` tasks. Returns on rank 0 their outcomes, on all ranks how often each task ran on any rank.
-std::pair<Dispatch, std::vector<int>> run(int tasks, const std::function<int()>& signal) {
+/// Runs `tasks` tasks; `before` is called before each. Returns on rank 0 their outcomes, on all ranks how often each
+/// task ran on any rank.
+std::pair<Dispatch, std::vector<int>> run(
+    int tasks, const std::function<int()>& signal,
+    const std::function<void(const StopRequested&)>& before = [](auto&) {}) {
   const World world;
   MpiChannel channel(MPI_COMM_WORLD);
   std::vector<int> here(tasks, 0), everywhere(tasks, 0);
   Dispatch dispatch;
   if (world.rank > 0) {
     const TaskBody body = [&](std::int64_t task, const StopRequested& stop) -> TaskResult {
+      before(stop);
       if (stop()) return {};
       ++here[task];
       if (task % 7 == 3) return {TaskOutcome::diverged, "as told"};
@@ -77,8 +82,14 @@ TEST_CASE("over MPI every task is run exactly once and every outcome arrives") {
 TEST_CASE("over MPI a signal to one worker stops all, and no task is lost or counted twice") {
   const World world;
   if (world.size == 1) return;
-  int asked = 0;
-  const auto [dispatch, runs] = run(2000, [&] { return world.rank == 1 && ++asked > 100 ? 15 : 0; });
+  // The others wait in their 10th task, so that some tasks are left when rank 1 hears of the signal, however slow it is.
+  int asked = 0, begun = 0;
+  const auto [dispatch, runs] = run(
+      2000, [&] { return world.rank == 1 && ++asked > 100 ? 15 : 0; },
+      [&](const StopRequested& stop) {
+        if (world.rank > 1 && ++begun >= 10)
+          while (!stop()) std::this_thread::yield();
+      });
   const int finished = std::accumulate(runs.begin(), runs.end(), 0);
   CHECK(std::all_of(runs.begin(), runs.end(), [](int n) { return n <= 1; }));
   if (world.rank == 0) {
