@@ -98,9 +98,10 @@ void GraphEncoding::encode(const Rod& rod, const LinearSystem& system, int newto
     const auto column = static_cast<Eigen::Index>(k);
     auto out = edges.col(column);
     const Joint& joint = rod.joints[k];
-    const Vector3 rest = 2 * joint.rest.vec();                                                 // l Omega0
-    const Vector3 bend = system.linearization().constraint.segment<3>(6 * column + 3) + rest;  // l Omega
-    out.segment<3>(0) = (bend / joint.length).cast<float>();
+    const Quaternion d = rod.orientation[static_cast<std::size_t>(joint.a)].conjugate() *
+                         rod.orientation[static_cast<std::size_t>(joint.b)];
+    const double towards_rest = d.dot(joint.rest()) < 0 ? -1 : 1;
+    out.segment<3>(0) = (towards_rest * 2 / joint.length * d.vec()).cast<float>();
     out.segment<2>(3) = moduli_.col(column);
     if (encoding_ == Encoding::paper) continue;
     const Vector6 residual = system.rhs().segment<6>(6 * column);

@@ -3,7 +3,7 @@
 // At the positions p^j of Newton iteration j:
 //   paper            node 14: x [m], q (w, x, y, z; the hemisphere w >= 0), r [m], rho [kg/m^3], segment length [m],
 //                             alpha, and whether fixed, first (a root), last (a tip)
-//                    edge 5:  Darboux vector Omega [1/m], Y, T [Pa]
+//                    edge 5:  Darboux vector Omega = (2/l) Im(conj(q_a) q_b) [1/m], Y, T [Pa]
 //   paper_residual   node 14: the same
 //                    edge 11: the same, and from j = 1 on the constraint residual -C - alpha~ lambda (0 at j = 0)
 // alpha is the distance of a segment's centre from the root along the joints, over the largest. The root of a connected

@@ -52,11 +52,11 @@ void StateEncoding::encode(const Rod& rod, const StateHistory& history, Eigen::R
     const Vector3 apart = to_local * (history.position(b) - history.position(a));
     Quaternion between = to_local * history.orientation(b);
     const Vector3 lacks = joint.arm_a - apart - between * joint.arm_b;
-    between = joint.rest.conjugate() * between;
+    between = joint.rest().conjugate() * between;
     out.segment<3>(0) = (lacks / joint.length).cast<float>();
     out.segment<3>(3) = (apart / joint.length).cast<float>();
     out.segment<3>(6) = ((between.w() < 0 ? -2 : 2) * between.vec()).cast<float>();
-    out.segment<3>(9) = (2 * joint.rest.vec()).cast<float>();
+    out.segment<3>(9) = (2 * joint.rest().vec()).cast<float>();
     out.segment<2>(12) = moduli_.col(number);
     out[14] = static_cast<float>(joint.length);
   }

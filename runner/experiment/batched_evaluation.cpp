@@ -62,7 +62,7 @@ const std::vector<StepReport>& step(BatchedStepper& stepper, std::deque<Member>&
     each([&](int lane, Member& member) { log_before(stepper, lane, at, member); });
     stepper.solve();
     each([&](int lane, Member& member) {
-      if (member.systems.holds(at)) stepper.system().write_solution(lane, member.systems.solution(at));
+      if (member.systems.holds(at)) stepper.write_solution(lane, member.systems.solution(at));
     });
   }
   return stepper.end();

@@ -25,9 +25,8 @@ Lane add_change(const JointTurn<Lane>& turn, const JointShape<Lane>& shape, cons
                 const Wrench<Lane>& b, LaneVector6& rhs) {
   const LaneVector of_a = shape.inverse_length * a.force + cross(a.torque, shape.arm_a);
   const LaneVector of_b = shape.inverse_length * b.force + cross(b.torque, shape.arm_b);
-  const LaneVector stretch = conjugate(turn.d) * of_a - of_b;
-  const LaneVector bend =
-      turn.d.w * (b.torque - a.torque) + cross(LaneVector{turn.d.x, turn.d.y, turn.d.z}, a.torque + b.torque);
+  const LaneVector stretch = conjugate(relative_turn(turn, shape)) * of_a - of_b;
+  const LaneVector bend = bend_change(turn, shape, a.torque, b.torque);
   const Lane change[6] = {stretch.x, stretch.y, stretch.z, bend.x, bend.y, bend.z};
   Lane squared_norm{};
   for (int row = 0; row < 6; ++row) {
@@ -72,8 +71,8 @@ void BatchedBalance::assemble(BatchedRods& rods, BatchedLinearization& at, const
       const JointTurn<Lane>& turn = at.joints[s];
       const LaneMatrix half = half_turn(turn);
       const LaneVector stretch = {joint.lambda[0], joint.lambda[1], joint.lambda[2]};
-      const auto [on_a, on_b] = impulses(turn.d, joint.shape, half * stretch, transposed_product(half, stretch),
-                                         {joint.lambda[3], joint.lambda[4], joint.lambda[5]});
+      const auto [on_a, on_b] =
+          impulses(turn, half, joint.shape, stretch, LaneVector{joint.lambda[3], joint.lambda[4], joint.lambda[5]});
       const Lane length = 1 / joint.shape.inverse_length;
       const Lane scale = joint.shape.inverse_length * joint.shape.inverse_length;
       carried = larger(carried, larger(squared_size(on_a, scale), squared_size(on_b, scale)));

@@ -79,7 +79,9 @@ void put(BatchedJoint& out, int lane, const Rod& rod, std::size_t k) {
   put(out.shape.arm_a, lane, joint.arm_a / joint.length);
   put(out.shape.arm_b, lane, joint.arm_b / joint.length);
   out.shape.inverse_length[lane] = 1 / joint.length;
-  put(out.shape.rest, lane, joint.rest);
+  out.shape.kinked |= joint.is_kinked();
+  put(out.shape.frame_a, lane, joint.frame_a);
+  put(out.shape.frame_b, lane, joint.frame_b);
   for (int row = 0; row < 6; ++row) {
     out.alpha[row][lane] = joint.compliance[row];
     out.lambda[row][lane] = rod.lambda[static_cast<Eigen::Index>(6 * k) + row];
@@ -106,6 +108,10 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double h) : rods(stat
     for (std::size_t k = 0; k < joints.size(); ++k) put(joints[k], lane, scene.rods.front(), k);
     put(gravity, lane, scene.gravity_m_s2);
     damping_per_s[lane] = scene.damping_per_s;
+  }
+  for (BatchedJoint& joint : joints) {
+    joint.shape.axes_a = rotation_matrix(joint.shape.frame_a);
+    joint.shape.axes_b = rotation_matrix(joint.shape.frame_b);
   }
   set_step(h);
   for (std::size_t s = 0; s < segments.size(); ++s) free[s] = {segments[s].position, segments[s].orientation};

@@ -30,6 +30,8 @@ class BatchedStepper {
   /// Whether this rod's system is solved, from one linearize() to the next.
   bool iterates(int rod) const { return running_[rod] != 0; }
   const BatchedSystem& system() const { return system_; }
+  /// Writes the solution of this rod's system, six multipliers a joint.
+  void write_solution(int rod, double* solution) const { system_.write_solution(rods_, rod, solution); }
   bool keeps_balance(int rod) const { return balanced_[rod] != 0; }
 
   /// Stops this rod.

@@ -21,42 +21,61 @@ inline void put(const LaneVector& v, Lane* to) {
   to[2] = v.z;
 }
 
-/// The last three rows, [v]x + w I; t and a are D^1/2 across the segment and along it.
-inline void put_bend(const LaneQuaternion& d, const Lane& w, const Lane& t, const Lane& a, Side& out) {
-  const Lane tw = t * w, tz = t * d.z;
-  put({tw, tz, -t * d.y}, out.column[0].row + 3);
-  put({-tz, tw, t * d.x}, out.column[1].row + 3);
-  put({a * d.y, -a * d.x, a * w}, out.column[2].row + 3);
+/// The last three rows, ([v]x + w I) P^T; t and a are D^1/2 across the segment and along it.
+inline void put_bend(const LaneQuaternion& e, const Lane& w, const LaneMatrix& p, bool kinked, const Lane& t,
+                     const Lane& a, Side& out) {
+  if (kinked) {
+    const LaneVector v = {e.x, e.y, e.z};
+    const auto column = [&](const Lane& x, const Lane& y, const Lane& z) {
+      const LaneVector row = {x, y, z};
+      return w * row + cross(v, row);
+    };
+    put(t * column(p.x.x, p.y.x, p.z.x), out.column[0].row + 3);
+    put(t * column(p.x.y, p.y.y, p.z.y), out.column[1].row + 3);
+    put(a * column(p.x.z, p.y.z, p.z.z), out.column[2].row + 3);
+    return;
+  }
+  const Lane tw = t * w, tz = t * e.z;
+  put({tw, tz, -t * e.y}, out.column[0].row + 3);
+  put({-tz, tw, t * e.x}, out.column[1].row + 3);
+  put({a * e.y, -a * e.x, a * w}, out.column[2].row + 3);
 }
 
-/// -S [arm_a]x, then [v]x - w I; and the shift.
-inline void put_side_a(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
+/// -S [arm_a]x, then ([v]x - w I) P_a^T; and the shift.
+inline void put_side_a(const JointTurn<Lane>& turn, const BatchedJoint& joint, const BatchedSegment& segment,
+                       Sides& out) {
   const Lane &t = segment.root_turn_mobility, &a = segment.root_inverse_inertia_axial;
-  const LaneMatrix s = rotation_matrix(conjugate(d));
+  const LaneMatrix s = rotation_matrix(conjugate(relative_turn(turn, joint.shape)));
   const LaneVector arm = t * joint.shape.arm_a;
   put(arm.y * s.z - arm.z * s.y, out.a.column[0].row);
   put(arm.z * s.x - arm.x * s.z, out.a.column[1].row);
   put((a * joint.shape.arm_a.x) * s.y - (a * joint.shape.arm_a.y) * s.x, out.a.column[2].row);
-  put_bend(d, -d.w, t, a, out.a);
+  put_bend(turn.e, -turn.e.w, joint.shape.axes_a, joint.shape.kinked, t, a, out.a);
   const Lane scale = -segment.inverse_mass * joint.shape.inverse_length;
   put(scale * s.x, out.shift[0].row);
   put(scale * s.y, out.shift[1].row);
   put(scale * s.z, out.shift[2].row);
 }
 
-/// [arm_b]x, then [v]x + w I.
-inline void put_side_b(const LaneQuaternion& d, const BatchedJoint& joint, const BatchedSegment& segment, Sides& out) {
+/// [arm_b]x, then ([v]x + w I) P_b^T.
+inline void put_side_b(const JointTurn<Lane>& turn, const BatchedJoint& joint, const BatchedSegment& segment,
+                       Sides& out) {
   const Lane &t = segment.root_turn_mobility, &a = segment.root_inverse_inertia_axial, zero{};
   const LaneVector arm = t * joint.shape.arm_b;
   put({zero, arm.z, -arm.y}, out.b.column[0].row);
   put({-arm.z, zero, arm.x}, out.b.column[1].row);
   put({a * joint.shape.arm_b.y, -a * joint.shape.arm_b.x, zero}, out.b.column[2].row);
-  put_bend(d, d.w, t, a, out.b);
+  put_bend(turn.e, turn.e.w, joint.shape.axes_b, joint.shape.kinked, t, a, out.b);
 }
 
-/// Writes H^T diag(c) H to the lower triangle's stretch-shear rows.
-inline void put_turned_compliance(const JointTurn<Lane>& turn, const LaneVector6& c, LaneBlock& out) {
-  const LaneMatrix h = half_turn(turn);
+/// Writes P_b H^T diag(c) H P_b^T to the lower triangle's stretch-shear rows.
+inline void put_turned_compliance(const JointTurn<Lane>& turn, const JointShape<Lane>& shape, const LaneVector6& c,
+                                  LaneBlock& out) {
+  LaneMatrix h = half_turn(turn);
+  if (shape.kinked) {
+    const LaneMatrix& p = shape.axes_b;
+    h = {h * LaneVector{p.x.x, p.y.x, p.z.x}, h * LaneVector{p.x.y, p.y.y, p.z.y}, h * LaneVector{p.x.z, p.y.z, p.z.z}};
+  }
   const LaneVector across = {c[0] * h.x.x, c[1] * h.x.y, c[2] * h.x.z}, up = {c[0] * h.y.x, c[1] * h.y.y, c[2] * h.y.z},
                    along = {c[0] * h.z.x, c[1] * h.z.y, c[2] * h.z.z};
   out[0][0] = dot(across, h.x);
@@ -72,12 +91,12 @@ inline void put_turned_compliance(const JointTurn<Lane>& turn, const LaneVector6
                                                  Sides& sides) {
   const BatchedJoint& joint = rods.joints[k];
   const BatchedSegment &a = rods.segments[k], &b = rods.segments[k + 1];
-  put_side_a(turn.d, joint, a, sides);
-  put_side_b(turn.d, joint, b, sides);
+  put_side_a(turn, joint, a, sides);
+  put_side_b(turn, joint, b, sides);
   LaneBlock out{};
 #pragma GCC unroll 6
   for (int i = 0; i < 6; ++i) out[i][i] = joint.compliance[i];
-  if (!rods.stretches_evenly) put_turned_compliance(turn, joint.compliance, out);
+  if (!rods.stretches_evenly) put_turned_compliance(turn, joint.shape, joint.compliance, out);
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i)
     out[i][i] += (a.inverse_mass + b.inverse_mass) * joint.shape.inverse_length * joint.shape.inverse_length;
@@ -104,7 +123,8 @@ inline LaneVector6 coupling(const Sides& sides, const Side& before, const Lane& 
 inline void hold_force(const JointTurn<Lane>& turn, const LaneVector& phi_a, const LaneVector& phi_b,
                        const LaneMask& where, BatchedJoint& joint) {
   const LaneMatrix half = half_turn(turn);
-  const LaneVector delta = all_lanes(0.5) * (transposed_product(half, phi_a) + half * phi_b);
+  const LaneVector delta =
+      all_lanes(0.5) * (transposed_product(half, from_a(joint.shape, phi_a)) + half * from_b(joint.shape, phi_b));
   LaneVector6& lambda = joint.lambda;
   const LaneVector force = {lambda[0], lambda[1], lambda[2]};
   const LaneVector held = select(where, turned_back(force, delta), force);
@@ -172,10 +192,11 @@ BatchedSystem::Outcome BatchedSystem::solve(const BatchedRods& rods) {
   return {positive, absolute(sum) <= std::numeric_limits<double>::max()};
 }
 
-void BatchedSystem::write_solution(int lane, double* solution) const {
+void BatchedSystem::write_solution(const BatchedRods& rods, int lane, double* solution) const {
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     const LaneVector6& y = columns_[k].solution;
-    const LaneVector stretch = half_turn(linearization_.joints[k]) * LaneVector{y[0], y[1], y[2]};
+    const LaneVector stretch =
+        half_turn(linearization_.joints[k]) * from_b(rods.joints[k].shape, LaneVector{y[0], y[1], y[2]});
     for (const Lane& row : {stretch.x, stretch.y, stretch.z, y[3], y[4], y[5]}) *solution++ = row[lane];
   }
 }
@@ -192,11 +213,11 @@ void BatchedSystem::apply(BatchedRods& rods, const LaneMask& where) const {
       BatchedJoint& joint = rods.joints[s];
       const LaneMatrix half = half_turn(turn);
       const LaneVector on_b = {y[0], y[1], y[2]}, bend = {y[3], y[4], y[5]};
-      const LaneVector stretch = half * on_b;
+      const LaneVector stretch = half * from_b(joint.shape, on_b);
       const LaneVector6 x = {stretch.x, stretch.y, stretch.z, bend.x, bend.y, bend.z};
 #pragma GCC unroll 6
       for (int row = 0; row < 6; ++row) joint.lambda[row] = where ? joint.lambda[row] + x[row] : joint.lambda[row];
-      const auto [next_of_a, next_of_b] = impulses(turn.d, joint.shape, half * stretch, on_b, bend);
+      const auto [next_of_a, next_of_b] = impulses(turn, joint.shape, to_a(joint.shape, half * stretch), on_b, bend);
       on_this = {on_this.force + next_of_a.force, on_this.torque + next_of_a.torque};
       on_next = next_of_b;
     }

@@ -1,9 +1,10 @@
 // The linear system of a Newton iteration of several equal chains at once, rod r in lane r: the equations of
 // linear_system.hpp, solved by block LDL^T.
 //
-// The elimination uses the stretch-shear rows in the frame of the joint's second segment: with Q = diag(H^T, I) and
+// The elimination uses the stretch-shear rows in the frame of the joint's second segment: with Q = diag(P_b H^T, I) and
 // y = Q x, the matrix is Q A Q^T and the right-hand side Q b. There a joint's sides are, arms over l,
-//   Q J_a = (S/l, -S [arm_a]x; 0, -(w I - [v]x)),   Q J_b = (-I/l, [arm_b]x; 0, w I + [v]x),   S = R(d)^T,
+//   Q J_a = (S/l, -S [arm_a]x; 0, -(w I - [v]x) P_a^T),   Q J_b = (-I/l, [arm_b]x; 0, (w I + [v]x) P_b^T),
+// S = R(d)^T,
 // and its compliance is Q diag(c) Q^T, or diag(c) if the three stretch-shear compliances are equal.
 //
 // A chain's matrix is block tridiagonal. Segment k, which joints k - 1 and k share, contributes (m its mass, D its
@@ -46,7 +47,7 @@ class BatchedSystem {
   Outcome solve(const BatchedRods& rods);
 
   /// Writes the solution of one lane, six numbers per joint.
-  void write_solution(int lane, double* solution) const;
+  void write_solution(const BatchedRods& rods, int lane, double* solution) const;
 
   /// Moves the rods by the solution, in the lanes `where` only.
   void apply(BatchedRods& rods, const LaneMask& where) const;

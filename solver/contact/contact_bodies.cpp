@@ -26,7 +26,7 @@ struct RestPose {
 /// The rest pose of the other segment of a joint.
 RestPose beyond(const Joint& joint, int from, const RestPose& pose) {
   const bool forwards = from == joint.a;
-  const Quaternion turned = pose.orientation * (forwards ? joint.rest : joint.rest.conjugate());
+  const Quaternion turned = pose.orientation * (forwards ? joint.rest() : joint.rest().conjugate());
   const Vector3 &here = forwards ? joint.arm_a : joint.arm_b, &there = forwards ? joint.arm_b : joint.arm_a;
   return {pose.centre + pose.orientation * here - turned * there, turned};
 }

@@ -78,20 +78,10 @@ inline Lane8 load8(const double* from) {
 
 }  // namespace
 
-/// The parts that impulses() uses.
-JointShape<Lane> ConstraintProduct::Group::shape() const {
-  JointShape<Lane> out{};
-  out.arm_a = arm_a;
-  out.arm_b = arm_b;
-  out.inverse_length = inverse_length;
-  return out;
-}
-
 ConstraintProduct::ConstraintProduct(const Rod& rod)
     : mobility_(rod.segments.size()), softness_(6 * rod.joint_count()), at_(rod.segments.size()) {
   const Linearization shaped(rod);
-  for (const JointShape<Lane>& shape : shaped.shapes)
-    groups_.push_back(Group{JointTurn<Lane>(), shape.arm_a, shape.arm_b, shape.inverse_length});
+  for (const JointShape<Lane>& shape : shaped.shapes) groups_.push_back({JointTurn<Lane>(), shape});
   for (const Joint& joint : rod.joints) ends_.push_back({joint.a, joint.b});
 }
 
@@ -119,8 +109,7 @@ void ConstraintProduct::find_impulses(const double* x) const {
                                       ? gathered([&](int i) { return load8(from + 6 * i); })
                                       : gathered([&](int i) { return i < here ? load6(from + 6 * i) : Lane8{}; });
     const Triples<Lane> half = half_turn(group.turn);
-    const auto [a, b] = impulses(group.turn.d, group.shape(), half * multipliers.first(),
-                                 transposed_product(half, multipliers.first()), multipliers.second());
+    const auto [a, b] = impulses(group.turn, half, group.shape, multipliers.first(), multipliers.second());
     Lane8 on_a[W], on_b[W];
     spread(joined(a.force, a.torque), on_a);
     spread(joined(b.force, b.torque), on_b);
@@ -142,12 +131,11 @@ void ConstraintProduct::find_changes(const double* x, double* y) const {
     const Sextuples a = gathered([&](int i) { return of(ends[std::min(i, here - 1)].a); });
     const Sextuples b = gathered([&](int i) { return of(ends[std::min(i, here - 1)].b); });
     const Triples<Lane> half = half_turn(group.turn);
-    const Quad<Lane>& d = group.turn.d;
-    const Triple<Lane> shift_a = group.inverse_length * a.first() - cross(group.arm_a, a.second());
-    const Triple<Lane> shift_b = group.inverse_length * b.first() - cross(group.arm_b, b.second());
-    const Triple<Lane> stretch = transposed_product(half, shift_a) - half * shift_b;
-    const Triple<Lane> bend =
-        d.w * (b.second() - a.second()) + cross(Triple<Lane>{d.x, d.y, d.z}, a.second() + b.second());
+    const JointShape<Lane>& shape = group.shape;
+    const Triple<Lane> shift_a = shape.inverse_length * a.first() - cross(shape.arm_a, a.second());
+    const Triple<Lane> shift_b = shape.inverse_length * b.first() - cross(shape.arm_b, b.second());
+    const Triple<Lane> stretch = transposed_product(half, from_a(shape, shift_a)) - half * from_b(shape, shift_b);
+    const Triple<Lane> bend = bend_change(group.turn, shape, a.second(), b.second());
     Lane8 changes[W];
     spread(joined(stretch, bend), changes);
     const double* const softness = softness_.data() + 6 * first;

@@ -31,10 +31,7 @@ class ConstraintProduct {
   /// As many joints as a register has lanes.
   struct Group {
     JointTurn<Lane> turn;
-    Triple<Lane> arm_a, arm_b;  ///< over l
-    Lane inverse_length;
-
-    JointShape<Lane> shape() const;
+    JointShape<Lane> shape;
   };
   struct Ends {
     int a, b;

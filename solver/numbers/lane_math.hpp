@@ -115,6 +115,12 @@ inline Quad<T> relative(const Quad<T>& a, const Quad<T>& b) {
           a.w * b.z - a.z * b.w - a.x * b.y + a.y * b.x};
 }
 
+template <class T>
+inline Quad<T> product(const Quad<T>& a, const Quad<T>& b) {
+  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+          a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z, a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x};
+}
+
 /// normalise(q + [0, theta] q / 2).
 inline LaneQuaternion rotated(const LaneQuaternion& q, const LaneVector& theta) {
   const LaneVector h = all_lanes(0.5) * theta;
@@ -162,10 +168,11 @@ inline LaneVector director(const LaneQuaternion& q) {
 }
 
 /// R(q).
-inline LaneMatrix rotation_matrix(const LaneQuaternion& q) {
-  const Lane x = 2 * q.x, y = 2 * q.y, z = 2 * q.z, one = all_lanes(1);
-  const Lane wx = q.w * x, wy = q.w * y, wz = q.w * z;
-  const Lane xx = q.x * x, yy = q.y * y, zz = q.z * z, xy = q.x * y, xz = q.x * z, yz = q.y * z;
+template <class T>
+inline Triples<T> rotation_matrix(const Quad<T>& q) {
+  const T x = 2 * q.x, y = 2 * q.y, z = 2 * q.z, one = T{} + 1;
+  const T wx = q.w * x, wy = q.w * y, wz = q.w * z;
+  const T xx = q.x * x, yy = q.y * y, zz = q.z * z, xy = q.x * y, xz = q.x * z, yz = q.y * z;
   return {{one - yy - zz, xy + wz, xz - wy}, {xy - wz, one - xx - zz, yz + wx}, {xz + wy, yz - wx, one - xx - yy}};
 }
 

@@ -2,8 +2,6 @@
 // as many as a register has lanes. Lengths are over l.
 #pragma once
 
-#include <utility>
-
 #include "solver/numbers/lane_math.hpp"
 
 namespace rodsweep {
@@ -11,45 +9,83 @@ namespace rodsweep {
 /// The constants of a joint.
 template <class T>
 struct JointShape {
-  Quad<T> rest;            ///< d0
-  Triple<T> arm_a, arm_b;  ///< over l
-  T inverse_length;        ///< 1/l [1/m]
+  Triple<T> arm_a, arm_b;     ///< over l
+  T inverse_length;           ///< 1/l [1/m]
+  bool kinked;                ///< false: p_a = p_b = 1
+  Quad<T> frame_a, frame_b;   ///< p_a, p_b: the joint's frame at rest, seen from the segments
+  Triples<T> axes_a, axes_b;  ///< R(p_a), R(p_b)
 };
 
-/// d and the other terms of H.
+/// e, taken with w >= 0, and another term of H.
 template <class T>
 struct JointTurn {
-  Quad<T> d;
+  Quad<T> e;
   T scale;  ///< 1 / (1 + w)
 };
 
 template <class T>
-inline JointTurn<T> joint_turn(const Quad<T>& a, const Quad<T>& b, const Quad<T>& rest) {
-  const Quad<T> d = in_hemisphere_of(rest, relative(a, b));
-  return {d, 1 / (1 + d.w)};
+inline JointTurn<T> joint_turn(const Quad<T>& a, const Quad<T>& b, const JointShape<T>& shape) {
+  Quad<T> e = relative(a, b);
+  if (shape.kinked) e = relative(shape.frame_a, product(e, shape.frame_b));
+  e = in_hemisphere_of({T{} + 1, T{}, T{}, T{}}, e);
+  return {e, 1 / (1 + e.w)};
 }
 
-/// H = R(d^(1/2)) = w I + [v]x + v v^T / (1 + w).
+/// d = conj(q_a) q_b.
+template <class T>
+inline Quad<T> relative_turn(const JointTurn<T>& turn, const JointShape<T>& shape) {
+  return shape.kinked ? product(product(shape.frame_a, turn.e), conjugate(shape.frame_b)) : turn.e;
+}
+
+/// H = R(e^(1/2)) = w I + [v]x + v v^T / (1 + w).
 template <class T>
 inline Triples<T> half_turn(const JointTurn<T>& turn) {
-  const Quad<T>& d = turn.d;
-  const Triple<T> v = {d.x, d.y, d.z}, scaled = turn.scale * v;
+  const Quad<T>& e = turn.e;
+  const Triple<T> v = {e.x, e.y, e.z}, scaled = turn.scale * v;
   const T xy = v.x * scaled.y, xz = v.x * scaled.z, yz = v.y * scaled.z;
-  return {{d.w + v.x * scaled.x, xy + v.z, xz - v.y},
-          {xy - v.z, d.w + v.y * scaled.y, yz + v.x},
-          {xz + v.y, yz - v.x, d.w + v.z * scaled.z}};
+  return {{e.w + v.x * scaled.x, xy + v.z, xz - v.y},
+          {xy - v.z, e.w + v.y * scaled.y, yz + v.x},
+          {xz + v.y, yz - v.x, e.w + v.z * scaled.z}};
 }
 
-/// C_s = H^T ((R_a^T (x_a - x_b) + arm_a) - H arm_b, all over l; `apart` is x_a - x_b over l, in the world.
+/// From the joint's frame at rest to a segment's, R(p) v, and back, R(p)^T v.
+template <class T>
+inline Triple<T> to_a(const JointShape<T>& shape, const Triple<T>& v) {
+  return shape.kinked ? shape.axes_a * v : v;
+}
+template <class T>
+inline Triple<T> to_b(const JointShape<T>& shape, const Triple<T>& v) {
+  return shape.kinked ? shape.axes_b * v : v;
+}
+template <class T>
+inline Triple<T> from_a(const JointShape<T>& shape, const Triple<T>& v) {
+  return shape.kinked ? transposed_product(shape.axes_a, v) : v;
+}
+template <class T>
+inline Triple<T> from_b(const JointShape<T>& shape, const Triple<T>& v) {
+  return shape.kinked ? transposed_product(shape.axes_b, v) : v;
+}
+
+/// C_s = H^T R(p_a)^T (R_a^T (x_a - x_b) + arm_a) - H R(p_b)^T arm_b, all over l; `apart` is x_a - x_b over l, in the
+/// world.
 template <class T>
 inline Triple<T> stretch(const Triples<T>& half, const Quad<T>& a, const Triple<T>& apart, const JointShape<T>& shape) {
-  return transposed_product(half, conjugate(a) * apart + shape.arm_a) - half * shape.arm_b;
+  return transposed_product(half, from_a(shape, conjugate(a) * apart + shape.arm_a)) -
+         half * from_b(shape, shape.arm_b);
 }
 
-/// C_b = 2 Im(d) - 2 Im(d0).
+/// C_b = 2 Im(e).
 template <class T>
-inline Triple<T> bend(const Quad<T>& d, const Quad<T>& rest) {
-  return {2 * (d.x - rest.x), 2 * (d.y - rest.y), 2 * (d.z - rest.z)};
+inline Triple<T> bend(const JointTurn<T>& turn) {
+  return {2 * turn.e.x, 2 * turn.e.y, 2 * turn.e.z};
+}
+
+/// dC_b of two segments that turn by phi, each in its own frame.
+template <class T>
+inline Triple<T> bend_change(const JointTurn<T>& turn, const JointShape<T>& shape, const Triple<T>& phi_a,
+                             const Triple<T>& phi_b) {
+  const Triple<T> a = from_a(shape, phi_a), b = from_b(shape, phi_b);
+  return turn.e.w * (b - a) + cross(Triple<T>{turn.e.x, turn.e.y, turn.e.z}, a + b);
 }
 
 /// A force and a torque (or impulses) in a segment's frame.
@@ -58,14 +94,26 @@ struct Wrench {
   Triple<T> force, torque;
 };
 
-/// J^T y on the segments of a joint. y's stretch-shear rows are `on_b` in the frame of the second segment, and `on_a`,
-/// R(d) on_b, in the frame of the first.
+/// One for each segment of a joint.
 template <class T>
-inline std::pair<Wrench<T>, Wrench<T>> impulses(const Quad<T>& d, const JointShape<T>& shape, const Triple<T>& on_a,
-                                                const Triple<T>& on_b, const Triple<T>& bend) {
-  const Triple<T> along = d.w * bend, across = cross(Triple<T>{d.x, d.y, d.z}, bend);
-  return {{shape.inverse_length * on_a, cross(shape.arm_a, on_a) - along - across},
-          {-shape.inverse_length * on_b, along - across - cross(shape.arm_b, on_b)}};
+struct Wrenches {
+  Wrench<T> on_a, on_b;
+};
+
+/// J^T y. `on_a` and `on_b` are y's stretch-shear rows in the frames of the segments.
+template <class T>
+inline Wrenches<T> impulses(const JointTurn<T>& turn, const JointShape<T>& shape, const Triple<T>& on_a,
+                            const Triple<T>& on_b, const Triple<T>& bend) {
+  const Triple<T> along = turn.e.w * bend, across = cross(Triple<T>{turn.e.x, turn.e.y, turn.e.z}, bend);
+  return {{shape.inverse_length * on_a, cross(shape.arm_a, on_a) - to_a(shape, along + across)},
+          {-shape.inverse_length * on_b, to_b(shape, along - across) - cross(shape.arm_b, on_b)}};
+}
+
+/// J^T y with y's rows in the joint's frame; `half` is H.
+template <class T>
+inline Wrenches<T> impulses(const JointTurn<T>& turn, const Triples<T>& half, const JointShape<T>& shape,
+                            const Triple<T>& stretch, const Triple<T>& bend) {
+  return impulses(turn, shape, to_a(shape, half * stretch), to_b(shape, transposed_product(half, stretch)), bend);
 }
 
 }  // namespace rodsweep

@@ -26,27 +26,41 @@ inline void product_with_cross(const Triple<T> (&m)[3], const Triple<T>& v, Trip
 
 /// The columns of [v]x + w I.
 template <class T>
-inline void put_bend(const Quad<T>& d, const T& w, Triple<T> (&column)[3]) {
-  column[0] = {w, d.z, -d.y};
-  column[1] = {-d.z, w, d.x};
-  column[2] = {d.y, -d.x, w};
+inline void put_bend(const Quad<T>& e, const T& w, Triple<T> (&column)[3]) {
+  column[0] = {w, e.z, -e.y};
+  column[1] = {-e.z, w, e.x};
+  column[2] = {e.y, -e.x, w};
+}
+
+/// Multiplies a matrix, by its columns, with P^T.
+template <class T>
+inline void turn_columns(const Triples<T>& p, Triple<T> (&column)[3]) {
+  const Triple<T> x = column[0], y = column[1], z = column[2];
+  column[0] = p.x.x * x + p.y.x * y + p.z.x * z;
+  column[1] = p.x.y * x + p.y.y * y + p.z.y * z;
+  column[2] = p.x.z * x + p.y.z * y + p.z.z * z;
 }
 
 template <class T>
 inline JacobianParts<T> parts_of(const JointTurn<T>& turn, const Triples<T>& half, const JointShape<T>& shape) {
   JacobianParts<T> out;
-  const Triple<T> h[3] = {half.x, half.y, half.z};
-  const Triple<T> h_transposed[3] = {
-      {half.x.x, half.y.x, half.z.x}, {half.x.y, half.y.y, half.z.y}, {half.x.z, half.y.z, half.z.z}};
+  Triple<T> of_b[3] = {half.x, half.y, half.z};  // H P_b^T, and H^T P_a^T
+  Triple<T> of_a[3] = {{half.x.x, half.y.x, half.z.x}, {half.x.y, half.y.y, half.z.y}, {half.x.z, half.y.z, half.z.z}};
+  put_bend(turn.e, -turn.e.w, out.bend_a);
+  put_bend(turn.e, turn.e.w, out.bend_b);
+  if (shape.kinked) {
+    turn_columns(shape.axes_a, of_a);
+    turn_columns(shape.axes_a, out.bend_a);
+    turn_columns(shape.axes_b, of_b);
+    turn_columns(shape.axes_b, out.bend_b);
+  }
   const T minus = -shape.inverse_length;
   for (int c = 0; c < 3; ++c) {
-    out.shift_a[c] = shape.inverse_length * h_transposed[c];
-    out.shift_b[c] = minus * h[c];
+    out.shift_a[c] = shape.inverse_length * of_a[c];
+    out.shift_b[c] = minus * of_b[c];
   }
-  product_with_cross(h_transposed, shape.arm_a, out.across_a);
-  product_with_cross(h, -shape.arm_b, out.across_b);
-  put_bend(turn.d, -turn.d.w, out.bend_a);
-  put_bend(turn.d, turn.d.w, out.bend_b);
+  product_with_cross(of_a, shape.arm_a, out.across_a);
+  product_with_cross(of_b, -shape.arm_b, out.across_b);
   return out;
 }
 
@@ -94,8 +108,21 @@ inline Vector3 apart(const Rod& rod, const Joint& joint) {
   return rod.position[static_cast<std::size_t>(joint.a)] - rod.position[static_cast<std::size_t>(joint.b)];
 }
 
-JointTurn<double> turn_of(const Rod& rod, const Joint& joint) {
-  return joint_turn(numbers(orientation_of_a(rod, joint)), numbers(orientation_of_b(rod, joint)), numbers(joint.rest));
+JointShape<double> shape_of(const Joint& joint) {
+  const double scale = 1 / joint.length;
+  const Quad<double> a = numbers(joint.frame_a), b = numbers(joint.frame_b);
+  return {numbers(scale * joint.arm_a),
+          numbers(scale * joint.arm_b),
+          scale,
+          joint.is_kinked(),
+          a,
+          b,
+          rotation_matrix(a),
+          rotation_matrix(b)};
+}
+
+JointTurn<double> turn_of(const Rod& rod, const Joint& joint, const JointShape<double>& shape) {
+  return joint_turn(numbers(orientation_of_a(rod, joint)), numbers(orientation_of_b(rod, joint)), shape);
 }
 
 }  // namespace
@@ -107,17 +134,23 @@ Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.
   joints.reserve(groups * lane_width);
   for (std::size_t first = 0; first < count; first += lane_width) {
     JointShape<Lane> shape;
-    Quaternion rest[lane_width];
+    shape.kinked = false;
+    Quaternion frame_a[lane_width], frame_b[lane_width];
     Vector3 arm_a[lane_width], arm_b[lane_width];
     for (std::size_t lane = 0; lane < lane_width; ++lane) {
       const Joint& joint = rod.joints[std::min(first + lane, count - 1)];
-      rest[lane] = joint.rest;
+      shape.kinked |= joint.is_kinked();
+      frame_a[lane] = joint.frame_a;
+      frame_b[lane] = joint.frame_b;
       arm_a[lane] = joint.arm_a / joint.length;
       arm_b[lane] = joint.arm_b / joint.length;
       shape.inverse_length[lane] = 1 / joint.length;
       joints.emplace_back().inverse_length = 1 / joint.length;
     }
-    shape.rest = load(rest, lane_width);
+    shape.frame_a = load(frame_a, lane_width);
+    shape.frame_b = load(frame_b, lane_width);
+    shape.axes_a = rotation_matrix(shape.frame_a);
+    shape.axes_b = rotation_matrix(shape.frame_b);
     shape.arm_a = load(arm_a, lane_width);
     shape.arm_b = load(arm_b, lane_width);
     shapes.push_back(shape);
@@ -125,35 +158,35 @@ Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.
   }
 }
 
-Quaternion relative_turn(const Rod& rod, const Joint& joint) {
-  const Quad<double> d = turn_of(rod, joint).d;
-  return Quaternion(d.w, d.x, d.y, d.z);
+TurnFromRest turn_from_rest(const Rod& rod, const Joint& joint) {
+  const Quad<double> e = turn_of(rod, joint, shape_of(joint)).e;
+  return {Quaternion(e.w, e.x, e.y, e.z), orientation_of_a(rod, joint) * joint.frame_a};
 }
 
 Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_frame) {
-  const Triple<double> own = half_turn(turn_of(rod, joint)) * numbers(in_joint_frame);
+  const JointShape<double> shape = shape_of(joint);
+  const Triple<double> own = to_a(shape, half_turn(turn_of(rod, joint, shape)) * numbers(in_joint_frame));
   return orientation_of_a(rod, joint) * Vector3(own.x, own.y, own.z);
 }
 
 Vector3 from_world(const Rod& rod, const Joint& joint, const Vector3& in_world) {
+  const JointShape<double> shape = shape_of(joint);
   const Vector3 own = orientation_of_a(rod, joint).conjugate() * in_world;
-  const Triple<double> out = transposed_product(half_turn(turn_of(rod, joint)), numbers(own));
+  const Triple<double> out = transposed_product(half_turn(turn_of(rod, joint, shape)), from_a(shape, numbers(own)));
   return {out.x, out.y, out.z};
 }
 
 void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint) {
-  const double scale = 1 / joint.length;
-  const JointShape<double> shape = {numbers(joint.rest), numbers(scale * joint.arm_a), numbers(scale * joint.arm_b),
-                                    scale};
-  const JointTurn<double> turn = turn_of(rod, joint);
+  const JointShape<double> shape = shape_of(joint);
+  const JointTurn<double> turn = turn_of(rod, joint, shape);
   const Triples<double> half = half_turn(turn);
   const Triple<double> gap =
-      stretch(half, numbers(orientation_of_a(rod, joint)), numbers(scale * apart(rod, joint)), shape);
-  const Triple<double> bent = bend(turn.d, shape.rest);
+      stretch(half, numbers(orientation_of_a(rod, joint)), numbers(shape.inverse_length * apart(rod, joint)), shape);
+  const Triple<double> bent = bend(turn);
   int row = 0;
   for (const double value : {gap.x, gap.y, gap.z, bent.x, bent.y, bent.z}) constraint[row++] = value;
   write(parts_of(turn, half, shape), jacobian);
-  jacobian.inverse_length = scale;
+  jacobian.inverse_length = shape.inverse_length;
 }
 
 void linearize(const Rod& rod, Linearization& out) {
@@ -170,11 +203,11 @@ void linearize(const Rod& rod, Linearization& out) {
       gaps[lane] = apart(rod, joint);
     }
     const LaneQuaternion a = load(of_a, lane_width);
-    const JointTurn<Lane> turn = joint_turn(a, load(of_b, lane_width), shape.rest);
+    const JointTurn<Lane> turn = joint_turn(a, load(of_b, lane_width), shape);
     out.turns[first / lane_width] = turn;
     const LaneMatrix half = half_turn(turn);
     const LaneVector gap = stretch(half, a, shape.inverse_length * load(gaps, lane_width), shape);
-    const LaneVector bent = bend(turn.d, shape.rest);
+    const LaneVector bent = bend(turn);
     const Lane constraint[6] = {gap.x, gap.y, gap.z, bent.x, bent.y, bent.z};
     double* of_joint = out.constraint.data() + 6 * first;
     for (std::size_t lane = 0; lane < here; ++lane)

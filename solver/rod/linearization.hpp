@@ -1,17 +1,18 @@
 // Constraints and their Jacobians of every joint of a rod at its current positions, in the rod's own (material) frames.
 //
-//   bend-twist     C_b = 2 Im(d) - 2 Im(d0),  d = conj(q_a) q_b = (w, v), taken in d0's hemisphere
-//   stretch-shear  C_s = R_m^T (x_a + R_a arm_a - x_b - R_b arm_b) / l,   R_m = R_a H = R_b H^T
-// C_b is l (Omega - Omega0) with the Darboux vector Omega = (2/l) Im(d)  (Kugelstadt & Schoemer 2016; Deul et al. 2018,
-// who measure the gap in the world). The joint's frame R_m is half-way between those of its segments, H = R(d^(1/2)) =
-// w I + [v]x + v v^T / (1 + w): z along the rod. Exchanging the segments gives the same frame.
+//   bend-twist     C_b = 2 Im(e),  e = conj(q_a p_a) q_b p_b = (w, v), w >= 0
+//   stretch-shear  C_s = R_m^T (x_a + R_a arm_a - x_b - R_b arm_b) / l,   R_m = R_a P_a H = R_b P_b H^T
+// P = R(p): the frames q_a p_a and q_b p_b coincide at rest (rod.hpp), so e is the joint's rotation from rest. The
+// joint's frame R_m is half-way between them, H = R(e^(1/2)) = w I + [v]x + v v^T / (1 + w). Exchanging the segments
+// gives the same frame. On a straight rod p_a = p_b = 1, and C_b is l times the Darboux vector (2/l) Im(d), d = conj(q_a)
+// q_b  (Kugelstadt & Schoemer 2016; Deul et al. 2018, who measure the gap in the world). With a rest angle theta they
+// measure 2 Im(d) - 2 Im(d0), which a rotation across d0's axis changes by cos(theta / 2) only.
 //
 // Segments move by u and turn by phi, both in their own frame: dx = R u, q <- normalise(q (1 + [0, phi] / 2)). Then
-//   dC_s/du_a = H^T/l,   dC_s/dphi_a = -H^T [arm_a]x / l,   dC_b/dphi_a = -(w I - [v]x)
-//   dC_s/du_b = -H/l,    dC_s/dphi_b =  H [arm_b]x / l,     dC_b/dphi_b =   w I + [v]x
-// depend on d alone: J and C do not depend on the position and orientation of a scene. J neglects that R_m turns with
+//   dC_s/du_a =  H^T P_a^T / l,   dC_s/dphi_a = -H^T P_a^T [arm_a]x / l,   dC_b/dphi_a = -(w I - [v]x) P_a^T
+//   dC_s/du_b = -H P_b^T / l,     dC_s/dphi_b =  H P_b^T [arm_b]x / l,     dC_b/dphi_b =  (w I + [v]x) P_b^T
+// depend on e alone: J and C do not depend on the position and orientation of a scene. J neglects that R_m turns with
 // the segments: that term is proportional to the gap, and without it Newton's iterates are those of C_s in the world.
-// (H is singular at w = -1: a full turn of a joint whose rest rotation is half a turn.)
 #pragma once
 
 #include <vector>
@@ -26,7 +27,7 @@ namespace rodsweep {
 /// stretch-shear, in lanes 0..2.
 struct JointJacobian {
   Lane8 rotation_a[3], rotation_b[3];  ///< dC/dphi
-  Lane4 shift_a[3], shift_b[3];        ///< dC_s/du, each minus the transpose of the other
+  Lane4 shift_a[3], shift_b[3];        ///< dC_s/du
   double inverse_length;               ///< 1/l [1/m]
 };
 
@@ -39,8 +40,11 @@ struct Linearization {
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };
 
-/// d of a joint, in the hemisphere of d0.
-Quaternion relative_turn(const Rod& rod, const Joint& joint);
+/// A joint's rotation from rest: e, and the orientation q_a p_a of the frame that it is in.
+struct TurnFromRest {
+  Quaternion e, frame;
+};
+TurnFromRest turn_from_rest(const Rod& rod, const Joint& joint);
 
 /// R_m v of a joint: from its frame to the world, and R_m^T v back.
 Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_frame);

@@ -52,17 +52,31 @@ Joint make_joint(const JointSpec& j, const std::vector<SegmentSpec>& segments, i
   if (j.b < 0 || j.b >= n) refuse("joint", index, "segment b", j.b, "from 0 to " + std::to_string(n - 1));
   if (j.a == j.b) refuse("joint", index, "segment b", j.b, "different from segment a");
   const SegmentSpec &a = segments[static_cast<std::size_t>(j.a)], &b = segments[static_cast<std::size_t>(j.b)];
-  Joint out{j.a, j.b, j.arm_a_m, j.arm_b_m, (a.length_m + b.length_m) / 2, j.compliance_per_j, Quaternion::Identity()};
+  Joint out{j.a,
+            j.b,
+            j.arm_a_m,
+            j.arm_b_m,
+            (a.length_m + b.length_m) / 2,
+            j.compliance_per_j,
+            Quaternion::Identity(),
+            Quaternion::Identity()};
   if (!(out.length > 0)) refuse("joint", index, "length", out.length, "positive: two zero-length segments meet");
   for (int row = 0; row < 6; ++row)
     if (!(out.compliance[row] >= 0) || !std::isfinite(out.compliance[row]))
       refuse("joint", index, "compliance of row " + std::to_string(row), out.compliance[row], "finite and at least 0");
   if (!j.arm_a_m.allFinite() || !j.arm_b_m.allFinite())
     throw SceneError("joint " + std::to_string(index) + ": an arm is not finite");
-  if (j.rest && !(std::abs(j.rest->norm() - 1) < 1e-6))
-    refuse("joint", index, "norm of the rest rotation", j.rest->norm(), "1");
-  out.rest = j.rest ? j.rest->normalized() : (a.orientation.conjugate() * b.orientation).normalized();
-  if (out.rest.w() < 0) out.rest.coeffs() = -out.rest.coeffs();
+  const auto check_norm = [index](const std::optional<Quaternion>& q, const char* quantity) {
+    if (q && !(std::abs(q->norm() - 1) < 1e-6)) refuse("joint", index, quantity, q->norm(), "1");
+  };
+  check_norm(j.rest, "norm of the rest rotation");
+  check_norm(j.frame, "norm of the frame's rotation");
+  set_rest(out, j.rest ? *j.rest : a.orientation.conjugate() * b.orientation);
+  if (j.frame) {
+    const Quaternion rest = out.rest();
+    out.frame_a = j.frame->normalized();
+    out.frame_b = (rest.conjugate() * out.frame_a).normalized();
+  }
   return out;
 }
 
@@ -73,6 +87,21 @@ void require(bool holds, const char* quantity, double value, const char* bound) 
   std::ostringstream text;
   text << quantity << " is " << value << "; must be " << bound;
   throw SceneError(text.str());
+}
+
+bool Joint::is_kinked() const {
+  const Quaternion one = Quaternion::Identity();
+  return frame_a.coeffs() != one.coeffs() || frame_b.coeffs() != one.coeffs();
+}
+
+void set_rest(Joint& joint, const Quaternion& rest) {
+  constexpr double rounding = 1e-14;  // of equal orientations
+  Quaternion half = rest.normalized();
+  if (half.w() < 0) half.coeffs() = -half.coeffs();
+  if (half.vec().norm() < rounding) half = Quaternion::Identity();
+  half.w() += 1;
+  joint.frame_a = half.normalized();
+  joint.frame_b = joint.frame_a.conjugate();
 }
 
 Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointSpec>& joint_specs) {

@@ -4,8 +4,9 @@
 // Segment: solid cylinder along its local z, mass m = rho pi r^2 L, principal inertia m (3 r^2 + L^2) / 12 (transverse)
 // and m r^2 / 2 (axial). A static segment has zero inverse mass and inertia; it may have zero length (a wall). Joint
 // between a and b: the point centre_a + R_a arm_a = centre_b + R_b arm_b; length l, the mean of the two segments'
-// lengths; compliance alpha of its six rows, in the joint's frame (linearization.hpp); rest relative orientation
-// d0 = conj(q_a) q_b.
+// lengths. Its frame coincides at rest with q_a p_a = q_b p_b: half-way between those of its segments, p_a = d0^(1/2),
+// p_b = conj(p_a), d0 = conj(q_a) q_b at rest, or as given. In it are the six rows and their compliance alpha
+// (linearization.hpp).
 // Any graph is accepted: chains, trees (several joints on a segment), loops. Throws SceneError.
 #pragma once
 
@@ -39,7 +40,8 @@ struct JointSpec {
   int a = 0, b = 0;                            ///< segments
   Vector3 arm_a_m{0, 0, 0}, arm_b_m{0, 0, 0};  ///< from the segments' centres to the shared point, local frames
   Vector6 compliance_per_j = Vector6::Zero();  ///< stretch-shear rows, then bend-twist rows
-  std::optional<Quaternion> rest;              ///< conj(q_a) q_b at rest; empty: from the initial orientations
+  std::optional<Quaternion> rest{};            ///< d0; empty: from the initial orientations
+  std::optional<Quaternion> frame{};           ///< p_a; empty: half-way
 };
 
 struct Segment {
@@ -55,10 +57,16 @@ struct Segment {
 struct Joint {
   int a, b;
   Vector3 arm_a, arm_b;
-  double length;       ///< l [m]
-  Vector6 compliance;  ///< alpha [1/J]: across the rod (2), along it, bending about x and y, twisting
-  Quaternion rest;     ///< d0, real part >= 0
+  double length;                ///< l [m]
+  Vector6 compliance;           ///< alpha [1/J]: across the rod (2), along it, bending about x and y, twisting
+  Quaternion frame_a, frame_b;  ///< p_a, p_b
+
+  Quaternion rest() const { return frame_a * frame_b.conjugate(); }  ///< d0
+  bool is_kinked() const;                                            ///< not p_a = p_b = 1
 };
+
+/// Sets the rest orientation and the frame half-way.
+void set_rest(Joint& joint, const Quaternion& rest);
 
 class Rod {
  public:

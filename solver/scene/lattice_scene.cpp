@@ -20,8 +20,7 @@ Vector3 vector(const Place& place, double mesh_m) { return mesh_m / 2 * Vector3(
 
 bool all_even(const Place& p) { return p[0] % 2 == 0 && p[1] % 2 == 0 && p[2] % 2 == 0; }
 
-/// From a node to the next, for every family of parallel rods. z is first, so that the other frames differ from its
-/// frame by a rotation about one of its axes. If possible, no two are more than a right angle apart.
+/// From a node to the next, for every family of parallel rods. If possible, no two are more than a right angle apart.
 std::vector<Place> directions(Lattice::Cell cell) {
   switch (cell) {
     case Lattice::Cell::cubic: return {{0, 0, 2}, {2, 0, 0}, {0, 2, 0}};
@@ -173,7 +172,7 @@ void Lattice::build(Scene& scene) const {
         const double soft = stretch == Stretch::physical
                                 ? 1 / (shifting * length * length)
                                 : stretch_compliance_per_j.value_or(inextensible_compliance(length, force));
-        joints.push_back(crossing_between(segments_, a, b, turning, soft));
+        joints.push_back(crossing_between(a, b, turning, soft));
       });
   scene.rods.emplace_back(segments_, joints);
   if (tip_force_n.isZero()) return;

@@ -51,7 +51,7 @@ void Net::build(Scene& scene) const {
     for (int column = 0; column < columns; ++column) {
       const int a = on_x(row, column * segments), b = on_z(column, row * segments);
       const JointSpec along = joint_between(all, a, b, *this, force);
-      joints.push_back(crossing_between(all, a, b, 1 / along.compliance_per_j[3], along.compliance_per_j[0]));
+      joints.push_back(crossing_between(a, b, 1 / along.compliance_per_j[3], along.compliance_per_j[0]));
     }
   scene.rods.emplace_back(all, joints);
 }

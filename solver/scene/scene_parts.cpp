@@ -71,16 +71,12 @@ JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, 
   return joint;
 }
 
-JointSpec crossing_between(const std::vector<SegmentSpec>& segments, int a, int b, double stiffness_nm,
-                           double stretch_per_j) {
+JointSpec crossing_between(int a, int b, double stiffness_nm, double stretch_per_j) {
   JointSpec joint;
   joint.a = a;
   joint.b = b;
-  const Vector3 sine = (segments[static_cast<std::size_t>(a)].orientation.conjugate() *
-                        segments[static_cast<std::size_t>(b)].orientation)
-                           .vec();
   joint.compliance_per_j.head<3>().setConstant(stretch_per_j);
-  joint.compliance_per_j.tail<3>() = (1 - sine.array().square()) / stiffness_nm;
+  joint.compliance_per_j.tail<3>().setConstant(1 / stiffness_nm);
   return joint;
 }
 

@@ -16,10 +16,8 @@ SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, dou
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p, double force_n);
 
 /// Two segments with one centre, with the given stiffness about every axis [Nm] and compliance of the stretch-shear
-/// rows [1/J]. If the two differ at rest by an angle theta about an axis, the bend-twist constraint measures only
-/// cos(theta / 2) of a rotation about it. The compliance compensates for that if it is an axis of the frames.
-JointSpec crossing_between(const std::vector<SegmentSpec>& segments, int a, int b, double stiffness_nm,
-                           double stretch_per_j);
+/// rows [1/J].
+JointSpec crossing_between(int a, int b, double stiffness_nm, double stretch_per_j);
 
 /// Weight of the segments, under at least standard gravity [N].
 double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p);

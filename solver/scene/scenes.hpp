@@ -121,9 +121,7 @@ struct Net : RodParameters {
 /// Straight rods through all nodes of a crystal lattice in a box, the first corner at the origin; the box is raised by
 /// `initial_angle_deg` about z, from x towards y. Where rods cross, the centres of their segments are joined to that of
 /// the first of them. Each joint is as stiff as `node_stiffness` rods two radii long: kappa G A / 2r against shifting,
-/// EI / 2r against rotation, on average over the axes. In the cubic lattice the stiffness is equal about every axis. In
-/// the others, the axis between two rods is not an axis of their frames. There it is 0.36 to 1.5 times that about some
-/// axes (body-centred), or 0.31 to 1.58 times (octet). Every rod extends half a segment beyond its last nodes, so the
+/// EI / 2r against rotation about every axis. Every rod extends half a segment beyond its last nodes, so the
 /// material of a node counts once for every rod through it. The lattice is one rod of many loops with more constraints
 /// than degrees of freedom. Stretch is `physical` by default, because multipliers of rigid joints are not unique.
 struct Lattice : RodParameters {
@@ -150,10 +148,10 @@ struct Lattice : RodParameters {
 
 /// A grown tree (tree_skeleton.hpp) with a segment for every edge, on the ground in an exact clamp (a static segment of
 /// zero length at the root). Both moduli of an edge of radius r are those of the widest edge at the ground times (r /
-/// its radius)^`modulus_exponent`. A joint is half of one edge and half of the next in series. If it is bent by theta
-/// at rest, it is softer by cos(theta / 2)^2 about the axis of that bend, because its constraint measures only that
-/// share. An "inextensible" joint is stiff enough for the weight above it. The initial shape is without load: at
-/// first gravity makes it sag a little.
+/// its radius)^`modulus_exponent`. An edge is a cone: the segment is the cylinder of its volume, and joints have the
+/// cone's compliance. A joint is half of one edge and half of the next in series; at a fork it is half of its branch
+/// alone, and the joint below carries the whole edge below (tree_joints.hpp). An "inextensible" joint is stiff enough
+/// for the weight above it. The initial shape is without load: at first gravity makes it sag a little.
 struct Tree : RodParameters {  ///< radius and moduli: those of the trunk at the ground
   static constexpr const char* name = "tree";
   TreeShape shape;
@@ -175,7 +173,8 @@ struct Forest : Tree {
   void build(Scene& scene) const;
 };
 
-/// A measured tree. Its radii are the skeleton's.
+/// A measured tree. Its radii are the skeleton's: an edge is a cone from its lower node's to its upper's. At a fork,
+/// every branch begins with the radius of its own first node: thin twigs leave thick trunks.
 struct SkeletonTree : RodParameters {
   static constexpr const char* name = "skeleton";
   std::shared_ptr<const Skeleton> skeleton;

@@ -4,48 +4,15 @@
 
 #include "solver/numbers/rotation.hpp"
 #include "solver/numbers/split_mix.hpp"
-#include "solver/scene/scene_parts.hpp"
+#include "solver/scene/tree_joints.hpp"
 
 namespace rodsweep {
 namespace {
 
-/// Moduli that grow with the edge's radius as stated in scenes.hpp, from those of the widest edge at the ground.
-class Wood {
- public:
-  Wood(const Skeleton& skeleton, const RodParameters& p, double modulus_exponent)
-      : parameters_(p), exponent_(modulus_exponent) {
-    for (const SkeletonNode& node : skeleton)
-      if (node.parent == 0) trunk_radius_m_ = std::max(trunk_radius_m_, node.radius_m);
-  }
-  Section section(double radius_m) const {
-    const double factor = exponent_ == 0 ? 1 : std::pow(radius_m / trunk_radius_m_, exponent_);
-    return circular_section(radius_m, factor * parameters_.youngs_modulus_pa, factor * parameters_.torsion_modulus_pa);
-  }
-
- private:
-  const RodParameters& parameters_;
-  double exponent_, trunk_radius_m_ = 0;
-};
-
-/// Half of a and half of b in series. A wall has no length.
-JointSpec series_joint(const SegmentSpec& a, const SegmentSpec& b, const Wood& wood, const RodParameters& p,
-                       double force_n) {
-  const double half_a = a.length_m / 2, half_b = b.length_m / 2, length = half_a + half_b;
-  const Section of_b = wood.section(b.radius_m), of_a = half_a > 0 ? wood.section(a.radius_m) : of_b;
-  const auto in_series = [&](double Section::*stiffness) {
-    return half_a / of_a.*stiffness + half_b / of_b.*stiffness;
-  };
-  JointSpec joint;
-  joint.arm_a_m = Vector3(0, 0, half_a);
-  joint.arm_b_m = Vector3(0, 0, -half_b);
-  double across = p.stretch_compliance_per_j.value_or(inextensible_compliance(length, force_n)), along = across;
-  if (p.stretch == Stretch::physical) {
-    across = in_series(&Section::shear_n) / (length * length);
-    along = in_series(&Section::axial_n) / (length * length);
-  }
-  joint.compliance_per_j << across, across, along, in_series(&Section::bending_x_nm2),
-      in_series(&Section::bending_y_nm2), in_series(&Section::torsion_nm2);
-  return joint;
+/// Of the cylinder of an edge's volume, a cone's.
+double mean_radius(const SkeletonNode& edge) {
+  const double lower = edge.base_radius_m, upper = edge.radius_m;
+  return lower == upper ? lower : std::sqrt((lower * lower + lower * upper + upper * upper) / 3);
 }
 
 /// Segment i is the edge to node i, segment 0 the ground.
@@ -62,7 +29,7 @@ std::vector<SegmentSpec> segments_along(const Skeleton& skeleton, const RodParam
     Quaternion orientation = turn_between(before, edge);
     if (!first) orientation = orientation * below.orientation;
     segments[i] = segment_at(base + parent.position_m + edge / 2, orientation.normalized(), edge.norm(), p);
-    segments[i].radius_m = node.radius_m;
+    segments[i].radius_m = mean_radius(node);
     if (first) segments[0].orientation = segments[1].orientation;
   }
   return segments;
@@ -70,20 +37,7 @@ std::vector<SegmentSpec> segments_along(const Skeleton& skeleton, const RodParam
 
 Rod rod_of(const Skeleton& skeleton, const RodParameters& p, double modulus_exponent, const Vector3& base) {
   const std::vector<SegmentSpec> segments = segments_along(skeleton, p, base);
-  const Wood wood(skeleton, p, modulus_exponent);
-  std::vector<double> carried(segments.size());  // [N], by the joint below each segment
-  for (std::size_t i = segments.size() - 1; i > 0; --i) {
-    carried[i] += weight({segments[i]}, p);
-    carried[at(skeleton[i].parent)] += carried[i];
-  }
-  std::vector<JointSpec> joints;
-  joints.reserve(segments.size() - 1);
-  for (std::size_t i = 1; i < segments.size(); ++i) {
-    joints.push_back(series_joint(segments[at(skeleton[i].parent)], segments[i], wood, p, carried[i]));
-    joints.back().a = skeleton[i].parent;
-    joints.back().b = static_cast<int>(i);
-  }
-  return Rod(segments, joints);
+  return Rod(segments, tree_joints(skeleton, segments, p, modulus_exponent));
 }
 
 }  // namespace
@@ -111,7 +65,8 @@ SceneSize SkeletonTree::size() const {
 }
 
 void SkeletonTree::build(Scene& scene) const {
-  scene.rods.push_back(rod_of(placed(*skeleton, unit_m, up), *this, modulus_exponent, Vector3::Zero()));
+  scene.rods.push_back(
+      rod_of(with_base_radii(placed(*skeleton, unit_m, up)), *this, modulus_exponent, Vector3::Zero()));
 }
 
 void Forest::check() const {

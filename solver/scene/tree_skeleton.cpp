@@ -14,7 +14,6 @@ namespace {
 constexpr double degree = pi / 180;
 constexpr double golden_angle = pi * (3 - 2.23606797749978969641);
 constexpr double most_edges = 1e7;
-constexpr double widest_turn = 160 * degree;
 
 double edges_of(const TreeShape& p) {
   double at_depth = 1, branches = 1;
@@ -32,9 +31,9 @@ class Growth {
   void branch(int node, const Quaternion& frame, double length, double radius, int level) {
     const Vector3 step = length / shape_.segments * (frame * Vector3::UnitZ());
     for (int i = 0; i < shape_.segments; ++i) {
-      const double along = shape_.segments > 1 ? static_cast<double>(i) / (shape_.segments - 1) : 0;
+      const auto tapered = [&](int edges) { return radius * (1 - (1 - shape_.taper) * edges / shape_.segments); };
       const Vector3 at = out_[static_cast<std::size_t>(node)].position_m + step;
-      out_.push_back({node, at, radius * (1 - (1 - shape_.taper) * along)});
+      out_.push_back({node, at, tapered(i + 1), tapered(i)});
       node = static_cast<int>(out_.size()) - 1;
     }
     if (level == shape_.depth) return;
@@ -67,18 +66,26 @@ std::optional<SkeletonFault> fault(const Skeleton& skeleton) {
     const SkeletonNode& end = skeleton[static_cast<std::size_t>(node)];
     return end.position_m - skeleton[static_cast<std::size_t>(end.parent)].position_m;
   };
-  for (int i = 1; i < static_cast<int>(skeleton.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(skeleton.size()); ++i) {
     const SkeletonNode& node = skeleton[static_cast<std::size_t>(i)];
     std::ostringstream text;
     if (!(node.radius_m > 0)) text << "radius is " << node.radius_m << "; must be positive";
-    if (edge(i).norm() == 0) text << "position is that of its parent; must be different";
-    const Vector3 below = edge(std::max(node.parent, 1));
-    const double turn = std::atan2(below.cross(edge(i)).norm(), below.dot(edge(i)));
-    if (turn > widest_turn)
-      text << "turns back onto the edge below by " << turn / degree << " degrees; must be at most 160";
+    if (i > 0 && edge(i).norm() == 0) text << "position is that of its parent; must be different";
     if (!text.str().empty()) return SkeletonFault{i, text.str()};
   }
   return std::nullopt;
+}
+
+Skeleton with_base_radii(Skeleton skeleton) {
+  std::vector<int> branches(skeleton.size());
+  for (const SkeletonNode& node : skeleton)
+    if (node.parent >= 0) ++branches[static_cast<std::size_t>(node.parent)];
+  for (SkeletonNode& node : skeleton) {
+    if (node.parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(node.parent);
+    node.base_radius_m = branches[parent] == 1 ? skeleton[parent].radius_m : node.radius_m;
+  }
+  return skeleton;
 }
 
 Skeleton placed(const Skeleton& skeleton, double unit_m, Up up) {
@@ -98,7 +105,6 @@ void validate(const TreeShape& p) {
   require(p.length_m > 0, "length_m", p.length_m, "positive");
   require(p.length_ratio > 0, "length_ratio", p.length_ratio, "positive");
   require(p.taper > 0 && p.taper <= 1, "taper", p.taper, "above 0 and at most 1");
-  require(p.taper == 1 || p.segments > 1, "taper", p.taper, "1 if a branch has one segment");
   require(p.pipe_exponent > 0, "pipe_exponent", p.pipe_exponent, "positive");
   const double widest = std::abs(p.branching_angle_deg) + std::abs(p.angle_spread_deg);
   require(widest <= 150, "branching_angle_deg with angle_spread_deg", widest, "at most 150");
@@ -111,7 +117,7 @@ Skeleton grow(const TreeShape& shape, double radius_m) {
   validate(shape);
   Skeleton out;
   out.reserve(static_cast<std::size_t>(edge_count(shape)) + 1);
-  out.push_back({-1, Vector3::Zero(), radius_m});
+  out.push_back({-1, Vector3::Zero(), radius_m, radius_m});
   const Quaternion up = turn_between(Vector3::UnitZ(), Vector3::UnitY());
   Growth(shape, out).branch(0, up, shape.length_m, radius_m, 0);
   return out;

@@ -1,14 +1,14 @@
 // The skeleton of a tree: nodes with parents, and how one is grown from a few numbers.
 //
-// Every node except the root has an edge from its parent, a cylinder of the node's radius (as in SWC files: Cannon et
-// al. 1998). Growth: a trunk along +y; every branch of `segments` edges ends in `branches` new ones, `length_ratio` as
+// Every node has a radius, and except for the root an edge from its parent, a cone (SWC files: Cannon et al. 1998).
+// Growth: a trunk along +y; every branch of `segments` edges ends in `branches` new ones, `length_ratio` as
 // long, repeated `depth` times:
 //   edges = segments (1 + b + ... + b^depth)
 // A child leaves at branching_angle_deg, plus or minus up to angle_spread_deg. Its direction around the parent advances
 // by the golden angle from child to child (phyllotaxis), or is random. Radii follow the pipe model (Shinozaki et al.
 // 1964; Leonardo's rule at exponent 2): for the edge below a branching and those above it,
 //   r^e = sum of r_i^e,   so r_i = r b^(-1/e);
-// within a branch they fall linearly from its first edge to `taper` times that at its last. Lengths in m.
+// within a branch they fall linearly to `taper` times that at its end. Lengths in m.
 // Throws SceneError with the value that is out of bounds.
 #pragma once
 
@@ -24,7 +24,8 @@ namespace rodsweep {
 struct SkeletonNode {
   int parent = -1;  ///< an earlier node; -1 only for the root, which is the first
   Vector3 position_m{0, 0, 0};
-  double radius_m = 0;  ///< of the edge from the parent
+  double radius_m = 0;       ///< here, at the upper end of the edge from the parent
+  double base_radius_m = 0;  ///< at its lower end
 };
 
 using Skeleton = std::vector<SkeletonNode>;
@@ -35,9 +36,12 @@ struct SkeletonFault {
   std::string text;
 };
 
-/// Finds radii that are not positive, edges without length, and edges that turn back by more than 160 degrees onto the
-/// one below (edges from the root: onto its first): the constraint of a joint is singular at 180.
+/// Finds radii that are not positive and edges without length.
 std::optional<SkeletonFault> fault(const Skeleton& skeleton);
+
+/// An edge begins with the radius of its lower node, or at a fork with that of its upper one: a thin twig on a thick
+/// trunk is not a cone. On a branch that tapers, that is an error of second order in edge lengths.
+Skeleton with_base_radii(Skeleton skeleton);
 
 enum class Up { y, z };
 

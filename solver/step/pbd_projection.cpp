@@ -30,11 +30,10 @@ double correct_stretch_shear(Rod& rod, const Joint& joint, double stiffness) {
 /// Returns C_b before the correction.
 Vector3 correct_bend_twist(Rod& rod, const Joint& joint, double stiffness) {
   const std::size_t a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
-  const Quaternion d = relative_turn(rod, joint);
-  const Vector3 bend = 2 * (d.vec() - joint.rest.vec());
+  const auto [e, frame] = turn_from_rest(rod, joint);
+  const Vector3 bend = 2 * e.vec();
   const double turn_a = rod.segments[a].inverse_inertia_transverse, turn_b = rod.segments[b].inverse_inertia_transverse;
-  const Vector3 torque =
-      stiffness / (turn_a + turn_b) * (rod.orientation[a] * Vector3(d.w() * bend + d.vec().cross(bend)));
+  const Vector3 torque = stiffness / (turn_a + turn_b) * (frame * Vector3(e.w() * bend));
   turn(rod, a, turn_a * torque);
   turn(rod, b, -turn_b * torque);
   return bend;

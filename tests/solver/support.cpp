@@ -121,6 +121,7 @@ Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsi
     const Quaternion d = segments[a].orientation.conjugate() * segments[b].orientation;
     do j.rest = random.quaternion();
     while (std::abs(d.dot(*j.rest)) < 0.1);
+    if (joints.size() % 2 == 0) j.frame = random.quaternion();
     joints.push_back(j);
   }
   Rod rod(segments, joints);
@@ -186,12 +187,18 @@ Scene moving_scene(int segments, int steps) {
 
 namespace {
 
-/// Half the rotation from segment a to segment b, on the side nearer to the rest rotation.
+/// From the frame of segment a, turned into the joint's, to that of segment b.
+Quaternion rotation_from_rest(const Rod& rod, const Joint& joint) {
+  const Quaternion a = rod.orientation[joint.a] * joint.frame_a, b = rod.orientation[joint.b] * joint.frame_b;
+  const Quaternion e = a.conjugate() * b;
+  return e.w() < 0 ? Quaternion(-e.w(), -e.x(), -e.y(), -e.z()) : e;
+}
+
 Matrix3 half_way(const Rod& rod, const Joint& joint) {
-  Quaternion d = rod.orientation[joint.a].conjugate() * rod.orientation[joint.b];
-  if (d.dot(joint.rest) < 0) d.coeffs() *= -1;
-  const double half_turn = std::atan2(d.vec().norm(), d.w());
-  return rod.orientation[joint.a] * Eigen::AngleAxisd(half_turn, d.vec().normalized()).toRotationMatrix();
+  const Quaternion e = rotation_from_rest(rod, joint);
+  const double half_turn = std::atan2(e.vec().norm(), e.w());
+  return rod.orientation[joint.a] * joint.frame_a *
+         Eigen::AngleAxisd(half_turn, e.vec().normalized()).toRotationMatrix();
 }
 
 std::vector<Matrix3> joint_frames(const Rod& rod) {
@@ -212,9 +219,7 @@ VectorX constraint(const Rod& rod, const std::vector<Matrix3>& frames) {
     const Matrix3 ra = rod.orientation[j.a].toRotationMatrix(), rb = rod.orientation[j.b].toRotationMatrix();
     out.segment<3>(6 * k) =
         frames[k].transpose() * (rod.position[j.a] + ra * j.arm_a - rod.position[j.b] - rb * j.arm_b) / length;
-    Quaternion d = rod.orientation[j.a].conjugate() * rod.orientation[j.b];
-    if (d.dot(j.rest) < 0) d = Quaternion(-d.w(), -d.x(), -d.y(), -d.z());
-    out.segment<3>(6 * k + 3) = 2 * d.vec() - 2 * j.rest.vec();
+    out.segment<3>(6 * k + 3) = 2 * rotation_from_rest(rod, j).vec();
   }
   return out;
 }

@@ -59,7 +59,8 @@ inline Scene mirrored(Scene scene) {
     for (Joint& joint : rod.joints) {
       joint.arm_a = mirrored(joint.arm_a);
       joint.arm_b = mirrored(joint.arm_b);
-      joint.rest = mirrored(joint.rest);
+      joint.frame_a = mirrored(joint.frame_a);
+      joint.frame_b = mirrored(joint.frame_b);
     }
   }
   scene.gravity_m_s2 = mirrored(scene.gravity_m_s2);
@@ -84,7 +85,8 @@ inline Rod rolled(Rod rod, double angle) {
   for (Joint& joint : rod.joints) {
     joint.arm_a = roll.conjugate() * joint.arm_a;
     joint.arm_b = roll.conjugate() * joint.arm_b;
-    joint.rest = roll.conjugate() * joint.rest * roll;
+    joint.frame_a = roll.conjugate() * joint.frame_a * roll;
+    joint.frame_b = roll.conjugate() * joint.frame_b * roll;
   }
   return rod;
 }

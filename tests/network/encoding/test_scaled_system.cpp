@@ -105,7 +105,8 @@ TEST_CASE("features do not change with the units of length, mass and time") {
                         s.density_kg_m3 * kilogram / std::pow(metre, 3), s.is_static});
   }
   for (const Joint& j : rod.joints)
-    joints.push_back({j.a, j.b, j.arm_a * metre, j.arm_b * metre, j.compliance / (kilogram * metre * metre), j.rest});
+    joints.push_back(
+        {j.a, j.b, j.arm_a * metre, j.arm_b * metre, j.compliance / (kilogram * metre * metre), j.rest(), j.frame_a});
   Rod other(segments, joints);
   other.lambda = rod.lambda * kilogram * metre * metre;
 

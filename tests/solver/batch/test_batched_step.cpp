@@ -270,7 +270,7 @@ TEST_CASE("a step in parts shows every rod's system as the linear system of it a
         VectorX& expected = exact[rod];
         if (!batch.iterates(rod) || expected.size() == 0) continue;
         VectorX solution(expected.size());
-        batch.system().write_solution(rod, solution.data());
+        batch.write_solution(rod, solution.data());
         CHECK((solution - expected).norm() < 1e-9 * expected.norm() + 1e-14);
       }
     }

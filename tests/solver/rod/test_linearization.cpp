@@ -100,7 +100,7 @@ TEST_CASE("a joint whose segments change places has the same frame: its constrai
     Joint& joint = exchanged.joints[0];
     std::swap(joint.a, joint.b);
     std::swap(joint.arm_a, joint.arm_b);
-    joint.rest = joint.rest.conjugate();
+    std::swap(joint.frame_a, joint.frame_b);
     const Linearization one = linearized(rod), other = linearized(exchanged);
     CHECK((one.constraint + other.constraint).lpNorm<Eigen::Infinity>() < 1e-13);
     MatrixX expected(6, 12);

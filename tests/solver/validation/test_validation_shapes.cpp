@@ -23,7 +23,8 @@ Rod rod_with(int n, double length, const Section& section, const Vector3& rest_c
   for (Joint& joint : rod.joints) {
     joint.compliance = joint_compliance(joint.length, section, inextensible_compliance(joint.length, 1000));
     const double turn = rest_curvature.norm() * joint.length;
-    joint.rest = turn > 0 ? Quaternion(Eigen::AngleAxisd(turn, rest_curvature.normalized())) : Quaternion::Identity();
+    set_rest(joint,
+             turn > 0 ? Quaternion(Eigen::AngleAxisd(turn, rest_curvature.normalized())) : Quaternion::Identity());
   }
   return rod;
 }
