@@ -79,9 +79,6 @@ void put(BatchedJoint& out, int lane, const Rod& rod, std::size_t k) {
   put(out.shape.arm_a, lane, joint.arm_a / joint.length);
   put(out.shape.arm_b, lane, joint.arm_b / joint.length);
   out.shape.inverse_length[lane] = 1 / joint.length;
-  out.shape.kinked |= joint.is_kinked();
-  put(out.shape.frame_a, lane, joint.frame_a);
-  put(out.shape.frame_b, lane, joint.frame_b);
   for (int row = 0; row < 6; ++row) {
     out.alpha[row][lane] = joint.compliance[row];
     out.lambda[row][lane] = rod.lambda[static_cast<Eigen::Index>(6 * k) + row];
@@ -109,9 +106,20 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double h) : rods(stat
     put(gravity, lane, scene.gravity_m_s2);
     damping_per_s[lane] = scene.damping_per_s;
   }
-  for (BatchedJoint& joint : joints) {
-    joint.shape.axes_a = rotation_matrix(joint.shape.frame_a);
-    joint.shape.axes_b = rotation_matrix(joint.shape.frame_b);
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const auto joint_of = [&](int lane) -> const Joint& {
+      return scenes[static_cast<std::size_t>(std::min(lane, rods - 1))].rods.front().joints[k];
+    };
+    auto kink = std::make_shared<JointKink<Lane>>();
+    bool kinked = false;
+    for (int lane = 0; lane < lanes; ++lane) {
+      kinked |= joint_of(lane).is_kinked();
+      put(kink->frame_a, lane, joint_of(lane).frame_a);
+      put(kink->frame_b, lane, joint_of(lane).frame_b);
+    }
+    kink->set_axes();
+    joints[k].shape.kink = kinked ? kink.get() : nullptr;
+    if (kinked) kinks.push_back(std::move(kink));
   }
   set_step(h);
   for (std::size_t s = 0; s < segments.size(); ++s) free[s] = {segments[s].position, segments[s].orientation};

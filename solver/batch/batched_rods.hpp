@@ -5,6 +5,7 @@
 // it, so that they hold valid numbers.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "solver/numbers/lane_blocks.hpp"
@@ -47,7 +48,8 @@ struct BatchedRods {
   int rods;
   std::vector<BatchedSegment> segments;
   std::vector<BatchedJoint> joints;
-  std::vector<SegmentPose<Lane>> free;  ///< p* of the segments
+  std::vector<std::shared_ptr<const JointKink<Lane>>> kinks;  ///< of the joints that are not straight
+  std::vector<SegmentPose<Lane>> free;                        ///< p* of the segments
   LaneVector gravity;
   Lane damping_per_s;     ///< c
   Lane damping;           ///< 1 / (1 + c h)

@@ -22,9 +22,10 @@ inline void put(const LaneVector& v, Lane* to) {
 }
 
 /// The last three rows, ([v]x + w I) P^T; t and a are D^1/2 across the segment and along it.
-inline void put_bend(const LaneQuaternion& e, const Lane& w, const LaneMatrix& p, bool kinked, const Lane& t,
-                     const Lane& a, Side& out) {
-  if (kinked) {
+inline void put_bend(const LaneQuaternion& e, const Lane& w, const LaneMatrix* axes, const Lane& t, const Lane& a,
+                     Side& out) {
+  if (axes) {
+    const LaneMatrix& p = *axes;
     const LaneVector v = {e.x, e.y, e.z};
     const auto column = [&](const Lane& x, const Lane& y, const Lane& z) {
       const LaneVector row = {x, y, z};
@@ -50,7 +51,7 @@ inline void put_side_a(const JointTurn<Lane>& turn, const BatchedJoint& joint, c
   put(arm.y * s.z - arm.z * s.y, out.a.column[0].row);
   put(arm.z * s.x - arm.x * s.z, out.a.column[1].row);
   put((a * joint.shape.arm_a.x) * s.y - (a * joint.shape.arm_a.y) * s.x, out.a.column[2].row);
-  put_bend(turn.e, -turn.e.w, joint.shape.axes_a, joint.shape.kinked, t, a, out.a);
+  put_bend(turn.e, -turn.e.w, joint.shape.kink ? &joint.shape.kink->axes_a : nullptr, t, a, out.a);
   const Lane scale = -segment.inverse_mass * joint.shape.inverse_length;
   put(scale * s.x, out.shift[0].row);
   put(scale * s.y, out.shift[1].row);
@@ -65,15 +66,15 @@ inline void put_side_b(const JointTurn<Lane>& turn, const BatchedJoint& joint, c
   put({zero, arm.z, -arm.y}, out.b.column[0].row);
   put({-arm.z, zero, arm.x}, out.b.column[1].row);
   put({a * joint.shape.arm_b.y, -a * joint.shape.arm_b.x, zero}, out.b.column[2].row);
-  put_bend(turn.e, turn.e.w, joint.shape.axes_b, joint.shape.kinked, t, a, out.b);
+  put_bend(turn.e, turn.e.w, joint.shape.kink ? &joint.shape.kink->axes_b : nullptr, t, a, out.b);
 }
 
 /// Writes P_b H^T diag(c) H P_b^T to the lower triangle's stretch-shear rows.
 inline void put_turned_compliance(const JointTurn<Lane>& turn, const JointShape<Lane>& shape, const LaneVector6& c,
                                   LaneBlock& out) {
   LaneMatrix h = half_turn(turn);
-  if (shape.kinked) {
-    const LaneMatrix& p = shape.axes_b;
+  if (shape.kink) {
+    const LaneMatrix& p = shape.kink->axes_b;
     h = {h * LaneVector{p.x.x, p.y.x, p.z.x}, h * LaneVector{p.x.y, p.y.y, p.z.y}, h * LaneVector{p.x.z, p.y.z, p.z.z}};
   }
   const LaneVector across = {c[0] * h.x.x, c[1] * h.x.y, c[2] * h.x.z}, up = {c[0] * h.y.x, c[1] * h.y.y, c[2] * h.y.z},

@@ -82,6 +82,7 @@ ConstraintProduct::ConstraintProduct(const Rod& rod)
     : mobility_(rod.segments.size()), softness_(6 * rod.joint_count()), at_(rod.segments.size()) {
   const Linearization shaped(rod);
   for (const JointShape<Lane>& shape : shaped.shapes) groups_.push_back({JointTurn<Lane>(), shape});
+  kinks_ = shaped.kinks;
   for (const Joint& joint : rod.joints) ends_.push_back({joint.a, joint.b});
 }
 

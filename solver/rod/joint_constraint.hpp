@@ -6,14 +6,24 @@
 
 namespace rodsweep {
 
+/// The joint's frame at rest, seen from its segments.
+template <class T>
+struct JointKink {
+  Quad<T> frame_a, frame_b;   ///< p_a, p_b
+  Triples<T> axes_a, axes_b;  ///< P_a, P_b
+
+  void set_axes() {
+    axes_a = rotation_matrix(frame_a);
+    axes_b = rotation_matrix(frame_b);
+  }
+};
+
 /// The constants of a joint.
 template <class T>
 struct JointShape {
-  Triple<T> arm_a, arm_b;     ///< over l
-  T inverse_length;           ///< 1/l [1/m]
-  bool kinked;                ///< false: p_a = p_b = 1
-  Quad<T> frame_a, frame_b;   ///< p_a, p_b: the joint's frame at rest, seen from the segments
-  Triples<T> axes_a, axes_b;  ///< R(p_a), R(p_b)
+  Triple<T> arm_a, arm_b;    ///< over l
+  T inverse_length;          ///< 1/l [1/m]
+  const JointKink<T>* kink;  ///< null: p_a = p_b = 1
 };
 
 /// e, taken with w >= 0, and another term of H.
@@ -26,7 +36,7 @@ struct JointTurn {
 template <class T>
 inline JointTurn<T> joint_turn(const Quad<T>& a, const Quad<T>& b, const JointShape<T>& shape) {
   Quad<T> e = relative(a, b);
-  if (shape.kinked) e = relative(shape.frame_a, product(e, shape.frame_b));
+  if (shape.kink) e = relative(shape.kink->frame_a, product(e, shape.kink->frame_b));
   e = in_hemisphere_of({T{} + 1, T{}, T{}, T{}}, e);
   return {e, 1 / (1 + e.w)};
 }
@@ -34,7 +44,7 @@ inline JointTurn<T> joint_turn(const Quad<T>& a, const Quad<T>& b, const JointSh
 /// d = conj(q_a) q_b.
 template <class T>
 inline Quad<T> relative_turn(const JointTurn<T>& turn, const JointShape<T>& shape) {
-  return shape.kinked ? product(product(shape.frame_a, turn.e), conjugate(shape.frame_b)) : turn.e;
+  return shape.kink ? product(product(shape.kink->frame_a, turn.e), conjugate(shape.kink->frame_b)) : turn.e;
 }
 
 /// H = R(e^(1/2)) = w I + [v]x + v v^T / (1 + w).
@@ -51,19 +61,19 @@ inline Triples<T> half_turn(const JointTurn<T>& turn) {
 /// From the joint's frame at rest to a segment's, R(p) v, and back, R(p)^T v.
 template <class T>
 inline Triple<T> to_a(const JointShape<T>& shape, const Triple<T>& v) {
-  return shape.kinked ? shape.axes_a * v : v;
+  return shape.kink ? shape.kink->axes_a * v : v;
 }
 template <class T>
 inline Triple<T> to_b(const JointShape<T>& shape, const Triple<T>& v) {
-  return shape.kinked ? shape.axes_b * v : v;
+  return shape.kink ? shape.kink->axes_b * v : v;
 }
 template <class T>
 inline Triple<T> from_a(const JointShape<T>& shape, const Triple<T>& v) {
-  return shape.kinked ? transposed_product(shape.axes_a, v) : v;
+  return shape.kink ? transposed_product(shape.kink->axes_a, v) : v;
 }
 template <class T>
 inline Triple<T> from_b(const JointShape<T>& shape, const Triple<T>& v) {
-  return shape.kinked ? transposed_product(shape.axes_b, v) : v;
+  return shape.kink ? transposed_product(shape.kink->axes_b, v) : v;
 }
 
 /// C_s = H^T R(p_a)^T (R_a^T (x_a - x_b) + arm_a) - H R(p_b)^T arm_b, all over l; `apart` is x_a - x_b over l, in the

@@ -48,11 +48,11 @@ inline JacobianParts<T> parts_of(const JointTurn<T>& turn, const Triples<T>& hal
   Triple<T> of_a[3] = {{half.x.x, half.y.x, half.z.x}, {half.x.y, half.y.y, half.z.y}, {half.x.z, half.y.z, half.z.z}};
   put_bend(turn.e, -turn.e.w, out.bend_a);
   put_bend(turn.e, turn.e.w, out.bend_b);
-  if (shape.kinked) {
-    turn_columns(shape.axes_a, of_a);
-    turn_columns(shape.axes_a, out.bend_a);
-    turn_columns(shape.axes_b, of_b);
-    turn_columns(shape.axes_b, out.bend_b);
+  if (shape.kink) {
+    turn_columns(shape.kink->axes_a, of_a);
+    turn_columns(shape.kink->axes_a, out.bend_a);
+    turn_columns(shape.kink->axes_b, of_b);
+    turn_columns(shape.kink->axes_b, out.bend_b);
   }
   const T minus = -shape.inverse_length;
   for (int c = 0; c < 3; ++c) {
@@ -108,18 +108,20 @@ inline Vector3 apart(const Rod& rod, const Joint& joint) {
   return rod.position[static_cast<std::size_t>(joint.a)] - rod.position[static_cast<std::size_t>(joint.b)];
 }
 
-JointShape<double> shape_of(const Joint& joint) {
-  const double scale = 1 / joint.length;
-  const Quad<double> a = numbers(joint.frame_a), b = numbers(joint.frame_b);
-  return {numbers(scale * joint.arm_a),
-          numbers(scale * joint.arm_b),
-          scale,
-          joint.is_kinked(),
-          a,
-          b,
-          rotation_matrix(a),
-          rotation_matrix(b)};
-}
+struct SingleShape : JointShape<double> {
+  explicit SingleShape(const Joint& joint)
+      : JointShape<double>{numbers(joint.arm_a / joint.length), numbers(joint.arm_b / joint.length), 1 / joint.length,
+                           nullptr} {
+    if (!joint.is_kinked()) return;
+    own = {numbers(joint.frame_a), numbers(joint.frame_b), {}, {}};
+    own.set_axes();
+    kink = &own;
+  }
+  SingleShape(const SingleShape&) = delete;
+  SingleShape& operator=(const SingleShape&) = delete;
+
+  JointKink<double> own;
+};
 
 JointTurn<double> turn_of(const Rod& rod, const Joint& joint, const JointShape<double>& shape) {
   return joint_turn(numbers(orientation_of_a(rod, joint)), numbers(orientation_of_b(rod, joint)), shape);
@@ -134,12 +136,12 @@ Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.
   joints.reserve(groups * lane_width);
   for (std::size_t first = 0; first < count; first += lane_width) {
     JointShape<Lane> shape;
-    shape.kinked = false;
+    bool kinked = false;
     Quaternion frame_a[lane_width], frame_b[lane_width];
     Vector3 arm_a[lane_width], arm_b[lane_width];
     for (std::size_t lane = 0; lane < lane_width; ++lane) {
       const Joint& joint = rod.joints[std::min(first + lane, count - 1)];
-      shape.kinked |= joint.is_kinked();
+      kinked |= joint.is_kinked();
       frame_a[lane] = joint.frame_a;
       frame_b[lane] = joint.frame_b;
       arm_a[lane] = joint.arm_a / joint.length;
@@ -147,10 +149,15 @@ Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.
       shape.inverse_length[lane] = 1 / joint.length;
       joints.emplace_back().inverse_length = 1 / joint.length;
     }
-    shape.frame_a = load(frame_a, lane_width);
-    shape.frame_b = load(frame_b, lane_width);
-    shape.axes_a = rotation_matrix(shape.frame_a);
-    shape.axes_b = rotation_matrix(shape.frame_b);
+    shape.kink = nullptr;
+    if (kinked) {
+      auto kink = std::make_shared<JointKink<Lane>>();
+      kink->frame_a = load(frame_a, lane_width);
+      kink->frame_b = load(frame_b, lane_width);
+      kink->set_axes();
+      shape.kink = kink.get();
+      kinks.push_back(std::move(kink));
+    }
     shape.arm_a = load(arm_a, lane_width);
     shape.arm_b = load(arm_b, lane_width);
     shapes.push_back(shape);
@@ -159,25 +166,25 @@ Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.
 }
 
 TurnFromRest turn_from_rest(const Rod& rod, const Joint& joint) {
-  const Quad<double> e = turn_of(rod, joint, shape_of(joint)).e;
+  const Quad<double> e = turn_of(rod, joint, SingleShape(joint)).e;
   return {Quaternion(e.w, e.x, e.y, e.z), orientation_of_a(rod, joint) * joint.frame_a};
 }
 
 Vector3 to_world(const Rod& rod, const Joint& joint, const Vector3& in_joint_frame) {
-  const JointShape<double> shape = shape_of(joint);
+  const SingleShape shape(joint);
   const Triple<double> own = to_a(shape, half_turn(turn_of(rod, joint, shape)) * numbers(in_joint_frame));
   return orientation_of_a(rod, joint) * Vector3(own.x, own.y, own.z);
 }
 
 Vector3 from_world(const Rod& rod, const Joint& joint, const Vector3& in_world) {
-  const JointShape<double> shape = shape_of(joint);
+  const SingleShape shape(joint);
   const Vector3 own = orientation_of_a(rod, joint).conjugate() * in_world;
   const Triple<double> out = transposed_product(half_turn(turn_of(rod, joint, shape)), from_a(shape, numbers(own)));
   return {out.x, out.y, out.z};
 }
 
 void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, double* constraint) {
-  const JointShape<double> shape = shape_of(joint);
+  const SingleShape shape(joint);
   const JointTurn<double> turn = turn_of(rod, joint, shape);
   const Triples<double> half = half_turn(turn);
   const Triple<double> gap =

@@ -15,6 +15,7 @@
 // the segments: that term is proportional to the gap, and without it Newton's iterates are those of C_s in the world.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "solver/numbers/lanes.hpp"
@@ -32,10 +33,11 @@ struct JointJacobian {
 };
 
 struct Linearization {
-  std::vector<JointJacobian> joints;     ///< padded to whole registers with copies of the last
-  VectorX constraint;                    ///< C, six per joint
-  std::vector<JointShape<Lane>> shapes;  ///< each of as many joints as a register has lanes
-  std::vector<JointTurn<Lane>> turns;    ///< of the same joints
+  std::vector<JointJacobian> joints;                          ///< padded to whole registers with copies of the last
+  VectorX constraint;                                         ///< C, six per joint
+  std::vector<JointShape<Lane>> shapes;                       ///< each of as many joints as a register has lanes
+  std::vector<std::shared_ptr<const JointKink<Lane>>> kinks;  ///< of those that are not straight
+  std::vector<JointTurn<Lane>> turns;                         ///< of the same joints
 
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };
