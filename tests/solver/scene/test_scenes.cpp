@@ -114,6 +114,7 @@ TEST_CASE("impossible joints are refused with quantity, value and bound") {
       {[](J& j) { j.compliance_per_j[0] = infinity; }, "compliance of row 0 is inf; must be finite and at least 0"},
       {[](J& j) { j.arm_b_m.z() = nan; }, "an arm is not finite"},
       {[](J& j) { j.rest = Quaternion(0, 0, 0, 0); }, "norm of the rest rotation is 0; must be 1"},
+      {[](J& j) { j.frame = Quaternion(2, 0, 0, 0); }, "norm of the frame's rotation is 2; must be 1"},
   };
   for (const auto& [change, what] : refused) {
     std::vector<J> joints(2, good_joint());
