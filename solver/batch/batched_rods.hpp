@@ -36,8 +36,9 @@ struct BatchedJoint {
 struct BatchedRods {
   static constexpr int lanes = lane_width;
 
-  /// From the states of scenes of one rod each, for steps with h (time_step.hpp). Throws SceneError for no scene or more than `lanes`,
-  /// rods that are not equal chains, a joint between static segments, moving clamps, point loads, contact or wind.
+  /// From the states of scenes of one rod each, for steps with h (time_step.hpp). Throws SceneError for no scene or more
+  /// than `lanes`, rods that are not equal chains, a joint between static segments, moving clamps, point loads, contact
+  /// or wind.
   BatchedRods(const std::vector<Scene>& scenes, double h);
 
   void set_step(double h);  ///< of the next steps

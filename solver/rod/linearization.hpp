@@ -4,9 +4,9 @@
 //   stretch-shear  C_s = R_m^T (x_a + R_a arm_a - x_b - R_b arm_b) / l,   R_m = R_a P_a H = R_b P_b H^T
 // P = R(p): the frames q_a p_a and q_b p_b coincide at rest (rod.hpp), so e is the joint's rotation from rest. The
 // joint's frame R_m is half-way between them, H = R(e^(1/2)) = w I + [v]x + v v^T / (1 + w). Exchanging the segments
-// gives the same frame. On a straight rod p_a = p_b = 1, and C_b is l times the Darboux vector (2/l) Im(d), d = conj(q_a)
-// q_b  (Kugelstadt & Schoemer 2016; Deul et al. 2018, who measure the gap in the world). With a rest angle theta they
-// measure 2 Im(d) - 2 Im(d0), which a rotation across d0's axis changes by cos(theta / 2) only.
+// gives the same frame. On a straight rod p_a = p_b = 1, and C_b is l times the Darboux vector (2/l) Im(d) with d =
+// conj(q_a) q_b (Kugelstadt & Schoemer 2016; Deul et al. 2018, who measure the gap in the world). Their measure
+// 2 Im(d) - 2 Im(d0) of a joint with rest angle theta changes by only cos(theta / 2) of a rotation about d0's axis.
 //
 // Segments move by u and turn by phi, both in their own frame: dx = R u, q <- normalise(q (1 + [0, phi] / 2)). Then
 //   dC_s/du_a =  H^T P_a^T / l,   dC_s/dphi_a = -H^T P_a^T [arm_a]x / l,   dC_b/dphi_a = -(w I - [v]x) P_a^T

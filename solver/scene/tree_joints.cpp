@@ -25,14 +25,14 @@ class Wood {
   double exponent_, trunk_radius_m_ = 0;
 };
 
-/// Halves of one edge: of a symmetric tensor, its value across the edge's axis and along it.
+/// Compliance of a part of an edge, about and along axes across it (bend, shear) and its own axis (twist, axial).
 struct Softness {
   double length_m = 0;
   double bend = 0, twist = 0;   ///< [1/Nm]
   double shear = 0, axial = 0;  ///< [m/N]
 };
 
-/// A cone of the radii at its ends.
+/// Of a cone, from the radii at its ends.
 Softness cone(double radius_m, double end_radius_m, double length_m, const Wood& wood) {
   const auto integral = [&](double Section::*stiffness) {
     if (radius_m == end_radius_m) return length_m / wood.section(radius_m).*stiffness;

@@ -1,6 +1,6 @@
 // Joints of a tree: where the stiffness of its edges is.
 //
-// An edge is a cone of two halves, from its lower node to its middle and on to its upper node. A half has the compliance
+// An edge is a cone of two halves, from its lower node to its middle and on to its upper node. The compliance of one is
 //   integral of (t t^T / GJ + (I - t t^T) / EI) ds,   t the edge's axis,
 // and likewise against stretch and shear. Each joint has the halves that meet at it, in series:
 //   a node with one edge above   the upper half of the edge below, the lower half of the edge above
