@@ -98,10 +98,12 @@ void GraphEncoding::encode(const Rod& rod, const LinearSystem& system, int newto
     const auto column = static_cast<Eigen::Index>(k);
     auto out = edges.col(column);
     const Joint& joint = rod.joints[k];
-    const Quaternion d = rod.orientation[static_cast<std::size_t>(joint.a)].conjugate() *
-                         rod.orientation[static_cast<std::size_t>(joint.b)];
-    const double towards_rest = d.dot(joint.rest()) < 0 ? -1 : 1;
-    out.segment<3>(0) = (towards_rest * 2 / joint.length * d.vec()).cast<float>();
+    const Vector3 turned = system.linearization().constraint.segment<3>(6 * column + 3) / 2;  // Im(e)
+    Quaternion e;
+    e.vec() = turned;
+    e.w() = std::sqrt(std::max(0.0, 1 - turned.squaredNorm()));
+    const Quaternion d = joint.frame_a * e * joint.frame_b.conjugate();
+    out.segment<3>(0) = (2 / joint.length * d.vec()).cast<float>();
     out.segment<2>(3) = moduli_.col(column);
     if (encoding_ == Encoding::paper) continue;
     const Vector6 residual = system.rhs().segment<6>(6 * column);
