@@ -29,6 +29,8 @@ class BlockFactor {
   /// `preferred`: block rows, eliminated from the last to the first; replaced by a better order if it has fill-in.
   /// Throws FactorTooLarge before it allocates more memory than allowed.
   BlockFactor(const BlockMatrix& pattern, const std::vector<int>& preferred);
+  /// `plan` is that of the pattern.
+  BlockFactor(const BlockMatrix& pattern, EliminationPlan plan);
 
   /// Factorises and solves. `a` has the pattern of construction. x is valid only if the outcome is `converged`.
   SolveOutcome solve(const BlockMatrix& a, const VectorX& b, VectorX& x);
@@ -44,8 +46,6 @@ class BlockFactor {
   bool has_fronts() const { return std::holds_alternative<MultifrontalFactor>(factor_); }
 
  private:
-  BlockFactor(const BlockMatrix& pattern, EliminationPlan plan);
-
   std::variant<BlockElimination, MultifrontalFactor> factor_;
   int fill_in_;
 };

@@ -100,6 +100,11 @@ void subtract_transposed(const LaneVector6 (&columns)[6], const LaneVector6& f, 
     for (int r = 0; r < 6; ++r) to[c] -= columns[c][r] * f[r];
 }
 
+bool has_positive_mass(const Segment& segment) {
+  return segment.is_static ||
+         (segment.inverse_mass > 0 && segment.turn_mobility > 0 && segment.inverse_inertia_axial > 0);
+}
+
 Lane8 mass_of(const Segment& segment) {
   const double m = 1 / segment.inverse_mass, transverse = 1 / segment.turn_mobility;
   return Lane8{m, m, m, transverse, transverse, 1 / segment.inverse_inertia_axial, 0, 0};
@@ -154,6 +159,8 @@ const Strut& Condensation::strut(const Batch& batch, int lane) const {
 }
 
 bool Condensation::assemble(const Rod& rod, const Linearization& linearization, double dt) {
+  for (const Segment& segment : rod.segments)
+    if (!has_positive_mass(segment)) return false;
   rod_ = &rod;
   linearization_ = &linearization;
   for (std::size_t k = 0; k < rod.joints.size(); ++k)

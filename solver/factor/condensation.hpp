@@ -28,7 +28,7 @@ class Condensation {
  public:
   explicit Condensation(const Rod& rod);
 
-  /// Assembles S of a rod's linearization. Returns false if K is not positive definite.
+  /// Assembles S of a rod's linearization. Returns false if M or K is not positive definite.
   bool assemble(const Rod& rod, const Linearization& linearization, double dt);
 
   const BlockMatrix& matrix() const { return matrix_; }  ///< S, a block row per crossing

@@ -48,6 +48,7 @@ EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<i
   plan.fill_in = tree.blocks() - lower_blocks(pattern);
   plan.bytes = plan.fronts ? plan.fronts->bytes() : sizeof(Block6) * static_cast<double>(tree.blocks());
   plan.flops = tree.flops();
+  plan.cost = plan.fronts ? cost_in_fronts(tree) : one_by_one;
   return plan;
 }
 

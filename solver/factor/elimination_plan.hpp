@@ -25,6 +25,7 @@ struct EliminationPlan {
   std::int64_t fill_in = 0;              ///< blocks of L that A does not have
   double bytes = 0;                      ///< of the factor
   double flops = 0;                      ///< of a factorisation; 0 without fill
+  double cost = 0;                       ///< of a factorisation, in flops of the fronts' kernels; 0 without fill
 };
 
 EliminationPlan plan_elimination(const BlockMatrix& pattern, const std::vector<int>& preferred);

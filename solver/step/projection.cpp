@@ -31,12 +31,13 @@ ProjectionReport LinearProjection::project(Rod& rod, const SolvePosition& at, do
   return report;
 }
 
-DirectSolve::DirectSolve(const Scene& scene) {
-  for (const Rod& rod : scene.rods) factors_.emplace_back(LinearSystem(rod).matrix(), root_to_leaf_order(rod));
+DirectSolve::DirectSolve(const Scene& scene) : scene_(scene) {
+  for (const Rod& rod : scene.rods) factors_.emplace_back(rod);
 }
 
 SolveOutcome DirectSolve::solve(const LinearSystem& system, const SolvePosition& at, double, VectorX& delta_lambda) {
-  return factors_[static_cast<std::size_t>(at.rod)].solve(system.matrix(), system.rhs(), delta_lambda);
+  const auto rod = static_cast<std::size_t>(at.rod);
+  return factors_[rod].solve(scene_.rods[rod], system, delta_lambda);
 }
 
 }  // namespace rodsweep

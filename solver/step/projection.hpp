@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "solver/factor/block_factor.hpp"
+#include "solver/factor/direct_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 #include "solver/linear/solve_outcome.hpp"
 #include "solver/scene/scene.hpp"
@@ -65,15 +65,17 @@ class LinearProjection : public Projection {
   bool keeps_balance_ = false;
 };
 
-/// Deul et al.: the exact solution by block elimination.
+/// Deul et al.: the exact solution by block elimination (direct_factor.hpp).
 class DirectSolve : public LinearSolve {
  public:
+  /// For systems assembled from the rods of `scene`, which must outlive this.
   explicit DirectSolve(const Scene& scene);
   SolveOutcome solve(const LinearSystem& system, const SolvePosition& at, double assemble_s,
                      VectorX& delta_lambda) override;
 
  private:
-  std::vector<BlockFactor> factors_;
+  const Scene& scene_;
+  std::vector<DirectFactor> factors_;
 };
 
 }  // namespace rodsweep

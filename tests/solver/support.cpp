@@ -170,6 +170,17 @@ BendingRod bending_rod(int segments, Clamp clamp) {
   return rod;
 }
 
+Rod shaken(Rod rod, unsigned seed, double shift) {
+  Random random(seed);
+  const auto angle = [&] { return random.uniform(-.1, .1); };
+  for (int s = 0; s < rod.segment_count(); ++s) {
+    if (rod.segments[s].is_static) continue;
+    rod.position[s] += random.vector(shift);
+    rod.orientation[s] = (rod.orientation[s] * Quaternion(1, angle(), angle(), angle())).normalized();
+  }
+  return rod;
+}
+
 Lattice lattice_of(Lattice::Cell cell, int nodes, int segments, Held held) {
   Lattice p;
   p.cell = cell;

@@ -49,6 +49,9 @@ Edges random_couplings(int rows, int count, unsigned seed);
 /// Random poses, arms, rest rotations, sizes, compliances and multipliers. Its constraints are far from zero.
 Rod random_rod(const Edges& edges, const std::vector<int>& static_segments, unsigned seed);
 
+/// Moves free segments at random by up to `shift` along every axis and turns them, so that all joints differ.
+Rod shaken(Rod rod, unsigned seed, double shift = 0.01);
+
 Scene scene_of(const Rod& rod);
 LinearSystem assembled(const Rod& rod, double dt = 0.02);
 /// C of all joints by linearize().

@@ -8,7 +8,7 @@
 
 namespace rodsweep::test_condensation {
 
-using test::random_rod;
+using test::random_rod, test::shaken;
 
 template <class Scene>
 Rod rod_of(Scene p) {
@@ -38,19 +38,6 @@ std::vector<Rod> rods() {
           lattice(Lattice::Cell::cubic, 3, 4, Held::corners),
           lattice(Lattice::Cell::body_centred, 2, 3, Held::free),
           lattice(Lattice::Cell::octet, 2, 2, Held::side)};
-}
-
-/// Moves segments at random, so that all joints differ.
-Rod shaken(Rod rod, unsigned seed) {
-  test::Random random(seed);
-  for (int s = 0; s < rod.segment_count(); ++s) {
-    if (rod.segments[s].is_static) continue;
-    rod.position[s] += random.vector(0.01);
-    rod.orientation[s] =
-        (rod.orientation[s] * Quaternion(1, random.uniform(-.1, .1), random.uniform(-.1, .1), random.uniform(-.1, .1)))
-            .normalized();
-  }
-  return rod;
 }
 
 TEST_CASE("a chain has no crossing, a ring one, a net as many as rods cross, by nodes") {

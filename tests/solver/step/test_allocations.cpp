@@ -123,11 +123,19 @@ TEST_CASE("a direct step allocates nothing, in the balance of momentum too, nor 
   CHECK(allocations_of(scene, pbd) == 0);
 }
 
-TEST_CASE("a step of a lattice, whose matrix is factorised in fronts, allocates nothing") {
-  Scene scene = build_scene(test::lattice_of(Lattice::Cell::cubic, 5));
-  DirectSolve direct(scene);
-  REQUIRE(BlockFactor(LinearSystem(scene.rods[0]).matrix(), root_to_leaf_order(scene.rods[0])).has_fronts());
-  CHECK(allocations_of(scene, direct) == 0);
+TEST_CASE("a step of a lattice, whose matrix is factorised in fronts or condensed, allocates nothing") {
+  for (const Stretch stretch : {Stretch::inextensible, Stretch::physical}) {
+    Lattice p = test::lattice_of(Lattice::Cell::cubic, 5);
+    p.stretch = stretch;
+    Scene scene = build_scene(p);
+    DirectSolve direct(scene);
+    const Rod& rod = scene.rods[0];
+    REQUIRE(DirectFactor(rod).condenses() == (stretch == Stretch::physical));
+    REQUIRE(BlockFactor(LinearSystem(rod).matrix(), root_to_leaf_order(rod)).has_fronts());
+    CHECK(allocations_of(scene, direct) == 0);
+    LinearProjection balanced(scene, direct, 1e-6);
+    CHECK(allocations_of(scene, balanced) == 0);
+  }
 }
 
 TEST_CASE("a batched step allocates nothing") {

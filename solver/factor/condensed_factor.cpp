@@ -1,0 +1,73 @@
+#include "solver/factor/condensed_factor.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace rodsweep {
+namespace {
+
+constexpr double most_contrast = 1e6;                 ///< of compliances
+constexpr double accurate = 1e-12, rounding = 1e-15;  ///< shares of |b| and of a |d|
+constexpr double cost_of_joint = 12000;  ///< measured on lattices and nets, in flops of the fronts' kernels
+
+double largest_diagonal_entry(const BlockMatrix& a) {
+  double largest = 0;
+  for (int block_row = 0; block_row < a.block_rows(); ++block_row)
+    for (int row = 0; row < 6; ++row) largest = std::max(largest, a.diagonal_entry(block_row, row));
+  return largest;
+}
+
+}  // namespace
+
+bool can_be_condensed(const Rod& rod) {
+  double smallest = std::numeric_limits<double>::infinity(), largest = 0;
+  for (const Joint& joint : rod.joints) {
+    smallest = std::min(smallest, joint.compliance.minCoeff());
+    largest = std::max(largest, joint.compliance.maxCoeff());
+  }
+  return smallest > 0 && largest <= most_contrast * smallest;
+}
+
+EliminationPlan plan_crossings(const Condensation& condensation) {
+  std::vector<int> in_order(at(condensation.matrix().block_rows()));
+  std::iota(in_order.begin(), in_order.end(), 0);
+  return plan_elimination(condensation.matrix(), in_order);
+}
+
+double cost_of_condensing(const Rod& rod) { return cost_of_joint * rod.joint_count(); }
+
+CondensedFactor::CondensedFactor(Condensation condensation, EliminationPlan plan)
+    : condensation_(std::move(condensation)), factor_(condensation_.matrix(), std::move(plan)) {}
+
+bool CondensedFactor::solve(const Rod& rod, const LinearSystem& system, VectorX& d) {
+  corrections_ = 0;
+  if (!condensation_.assemble(rod, system.linearization(), system.dt())) return false;
+  if (!factor_.factorise(condensation_.matrix())) return false;
+  const VectorX& b = system.rhs();
+  const double goal = accurate * b.norm();
+  residual_.resize(b.size());
+  correction_.resize(b.size());
+  solve(b, d);
+  while (true) {
+    system.multiply(d.data(), residual_.data());
+    residual_ = b - residual_;
+    const double left = residual_.norm();
+    if (left <= goal) return true;
+    if (corrections_ > 0 && left <= rounding * largest_diagonal_entry(system.matrix()) * d.norm()) return true;
+    if (corrections_ == most_corrections) return false;
+    solve(residual_, correction_);
+    d += correction_;
+    ++corrections_;
+  }
+}
+
+void CondensedFactor::solve(const VectorX& r, VectorX& d) {
+  condensation_.condense(r, crossings_);
+  factor_.substitute(crossings_);
+  condensation_.expand(r, crossings_.data(), d);
+}
+
+}  // namespace rodsweep
