@@ -40,7 +40,7 @@ void SystemStore::before(const Rod& rod, const SolvePosition& at, bool balanced)
   store(rod.free_position, record_.systems.free_position_m.row(place.segment));
   store(rod.free_orientation, record_.systems.free_orientation.row(place.segment));
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {
-    const Vector6 impulse = rod.contact_impulse.empty() ? Vector6::Zero() : rod.contact_impulse[s];
+    const Vector6 impulse = rod.outer_impulse(s);
     Vector3::Map(record_.systems.contact_force.row(place.segment + s)) = impulse.head<3>();
     Vector3::Map(record_.systems.contact_torque.row(place.segment + s)) = impulse.tail<3>();
   }

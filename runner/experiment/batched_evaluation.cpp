@@ -136,7 +136,7 @@ bool evaluate_at_once(const std::vector<TaskRun>& runs, const StopRequested& sto
 
 bool steps_in_batches(const TaskSpec& spec) {
   const OpenRod* rod = open_rod(spec.scene);
-  return rod && spec.output.systems != StoredSystems::none && rod->tip_force_n.isZero() && !rod->wind &&
+  return rod && spec.output.systems != StoredSystems::none && !rod->has_tip_load() && !rod->tip_motion && !rod->wind &&
          !rod->contact && (rod->stretch == Stretch::inextensible || rod->stretch_compliance_per_j);
 }
 

@@ -191,8 +191,9 @@ std::vector<Column> all_columns() {
       column<&R::systems, &Systems::contact_force>(
           "/systems/segments/contact_force", Rows::balanced_segment, xyz, "kg m",
           "force of contacts on the segment times the squared constraint time step, world frame"),
-      column<&R::systems, &Systems::contact_torque>("/systems/segments/contact_torque", Rows::balanced_segment, xyz,
-                                                    "kg m^2", "torque of contacts about its centre, times the same"),
+      column<&R::systems, &Systems::contact_torque>(
+          "/systems/segments/contact_torque", Rows::balanced_segment, xyz, "kg m^2",
+          "torque of contacts and of point loads about its centre, times the same"),
       column<&R::systems, &Systems::lambda>(
           "/systems/joints/lambda", Rows::system_joint, six, "kg m^2",
           "Lagrange multipliers before the solve: stretch-shear (3), bend-twist (3), in the joint's frame"),

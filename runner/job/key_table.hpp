@@ -6,7 +6,8 @@
 //
 // The job reader, the schema and help texts use keys(); fill() reads a parameter point. The default of an optional key
 // is its member's initial value, for each kind of Owner. The Words of an enumeration may be given between key and
-// member; so may the table of a std::optional part, which is an object or the word for none.
+// member; so may the table of a std::optional part, which is an object or the word for none. The first key of a part
+// is always present; if the part is a variant, it is the tag.
 // A member is anything that std::invoke() accepts with an Owner: a pointer to a member, or a function that returns a
 // reference. Bugs in a table throw std::logic_error.
 //
@@ -100,6 +101,16 @@ struct KindsOf<std::variant<Kind...>> {
   }
 };
 
+/// The alternative of a variant with this name, else the first.
+template <class Owner>
+Owner kind_named(const std::string& name) {
+  Owner owner;
+  KindsOf<Owner>::each([&](const auto& kind) {
+    if (name == kind.name) owner = kind;
+  });
+  return owner;
+}
+
 /// The first of several members that the struct has.
 template <class Kind, class First, class... More>
 auto& member_of(Kind& kind, const First& first, const More&... more) {
@@ -152,7 +163,11 @@ class KeyTable {
         std::move(key), [](const Key& of, const std::optional<Part>& value) { return written(of, value); },
         [part](const Place& at, std::optional<Part>& value) {
           value.reset();
-          if (at.point.has(at.of(part.keys().front().name).path)) part.fill(value.emplace(), at);
+          const Place first = at.of(part.keys().front().name);
+          if (!first.point.has(first.path)) return;
+          value.emplace();
+          if constexpr (KindsOf<Part>::tagged) *value = kind_named<Part>(first.point.text(first.path));
+          part.fill(*value, at);
         },
         member...);
   }

@@ -38,6 +38,10 @@ template <class Value>
 auto shape(Value TreeShape::*value) {
   return [value](Tree& tree) -> Value& { return tree.shape.*value; };
 }
+struct OwnSection {
+  std::optional<SectionShape>& operator()(OpenRod& scene) const { return scene.section; }
+  std::optional<SectionShape>& operator()(Ring& scene) const { return scene.section; }
+};
 struct OwnRadius {
   double& operator()(RodParameters& scene) const { return scene.radius_m; }
   void operator()(SkeletonTree&) const = delete;
@@ -57,8 +61,8 @@ void add_shapes(Table& table) {
   table.optional(
       choice_key(
           "held",
-          "what is held. Nets: the first segments of all rods along z (side), the end segments of the outermost two "
-          "(corners), or nothing; lattices: the nodes with the least x (side), the eight corners, or nothing")
+          "what is held. Nets: the crossings of the first rod along x (side), the four corners, or nothing; lattices: "
+          "the nodes with the least x (side), the eight corners, or nothing")
           .otherwise("use \"clamp\" for the end of a rod"),
       Words<Held>{{"side", Held::side}, {"corners", Held::corners}, {"free", Held::free}}, &Net::held, &Lattice::held);
   table.required(integer_key("segments",
@@ -113,6 +117,10 @@ void add_rods(Table& table) {
                      .plausibly(1e-6, 10)
                      .otherwise("a skeleton has its own radii"),
                  OwnRadius());
+  table.optional(
+      object_key("section", "cross-section other than a solid circle; contacts and drag use radius_m", {}, "type")
+          .or_word("circle"),
+      section_keys(), OwnSection());
   table.required(number_key("density_kg_m3", "density")
                      .in("kg/m^3")
                      .above(0)
@@ -151,9 +159,15 @@ void add_rods(Table& table) {
                      .in("N")
                      .from(-1e12, 1e12),
                  tip_force_n);
+  table.optional(
+      vector_key("tip_torque_nm", "constant torque on the free end, fixed in the world").in("N m").from(-1e12, 1e12),
+      &OpenRod::tip_torque_nm);
+  table.optional(object_key("tip_motion", "prescribed motion of the end, which is held as \"clamp\" says, or by a wall")
+                     .or_word("free"),
+                 tip_motion_keys(), &OpenRod::tip_motion);
   table.optional(choice_key("stretch",
                             "stiffness against stretch and shear: chosen from the expected forces, or EA and kappa G A "
-                            "(Timoshenko's coefficient of a circle)"),
+                            "(Timoshenko's coefficient)"),
                  Words<Stretch>{{"inextensible", Stretch::inextensible}, {"physical", Stretch::physical}},
                  &Rods::stretch);
   table.optional(number_key("stretch_compliance_per_j",
@@ -293,6 +307,26 @@ std::vector<std::string> thick_rods(const Json& scenes, const std::filesystem::p
                                         fmt::format("{:g} m makes a rod thicker than long: {} is {:g} m{}", thickest,
                                                     across, shortest, other_unit(radius, thickest, shortest / 2)))
                                   .what());
+    }
+  });
+  return warnings;
+}
+
+std::vector<std::string> unbalanced_loads(const Json& values, const std::filesystem::path& file) {
+  const Json method = values.value("solve", Json::object()).value("method", Json("direct"));  // data sets have none
+  if (values["time"]["balance"] != false || (method.is_string() && method != "cg" && method != "direct")) return {};
+  std::vector<std::string> warnings;
+  visit_scenes(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
+    for (const char* load : {"tip_force_n", "tip_torque_nm"}) {
+      bool is_loaded = false;
+      visit_numbers(scene.value(load, Json()), "",
+                    [&](double number, const std::string&) { is_loaded |= number != 0; });
+      if (is_loaded)
+        warnings.emplace_back(
+            job_error(file, member(path, load),
+                      "the rest shape under a point load depends on time.step_s, most of all near buckling; set "
+                      "\"balance\": true in \"time\"")
+                .what());
     }
   });
   return warnings;

@@ -68,6 +68,49 @@ Obstacle obstacle(const Place& at) {
 
 }  // namespace
 
+KeyTable<SectionShape> section_keys() {
+  using Given = GivenSection;
+  const auto length = [](const char* name, const char* help) {
+    return number_key(name, help).in("m").above(0).at_most(1e3).plausibly(1e-6, 10);
+  };
+  const auto moment = [](const char* name, const char* help) {
+    return number_key(name, help).in("m^4").above(0).at_most(1e12);
+  };
+  const auto width_m = [](auto& of) -> decltype((of.width_m)) { return of.width_m; };
+  const auto height_m = [](auto& of) -> decltype((of.height_m)) { return of.height_m; };
+  KeyTable<SectionShape> table;
+  Key type = choice_key("type", "shape of the cross-section")
+                 .unswept(
+                     "to sweep over sections, list complete ones: \"section\": {\"grid\": [\"circle\", {\"type\": "
+                     "\"tube\", ...}]}");
+  KindsOf<SectionShape>::each([&](const auto& shape) { type.choices.emplace_back(shape.name); });
+  table.unbound(type);
+  table.required(length("wall_m", "thickness of the wall of a tube with the outer radius radius_m"), &Tube::wall_m);
+  table.required(length("width_m", "across the height"), width_m);
+  table.required(length("height_m", "upwards in a bending rod, outwards in a helix or a ring"), height_m);
+  table.required(number_key("area_m2", "area A").in("m^2").above(0).at_most(1e6), &Given::area_m2);
+  table.required(moment("second_moment_height_m4", "integral of the squared height over the area: for bending upwards"),
+                 &Given::second_moment_height_m4);
+  table.required(moment("second_moment_width_m4", "integral of the squared width over the area: for bending sideways"),
+                 &Given::second_moment_width_m4);
+  table.required(moment("torsion_constant_m4", "J of the torsional stiffness G J"), &Given::torsion_constant_m4);
+  table.optional(number_key("shear_coefficient", "kappa of the shear stiffness kappa G A").above(0).at_most(1),
+                 &Given::shear_coefficient);
+  return table;
+}
+
+KeyTable<TipMotion> tip_motion_keys() {
+  KeyTable<TipMotion> table;
+  table.required(number_key("duration_s", "time of the motion, from the start").in("s").above(0).at_most(1e6),
+                 &TipMotion::duration_s);
+  table.optional(vector_key("displacement_m", "from the initial place of the end").in("m").from(-1e6, 1e6),
+                 &TipMotion::displacement_m);
+  table.optional(
+      vector_key("rotation_deg", "rotation vector, in the world: the axis times the angle").in("deg").from(-1e6, 1e6),
+      &TipMotion::rotation_deg);
+  return table;
+}
+
 KeyTable<WindParameters> wind_keys() {
   using Air = WindParameters;
   KeyTable<Air> table;

@@ -1,4 +1,4 @@
-// The keys of the parts of a scene in a job: `scene.wind`, `scene.contact`, `scene.obstacles`.
+// The keys of the parts of a scene in a job: `section`, `tip_motion`, `wind`, `contact`, `obstacles`.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,10 +7,13 @@
 
 #include "runner/job/key_table.hpp"
 #include "solver/scene/contact_settings.hpp"
+#include "solver/scene/scenes.hpp"
 #include "solver/scene/wind.hpp"
 
 namespace rodsweep {
 
+KeyTable<SectionShape> section_keys();
+KeyTable<TipMotion> tip_motion_keys();
 KeyTable<WindParameters> wind_keys();
 KeyTable<ContactSettings> contact_keys();
 Key obstacles_key();

@@ -7,10 +7,7 @@
 namespace rodsweep {
 
 SceneSpec scene_spec(const Point& point, const Job& job) {
-  SceneSpec scene;
-  KindsOf<SceneSpec>::each([&, type = point.text("scene.type")](const auto& kind) {
-    if (type == kind.name) scene = kind;
-  });
+  auto scene = kind_named<SceneSpec>(point.text("scene.type"));
   scene_keys().fill(scene, {point, job, "scene"});
   return scene;
 }

@@ -39,11 +39,12 @@ void put_inertial_impulses(const Rod& rod, MomentumBalance& out) {
   }
 }
 
-void subtract_contacts(const Rod& rod, MomentumBalance& out) {
-  for (std::size_t s = 0; s < rod.contact_impulse.size(); ++s) {
-    const Vector6& contact = rod.contact_impulse[s];
-    const Vector3 force = rod.orientation[s].conjugate() * Vector3(contact.head<3>());
-    const Vector3 torque = rod.orientation[s].conjugate() * Vector3(contact.tail<3>());
+void subtract_outer_impulses(const Rod& rod, MomentumBalance& out) {
+  if (!rod.has_outer_impulses()) return;
+  for (std::size_t s = 0; s < rod.segments.size(); ++s) {
+    const Vector6 outer = rod.outer_impulse(s);
+    const Vector3 force = rod.orientation[s].conjugate() * Vector3(outer.head<3>());
+    const Vector3 torque = rod.orientation[s].conjugate() * Vector3(outer.tail<3>());
     out.defect[s] -= Lane8{force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z(), 0, 0};
   }
 }
@@ -91,7 +92,7 @@ MomentumBalance::MomentumBalance(const Rod& rod) : pull(rod.segments.size()), le
 
 void balance_momentum(const Rod& rod, const Linearization& at, MomentumBalance& out) {
   put_inertial_impulses(rod, out);
-  subtract_contacts(rod, out);
+  subtract_outer_impulses(rod, out);
   const double greatest = subtract_joints(rod, at, out);
   Lane8 lacking{}, sum{};
   for (std::size_t s = 0; s < rod.segments.size(); ++s) {

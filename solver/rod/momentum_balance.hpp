@@ -1,12 +1,14 @@
 // The balance of momentum over a time step, of every segment in its own frame,
 //
-//   g = M (p - p*) - J^T lambda - f_c
+//   g = M (p - p*) - J^T lambda - f_c - f_t
 //
 // and the geometric stiffness with which Newton's iteration for g = 0 converges. p - p* consists of R^T (x - x*) and
 // 2 Im(d) / Re(d), d = conj(q*) q, the rotation vector that the time step's update undoes (rotation.hpp; its axis is
-// the same in both frames). f_c are the contacts' impulses. With g = 0 a rod at rest is in equilibrium for any time
-// step: p* - p is then M^-1 dt_c^2 times the loads. The step of Deul et al. 2018 and Shao et al. 2021 does not use g:
-// there p - p* = sum_j M^-1 J_j^T dlambda_j, with J at each Newton iteration's own positions.
+// the same in both frames). f_c are the contacts' impulses, f_t those of point loads' torques. (In p*, a torque would
+// turn a short segment by many radians before joints hold it, and rotation vectors do not add.) With g = 0 a rod at rest
+// is in equilibrium for any time step: p* - p is then M^-1 dt_c^2 times the other loads. The step of Deul et al. 2018
+// and Shao et al. 2021 does not use g: there p - p* = sum_j M^-1 J_j^T dlambda_j, with J at each Newton iteration's own
+// positions.
 //
 // Geometric stiffness K = -d(J^T lambda)/dp: the force f of a joint at its arm r gives the segment the stiffness
 // (f.r) I - f r^T. Only the diagonal part across the axis is kept, the sum of (f.r) over its joints, tension times

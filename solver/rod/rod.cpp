@@ -5,6 +5,8 @@
 #include <sstream>
 #include <string>
 
+#include "solver/numbers/rotation.hpp"
+
 namespace rodsweep {
 namespace {
 
@@ -33,9 +35,10 @@ Segment make_segment(const SegmentSpec& s, int index) {
   out.radius_m = s.radius_m;
   out.density_kg_m3 = s.density_kg_m3;
   out.is_static = s.is_static;
-  out.mass = s.density_kg_m3 * pi * s.radius_m * s.radius_m * s.length_m;
-  out.inertia_transverse = out.mass * (3 * s.radius_m * s.radius_m + s.length_m * s.length_m) / 12;
-  out.inertia_axial = out.mass * s.radius_m * s.radius_m / 2;
+  const CrossSection section = s.cross_section();
+  out.mass = s.mass();
+  out.inertia_axial = s.density_kg_m3 * s.length_m * (section.second_moment_x_m4 + section.second_moment_y_m4);
+  out.inertia_transverse = out.mass * s.length_m * s.length_m / 12 + out.inertia_axial / 2;
   if (!s.is_static) {
     out.inverse_mass = 1 / out.mass;
     out.turn_mobility = out.inverse_inertia_transverse = 1 / out.inertia_transverse;
@@ -96,12 +99,18 @@ bool Joint::is_kinked() const {
 
 void set_rest(Joint& joint, const Quaternion& rest) {
   constexpr double rounding = 1e-14;  // of equal orientations
-  Quaternion half = rest.normalized();
-  if (half.w() < 0) half.coeffs() = -half.coeffs();
-  if (half.vec().norm() < rounding) half = Quaternion::Identity();
-  half.w() += 1;
-  joint.frame_a = half.normalized();
-  joint.frame_b = joint.frame_a.conjugate();
+  joint.frame_a = joint.frame_b = Quaternion::Identity();
+  Quaternion d0 = rest.normalized();
+  if (d0.w() < 0) d0.coeffs() = -d0.coeffs();
+  if (d0.vec().norm() < rounding) return;
+  const auto half = [](Quaternion turn) {
+    if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
+    turn.w() += 1;
+    return turn.normalized();
+  };
+  const Quaternion swing = turn_between(Vector3::UnitZ(), d0 * Vector3::UnitZ());
+  joint.frame_a = half(swing) * half(swing.conjugate() * d0);
+  joint.frame_b = (d0.conjugate() * joint.frame_a).normalized();
 }
 
 Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointSpec>& joint_specs) {
@@ -121,6 +130,12 @@ Rod::Rod(const std::vector<SegmentSpec>& segment_specs, const std::vector<JointS
   free_orientation = orientation;
 }
 
+Vector6 Rod::outer_impulse(std::size_t segment) const {
+  Vector6 out = contact_impulse.empty() ? Vector6::Zero() : contact_impulse[segment];
+  if (!load_torque_nm.empty()) out.tail<3>() += constraint_dt * constraint_dt * load_torque_nm[segment];
+  return out;
+}
+
 void refuse_static_joints(const Rod& rod) {
   for (int k = 0; k < rod.joint_count(); ++k) {
     const Joint& joint = rod.joints[static_cast<std::size_t>(k)];
@@ -129,45 +144,5 @@ void refuse_static_joints(const Rod& rod) {
       throw SceneError("joint " + std::to_string(k) + " joins two static segments; remove it or free one of them");
   }
 }
-
-Section elliptic_section(double half_axis_x_m, double half_axis_y_m, double youngs_modulus_pa,
-                         double torsion_modulus_pa) {
-  const double a = half_axis_x_m, b = half_axis_y_m, a2 = a * a, b2 = b * b, area = pi * a * b;
-  return {youngs_modulus_pa * area * b2 / 4, youngs_modulus_pa * area * a2 / 4,
-          torsion_modulus_pa * area * a2 * b2 / (a2 + b2), youngs_modulus_pa * area,
-          shear_coefficient(youngs_modulus_pa, torsion_modulus_pa) * torsion_modulus_pa * area};
-}
-
-Section circular_section(double radius_m, double youngs_modulus_pa, double torsion_modulus_pa) {
-  const double r4 = radius_m * radius_m * radius_m * radius_m, area = pi * radius_m * radius_m;
-  return {youngs_modulus_pa * pi * r4 / 4, youngs_modulus_pa * pi * r4 / 4, torsion_modulus_pa * pi * r4 / 2,
-          youngs_modulus_pa * area,
-          shear_coefficient(youngs_modulus_pa, torsion_modulus_pa) * torsion_modulus_pa * area};
-}
-
-double shear_coefficient(double youngs_modulus_pa, double torsion_modulus_pa) {
-  const double nu = std::clamp(youngs_modulus_pa / (2 * torsion_modulus_pa) - 1, 0.0, 0.5);
-  return (6 + 12 * nu + 6 * nu * nu) / (7 + 12 * nu + 4 * nu * nu);
-}
-
-Vector6 joint_compliance(double length_m, const Section& section, double stretch_per_j) {
-  Vector6 alpha;
-  alpha << stretch_per_j, stretch_per_j, stretch_per_j, length_m / section.bending_x_nm2,
-      length_m / section.bending_y_nm2, length_m / section.torsion_nm2;
-  return alpha;
-}
-
-Vector6 joint_compliance(double length_m, double radius_m, double youngs_modulus_pa, double torsion_modulus_pa,
-                         double stretch_per_j) {
-  return joint_compliance(length_m, circular_section(radius_m, youngs_modulus_pa, torsion_modulus_pa), stretch_per_j);
-}
-
-Vector6 physical_compliance(double length_m, const Section& section) {
-  Vector6 alpha = joint_compliance(length_m, section, 1 / (section.shear_n * length_m));
-  alpha[2] = 1 / (section.axial_n * length_m);
-  return alpha;
-}
-
-double inextensible_compliance(double joint_length_m, double force_n) { return 1e-7 / (joint_length_m * force_n); }
 
 }  // namespace rodsweep

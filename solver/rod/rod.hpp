@@ -1,12 +1,14 @@
 // A rod: n rigid cylindrical segments (graph nodes) joined by m joints (graph edges), its mass properties and its
 // state.
 //
-// Segment: solid cylinder along its local z, mass m = rho pi r^2 L, principal inertia m (3 r^2 + L^2) / 12 (transverse)
-// and m r^2 / 2 (axial). A static segment has zero inverse mass and inertia; it may have zero length (a wall). Joint
-// between a and b: the point centre_a + R_a arm_a = centre_b + R_b arm_b; length l, the mean of the two segments'
-// lengths. Its frame coincides at rest with q_a p_a = q_b p_b: half-way between those of its segments, p_a = d0^(1/2),
-// p_b = conj(p_a), d0 = conj(q_a) q_b at rest, or as given. In it are the six rows and their compliance alpha
-// (linearization.hpp).
+// Segment: a prism along its local z, mass m = rho A L, principal inertia rho (Ix + Iy) L (axial) and m L^2 / 12 +
+// rho (Ix + Iy) L / 2 (transverse: the mean of both axes). By default it is a solid cylinder of its radius, which is
+// also that of contacts and drag. A static segment has zero inverse mass and inertia; it may have zero length (a wall).
+// Joint between a and b: the point centre_a + R_a arm_a = centre_b + R_b arm_b; length l, the mean of the two segments'
+// lengths. Its frame coincides at rest with q_a p_a = q_b p_b, as given or half-way between those of its segments: with
+// d0 = conj(q_a) q_b at rest, split into a swing of the axis and a twist about it, d0 = s w, p_a = s^(1/2) w^(1/2) and
+// p_b = conj(d0) p_a. Its z axis is half-way between those of the segments, whatever the twist. In it are the six rows
+// and their compliance alpha (linearization.hpp).
 // Any graph is accepted: chains, trees (several joints on a segment), loops. Throws SceneError.
 #pragma once
 
@@ -15,6 +17,7 @@
 #include <vector>
 
 #include "solver/numbers/types.hpp"
+#include "solver/rod/cross_section.hpp"
 
 namespace rodsweep {
 
@@ -34,6 +37,10 @@ struct SegmentSpec {
   double radius_m = 0;
   double density_kg_m3 = 0;
   bool is_static = false;
+  std::optional<CrossSection> section{};  ///< empty: a solid circle
+
+  CrossSection cross_section() const { return section ? *section : circle(radius_m, 0); }
+  double mass() const { return density_kg_m3 * cross_section().area_m2 * length_m; }
 };
 
 struct JointSpec {
@@ -86,40 +93,18 @@ class Rod {
   double constraint_dt = 0;  ///< [s] of the last step: forces are J^T lambda over its square (time_step.hpp)
 
   // For the step: the positions p* of segments without joints and contacts, and the impulses of contacts on them: force
-  // and torque about the centre, in the world, times constraint_dt^2; empty without contact.
+  // and torque about the centre, in the world, times constraint_dt^2; empty without contact. Torques of point loads, in
+  // the world, in steps that keep the balance of momentum; empty without such loads.
   std::vector<Vector3> free_position;
   std::vector<Quaternion> free_orientation;
   std::vector<Vector6> contact_impulse;
+  std::vector<Vector3> load_torque_nm;
+
+  bool has_outer_impulses() const { return !contact_impulse.empty() || !load_torque_nm.empty(); }
+  Vector6 outer_impulse(std::size_t segment) const;  ///< of contacts and of those torques
 };
 
 /// Throws SceneError for a joint between two static segments.
 void refuse_static_joints(const Rod& rod);
-
-/// The stiffness of a cross-section, in the segments' local frames.
-struct Section {
-  double bending_x_nm2, bending_y_nm2;  ///< EI about the local x and y axis
-  double torsion_nm2;                   ///< GJ
-  double axial_n, shear_n;              ///< EA, kappa G A
-};
-
-/// Half axes along local x and y. EI = E pi a b^3 / 4 and so on, GJ = G pi a^3 b^3 / (a^2 + b^2) (Saint-Venant).
-Section elliptic_section(double half_axis_x_m, double half_axis_y_m, double youngs_modulus_pa,
-                         double torsion_modulus_pa);
-Section circular_section(double radius_m, double youngs_modulus_pa, double torsion_modulus_pa);
-
-/// kappa = (6 + 12 nu + 6 nu^2) / (7 + 12 nu + 4 nu^2) of a circular cross-section (Timoshenko 1922; Kaneko 1975),
-/// where nu = E / 2G - 1 is limited to 0 .. 1/2, because E and G are independent parameters.
-double shear_coefficient(double youngs_modulus_pa, double torsion_modulus_pa);
-
-/// Compliance of a joint: `stretch` for the three stretch-shear rows, or physical stretch, 1 / (kappa G A l) across the
-/// rod and 1 / (E A l) along it; and bend-twist compliance (l/EI, l/EI, l/GJ).
-Vector6 joint_compliance(double length_m, const Section& section, double stretch_per_j);
-Vector6 joint_compliance(double length_m, double radius_m, double youngs_modulus_pa, double torsion_modulus_pa,
-                         double stretch_per_j);
-
-Vector6 physical_compliance(double length_m, const Section& section);
-
-/// The default "inextensible" compliance: a joint under the force F stretches by 1e-7 of its length l: 1e-7 / (l F).
-double inextensible_compliance(double joint_length_m, double force_n);
 
 }  // namespace rodsweep

@@ -82,8 +82,7 @@ SceneSize Knot::size() const { return {segments, segments - 1}; }
 void Knot::build(Scene& scene) const {
   std::vector<SegmentSpec> rod = segments_through(cut(fine_knot(), segments, length_m), *this);
   rod.front().is_static = rod.back().is_static = true;
-  const Section section = circular_section(radius_m, youngs_modulus_pa, torsion_modulus_pa);
-  const double tightest = 4 * section.bending_x_nm2 / (radius_m * radius_m);  // 16 EI / (2 r)^2
+  const double tightest = 4 * stiffness(*this).bending_x_nm2 / (radius_m * radius_m);  // 16 EI / (2 r)^2
   scene.rods.push_back(chain(rod, *this, weight(rod, *this) + tightest, true));
   move_clamp(scene, 0, Vector3(-pull_m_s, 0, 0));
   move_clamp(scene, segments - 1, Vector3(pull_m_s, 0, 0));

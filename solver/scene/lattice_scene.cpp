@@ -160,9 +160,9 @@ void Lattice::build(Scene& scene) const {
     }
   }
   const double force = weight(segments_, *this) + tip_force_n.norm();
-  const Section section = circular_section(radius_m, youngs_modulus_pa, torsion_modulus_pa);
-  const double turning = node_stiffness * section.bending_x_nm2 / (2 * radius_m);
-  const double shifting = node_stiffness * section.shear_n / (2 * radius_m);
+  const Section rod = stiffness(*this);
+  const double turning = node_stiffness * rod.bending_x_nm2 / (2 * radius_m);
+  const double shifting = node_stiffness * rod.shear_n / (2 * radius_m);
   std::vector<JointSpec> joints;
   connect(
       *this, all, [&](int s) { segments_[static_cast<std::size_t>(s)].is_static = true; },

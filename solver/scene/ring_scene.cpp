@@ -17,6 +17,10 @@ void Ring::check() const {
   if (!(std::abs(twist_deg) <= 90.0 * segments))
     throw SceneError("twist_deg is " + std::to_string(twist_deg) + "; must be at most 90 degrees for each of " +
                      std::to_string(segments) + " segments");
+  const CrossSection of = cross_section(*this);
+  if (twist_deg != 0 && of.second_moment_x_m4 != of.second_moment_y_m4)
+    throw SceneError("twist_deg is " + std::to_string(twist_deg) +
+                     "; must be 0 for a section that bends more easily about one axis than about the other");
 }
 
 SceneSize Ring::size() const { return {segments, segments}; }
@@ -36,8 +40,7 @@ void Ring::build(Scene& scene) const {
   }
   rod.front().is_static = clamp == Clamp::segment;
 
-  const Section section = circular_section(radius_m, youngs_modulus_pa, torsion_modulus_pa);
-  const double force = weight(rod, *this) + section.bending_x_nm2 / (apothem * apothem);
+  const double force = weight(rod, *this) + stiffness(*this).bending_x_nm2 / (apothem * apothem);
   std::vector<JointSpec> joints;
   for (int i = 0; i < segments; ++i) {
     const int next = (i + 1) % segments;

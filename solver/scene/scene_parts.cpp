@@ -12,7 +12,26 @@ namespace {
 constexpr double standard_gravity = 9.81;
 constexpr int most_segments = 10000000;
 
+struct SectionOf {
+  double radius_m, nu;
+  CrossSection operator()(const Tube& s) const { return tube(radius_m, s.wall_m, nu); }
+  CrossSection operator()(const Ellipse& s) const { return ellipse(s.width_m, s.height_m, nu); }
+  CrossSection operator()(const Rectangle& s) const { return rectangle(s.width_m, s.height_m, nu); }
+  CrossSection operator()(const GivenSection& s) const {
+    return {s.area_m2, s.second_moment_height_m4, s.second_moment_width_m4, s.torsion_constant_m4, s.shear_coefficient};
+  }
+};
+
 }  // namespace
+
+CrossSection cross_section(const RodParameters& p) {
+  const double nu = poisson_number(p.youngs_modulus_pa, p.torsion_modulus_pa);
+  return p.section ? std::visit(SectionOf{p.radius_m, nu}, *p.section) : circle(p.radius_m, nu);
+}
+
+Section stiffness(const RodParameters& p) {
+  return stiffness(cross_section(p), p.youngs_modulus_pa, p.torsion_modulus_pa);
+}
 
 std::vector<Vector3> straight_line(const Vector3& from, const Vector3& to, int pieces) {
   std::vector<Vector3> vertices;
@@ -49,7 +68,16 @@ SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, dou
   s.length_m = length_m;
   s.radius_m = p.radius_m;
   s.density_kg_m3 = p.density_kg_m3;
+  if (p.section) s.section = cross_section(p);
   return s;
+}
+
+void set_height(SegmentSpec& segment, const Vector3& height) {
+  Matrix3 axes;
+  axes.col(2) = segment.orientation * Vector3::UnitZ();
+  axes.col(0) = height.cross(axes.col(2)).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  segment.orientation = Quaternion(axes).normalized();
 }
 
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p,
@@ -57,7 +85,7 @@ JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, 
   const double length_a = segments[static_cast<std::size_t>(a)].length_m;
   const double length_b = segments[static_cast<std::size_t>(b)].length_m;
   const double length = (length_a + length_b) / 2;
-  const Section section = circular_section(p.radius_m, p.youngs_modulus_pa, p.torsion_modulus_pa);
+  const Section section = stiffness(p);
   JointSpec joint;
   joint.a = a;
   joint.b = b;
@@ -82,7 +110,7 @@ JointSpec crossing_between(int a, int b, double stiffness_nm, double stretch_per
 
 double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p) {
   double mass = 0;
-  for (const SegmentSpec& s : segments) mass += s.density_kg_m3 * pi * s.radius_m * s.radius_m * s.length_m;
+  for (const SegmentSpec& s : segments) mass += s.mass();
   return mass * std::max(p.gravity_m_s2.norm(), standard_gravity);
 }
 

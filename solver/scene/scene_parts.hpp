@@ -8,6 +8,12 @@
 
 namespace rodsweep {
 
+/// The cross-section of the scene's rods.
+CrossSection cross_section(const RodParameters& p);
+
+/// Its stiffness.
+Section stiffness(const RodParameters& p);
+
 /// A segment of the scene's material.
 SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, double length_m, const RodParameters& p);
 
@@ -21,6 +27,9 @@ JointSpec crossing_between(int a, int b, double stiffness_nm, double stretch_per
 
 /// Weight of the segments, under at least standard gravity [N].
 double weight(const std::vector<SegmentSpec>& segments, const RodParameters& p);
+
+/// Turns a segment about its axis until its local y points along `height`, which is across it.
+void set_height(SegmentSpec& segment, const Vector3& height);
 
 /// A straight line from one point to another, cut into equal pieces.
 std::vector<Vector3> straight_line(const Vector3& from, const Vector3& to, int pieces);

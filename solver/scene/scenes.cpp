@@ -9,6 +9,8 @@ void validate(const SceneSpec& spec) {
   const RodParameters& p = rod_parameters(spec);
   if (p.stretch == Stretch::physical && p.stretch_compliance_per_j)
     throw SceneError("stretch is physical, but stretch_compliance_per_j is given too; must be one of them");
+  if (const auto* tube = p.section ? std::get_if<Tube>(&*p.section) : nullptr)
+    require(tube->wall_m <= p.radius_m, "section.wall_m", tube->wall_m, "at most radius_m");
   const SceneSize size = size_of(spec);
   if (size.rods > most_rods)
     throw SceneError(std::string(size.rods_key) + " is " + std::to_string(size.rods) + "; must be at most " +

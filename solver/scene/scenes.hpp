@@ -39,9 +39,31 @@ enum class Stretch {
   physical       ///< EA along the rod, kappa G A across it, see Section
 };
 
+// Cross-sections (cross_section.hpp). A rectangle or an ellipse has its height upwards in a bending rod, outwards in a
+// helix or a ring. Contacts and drag are those of the rod's radius, which is the outer one of a tube.
+struct Tube {
+  static constexpr const char* name = "tube";
+  double wall_m = 0;
+};
+struct Ellipse {
+  static constexpr const char* name = "ellipse";
+  double width_m = 0, height_m = 0;
+};
+struct Rectangle {
+  static constexpr const char* name = "rectangle";
+  double width_m = 0, height_m = 0;
+};
+struct GivenSection {
+  static constexpr const char* name = "numbers";
+  double area_m2 = 0, second_moment_width_m4 = 0, second_moment_height_m4 = 0, torsion_constant_m4 = 0;
+  double shear_coefficient = 1;
+};
+using SectionShape = std::variant<Tube, Ellipse, Rectangle, GivenSection>;
+
 /// The parameters of all scenes.
 struct RodParameters {
   double radius_m = 0.05;
+  std::optional<SectionShape> section;  ///< empty: a solid circle
   double density_kg_m3 = 1000;
   double youngs_modulus_pa = 1e5;
   double torsion_modulus_pa = 1e6;
@@ -54,11 +76,22 @@ struct RodParameters {
   std::vector<Obstacle> obstacles;  ///< in addition to a scene's own floor
 };
 
-/// A rod with two ends.
+/// The end of a rod moves by a displacement, and by a rotation about an axis in the world, in a time; then it rests.
+struct TipMotion {
+  Vector3 displacement_m{0, 0, 0};
+  Vector3 rotation_deg{0, 0, 0};
+  double duration_s = 1;
+};
+
+/// A rod with two ends. Its tip bears a dead load, or moves as prescribed, held as `clamp` holds the first end (by a
+/// wall if that is free).
 struct OpenRod : RodParameters {
   int segments = 30;
   Clamp clamp = Clamp::segment;
-  Vector3 tip_force_n{0, 0, 0};
+  Vector3 tip_force_n{0, 0, 0}, tip_torque_nm{0, 0, 0};
+  std::optional<TipMotion> tip_motion;
+  bool has_tip_load() const { return !tip_force_n.isZero(0) || !tip_torque_nm.isZero(0); }
+  bool has_end_wall() const { return tip_motion && clamp != Clamp::segment; }
   void check() const;
   SceneSize size() const;
 };
@@ -69,6 +102,8 @@ struct BendingRod : OpenRod {
   static constexpr const char* name = "bending_rod";
   double length_m = 2;
   double initial_angle_deg = 0;
+  Vector3 end_m() const;
+  void check() const;
   void build(Scene& scene) const;
 };
 
@@ -99,14 +134,14 @@ struct Ring : RodParameters {
 
 /// The held segments of a net or a lattice.
 enum class Held {
-  side,     ///< the first segments of all rods of a net along z; the nodes of a lattice with the least x
-  corners,  ///< the first and last segments of a net's outermost rods along z; the eight corners of a lattice's box
+  side,     ///< the crossings of a net's first rod along x; the nodes of a lattice with the least x
+  corners,  ///< the four corners of a net; the eight corners of a lattice's box
   free      ///< nothing
 };
 
 /// `rows` rods along x and `columns` rods along z in the horizontal plane, the first ones crossing at the origin. Where
 /// rods cross, the centres of their segments are joined at the angle that they have there, with the stiffness EI / l
-/// about every axis: one rod of many loops.
+/// about every axis: one rod of many loops. A held crossing is a point that clamps all rods through it.
 struct Net : RodParameters {
   static constexpr const char* name = "net";
   int rows = 5, columns = 5;

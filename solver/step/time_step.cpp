@@ -32,15 +32,21 @@ TimeStepper::TimeStepper(Scene& scene, const StepSettings& settings)
     const std::vector<Vector3> none(rod.segments.size(), Vector3::Zero());
     loads_.push_back({none, none});
   }
+  torques_nm_.resize(scene.loads.size());
+  for (const PointLoad& load : scene.loads) {
+    Rod& rod = scene.rods[static_cast<std::size_t>(load.rod)];
+    rod.load_torque_nm.assign(rod.segments.size(), Vector3::Zero());
+  }
   if (scene.contact)
     contact_ = std::make_unique<ContactProjection>(scene, *scene.contact, rodsweep::constraint_dt(scene, settings.dt));
 }
 
 StepReport TimeStepper::step(Projection& projection) {
   start();
-  predict();
+  find_loads();
   StepReport report;
   report.balanced = projection.keep_balance(true);
+  predict(report.balanced);
   if (report.balanced)
     start_from_last_step();
   else
@@ -86,11 +92,10 @@ void TimeStepper::start_from_last_step() {
       flights_[r].extrapolate(scene_.rods[r]);
 }
 
-/// Resets the rods to p*, with zero multipliers.
+/// Resets the rods to the p* of a step without balance, with zero multipliers.
 void TimeStepper::take_back() {
+  predict(false);
   for (Rod& rod : scene_.rods) {
-    rod.position = rod.free_position;
-    rod.orientation = rod.free_orientation;
     rod.lambda.setZero();
     unstiffen(rod);
   }
@@ -151,24 +156,30 @@ void TimeStepper::find_loads() {
           loads_[r].force_n[s] = scene_.wind->drag(rod.segments[s], rod.position[s], director(rod.orientation[s]),
                                                    rod.velocity[s], time_s, settings_.dt);
     }
-  for (const PointLoad& load : scene_.loads) {
-    SegmentLoads& loads = loads_[static_cast<std::size_t>(load.rod)];
-    const std::size_t s = static_cast<std::size_t>(load.segment);
-    if (!scene_.wind) loads.force_n[s].setZero();
-    loads.torque_nm[s].setZero();
-  }
-  for (const PointLoad& load : scene_.loads) {
-    SegmentLoads& loads = loads_[static_cast<std::size_t>(load.rod)];
-    const std::size_t s = static_cast<std::size_t>(load.segment);
-    const Vector3 arm = scene_.rods[static_cast<std::size_t>(load.rod)].orientation[s] * load.arm_m;
-    loads.force_n[s] += load.force_n;
-    loads.torque_nm[s] += load.torque_nm + arm.cross(load.force_n);
+  if (!scene_.wind)
+    for (const PointLoad& load : scene_.loads)
+      loads_[static_cast<std::size_t>(load.rod)].force_n[static_cast<std::size_t>(load.segment)].setZero();
+  for (std::size_t i = 0; i < scene_.loads.size(); ++i) {
+    const PointLoad& load = scene_.loads[i];
+    const auto r = static_cast<std::size_t>(load.rod), s = static_cast<std::size_t>(load.segment);
+    loads_[r].force_n[s] += load.force_n;
+    torques_nm_[i] = load.torque_nm + (scene_.rods[r].orientation[s] * load.arm_m).cross(load.force_n);
   }
 }
 
-void TimeStepper::predict() {
+// Without joints p* is the result, so it must have the torques.
+void TimeStepper::predict(bool balanced) {
+  const auto torque = [this](const PointLoad& load, bool in_balance) -> Vector3& {
+    const auto r = static_cast<std::size_t>(load.rod), s = static_cast<std::size_t>(load.segment);
+    return in_balance ? scene_.rods[r].load_torque_nm[s] : loads_[r].torque_nm[s];
+  };
+  for (const PointLoad& load : scene_.loads)
+    for (const bool in_balance : {false, true}) torque(load, in_balance).setZero();
+  for (std::size_t i = 0; i < scene_.loads.size(); ++i) {
+    const PointLoad& load = scene_.loads[i];
+    torque(load, balanced && !scene_.rods[static_cast<std::size_t>(load.rod)].joints.empty()) += torques_nm_[i];
+  }
   const bool loaded = scene_.wind || !scene_.loads.empty();
-  if (loaded) find_loads();
   for (std::size_t r = 0; r < scene_.rods.size(); ++r)
     flights_[r].predict(scene_.rods[r], scene_.damping_per_s, scene_.gravity_m_s2, loaded ? &loads_[r] : nullptr);
   const double end = end_of_step();

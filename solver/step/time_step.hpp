@@ -63,7 +63,7 @@ class TimeStepper {
 
   void start();
   void find_loads();
-  void predict();
+  void predict(bool balanced);
   void start_from_last_step();
   void take_back();
   Newton iterate(Projection& projection, int until, StepReport& report);
@@ -75,7 +75,8 @@ class TimeStepper {
   double start_time_s_;
   int steps_ = 0;
   std::vector<FreeFlight> flights_;                     ///< of every rod
-  std::vector<SegmentLoads> loads_;                     ///< point loads and wind
+  std::vector<SegmentLoads> loads_;                     ///< point loads and wind, in free flight
+  std::vector<Vector3> torques_nm_;                     ///< of point loads, about the segments' centres
   double newton_residual_ = 0, momentum_residual_ = 0;  ///< maxima of the last iteration
   std::unique_ptr<ContactProjection> contact_;          ///< null in a scene without contacts
 };

@@ -59,8 +59,8 @@ TEST_CASE("a net's keys become a net, whose joints the plan counts") {
   CHECK(net.segments == 2);
   CHECK(net.mesh_m == 0.5);
   CHECK(net.held == Held::corners);
-  CHECK(plan.task(0).segments == 41);
-  CHECK(plan.task(0).joints == 46);
+  CHECK(plan.task(0).segments == 45);
+  CHECK(plan.task(0).joints == 50);
   CHECK(std::get<Net>(plan_of(with("/scene/held", "\"side\"", net_job())).spec(0).scene).held == Held::side);
 }
 
@@ -107,10 +107,50 @@ TEST_CASE("rods stretch physically where the job says so") {
   CHECK(std::get<BendingRod>(plan.spec(1).scene).stretch == Stretch::physical);
 }
 
+TEST_CASE("sections are read with their shape, and swept") {
+  CHECK_FALSE(std::get<BendingRod>(plan_of(small_job()).spec(0).scene).section);
+  const Plan plan = plan_of(with("/scene/section", R"({"grid": ["circle", {"type": "tube", "wall_m": 0.01},
+    {"type": "rectangle", "width_m": 0.1, "height_m": {"grid": [0.01, 0.02]}},
+    {"type": "numbers", "area_m2": 1, "second_moment_height_m4": 2, "second_moment_width_m4": 3,
+     "torsion_constant_m4": 4}]})"));
+  REQUIRE(plan.size() == 5);
+  const auto section = [&](int task) { return *std::get<BendingRod>(plan.spec(task).scene).section; };
+  CHECK_FALSE(std::get<BendingRod>(plan.spec(0).scene).section);
+  CHECK(std::get<Tube>(section(1)).wall_m == 0.01);
+  CHECK(std::get<Rectangle>(section(2)).width_m == 0.1);
+  CHECK(std::get<Rectangle>(section(3)).height_m == 0.02);
+  const auto given = std::get<GivenSection>(section(4));
+  CHECK(given.second_moment_height_m4 == 2);
+  CHECK(given.second_moment_width_m4 == 3);
+  CHECK(given.torsion_constant_m4 == 4);
+  CHECK(std::get<Ring>(plan_of(with("/scene/section", R"({"type": "tube", "wall_m": 0.01})", ring_job())).spec(0).scene)
+            .section);
+}
+
+TEST_CASE("tips are loaded, or moved") {
+  const Json moving = with("/scene/tip_motion", R"({"duration_s": 2, "displacement_m": [-0.3, 0, 0]})");
+  const auto moved = std::get<BendingRod>(plan_of(moving).spec(0).scene);
+  REQUIRE(moved.tip_motion);
+  CHECK(moved.tip_motion->displacement_m == Vector3(-0.3, 0, 0));
+  CHECK(moved.tip_motion->rotation_deg == Vector3(0, 0, 0));
+  CHECK(moved.tip_motion->duration_s == 2);
+  const auto loaded = std::get<BendingRod>(plan_of(with("/scene/tip_torque_nm", "[1, 2, 3]")).spec(0).scene);
+  CHECK(loaded.tip_torque_nm == Vector3(1, 2, 3));
+  CHECK_FALSE(loaded.tip_motion);
+}
+
 TEST_CASE("scenes whose values do not fit together are refused with what is wrong") {
   check_refused({
       {with("/scene/stretch_compliance_per_j", "1e-6", with("/scene/stretch", "\"physical\"")),
        "scene: stretch is physical", "stretch_compliance_per_j is given too", "must be one of them"},
+      {with("/scene/section", R"({"type": "tube"})"), "scene.section.wall_m", "missing"},
+      {with("/scene/section", R"({"type": "tube", "wall_m": 1})"), "scene: section.wall_m is 1", "at most radius_m"},
+      {with("/scene/section", R"({"type": "tube", "width_m": 1, "wall_m": 0.01})"), "scene.section.width_m"},
+      {with("/scene/section", R"({"wall_m": 0.01})"), "scene.section.type", "missing"},
+      {with("/scene/section", R"({"type": "tube", "wall_m": 0.01})", net_job()), "scene.section: ", "\"ring\""},
+      {with("/scene/tip_motion", R"({"displacement_m": [0, 0, 1]})"), "scene.tip_motion.duration_s", "missing"},
+      {with("/scene/tip_motion", R"({"displacement_m": [0, 0, 1], "duration_s": 1})"),
+       "scene: tip_motion.displacement_m moves the ends 2.236", "at most length_m"},
       {with("/scene/segments", "2", ring_job()), "scene: segments is 2", "must be at least 3"},
       {with("/scene/clamp", "\"wall\"", ring_job()), "scene: a ring has no end", "\"wall\""},
       {with("/scene/rows", "1", net_job()), "scene: rows is 1", "must be at least 2"},

@@ -39,6 +39,19 @@ TEST_CASE("of a sweep every value counts, and of a range its ends") {
   check_warning(with("/scene/radius_m", R"({"grid": [0.01, 1.5]})"), {"scene.radius_m.grid[1]: 1.5 m", "thicker"});
 }
 
+TEST_CASE("a point load on steps that do not balance momentum is warned of by its key") {
+  const Json loaded = with("/scene/tip_force_n", "[0, -1, 0]"), twisted = with("/scene/tip_torque_nm", "[1, 0, 0]");
+  check_warning(loaded, {"scene.tip_force_n: the rest shape", "time.step_s", "\"balance\": true"});
+  check_warning(twisted, {"scene.tip_torque_nm: the rest shape"});
+  check_warning(with("/scene/tip_force_n", R"([{"grid": [0, 3]}, 0, 0])"), {"scene.tip_force_n: "});
+  Json scenes = small_job();
+  scenes["scene"] = grid({helix_scene(), with("/tip_force_n", "[1, 0, 0]", bending_scene())});
+  check_warning(scenes, {"scene.grid[1].tip_force_n: "});
+  for (const char* balance : {"true", R"({"grid": [false, true]})"})
+    CHECK(job_of(with("/time/balance", balance, loaded)).warnings.empty());
+  CHECK(job_of(with("/scene/tip_force_n", "[0, 0, 0]")).warnings.empty());
+}
+
 TEST_CASE("no job of the project has a value that is not plausible") {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(RODSWEEP_JOBS)) {
     if (entry.path().extension() != ".json" || entry.path().filename() == "schema.json") continue;

@@ -64,20 +64,6 @@ TEST_CASE("the rest rotation is the initial one unless given, with a real part o
   CHECK((Rod({a, b}, {straight}).joints[0].rest().coeffs() - Quaternion::Identity().coeffs()).norm() == 0);
 }
 
-TEST_CASE("compliances are l / EI, l / EI and l / GJ of a circular cross-section") {
-  const Vector6 alpha = joint_compliance(0.1, 0.02, 3e6, 2e6, 7e-5);
-  const double r4 = std::pow(0.02, 4);
-  for (int row = 0; row < 3; ++row) CHECK(alpha[row] == 7e-5);
-  CHECK(alpha[3] == Approx(0.1 / (3e6 * pi * r4 / 4)).epsilon(1e-14));
-  CHECK(alpha[4] == alpha[3]);
-  CHECK(alpha[5] == Approx(0.1 / (2e6 * pi * r4 / 2)).epsilon(1e-14));
-}
-
-TEST_CASE("the inextensible compliance opens a joint by 1e-7 of its length under its force") {
-  // alpha l F, in units of l.
-  CHECK(inextensible_compliance(0.1, 50) * 0.1 * 50 == Approx(1e-7).epsilon(1e-14));
-}
-
 TEST_CASE("impossible segments are refused with quantity, value and bound") {
   using S = SegmentSpec;
   const std::pair<void (*)(S&), const char*> refused[] = {

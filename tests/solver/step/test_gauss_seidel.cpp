@@ -29,7 +29,7 @@ Scene jointed(const test::Edges& edges, const std::vector<int>& static_segments)
   for (const auto& [a, b] : edges) {
     const Vector3 half = (segments[b].position_m - segments[a].position_m) / 2;
     joints.push_back({a, b, segments[a].orientation.conjugate() * half, segments[b].orientation.conjugate() * -half,
-                      joint_compliance(0.2, 0.05, 1e6, 1e6, 1e-6), std::nullopt});
+                      joint_compliance(0.2, circular_section(0.05, 1e6, 1e6), 1e-6), std::nullopt});
   }
   Scene scene = test::scene_of(Rod(segments, joints));
   for (Vector3& v : scene.rods[0].velocity) v = random.vector(0.05);

@@ -53,7 +53,7 @@ TEST_CASE("A straight rod with a curved rest shape curls into an arc of that cur
 }
 
 TEST_CASE("A cantilever whose axes are askew to its weight sags sideways too, as unsymmetric bending says") {
-  const Section flat = elliptic_section(0.08, 0.04, 1e9, 4e8);
+  const Section flat = stiffness(ellipse(0.16, 0.08, 0.25), 1e9, 4e8);
   const double area = pi * 0.05 * 0.05, w = 1000 * area * 9.81 / 300, length = 2;
   const int n = 40;
   const double law = 1 + 1.0 / (n * n);
