@@ -1,58 +1,116 @@
+#include <map>
+
 #include "solver/numbers/rotation.hpp"
 #include "solver/scene/scene_parts.hpp"
 
 namespace rodsweep {
+namespace {
+
+/// In lengths of a segment, from a rod's first crossing.
+struct Piece {
+  double centre, length;  ///< length 0: a held point
+  int crossing;           ///< at its centre, or -1
+};
+
+/// Crossings are centres of segments, so a rod extends half a segment beyond its outermost crossings. At a held
+/// crossing there is a point between half segments instead; a rod that is held at its end ends there.
+template <class IsHeld>
+std::vector<Piece> pieces(int crossings, int segments, const IsHeld& is_held) {
+  const int last = (crossings - 1) * segments;
+  std::vector<Piece> out;
+  for (int i = 0; i <= last; ++i) {
+    const int crossing = i % segments == 0 ? i / segments : -1;
+    if (crossing < 0 || !is_held(crossing)) {
+      out.push_back({static_cast<double>(i), 1, crossing});
+      continue;
+    }
+    if (i > 0) out.push_back({i - 0.25, 0.5, -1});
+    out.push_back({static_cast<double>(i), 0, crossing});
+    if (i < last) out.push_back({i + 0.25, 0.5, -1});
+  }
+  return out;
+}
+
+bool is_held(const Net& p, int row, int column) {
+  switch (p.held) {
+    case Held::side: return row == 0;
+    case Held::corners: return (row == 0 || row == p.rows - 1) && (column == 0 || column == p.columns - 1);
+    case Held::free: return false;
+  }
+  return false;
+}
+
+std::vector<Piece> along_x(const Net& p, int row) {
+  return pieces(p.columns, p.segments, [&](int column) { return is_held(p, row, column); });
+}
+
+std::vector<Piece> along_z(const Net& p, int column) {
+  return pieces(p.rows, p.segments, [&](int row) { return is_held(p, row, column); });
+}
+
+}  // namespace
 
 void Net::check() const {
   check_least("rows", rows, 2);
   check_least("columns", columns, 2);
   check_least("segments", segments, 1);
-  if (held == Held::corners && rows == 2)
-    check_least("segments", segments, 2, ": between the held ends of two rows nothing would be free");
-  check_segments("a net", 2.0 * rows * columns * segments);
+  check_segments("a net", 2.0 * rows * columns * (segments + 1));
 }
 
 SceneSize Net::size() const {
-  const int count = rows * ((columns - 1) * segments + 1) + columns * ((rows - 1) * segments + 1);
-  return {count, count - rows - columns + rows * columns};
+  int count = 0, held_nodes = 0;
+  for (int row = 0; row < rows; ++row) count += static_cast<int>(along_x(*this, row).size());
+  for (int column = 0; column < columns; ++column) count += static_cast<int>(along_z(*this, column).size());
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) held_nodes += is_held(*this, row, column);
+  return {count - held_nodes, count - rows - columns + rows * columns - held_nodes};
 }
 
-// Rods along x first, then those along z. Every rod goes half a segment beyond its outermost crossings, so that these
-// are centres of segments too.
+// Rods along x first, then those along z. Both rods at a held crossing share its point.
 void Net::build(Scene& scene) const {
   const double length = mesh_m / segments;
-  const int along_x = (columns - 1) * segments + 1, along_z = (rows - 1) * segments + 1;  // segments of a rod
-  const Quaternion to_x = turn_between(Vector3::UnitZ(), Vector3::UnitX());
+  const Quaternion to_x = turn_between(Vector3::UnitZ(), Vector3::UnitX()), to_z = Quaternion::Identity();
   std::vector<SegmentSpec> all;
+  std::vector<std::vector<int>> rods;
+  std::map<std::pair<int, int>, std::vector<int>> crossings;  // segments at each (row, column)
+  const auto add_rod = [&](const std::vector<Piece>& rod, const Vector3& start, const Quaternion& orientation,
+                           const auto& crossing_of) {
+    const Vector3 step = length * (orientation * Vector3::UnitZ());
+    std::vector<int>& line = rods.emplace_back();
+    for (const Piece& piece : rod) {
+      auto* here = piece.crossing < 0 ? nullptr : &crossings[crossing_of(piece.crossing)];
+      if (piece.length == 0 && !here->empty()) {
+        line.push_back(here->front());
+        continue;
+      }
+      line.push_back(static_cast<int>(all.size()));
+      if (here) here->push_back(line.back());
+      all.push_back(segment_at(start + piece.centre * step, orientation, piece.length * length, *this));
+      all.back().is_static = piece.length == 0;
+    }
+  };
   for (int row = 0; row < rows; ++row)
-    for (int i = 0; i < along_x; ++i)
-      all.push_back(segment_at(Vector3(i * length, 0, row * mesh_m), to_x, length, *this));
+    add_rod(along_x(*this, row), Vector3(0, 0, row * mesh_m), to_x, [row](int at) { return std::pair(row, at); });
   for (int column = 0; column < columns; ++column)
-    for (int i = 0; i < along_z; ++i)
-      all.push_back(segment_at(Vector3(column * mesh_m, 0, i * length), Quaternion::Identity(), length, *this));
-  const auto on_x = [&](int row, int i) { return row * along_x + i; };
-  const auto on_z = [&](int column, int i) { return rows * along_x + column * along_z + i; };
-
-  if (held == Held::side)
-    for (int column = 0; column < columns; ++column) all[static_cast<std::size_t>(on_z(column, 0))].is_static = true;
-  if (held == Held::corners)
-    for (const int column : {0, columns - 1})
-      for (const int end : {0, along_z - 1}) all[static_cast<std::size_t>(on_z(column, end))].is_static = true;
+    add_rod(along_z(*this, column), Vector3(column * mesh_m, 0, 0), to_z,
+            [column](int at) { return std::pair(at, column); });
 
   const double force = weight(all, *this);
   std::vector<JointSpec> joints;
-  for (int row = 0; row < rows; ++row)
-    for (int i = 1; i < along_x; ++i)
-      joints.push_back(joint_between(all, on_x(row, i - 1), on_x(row, i), *this, force));
-  for (int column = 0; column < columns; ++column)
-    for (int i = 1; i < along_z; ++i)
-      joints.push_back(joint_between(all, on_z(column, i - 1), on_z(column, i), *this, force));
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const int a = on_x(row, column * segments), b = on_z(column, row * segments);
-      const JointSpec along = joint_between(all, a, b, *this, force);
-      joints.push_back(crossing_between(a, b, 1 / along.compliance_per_j[3], along.compliance_per_j[0]));
+  for (const std::vector<int>& line : rods)
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const SegmentSpec &a = all[static_cast<std::size_t>(line[i - 1])], &b = all[static_cast<std::size_t>(line[i])];
+      joints.push_back(joint_between(all, line[i - 1], line[i], *this, force));
+      if (a.orientation.coeffs() == b.orientation.coeffs()) continue;
+      // The axes of stiffness are those of the rod, not of the point.
+      joints.back().frame = b.is_static ? Quaternion::Identity() : a.orientation.conjugate() * b.orientation;
     }
+  const double turning = stiffness(*this).bending_x_nm2 / length;
+  for (const auto& [at, crossed] : crossings) {
+    if (is_held(*this, at.first, at.second)) continue;
+    const double shifting = joint_between(all, crossed[0], crossed[1], *this, force).compliance_per_j[0];
+    joints.push_back(crossing_between(crossed[0], crossed[1], turning, shifting));
+  }
   scene.rods.emplace_back(all, joints);
 }
 

@@ -184,14 +184,55 @@ TEST_CASE("A hanging ring and hanging nets settle, and what holds them carries t
 
 TEST_CASE("A net held at its corners sags symmetrically") {
   const std::unique_ptr<Simulation> settled = settle(build_scene(small_net()));
-  // Rods along x, row by row: crossing (row, column) of a net with one segment per mesh.
-  const auto height = [&](int row, int column) { return settled->rod().position[5 * row + column].y(); };
+  const Rod flat = build_scene(small_net()).rods.front();
+  const auto height = [&](int row, int column) {
+    const Vector3 at = small_net().mesh_m * Vector3(column, 0, row);
+    int crossing = 0;
+    while ((flat.position[crossing] - at).norm() > 1e-9) ++crossing;
+    return settled->rod().position[crossing].y();
+  };
   CHECK(height(2, 2) < -1e-3);
   for (int r = 0; r < 5; ++r)
     for (int c = 0; c < 5; ++c) {
       CHECK(height(r, c) == Approx(height(4 - r, c)).epsilon(1e-3).margin(1e-9));
       CHECK(height(r, c) == Approx(height(r, 4 - c)).epsilon(1e-3).margin(1e-9));
     }
+}
+
+/// Sag at the middle of the sides of a net of four rods held at its corners, over that of a clamped beam.
+double corner_held_sag(int segments) {
+  Net p;
+  p.rows = p.columns = 2;
+  p.segments = segments;
+  p.mesh_m = 2;
+  p.youngs_modulus_pa = p.torsion_modulus_pa = 1e9;
+  p.gravity_m_s2 /= 300;
+  Scene scene = build_scene(p);
+  const Rod flat = scene.rods.front();
+  Simulation simulation(std::move(scene), 1);
+  simulation.relax();
+  const double area = pi * p.radius_m * p.radius_m, second_moment = area * p.radius_m * p.radius_m / 4;
+  const double beam = p.density_kg_m3 * area * p.gravity_m_s2.norm() * std::pow(p.mesh_m, 4) /
+                      (384 * p.youngs_modulus_pa * second_moment);
+  double sag = 0;
+  int sides = 0;
+  for (std::size_t s = 0; s < flat.position.size(); ++s) {
+    const Vector3& at = flat.position[s];
+    if (std::abs(at.x() - 1) > 1e-9 && std::abs(at.z() - 1) > 1e-9) continue;
+    const double here = -simulation.rod().position[s].y();
+    CHECK((sides == 0 || here == Approx(sag).epsilon(1e-6)));
+    sag = here;
+    ++sides;
+  }
+  REQUIRE(sides == 4);
+  return sag / beam;
+}
+
+TEST_CASE("The sides of a net held at its corners sag as clamped beams, with an error of second order") {
+  const double coarse = corner_held_sag(20) - 1, fine = corner_held_sag(40) - 1;
+  CAPTURE(coarse, fine);
+  CHECK(std::abs(fine) < 4e-3);
+  CHECK(std::log2(coarse / fine) == Approx(2).margin(0.15));
 }
 
 }  // namespace rodsweep::test_validation_loops
