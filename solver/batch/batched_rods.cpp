@@ -1,6 +1,7 @@
 #include "solver/batch/batched_rods.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -75,12 +76,8 @@ void put(BatchedSegment& out, int lane, const Rod& rod, std::size_t s) {
 }
 
 void put(BatchedJoint& out, int lane, const Rod& rod, std::size_t k) {
-  const Joint& joint = rod.joints[k];
-  put(out.shape.arm_a, lane, joint.arm_a / joint.length);
-  put(out.shape.arm_b, lane, joint.arm_b / joint.length);
-  out.shape.inverse_length[lane] = 1 / joint.length;
   for (int row = 0; row < 6; ++row) {
-    out.alpha[row][lane] = joint.compliance[row];
+    out.alpha[row][lane] = rod.joints[k].compliance[row];
     out.lambda[row][lane] = rod.lambda[static_cast<Eigen::Index>(6 * k) + row];
   }
 }
@@ -107,19 +104,11 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double h) : rods(stat
     damping_per_s[lane] = scene.damping_per_s;
   }
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    const auto joint_of = [&](int lane) -> const Joint& {
-      return scenes[static_cast<std::size_t>(std::min(lane, rods - 1))].rods.front().joints[k];
-    };
-    auto kink = std::make_shared<JointKink<Lane>>();
-    bool kinked = false;
-    for (int lane = 0; lane < lanes; ++lane) {
-      kinked |= joint_of(lane).is_kinked();
-      put(kink->frame_a, lane, joint_of(lane).frame_a);
-      put(kink->frame_b, lane, joint_of(lane).frame_b);
-    }
-    kink->set_axes();
-    joints[k].shape.kink = kinked ? kink.get() : nullptr;
-    if (kinked) kinks.push_back(std::move(kink));
+    std::array<const Joint*, lanes> group{};
+    for (int lane = 0; lane < lanes; ++lane)
+      group[static_cast<std::size_t>(lane)] =
+          &scenes[static_cast<std::size_t>(std::min(lane, rods - 1))].rods.front().joints[k];
+    joints[k].shape = joint_shape(group, kinks);
   }
   set_step(h);
   for (std::size_t s = 0; s < segments.size(); ++s) free[s] = {segments[s].position, segments[s].orientation};

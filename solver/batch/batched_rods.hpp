@@ -49,8 +49,8 @@ struct BatchedRods {
   int rods;
   std::vector<BatchedSegment> segments;
   std::vector<BatchedJoint> joints;
-  std::vector<std::shared_ptr<const JointKink<Lane>>> kinks;  ///< of the joints that are not straight
-  std::vector<SegmentPose<Lane>> free;                        ///< p* of the segments
+  JointKinks kinks;                     ///< of the joints that are not straight
+  std::vector<SegmentPose<Lane>> free;  ///< p* of the segments
   LaneVector gravity;
   Lane damping_per_s;     ///< c
   Lane damping;           ///< 1 / (1 + c h)

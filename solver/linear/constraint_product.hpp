@@ -40,11 +40,11 @@ class ConstraintProduct {
   void find_changes(const double* x, double* y) const;
 
   std::vector<Group> groups_;
-  std::vector<std::shared_ptr<const JointKink<Lane>>> kinks_;  ///< of the groups
-  std::vector<Ends> ends_;                                     ///< segments of every joint
-  std::vector<Lane8> mobility_;                                ///< M^-1 of every segment, zero if static
-  VectorX softness_;                                           ///< alpha~
-  mutable std::vector<Lane8> at_;                              ///< impulses, then motions, of every segment
+  JointKinks kinks_;               ///< of the groups
+  std::vector<Ends> ends_;         ///< segments of every joint
+  std::vector<Lane8> mobility_;    ///< M^-1 of every segment, zero if static
+  VectorX softness_;               ///< alpha~
+  mutable std::vector<Lane8> at_;  ///< impulses, then motions, of every segment
 };
 
 }  // namespace rodsweep

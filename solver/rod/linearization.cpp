@@ -129,38 +129,45 @@ JointTurn<double> turn_of(const Rod& rod, const Joint& joint, const JointShape<d
 
 }  // namespace
 
+JointShape<Lane> joint_shape(const std::array<const Joint*, lane_width>& of, JointKinks& kinks) {
+  bool kinked = false;
+  Quaternion frame_a[lane_width], frame_b[lane_width];
+  Vector3 arm_a[lane_width], arm_b[lane_width];
+  JointShape<Lane> shape{};
+  for (std::size_t lane = 0; lane < lane_width; ++lane) {
+    const Joint& joint = *of[lane];
+    kinked |= joint.is_kinked();
+    frame_a[lane] = joint.frame_a;
+    frame_b[lane] = joint.frame_b;
+    arm_a[lane] = joint.arm_a / joint.length;
+    arm_b[lane] = joint.arm_b / joint.length;
+    shape.inverse_length[lane] = 1 / joint.length;
+  }
+  shape.arm_a = load(arm_a, lane_width);
+  shape.arm_b = load(arm_b, lane_width);
+  if (kinked) {
+    auto kink = std::make_shared<JointKink<Lane>>();
+    kink->frame_a = load(frame_a, lane_width);
+    kink->frame_b = load(frame_b, lane_width);
+    kink->set_axes();
+    shape.kink = kink.get();
+    kinks.push_back(std::move(kink));
+  }
+  return shape;
+}
+
 Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.joint_count())) {
   const std::size_t count = rod.joints.size();
   const std::size_t groups = (count + lane_width - 1) / lane_width;
   shapes.reserve(groups);
   joints.reserve(groups * lane_width);
   for (std::size_t first = 0; first < count; first += lane_width) {
-    JointShape<Lane> shape;
-    bool kinked = false;
-    Quaternion frame_a[lane_width], frame_b[lane_width];
-    Vector3 arm_a[lane_width], arm_b[lane_width];
+    std::array<const Joint*, lane_width> group{};
     for (std::size_t lane = 0; lane < lane_width; ++lane) {
-      const Joint& joint = rod.joints[std::min(first + lane, count - 1)];
-      kinked |= joint.is_kinked();
-      frame_a[lane] = joint.frame_a;
-      frame_b[lane] = joint.frame_b;
-      arm_a[lane] = joint.arm_a / joint.length;
-      arm_b[lane] = joint.arm_b / joint.length;
-      shape.inverse_length[lane] = 1 / joint.length;
-      joints.emplace_back().inverse_length = 1 / joint.length;
+      group[lane] = &rod.joints[std::min(first + lane, count - 1)];
+      joints.emplace_back().inverse_length = 1 / group[lane]->length;
     }
-    shape.kink = nullptr;
-    if (kinked) {
-      auto kink = std::make_shared<JointKink<Lane>>();
-      kink->frame_a = load(frame_a, lane_width);
-      kink->frame_b = load(frame_b, lane_width);
-      kink->set_axes();
-      shape.kink = kink.get();
-      kinks.push_back(std::move(kink));
-    }
-    shape.arm_a = load(arm_a, lane_width);
-    shape.arm_b = load(arm_b, lane_width);
-    shapes.push_back(shape);
+    shapes.push_back(joint_shape(group, kinks));
     turns.emplace_back();
   }
 }

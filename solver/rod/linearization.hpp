@@ -15,6 +15,7 @@
 // the segments: that term is proportional to the gap, and without it Newton's iterates are those of C_s in the world.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -32,12 +33,17 @@ struct JointJacobian {
   double inverse_length;               ///< 1/l [1/m]
 };
 
+using JointKinks = std::vector<std::shared_ptr<const JointKink<Lane>>>;
+
+/// The constants of as many joints as a register has lanes. If any of them is not straight, `kinks` gets its frames.
+JointShape<Lane> joint_shape(const std::array<const Joint*, lane_width>& of, JointKinks& kinks);
+
 struct Linearization {
-  std::vector<JointJacobian> joints;                          ///< padded to whole registers with copies of the last
-  VectorX constraint;                                         ///< C, six per joint
-  std::vector<JointShape<Lane>> shapes;                       ///< each of as many joints as a register has lanes
-  std::vector<std::shared_ptr<const JointKink<Lane>>> kinks;  ///< of those that are not straight
-  std::vector<JointTurn<Lane>> turns;                         ///< of the same joints
+  std::vector<JointJacobian> joints;     ///< padded to whole registers with copies of the last
+  VectorX constraint;                    ///< C, six per joint
+  std::vector<JointShape<Lane>> shapes;  ///< each of as many joints as a register has lanes
+  JointKinks kinks;                      ///< of those that are not straight
+  std::vector<JointTurn<Lane>> turns;    ///< of the same joints
 
   explicit Linearization(const Rod& rod);  ///< sized, not evaluated
 };
