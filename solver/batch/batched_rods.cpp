@@ -75,13 +75,6 @@ void put(BatchedSegment& out, int lane, const Rod& rod, std::size_t s) {
   put(out.orientation, lane, rod.orientation[s]);
 }
 
-void put(BatchedJoint& out, int lane, const Rod& rod, std::size_t k) {
-  for (int row = 0; row < 6; ++row) {
-    out.alpha[row][lane] = rod.joints[k].compliance[row];
-    out.lambda[row][lane] = rod.lambda[static_cast<Eigen::Index>(6 * k) + row];
-  }
-}
-
 }  // namespace
 
 BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double h) : rods(static_cast<int>(scenes.size())) {
@@ -95,11 +88,16 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double h) : rods(stat
   }
   segments.resize(scenes.front().rods.front().segments.size());
   joints.resize(segments.size() - 1);
+  alpha.resize(joints.size());
   free.resize(segments.size());
   for (int lane = 0; lane < lanes; ++lane) {
     const Scene& scene = scenes[static_cast<std::size_t>(std::min(lane, rods - 1))];
     for (std::size_t s = 0; s < segments.size(); ++s) put(segments[s], lane, scene.rods.front(), s);
-    for (std::size_t k = 0; k < joints.size(); ++k) put(joints[k], lane, scene.rods.front(), k);
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      for (int row = 0; row < 6; ++row) {
+        alpha[k][row][lane] = scene.rods.front().joints[k].compliance[row];
+        joints[k].lambda[row][lane] = scene.rods.front().lambda[static_cast<Eigen::Index>(6 * k) + row];
+      }
     put(gravity, lane, scene.gravity_m_s2);
     damping_per_s[lane] = scene.damping_per_s;
   }
@@ -112,17 +110,15 @@ BatchedRods::BatchedRods(const std::vector<Scene>& scenes, double h) : rods(stat
   }
   set_step(h);
   for (std::size_t s = 0; s < segments.size(); ++s) free[s] = {segments[s].position, segments[s].orientation};
-  stretches_evenly = std::all_of(joints.begin(), joints.end(), [](const BatchedJoint& joint) {
-    const LaneVector6& c = joint.alpha;
-    return !any((c[0] != c[1]) | (c[0] != c[2]));
-  });
+  stretches_evenly = std::all_of(alpha.begin(), alpha.end(),
+                                 [](const LaneVector6& c) { return !any((c[0] != c[1]) | (c[0] != c[2])); });
 }
 
 void BatchedRods::set_step(double h) {
   damping = 1 / (1 + damping_per_s * h);
   for (int lane = 0; lane < lanes; ++lane) constraint_dt[lane] = rodsweep::constraint_dt(damping_per_s[lane], h);
-  for (BatchedJoint& joint : joints)
-    for (int row = 0; row < 6; ++row) joint.compliance[row] = joint.alpha[row] / (constraint_dt * constraint_dt);
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    for (int row = 0; row < 6; ++row) joints[k].compliance[row] = alpha[k][row] / (constraint_dt * constraint_dt);
 }
 
 void BatchedRods::write(int lane, Scene& scene) const {

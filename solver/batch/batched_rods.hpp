@@ -28,8 +28,7 @@ struct BatchedSegment {
 
 struct BatchedJoint {
   JointShape<Lane> shape;
-  LaneVector6 alpha;       ///< [1/J]
-  LaneVector6 compliance;  ///< alpha~ = alpha / dt_c^2 [1/(kg m^2)]
+  LaneVector6 compliance;  ///< alpha~ [1/(kg m^2)]
   LaneVector6 lambda;
 };
 
@@ -49,6 +48,7 @@ struct BatchedRods {
   int rods;
   std::vector<BatchedSegment> segments;
   std::vector<BatchedJoint> joints;
+  std::vector<LaneVector6> alpha;       ///< of the joints [1/J]: alpha~ = alpha / dt_c^2
   JointKinks kinks;                     ///< of the joints that are not straight
   std::vector<SegmentPose<Lane>> free;  ///< p* of the segments
   LaneVector gravity;

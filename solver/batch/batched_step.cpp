@@ -7,6 +7,19 @@ std::optional<BatchedBalance> balance_of(const std::vector<Scene>& scenes, const
   return wanted ? std::optional(BatchedBalance(scenes, rods)) : std::nullopt;
 }
 
+// FreeFlight::predict() by a step of Euler and by two steps.
+LanePose flown(const LaneMotion& now, const Flight& flight, const Lane& h) {
+  const Lane damped = h * flight.damping;
+  const LaneVector turn = gyrated(now.spin, director(now.orientation), h * flight.gyration);
+  return {now.position + damped * (now.velocity + flight.gain), rotated(now.orientation, damped * turn)};
+}
+
+LanePose flown(const LanePose& past, const LaneMotion& now, const LaneMotion& before, const Flight& flight,
+               const Lane& h) {
+  return {past.position + h * free_velocity(now, before, flight),
+          rotated(past.orientation, free_turn(now, before, expected(past, now, before, h), flight, h))};
+}
+
 }  // namespace
 
 BatchedStepper::BatchedStepper(const std::vector<Scene>& scenes, const StepSettings& settings,
@@ -18,7 +31,7 @@ BatchedStepper::BatchedStepper(const std::vector<Scene>& scenes, const StepSetti
       running_{},
       balanced_{},
       momentum_tolerance_(momentum_tolerance),
-      history_(rods_.segments.size()),
+      past_(rods_.segments.size()),
       h_(settings.dt),
       steps_(scenes.size(), 0),
       reports_(scenes.size()) {
@@ -26,6 +39,7 @@ BatchedStepper::BatchedStepper(const std::vector<Scene>& scenes, const StepSetti
     sound_[rod] = -1;
     start_time_s_.push_back(scenes[static_cast<std::size_t>(rod)].time_s);
   }
+  if (momentum_tolerance || settings.integrator == Integrator::bdf2) before_.resize(rods_.segments.size());
 }
 
 const std::vector<StepReport>& BatchedStepper::step() {
@@ -35,14 +49,14 @@ const std::vector<StepReport>& BatchedStepper::step() {
 }
 
 void BatchedStepper::begin() {
-  remember();
-  predict();
+  fly();
   running_ = sound_;
   newton_ = 0;
   for (StepReport& report : reports_) report.newton_iterations = 0;
-  if (!momentum_tolerance_) return;
-  balanced_ = sound_;
-  start_from_last_step();
+  if (momentum_tolerance_)
+    balanced_ = sound_;
+  else
+    forget_multipliers(sound_);
 }
 
 bool BatchedStepper::linearize() {
@@ -92,66 +106,42 @@ void BatchedStepper::write(int rod, Scene& scene) const {
   scene.time_s = start_time_s_[static_cast<std::size_t>(rod)] + steps_taken(rod) * settings_.dt;
 }
 
-// FreeFlight::start().
-void BatchedStepper::remember() {
+// FreeFlight::start(), predict() and, in balance, extrapolate().
+void BatchedStepper::fly() {
   known_ = std::min(known_ + 1, 2);
-  const bool uses_two_steps = settings_.integrator == Integrator::bdf2 && known_ == 2;
-  if (const double h = implicit_dt(settings_.dt, uses_two_steps); h != h_) rods_.set_step(h_ = h);
-  for (std::size_t s = 0; s < rods_.segments.size(); ++s) {
-    const BatchedSegment& segment = rods_.segments[s];
-    History& history = history_[s];
-    history.before = history.now;
-    history.now = {segment.position, segment.orientation, segment.velocity, segment.angular_velocity};
-    history.past = {segment.position, segment.orientation};
-    if (uses_two_steps) history.past = past_pose(history.now, history.before);
-  }
-}
-
-// FreeFlight::predict().
-void BatchedStepper::predict() {
-  const LaneVector gain = all_lanes(h_) * rods_.gravity;
-  const bool uses_two_steps = h_ != settings_.dt;
+  uses_two_steps_ = settings_.integrator == Integrator::bdf2 && known_ == 2;
+  const bool extrapolates = momentum_tolerance_ && known_ == 2 && !rods_.joints.empty();
+  if (const double h = implicit_dt(settings_.dt, uses_two_steps_); h != h_) rods_.set_step(h_ = h);
+  const Lane h = all_lanes(h_), damping = rods_.damping;
+  const LaneVector gain = h * rods_.gravity;
+  const LaneMask sound = sound_;
   for (std::size_t s = 0; s < rods_.segments.size(); ++s) {
     BatchedSegment& segment = rods_.segments[s];
-    if (segment.is_static) continue;
-    const auto& [now, before, past] = history_[s];
-    LaneVector position;
-    LaneQuaternion orientation;
-    if (uses_two_steps) {
-      const Lane h = all_lanes(h_);
-      const Flight flight{segment.gyration, rods_.damping, gain};
-      position = past.position + h * free_velocity(now, before, flight);
-      orientation = rotated(past.orientation, free_turn(now, before, expected(past, now, before, h), flight, h));
-    } else {
-      const LaneVector turn = gyrated(now.spin, director(now.orientation), h_ * segment.gyration);
-      position = now.position + (h_ * rods_.damping) * (now.velocity + gain);
-      orientation = rotated(now.orientation, (h_ * rods_.damping) * turn);
+    const LaneMotion now = {segment.position, segment.orientation, segment.velocity, segment.angular_velocity};
+    LanePose& past = past_[s];
+    past = uses_two_steps_ ? past_pose(now, before_[s]) : LanePose{now.position, now.orientation};
+    const auto move = [&](const LaneVector& position, const LaneQuaternion& orientation) {
+      segment.position = select(sound, position, now.position);
+      segment.orientation = select(sound, orientation, now.orientation);
+    };
+    if (!segment.is_static) {
+      const Flight flight{segment.gyration, damping, gain};
+      const LanePose pose = uses_two_steps_ ? flown(past, now, before_[s], flight, h) : flown(now, flight, h);
+      move(pose.position, pose.orientation);
     }
-    segment.position = select(sound_, position, segment.position);
-    segment.orientation = select(sound_, orientation, segment.orientation);
+    rods_.free[s] = {segment.position, segment.orientation};
+    if (extrapolates && !segment.is_static) {
+      const LaneMotion motion = expected(past, now, before_[s], h);
+      move(motion.position, motion.orientation);
+    }
+    if (!before_.empty()) before_[s] = now;
   }
-  for (std::size_t s = 0; s < rods_.free.size(); ++s)
-    rods_.free[s] = {rods_.segments[s].position, rods_.segments[s].orientation};
-  if (!momentum_tolerance_) forget_multipliers(sound_);
 }
 
 void BatchedStepper::forget_multipliers(const LaneMask& where) {
   const Lane zero{};
   for (BatchedJoint& joint : rods_.joints)
     for (Lane& row : joint.lambda.row) row = where ? zero : row;
-}
-
-// FreeFlight::extrapolate().
-void BatchedStepper::start_from_last_step() {
-  if (known_ < 2 || rods_.joints.empty()) return;
-  for (std::size_t s = 0; s < rods_.segments.size(); ++s) {
-    BatchedSegment& segment = rods_.segments[s];
-    if (segment.is_static) continue;
-    const auto& [now, before, past] = history_[s];
-    const LaneMotion motion = expected(past, now, before, all_lanes(h_));
-    segment.position = select(sound_, motion.position, segment.position);
-    segment.orientation = select(sound_, motion.orientation, segment.orientation);
-  }
 }
 
 void BatchedStepper::take_back(const LaneMask& rods) {
@@ -169,7 +159,7 @@ void BatchedStepper::update_velocities() {
   const Lane inverse_h = all_lanes(1 / h_);
   for (std::size_t s = 0; s < rods_.segments.size(); ++s) {
     BatchedSegment& segment = rods_.segments[s];
-    const LanePose& past = history_[s].past;
+    const LanePose& past = past_[s];
     segment.velocity = select(sound_, inverse_h * (segment.position - past.position), segment.velocity);
     segment.angular_velocity =
         select(sound_, inverse_h * rotation(segment.orientation, past.orientation), segment.angular_velocity);

@@ -43,14 +43,8 @@ class BatchedStepper {
   void write(int rod, Scene& scene) const;
 
  private:
-  struct History {  ///< of a segment, at the start of this step and of the last one
-    LaneMotion now, before;
-    LanePose past;
-  };
-  void remember();
-  void predict();
+  void fly();
   void forget_multipliers(const LaneMask& where);
-  void start_from_last_step();
   void take_back(const LaneMask& rods);
   void update_velocities();
 
@@ -61,8 +55,10 @@ class BatchedStepper {
   LaneMask running_;   ///< the sound rods that have not converged in this step
   LaneMask balanced_;  ///< the sound rods that keep the balance of momentum
   std::optional<double> momentum_tolerance_;
-  std::vector<History> history_;
-  int known_ = 0;   ///< motions: 0, 1 (now) or 2 (before)
+  std::vector<LanePose> past_;      ///< of the segments, of which velocities are differences
+  std::vector<LaneMotion> before_;  ///< at the start of the last step; empty if nothing reads it
+  int known_ = 0;                   ///< motions: 0, 1 (now) or 2 (before)
+  bool uses_two_steps_ = false;
   double h_;        ///< of the step (integrator.hpp)
   int newton_ = 0;  ///< solves of this step
   std::vector<double> start_time_s_;

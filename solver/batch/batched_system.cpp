@@ -21,21 +21,23 @@ inline void put(const LaneVector& v, Lane* to) {
   to[2] = v.z;
 }
 
-/// The last three rows, ([v]x + w I) P^T; t and a are D^1/2 across the segment and along it.
-inline void put_bend(const LaneQuaternion& e, const Lane& w, const LaneMatrix* axes, const Lane& t, const Lane& a,
-                     Side& out) {
-  if (axes) {
-    const LaneMatrix& p = *axes;
-    const LaneVector v = {e.x, e.y, e.z};
-    const auto column = [&](const Lane& x, const Lane& y, const Lane& z) {
-      const LaneVector row = {x, y, z};
-      return w * row + cross(v, row);
-    };
-    put(t * column(p.x.x, p.y.x, p.z.x), out.column[0].row + 3);
-    put(t * column(p.x.y, p.y.y, p.z.y), out.column[1].row + 3);
-    put(a * column(p.x.z, p.y.z, p.z.z), out.column[2].row + 3);
-    return;
-  }
+/// The last three rows, ([v]x + w I) P^T; t and a are D^1/2 across the segment and along it. Out of line, because
+/// straight joints are the rule.
+[[gnu::noinline]] void put_kinked_bend(const LaneQuaternion& e, const Lane& w, const LaneMatrix& p, const Lane& t,
+                                       const Lane& a, Side& out) {
+  const LaneVector v = {e.x, e.y, e.z};
+  const auto column = [&](const Lane& x, const Lane& y, const Lane& z) {
+    const LaneVector row = {x, y, z};
+    return w * row + cross(v, row);
+  };
+  put(t * column(p.x.x, p.y.x, p.z.x), out.column[0].row + 3);
+  put(t * column(p.x.y, p.y.y, p.z.y), out.column[1].row + 3);
+  put(a * column(p.x.z, p.y.z, p.z.z), out.column[2].row + 3);
+}
+
+[[gnu::always_inline]] inline void put_bend(const LaneQuaternion& e, const Lane& w, const LaneMatrix* axes,
+                                            const Lane& t, const Lane& a, Side& out) {
+  if (axes) return put_kinked_bend(e, w, *axes, t, a, out);
   const Lane tw = t * w, tz = t * e.z;
   put({tw, tz, -t * e.y}, out.column[0].row + 3);
   put({-tz, tw, t * e.x}, out.column[1].row + 3);
@@ -43,8 +45,8 @@ inline void put_bend(const LaneQuaternion& e, const Lane& w, const LaneMatrix* a
 }
 
 /// -S [arm_a]x, then ([v]x - w I) P_a^T; and the shift.
-inline void put_side_a(const JointTurn<Lane>& turn, const BatchedJoint& joint, const BatchedSegment& segment,
-                       Sides& out) {
+[[gnu::always_inline]] inline void put_side_a(const JointTurn<Lane>& turn, const BatchedJoint& joint,
+                                              const BatchedSegment& segment, Sides& out) {
   const Lane &t = segment.root_turn_mobility, &a = segment.root_inverse_inertia_axial;
   const LaneMatrix s = rotation_matrix(conjugate(relative_turn(turn, joint.shape)));
   const LaneVector arm = t * joint.shape.arm_a;
@@ -59,8 +61,8 @@ inline void put_side_a(const JointTurn<Lane>& turn, const BatchedJoint& joint, c
 }
 
 /// [arm_b]x, then ([v]x + w I) P_b^T.
-inline void put_side_b(const JointTurn<Lane>& turn, const BatchedJoint& joint, const BatchedSegment& segment,
-                       Sides& out) {
+[[gnu::always_inline]] inline void put_side_b(const JointTurn<Lane>& turn, const BatchedJoint& joint,
+                                              const BatchedSegment& segment, Sides& out) {
   const Lane &t = segment.root_turn_mobility, &a = segment.root_inverse_inertia_axial, zero{};
   const LaneVector arm = t * joint.shape.arm_b;
   put({zero, arm.z, -arm.y}, out.b.column[0].row);

@@ -41,10 +41,15 @@ inline JointTurn<T> joint_turn(const Quad<T>& a, const Quad<T>& b, const JointSh
   return {e, 1 / (1 + e.w)};
 }
 
+template <class T>
+[[gnu::noinline]] Quad<T> kinked_turn(const JointTurn<T>& turn, const JointKink<T>& kink) {
+  return product(product(kink.frame_a, turn.e), conjugate(kink.frame_b));
+}
+
 /// d = conj(q_a) q_b.
 template <class T>
 inline Quad<T> relative_turn(const JointTurn<T>& turn, const JointShape<T>& shape) {
-  return shape.kink ? product(product(shape.kink->frame_a, turn.e), conjugate(shape.kink->frame_b)) : turn.e;
+  return shape.kink ? kinked_turn(turn, *shape.kink) : turn.e;
 }
 
 /// H = R(e^(1/2)) = w I + [v]x + v v^T / (1 + w).

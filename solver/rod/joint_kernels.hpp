@@ -72,6 +72,18 @@ inline void add_square(const JointSide& side, const Segment& segment, const doub
 
 /// J^T dlambda of one joint: the impulses on its two segments.
 inline void impulses(const JointJacobian& jacobian, const Lane8& multiplier, Lane8& on_a, Lane8& on_b) {
+  if (jacobian.straight) {
+    Lane8 terms[6];
+    for (int c = 0; c < 3; ++c) terms[c] = jacobian.rotation_a[c] * multiplier;
+    for (int c = 0; c < 3; ++c) terms[3 + c] = jacobian.rotation_b[c] * multiplier;
+    const Lane8 torque = sum_lanes(terms);  // on a in lanes 0..2, on b in lanes 3..5
+    Lane4 force_a{}, force_b{};
+    for (int c = 0; c < 3; ++c) force_a -= jacobian.shift_b[c] * multiplier[c];
+    for (int c = 0; c < 3; ++c) force_b -= jacobian.shift_a[c] * multiplier[c];
+    on_a = __builtin_shufflevector(widened(force_a), torque, 0, 1, 2, 8, 9, 10, 14, 14);
+    on_b = __builtin_shufflevector(widened(force_b), torque, 0, 1, 2, 11, 12, 13, 14, 14);
+    return;
+  }
   Lane8 of_a[6], of_b[6];
   for (int c = 0; c < 3; ++c) {
     of_a[c] = widened(jacobian.shift_a[c]) * multiplier;

@@ -165,7 +165,9 @@ Linearization::Linearization(const Rod& rod) : constraint(VectorX::Zero(6 * rod.
     std::array<const Joint*, lane_width> group{};
     for (std::size_t lane = 0; lane < lane_width; ++lane) {
       group[lane] = &rod.joints[std::min(first + lane, count - 1)];
-      joints.emplace_back().inverse_length = 1 / group[lane]->length;
+      JointJacobian& jacobian = joints.emplace_back();
+      jacobian.inverse_length = 1 / group[lane]->length;
+      jacobian.straight = !group[lane]->is_kinked();
     }
     shapes.push_back(joint_shape(group, kinks));
     turns.emplace_back();
@@ -201,6 +203,7 @@ void linearize(const Rod& rod, const Joint& joint, JointJacobian& jacobian, doub
   for (const double value : {gap.x, gap.y, gap.z, bent.x, bent.y, bent.z}) constraint[row++] = value;
   write(parts_of(turn, half, shape), jacobian);
   jacobian.inverse_length = shape.inverse_length;
+  jacobian.straight = !shape.kink;
 }
 
 void linearize(const Rod& rod, Linearization& out) {

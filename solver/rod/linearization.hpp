@@ -31,6 +31,7 @@ struct JointJacobian {
   Lane8 rotation_a[3], rotation_b[3];  ///< dC/dphi
   Lane4 shift_a[3], shift_b[3];        ///< dC_s/du
   double inverse_length;               ///< 1/l [1/m]
+  bool straight;                       ///< P_a = P_b = 1: shift_a is minus the transpose of shift_b
 };
 
 using JointKinks = std::vector<std::shared_ptr<const JointKink<Lane>>>;
