@@ -190,7 +190,8 @@ std::vector<Column> all_columns() {
                                                       wxyz, "1", "segment orientation there"),
       column<&R::systems, &Systems::contact_force>(
           "/systems/segments/contact_force", Rows::balanced_segment, xyz, "kg m",
-          "force of contacts on the segment times the squared constraint time step, world frame"),
+          "force of contacts on the segment times the squared constraint time step, world frame (forces of point loads "
+          "are part of free_position_m)"),
       column<&R::systems, &Systems::contact_torque>(
           "/systems/segments/contact_torque", Rows::balanced_segment, xyz, "kg m^2",
           "torque of contacts and of point loads about its centre, times the same"),

@@ -101,14 +101,15 @@ struct KindsOf<std::variant<Kind...>> {
   }
 };
 
-/// The alternative of a variant with this name, else the first.
+/// The alternative of a variant with this name.
 template <class Owner>
 Owner kind_named(const std::string& name) {
-  Owner owner;
+  std::optional<Owner> owner;
   KindsOf<Owner>::each([&](const auto& kind) {
     if (name == kind.name) owner = kind;
   });
-  return owner;
+  if (!owner) throw std::logic_error("no kind is called " + name);
+  return *owner;
 }
 
 /// The first of several members that the struct has.

@@ -167,7 +167,7 @@ void add_rods(Table& table) {
                  tip_motion_keys(), &OpenRod::tip_motion);
   table.optional(choice_key("stretch",
                             "stiffness against stretch and shear: chosen from the expected forces, or EA and kappa G A "
-                            "(Timoshenko's coefficient)"),
+                            "(kappa of the section)"),
                  Words<Stretch>{{"inextensible", Stretch::inextensible}, {"physical", Stretch::physical}},
                  &Rods::stretch);
   table.optional(number_key("stretch_compliance_per_j",
@@ -317,6 +317,7 @@ std::vector<std::string> unbalanced_loads(const Json& values, const std::filesys
   if (values["time"]["balance"] != false || (method.is_string() && method != "cg" && method != "direct")) return {};
   std::vector<std::string> warnings;
   visit_scenes(values["scene"], "scene", [&](const Json& scene, const std::string& path) {
+    if (scene["type"] == Lattice::name) return;  // its loads are at the centres of segments
     for (const char* load : {"tip_force_n", "tip_torque_nm"}) {
       bool is_loaded = false;
       visit_numbers(scene.value(load, Json()), "",
@@ -325,7 +326,7 @@ std::vector<std::string> unbalanced_loads(const Json& values, const std::filesys
         warnings.emplace_back(
             job_error(file, member(path, load),
                       "the rest shape under a point load depends on time.step_s, most of all near buckling; set "
-                      "\"balance\": true in \"time\"")
+                      "\"balance\": true in \"time\" (methods direct and cg)")
                 .what());
     }
   });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <queue>
 #include <string>
 #include <utility>
@@ -64,11 +65,20 @@ void ContactBodies::connect(const Rod& rod, int first_body) {
     for (const int into : {-1, 1})
       if (there != into) next_[static_cast<std::size_t>(first_body + from)].push_back({end, first_body + to, into});
   };
+  std::map<int, std::vector<std::pair<int, int>>> at_point;  // segments that end at one without length, and which end
+  const auto is_point = [&rod](int segment) { return rod.segments[static_cast<std::size_t>(segment)].length_m == 0; };
   for (const Joint& joint : rod.joints) {
     const int on_a = place(joint.a, joint.arm_a), on_b = place(joint.b, joint.arm_b);
+    if (is_point(joint.a)) at_point[joint.a].emplace_back(joint.b, on_b);
+    if (is_point(joint.b)) at_point[joint.b].emplace_back(joint.a, on_a);
+    if (is_point(joint.a) || is_point(joint.b)) continue;
     connect(joint.a, on_a, joint.b, on_b);
     connect(joint.b, on_b, joint.a, on_a);
   }
+  for (const auto& [point, ends] : at_point)
+    for (const auto& [from, end] : ends)
+      for (const auto& [to, there] : ends)
+        if (from != to) connect(from, end, to, there);
 }
 
 void ContactBodies::add(const Obstacle& obstacle) {

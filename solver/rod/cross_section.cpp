@@ -9,7 +9,7 @@ CrossSection circle(double radius_m, double nu) { return tube(radius_m, radius_m
 
 CrossSection tube(double radius_m, double wall_m, double nu) {
   const double inner = radius_m - wall_m, a2 = radius_m * radius_m, b2 = inner * inner;
-  const double area = pi * (a2 - b2), moment = pi * (a2 * a2 - b2 * b2) / 4;
+  const double area = pi * wall_m * (radius_m + inner), moment = area * (a2 + b2) / 4;
   const double squares = a2 + b2, fourths = a2 * a2 + b2 * b2, both = a2 * b2;
   const double shear =
       6 * squares * squares * (1 + nu) * (1 + nu) /

@@ -3,8 +3,6 @@
 // Axes are the segments' local x and y. A rectangle or an ellipse has its width along x and its height along y.
 #pragma once
 
-#include <variant>
-
 #include "solver/numbers/types.hpp"
 
 namespace rodsweep {

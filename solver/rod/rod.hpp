@@ -92,9 +92,9 @@ class Rod {
   VectorX lambda;
   double constraint_dt = 0;  ///< [s] of the last step: forces are J^T lambda over its square (time_step.hpp)
 
-  // For the step: the positions p* of segments without joints and contacts, and the impulses of contacts on them: force
-  // and torque about the centre, in the world, times constraint_dt^2; empty without contact. Torques of point loads, in
-  // the world, in steps that keep the balance of momentum; empty without such loads.
+  // For the step: p*, the poses of segments without joints, contacts and, in balance, torques of point loads. Impulses
+  // of contacts: force and torque about the centre, in the world, times constraint_dt^2; empty without contact. Torques
+  // of point loads, in the world, in steps that keep the balance of momentum; empty without such loads.
   std::vector<Vector3> free_position;
   std::vector<Quaternion> free_orientation;
   std::vector<Vector6> contact_impulse;

@@ -14,13 +14,13 @@ struct Piece {
 
 /// Crossings are centres of segments, so a rod extends half a segment beyond its outermost crossings. At a held
 /// crossing there is a point between half segments instead; a rod that is held at its end ends there.
-template <class IsHeld>
-std::vector<Piece> pieces(int crossings, int segments, const IsHeld& is_held) {
+template <class Held>
+std::vector<Piece> pieces(int crossings, int segments, const Held& held) {
   const int last = (crossings - 1) * segments;
   std::vector<Piece> out;
   for (int i = 0; i <= last; ++i) {
     const int crossing = i % segments == 0 ? i / segments : -1;
-    if (crossing < 0 || !is_held(crossing)) {
+    if (crossing < 0 || !held(crossing)) {
       out.push_back({static_cast<double>(i), 1, crossing});
       continue;
     }
@@ -85,8 +85,9 @@ void Net::build(Scene& scene) const {
       }
       line.push_back(static_cast<int>(all.size()));
       if (here) here->push_back(line.back());
-      all.push_back(segment_at(start + piece.centre * step, orientation, piece.length * length, *this));
-      all.back().is_static = piece.length == 0;
+      const Vector3 centre = start + piece.centre * step;
+      all.push_back(piece.length == 0 ? held_point(centre, orientation)
+                                      : segment_at(centre, orientation, piece.length * length, *this));
     }
   };
   for (int row = 0; row < rows; ++row)

@@ -7,25 +7,46 @@
 namespace rodsweep {
 namespace {
 
-SegmentSpec wall(const Vector3& at, const Quaternion& orientation) {
-  SegmentSpec out;
-  out.position_m = at;
-  out.orientation = orientation;
-  out.is_static = true;
-  return out;
-}
-
 /// Moves the end of the last segment. Velocity and acceleration are continuous.
 MovingClamp tip_clamp(const TipMotion& motion, const SegmentSpec& last, int segment) {
-  const Vector3 half(0, 0, last.length_m / 2), axis = motion.rotation_deg.normalized();
-  const double angle = motion.rotation_deg.norm() * pi / 180;
-  const Quaternion turned = last.orientation;
-  return {0, segment, [=, end = Vector3(last.position_m + turned * half)](double time_s) {
+  const Vector3 half(0, 0, last.length_m / 2);
+  const Quaternion at_first = last.orientation;
+  return {0, segment, [=, end = Vector3(last.position_m + at_first * half)](double time_s) {
             const double u = std::min(time_s / motion.duration_s, 1.0);
             const double done = u * u * u * (10 - 15 * u + 6 * u * u);
-            const Quaternion orientation = (Quaternion(Eigen::AngleAxisd(done * angle, axis)) * turned).normalized();
+            const Quaternion orientation = (motion.rotation(done) * at_first).normalized();
             return Pose{end + done * motion.displacement_m - orientation * half, orientation};
           }};
+}
+
+/// Throws SceneError if a rod between two ends is too short for the motion of its tip.
+template <class RodScene>
+void check_reach(const RodScene& p) {
+  if (!p.tip_motion || p.clamp == Clamp::free || p.stretch == Stretch::physical || p.stretch_compliance_per_j) return;
+  const int held = p.clamp == Clamp::segment ? 1 : 0, n = p.segments;
+  const Vector3 from = p.vertex_m(held), end = p.vertex_m(n), arm = p.vertex_m(n - held) - end;
+  const double length = (n - 2 * held) * (p.vertex_m(1) - p.vertex_m(0)).norm();
+  constexpr int looks = 100;
+  constexpr double tolerance = 1e-5;
+  double apart = 0;
+  for (int i = 0; i <= looks; ++i) {
+    const double done = static_cast<double>(i) / looks;
+    apart =
+        std::max(apart, (end + done * p.tip_motion->displacement_m + p.tip_motion->rotation(done) * arm - from).norm());
+  }
+  if (apart > (1 + tolerance) * length)
+    throw SceneError("tip_motion moves the ends of the free part " + std::to_string(apart) +
+                     " m apart; must be at most its length, " + std::to_string(length) +
+                     " m, or \"stretch\" must be \"physical\"");
+}
+
+/// What an "inextensible" rod has to hold if both ends are prescribed: it buckles at 4 pi^2 EI / L^2; bends of half that
+/// radius need four times as much.
+double prescribed_force(const std::vector<SegmentSpec>& segments, const RodParameters& p) {
+  double length = 0;
+  for (const SegmentSpec& segment : segments) length += segment.length_m;
+  const Section rod = stiffness(p);
+  return 16 * pi * pi * std::max(rod.bending_x_nm2, rod.bending_y_nm2) / (length * length);
 }
 
 /// A rod whose joints lie on `vertices`, with what holds, loads or moves its tip. `height`: the direction of each
@@ -36,10 +57,12 @@ void add_rod(const std::vector<Vector3>& vertices, const Height& height, const O
   if (p.section)
     for (std::size_t i = 0; i < segments.size(); ++i) set_height(segments[i], height(static_cast<double>(i) + 0.5));
   segments.front().is_static = p.clamp == Clamp::segment;
-  if (p.clamp == Clamp::wall) segments.insert(segments.begin(), wall(vertices.front(), segments.front().orientation));
-  if (p.has_end_wall()) segments.push_back(wall(vertices.back(), segments.back().orientation));
+  if (p.clamp == Clamp::wall)
+    segments.insert(segments.begin(), held_point(vertices.front(), segments.front().orientation));
+  if (p.has_end_wall()) segments.push_back(held_point(vertices.back(), segments.back().orientation));
   segments.back().is_static |= p.tip_motion.has_value();
-  scene.rods.push_back(chain(segments, p, weight(segments, p) + p.tip_force_n.norm()));
+  const double of_tip = p.tip_motion ? prescribed_force(segments, p) : p.tip_force_n.norm();
+  scene.rods.push_back(chain(segments, p, weight(segments, p) + of_tip));
 
   const int last = static_cast<int>(segments.size()) - 1;
   if (p.tip_motion) scene.clamps.push_back(tip_clamp(*p.tip_motion, segments.back(), last));
@@ -65,37 +88,44 @@ SceneSize OpenRod::size() const {
   return {count, count - 1};
 }
 
-Vector3 BendingRod::end_m() const {
+Quaternion TipMotion::rotation(double done) const {
+  return Quaternion(Eigen::AngleAxisd(done * rotation_deg.norm() * pi / 180, rotation_deg.normalized()));
+}
+
+Vector3 BendingRod::vertex_m(int joint) const {
   const double angle = initial_angle_deg * pi / 180;
-  return length_m * Vector3(std::cos(angle), std::sin(angle), 0);
+  return joint * (length_m / segments) * Vector3(std::cos(angle), std::sin(angle), 0);
 }
 
 void BendingRod::check() const {
   OpenRod::check();
-  if (!tip_motion || clamp == Clamp::free || stretch == Stretch::physical || stretch_compliance_per_j) return;
-  const double apart = (end_m() + tip_motion->displacement_m).norm();
-  constexpr double rounding = 1e-9;
-  if (apart > (1 + rounding) * length_m)
-    throw SceneError("tip_motion.displacement_m moves the ends " + std::to_string(apart) +
-                     " m apart; must be at most length_m (" + std::to_string(length_m) +
-                     "), or \"stretch\" must be \"physical\"");
+  check_reach(*this);
 }
 
 void BendingRod::build(Scene& scene) const {
-  const Vector3 end = end_m();
+  const Vector3 along = vertex_m(1);
+  std::vector<Vector3> vertices;
+  for (int i = 0; i <= segments; ++i) vertices.push_back(vertex_m(i));
   add_rod(
-      straight_line(Vector3::Zero(), end, segments), [&](double) { return Vector3(-end.y(), end.x(), 0); }, *this,
-      scene);
+      vertices, [&](double) { return Vector3(-along.y(), along.x(), 0); }, *this, scene);
+}
+
+double Helix::turned(double joint) const { return 2 * pi * windings * joint / segments; }
+
+Vector3 Helix::vertex_m(int joint) const {
+  const double t = turned(joint);
+  return {helix_radius_m * std::cos(t), -helix_height_m * joint / segments, helix_radius_m * std::sin(t)};
+}
+
+void Helix::check() const {
+  OpenRod::check();
+  check_reach(*this);
 }
 
 void Helix::build(Scene& scene) const {
-  const auto angle = [this](double joint) { return 2 * pi * windings * joint / segments; };
   std::vector<Vector3> vertices;
-  for (int i = 0; i <= segments; ++i) {
-    const double t = angle(i);
-    vertices.emplace_back(helix_radius_m * std::cos(t), -helix_height_m * i / segments, helix_radius_m * std::sin(t));
-  }
-  const auto outwards = [&](double joint) { return Vector3(std::cos(angle(joint)), 0, std::sin(angle(joint))); };
+  for (int i = 0; i <= segments; ++i) vertices.push_back(vertex_m(i));
+  const auto outwards = [this](double joint) { return Vector3(std::cos(turned(joint)), 0, std::sin(turned(joint))); };
   add_rod(vertices, outwards, *this, scene);
 }
 

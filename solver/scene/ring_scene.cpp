@@ -19,8 +19,10 @@ void Ring::check() const {
                      std::to_string(segments) + " segments");
   const CrossSection of = cross_section(*this);
   if (twist_deg != 0 && of.second_moment_x_m4 != of.second_moment_y_m4)
-    throw SceneError("twist_deg is " + std::to_string(twist_deg) +
-                     "; must be 0 for a section that bends more easily about one axis than about the other");
+    throw SceneError(
+        "twist_deg is " + std::to_string(twist_deg) +
+        "; must be 0 for a \"section\" that bends more easily about one axis than about the other, or the section "
+        "must be a circle or a tube");
 }
 
 SceneSize Ring::size() const { return {segments, segments}; }

@@ -72,6 +72,14 @@ SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, dou
   return s;
 }
 
+SegmentSpec held_point(const Vector3& at, const Quaternion& orientation) {
+  SegmentSpec out;
+  out.position_m = at;
+  out.orientation = orientation;
+  out.is_static = true;
+  return out;
+}
+
 void set_height(SegmentSpec& segment, const Vector3& height) {
   Matrix3 axes;
   axes.col(2) = segment.orientation * Vector3::UnitZ();

@@ -17,6 +17,9 @@ Section stiffness(const RodParameters& p);
 /// A segment of the scene's material.
 SegmentSpec segment_at(const Vector3& centre, const Quaternion& orientation, double length_m, const RodParameters& p);
 
+/// A static point that clamps what is joined to it: a segment of zero length, without contact.
+SegmentSpec held_point(const Vector3& at, const Quaternion& orientation);
+
 /// Segments a and b end to end (the local z axis of both points from a to b), with the material's stiffness. `force_n`:
 /// the force that an "inextensible" joint has to hold.
 JointSpec joint_between(const std::vector<SegmentSpec>& segments, int a, int b, const RodParameters& p, double force_n);

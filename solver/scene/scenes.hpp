@@ -81,10 +81,11 @@ struct TipMotion {
   Vector3 displacement_m{0, 0, 0};
   Vector3 rotation_deg{0, 0, 0};
   double duration_s = 1;
+  Quaternion rotation(double done) const;  ///< after this part of it
 };
 
-/// A rod with two ends. Its tip bears a dead load, or moves as prescribed, held as `clamp` holds the first end (by a
-/// wall if that is free).
+/// A rod with two ends. Its tip bears a dead load, or moves as prescribed: held as `clamp` holds the first end, or by a
+/// wall if the first end is free.
 struct OpenRod : RodParameters {
   int segments = 30;
   Clamp clamp = Clamp::segment;
@@ -102,7 +103,7 @@ struct BendingRod : OpenRod {
   static constexpr const char* name = "bending_rod";
   double length_m = 2;
   double initial_angle_deg = 0;
-  Vector3 end_m() const;
+  Vector3 vertex_m(int joint) const;
   void check() const;
   void build(Scene& scene) const;
 };
@@ -114,6 +115,9 @@ struct Helix : OpenRod {
   double helix_radius_m = 0.5;
   double helix_height_m = 0.5;
   double windings = 2.5;
+  double turned(double joint) const;  ///< t [rad]
+  Vector3 vertex_m(int joint) const;
+  void check() const;
   void build(Scene& scene) const;
 };
 

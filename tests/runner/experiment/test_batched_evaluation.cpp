@@ -185,6 +185,9 @@ TEST_CASE("data sets of chains step in batches of equal ones, other tasks alone"
 
   CHECK(batches(plan_of(small_job())) == std::vector<std::int64_t>{-1});
   CHECK(batches(plan_of(with("/scene/tip_force_n", "[0, 1, 0]", data_job()))) == std::vector<std::int64_t>{-1});
+  CHECK(batches(plan_of(with("/scene/tip_torque_nm", "[0, 1, 0]", data_job()))) == std::vector<std::int64_t>{-1});
+  CHECK(batches(plan_of(with("/scene/tip_motion", R"({"duration_s": 1})", data_job()))) ==
+        std::vector<std::int64_t>{-1});
   CHECK(batches(plan_of(with("/scene/wind", R"({"mean_m_s": [5, 0, 0]})", data_job()))) ==
         std::vector<std::int64_t>{-1});
   CHECK(batches(plan_of(with("/scene/stretch", "\"physical\"", data_job()))) == std::vector<std::int64_t>{-1});

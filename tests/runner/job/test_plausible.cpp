@@ -50,6 +50,10 @@ TEST_CASE("a point load on steps that do not balance momentum is warned of by it
   for (const char* balance : {"true", R"({"grid": [false, true]})"})
     CHECK(job_of(with("/time/balance", balance, loaded)).warnings.empty());
   CHECK(job_of(with("/scene/tip_force_n", "[0, 0, 0]")).warnings.empty());
+  const char* lattice =  // its loads are at centres of segments
+      R"({"type": "lattice", "nodes_x": 3, "segments": 2, "mesh_m": 0.5, "radius_m": 0.05, "density_kg_m3": 1000,
+          "youngs_modulus_pa": 1e6, "torsion_modulus_pa": 1e6, "tip_force_n": [0, -2, 1]})";
+  CHECK(job_of(with("/scene", lattice)).warnings.empty());
 }
 
 TEST_CASE("no job of the project has a value that is not plausible") {

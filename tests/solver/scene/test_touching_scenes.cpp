@@ -221,6 +221,20 @@ TEST_CASE("the rods of a bundle swing together and touch") {
   CHECK(nearest < 1.001);
 }
 
+TEST_CASE("a net with contact rests flat without contacts, also where it is held") {
+  for (const Held held : {Held::side, Held::corners}) {
+    Net p;
+    p.held = held;
+    p.gravity_m_s2.setZero();
+    p.contact.emplace();
+    Scene scene = build_scene(p);
+    DirectSolve direct(scene);
+    LinearProjection projection(scene, direct);
+    TimeStepper stepper(scene, {0.01, 5, 1e-9});
+    CHECK(stepper.step(projection).contacts == 0);
+  }
+}
+
 TEST_CASE("the counts of a scene are those of what is built") {
   RingChain rings;
   rings.radius_m = 0.02;
