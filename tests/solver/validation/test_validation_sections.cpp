@@ -210,7 +210,8 @@ TEST_CASE("Sections and tips that cannot be are refused by what is wrong with th
   Ring ring;
   ring.section = Rectangle{0.01, 0.02};
   ring.twist_deg = 90;
-  CHECK_THROWS_WITH(validate(ring), Catch::StartsWith("twist_deg is 90.000000; must be 0 for a \"section\" that bends"));
+  CHECK_THROWS_WITH(validate(ring),
+                    Catch::StartsWith("twist_deg is 90.000000; must be 0 for a \"section\" that bends"));
   p.section.reset();
   p.tip_motion = TipMotion{Vector3(0, 0.1, 0), Vector3::Zero(), 1};
   CHECK_THROWS_WITH(validate(p), Catch::StartsWith("tip_motion moves the ends of the free part 2.002") &&
