@@ -5,7 +5,6 @@
 // it, so that they hold valid numbers.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "solver/numbers/lane_blocks.hpp"

@@ -7,17 +7,11 @@ std::optional<BatchedBalance> balance_of(const std::vector<Scene>& scenes, const
   return wanted ? std::optional(BatchedBalance(scenes, rods)) : std::nullopt;
 }
 
-// FreeFlight::predict() by a step of Euler and by two steps.
+// FreeFlight::predict() by a step of Euler.
 LanePose flown(const LaneMotion& now, const Flight& flight, const Lane& h) {
   const Lane damped = h * flight.damping;
   const LaneVector turn = gyrated(now.spin, director(now.orientation), h * flight.gyration);
   return {now.position + damped * (now.velocity + flight.gain), rotated(now.orientation, damped * turn)};
-}
-
-LanePose flown(const LanePose& past, const LaneMotion& now, const LaneMotion& before, const Flight& flight,
-               const Lane& h) {
-  return {past.position + h * free_velocity(now, before, flight),
-          rotated(past.orientation, free_turn(now, before, expected(past, now, before, h), flight, h))};
 }
 
 }  // namespace
@@ -126,7 +120,8 @@ void BatchedStepper::fly() {
     };
     if (!segment.is_static) {
       const Flight flight{segment.gyration, damping, gain};
-      const LanePose pose = uses_two_steps_ ? flown(past, now, before_[s], flight, h) : flown(now, flight, h);
+      const LanePose pose = uses_two_steps_ ? flown(past, now, before_[s], expected(past, now, before_[s], h), flight, h)
+                                            : flown(now, flight, h);
       move(pose.position, pose.orientation);
     }
     rods_.free[s] = {segment.position, segment.orientation};

@@ -105,8 +105,8 @@ void FreeFlight::predict_by_two_steps(Rod& rod, double damping_per_s, const Vect
       flight.axial_turning =
           h * (group.inverse_inertia_transverse + group.excess) * dot(director(group.expected.orientation), torque);
     }
-    move_free(rod, group, s, count, group.past.position + step * free_velocity(group.now, group.before, flight),
-              rotated(group.past.orientation, free_turn(group.now, group.before, group.expected, flight, step)));
+    const LanePose end = flown(group.past, group.now, group.before, group.expected, flight, step);
+    move_free(rod, group, s, count, end.position, end.orientation);
     set_velocities(rod, group.now, s, count);
   });
 }

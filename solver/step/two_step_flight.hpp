@@ -68,4 +68,11 @@ inline LaneVector free_velocity(const LaneMotion& now, const LaneMotion& before,
   return flight.damping * (past(now.velocity, before.velocity) + flight.gain);
 }
 
+/// Where free flight ends.
+inline LanePose flown(const LanePose& past, const LaneMotion& now, const LaneMotion& before, const LaneMotion& expected,
+                      const Flight& flight, const Lane& h) {
+  return {past.position + h * free_velocity(now, before, flight),
+          rotated(past.orientation, free_turn(now, before, expected, flight, h))};
+}
+
 }  // namespace rodsweep
