@@ -159,7 +159,9 @@ KeyTable<ContactSettings> contact_keys() {
           .at_most(1),
       &Settings::tolerance);
   table.optional(
-      integer_key("sweeps", "maximum number of sweeps over all contacts after a projection of the rods").from(1, 10000),
+      integer_key("sweeps",
+                  "maximum number of sweeps over all contacts, there and back, after a projection of the rods")
+          .from(1, 10000),
       &Settings::sweeps);
   table.optional(number_key("recovery",
                             "fraction of a penetration from earlier steps that a step removes, at most 1 % of a radius")

@@ -120,8 +120,9 @@ void BatchedStepper::fly() {
     };
     if (!segment.is_static) {
       const Flight flight{segment.gyration, damping, gain};
-      const LanePose pose = uses_two_steps_ ? flown(past, now, before_[s], expected(past, now, before_[s], h), flight, h)
-                                            : flown(now, flight, h);
+      const LanePose pose = uses_two_steps_
+                                ? flown(past, now, before_[s], expected(past, now, before_[s], h), flight, h)
+                                : flown(now, flight, h);
       move(pose.position, pose.orientation);
     }
     rods_.free[s] = {segment.position, segment.orientation};

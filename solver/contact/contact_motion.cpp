@@ -8,6 +8,12 @@
 namespace rodsweep {
 namespace {
 
+/// Beyond it, the response of the whole rod after each sweep is cheaper.
+///
+/// Nearly inextensible rods have no Delassus operator. An exact response to a blow from the tip would compress them
+/// beyond any buckling load, and fling them away in the next step. Sweeps over free segments find first how a rod bends.
+int most_touched(const Rod& rod) { return can_be_condensed(rod) ? 160 : 0; }
+
 void move_in_world(Rod& rod, std::size_t segment, const Lane8& motion) {
   if (rod.segments[segment].is_static) return;
   rod.position[segment] += Vector3(motion[0], motion[1], motion[2]);
@@ -21,16 +27,36 @@ Vector3 turn(const Segment& segment, const Vector3& moment, const CapsuleAxis& a
          (segment.inverse_inertia_axial - segment.turn_mobility) * along.dot(moment) * along;
 }
 
+Lane8 joined(const Vector3& a, const Vector3& b) { return Lane8{a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), 0, 0}; }
+
+Vector3 at_point(const Lane8& motion, const Vector3& arm) {
+  return Vector3(motion[0], motion[1], motion[2]) + Vector3(motion[3], motion[4], motion[5]).cross(arm);
+}
+
+bool is_zero(const Lane8& v) {
+  for (int i = 0; i < 6; ++i)
+    if (v[i] != 0) return false;
+  return true;
+}
+
+Lane8 product(const Block6& block, const Lane8& v) {
+  Lane8 sum = block.column[0] * v[0];
+#pragma GCC unroll 6
+  for (int c = 1; c < 6; ++c) sum += block.column[c] * v[c];
+  return sum;
+}
+
 }  // namespace
 
 ContactMotion::ContactMotion(Scene& scene, const ContactBodies& bodies)
     : scene_(scene),
       bodies_(bodies),
       motion_(static_cast<std::size_t>(bodies.count()), Lane8{}),
-      settled_(static_cast<std::size_t>(bodies.count()), Lane8{}) {
+      settled_(static_cast<std::size_t>(bodies.count()), Lane8{}),
+      wrench_(static_cast<std::size_t>(bodies.count()), Lane8{}) {
   int first_body = 0;
   for (const Rod& rod : scene.rods) {
-    rods_.push_back({first_body});
+    rods_.push_back({first_body, 1, {}, DelassusOperator(rod.segment_count(), most_touched(rod))});
     first_body += rod.segment_count();
   }
 }
@@ -39,61 +65,139 @@ void ContactMotion::start_step(double unit_dt) {
   for (std::size_t r = 0; r < rods_.size(); ++r) {
     const double ratio = scene_.rods[r].constraint_dt / unit_dt;
     rods_[r].share = ratio * ratio;
+    rods_[r].assembled = false;
   }
+}
+
+void ContactMotion::respond() {
+  responds_ = true;
+  for (std::size_t r = 0; r < rods_.size(); ++r) {
+    Coupled& coupled = rods_[r];
+    coupled.touched = false;
+    if (coupled.assembled && (coupled.delassus.is_full() || coupled.response->is_stale(scene_.rods[r])))
+      coupled.assembled = false;
+  }
+}
+
+void ContactMotion::touch(int body) {
+  if (body < 0) return;
+  const Body& of = bodies_.body(body);
+  if (!of.is_free) return;
+  Coupled& coupled = rods_[static_cast<std::size_t>(of.rod)];
+  const Rod& rod = scene_.rods[static_cast<std::size_t>(of.rod)];
+  if (!coupled.response) coupled.response.emplace(rod);
+  if (!coupled.assembled) {
+    coupled.response->assemble(rod, rod.constraint_dt);
+    coupled.delassus.clear();
+    coupled.assembled = true;
+  }
+  coupled.touched = true;
+  coupled.delassus.touch(of.segment);
+}
+
+void ContactMotion::update() {
+  for (std::size_t r = 0; r < rods_.size(); ++r)
+    if (rods_[r].touched) rods_[r].delassus.update(scene_.rods[r], *rods_[r].response);
 }
 
 const Segment& ContactMotion::segment(const Body& of) const {
   return scene_.rods[static_cast<std::size_t>(of.rod)].segments[static_cast<std::size_t>(of.segment)];
 }
 
-Matrix3 ContactMotion::mobility(int body, const Vector3& arm, const CapsuleAxis& axis) const {
-  Matrix3 w = Matrix3::Zero();
-  if (!bodies_.body(body).is_free) return w;
+Lane8 ContactMotion::free_motion(int body, const Lane8& wrench) const {
   const Segment& of = segment(bodies_.body(body));
-  for (int c = 0; c < 3; ++c) w.col(c) = turn(of, arm.cross(Vector3::Unit(c)), axis).cross(arm);
-  w.diagonal().array() += of.inverse_mass;
-  return share(bodies_.body(body).rod) * w;
+  const Vector3 force(wrench[0], wrench[1], wrench[2]), moment(wrench[3], wrench[4], wrench[5]);
+  return joined(of.inverse_mass * force, turn(of, moment, (*axes_)[static_cast<std::size_t>(body)]));
 }
 
-void ContactMotion::push(int body, const Vector3& arm, const Vector3& impulse, const CapsuleAxis& axis) {
-  const Body& of = bodies_.body(body);
+int ContactMotion::group(int body) const {
+  if (body < 0 || !bodies_.body(body).is_free) return -1;
+  const int rod = bodies_.body(body).rod;
+  return responds_ && !rods_[static_cast<std::size_t>(rod)].delassus.is_full() ? rod
+                                                                               : static_cast<int>(rods_.size()) + body;
+}
+
+Matrix3 ContactMotion::coupling(const BodyPoint& of, const BodyPoint& by) const {
+  const Body &moved = bodies_.body(of.body), &pushed = bodies_.body(by.body);
+  const Coupled& coupled = rods_[static_cast<std::size_t>(moved.rod)];
+  const bool is_free = !responds_ || coupled.delassus.is_full();
+  Matrix3 w;
+  for (int c = 0; c < 3; ++c) {
+    const Vector3 impulse = coupled.share * Vector3::Unit(c);
+    const Lane8 wrench = joined(impulse, by.arm.cross(impulse));
+    const Lane8 motion =
+        is_free ? free_motion(by.body, wrench) : product(coupled.delassus.block(moved.segment, pushed.segment), wrench);
+    w.col(c) = at_point(motion, of.arm);
+  }
+  return w;
+}
+
+Matrix3 ContactMotion::mobility(const BodyPoint& a, const BodyPoint& b) const {
+  Matrix3 w = Matrix3::Zero();
+  const int group_a = group(a.body), group_b = group(b.body);
+  if (group_a >= 0) w += coupling(a, a);
+  if (group_b >= 0) w += coupling(b, b);
+  if (group_a < 0 || group_a != group_b) return w;
+  const Matrix3 cross = coupling(a, b);
+  return w - cross - cross.transpose();
+}
+
+void ContactMotion::push(const BodyPoint& at, const Vector3& impulse) {
+  if (at.body < 0) return;
+  const Body& of = bodies_.body(at.body);
   if (!of.is_free) return;
-  const Segment& pushed = segment(of);
-  const Vector3 own = share(of.rod) * impulse;
-  const Vector3 dx = pushed.inverse_mass * own, dtheta = turn(pushed, arm.cross(own), axis);
-  motion_[static_cast<std::size_t>(body)] += Lane8{dx.x(), dx.y(), dx.z(), dtheta.x(), dtheta.y(), dtheta.z(), 0, 0};
-  rods_[static_cast<std::size_t>(of.rod)].pushed = true;
+  Coupled& coupled = rods_[static_cast<std::size_t>(of.rod)];
+  const Vector3 own = coupled.share * impulse;
+  const Lane8 wrench = joined(own, at.arm.cross(own));
+  if (responds_) {
+    wrench_[static_cast<std::size_t>(at.body)] += wrench;
+    coupled.pushed = true;
+  } else {
+    motion_[static_cast<std::size_t>(at.body)] += free_motion(at.body, wrench);
+  }
 }
 
-Vector3 ContactMotion::of(int body, const Vector3& arm) const {
-  const Lane8& motion = motion_[static_cast<std::size_t>(body)];
-  return Vector3(motion[0], motion[1], motion[2]) + Vector3(motion[3], motion[4], motion[5]).cross(arm);
+Vector3 ContactMotion::of(const BodyPoint& at) const {
+  if (at.body < 0) return Vector3::Zero();
+  return at_point(motion_[static_cast<std::size_t>(at.body)], at.arm);
+}
+
+bool ContactMotion::needs_settling() const {
+  return std::any_of(rods_.begin(), rods_.end(),
+                     [](const Coupled& coupled) { return coupled.touched && coupled.delassus.is_full(); });
+}
+
+bool ContactMotion::couples_segments() const {
+  return std::any_of(rods_.begin(), rods_.end(),
+                     [](const Coupled& coupled) { return coupled.touched && !coupled.delassus.is_full(); });
 }
 
 void ContactMotion::settle() {
   for (std::size_t r = 0; r < rods_.size(); ++r) {
     Coupled& coupled = rods_[r];
     if (!coupled.pushed) continue;
-    const Rod& rod = scene_.rods[r];
-    if (!coupled.response) coupled.response.emplace(rod);
-    if (!coupled.assembled) coupled.response->assemble(rod, rod.constraint_dt);
-    coupled.assembled = true;
     coupled.pushed = false;
-    Lane8* motion = motion_.data() + coupled.first_body;
-    Lane8* settled = settled_.data() + coupled.first_body;
-    for (int s = 0; s < rod.segment_count(); ++s) motion[s] -= settled[s];
+    const Rod& rod = scene_.rods[r];
+    Lane8* const motion = motion_.data() + coupled.first_body;
+    Lane8* const settled = settled_.data() + coupled.first_body;
+    Lane8* const wrench = wrench_.data() + coupled.first_body;
+    for (int s = 0; s < rod.segment_count(); ++s)
+      motion[s] = is_zero(wrench[s]) ? Lane8{} : coupled.response->free_motion(rod, s, wrench[s]);
     coupled.response->respond(rod, motion);
-    for (int s = 0; s < rod.segment_count(); ++s) motion[s] = settled[s] += motion[s];
+    for (int s = 0; s < rod.segment_count(); ++s) {
+      motion[s] = settled[s] += motion[s];
+      wrench[s] = Lane8{};
+    }
   }
 }
 
 void ContactMotion::apply(bool keeps_balance) {
   for (std::size_t r = 0; r < rods_.size(); ++r) {
     Coupled& coupled = rods_[r];
-    if (!coupled.assembled) continue;
-    coupled.assembled = false;
+    if (!coupled.touched) continue;
     Rod& rod = scene_.rods[r];
     rod.lambda += coupled.response->multipliers();
+    coupled.response->forget_multipliers();
     const auto move = [&] {
       for (int s = 0; s < rod.segment_count(); ++s) {
         const auto body = static_cast<std::size_t>(coupled.first_body + s);
@@ -108,9 +212,6 @@ void ContactMotion::apply(bool keeps_balance) {
   }
 }
 
-void ContactMotion::clear() {
-  std::fill(motion_.begin(), motion_.end(), Lane8{});
-  for (Coupled& coupled : rods_) coupled.pushed = false;
-}
+void ContactMotion::clear() { std::fill(motion_.begin(), motion_.end(), Lane8{}); }
 
 }  // namespace rodsweep

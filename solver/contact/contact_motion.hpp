@@ -1,23 +1,32 @@
-// The motion of bodies under the impulses of their contacts, within one Newton iteration and to first order. push()
-// moves a segment as if it were free; settle() adds the response of the joints of its rod (rod_response.hpp); at the
-// end every segment moves once, x += dx, q <- rotated(q, dtheta), and lambda += dlambda. Obstacles and static segments
-// do not move.
+// The motion of bodies under the impulses of their contacts, within one Newton iteration and to first order.
+//
+// While contacts are only measured (measure()), a push moves a segment at once, as if it were free. While rods respond
+// (respond()), pushes move them at the next settle(), with the response of their joints (rod_response.hpp). Meanwhile
+// coupling() tells how segments move by impulses on others: in rods with a Delassus operator (delassus_operator.hpp) as
+// they will, in others as if they were free. At the end every segment moves once, x += dx, q <- rotated(q, dtheta), and
+// lambda += dlambda. Obstacles and static segments do not move.
+//
+// The response of a rod with a Delassus operator is assembled once in a step, unless its segments turn
+// (RodResponse::is_stale): the next Newton iteration sees where the bodies are. Others are assembled in each iteration.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "solver/contact/contact_bodies.hpp"
-#include "solver/contact/rod_response.hpp"
+#include "solver/contact/delassus_operator.hpp"
 
 namespace rodsweep {
+
+/// A point of a body: `arm` from its centre.
+struct BodyPoint {
+  int body;
+  Vector3 arm;
+};
 
 class ContactMotion {
  public:
   ContactMotion(Scene& scene, const ContactBodies& bodies);
-
-  /// W of a body's point, `arm` from its centre: the point's motion per impulse there [1/kg].
-  Matrix3 mobility(int body, const Vector3& arm, const CapsuleAxis& axis) const;
 
   /// Call in each step before the others: impulses are forces times unit_dt^2 [kg m], also between rods whose
   /// multipliers are forces times the squares of other constraint_dt.
@@ -25,35 +34,62 @@ class ContactMotion {
   /// What a rod gets of an impulse.
   double share(int rod) const { return rods_[static_cast<std::size_t>(rod)].share; }
 
+  /// From now on all segments are free, until respond(). The axes must outlive the iteration.
+  void measure(const std::vector<CapsuleAxis>& axes) { axes_ = &axes, responds_ = false; }
+  /// Discards all pushes since measure().
+  void clear();
+
+  /// From now on rods respond. Call before touch().
+  void respond();
+  /// Contacts may push this body. Call update() after the last.
+  void touch(int body);
+  void update();
+
+  /// The motion of a point per impulse at another of the same group [1/kg].
+  Matrix3 coupling(const BodyPoint& of, const BodyPoint& by) const;
+  /// W of two bodies' points: their relative motion per impulse.
+  Matrix3 mobility(const BodyPoint& a, const BodyPoint& b) const;
+  /// Bodies of different groups are not coupled: a rod with a Delassus operator, a body of another; -1: does not move.
+  int group(int body) const;
+
   /// An impulse at a body's point.
-  void push(int body, const Vector3& arm, const Vector3& impulse, const CapsuleAxis& axis);
+  void push(const BodyPoint& at, const Vector3& impulse);
 
   /// The motion of a body's point.
-  Vector3 of(int body, const Vector3& arm) const;
+  Vector3 of(const BodyPoint& at) const;
 
+  /// Whether a touched rod has no Delassus operator.
+  bool needs_settling() const;
+  /// Whether a touched rod has one.
+  bool couples_segments() const;
+  /// Moves all segments of the rods that were pushed.
   void settle();
 
   /// Moves the bodies by the settled motions, then resets all motions. With the balance of momentum kept, joints keep
   /// their forces in the world (momentum_balance.hpp).
   void apply(bool keeps_balance);
 
-  /// Discards all pushes, which must not have settled.
-  void clear();
-
  private:
   struct Coupled {
     int first_body;
     double share = 1;
-    std::optional<RodResponse> response{};  ///< after the first push
-    bool pushed = false, assembled = false;
+    std::optional<RodResponse> response{};  ///< after the first touch
+    DelassusOperator delassus;
+    bool assembled = false;  ///< in this step
+    bool touched = false;    ///< in this iteration
+    bool pushed = false;     ///< since the last settle()
   };
   const Segment& segment(const Body& of) const;
+  Lane8 free_motion(int body, const Lane8& wrench) const;
 
   Scene& scene_;
   const ContactBodies& bodies_;
   std::vector<Coupled> rods_;
+  const std::vector<CapsuleAxis>* axes_ = nullptr;
+  bool responds_ = false;
   std::vector<Lane8> motion_;   ///< of every body: dx in lanes 0..2, dtheta in lanes 3..5
   std::vector<Lane8> settled_;  ///< after the joints' response
+  std::vector<Lane8> wrench_;   ///< impulses and their moments since the last settle()
 };
 
 }  // namespace rodsweep

@@ -11,7 +11,8 @@
 namespace rodsweep {
 namespace {
 
-constexpr double worse = 1.5;  ///< limit of a sweep's motion, relative to the least since the last restart
+constexpr double worse = 1.5;     ///< limit of a sweep's motion, relative to the least since the last restart
+constexpr double accurate = 0.3;  ///< of the tolerance, which the next linearisation has to meet
 
 void check_least(const char* what, double value, double least) {
   if (!(value >= least) || !std::isfinite(value))
@@ -52,8 +53,6 @@ bool ContactProjection::find(bool keeps_balance) {
   motion_.start_step(unit_dt_);
   last_.reserve(contacts_.capacity());
   linear_.resize(contacts_.size());
-  before_.resize(contacts_.size());
-  swept_.resize(contacts_.size());
   if (keeps_balance_) {
     linearise();
     tell_impulses();
@@ -85,44 +84,31 @@ const std::vector<char>& ContactProjection::impacts() {
 bool ContactProjection::project() {
   if (contacts_.empty()) return true;
   linearise();
-  const bool pressed = press();
-  restart(HUGE_VAL);
-  for (int i = 0; i < settings_.sweeps; ++i) {
-    const double moved = sweep();
-    check_interrupted(static_cast<std::int64_t>(contacts_.size()) * 100);
-    if (i == 0) swept_ = before_;
-    const bool converged = moved < settings_.tolerance;
-    if (converged && i == 0 && !pressed) {
-      undo_sweep();
-      return true;
+  const bool presses = fresh_ && std::any_of(contacts_.begin(), contacts_.end(),
+                                             [](const Contact& contact) { return !contact.impulse.isZero(0); });
+  if (residual() < settings_.tolerance && !presses) return true;
+  motion_.respond();
+  active_.clear();
+  activate();
+  press();
+  int sweeps = 0;
+  for (bool more = true; more;) {
+    restart(HUGE_VAL);
+    bool converged = false;
+    while (!converged && sweeps < settings_.sweeps) {
+      const double moved = sweep();
+      ++sweeps;
+      check_interrupted(static_cast<std::int64_t>(active_.size()) * 200);
+      converged = moved < (motion_.needs_settling() ? 1 : accurate) * settings_.tolerance;
+      if (!converged && sweeps < settings_.sweeps) accelerate(moved);
+      if (!converged && motion_.needs_settling()) settle();
     }
-    const bool last = converged || i + 1 == settings_.sweeps;
-    if (!last) accelerate(moved);
-    motion_.settle();
-    if (last) break;
+    settle();
+    more = converged && activate();
   }
   motion_.apply(keeps_balance_);
   if (keeps_balance_) tell_impulses();
   return false;
-}
-
-// Applies the last step's impulses to contacts that persist, unless the balance of momentum already includes them.
-// Returns whether anything moves.
-bool ContactProjection::press() {
-  if (!fresh_) return false;
-  fresh_ = false;
-  bool any = false;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    Contact& contact = contacts_[c];
-    const Vector3 counted = keeps_balance_ ? contact.impulse : Vector3::Zero();
-    contact.impulse = linear_[c].law.admissible(contact.impulse);
-    const Vector3 change = contact.impulse - counted;
-    if (change.isZero(0)) continue;
-    push(contact, linear_[c], change);
-    any = true;
-  }
-  motion_.settle();
-  return any;
 }
 
 void ContactProjection::linearise() {
@@ -131,48 +117,218 @@ void ContactProjection::linearise() {
     Contact& contact = contacts_[c];
     Linear& at = linear_[c];
     const Gap gap = finder_.follow(contact, axes_);
-    const CapsuleAxis& a = axes_[static_cast<std::size_t>(contact.a)];
     at.width = gap.width;
-    at.arm_a = gap.middle - a.centre;
-    at.slip = slip(contact.a, gap.middle);
+    at.a = {contact.a, gap.middle - axes_[static_cast<std::size_t>(contact.a)].centre};
+    at.b = {contact.b, contact.b < 0 ? gap.middle : gap.middle - axes_[static_cast<std::size_t>(contact.b)].centre};
     at.size = finder_.bodies().smaller_radius(contact.a, contact.b);
-    Matrix3 mobility = motion_.mobility(contact.a, at.arm_a, a);
-    if (contact.b >= 0) {
-      const CapsuleAxis& b = axes_[static_cast<std::size_t>(contact.b)];
-      at.arm_b = gap.middle - b.centre;
-      at.slip -= slip(contact.b, gap.middle);
-      mobility += motion_.mobility(contact.b, at.arm_b, b);
-    } else {
-      at.slip -= finder_.motion(contact.b);
-    }
-    at.law = CoulombContact(contact.normal, mobility, settings_.friction);
+    at.has_slip = at.active = false;
   }
 }
 
-// Returns the largest motion of a contact's correction, relative to the smaller radius.
-double ContactProjection::sweep() {
+// Only contacts that may carry an impulse need it.
+const Vector3& ContactProjection::slip(std::size_t c) {
+  Linear& at = linear_[c];
+  if (at.has_slip) return at.slip;
+  const Contact& contact = contacts_[c];
+  const Vector3 point = axes_[static_cast<std::size_t>(contact.a)].centre + at.a.arm;
+  at.slip = slip(at.a, point) - (contact.b < 0 ? finder_.motion(contact.b) : slip(at.b, point));
+  at.has_slip = true;
+  return at.slip;
+}
+
+// The motion of the body's material at a point since the start of the step.
+Vector3 ContactProjection::slip(const BodyPoint& at, const Vector3& point) const {
+  const Body& of = finder_.bodies().body(at.body);
+  if (of.rod < 0) return finder_.motion(at.body);
+  const Rod& rod = scene_.rods[static_cast<std::size_t>(of.rod)];
+  const auto s = static_cast<std::size_t>(of.segment);
+  const OldPose& old = old_[static_cast<std::size_t>(at.body)];
+  const Vector3 arm = rod.orientation[s].conjugate() * (point - rod.position[s]);
+  return point - (old.position + old.orientation * arm);
+}
+
+// The largest motion of a contact's correction by a sweep over free segments, relative to the smaller radius.
+double ContactProjection::residual() {
+  motion_.measure(axes_);
   double most = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    Contact& contact = contacts_[c];
+    const Contact& contact = contacts_[c];
     const Linear& at = linear_[c];
-    before_[c] = contact.impulse;
-    Vector3 moved = motion_.of(contact.a, at.arm_a);
-    if (contact.b >= 0) moved -= motion_.of(contact.b, at.arm_b);
-    const double gap = at.width - contact.allowed + contact.normal.dot(moved);
-    const Vector3 impulse = at.law.relaxed(contact.impulse, gap, at.slip + moved);
-    const Vector3 change = impulse - contact.impulse;
+    const Vector3 moved = motion_.of(at.a) - motion_.of(at.b);
+    const double gap = this->gap(contact, at) + contact.normal.dot(moved);
+    if (gap >= 0 && contact.impulse.isZero(0)) continue;
+    const CoulombContact law(contact.normal, motion_.mobility(at.a, at.b), settings_.friction);
+    const Vector3 change = law.relaxed(contact.impulse, gap, slip(c) + moved) - contact.impulse;
     if (change.isZero(0)) continue;
-    most = std::max(most, change.norm() * at.law.normal_weight() / at.size);
-    contact.impulse = impulse;
-    push(contact, at, change);
+    most = std::max(most, change.norm() * law.normal_weight() / at.size);
+    motion_.push(at.a, change);
+    motion_.push(at.b, -change);
   }
+  motion_.clear();
   return most;
 }
 
-// Reverts the last sweep, which must not have settled.
-void ContactProjection::undo_sweep() {
-  for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c].impulse = before_[c];
-  motion_.clear();
+// Adds the contacts that carry an impulse or would overlap with the motions so far. Returns whether there are any new.
+bool ContactProjection::activate() {
+  const std::size_t before = active_.size();
+  const double overlap = before == 0 ? 0 : accurate * settings_.tolerance;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    Linear& at = linear_[c];
+    if (at.active) continue;
+    const double width = gap(contact, at) + contact.normal.dot(motion_.of(at.a) - motion_.of(at.b));
+    if (contact.impulse.isZero(0) && width >= -overlap * at.size) continue;
+    at.active = true;
+    active_.push_back({c, {}, gap(contact, at), contact.impulse, contact.impulse, contact.impulse, -1, -1});
+    motion_.touch(at.a.body);
+    motion_.touch(at.b.body);
+  }
+  if (active_.size() == before) return false;
+  motion_.update();
+  couple();
+  find_motions();
+  return true;
+}
+
+// Gives every point of an active contact its place in the motions of its group and in G.
+void ContactProjection::place_points() {
+  points_.clear();
+  by_group_.clear();
+  const auto add = [this](const BodyPoint& at) {
+    const int group = motion_.group(at.body);
+    if (group < 0) return -1;
+    by_group_.push_back(static_cast<int>(points_.size()));
+    points_.push_back({&at, group, 0, 0, 0, 0});
+    return by_group_.back();
+  };
+  for (Active& active : active_) {
+    active.a = add(linear_[active.contact].a);
+    active.b = add(linear_[active.contact].b);
+  }
+  std::sort(by_group_.begin(), by_group_.end(),
+            [this](int p, int q) { return std::pair(point(p).group, p) < std::pair(point(q).group, q); });
+  std::size_t motions = 0, entries = 0;
+  for (std::size_t first = 0, last = 0; first < by_group_.size(); first = last) {
+    while (last < by_group_.size() && point(by_group_[last]).group == point(by_group_[first]).group) ++last;
+    const std::size_t rows = (3 * (last - first) + 7) / 8 * 8;
+    for (std::size_t i = first; i < last; ++i) {
+      Point& of = point(by_group_[i]);
+      of.begin = motions;
+      of.rows = rows;
+      of.motion = 3 * (i - first);
+      of.column = entries + of.motion * rows;
+    }
+    entries += 3 * (last - first) * rows;
+    motions += rows;
+  }
+  motions_.assign(motions / 8, Lane8{});
+  coupling_.assign(entries / 8, Lane8{});
+}
+
+// Finds G, which is symmetric, and with it the laws of the contacts.
+void ContactProjection::couple() {
+  place_points();
+  double* const g = reinterpret_cast<double*>(coupling_.data());
+  for (std::size_t i = 0; i < by_group_.size(); ++i) {
+    const Point& by = point(by_group_[i]);
+    for (std::size_t j = i; j < by_group_.size() && point(by_group_[j]).group == by.group; ++j) {
+      const Point& of = point(by_group_[j]);
+      const Matrix3 motion = motion_.coupling(*of.at, *by.at);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) g[by.entry(of, r, c)] = g[of.entry(by, c, r)] = motion(r, c);
+    }
+  }
+  const auto block = [&](int of, int by) {
+    Matrix3 out = Matrix3::Zero();
+    if (of < 0 || by < 0 || point(of).group != point(by).group) return out;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) out(r, c) = g[point(by).entry(point(of), r, c)];
+    return out;
+  };
+  for (Active& active : active_) {
+    const Matrix3 cross = block(active.a, active.b);
+    const Matrix3 mobility = block(active.a, active.a) + block(active.b, active.b) - cross - cross.transpose();
+    active.law = CoulombContact(contacts_[active.contact].normal, mobility, settings_.friction);
+  }
+}
+
+// Applies the last step's impulses to contacts that persist, unless the balance of momentum already includes them.
+void ContactProjection::press() {
+  if (!std::exchange(fresh_, false)) return;
+  for (Active& active : active_) {
+    Vector3& impulse = contacts_[active.contact].impulse;
+    const Vector3 pressed = active.law.admissible(impulse);
+    if (!keeps_balance_) impulse = active.settled = Vector3::Zero();
+    change(active, pressed);
+  }
+  if (motion_.needs_settling()) settle();
+}
+
+void ContactProjection::change(const Active& active, const Vector3& impulse) {
+  Vector3& now = contacts_[active.contact].impulse;
+  push(active.a, impulse - now);
+  push(active.b, now - impulse);
+  now = impulse;
+}
+
+void ContactProjection::push(int at, const Vector3& impulse) {
+  if (at < 0) return;
+  const Point& by = point(at);
+  const std::size_t rows = by.rows / 8;
+  const Lane8* const g = coupling_.data() + by.column / 8;
+  Lane8* const motions = motions_.data() + by.begin / 8;
+  for (std::size_t r = 0; r < rows; ++r)
+    motions[r] += g[r] * impulse.x() + g[rows + r] * impulse.y() + g[2 * rows + r] * impulse.z();
+}
+
+/// v of a contact.
+Vector3 ContactProjection::motion(const Active& active) const {
+  const double* const motions = reinterpret_cast<const double*>(motions_.data());
+  const auto of = [&](int at) -> Vector3 {
+    if (at < 0) return Vector3::Zero();
+    return Eigen::Map<const Vector3>(motions + point(at).begin + point(at).motion);
+  };
+  return of(active.a) - of(active.b);
+}
+
+// Returns the largest motion of a contact's correction on the way from the first to the last, relative to the smaller
+// radius.
+double ContactProjection::sweep() {
+  for (Active& active : active_) active.before = contacts_[active.contact].impulse;
+  double most = 0;
+  for (const Active& active : active_) most = std::max(most, relax(active));
+  if (motion_.couples_segments())
+    for (std::size_t i = active_.size(); i-- > 0;) relax(active_[i]);
+  return most;
+}
+
+double ContactProjection::relax(const Active& active) {
+  const Contact& contact = contacts_[active.contact];
+  const Vector3 moved = motion(active);
+  const double gap = active.gap + contact.normal.dot(moved);
+  if (gap >= 0 && contact.impulse.isZero(0)) return 0;
+  const Vector3 impulse = active.law.relaxed(contact.impulse, gap, slip(active.contact) + moved);
+  const Vector3 by = impulse - contact.impulse;
+  if (by.isZero(0)) return 0;
+  change(active, impulse);
+  return active.law.motion(by) / linear_[active.contact].size;
+}
+
+void ContactProjection::settle() {
+  for (Active& active : active_) {
+    const Vector3 by = contacts_[active.contact].impulse - active.settled;
+    active.settled += by;
+    if (by.isZero(0)) continue;
+    motion_.push(linear_[active.contact].a, by);
+    motion_.push(linear_[active.contact].b, -by);
+  }
+  motion_.settle();
+  find_motions();
+}
+
+void ContactProjection::find_motions() {
+  double* const motions = reinterpret_cast<double*>(motions_.data());
+  for (const Point& point : points_) Eigen::Map<Vector3>(motions + point.begin + point.motion) = motion_.of(*point.at);
 }
 
 void ContactProjection::restart(double moved) {
@@ -183,38 +339,22 @@ void ContactProjection::restart(double moved) {
 // Extrapolates the last change. Restarts if the sweep went against it (adaptive restart, O'Donoghue & Candes 2015) or
 // if the motion grows: friction is not a gradient, so an accelerated iteration may cycle.
 void ContactProjection::accelerate(double moved) {
+  if (momentum_ == 1)
+    for (Active& active : active_) active.swept = active.before;
   double against = 0;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const Vector3& now = contacts_[c].impulse;
-    against += linear_[c].law.normal_weight() * (before_[c] - now).dot(now - swept_[c]);
+  for (const Active& active : active_) {
+    const Vector3& now = contacts_[active.contact].impulse;
+    against += active.law.normal_weight() * (active.before - now).dot(now - active.swept);
   }
   if (against > 0 || moved > worse * least_moved_) restart(moved);
   least_moved_ = std::min(least_moved_, moved);
   const double next = (1 + std::sqrt(1 + 4 * momentum_ * momentum_)) / 2, beta = (momentum_ - 1) / next;
   momentum_ = next;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    Contact& contact = contacts_[c];
-    const Vector3 now = contact.impulse;
-    contact.impulse = linear_[c].law.admissible(now + beta * (now - swept_[c]));
-    push(contact, linear_[c], contact.impulse - now);
-    swept_[c] = now;
+  for (Active& active : active_) {
+    const Vector3 now = contacts_[active.contact].impulse;
+    change(active, active.law.admissible(now + beta * (now - active.swept)));
+    active.swept = now;
   }
-}
-
-void ContactProjection::push(const Contact& contact, const Linear& at, const Vector3& impulse) {
-  motion_.push(contact.a, at.arm_a, impulse, axes_[static_cast<std::size_t>(contact.a)]);
-  if (contact.b >= 0) motion_.push(contact.b, at.arm_b, -impulse, axes_[static_cast<std::size_t>(contact.b)]);
-}
-
-// The motion of the body's material at a point since the start of the step.
-Vector3 ContactProjection::slip(int body, const Vector3& point) const {
-  const Body& of = finder_.bodies().body(body);
-  if (of.rod < 0) return finder_.motion(body);
-  const Rod& rod = scene_.rods[static_cast<std::size_t>(of.rod)];
-  const auto s = static_cast<std::size_t>(of.segment);
-  const OldPose& old = old_[static_cast<std::size_t>(body)];
-  const Vector3 arm = rod.orientation[s].conjugate() * (point - rod.position[s]);
-  return point - (old.position + old.orientation * arm);
 }
 
 // Sets the rods' contact impulses, at the last linearisation.
@@ -230,8 +370,9 @@ void ContactProjection::tell_impulses() {
   };
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
-    tell(contact.a, linear_[c].arm_a, contact.impulse);
-    if (contact.b >= 0) tell(contact.b, linear_[c].arm_b, -contact.impulse);
+    if (contact.impulse.isZero(0)) continue;
+    tell(contact.a, linear_[c].a.arm, contact.impulse);
+    if (contact.b >= 0) tell(contact.b, linear_[c].b.arm, -contact.impulse);
   }
 }
 
@@ -244,8 +385,7 @@ ContactState ContactProjection::state() {
   linearise();
   if (!keeps_balance_) tell_impulses();  // else they stay as they acted, though contacts moved since
   for (const Linear& at : linear_) state.penetration = std::max(state.penetration, -at.width / at.size);
-  state.residual = sweep();
-  undo_sweep();
+  state.residual = residual();
   return state;
 }
 

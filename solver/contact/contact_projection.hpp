@@ -3,12 +3,21 @@
 // Gaps are relative to the allowed gap (contact.hpp), slips to the start of the step.
 //
 // In every Newton iteration the contacts are linearised at the current positions: normal, gap, and one common point
-// midway between the surfaces, at which equal and opposite impulses act on both segments. Then the multipliers are
-// iterated: a sweep in a fixed order treats every segment as free, and then the joints respond (contact_motion.hpp).
-// The mobility of a rod is at most that of its free segments. So both together are a step of a projected gradient
-// method with a safe metric, to which Nesterov's acceleration applies (APGD, Mazhar et al. 2015). Then all bodies move
-// once. Joints open by second-order terms only, which the next Newton iteration closes. Linear momentum is kept to
-// rounding, angular momentum to O(dtheta^2), the error of one rotation update.
+// midway between the surfaces, at which equal and opposite impulses act on both segments. Contacts that carry an impulse
+// or would overlap are active, and only these are iterated, with the matrix of the motions of their points per impulse,
+//
+//   v = G lambda,   G = P H P^T   (Delassus; P: from motions of segments to those of points),
+//
+// H the mobility of the rods with their joints (contact_motion.hpp). G has a dense block for each rod. A sweep relaxes
+// one contact after the other, from the first to the last and back: symmetric block Gauss-Seidel, a projected gradient
+// method whose metric is at least G, to which Nesterov's acceleration applies (APGD, Mazhar et al. 2015). Then contacts
+// that would overlap by the motion of the whole rods become active too, until there are none, and all bodies move once.
+// Joints open by second-order terms only, which the next Newton iteration closes. Linear momentum is kept to rounding,
+// angular momentum to O(dtheta^2), the error of one rotation update.
+//
+// Where a rod has no Delassus operator (contact_motion.hpp), G is that of free segments, and the joints respond after
+// each sweep. Free segments move more than the rod, so the metric is safe as well; if no rod has one, sweeps go in one
+// direction.
 //
 // Multipliers of contacts that persist start from those of the last step. A converged result does not depend on them.
 //
@@ -55,21 +64,56 @@ class ContactProjection {
  private:
   /// A contact at the current positions.
   struct Linear {
+    BodyPoint a, b;  ///< the common point
+    double width;    ///< of the gap [m]
+    double size;     ///< the smaller radius, the reference of motions
+    bool has_slip, active;
+    Vector3 slip;  ///< of a's material against b's at the common point, since the start of the step
+  };
+  /// A contact that is iterated.
+  struct Active {
+    std::size_t contact;
     CoulombContact law;
-    Vector3 arm_a, arm_b;  ///< from the centres to the common point
-    double width;          ///< of the gap [m]
-    Vector3 slip;          ///< of a's material against b's at the common point, since the start of the step
-    double size;           ///< the smaller radius, the reference of motions
+    double gap;             ///< without v [m]
+    Vector3 settled;        ///< the impulse that the bodies' motions have
+    Vector3 before, swept;  ///< impulses before the last sweep, after the sweep before
+    int a, b;               ///< its points, -1 if the body does not move
+  };
+  /// A point of an active contact, and its block column of G.
+  struct Point {
+    const BodyPoint* at;
+    int group;           ///< ContactMotion::group
+    std::size_t begin;   ///< of its group in motions_
+    std::size_t rows;    ///< of its group, a multiple of eight
+    std::size_t motion;  ///< the first of its three rows
+    std::size_t column;  ///< the first of its three columns in coupling_, each with the rows of the group
+
+    /// Of row r of another point's motion, by component c of an impulse here.
+    std::size_t entry(const Point& of, int r, int c) const {
+      return column + static_cast<std::size_t>(c) * rows + of.motion + static_cast<std::size_t>(r);
+    }
   };
   void linearise();
-  bool press();
+  Point& point(int i) { return points_[static_cast<std::size_t>(i)]; }
+  const Point& point(int i) const { return points_[static_cast<std::size_t>(i)]; }
+  Vector3 motion(const Active& active) const;
+  void push(int point, const Vector3& impulse);
+  void place_points();
+  const Vector3& slip(std::size_t contact);
+  Vector3 slip(const BodyPoint& at, const Vector3& point) const;
+  double gap(const Contact& contact, const Linear& at) const { return at.width - contact.allowed; }
+  double residual();
+  bool activate();
+  void couple();
+  void press();
   double sweep();
-  void undo_sweep();
-  void tell_impulses();
+  double relax(const Active& active);
+  void change(const Active& active, const Vector3& impulse);
+  void settle();
+  void find_motions();
   void restart(double moved);
   void accelerate(double moved);
-  void push(const Contact& contact, const Linear& at, const Vector3& impulse);
-  Vector3 slip(int body, const Vector3& point) const;
+  void tell_impulses();
 
   Scene& scene_;
   ContactSettings settings_;
@@ -87,9 +131,12 @@ class ContactProjection {
     Vector3 position;
     Quaternion orientation;
   };
-  std::vector<OldPose> old_;     ///< of every segment at p
-  std::vector<Vector3> before_;  ///< impulses before the sweep
-  std::vector<Vector3> swept_;   ///< impulses after the last sweep
+  std::vector<OldPose> old_;  ///< of every segment at p
+  std::vector<Active> active_;
+  std::vector<Point> points_;
+  std::vector<int> by_group_;    ///< points, sorted
+  std::vector<Lane8> motions_;   ///< of the points, group after group
+  std::vector<Lane8> coupling_;  ///< G of each group, by columns
   double momentum_ = 1;          ///< Nesterov's t
   double least_moved_ = 0;       ///< by a sweep since the last restart
 };

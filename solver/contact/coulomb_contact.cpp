@@ -8,7 +8,10 @@
 namespace rodsweep {
 
 CoulombContact::CoulombContact(const Vector3& normal, const Matrix3& mobility, double friction)
-    : normal_(normal), friction_(friction), normal_weight_(normal.dot(mobility * normal)) {
+    : normal_(normal),
+      friction_(friction),
+      normal_weight_(normal.dot(mobility * normal)),
+      by_normal_(mobility * normal) {
   Eigen::Matrix<double, 3, 2> tangents;
   tangents.col(0) = normal.unitOrthogonal();
   tangents.col(1) = normal.cross(tangents.col(0));
@@ -21,9 +24,10 @@ Vector3 CoulombContact::relaxed(const Vector3& impulse, double gap, const Vector
   const double normal = std::max(0.0, normal_.dot(impulse) - gap / normal_weight_);
   const double most = friction_ * normal;
   if (!(most > 0)) return normal * normal_;
-  const Vector3 before = across(impulse), stuck = before - stick_ * slip;
+  const Vector3 slips = slip + (normal - normal_.dot(impulse)) * by_normal_;
+  const Vector3 before = across(impulse), stuck = before - stick_ * slips;
   if (stuck.norm() <= most) return normal * normal_ + stuck;
-  const Vector3 slid = before - across(slip) / sliding_weight_;
+  const Vector3 slid = before - across(slips) / sliding_weight_;
   return normal * normal_ + std::min(1.0, most / slid.norm()) * slid;
 }
 

@@ -24,6 +24,11 @@ class CoulombContact {
   /// The projection into the friction cone: the normal part, and the friction that it allows.
   Vector3 admissible(const Vector3& impulse) const;
 
+  /// An upper bound of the motion by an impulse, up to the coupling of normal and friction [m].
+  double motion(const Vector3& impulse) const {
+    return normal_weight_ * std::abs(normal_.dot(impulse)) + sliding_weight_ * across(impulse).norm();
+  }
+
   /// n . W n [1/kg]
   double normal_weight() const { return normal_weight_; }
 
@@ -33,8 +38,9 @@ class CoulombContact {
   Vector3 normal_{0, 0, 0};
   double friction_ = 0;
   double normal_weight_ = 0;
-  double sliding_weight_ = 0;  ///< the larger eigenvalue of W across the normal [1/kg]
-  Matrix3 stick_;              ///< the inverse of W across the normal [kg]
+  Vector3 by_normal_{0, 0, 0};  ///< W n: the motion by a normal impulse [1/kg]
+  double sliding_weight_ = 0;   ///< the larger eigenvalue of W across the normal [1/kg]
+  Matrix3 stick_;               ///< the inverse of W across the normal [kg]
 };
 
 }  // namespace rodsweep

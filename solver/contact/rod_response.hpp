@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "solver/factor/block_factor.hpp"
+#include "solver/factor/direct_factor.hpp"
 #include "solver/linear/linear_system.hpp"
 
 namespace rodsweep {
@@ -20,23 +20,48 @@ class RodResponse {
  public:
   explicit RodResponse(const Rod& rod);
 
-  /// Assembles at the rod's positions. Multipliers start from zero. Does not check that A is positive definite: the
+  /// Assembles at the rod's pose. Multipliers start from zero. Does not check that A is positive definite: the
   /// rod's projection has just solved with nearly the same A. Gauss-Seidel projections have no A. With them, a response
   /// that is not finite appears in the state.
   void assemble(const Rod& rod, double dt);
 
+  /// Whether a segment has turned so far since the assembly that its response is only a rough one.
+  bool is_stale(const Rod& rod) const;
+
+  /// M^-1 times a force and a torque about the centre (in that order, in the world) on a segment.
+  Lane8 free_motion(const Rod& rod, int segment, const Lane8& wrench) const;
+
   /// `motion`: dx and dtheta of every segment, lanes 0..2 and 3..5, in the world; zero for static segments.
   void respond(const Rod& rod, Lane8* motion);
 
-  /// dlambda of all responses since the assembly.
+  /// Finds H for forces and torques on one segment, for compliance().
+  void load(const Rod& rod, int segment);
+  /// H for the loaded segment: the motion of another, a column for each component of the force and the torque.
+  Block6 compliance(const Rod& rod, int of);
+
+  /// dlambda of all responses since the assembly or forget_multipliers().
   const VectorX& multipliers() const { return multipliers_; }
+  void forget_multipliers() { multipliers_.setZero(); }
 
  private:
+  struct Side {
+    int joint;
+    bool is_b;
+  };
+  struct Turn {
+    Lane8 to_world[3], to_own[3];  ///< columns of R and R^T, for both vectors of a motion
+  };
+
   LinearSystem system_;
-  BlockFactor factor_;
+  DirectFactor factor_;
   VectorX change_;  ///< J u, then -dlambda
   VectorX multipliers_;
-  std::vector<Lane8> own_, taken_back_;  ///< motions in the segments' frames
+  std::vector<Lane8> own_, taken_back_;   ///< motions in the segments' frames
+  std::vector<std::vector<Side>> sides_;  ///< of every segment
+  std::vector<Quaternion> orientation_;   ///< at the assembly
+  std::vector<Turn> turns_;
+  int loaded_ = -1;
+  std::vector<Lane8> columns_;  ///< A^-1 J M^-1 R^T of the loaded segment, a column per lane
 };
 
 }  // namespace rodsweep

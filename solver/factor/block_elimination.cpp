@@ -17,6 +17,31 @@ inline Lane8 combined(const Block6& x, const Lane8& b) {
   return sum;
 }
 
+// From the rows of X, for one right-hand side per lane:
+
+/// X^T b + y.
+inline void add_transposed_product(const Block6& x, const Lane8 (&b)[6], Lane8 (&y)[6]) {
+#pragma GCC unroll 6
+  for (int r = 0; r < 6; ++r)
+#pragma GCC unroll 6
+    for (int c = 0; c < 6; ++c) y[c] += x.column[r][c] * b[r];
+}
+
+/// X b + y.
+inline void add_product(const Block6& x, const Lane8* b, Lane8 (&y)[6]) {
+#pragma GCC unroll 6
+  for (int c = 0; c < 6; ++c) {
+    const Lane8 of = b[c];
+#pragma GCC unroll 6
+    for (int r = 0; r < 6; ++r) y[r] += x.column[r][c] * of;
+  }
+}
+
+inline bool is_zero(const Lane8 (&b)[6]) {
+  const Lane8 sum = (b[0] * b[0] + b[1] * b[1]) + (b[2] * b[2] + b[3] * b[3]) + (b[4] * b[4] + b[5] * b[5]);
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7])) == 0;
+}
+
 }  // namespace
 
 BlockElimination::BlockElimination(const BlockMatrix& pattern, const std::vector<int>& order) {
@@ -129,6 +154,34 @@ void BlockElimination::substitute(VectorX& x) {
                     solution_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)];
     if (column.off_begin < column.off_end) solution_[i] -= sum_lanes(terms);
     store6(x.data() + 6 * column.row, solution_[i]);
+  }
+}
+
+void BlockElimination::substitute(std::vector<Lane8>& x) {
+  const auto rows_of = [&x](const Column& column) { return x.data() + 6 * static_cast<std::ptrdiff_t>(column.row); };
+  const auto later = [&](int p) {
+    return rows_of(columns_[static_cast<std::size_t>(off_[static_cast<std::size_t>(p)].position)]);
+  };
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const Column& column = columns_[i];
+    Lane8 b[6];
+    std::copy_n(rows_of(column), 6, b);
+    if (is_zero(b)) continue;  // few rows are loaded
+    for (int p = column.off_begin; p < column.off_end; ++p) {
+      Lane8 product[6]{};
+      add_transposed_product(off_work_[static_cast<std::size_t>(p)], b, product);
+      for (int r = 0; r < 6; ++r) later(p)[r] -= product[r];
+    }
+    Lane8 solved[6]{};
+    add_transposed_product(inverse_[i], b, solved);  // S^-1 is symmetric
+    std::copy_n(solved, 6, rows_of(column));
+  }
+  for (std::size_t i = columns_.size(); i-- > 0;) {
+    const Column& column = columns_[i];
+    Lane8 known[6]{};
+    for (int p = column.off_begin; p < column.off_end; ++p)
+      add_product(off_work_[static_cast<std::size_t>(p)], later(p), known);
+    for (int r = 0; r < 6; ++r) rows_of(column)[r] -= known[r];
   }
 }
 

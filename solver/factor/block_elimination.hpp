@@ -25,6 +25,7 @@ class BlockElimination {
   SolveOutcome solve(const BlockMatrix& a, const VectorX& b, VectorX& x);
   bool factorise(const BlockMatrix& a);
   void substitute(VectorX& x);
+  void substitute(std::vector<Lane8>& x);
   int fill_in() const { return fill_in_; }
 
  private:

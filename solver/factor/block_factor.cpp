@@ -78,4 +78,8 @@ void BlockFactor::substitute(VectorX& x) {
   std::visit([&](auto& factor) { factor.substitute(x); }, factor_);
 }
 
+void BlockFactor::substitute(std::vector<Lane8>& x) {
+  std::visit([&](auto& factor) { factor.substitute(x); }, factor_);
+}
+
 }  // namespace rodsweep

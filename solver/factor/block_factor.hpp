@@ -40,6 +40,8 @@ class BlockFactor {
 
   /// x <- A^-1 x with the matrix of the last factorise(), without another call in between.
   void substitute(VectorX& x);
+  /// The same for eight right-hand sides, one per lane: x has six rows per block row.
+  void substitute(std::vector<Lane8>& x);
 
   /// Off-diagonal blocks that are not in the matrix; zero for chains and trees.
   int fill_in() const { return fill_in_; }

@@ -114,6 +114,7 @@ Lane8 mass_of(const Segment& segment) {
 
 Condensation::Condensation(const Rod& rod)
     : graph_(strut_graph(rod)),
+      home_(rod.segments.size()),
       stiffness_(rod.joints.size()),
       inverse_mass_(rod.segments.size()),
       motion_(rod.segments.size()) {
@@ -126,6 +127,8 @@ Condensation::Condensation(const Rod& rod)
     Batch batch{s, inner_.size(), 0, static_cast<int>(graph_.struts[s].segments.size())};
     while (s < graph_.struts.size() && batch.count < lane_width &&
            graph_.struts[s].segments.size() == at(batch.segments)) {
+      for (int p = 0; p < batch.segments; ++p)
+        home_[at(graph_.struts[s].segments[at(p)])] = {static_cast<int>(batches_.size()), batch.count, p};
       ++batch.count;
       ++s;
     }
@@ -349,6 +352,69 @@ void Condensation::expand(const Batch& batch) {
       for (int i = 0; i < 6; ++i) to[i] = y[i][lane];
     }
     next = y;
+  }
+}
+
+void Condensation::load(int segment, const Lane8 (&force)[6], std::vector<Lane8>& g) {
+  g.assign(at(matrix_.unknowns()), Lane8{});
+  loaded_ = home_[at(segment)];
+  if (loaded_.batch < 0) {
+    std::copy_n(force, 6, g.data() + 6 * graph_.place[at(segment)]);
+    return;
+  }
+  const Batch& batch = batches_[at(loaded_.batch)];
+  const Strut& of = strut(batch, loaded_.lane);
+  loads_.resize(at(batch.segments - loaded_.segment));
+  std::copy_n(force, 6, loads_.front().begin());
+  std::array<Lane8, 6> begin{};
+  for (std::size_t p = 0; p < loads_.size(); ++p) {
+    const Inner& inner = inner_[batch.first_inner + at(loaded_.segment) + p];
+    std::array<Lane8, 6> next{};
+    for (int c = 0; c < 6; ++c)
+      for (int r = 0; r < 6; ++r) {
+        begin[at(c)] -= inner.to_begin[c][r][loaded_.lane] * loads_[p][at(r)];
+        next[at(c)] -= inner.to_next[c][r][loaded_.lane] * loads_[p][at(r)];
+      }
+    if (p + 1 < loads_.size())
+      loads_[p + 1] = next;
+    else if (of.end >= 0)
+      std::copy_n(next.begin(), 6, g.data() + 6 * of.end);
+  }
+  if (of.begin >= 0)
+    for (int r = 0; r < 6; ++r) g[at(6 * of.begin + r)] += begin[at(r)];
+}
+
+void Condensation::motion_of(int segment, const std::vector<Lane8>& y, Lane8 (&out)[6]) const {
+  const Home& home = home_[at(segment)];
+  const auto of_crossing = [&](int crossing, Lane8(&motion)[6]) {
+    if (crossing < 0)
+      std::fill_n(motion, 6, Lane8{});
+    else
+      std::copy_n(y.data() + 6 * crossing, 6, motion);
+  };
+  if (home.batch < 0) return of_crossing(graph_.place[at(segment)], out);
+  const Batch& batch = batches_[at(home.batch)];
+  const Strut& strut = this->strut(batch, home.lane);
+  const bool loaded = loaded_.batch == home.batch && loaded_.lane == home.lane;
+  Lane8 begin[6];
+  of_crossing(strut.begin, begin);
+  of_crossing(strut.end, out);
+  for (int p = batch.segments; p-- > home.segment;) {
+    const Inner& inner = inner_[batch.first_inner + at(p)];
+    Lane8 motion[6]{};
+    if (loaded && p >= loaded_.segment) {
+      const auto l = [&](int row, int column) { return inner.factor.at(row, column)[home.lane]; };
+      std::copy_n(loads_[at(p - loaded_.segment)].begin(), 6, motion);
+      for (int i = 1; i < 6; ++i)
+        for (int j = 0; j < i; ++j) motion[i] -= l(i, j) * motion[j];
+      for (int i = 0; i < 6; ++i) motion[i] *= inner.factor.inverse_pivot[i][home.lane];
+      for (int i = 4; i >= 0; --i)
+        for (int j = i + 1; j < 6; ++j) motion[i] -= l(j, i) * motion[j];
+    }
+    for (int c = 0; c < 6; ++c)
+      for (int r = 0; r < 6; ++r)
+        motion[r] -= inner.to_begin[c][r][home.lane] * begin[c] + inner.to_next[c][r][home.lane] * out[c];
+    std::copy_n(motion, 6, out);
   }
 }
 

@@ -15,6 +15,7 @@
 // Struts with the same number of segments are eliminated together, one per lane. Nothing allocates after construction.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "solver/factor/strut_graph.hpp"
@@ -40,6 +41,11 @@ class Condensation {
   /// Sets d for the residual last condensed, from y_c.
   void expand(const VectorX& r, const double* y, VectorX& d);
 
+  /// Sets g from forces and torques on one segment, six rows with a right-hand side per lane.
+  void load(int segment, const Lane8 (&force)[6], std::vector<Lane8>& g);
+  /// The motion of a segment by the load, from y_c.
+  void motion_of(int segment, const std::vector<Lane8>& y, Lane8 (&out)[6]) const;
+
   /// |J M^-1 p|, p six per crossing.
   double residual_norm(const double* p) const;
 
@@ -55,6 +61,10 @@ class Condensation {
     LaneVector6 to_begin[6], to_next[6];  ///< solutions for the columns that couple it to the strut's begin,
                                           ///< and to the next segment or the strut's end
     LaneVector6 f;
+  };
+  /// Where a segment of a strut is.
+  struct Home {
+    int batch = -1, lane = 0, segment = 0;
   };
   /// Blocks of S.
   struct Places {
@@ -73,12 +83,16 @@ class Condensation {
   std::vector<int> near_;       ///< joints of crossings
   std::vector<Batch> batches_;
   std::vector<Inner> inner_;
+  std::vector<Home> home_;  ///< of each segment
   // From the last assembly:
   const Rod* rod_ = nullptr;
   const Linearization* linearization_ = nullptr;
   std::vector<Lane8> stiffness_;     ///< C of each joint
   std::vector<Lane8> inverse_mass_;  ///< of each segment
   std::vector<Lane8> motion_;        ///< f, then y, of each segment
+  // From the last load:
+  Home loaded_;
+  std::vector<std::array<Lane8, 6>> loads_;  ///< f of the loaded segment and of those after it in its strut
 };
 
 }  // namespace rodsweep

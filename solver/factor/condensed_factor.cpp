@@ -44,8 +44,7 @@ CondensedFactor::CondensedFactor(Condensation condensation, EliminationPlan plan
 
 bool CondensedFactor::solve(const Rod& rod, const LinearSystem& system, VectorX& d) {
   corrections_ = 0;
-  if (!condensation_.assemble(rod, system.linearization(), system.dt())) return false;
-  if (!factor_.factorise(condensation_.matrix())) return false;
+  if (!factorise(rod, system)) return false;
   const VectorX& b = system.rhs();
   const double goal = accurate * b.norm();
   residual_.resize(b.size());
@@ -62,6 +61,20 @@ bool CondensedFactor::solve(const Rod& rod, const LinearSystem& system, VectorX&
     d += correction_;
     ++corrections_;
   }
+}
+
+bool CondensedFactor::factorise(const Rod& rod, const LinearSystem& system) {
+  return condensation_.assemble(rod, system.linearization(), system.dt()) && factor_.factorise(condensation_.matrix());
+}
+
+void CondensedFactor::substitute(VectorX& x) {
+  residual_ = x;
+  solve(residual_, x);
+}
+
+void CondensedFactor::load(int segment, const Lane8 (&force)[6]) {
+  condensation_.load(segment, force, loaded_);
+  factor_.substitute(loaded_);
 }
 
 void CondensedFactor::solve(const VectorX& r, VectorX& d) {

@@ -36,6 +36,14 @@ class CondensedFactor {
   /// `most_corrections`, which includes that a matrix is not positive definite.
   bool solve(const Rod& rod, const LinearSystem& system, VectorX& d);
 
+  /// As in DirectFactor.
+  bool factorise(const Rod& rod, const LinearSystem& system);
+  void substitute(VectorX& x);
+
+  /// Finds (M + J^T alpha~^-1 J)^-1 for forces and torques on one segment, for motion_of(): as in Condensation.
+  void load(int segment, const Lane8 (&force)[6]);
+  void motion_of(int segment, Lane8 (&out)[6]) const { condensation_.motion_of(segment, loaded_, out); }
+
   int corrections() const { return corrections_; }  ///< of the last solution
 
   static constexpr int most_corrections = 3;
@@ -47,6 +55,7 @@ class CondensedFactor {
   BlockFactor factor_;
   VectorX crossings_, residual_, correction_;
   int corrections_ = 0;
+  std::vector<Lane8> loaded_;  ///< motions of the crossings by the load
 };
 
 }  // namespace rodsweep

@@ -32,4 +32,18 @@ SolveOutcome DirectFactor::solve(const Rod& rod, const LinearSystem& system, Vec
   return whole_->solve(system.matrix(), system.rhs(), x);
 }
 
+bool DirectFactor::factorise(const Rod& rod, const LinearSystem& system) {
+  is_condensed_ = condensed_ && condensed_->factorise(rod, system);
+  if (is_condensed_) return true;
+  if (!whole_) whole_.emplace(system.matrix(), root_to_leaf_order(rod));
+  return whole_->factorise(system.matrix());
+}
+
+void DirectFactor::substitute(VectorX& x) {
+  if (is_condensed_)
+    condensed_->substitute(x);
+  else
+    whole_->substitute(x);
+}
+
 }  // namespace rodsweep

@@ -21,12 +21,22 @@ class DirectFactor {
   /// Solves the assembled system of the rod. x is valid only if the outcome is `converged`.
   SolveOutcome solve(const Rod& rod, const LinearSystem& system, VectorX& x);
 
+  /// Factorises for substitute(), which solves with the factor as it is and uses the rod and the system. Returns false
+  /// if a matrix is not positive definite.
+  bool factorise(const Rod& rod, const LinearSystem& system);
+  void substitute(VectorX& x);
+
+  /// The factor of the last factorise(): one of the two.
+  CondensedFactor* condensed_factor() { return is_condensed_ ? &*condensed_ : nullptr; }
+  BlockFactor* whole_factor() { return is_condensed_ ? nullptr : &*whole_; }
+
   bool condenses() const { return condensed_.has_value(); }
   bool has_whole() const { return whole_.has_value(); }  ///< whether the factor of A was needed
 
  private:
   std::optional<CondensedFactor> condensed_;
   std::optional<BlockFactor> whole_;
+  bool is_condensed_ = false;  ///< the last factorise()
 };
 
 }  // namespace rodsweep

@@ -37,6 +37,23 @@ Lane8 six_products(const double* columns, std::size_t tile_size, const double* x
   return sum_lanes(sums);
 }
 
+/// x -= six rows of a tile, of `columns` columns, times `factors`, for one right-hand side per lane.
+void subtract_rows(const double* rows, const Lane8* factors, int columns, Lane8* x) {
+  Lane8 sums[6]{};
+  for (int c = 0; c < columns; ++c)
+#pragma GCC unroll 6
+    for (int r = 0; r < 6; ++r) sums[r] += rows[c * tile_rows + r] * factors[c];
+  for (int r = 0; r < 6; ++r) x[r] -= sums[r];
+}
+
+/// x -= a block, transposed, times `known`, for one right-hand side per lane.
+void subtract_transposed(const double* block, const Lane8* known, Lane8* x) {
+#pragma GCC unroll 6
+  for (int c = 0; c < 6; ++c)
+#pragma GCC unroll 6
+    for (int r = 0; r < 6; ++r) x[c] -= block[c * tile_rows + r] * known[r];
+}
+
 }  // namespace
 
 MultifrontalFactor::MultifrontalFactor(const BlockMatrix& pattern, AssemblyTree tree) : tree_(std::move(tree)) {
@@ -165,6 +182,54 @@ void MultifrontalFactor::backward(const Supernode& node) {
       double x = own[row + c] - later[c];
       for (int k = c + 1; k < 6; ++k) x -= l[c * tile_rows + k] * known[row + k];
       own[row + c] = known[row + c] = x * inverse_pivot_[at(6 * node.first + row + c)];
+    }
+  }
+}
+
+void MultifrontalFactor::substitute(std::vector<Lane8>& x) {
+  solutions_.resize(6 * tree_.row.size());
+  const auto each = [&](auto&& take) {
+    for (std::size_t k = 0; k < tree_.row.size(); ++k) take(solutions_.data() + 6 * k, x.data() + 6 * tree_.row[k]);
+  };
+  each([](Lane8* own, Lane8* of_x) { std::copy_n(of_x, 6, own); });
+  for (const Supernode& node : tree_.supernodes) forward_in_lanes(node);
+  for (std::size_t s = tree_.supernodes.size(); s-- > 0;) backward_in_lanes(tree_.supernodes[s]);
+  each([](Lane8* own, Lane8* of_x) { std::copy_n(own, 6, of_x); });
+}
+
+void MultifrontalFactor::forward_in_lanes(const Supernode& node) {
+  const Panel panel(node, entries(panels_) + node.panel);
+  Lane8* const y = solutions_.data() + 6 * node.first;
+  for (int block = 0; block < node.columns; ++block) {
+    Lane8* const own = y + 6 * block;
+    double* const rows = panel.block_row(block);
+    subtract_rows(rows, y, 6 * block, own);
+    const double* const l = Panel::column(rows, 6 * block);
+    for (int c = 0; c < 6; ++c) {
+      own[c] *= inverse_pivot_[at(6 * (node.first + block) + c)];
+      for (int r = c + 1; r < 6; ++r) own[r] -= l[c * tile_rows + r] * own[c];
+    }
+  }
+  for (int r = 0; r < node.row_count; ++r)
+    subtract_rows(panel.block_row(node.columns + r), y, 6 * node.columns,
+                  solutions_.data() + 6 * tree_.rows[at(node.row_begin + r)]);
+}
+
+void MultifrontalFactor::backward_in_lanes(const Supernode& node) {
+  const Panel panel(node, entries(panels_) + node.panel);
+  Lane8* const x = solutions_.data() + 6 * node.first;
+  for (int block = node.columns; block-- > 0;) {
+    Lane8* const own = x + 6 * block;
+    const auto take = [&](int local, const Lane8* known) {
+      subtract_transposed(Panel::column(panel.block_row(local), 6 * block), known, own);
+    };
+    for (int r = 0; r < node.row_count; ++r)
+      take(node.columns + r, solutions_.data() + 6 * tree_.rows[at(node.row_begin + r)]);
+    for (int later = block + 1; later < node.columns; ++later) take(later, x + 6 * later);
+    const double* const l = Panel::column(panel.block_row(block), 6 * block);
+    for (int c = 6; c-- > 0;) {
+      for (int k = c + 1; k < 6; ++k) own[c] -= l[c * tile_rows + k] * own[k];
+      own[c] *= inverse_pivot_[at(6 * (node.first + block) + c)];
     }
   }
 }

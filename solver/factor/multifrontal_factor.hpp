@@ -23,6 +23,7 @@ class MultifrontalFactor {
 
   /// x <- A^-1 x with the matrix of the last factorise().
   void substitute(VectorX& x);
+  void substitute(std::vector<Lane8>& x);  ///< as in BlockFactor
 
  private:
   struct Source {
@@ -32,6 +33,8 @@ class MultifrontalFactor {
   void add_update(const Supernode& child, const Supernode& node);
   void forward(const Supernode& node);
   void backward(const Supernode& node);
+  void forward_in_lanes(const Supernode& node);
+  void backward_in_lanes(const Supernode& node);
   double* update_of(const Supernode& node) {
     return entries(stacks_[static_cast<std::size_t>(node.stack)]) + node.update;
   }
@@ -46,6 +49,7 @@ class MultifrontalFactor {
   std::vector<double> solution_;  ///< in the order of elimination
   std::vector<Lane8> pivots_;     ///< solution at one front's pivots
   std::vector<Lane8> known_;      ///< solution at one front's rows
+  std::vector<Lane8> solutions_;  ///< of eight right-hand sides, in the order of elimination
 };
 
 }  // namespace rodsweep

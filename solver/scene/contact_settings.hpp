@@ -35,7 +35,7 @@ using Obstacle = std::variant<HalfSpace, Ball, Capsule>;
 struct ContactSettings {
   double friction = 0.3;    ///< Coulomb's coefficient mu, at rest and sliding
   double tolerance = 1e-5;  ///< converged if no contact would move its segments by more, in their radii
-  int sweeps = 100;         ///< limit of sweeps over all contacts after a projection of the rods
+  int sweeps = 100;         ///< limit of sweeps over all contacts, there and back, after a projection of the rods
   double recovery = 0.2;    ///< share of an earlier penetration that a step corrects, at most 1 % of a radius
 };
 

@@ -1,7 +1,10 @@
 // The cost of contact over the number of segments of a heap of constant density: broad phase, finding contacts,
-// projection. Google Benchmark times the cases; a final table has the medians per segment.
+// projection. Google Benchmark times the cases; a final table has the medians per segment. Another has whole steps in
+// contact of scenes as they are simulated, beside their assembly and direct solution.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -9,6 +12,8 @@
 
 #include "solver/contact/contact_projection.hpp"
 #include "solver/scene/scene_parts.hpp"
+#include "solver/scene/scenes.hpp"
+#include "solver/step/time_step.hpp"
 #include "tests/bench/medians.hpp"
 
 namespace {
@@ -90,6 +95,108 @@ void project(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(fallen.projection.project());
 }
 
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+template <class T>
+double median_of(std::vector<T> values) {
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return static_cast<double>(values[values.size() / 2]);
+}
+
+/// Medians over the steps in which something carries an impulse.
+void print_steps(const char* name, const SceneSpec& spec, double dt, int steps) {
+  Scene scene = build_scene(spec);
+  DirectSolve direct(scene);
+  LinearProjection projection(scene, direct);
+  TimeStepper stepper(scene, {dt});
+  std::vector<double> times, solves, iterations, residuals;
+  for (int i = 0; i < steps; ++i) {
+    const double start = seconds();
+    const StepReport report = stepper.step(projection);
+    const double taken = seconds() - start;
+    const auto is_pushed = [](const Rod& rod) {
+      return std::any_of(rod.contact_impulse.begin(), rod.contact_impulse.end(),
+                         [](const Vector6& impulse) { return !impulse.isZero(0); });
+    };
+    if (std::none_of(scene.rods.begin(), scene.rods.end(), is_pushed)) continue;
+    times.push_back(taken);
+    iterations.push_back(report.newton_iterations);
+    residuals.push_back(report.contact_residual);
+  }
+  std::vector<LinearSystem> systems;
+  std::vector<DirectFactor> factors;
+  std::vector<VectorX> solutions;
+  for (const Rod& rod : scene.rods) {
+    systems.emplace_back(rod);
+    factors.emplace_back(rod);
+    solutions.push_back(VectorX::Zero(6 * rod.joint_count()));
+  }
+  for (int i = 0; i < 21; ++i) {
+    const double start = seconds();
+    for (std::size_t r = 0; r < scene.rods.size(); ++r) {
+      systems[r].assemble(scene.rods[r], dt);
+      factors[r].solve(scene.rods[r], systems[r], solutions[r]);
+    }
+    solves.push_back(seconds() - start);
+  }
+  const auto fine = std::count_if(residuals.begin(), residuals.end(), [](double residual) { return residual <= 1e-5; });
+  const double step = median_of(times), solve = median_of(solves), newton = median_of(iterations);
+  std::printf("%-14s %6zu %10.3f %10.3f %8.0f %16.1f %16.0f\n", name, times.size(), 1e3 * step, 1e3 * solve, newton,
+              step / newton / solve, 100.0 * static_cast<double>(fine) / static_cast<double>(times.size()));
+}
+
+void print_steps() {
+  std::printf("\nWhole steps in contact [ms], six Newton iterations at most\n");
+  std::printf("%-14s %6s %10s %10s %8s %16s %16s\n", "scene", "steps", "step", "solve", "Newton", "solves/iteration",
+              "residual<1e-5, %");
+  Lattice lattice;
+  lattice.cell = Lattice::Cell::octet;
+  lattice.nodes_x = 3;
+  lattice.mesh_m = 0.3;
+  lattice.held = Held::free;
+  lattice.initial_angle_deg = 30;
+  lattice.radius_m = 0.015;
+  lattice.youngs_modulus_pa = 1e7;
+  lattice.torsion_modulus_pa = 4e6;
+  lattice.damping_per_s = 2;
+  lattice.contact = ContactSettings{};
+  lattice.contact->friction = 0.5;
+  lattice.obstacles = {HalfSpace{{0, -0.4, 0}, {0, 1, 0}, {0, 0, 0}}};
+  print_steps("octet lattice", lattice, 0.004, 300);
+  FallingRods falling;
+  falling.rods = 6;
+  falling.radius_m = 0.03;
+  falling.youngs_modulus_pa = falling.torsion_modulus_pa = 1e7;
+  falling.contact = ContactSettings{};
+  print_steps("falling rods", falling, 0.01, 100);
+  Bundle bundle;
+  bundle.initial_angle_deg = 20;
+  bundle.radius_m = 0.01;
+  bundle.youngs_modulus_pa = bundle.torsion_modulus_pa = 1e7;
+  bundle.contact = ContactSettings{};
+  print_steps("bundle", bundle, 0.005, 200);
+  Knot knot;
+  knot.segments = 60;
+  knot.length_m = 2;
+  knot.radius_m = 0.015;
+  knot.youngs_modulus_pa = 1e6;
+  knot.torsion_modulus_pa = 1e5;
+  knot.gravity_m_s2 = {0, 0, 0};
+  knot.damping_per_s = 5;
+  knot.contact = ContactSettings{};
+  print_steps("knot", knot, 0.005, 200);
+  CoilingRod coil;
+  coil.segments = 80;
+  coil.length_m = 1.5;
+  coil.height_m = 0.05;
+  coil.radius_m = 0.01;
+  coil.youngs_modulus_pa = 1e6;
+  coil.torsion_modulus_pa = 1e5;
+  coil.contact = ContactSettings{};
+  print_steps("coiling rod", coil, 0.005, 280);
+}
+
 void print_summary(const Medians& median) {
   std::printf("\nContact, per segment [us]: searching pairs anew, finding contacts of known pairs, one projection\n");
   std::printf("%8s %10s %8s %8s %22s\n", "segments", "search", "find", "project", "contacts per segment");
@@ -99,6 +206,7 @@ void print_summary(const Medians& median) {
     std::printf("%8d %10.3f %8.3f %8.3f %22.2f\n", n, us("search"), us("find"), us("project"),
                 static_cast<double>(fallen.projection.contacts().size()) / n);
   }
+  print_steps();
 }
 
 }  // namespace

@@ -190,6 +190,21 @@ TEST_CASE("a rod that folds comes to lie on itself") {
   CHECK(nearest > 0.99);
 }
 
+TEST_CASE("a rod that is fed against a floor bends, and is not flung away") {
+  CoilingRod p;
+  p.segments = 40;
+  p.length_m = 1;
+  p.height_m = 0.02;
+  p.radius_m = 0.01;
+  p.youngs_modulus_pa = 1e6;
+  p.torsion_modulus_pa = 1e5;
+  p.contact = ContactSettings{};
+  Touching t(build_scene(p), 0.005);
+  for (int i = 0; i < 40; ++i) t.step();
+  const Vector3 tip = t.scene.rods.front().position.back();
+  CHECK(std::hypot(tip.x(), tip.z()) < 0.2);
+}
+
 TEST_CASE("rods that start inside each other part, slowly") {
   for (const double distance : {1.6, 0.02}) {
     Touching t(contact_scene({capsule({0, 0, -1}, {0, 0, 1}, {0, 0, 0}),

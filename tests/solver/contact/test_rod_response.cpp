@@ -1,7 +1,8 @@
-// The response of rods to impulses, against dense algebra and rigid bodies.
+// The response of rods to impulses, against dense algebra and rigid bodies; Delassus operators against responses.
 #include <catch2/catch.hpp>
 
-#include "solver/contact/rod_response.hpp"
+#include "solver/contact/delassus_operator.hpp"
+#include "solver/numbers/rotation.hpp"
 #include "tests/solver/support.hpp"
 
 namespace rodsweep::test_rod_response {
@@ -69,6 +70,94 @@ TEST_CASE("a stiff rod gives way to an impulse like a rigid body, a limp one lik
     const double moved = Vector3(motion[0][0], motion[0][1], motion[0][2]).dot(push);
     CHECK(moved == Approx(stiff ? 1 / mass + arm * arm / inertia : segment.inverse_mass).epsilon(1e-5));
   }
+}
+
+/// The motion of all segments by a force and a torque on one.
+std::vector<Lane8> responded(const Rod& rod, RodResponse& response, int segment, const Lane8& wrench) {
+  std::vector<Lane8> motion(rod.segments.size(), Lane8{});
+  motion[static_cast<std::size_t>(segment)] = response.free_motion(rod, segment, wrench);
+  response.respond(rod, motion.data());
+  return motion;
+}
+
+Rod lattice(Lattice::Cell cell) {
+  Lattice p;
+  p.cell = cell;
+  p.nodes_x = 3;
+  p.segments = 3;
+  p.radius_m = 0.02;
+  p.youngs_modulus_pa = 1e7;
+  p.torsion_modulus_pa = 4e6;
+  p.initial_angle_deg = 20;
+  return build_scene(p).rods.front();
+}
+
+TEST_CASE("a Delassus operator moves the touched segments as the whole rod responds, condensed or not") {
+  std::vector<Rod> rods{test::random_rod(test::chain(12), {0}, 1), test::random_rod(test::tree(3, 3), {0}, 1),
+                        test::random_rod(test::ring(9), {}, 1), lattice(Lattice::Cell::octet),
+                        lattice(Lattice::Cell::body_centred)};
+  Net net;
+  net.rows = net.columns = 6;
+  rods.push_back(build_scene(net).rods.front());
+  for (const Rod& rod : rods) {
+    RodResponse response(rod);
+    response.assemble(rod, dt);
+    DelassusOperator delassus(rod.segment_count(), 40);
+    std::vector<int> touched;
+    const auto touch = [&](int segment) {
+      if (rod.segments[static_cast<std::size_t>(segment)].is_static) return;
+      touched.push_back(segment);
+      delassus.touch(segment);
+    };
+    const int last = rod.segment_count() - 1;
+    for (const int segment : {last, last / 2, last / 2 + 1}) touch(segment);
+    delassus.update(rod, response);
+    for (const int segment : {1, last / 3, last - 1}) touch(segment);
+    delassus.update(rod, response);
+    REQUIRE_FALSE(delassus.is_full());
+    for (const int by : touched)
+      for (int c = 0; c < 6; ++c) {
+        const std::vector<Lane8> expected = responded(rod, response, by, unit_lane[c]);
+        double scale = 0, error = 0;
+        for (const int of : touched)
+          for (int r = 0; r < 6; ++r) {
+            const Lane8& motion = expected[static_cast<std::size_t>(of)];
+            scale = std::max(scale, std::abs(motion[r]));
+            error = std::max(error, std::abs(delassus.block(of, by).column[c][r] - motion[r]));
+          }
+        CHECK(error / scale < 1e-7);
+      }
+    delassus.clear();
+    delassus.touch(1);
+    delassus.update(rod, response);
+    const std::vector<Lane8> expected = responded(rod, response, 1, unit_lane[1]);
+    CHECK(delassus.block(1, 1).column[1][1] == Approx(expected[1][1]));
+  }
+}
+
+TEST_CASE("a Delassus operator refuses one segment too many") {
+  const Rod rod = test::random_rod(test::chain(12), {}, 1);
+  RodResponse response(rod);
+  response.assemble(rod, dt);
+  DelassusOperator delassus(rod.segment_count(), 2);
+  for (const int segment : {3, 5, 3}) delassus.touch(segment);
+  CHECK_FALSE(delassus.is_full());
+  delassus.touch(4);
+  CHECK(delassus.is_full());
+  delassus.clear();
+  CHECK_FALSE(delassus.is_full());
+}
+
+TEST_CASE("a response is rough once a segment has turned, not if the rod has moved") {
+  Rod rod = test::random_rod(test::chain(6), {}, 1);
+  RodResponse response(rod);
+  response.assemble(rod, dt);
+  for (Vector3& position : rod.position) position += Vector3(1, 2, 3);
+  CHECK_FALSE(response.is_stale(rod));
+  rod.orientation[4] = rotated(rod.orientation[4], Vector3(0, 0.09, 0));
+  CHECK_FALSE(response.is_stale(rod));
+  rod.orientation[4] = rotated(rod.orientation[4], Vector3(0, 0.02, 0));
+  CHECK(response.is_stale(rod));
 }
 
 }  // namespace rodsweep::test_rod_response
