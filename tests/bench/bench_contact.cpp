@@ -1,5 +1,4 @@
-// The cost of contact over the number of segments of a heap of constant density: broad phase, finding contacts,
-// projection. Google Benchmark times the cases; a final table has the medians per segment. Another has whole steps in
+// The cost of contact over the number of segments of a heap of constant density: broad phase, finding contacts. Google Benchmark times the cases; a final table has the medians per segment. Another has whole steps in
 // contact of scenes as they are simulated, beside their assembly and direct solution.
 #include <benchmark/benchmark.h>
 
@@ -88,11 +87,6 @@ void search(benchmark::State& state) {
 void find(benchmark::State& state) {
   Fallen& fallen = Fallen::of(state);
   for (auto _ : state) fallen.projection.find(false);
-}
-
-void project(benchmark::State& state) {
-  Fallen& fallen = Fallen::of(state);
-  for (auto _ : state) benchmark::DoNotOptimize(fallen.projection.project());
 }
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -198,12 +192,12 @@ void print_steps() {
 }
 
 void print_summary(const Medians& median) {
-  std::printf("\nContact, per segment [us]: searching pairs anew, finding contacts of known pairs, one projection\n");
-  std::printf("%8s %10s %8s %8s %22s\n", "segments", "search", "find", "project", "contacts per segment");
+  std::printf("\nContact, per segment [us]: searching pairs anew, finding contacts of known pairs\n");
+  std::printf("%8s %10s %8s %22s\n", "segments", "search", "find", "contacts per segment");
   for (const int n : sizes) {
     const auto us = [&](const char* name) { return median(name, n) / n * 1e6; };
     Fallen fallen(n);
-    std::printf("%8d %10.3f %8.3f %8.3f %22.2f\n", n, us("search"), us("find"), us("project"),
+    std::printf("%8d %10.3f %8.3f %22.2f\n", n, us("search"), us("find"),
                 static_cast<double>(fallen.projection.contacts().size()) / n);
   }
   print_steps();
@@ -212,6 +206,6 @@ void print_summary(const Medians& median) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  register_cases({{"search", search}, {"find", find}, {"project", project}}, sizes);
+  register_cases({{"search", search}, {"find", find}}, sizes);
   return run_benchmarks(argc, argv, print_summary);
 }
