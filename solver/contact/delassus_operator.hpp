@@ -26,7 +26,6 @@ class DelassusOperator {
   void update(const Rod& rod, RodResponse& response);
 
   bool is_full() const { return is_full_; }  ///< a touched segment was one too many: the blocks are of no use
-  const std::vector<int>& touched() const { return touched_; }
 
   /// The motion of a touched segment by a force and a torque on another: dx and dtheta in the world.
   const Block6& block(int of, int by) const { return blocks_[place(by) * stride_ + place(of)]; }

@@ -140,54 +140,46 @@ void print_steps(const char* name, const SceneSpec& spec, double dt, int steps) 
               step / newton / solve, 100.0 * static_cast<double>(fine) / static_cast<double>(times.size()));
 }
 
+template <class Spec>
+Spec touching(double radius_m, double youngs_modulus_pa, double torsion_modulus_pa) {
+  Spec p;
+  p.radius_m = radius_m;
+  p.youngs_modulus_pa = youngs_modulus_pa;
+  p.torsion_modulus_pa = torsion_modulus_pa;
+  p.contact = ContactSettings{};
+  return p;
+}
+
 void print_steps() {
   std::printf("\nWhole steps in contact [ms], six Newton iterations at most\n");
   std::printf("%-14s %6s %10s %10s %8s %16s %16s\n", "scene", "steps", "step", "solve", "Newton", "solves/iteration",
               "residual<1e-5, %");
-  Lattice lattice;
+  auto lattice = touching<Lattice>(0.015, 1e7, 4e6);
   lattice.cell = Lattice::Cell::octet;
   lattice.nodes_x = 3;
   lattice.mesh_m = 0.3;
   lattice.held = Held::free;
   lattice.initial_angle_deg = 30;
-  lattice.radius_m = 0.015;
-  lattice.youngs_modulus_pa = 1e7;
-  lattice.torsion_modulus_pa = 4e6;
   lattice.damping_per_s = 2;
-  lattice.contact = ContactSettings{};
   lattice.contact->friction = 0.5;
   lattice.obstacles = {HalfSpace{{0, -0.4, 0}, {0, 1, 0}, {0, 0, 0}}};
   print_steps("octet lattice", lattice, 0.004, 300);
-  FallingRods falling;
+  auto falling = touching<FallingRods>(0.03, 1e7, 1e7);
   falling.rods = 6;
-  falling.radius_m = 0.03;
-  falling.youngs_modulus_pa = falling.torsion_modulus_pa = 1e7;
-  falling.contact = ContactSettings{};
   print_steps("falling rods", falling, 0.01, 100);
-  Bundle bundle;
+  auto bundle = touching<Bundle>(0.01, 1e7, 1e7);
   bundle.initial_angle_deg = 20;
-  bundle.radius_m = 0.01;
-  bundle.youngs_modulus_pa = bundle.torsion_modulus_pa = 1e7;
-  bundle.contact = ContactSettings{};
   print_steps("bundle", bundle, 0.005, 200);
-  Knot knot;
+  auto knot = touching<Knot>(0.015, 1e6, 1e5);
   knot.segments = 60;
   knot.length_m = 2;
-  knot.radius_m = 0.015;
-  knot.youngs_modulus_pa = 1e6;
-  knot.torsion_modulus_pa = 1e5;
   knot.gravity_m_s2 = {0, 0, 0};
   knot.damping_per_s = 5;
-  knot.contact = ContactSettings{};
   print_steps("knot", knot, 0.005, 200);
-  CoilingRod coil;
+  auto coil = touching<CoilingRod>(0.01, 1e6, 1e5);
   coil.segments = 80;
   coil.length_m = 1.5;
   coil.height_m = 0.05;
-  coil.radius_m = 0.01;
-  coil.youngs_modulus_pa = 1e6;
-  coil.torsion_modulus_pa = 1e5;
-  coil.contact = ContactSettings{};
   print_steps("coiling rod", coil, 0.005, 280);
 }
 

@@ -80,22 +80,11 @@ std::vector<Lane8> responded(const Rod& rod, RodResponse& response, int segment,
   return motion;
 }
 
-Rod lattice(Lattice::Cell cell) {
-  Lattice p;
-  p.cell = cell;
-  p.nodes_x = 3;
-  p.segments = 3;
-  p.radius_m = 0.02;
-  p.youngs_modulus_pa = 1e7;
-  p.torsion_modulus_pa = 4e6;
-  p.initial_angle_deg = 20;
-  return build_scene(p).rods.front();
-}
-
 TEST_CASE("a Delassus operator moves the touched segments as the whole rod responds, condensed or not") {
   std::vector<Rod> rods{test::random_rod(test::chain(12), {0}, 1), test::random_rod(test::tree(3, 3), {0}, 1),
-                        test::random_rod(test::ring(9), {}, 1), lattice(Lattice::Cell::octet),
-                        lattice(Lattice::Cell::body_centred)};
+                        test::random_rod(test::ring(9), {}, 1)};
+  for (const Lattice::Cell cell : {Lattice::Cell::octet, Lattice::Cell::body_centred})
+    rods.push_back(build_scene(test::lattice_of(cell, 3)).rods.front());
   Net net;
   net.rows = net.columns = 6;
   rods.push_back(build_scene(net).rods.front());
