@@ -153,6 +153,16 @@ KeyTable<ContactSettings> contact_keys() {
   KeyTable<Settings> table;
   table.optional(number_key("friction", "Coulomb friction coefficient, static and sliding").from(0, 100),
                  &Settings::friction);
+  table.optional(number_key("obstacle_friction",
+                            "friction coefficient of rods with obstacles and the floor; \"friction\": the same")
+                     .from(0, 100)
+                     .or_word("friction"),
+                 &Settings::obstacle_friction);
+  table.optional(
+      number_key("restitution",
+                 "coefficient of restitution: speed of separation after an impact, over that of the approach")
+          .from(0, 1),
+      &Settings::restitution);
   table.optional(
       number_key("tolerance", "contacts have converged if no correction of a segment is larger than this, in its radii")
           .above(0)

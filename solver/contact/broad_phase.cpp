@@ -19,6 +19,9 @@ Region region(const Box& box) {
   return {{box.low.x(), box.low.y(), box.low.z()}, {box.high.x(), box.high.y(), box.high.z()}};
 }
 
+/// Of its motion since the last call, that a box is enlarged by; at most this many margins.
+constexpr double ahead = 8;
+
 }  // namespace
 
 BroadPhase::BroadPhase(std::vector<double> margins, std::function<bool(int, int)> matters)
@@ -27,10 +30,19 @@ BroadPhase::BroadPhase(std::vector<double> margins, std::function<bool(int, int)
 const std::vector<Pair>& BroadPhase::pairs(const std::vector<Box>& boxes) {
   bool inside = kept_.size() == boxes.size();
   for (std::size_t i = 0; inside && i < boxes.size(); ++i) inside = kept_[i].contains(boxes[i]);
-  if (inside) return pairs_;
-  kept_.resize(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) kept_[i] = boxes[i].grown(margins_[i]);
-  search();
+  if (!inside) {
+    kept_.resize(boxes.size());
+    if (last_.size() != boxes.size()) last_ = boxes;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const double most = ahead * margins_[i];
+      const Vector3 further = (ahead * (boxes[i].low - last_[i].low)).cwiseMax(-most).cwiseMin(most);
+      kept_[i] = boxes[i].grown(margins_[i]);
+      kept_[i].low += further.cwiseMin(0);
+      kept_[i].high += further.cwiseMax(0);
+    }
+    search();
+  }
+  last_ = boxes;
   return pairs_;
 }
 

@@ -1,8 +1,8 @@
 // The pairs of bodies that may touch in a step: all pairs with overlapping boxes, from a packed R-tree (Boost.Geometry;
 // Leutenegger et al. 1997; Garcia et al. 1998) with a query for every box: O(n log n) in total.
 //
-// Boxes are enlarged by a margin. They and their pairs are kept until a box leaves its enlarged box (a Verlet list):
-// slow bodies cost one comparison each. Pairs are sorted. Only a new search allocates.
+// Boxes are enlarged by a margin, and by several times their motion since the last call. They and their pairs are kept
+// until a box leaves its enlarged box (a Verlet list): a comparison each. Pairs are sorted. Only a new search allocates.
 #pragma once
 
 #include <functional>
@@ -37,7 +37,7 @@ class BroadPhase {
   /// `matters(a, b)`, a < b: whether the pair is searched for. `margins`: of every body [m].
   BroadPhase(std::vector<double> margins, std::function<bool(int, int)> matters);
 
-  /// All pairs that matter with overlapping boxes, and some whose boxes overlap when enlarged by twice the margins.
+  /// All pairs that matter with overlapping boxes, and some whose enlarged boxes overlap.
   const std::vector<Pair>& pairs(const std::vector<Box>& boxes);
 
   int searches() const { return searches_; }  ///< searches so far
@@ -48,6 +48,7 @@ class BroadPhase {
   std::vector<double> margins_;
   std::function<bool(int, int)> matters_;
   std::vector<Box> kept_;
+  std::vector<Box> last_;  ///< of the last call
   std::vector<Pair> pairs_;
   int searches_ = 0;
 };

@@ -41,10 +41,11 @@ Vector3 direction(const Vector3& separation, const CapsuleAxis& a, const Capsule
 
 }  // namespace
 
-ContactFinder::ContactFinder(const Scene& scene, double recovery)
+ContactFinder::ContactFinder(const Scene& scene, const ContactSettings& settings)
     : bodies_(scene),
       broad_phase_(margins(bodies_), [this](int a, int b) { return bodies_.matter(a, b); }),
-      recovery_(recovery) {
+      recovery_(settings.recovery),
+      restitution_(settings.restitution) {
   for (const Obstacle& obstacle : scene.obstacles)
     if (const auto* half_space = std::get_if<HalfSpace>(&obstacle)) {
       if (!half_space->point_m.allFinite() || !(half_space->normal.norm() > 0) || !half_space->normal.allFinite())
@@ -83,6 +84,7 @@ bool ContactFinder::find(const Scene& scene, std::vector<Contact>& contacts) {
     }
   }
   keep_impulses(contacts);
+  if (restitution_ > 0) let_rebound();
   std::swap(found_, contacts);
   found_.reserve(contacts.capacity());  // both lists have room, so that a later step need not allocate
   return true;
@@ -94,6 +96,15 @@ void ContactFinder::keep_impulses(const std::vector<Contact>& last) {
   for (Contact& contact : found_) {
     while (was != last.end() && key(*was) < key(contact)) ++was;
     if (was != last.end() && key(*was) == key(contact)) contact.impulse = was->impulse;
+  }
+}
+
+void ContactFinder::let_rebound() {
+  for (Contact& contact : found_) {
+    if (!contact.impulse.isZero(0)) continue;
+    const double nearer = approach(contact, free_);
+    Contact at_start = contact;
+    if (nearer > 0) contact.allowed = follow(at_start, start_, start_s_).width + restitution_ * nearer;
   }
 }
 
@@ -166,11 +177,15 @@ void ContactFinder::add(Contact contact, bool sided) {
   found_.push_back(contact);
 }
 
-bool ContactFinder::closes(Contact contact, const std::vector<CapsuleAxis>& axes) const {
+double ContactFinder::approach(Contact contact, const std::vector<CapsuleAxis>& axes) const {
   const double end = follow(contact, axes, end_s_).width;
-  if (end >= 0) return false;
-  const double start = follow(contact, start_, start_s_).width;
-  return start - end > least_impact * bodies_.smaller_radius(contact.a, contact.b);
+  if (end >= 0) return 0;
+  const double nearer = follow(contact, start_, start_s_).width - end;
+  return nearer > least_impact * bodies_.smaller_radius(contact.a, contact.b) ? nearer : 0;
+}
+
+bool ContactFinder::closes(const Contact& contact, const std::vector<CapsuleAxis>& axes) const {
+  return approach(contact, axes) > 0;
 }
 
 Vector3 ContactFinder::motion(int obstacle) const {

@@ -14,6 +14,11 @@
 // side by side have two contacts, at the ends of their overlap; a capsule on a half-space has two, at its ends; all
 // others have one, at their closest points. A penetration at p is allowed, except for a share that is corrected
 // (ContactSettings::recovery), at most a hundredth of a radius per step: correcting positions adds a velocity.
+//
+// With a coefficient of restitution e, a contact whose gap g would close by p* has an impact in this step (Moreau 1988;
+// Jean 1999): g(end) >= g(p) + e (g(p) - g(p*)), so that the velocity of separation is at least e times that of the
+// approach. Slow approaches, of less than a hundredth of a radius in the step, and contacts
+// that pressed in the last step have none: bodies come to rest.
 #pragma once
 
 #include <vector>
@@ -30,7 +35,7 @@ struct Contact {
   Place place;
   double s;                  ///< on a's axis, unless closest
   Vector3 normal;            ///< n
-  double allowed = 0;        ///< lower limit of the gap |x_a - x_b| - R, at most 0 [m]
+  double allowed = 0;        ///< lower limit of the gap |x_a - x_b| - R; above 0 only in an impact [m]
   Vector3 impulse{0, 0, 0};  ///< on a, in this step so far, starting from the last step's (contact_motion.hpp) [kg m]
 };
 
@@ -42,7 +47,7 @@ struct Gap {
 
 class ContactFinder {
  public:
-  ContactFinder(const Scene& scene, double recovery);
+  ContactFinder(const Scene& scene, const ContactSettings& settings);
   ContactFinder(const ContactFinder&) = delete;  // broad_phase_ refers to this
   ContactFinder& operator=(const ContactFinder&) = delete;
 
@@ -67,7 +72,7 @@ class ContactFinder {
   const std::vector<CapsuleAxis>& start() const { return start_; }
 
   /// Whether the bodies touch with these axes and have come nearer by more than a hundredth of the smaller radius.
-  bool closes(Contact contact, const std::vector<CapsuleAxis>& axes) const;
+  bool closes(const Contact& contact, const std::vector<CapsuleAxis>& axes) const;
 
   /// The motion of an obstacle in the step; half-space i is obstacle -1 - i.
   Vector3 motion(int obstacle) const;
@@ -78,7 +83,10 @@ class ContactFinder {
   bool nearer_beyond(int body, int other, double s, const Vector3& away, double time) const;
   void add(Contact contact, bool sided);
   void keep_impulses(const std::vector<Contact>& last);
+  void let_rebound();
   Gap follow(Contact& contact, const std::vector<CapsuleAxis>& axes, double time_s) const;
+  /// How much nearer the bodies of an impact come between p and these axes; 0 if there is none [m].
+  double approach(Contact contact, const std::vector<CapsuleAxis>& axes) const;
 
   struct Plane {
     Vector3 point, normal, velocity;
@@ -87,7 +95,7 @@ class ContactFinder {
   ContactBodies bodies_;
   std::vector<Plane> planes_;
   BroadPhase broad_phase_;
-  double recovery_;
+  double recovery_, restitution_;
   double start_s_ = 0, end_s_ = 0;         ///< of the step
   std::vector<CapsuleAxis> start_, free_;  ///< at p and p*
   std::vector<double> reach_;              ///< per body: distance from its axis at which contacts begin [m]

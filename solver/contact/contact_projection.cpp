@@ -20,21 +20,29 @@ void check_least(const char* what, double value, double least) {
                      std::to_string(static_cast<int>(least)) + " and finite");
 }
 
+void check_most(const char* what, double value, double most) {
+  if (value > most)
+    throw SceneError(std::string(what) + " is " + std::to_string(value) + "; must be at most " +
+                     std::to_string(static_cast<int>(most)));
+}
+
 }  // namespace
 
 ContactProjection::ContactProjection(Scene& scene, const ContactSettings& settings, double unit_dt)
     : scene_(scene),
       settings_(settings),
       unit_dt_(unit_dt),
-      finder_(scene, settings.recovery),
+      finder_(scene, settings),
       motion_(scene, finder_.bodies()) {
   check_least("friction", settings.friction, 0);
+  check_least("obstacle_friction", settings.obstacle_friction.value_or(0), 0);
   check_least("tolerance", settings.tolerance, 0);
   if (settings.tolerance == 0) throw SceneError("tolerance is 0; must be positive");
   check_least("sweeps", settings.sweeps, 1);
   check_least("recovery", settings.recovery, 0);
-  if (settings.recovery > 1)
-    throw SceneError("recovery is " + std::to_string(settings.recovery) + "; must be at most 1");
+  check_least("restitution", settings.restitution, 0);
+  check_most("recovery", settings.recovery, 1);
+  check_most("restitution", settings.restitution, 1);
 }
 
 void ContactProjection::start_step(double end_s) {
@@ -106,6 +114,7 @@ bool ContactProjection::project() {
     settle();
     more = converged && activate();
   }
+  keep_impulses();
   motion_.apply(keeps_balance_);
   if (keeps_balance_) tell_impulses();
   return false;
@@ -121,19 +130,16 @@ void ContactProjection::linearise() {
     at.a = {contact.a, gap.middle - axes_[static_cast<std::size_t>(contact.a)].centre};
     at.b = {contact.b, contact.b < 0 ? gap.middle : gap.middle - axes_[static_cast<std::size_t>(contact.b)].centre};
     at.size = finder_.bodies().smaller_radius(contact.a, contact.b);
-    at.has_slip = at.active = false;
+    at.is_active = false;
   }
 }
 
-// Only contacts that may carry an impulse need it.
-const Vector3& ContactProjection::slip(std::size_t c) {
-  Linear& at = linear_[c];
-  if (at.has_slip) return at.slip;
+// The motion of a's material against b's at the common point since the start of the step.
+Vector3 ContactProjection::slip(std::size_t c) const {
   const Contact& contact = contacts_[c];
+  const Linear& at = linear_[c];
   const Vector3 point = axes_[static_cast<std::size_t>(contact.a)].centre + at.a.arm;
-  at.slip = slip(at.a, point) - (contact.b < 0 ? finder_.motion(contact.b) : slip(at.b, point));
-  at.has_slip = true;
-  return at.slip;
+  return slip(at.a, point) - (contact.b < 0 ? finder_.motion(contact.b) : slip(at.b, point));
 }
 
 // The motion of the body's material at a point since the start of the step.
@@ -147,6 +153,11 @@ Vector3 ContactProjection::slip(const BodyPoint& at, const Vector3& point) const
   return point - (old.position + old.orientation * arm);
 }
 
+double ContactProjection::friction(const Contact& contact) const {
+  const bool with_obstacle = contact.b < 0 || finder_.bodies().body(contact.b).rod < 0;
+  return with_obstacle ? settings_.obstacle_friction.value_or(settings_.friction) : settings_.friction;
+}
+
 // The largest motion of a contact's correction by a sweep over free segments, relative to the smaller radius.
 double ContactProjection::residual() {
   motion_.measure(axes_);
@@ -157,12 +168,16 @@ double ContactProjection::residual() {
     const Vector3 moved = motion_.of(at.a) - motion_.of(at.b);
     const double gap = this->gap(contact, at) + contact.normal.dot(moved);
     if (gap >= 0 && contact.impulse.isZero(0)) continue;
-    const CoulombContact law(contact.normal, motion_.mobility(at.a, at.b), settings_.friction);
-    const Vector3 change = law.relaxed(contact.impulse, gap, slip(c) + moved) - contact.impulse;
+    const Matrix3 frame = contact_frame(contact.normal);
+    const CoulombContact law(frame.transpose() * motion_.mobility(at.a, at.b) * frame, friction(contact));
+    const Vector3 impulse = frame.transpose() * contact.impulse;
+    Vector3 remains = frame.transpose() * (slip(c) + moved);
+    remains.x() = gap;
+    const Vector3 change = law.relaxed(impulse, remains) - impulse;
     if (change.isZero(0)) continue;
     most = std::max(most, change.norm() * law.normal_weight() / at.size);
-    motion_.push(at.a, change);
-    motion_.push(at.b, -change);
+    motion_.push(at.a, frame * change);
+    motion_.push(at.b, frame * -change);
   }
   motion_.clear();
   return most;
@@ -175,11 +190,15 @@ bool ContactProjection::activate() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
     Linear& at = linear_[c];
-    if (at.active) continue;
+    if (at.is_active) continue;
     const double width = gap(contact, at) + contact.normal.dot(motion_.of(at.a) - motion_.of(at.b));
     if (contact.impulse.isZero(0) && width >= -overlap * at.size) continue;
-    at.active = true;
-    active_.push_back({c, {}, gap(contact, at), contact.impulse, contact.impulse, contact.impulse, -1, -1});
+    at.is_active = true;
+    const Matrix3 frame = contact_frame(contact.normal);
+    const Vector3 impulse = frame.transpose() * contact.impulse;
+    Vector3 start = frame.transpose() * slip(c);
+    start.x() = gap(contact, at);
+    active_.push_back({c, frame, {}, at.size, start, impulse, impulse, impulse, impulse, -1, -1});
     motion_.touch(at.a.body);
     motion_.touch(at.b.body);
   }
@@ -194,16 +213,16 @@ bool ContactProjection::activate() {
 void ContactProjection::place_points() {
   points_.clear();
   by_group_.clear();
-  const auto add = [this](const BodyPoint& at) {
+  const auto add = [this](const BodyPoint& at, std::size_t active) {
     const int group = motion_.group(at.body);
     if (group < 0) return -1;
     by_group_.push_back(static_cast<int>(points_.size()));
-    points_.push_back({&at, group, 0, 0, 0, 0});
+    points_.push_back({&at, active, group, 0, 0, 0, 0});
     return by_group_.back();
   };
-  for (Active& active : active_) {
-    active.a = add(linear_[active.contact].a);
-    active.b = add(linear_[active.contact].b);
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    active_[i].a = add(linear_[active_[i].contact].a, i);
+    active_[i].b = add(linear_[active_[i].contact].b, i);
   }
   std::sort(by_group_.begin(), by_group_.end(),
             [this](int p, int q) { return std::pair(point(p).group, p) < std::pair(point(q).group, q); });
@@ -233,7 +252,8 @@ void ContactProjection::couple() {
     const Point& by = point(by_group_[i]);
     for (std::size_t j = i; j < by_group_.size() && point(by_group_[j]).group == by.group; ++j) {
       const Point& of = point(by_group_[j]);
-      const Matrix3 motion = motion_.coupling(*of.at, *by.at);
+      const Matrix3 motion =
+          active_[of.active].frame.transpose() * motion_.coupling(*of.at, *by.at) * active_[by.active].frame;
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) g[by.entry(of, r, c)] = g[of.entry(by, c, r)] = motion(r, c);
     }
@@ -248,7 +268,7 @@ void ContactProjection::couple() {
   for (Active& active : active_) {
     const Matrix3 cross = block(active.a, active.b);
     const Matrix3 mobility = block(active.a, active.a) + block(active.b, active.b) - cross - cross.transpose();
-    active.law = CoulombContact(contacts_[active.contact].normal, mobility, settings_.friction);
+    active.law = CoulombContact(mobility, friction(contacts_[active.contact]));
   }
 }
 
@@ -256,19 +276,17 @@ void ContactProjection::couple() {
 void ContactProjection::press() {
   if (!std::exchange(fresh_, false)) return;
   for (Active& active : active_) {
-    Vector3& impulse = contacts_[active.contact].impulse;
-    const Vector3 pressed = active.law.admissible(impulse);
-    if (!keeps_balance_) impulse = active.settled = Vector3::Zero();
+    const Vector3 pressed = active.law.admissible(active.impulse);
+    if (!keeps_balance_) active.impulse = active.settled = Vector3::Zero();
     change(active, pressed);
   }
   if (motion_.needs_settling()) settle();
 }
 
-void ContactProjection::change(const Active& active, const Vector3& impulse) {
-  Vector3& now = contacts_[active.contact].impulse;
-  push(active.a, impulse - now);
-  push(active.b, now - impulse);
-  now = impulse;
+void ContactProjection::change(Active& active, const Vector3& impulse) {
+  push(active.a, impulse - active.impulse);
+  push(active.b, active.impulse - impulse);
+  active.impulse = impulse;
 }
 
 void ContactProjection::push(int at, const Vector3& impulse) {
@@ -281,7 +299,7 @@ void ContactProjection::push(int at, const Vector3& impulse) {
     motions[r] += g[r] * impulse.x() + g[rows + r] * impulse.y() + g[2 * rows + r] * impulse.z();
 }
 
-/// v of a contact.
+/// v of a contact, in its frame.
 Vector3 ContactProjection::motion(const Active& active) const {
   const double* const motions = reinterpret_cast<const double*>(motions_.data());
   const auto of = [&](int at) -> Vector3 {
@@ -294,41 +312,44 @@ Vector3 ContactProjection::motion(const Active& active) const {
 // Returns the largest motion of a contact's correction on the way from the first to the last, relative to the smaller
 // radius.
 double ContactProjection::sweep() {
-  for (Active& active : active_) active.before = contacts_[active.contact].impulse;
+  for (Active& active : active_) active.before = active.impulse;
   double most = 0;
-  for (const Active& active : active_) most = std::max(most, relax(active));
+  for (Active& active : active_) most = std::max(most, relax(active));
   if (motion_.couples_segments())
     for (std::size_t i = active_.size(); i-- > 0;) relax(active_[i]);
   return most;
 }
 
-double ContactProjection::relax(const Active& active) {
-  const Contact& contact = contacts_[active.contact];
-  const Vector3 moved = motion(active);
-  const double gap = active.gap + contact.normal.dot(moved);
-  if (gap >= 0 && contact.impulse.isZero(0)) return 0;
-  const Vector3 impulse = active.law.relaxed(contact.impulse, gap, slip(active.contact) + moved);
-  const Vector3 by = impulse - contact.impulse;
+double ContactProjection::relax(Active& active) {
+  const Vector3 remains = active.start + motion(active);
+  if (remains.x() >= 0 && active.impulse.isZero(0)) return 0;
+  const Vector3 impulse = active.law.relaxed(active.impulse, remains), by = impulse - active.impulse;
   if (by.isZero(0)) return 0;
   change(active, impulse);
-  return active.law.motion(by) / linear_[active.contact].size;
+  return active.law.motion(by) / active.size;
 }
 
 void ContactProjection::settle() {
   for (Active& active : active_) {
-    const Vector3 by = contacts_[active.contact].impulse - active.settled;
+    const Vector3 by = active.impulse - active.settled;
     active.settled += by;
     if (by.isZero(0)) continue;
-    motion_.push(linear_[active.contact].a, by);
-    motion_.push(linear_[active.contact].b, -by);
+    motion_.push(linear_[active.contact].a, active.frame * by);
+    motion_.push(linear_[active.contact].b, active.frame * -by);
   }
   motion_.settle();
   find_motions();
 }
 
+void ContactProjection::keep_impulses() {
+  for (const Active& active : active_) contacts_[active.contact].impulse = active.frame * active.impulse;
+}
+
 void ContactProjection::find_motions() {
   double* const motions = reinterpret_cast<double*>(motions_.data());
-  for (const Point& point : points_) Eigen::Map<Vector3>(motions + point.begin + point.motion) = motion_.of(*point.at);
+  for (const Point& point : points_)
+    Eigen::Map<Vector3>(motions + point.begin + point.motion) =
+        active_[point.active].frame.transpose() * motion_.of(*point.at);
 }
 
 void ContactProjection::restart(double moved) {
@@ -343,7 +364,7 @@ void ContactProjection::accelerate(double moved) {
     for (Active& active : active_) active.swept = active.before;
   double against = 0;
   for (const Active& active : active_) {
-    const Vector3& now = contacts_[active.contact].impulse;
+    const Vector3& now = active.impulse;
     against += active.law.normal_weight() * (active.before - now).dot(now - active.swept);
   }
   if (against > 0 || moved > worse * least_moved_) restart(moved);
@@ -351,7 +372,7 @@ void ContactProjection::accelerate(double moved) {
   const double next = (1 + std::sqrt(1 + 4 * momentum_ * momentum_)) / 2, beta = (momentum_ - 1) / next;
   momentum_ = next;
   for (Active& active : active_) {
-    const Vector3 now = contacts_[active.contact].impulse;
+    const Vector3 now = active.impulse;
     change(active, active.law.admissible(now + beta * (now - active.swept)));
     active.swept = now;
   }

@@ -67,21 +67,24 @@ class ContactProjection {
     BodyPoint a, b;  ///< the common point
     double width;    ///< of the gap [m]
     double size;     ///< the smaller radius, the reference of motions
-    bool has_slip, active;
-    Vector3 slip;  ///< of a's material against b's at the common point, since the start of the step
+    bool is_active;
   };
-  /// A contact that is iterated.
+  /// A contact that is iterated, in its frame.
   struct Active {
     std::size_t contact;
+    Matrix3 frame;
     CoulombContact law;
-    double gap;             ///< without v [m]
+    double size;            ///< the reference of motions
+    Vector3 start;          ///< gap and slip without v [m]
+    Vector3 impulse;        ///< [kg m]
     Vector3 settled;        ///< the impulse that the bodies' motions have
     Vector3 before, swept;  ///< impulses before the last sweep, after the sweep before
     int a, b;               ///< its points, -1 if the body does not move
   };
-  /// A point of an active contact, and its block column of G.
+  /// A point of an active contact, and its block column of G, in the contact's frame.
   struct Point {
     const BodyPoint* at;
+    std::size_t active;  ///< its contact
     int group;           ///< ContactMotion::group
     std::size_t begin;   ///< of its group in motions_
     std::size_t rows;    ///< of its group, a multiple of eight
@@ -99,16 +102,18 @@ class ContactProjection {
   Vector3 motion(const Active& active) const;
   void push(int point, const Vector3& impulse);
   void place_points();
-  const Vector3& slip(std::size_t contact);
+  Vector3 slip(std::size_t contact) const;
   Vector3 slip(const BodyPoint& at, const Vector3& point) const;
   double gap(const Contact& contact, const Linear& at) const { return at.width - contact.allowed; }
+  double friction(const Contact& contact) const;
   double residual();
   bool activate();
   void couple();
   void press();
   double sweep();
-  double relax(const Active& active);
-  void change(const Active& active, const Vector3& impulse);
+  double relax(Active& active);
+  void change(Active& active, const Vector3& impulse);
+  void keep_impulses();
   void settle();
   void find_motions();
   void restart(double moved);

@@ -36,6 +36,51 @@ TEST_CASE("two rods that meet head-on go on together, with their common momentum
   CHECK(test::nearest(t.scene) == Approx(1).epsilon(1e-6));
 }
 
+TEST_CASE("rods that meet head-on part with the coefficient of restitution, and keep their momentum") {
+  RodParameters heavy;
+  heavy.density_kg_m3 = 3000;
+  for (const double restitution : {0.1, 0.5, 1.0}) {
+    Scene scene = exact(contact_scene(
+        {capsule({0, 0, -1}, {0, 0, 1}, {2, 0, 0}, heavy), capsule({2.5 * r, 0, -1}, {2.5 * r, 0, 1}, {-1, 0, 0})}));
+    scene.contact->restitution = restitution;
+    Touching t(scene, 0.01);
+    t.run(5);
+    const double common = (3 * 2 - 1) / 4.0, apart = restitution * 3;
+    CHECK(t.scene.rods[0].velocity[0].x() == Approx(common - apart / 4));
+    CHECK(t.scene.rods[1].velocity[0].x() == Approx(common + apart * 3 / 4));
+  }
+}
+
+/// Heights of a capsule's centre above its radius, dropped from .5 m on a floor.
+std::vector<double> bouncing(double restitution, double dt, int steps) {
+  const Vector3 at(0, r + 0.5, 0), along(0.5, 0, 0);
+  Scene scene = contact_scene({capsule(at - along, at + along, {0, 0, 0})}, 0.3, {0, -9.81, 0});
+  scene.obstacles = {HalfSpace{}};
+  scene.contact->restitution = restitution;
+  Touching t(scene, dt);
+  std::vector<double> heights;
+  for (int i = 0; i < steps; ++i) {
+    t.step();
+    heights.push_back(t.scene.rods[0].position[0].y() - r);
+  }
+  return heights;
+}
+
+TEST_CASE("a capsule bounces to the square of the restitution, to first order in the step, and comes to rest") {
+  const double restitution = 0.6, fall = std::sqrt(2 * 0.5 / 9.81);
+  const auto error = [&](double dt) {
+    const std::vector<double> heights = bouncing(restitution, dt, static_cast<int>(fall * (1 + 2 * restitution) / dt));
+    const auto hit = std::min_element(heights.begin(), heights.begin() + static_cast<int>(1.05 * fall / dt));
+    return std::abs(*std::max_element(hit, heights.end()) / (0.5 * restitution * restitution) - 1);
+  };
+  CHECK(error(2e-3) < 0.04);
+  CHECK(error(5e-4) < 0.01);
+  const std::vector<double> heights = bouncing(restitution, 2e-3, 1000);
+  CHECK(*std::min_element(heights.begin(), heights.end()) > -1e-4);
+  CHECK(*std::max_element(heights.end() - 100, heights.end()) < 1e-3);
+  CHECK(std::abs(heights.back() - heights.end()[-2]) < 1e-9);
+}
+
 /// One step of a capsule along y that hits a capsule along z at a distance `arm` from its centre.
 Scene after_impact(double arm, double dt) {
   Touching t(exact(contact_scene({capsule({0, -0.5, arm}, {0, 0.5, arm}, {1, 0, 0}),
@@ -91,9 +136,11 @@ Scene swarm(unsigned seed, double friction) {
 }
 
 TEST_CASE("collisions never give kinetic energy, and keep linear momentum to rounding") {
-  for (const double friction : {0.0, 0.4})
+  for (const auto& [friction, restitution] : {std::pair(0.0, 0.0), {0.4, 0.0}, {0.0, 0.5}})
     for (const unsigned seed : {1u, 2u, 3u}) {
-      Touching t(swarm(seed, friction), 0.005);
+      Scene scene = swarm(seed, friction);
+      scene.contact->restitution = restitution;
+      Touching t(scene, 0.005);
       const Vector3 momentum = test::linear_momentum(t.scene);
       const double start = test::kinetic_energy(t.scene);
       double energy = start;
@@ -104,7 +151,7 @@ TEST_CASE("collisions never give kinetic energy, and keep linear momentum to rou
         CHECK(now < energy + 1e-3 * start);  // the step integrates rotation to first order
         energy = now;
       }
-      CHECK(energy < 0.5 * start);
+      CHECK(energy < (restitution == 0 ? 0.5 : 0.8) * start);
       CHECK((test::linear_momentum(t.scene) - momentum).norm() < 1e-11);
     }
 }
@@ -236,6 +283,12 @@ TEST_CASE("contact settings and half-spaces that are none are refused") {
   scene.contact->recovery = 1.5;
   CHECK_THROWS_WITH(TimeStepper(scene, {}), "recovery is 1.500000; must be at most 1");
   scene.contact->recovery = 1;
+  scene.contact->restitution = 2;
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "restitution is 2.000000; must be at most 1");
+  scene.contact->restitution = 1;
+  scene.contact->obstacle_friction = -1;
+  CHECK_THROWS_WITH(TimeStepper(scene, {}), "obstacle_friction is -1.000000; must be at least 0 and finite");
+  scene.contact->obstacle_friction = {};
   scene.contact->tolerance = 0;
   CHECK_THROWS_WITH(TimeStepper(scene, {}), "tolerance is 0; must be positive");
   scene.contact->tolerance = 1e-5;

@@ -69,6 +69,29 @@ TEST_CASE("a capsule hung over a fixed one by friction stays, and slips off with
   }
 }
 
+TEST_CASE("friction between rods and with obstacles are two numbers") {
+  const Vector3 along(0.4, 0, 0), gravity = g * Vector3(0.2, -1, 0).normalized();
+  const double fallen = 40 * dt * gravity.x();
+  for (const double rods : {0.0, 0.5})
+    for (const double obstacle : {0.0, 0.5}) {
+      Scene scene = contact_scene({capsule(Vector3(0, r, 0) - along, Vector3(0, r, 0) + along, {0, 0, 0}),
+                                   capsule(Vector3(0, r, 2 * r) - along, Vector3(0, r, 2 * r) + along, {0, 0, 0}),
+                                   capsule(Vector3(0, (1 + std::sqrt(3)) * r, r) - along,
+                                           Vector3(0, (1 + std::sqrt(3)) * r, r) + along, {0, 0, 0})},
+                                  rods, gravity);
+      const double side = 2 * r;  // walls keep the lower two together
+      scene.obstacles = {HalfSpace{}, HalfSpace{{0, 0, -r}, {0, 0, 1}}, HalfSpace{{0, 0, side + r}, {0, 0, -1}}};
+      scene.contact->obstacle_friction = obstacle;
+      Touching t(scene, dt);
+      t.run(40);
+      const double below = t.scene.rods[0].velocity[0].x(), above = t.scene.rods[2].velocity[0].x();
+      INFO("rods " << rods << ", obstacle " << obstacle);
+      CHECK((below < 1e-3) == (obstacle > 0));
+      CHECK((above - below < 1e-3) == (rods > 0 || obstacle == 0));
+      if (obstacle == 0) CHECK(below == Approx(fallen).epsilon(2e-3));
+    }
+}
+
 /// How far a limp rod over a fixed capsule slips in half a second. Its ends are pulled down with 1 N and `ratio` N.
 double slip_of_rope(double friction, double ratio) {
   RodParameters p;
