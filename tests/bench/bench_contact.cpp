@@ -1,5 +1,6 @@
-// The cost of contact over the number of segments of a heap of constant density: broad phase, finding contacts. Google Benchmark times the cases; a final table has the medians per segment. Another has whole steps in
-// contact of scenes as they are simulated, beside their assembly and direct solution.
+// The cost of contact over the number of segments of a heap of constant density: broad phase, finding contacts. Google
+// Benchmark times the cases; a final table has the medians per segment. Another has whole steps in contact of scenes as
+// they are simulated, beside their assembly and direct solution.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -167,6 +168,10 @@ void print_steps() {
   auto falling = touching<FallingRods>(0.03, 1e7, 1e7);
   falling.rods = 6;
   print_steps("falling rods", falling, 0.01, 100);
+  auto heap = falling;
+  heap.rods = 100;
+  heap.height_m = 0.1;
+  print_steps("heap", heap, 0.005, 300);
   auto bundle = touching<Bundle>(0.01, 1e7, 1e7);
   bundle.initial_angle_deg = 20;
   print_steps("bundle", bundle, 0.005, 200);
