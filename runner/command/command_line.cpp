@@ -68,19 +68,19 @@ std::string version_text() {
 }
 
 // Replaces CLI11's validators, whose messages print the largest double.
-CLI::Validator number_check(bool zero, const char* bound) {
+CLI::Validator number_check(double least, bool may_be_least, const char* bound) {
   return CLI::Validator(
-      [zero, bound](std::string& text) {
+      [least, may_be_least, bound](std::string& text) {
         double value = 0;
         constexpr double most = 1e9;  // also rejects infinity and NaN
-        const bool good =
-            CLI::detail::lexical_cast(text, value) && value <= most && (value > 0 || (zero && value == 0));
+        const bool good = CLI::detail::lexical_cast(text, value) && value <= most &&
+                          (value > least || (may_be_least && value == least));
         return good ? std::string() : fmt::format("{} is not allowed; must be a number {}", text, bound);
       },
       "");
 }
-CLI::Validator above_zero() { return number_check(false, "above 0 and at most 1e9"); }
-CLI::Validator not_negative() { return number_check(true, "from 0 to 1e9"); }
+CLI::Validator above_zero() { return number_check(0, false, "above 0 and at most 1e9"); }
+CLI::Validator not_negative() { return number_check(0, true, "from 0 to 1e9"); }
 
 // Each function adds a command whose arguments fill the given options.
 
@@ -108,7 +108,7 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
   command
       ->add_option("--memory-limit-gb", run.memory_limit_gb,
                    "Memory per rank; a task that needs more ends in an error [90 % of the host's / its workers]")
-      ->check(CLI::Range(0.1, 1e9))  // the program itself needs most of 0.1 GB
+      ->check(number_check(0.1, true, "from 0.1 to 1e9"))  // the program itself needs most of 0.1 GB
       ->type_name("GB");
   command->add_option("--max-crashes", run.max_crashes, "Mark a task as crashed after this many worker deaths [3]")
       ->check(CLI::Range(1, 100))

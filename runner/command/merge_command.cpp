@@ -95,6 +95,7 @@ ExitCode execute(const MergeOptions& options, Console& console) {
   const ExitCode code = done < plan.size() ? ExitCode::stopped : (failed > 0 ? ExitCode::tasks_failed : ExitCode::ok);
   merged.end_run(utc_now(), static_cast<int>(code));
   merged.close();
+  merged.check_written();
 
   if (!damaged.empty())
     console.warn(fmt::format("{} damaged (wrong checksum) and left to do: {}",

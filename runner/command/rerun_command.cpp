@@ -65,6 +65,7 @@ ExitCode execute(const RerunOptions& options, Console& console) {
     const ExitCode code = record.outcome == TaskOutcome::ok ? ExitCode::ok : ExitCode::tasks_failed;
     file.end_run(utc_now(), static_cast<int>(code));
     file.close();
+    file.check_written();
   });
   const TaskResult result = body({0}, [&] { return signal.received() != 0; }).front();
   if (result.outcome == TaskOutcome::pending) {

@@ -339,6 +339,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   const auto end = [&](ExitCode code) {
     if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
     dispatch.ranks_lost ? file.leave() : file.close();
+    by_rank_0(dispatch.ranks_lost ? std::nullopt : std::optional(mpi.world()), [&] { file.check_written(); });
     console.result(summary_text(summary));
     if (dispatch.left > 0) console.note(ended_text(dispatch, too_large.tasks, options, mpi.size()));
     return code;

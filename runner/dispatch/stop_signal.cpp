@@ -27,7 +27,11 @@ StopSignal::StopSignal() {
   action.sa_sigaction = note;
   action.sa_flags = SA_SIGINFO | SA_RESTART;  // a signal must not fail a write to the results file
   sigemptyset(&action.sa_mask);
-  for (std::size_t i = 0; i < signals_.size(); ++i) sigaction(signals_[i], &action, &before_[i]);
+  for (std::size_t i = 0; i < signals_.size(); ++i) {
+    sigaction(signals_[i], nullptr, &before_[i]);
+    const bool ignored = signals_[i] == SIGHUP && before_[i].sa_handler == SIG_IGN;
+    if (!ignored) sigaction(signals_[i], &action, nullptr);
+  }
 }
 
 StopSignal::~StopSignal() {
@@ -41,6 +45,9 @@ const char* signal_name(int signal) {
     case SIGTERM: return "SIGTERM";
     case SIGINT: return "SIGINT";
     case SIGUSR1: return "SIGUSR1";
+    case SIGUSR2: return "SIGUSR2";
+    case SIGXCPU: return "SIGXCPU";
+    case SIGHUP: return "SIGHUP";
     default: return "a signal";
   }
 }

@@ -1,5 +1,7 @@
-// Turns SIGTERM, SIGINT and SIGUSR1 into a request to stop. The handlers are installed for the lifetime of the object;
-// the destructor restores the old ones. The handler only records the first signal, so a second one has no effect.
+// Turns the signals by which people and schedulers end programs into a request to stop: SIGTERM, SIGINT, SIGUSR1, SIGUSR2
+// (Grid Engine), SIGXCPU (PBS, Grid Engine), SIGHUP unless it is ignored (nohup). The handlers are installed for the
+// lifetime of the object; the destructor restores the old ones. The handler only records the first signal, so a second
+// one has no effect.
 #pragma once
 
 #include <array>
@@ -19,8 +21,8 @@ class StopSignal {
   int received() const;
 
  private:
-  static constexpr std::array<int, 3> signals_{SIGTERM, SIGINT, SIGUSR1};
-  std::array<struct sigaction, 3> before_{};
+  static constexpr std::array signals_{SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU, SIGHUP};
+  std::array<struct sigaction, signals_.size()> before_{};
 };
 
 /// "SIGTERM", for messages.

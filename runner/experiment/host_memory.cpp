@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "runner/mpi/control_groups.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -31,37 +32,11 @@ double of_status(const std::string& key) {
   return 0;
 }
 
-/// The number in a file; unlimited if the file is missing or contains "max", the cgroup value for no limit.
-double number_in(const fs::path& path) {
-  std::ifstream file(path);
-  double value = 0;
-  return file >> value ? value : unlimited;
-}
-
-/// The lowest limit of a control group and its ancestors.
-double limit_of(const fs::path& mount, std::string group, const char* name) {
-  double least = unlimited;
-  for (;;) {
-    least = std::min(least, number_in(mount / fs::path(group).relative_path() / name));
-    if (group.empty() || group == "/") return least;
-    group = fs::path(group).parent_path().native();
-  }
-}
-
 }  // namespace
 
 double host_memory(const fs::path& root, const fs::path& proc) {
-  double least = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  std::ifstream groups(proc / "self/cgroup");
-  const fs::path mount = root / "sys/fs/cgroup";
-  for (std::string line; std::getline(groups, line);) {  // NUMBER:CONTROLLERS:GROUP; version 2 has no controllers
-    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
-    if (second == std::string::npos) continue;
-    const std::string controllers = line.substr(first + 1, second - first - 1), group = line.substr(second + 1);
-    if (controllers.empty()) least = std::min(least, limit_of(mount, group, "memory.max"));
-    if (controllers == "memory") least = std::min(least, limit_of(mount / "memory", group, "memory.limit_in_bytes"));
-  }
-  return least;
+  const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::min(machine, memory_quota(root, proc));
 }
 
 void limit_memory(double bytes) {

@@ -33,6 +33,13 @@ void SyncedFile::sync() const {
   if (fdatasync(descriptor_.number()) != 0 && !cannot(errno)) throw sync_error(path_, errno);
 }
 
+bool SyncedFile::is_in_place() const {
+  struct stat mine {
+  }, there{};
+  return fstat(descriptor_.number(), &mine) == 0 && stat(path_.c_str(), &there) == 0 && mine.st_dev == there.st_dev &&
+         mine.st_ino == there.st_ino;
+}
+
 void SyncedFile::beat() {
   constexpr std::chrono::seconds pause{5};
   const auto now = std::chrono::steady_clock::now();

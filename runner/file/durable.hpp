@@ -41,6 +41,8 @@ class SyncedFile {
   explicit SyncedFile(const std::filesystem::path& path);
 
   void sync() const;
+  /// Whether the path still leads to this file.
+  bool is_in_place() const;
   /// A heartbeat: sets the file's modification time to now, at most every few seconds.
   void beat();
 

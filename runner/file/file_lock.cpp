@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 
 #include <cerrno>
 
@@ -33,10 +34,12 @@ FileLock::FileLock(const std::filesystem::path& path) : descriptor_(open(path.c_
   if (!descriptor_) return;  // the next open of the file reports the error
   struct flock byte = far_byte();
   held_ = fcntl(descriptor_.number(), F_OFD_SETLK, &byte) == 0;
-  if (held_ || (errno != EAGAIN && errno != EACCES)) return;
-  throw FileError(fmt::format(
-      "{} is being written by another run: wait until it ends, or stop it (`rodsweep info {}` shows its host)",
-      path.native(), path.native()));
+  if (!held_ && (errno == EAGAIN || errno == EACCES))
+    throw FileError(fmt::format(
+        "{} is being written by another run: wait until it ends, or stop it (`rodsweep info {}` shows its host)",
+        path.native(), path.native()));
+  if (flock(descriptor_.number(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw FileError(fmt::format("{} is open for writing in another program: close it there", path.native()));
 }
 
 }  // namespace rodsweep

@@ -1,7 +1,9 @@
-// A lock against a second run on a results file. The kernel releases it when the owner dies.
+// Locks on a results file while a run writes it. The kernel releases them when the owner dies.
 //
-// An open-file-description lock (fcntl) on a byte far behind the end of the file, where there is no data and no other
-// lock. Works on NFS from version 4 on. Has no effect on file systems without locks.
+// Against a second run: an open-file-description lock (fcntl) on a byte far behind the end of the file, where there is
+// no data and no other lock. Works on NFS from version 4 on. Against other programs: the shared lock (flock) that HDF5
+// asks for when it opens a file for reading, so that it refuses to open the file for writing. Neither has an effect on
+// file systems without locks.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +16,10 @@ namespace rodsweep {
 class FileLock {
  public:
   FileLock() = default;
-  /// Throws FileError if another run holds the lock.
+  /// Throws FileError if another run holds the lock, or another program has the file open for writing.
   explicit FileLock(const std::filesystem::path& path);
 
-  bool held() const { return held_; }  ///< false: the file system has no locks
+  bool held() const { return held_; }  ///< against a second run; false: the file system has no locks
 
   /// Whether a run on any host holds the lock; none if unknown.
   static std::optional<bool> is_held(const std::filesystem::path& path);

@@ -390,18 +390,38 @@ void ResultsFile::close() {
   if (!open_) return;
   open_->commit();
   hdf5::File file = std::move(open_->file);
-  const std::string path = open_->path.native();
-  const SyncedFile synced = std::move(open_->synced);
+  path_ = open_->path;
+  synced_ = std::move(open_->synced);
   const FileLock lock = std::move(open_->lock);
   open_.reset();
-  hdf5::close(file, "H5Fclose", path);
-  synced.sync();
+  hdf5::close(file, "H5Fclose", path_.native());
+  synced_.sync();
 }
 
 void ResultsFile::leave() {
   open_->commit();
-  open_->synced.sync();
+  path_ = open_->path;
+  synced_ = std::move(open_->synced);
+  synced_.sync();
   open_->file.release();
+}
+
+void ResultsFile::check_written() const {
+  if (!synced_.is_in_place())
+    throw FileError(
+        fmt::format("{} is not the file that this run wrote: meanwhile it was removed, moved or replaced. If it was "
+                    "moved, it is whole "
+                    "where it is now; if it was removed, its results are lost",
+                    path_.native()));
+  try {
+    const hdf5::File file = hdf5::open_file(path_, H5F_ACC_RDONLY, hdf5::unlocked_access().id());
+    const hdf5::RowDataset state(file.id(), "/tasks/state");
+  } catch (const Hdf5Error& error) {
+    throw FileError(fmt::format(
+        "{} does not open after the run, because another program wrote to it meanwhile: run the job again with another "
+        "-o FILE ({})",
+        path_.native(), error.what()));
+  }
 }
 
 }  // namespace rodsweep

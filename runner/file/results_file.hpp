@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/file/durable.hpp"
 #include "runner/file/file_creation.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/file_lock.hpp"
@@ -90,6 +91,9 @@ class ResultsFile {
   /// Independent; replaces close() if ranks were lost. Commits and syncs, but does not close the file.
   void leave();
 
+  /// Independent; after close() or leave(). Throws FileError unless the written file is at its path and opens.
+  void check_written() const;
+
  private:
   struct Open;
   ResultsFile(const std::filesystem::path& path, const Plan& plan, std::vector<std::uint8_t> done, int runs,
@@ -103,6 +107,8 @@ class ResultsFile {
   std::map<std::int64_t, std::uint8_t> before_;  ///< earlier tries of the tasks that this rank runs
   int run_index_ = 0;
   std::string note_;
+  std::filesystem::path path_;  ///< after the end
+  SyncedFile synced_;
 };
 
 }  // namespace rodsweep

@@ -7,6 +7,8 @@
 #include <array>
 #include <thread>
 
+#include "runner/mpi/control_groups.hpp"
+
 namespace rodsweep {
 
 void check_mpi(int code, const char* call) {
@@ -120,7 +122,7 @@ Placement placement(MPI_Comm comm, RankRoles roles) {
   check_mpi(MPI_Allreduce(&works, &host_workers, 1, MPI_INT, MPI_SUM, host), "MPI_Allreduce");
   check_mpi(MPI_Comm_free(&host), "MPI_Comm_free");
 
-  const int host_cores = CPU_COUNT(&ours);
+  const int host_cores = std::max(1, static_cast<int>(std::min<double>(CPU_COUNT(&ours), cpu_quota())));
   std::array<int, 3> part{works, host_rank == 0 ? host_cores : 0, host_workers > host_cores}, sum{};
   check_mpi(MPI_Allreduce(part.data(), sum.data(), 3, MPI_INT, MPI_SUM, comm), "MPI_Allreduce");
   const int threads = std::min(CPU_COUNT(&mine), host_cores / std::max(host_workers, 1));

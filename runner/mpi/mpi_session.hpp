@@ -83,7 +83,8 @@ Made collectively(MPI_Comm comm, const Part& part) {
 /// process calls `part`.
 void by_rank_0(const std::optional<MPI_Comm>& ranks, const std::function<void()>& part);
 
-/// The numbers of ranks and of the cores that they may use (the union of the affinity masks on each host).
+/// The numbers of ranks and of the cores that they may use: on each host the union of the affinity masks, or the quota of
+/// its control group.
 struct Placement {
   int workers = 1;              ///< ranks that compute: all but the master of a sweep; a single rank counts
   int cores = 1;                ///< on all hosts

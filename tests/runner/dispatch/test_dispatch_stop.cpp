@@ -119,6 +119,21 @@ TEST_CASE("a stop signal is noted, a second one changes nothing, and the old han
   CHECK(StopSignal().received() == 0);
 }
 
+TEST_CASE("signals of all schedulers are noted; a hang-up that nohup ignores stays ignored") {
+  for (const int number : {SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU, SIGHUP}) {
+    const StopSignal signal;
+    raise(number);
+    CHECK(signal.received() == number);
+  }
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  {
+    const StopSignal signal;
+    raise(SIGHUP);
+    CHECK(signal.received() == 0);
+  }
+  CHECK(std::signal(SIGHUP, before) == SIG_IGN);
+}
+
 TEST_CASE("of a signal that mpirun sent it is said that Ctrl-C may have been the reason") {
   CHECK(signal_cause(SIGUSR1) == "SIGUSR1");
   CHECK(signal_cause(SIGINT) == "Ctrl-C (SIGINT)");

@@ -1,9 +1,12 @@
+// Limits of control groups, and memory.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <vector>
 
 #include "runner/experiment/host_memory.hpp"
+#include "runner/mpi/control_groups.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
@@ -39,6 +42,30 @@ TEST_CASE("a host's memory is the machine's or the least that a control group al
     CHECK(found() == machine);
     write(groups / "memory/memory.limit_in_bytes", "30000000\n");
     CHECK(found() == 30000000);
+  }
+}
+
+TEST_CASE("the quota of processors is the least that a control group allows") {
+  const TemporaryFolder folder;
+  const auto found = [&] { return cpu_quota(folder.path(), folder / "proc"); };
+  CHECK(std::isinf(found()));
+  const fs::path groups = folder / "sys/fs/cgroup";
+  SECTION("version 2") {
+    write(folder / "proc/self/cgroup", "0::/job_7/step_0\n");
+    write(groups / "job_7/step_0/cpu.max", "max 100000\n");
+    CHECK(std::isinf(found()));
+    write(groups / "job_7/cpu.max", "400000 100000\n");
+    CHECK(found() == 4);
+    write(groups / "job_7/step_0/cpu.max", "75000 50000\n");
+    CHECK(found() == 1.5);
+  }
+  SECTION("version 1") {
+    write(folder / "proc/self/cgroup", "4:memory:/other\n3:cpu,cpuacct:/job_7\n");
+    write(groups / "cpu,cpuacct/job_7/cpu.cfs_quota_us", "-1\n");
+    write(groups / "cpu,cpuacct/job_7/cpu.cfs_period_us", "100000\n");
+    CHECK(std::isinf(found()));
+    write(groups / "cpu,cpuacct/job_7/cpu.cfs_quota_us", "100000\n");
+    CHECK(found() == 1);
   }
 }
 
