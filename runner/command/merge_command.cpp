@@ -17,6 +17,7 @@
 #include "runner/file/stored_plan.hpp"
 #include "runner/file/task_reader.hpp"
 #include "runner/file/unfinished_file.hpp"
+#include "runner/job/job_difference.hpp"
 #include "runner/terminal/text.hpp"
 
 namespace rodsweep {
@@ -47,9 +48,11 @@ std::vector<Part> open_parts(const std::vector<fs::path>& files, const FileSumma
   int runs = 0;
   for (const fs::path& path : files) {
     const FileSummary file = inspect(path);
-    if (file.job_text != first.job_text || file.rerun_of_task != first.rerun_of_task)
-      throw FileError(
-          fmt::format("{} and {} are of different jobs: must be of the same job", path.native(), first.path.native()));
+    if (file.rerun_of_task != first.rerun_of_task)
+      throw FileError(fmt::format("{} and {} are reruns of different tasks", path.native(), first.path.native()));
+    if (const auto found = first_difference(plan.job(), stored_job(file, {}, MissingFiles::accepted)))
+      throw FileError(fmt::format("{} and {} are of different jobs: {} is {} and {}; must be of the same job",
+                                  first.path.native(), path.native(), found->key, found->now, found->before));
     check_same_plan(path, plan, "Merge with that revision");
     parts.push_back({path, TaskReader(path), runs});
     runs += static_cast<int>(file.runs.size());

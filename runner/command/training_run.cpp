@@ -13,6 +13,7 @@
 #include "runner/dispatch/stop_signal.hpp"
 #include "runner/file/file_reading.hpp"
 #include "runner/file/unfinished_file.hpp"
+#include "runner/job/job_difference.hpp"
 #include "runner/job/training_job.hpp"
 #include "runner/terminal/progress_line.hpp"
 #include "runner/training/training.hpp"
@@ -22,7 +23,6 @@ namespace rodsweep {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr double most_of_time_for_saving = 0.02, longest_unsaved_s = 30;
 
@@ -34,24 +34,12 @@ ExitCode exit_code_of(Ending ending) {
   }
 }
 
-/// The settings that affect the results, by JSON pointer. The data set is compared by its hash instead.
-Json settings_of(const Job& job) {
-  Json values = job.values;
-  for (const char* key : {"name", "description", "$schema", "data"}) values.erase(key);
-  return values.flatten();
-}
-
 void check_same_job(const Job& job, const std::string& earlier_text, const fs::path& path) {
-  const Json now = settings_of(job), earlier = settings_of(parse_job(earlier_text, path));
-  for (const Json* keys : {&earlier, &now})
-    for (const auto& [key, ignored] : keys->items()) {
-      const Json value = now.value(key, Json()), before = earlier.value(key, Json());
-      if (value == before) continue;
-      std::string key_path = key.substr(1);
-      std::replace(key_path.begin(), key_path.end(), '/', '.');
-      throw FileError(fmt::format("{} cannot be continued with {}: {} was {} and is {}; name another file with -o FILE",
-                                  path.native(), job.path.native(), key_path, before.dump(), value.dump()));
-    }
+  Job now = job, earlier = parse_job(earlier_text, path);
+  for (Job* each : {&now, &earlier}) each->values.erase("data");  // compared by its hash
+  if (const auto found = first_difference(now, earlier))
+    throw FileError(fmt::format("{} cannot be continued with {}: {} was {} and is {}; name another file with -o FILE",
+                                path.native(), job.path.native(), found->key, found->before, found->now));
 }
 
 /// The training to resume; none if the file does not exist. Throws FileError if the file exists without --resume, or if

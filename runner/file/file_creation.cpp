@@ -80,6 +80,7 @@ void write_constants(hid_t file, const Plan& plan, const std::vector<ParameterCo
   const hdf5::Object job(hdf5::check(H5Oopen(file, "/job", H5P_DEFAULT), "H5Oopen", "/job"));
   hdf5::write_attribute(job.id(), "name", plan.job().name);
   hdf5::write_attribute(job.id(), "plan_hash", plan_hash(plan, parameters));
+  hdf5::write_attribute(job.id(), "text_checksum", job_checksum(plan.job().text));
   if (plan.task_alone())
     hdf5::write_attribute(job.id(), "rerun_of_task", static_cast<std::int32_t>(*plan.task_alone()));
 

@@ -8,6 +8,7 @@
 #include "runner/file/layout.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/job/job.hpp"
+#include "runner/text/checksum.hpp"
 
 namespace rodsweep {
 namespace {
@@ -83,6 +84,20 @@ hdf5::File open_results(const fs::path& path) {
     throw damaged_error(path, failure.what());
   }
   return file;
+}
+
+std::string job_checksum(const std::string& text) {
+  Checksum sum;
+  sum.add(text.data(), text.size());
+  return fmt::format("{:016x}", sum.value());
+}
+
+std::string stored_job_text(const hdf5::File& file, const fs::path& path) {
+  std::string text = hdf5::read_texts(file.id(), "/job/text").at(0);
+  if (hdf5::has_attribute(file.id(), "/job", "text_checksum") &&
+      hdf5::read_text_attribute(file.id(), "/job", "text_checksum") != job_checksum(text))
+    throw damaged_error(path, "its job does not match its checksum (/job/text)");
+  return text;
 }
 
 std::vector<std::uint8_t> read_states(const hdf5::File& file, const fs::path& path) {

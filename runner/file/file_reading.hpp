@@ -42,6 +42,12 @@ auto reading(const std::filesystem::path& path, Work&& work) {
   }
 }
 
+/// The job in the file. Throws FileError if it does not match its checksum, which files of earlier revisions lack.
+std::string stored_job_text(const hdf5::File& file, const std::filesystem::path& path);
+
+/// The checksum of a job's text, as stored.
+std::string job_checksum(const std::string& text);
+
 /// Reads the state bytes. Throws FileError unless each is 0 or 1.
 std::vector<std::uint8_t> read_states(const hdf5::File& file, const std::filesystem::path& path);
 

@@ -83,7 +83,7 @@ FileSummary inspect(const fs::path& path) {
     summary.plan_hash = hdf5::read_text_attribute(file.id(), "/job", "plan_hash");
     if (hdf5::has_attribute(file.id(), "/job", "rerun_of_task"))
       summary.rerun_of_task = hdf5::read_int_attribute(file.id(), "/job", "rerun_of_task");
-    summary.job_text = hdf5::read_texts(file.id(), "/job/text").at(0);
+    summary.job_text = stored_job_text(file, path);
     if (hdf5::exists(file.id(), "/axes/guess")) summary.guesses = hdf5::read_texts(file.id(), "/axes/guess");
     summary.tolerances = hdf5::read_all<double>(file.id(), "/axes/tolerance");
     summary.being_written = FileLock::is_held(path);  // before /runs, where a run that ends meanwhile stores its end

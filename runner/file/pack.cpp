@@ -131,6 +131,7 @@ bool is_packed(const hdf5::File& file) {
 Packing pack_results(const fs::path& source_path, const fs::path& target_path) {
   refuse_existing(target_path);
   const hdf5::File source = open_results(source_path);
+  stored_job_text(source, source_path);
   // States before data: all data of a task with state 1 are in the file.
   const std::vector<std::uint8_t> states = read_states(source, source_path);
   refuse_damaged(source_path, verify(source_path), "nothing was packed");

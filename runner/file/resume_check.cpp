@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cmath>
 #include <functional>
-#include <sstream>
 #include <system_error>
 
 #include "runner/file/file_reading.hpp"
@@ -16,6 +15,8 @@
 #include "runner/file/planned_columns.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/runs.hpp"
+#include "runner/job/job_difference.hpp"
+#include "runner/plan/job_extension.hpp"
 
 namespace rodsweep {
 namespace {
@@ -27,35 +28,28 @@ constexpr double rounding = 1e-9;
 
 constexpr const char* other_revision = "Use that revision, or run into another file with -o FILE";
 
-struct Line {
-  int number = 1;
-  std::string here, in_file;
-};
-
-/// The first line where two texts differ.
-Line first_difference(const std::string& here, const std::string& in_file) {
-  std::istringstream a(here), b(in_file);
-  for (Line line;; ++line.number) {
-    const bool more_a = static_cast<bool>(std::getline(a, line.here)),
-               more_b = static_cast<bool>(std::getline(b, line.in_file));
-    if (!more_a) line.here = "(end)";
-    if (!more_b) line.in_file = "(end)";
-    if (line.here != line.in_file || (!more_a && !more_b)) return line;
-  }
-}
-
 void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
-  const std::string text = hdf5::read_texts(file.id(), "/job/text").at(0);
-  if (text == plan.job().text) return;
-  const Line line = first_difference(plan.job().text, text);
-  throw FileError(
-      fmt::format("{} holds the results of another job than {}; the first difference is in line {}:\n"
-                  "  {}: {}\n"
-                  "  {}: {}\n"
-                  "Resume with the original job (in /job/text), or run this one into another file with -o FILE; to "
-                  "change only the time limit, use --task-time-limit",
-                  path.native(), plan.job().path.native(), line.number, plan.job().path.native(), line.here,
-                  path.native(), line.in_file));
+  const std::string text = stored_job_text(file, path);
+  const Job& job = plan.job();
+  if (text == job.text) return;
+  const auto refuse = [&](const std::string& difference, const char* advice) {
+    throw FileError(
+        fmt::format("{} holds the results of another job than {}: {}. {}, or run this job into another file with "
+                    "-o FILE",
+                    path.native(), job.path.native(), difference, advice));
+  };
+  try {
+    const Job before = parse_job(text, job.path, MissingFiles::accepted);
+    const auto found = first_difference(job, before);
+    if (!found) return;
+    refuse(fmt::format("{} was {} and is {}", found->key, found->before, found->now),
+           found->key == "task_time_limit_s" ? "Use --task-time-limit to change only the time limit"
+           : extends(job, before)            ? "Add --extend OLD -o NEW to use its results for this larger job"
+                                             : "Resume with the original job (rodsweep info FILE --job)");
+  } catch (const JobError& error) {
+    refuse(fmt::format("this rodsweep does not accept its job ({})", error.what()),
+           "Resume with the revision that wrote it");
+  }
 }
 
 FileError other_program(const hdf5::File& file, const fs::path& path, const std::string& difference,
@@ -75,6 +69,7 @@ FileError other_value(const hdf5::File& file, const fs::path& path, const std::s
 
 void check_layout(const hdf5::File& file, const fs::path& path, const std::vector<Field>& fields, const char* advice) {
   for (const Field& field : fields) {
+    if (field.path == "/job/text") continue;  // the same job may be written in another way
     if (!hdf5::exists(file.id(), field.path)) throw other_value(file, path, "it has no " + field.path, advice);
     const hdf5::Dataset dataset = hdf5::open_dataset(file.id(), field.path);
     const std::vector<hsize_t> extent = hdf5::extent(dataset, field.path);

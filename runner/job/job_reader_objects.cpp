@@ -75,6 +75,14 @@ Json example_value(const Key& key, const Json& given) {
   }
 }
 
+/// In the order of the keys, so that tasks do not depend on that of the job's lines.
+Json ordered(const std::vector<Key>& keys, Json& object) {
+  Json result = Json::object();
+  for (const Key& key : keys)
+    if (object.contains(key.name)) result[key.name] = std::move(object[key.name]);
+  return result;
+}
+
 /// An example of a guess with its required parameters; if none is required, with its first one.
 Json guess_example(const Key& guess, const Json& given) {
   Json parameters = Json::object();
@@ -128,7 +136,7 @@ Json JobReader::read_object(const Key& key, const Json& value, const std::string
   }
   fill_absent(key, path, result);
   tag_ = outer;
-  return result;
+  return ordered(key.keys, result);
 }
 
 Json JobReader::read_variant(const Key& key, const Json& value, const std::string& path) {

@@ -116,4 +116,13 @@ void check_extends(const Job& job, const Job& before) {
   }
 }
 
+bool extends(const Job& job, const Job& before) {
+  try {
+    check_extends(job, before);
+    return true;
+  } catch (const JobError&) {
+    return false;
+  }
+}
+
 }  // namespace rodsweep

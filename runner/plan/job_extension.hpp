@@ -9,5 +9,6 @@ namespace rodsweep {
 
 /// Throws JobError if `job` does not extend `before`, with the first different key, both values and advice.
 void check_extends(const Job& job, const Job& before);
+bool extends(const Job& job, const Job& before);
 
 }  // namespace rodsweep

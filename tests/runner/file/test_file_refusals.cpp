@@ -8,6 +8,8 @@
 #include "runner/file/hdf5.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/layout.hpp"
+#include "runner/file/pack.hpp"
+#include "runner/file/resume_check.hpp"
 #include "tests/runner/file_examples.hpp"
 
 using namespace rodsweep;
@@ -155,7 +157,7 @@ TEST_CASE("a file of another schema version is refused with both versions") {
   CHECK_THAT(inspect_refusal(made.path), Contains("has schema version 99, but this rodsweep reads only version 2"));
 }
 
-TEST_CASE("resume with another job is refused with the line that differs") {
+TEST_CASE("resume with another job is refused with the key that differs") {
   const TemporaryFolder folder;
   const auto plan_of_text = [](const std::string& text) { return Plan(parse_job(text, "other.json")); };
   const std::string job = full_job().dump(2);
@@ -164,9 +166,47 @@ TEST_CASE("resume with another job is refused with the line that differs") {
   other.replace(other.find("\"seed\": 3"), 9, "\"seed\": 4");
   const std::string text = resume_refusal(folder / "a.h5", plan_of_text(other));
   CHECK_THAT(text, Contains("a.h5 holds the results of another job than other.json") &&
-                       Contains("other.json:   \"seed\": 4") && Contains("a.h5:   \"seed\": 3") &&
-                       Contains("/job/text") && Contains("-o FILE"));
-  CHECK_THAT(resume_refusal(folder / "a.h5", plan_of_text(job + "\n\n")), Contains("(end)"));
+                       Contains("seed was 3 and is 4") && Contains("rodsweep info FILE --job") && Contains("-o FILE"));
+}
+
+TEST_CASE("a larger job, or one with another time limit, is told which option does it") {
+  const TemporaryFolder folder;
+  auto job = full_job();
+  const auto plan_of = [](const nlohmann::ordered_json& values) { return Plan(parse_job(values.dump(2), "job.json")); };
+  make_file(folder / "a.h5", plan_of(job), 3);
+  auto changed = job;
+  changed["samples"] = job["samples"].get<int>() + 1;
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan_of(changed)), Contains("samples was") && Contains("--extend"));
+  changed = job;
+  changed["task_time_limit_s"] = 100;
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan_of(changed)), Contains("--task-time-limit"));
+}
+
+TEST_CASE("a job that was changed in the file is damage") {
+  const FullFile made(3);
+  {
+    const hdf5::File file = hdf5::open_file(made.path, H5F_ACC_RDWR);
+    std::string text = hdf5::read_texts(file.id(), "/job/text").at(0);
+    text.at(text.find("\"seed\": ") + 8) = '7';
+    hdf5::write_texts(file.id(), "/job/text", {text});
+  }
+  CHECK_THAT(inspect_refusal(made.path), Contains("its job does not match its checksum (/job/text)"));
+  CHECK_THAT(resume_refusal(made.path, made.plan), Contains("its job does not match its checksum"));
+  CHECK_THAT(message_of<FileError>([&] { pack_results(made.path, made.path.native() + ".packed"); }),
+             Contains("checksum"));
+}
+
+TEST_CASE("the same job written in another way is continued: order of keys, form of numbers, name, description") {
+  const TemporaryFolder folder;
+  auto job = full_job();
+  make_file(folder / "a.h5", Plan(parse_job(job.dump(2), "job.json")), 3);
+  job["name"] = "renamed";
+  job["description"] = "another";
+  job["seed"] = static_cast<double>(job["seed"].get<int>());
+  std::string text = nlohmann::json(job).dump(1);  // sorted keys
+  for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) text.replace(i, 1, "\r\n");
+  const Plan plan(parse_job(text, "elsewhere.json"));
+  CHECK_NOTHROW(check_resumable(folder / "a.h5", plan));
 }
 
 TEST_CASE("resume with a program that expands the job differently is refused with the difference") {
