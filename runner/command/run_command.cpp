@@ -29,6 +29,9 @@ ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& cons
   const PetscSession petsc;
   const Job job = read_job_everywhere(options.job, mpi);
   for (const std::string& warning : job.warnings) console.warn(warning);
+  if (const auto idle = idle_petsc_options(); !idle.empty())
+    console.warn(fmt::format("PETSC_OPTIONS: {} {} no effect: \"solve\" in the job chooses solver and preconditioner",
+                             fmt::join(idle, ", "), idle.size() == 1 ? "has" : "have"));
   return is_training(job) ? run_training(options, job, mpi, console) : run_sweep(options, job, mpi, console);
 }
 

@@ -26,8 +26,10 @@
 #include "runner/experiment/task_body.hpp"
 #include "runner/experiment/training_sets.hpp"
 #include "runner/file/extension.hpp"
+#include "runner/file/file_reading.hpp"
 #include "runner/file/inspect.hpp"
 #include "runner/file/results_file.hpp"
+#include "runner/file/runs.hpp"
 #include "runner/file/unfinished_file.hpp"
 #include "runner/terminal/text.hpp"
 
@@ -57,10 +59,22 @@ std::string extension_text(const Extension& extension, std::int64_t total) {
                      extension.count(Use::run));
 }
 
+/// Throws FileError if the last run of the file ran another shard.
+void check_shard(const fs::path& path, const Shard& shard) {
+  const hdf5::File file = open_results(path);
+  const std::vector<RunRow> runs = reading(path, [&] { return read_runs(file); });
+  if (runs.empty() || runs.back().provenance.shard == 0) return;
+  const Provenance& last = runs.back().provenance;
+  if (last.shard != shard.number || last.shards != shard.of)
+    throw FileError(fmt::format("{} holds shard {}/{}, not {}/{}: continue that one, or name another file with -o FILE",
+                                path.native(), last.shard, last.shards, shard.number, shard.of));
+}
+
 /// Whether to continue an existing file, rather than create it.
 bool has_begun(const RunOptions& options, const fs::path& path, const std::optional<Extension>& extension) {
   if (!options.resume || !fs::exists(path)) return false;
   if (extension) extension->check_started(path);
+  if (options.shard) check_shard(path, *options.shard);
   return true;
 }
 

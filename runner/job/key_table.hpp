@@ -71,8 +71,9 @@ inline nlohmann::ordered_json written(const Key& key, const Vector3& value) {
 }
 template <class Value>
 nlohmann::ordered_json written(const Key& key, const std::optional<Value>& value) {
-  if (value) throw std::logic_error(key.name + " has a default that is more than a word");
-  return key.choices.front();
+  if (!value) return key.choices.front();
+  if (key.kind != Key::Kind::object) throw std::logic_error(key.name + " has a default that is neither a word nor {}");
+  return nlohmann::ordered_json::object();  // all defaults
 }
 
 /// The alternatives of an Owner.

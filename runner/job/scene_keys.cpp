@@ -220,8 +220,7 @@ void add_trees(Table& table) {
 }
 
 void add_touching(Table& table) {
-  table.optional(object_key("contact", "contact of rods with each other, themselves and the floor, without rebound")
-                     .or_word("none"),
+  table.optional(object_key("contact", "contact of rods with each other, themselves and the floor").or_word("none"),
                  contact_keys(), &Rods::contact);
   table.required(integer_key("rods", "number of rods").from(1, 30000), &FallingRods::rods, &Bundle::rods);
   table.required(integer_key("rings", "number of rings of a chain").from(1, 30000), &RingChain::rings);

@@ -2,6 +2,10 @@
 
 #include <petscsys.h>
 
+#include <cctype>
+#include <cstdlib>
+#include <sstream>
+
 namespace rodsweep {
 
 PetscSession::PetscSession() {
@@ -27,6 +31,18 @@ PetscSession::PetscSession() {
 PetscSession::~PetscSession() {
   if (owns_petsc_) PetscFinalize();
   if (owns_mpi_) MPI_Finalize();
+}
+
+std::vector<std::string> idle_petsc_options() {
+  std::vector<std::string> idle;
+  const char* const given = std::getenv("PETSC_OPTIONS");
+  std::istringstream words(given == nullptr ? "" : given);
+  for (std::string word; words >> word;) {
+    if (word.size() < 2 || word[0] != '-' || std::isalpha(static_cast<unsigned char>(word[1])) == 0) continue;
+    PetscBool is_used = PETSC_FALSE;
+    if (PetscOptionsUsed(nullptr, word.c_str() + 1, &is_used) == 0 && !is_used) idle.push_back(word);
+  }
+  return idle;
 }
 
 std::string petsc_version() {

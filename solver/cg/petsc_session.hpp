@@ -7,6 +7,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "solver/cg/petsc_error.hpp"
 
@@ -22,6 +23,10 @@ class PetscSession {
  private:
   bool owns_petsc_ = false, owns_mpi_ = false;
 };
+
+/// Options of PETSC_OPTIONS that nothing has read since the start of PETSc, such as "-pc_type". Solvers read none, so
+/// these have no effect.
+std::vector<std::string> idle_petsc_options();
 
 /// The version of the loaded library, such as "3.18.5".
 std::string petsc_version();

@@ -225,8 +225,13 @@ struct SkeletonTree : RodParameters {
   void build(Scene& scene) const;
 };
 
+/// Scenes whose rods touch have contact, unless it is switched off.
+struct TouchingRods : RodParameters {
+  TouchingRods() { contact = ContactSettings{}; }
+};
+
 /// Horizontal rods, each `height_m` above the one below or the floor y = 0, rotated against it by `turn_deg`.
-struct FallingRods : RodParameters {
+struct FallingRods : TouchingRods {
   static constexpr const char* name = "falling_rods";
   int rods = 8;
   int segments = 10;
@@ -240,7 +245,7 @@ struct FallingRods : RodParameters {
 
 /// A vertical rod, straight except for a hundredth of a turn of a helix of its own radius. Its lower end is `height_m`
 /// above the floor y = 0. Its first and topmost segment is held and moves down at `feed_m_s`.
-struct CoilingRod : RodParameters {
+struct CoilingRod : TouchingRods {
   static constexpr const char* name = "coiling_rod";
   int segments = 60;
   double length_m = 2;
@@ -253,7 +258,7 @@ struct CoilingRod : RodParameters {
 
 /// An overhand knot in a naturally straight rod, loose at first (an opened trefoil between straight ends along x). Its
 /// end segments are held and move apart along x, each at `pull_m_s`.
-struct Knot : RodParameters {
+struct Knot : TouchingRods {
   static constexpr const char* name = "knot";
   int segments = 80;
   double length_m = 5;
@@ -265,7 +270,7 @@ struct Knot : RodParameters {
 
 /// Naturally circular rings, each hanging through the one above at right angles to it, the first one from its first
 /// segment.
-struct RingChain : RodParameters {
+struct RingChain : TouchingRods {
   static constexpr const char* name = "ring_chain";
   int rings = 5;
   int segments = 16;    ///< of each
@@ -277,7 +282,7 @@ struct RingChain : RodParameters {
 
 /// Rods in hexagonal packing, a tenth of a radius apart, that hang from their first segments, splayed by up to
 /// `initial_angle_deg` outwards.
-struct Bundle : RodParameters {
+struct Bundle : TouchingRods {
   static constexpr const char* name = "bundle";
   int rods = 100;
   int segments = 10;

@@ -23,6 +23,19 @@ class Mistyped(Case):
         self.assertNotIn("did you mean", rodsweep("frobnicate").stderr)
 
 
+    def test_numbers_must_be_finite(self):
+        for option in ("--memory-limit-gb", "--time-limit", "--task-time-limit", "--worker-timeout"):
+            for value in ("nan", "inf", "-inf"):
+                with self.subTest(option=option, value=value):
+                    self.assert_refused(("run", write_job("small"), f"{option}={value}"), f"{option}: {value} is not allowed")
+
+    def test_petsc_options_without_effect_are_named(self):
+        done = rodsweep("run", write_job("petsc"), env={**os.environ, "PETSC_OPTIONS": "-pc_type lu -log_view :log.txt"})
+        self.assertEqual(done.returncode, ALL_DONE, done.stderr)
+        self.assertIn("PETSC_OPTIONS: -pc_type has no effect", done.stderr)
+        self.assertTrue(os.path.exists("log.txt"))
+
+
 class Validate(Case):
     """For missing files and JSON see tests/runner/job/test_input_files.cpp and test_job_refusals.cpp."""
 

@@ -51,6 +51,8 @@ class Merging(SweepCase):
         self.assertRegex(run.stderr, r"2 of 4 .*3 of 10 tasks.*results/counted-2of4\.h5")
         self.assertRegex(self.rodsweep(0, "status", "results/counted-2of4.h5").stdout, r"2 of 4: 3 of 3 tasks")
         self.assertEqual(status("results/counted-2of4.h5")["shard"], {"number": 2, "of": 4, "tasks": 3})
+        self.assert_refused_once(2, "run", path, "--shard", "1/4", "-o", "results/counted-2of4.h5", "--resume",
+                                 says="results/counted-2of4.h5 holds shard 2/4, not 1/4")
         others = self.shards(path, 4, (1, 3, 4))
         self.rodsweep(0, "merge", *others, "results/counted-2of4.h5", "-o", "results/counted.h5")
         self.assertEqual(status("results/counted.h5")["shard"], None)

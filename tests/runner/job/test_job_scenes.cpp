@@ -203,6 +203,7 @@ TEST_CASE("the scenes that are made for contact are read from their keys, and co
       plan(R"("type": "falling_rods", "rods": 3, "segments": 5, "length_m": 1, "height_m": 0.3, "turn_deg": 70)");
   const FallingRods rods = std::get<FallingRods>(falling.spec(0).scene);
   CHECK(rods.height_m == 0.3);
+  CHECK(rods.contact.has_value());
   CHECK(rods.turn_deg == 70);
   CHECK(rods.radius_m == 0.01);
   CHECK(falling.task(0).segments == 15);
