@@ -206,8 +206,8 @@ def figure(shown, models, base, panels, ratio, tolerances):
             e = ratio[guesses, t]
             axes.axhline(ratio[base, t].value, color=colour, linewidth=0.6, linestyle=(0, (4, 2)), alpha=0.7)
             joined = {} if what in ORDERED else {"linestyle": ""}
-            axes.errorbar(at, e.value, yerr=style.whiskers(e.value, e.low, e.high), color=colour, marker="o", markersize=3,
-                          zorder=2, **style.WHISKERS, **joined)
+            style.errorbar(axes, at, e.value, yerr=style.whiskers(e.value, e.low, e.high), color=colour, marker="o",
+                           markersize=3, zorder=2, **style.WHISKERS, **joined)
             if base in guesses:
                 own = guesses.index(base)
                 axes.plot(at[own], e.value[own], marker="o", markersize=3.6, color=colour, markerfacecolor="white", zorder=3)
@@ -216,7 +216,7 @@ def figure(shown, models, base, panels, ratio, tolerances):
         axes.xaxis.set_major_locator(FixedLocator(at))
         axes.xaxis.set_minor_locator(NullLocator())
         long = max(len(text) for text, _ in values) > 4
-        axes.set_xticklabels([text for text, _ in values], fontsize=5.5,
+        axes.set_xticklabels([style.literal(text) for text, _ in values], fontsize=5.5,
                              **({"rotation": 35, "ha": "right", "rotation_mode": "anchor"} if long else {}))
         page.title(axes, what)
         page.label_y(axes, k, "CG ratio")

@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import accuracy, commandline, intervals, texts
+from rodsweep.reading import accuracy, commandline, intervals, measures, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -44,9 +44,15 @@ def arguments():
 def main():
     options = arguments()
     with SweepFile(options.file) as file:
-        if "time.balance" not in file.parameters:
-            raise KeyNotFound(f"{file.path} has only one kind of step: sweep time.balance over false and true")
         shown = study.of_tasks(file, options)
+        balance = file.parameters.get("time.balance")
+        if balance is None or len(set(balance.values[shown.sims.tasks()].tolist())) < len(KINDS):
+            raise KeyNotFound(f"{file.path} has only one kind of step in the chosen simulations: sweep time.balance "
+                              "over false and true")
+        if not all(path in file.h5 for path in (accuracy.REST, accuracy.ASSEMBLY, accuracy.DIRECT)):
+            raise KeyNotFound(f"{file.path} has no times of steps and solves")
+        if not file.has("/steps/momentum_residual"):
+            raise KeyNotFound(f"{file.path} has no momentum residuals (/steps/momentum_residual)")
         panels = by_panel(file, np.unique(shown.sims.any_task))
         print("\n".join(table(panels)) + "\n")
         if any(len(lines[1].step_s) == 1 for lines in panels.values()):
@@ -89,13 +95,14 @@ def _line(file, tasks, kind):
         line.error.append(None if is_reference else intervals.median(
             [_error(accuracy.positions(file, task), exact[int(file.sample[task])]) for task in of], draws))
         line.iterations.append(intervals.mean([_steps(file, task, "newton_iterations").mean() for task in of], draws))
-        line.lacking.append(intervals.median([_steps(file, task, "momentum_residual")[1:].max() for task in of], draws))
+        line.lacking.append(intervals.median(
+            [np.fmax.reduce(_steps(file, task, "momentum_residual")[1:], initial=np.nan) for task in of], draws))
     return line
 
 
 def _error(found, exact):
     apart = np.square(found[-1] - exact[-1]).sum(axis=1)
-    return np.sqrt(apart.mean()) / np.linalg.norm(np.ptp(exact[0], axis=0))
+    return float(measures.quotient(np.sqrt(apart.mean()), np.linalg.norm(np.ptp(exact[0], axis=0))))
 
 
 def _steps(file, task, name):
@@ -107,9 +114,9 @@ def table(panels):
     for title, lines in panels.items():
         for k, size in enumerate(lines[1].step_s):
             for kind, line in lines.items():
-                error = f"{float(line.error[k].value):.2g}" if line.error[k] else "reference"
+                error = texts.short_text(float(line.error[k].value), 2) if line.error[k] else "reference"
                 rows.append([title if not (k or kind == 1) else "", f"{size:g}" if kind == 0 else "",
-                             KINDS[kind], error, *(f"{float(values[k].value):.2g}"
+                             KINDS[kind], error, *(texts.short_text(float(values[k].value), 2)
                                                    for values in (line.second_ms, line.iterations, line.lacking))])
     return texts.aligned(rows)
 

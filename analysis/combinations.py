@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Solve times of all combinations of preconditioner and guess, compared with the direct solve.
 
-For each value of --x (by default the nodes of a lattice) a table lists all combinations and the fastest of each kind:
-the direct solve, CG from zero, with a classical guess, with a learned one, and with an oracle. In a paired sweep the
-time is that of a solve with guess and preconditioner set-up, without assembly. The oracle's own time is not counted
-there. In a closed loop the time is that of a whole step. The figure has the time of the fastest of each kind over the
-number of joints. Each scene type and value of any other grid has a panel. Intervals are 95 % bootstrap intervals over
-simulations. The file needs /solves (record.solves "all"). Writes PDF and PNG and prints the paths.
+For each value of --x (by default the nodes of a lattice, else the segments of a rod) a table lists all combinations
+and the fastest of each kind: the direct solve, CG from zero, with a classical guess, with a learned one, and with an
+oracle. In a paired sweep the time is that of a solve with guess and preconditioner set-up, without assembly. The
+oracle's own time is not counted there. In a closed loop the time is that of a whole step. The figure has the time of the
+fastest of each kind over the number of joints. Each scene type and value of any other grid has a panel. Intervals are
+95 % bootstrap intervals over simulations. The file needs /solves (record.solves "all"). Writes PDF and PNG and prints the paths.
 """
 
 import numpy as np
@@ -25,14 +25,15 @@ STYLES = {combinations.DIRECT: style.DIRECT,
           combinations.CLASSICAL: style.GuessStyle(*style.KINDS["regression"]),
           combinations.LEARNED: style.GuessStyle(*style.KINDS["copingnet"]),
           combinations.ORACLE: style.GuessStyle(*style.KINDS["oracle"])}
+NODES = "scene.nodes_x"
 COMPARED = (combinations.CLASSICAL, combinations.ZERO, combinations.DIRECT)
 
 
 def arguments():
     made = commandline.parser(__doc__, EXAMPLES, tolerances="1e-2,1e-3")
     study.add_figure_arguments(made)
-    made.add_argument("--x", metavar="KEY", default="scene.nodes_x",
-                      help="parameter along x (default: scene.nodes_x); the axis shows joints")
+    made.add_argument("--x", metavar="KEY", help="parameter along x (default: scene.nodes_x of a lattice, else "
+                                                 "scene.segments); the axis shows joints")
     return made.parse_args()
 
 
@@ -44,14 +45,23 @@ def main():
             raise KeyNotFound(f"{file.path} has no times of guesses")
         if combinations.PRECONDITIONER not in file.parameters or file.zero is None:
             raise KeyNotFound(f"{file.path} has no preconditioner or no zero guess to compare with")
-        rows = groups.applicable(file, shown.sims, options.x)
-        panels = combinations.panels(file, shown.sims.subset(rows), options.x)
-        shown.sims = shown.sims.subset(rows)
-        found = [combinations.cells(file, shown.sims, panel, options.x, options.newton) for panel in panels]
+        x = options.x or usual_x(file, shown.sims)
+        shown.sims = shown.sims.subset(groups.applicable(file, shown.sims, x))
+        panels = combinations.panels(file, shown.sims, x)
+        found = [combinations.cells(file, shown.sims, panel, x, options.newton) for panel in panels]
+        if not any(cell.cheapest(kind) for cells in found for cell in cells for kind in combinations.KINDS):
+            raise KeyNotFound(f"{file.path} has no combination that was timed in all chosen simulations: "
+                              f"{shown.census.text()}")
         chosen = commandline.chosen_tolerances(file, options) if options.tolerance else \
             [file.tolerance_index(t) for t in (1e-2, 1e-3)]
-        print("\n".join(table(shown, panels, found, chosen, options.x)) + "\n")
+        print("\n".join(table(shown, panels, found, chosen, x)) + "\n")
         study.save(file, options, {"combinations": figure(shown, panels, found)})
+
+
+def usual_x(file, sims):
+    """The nodes of a lattice if the file has lattices, else the segments."""
+    nodes = file.parameters.get(NODES)
+    return NODES if nodes is not None and nodes.applies()[sims.any_task].any() else "scene.segments"
 
 
 def table(shown, panels, found, tolerances, x):
@@ -136,7 +146,8 @@ def figure(shown, panels, found):
             x = np.array([cells[c].joints for c in at])
             value, least, most = (np.array([float(getattr(row[c][kind], name)) for c in at])
                                   for name in ("value", "low", "high"))
-            axes.errorbar(x, value, yerr=style.whiskers(value, least, most), **style.WHISKERS, **STYLES[kind].line())
+            style.errorbar(axes, x, value, yerr=style.whiskers(value, least, most), **style.WHISKERS,
+                           **STYLES[kind].line())
         axes.set(xscale="log", yscale="log", ylim=(low, high))
         joints = [cell.joints for cell in cells]
         axes.set_xlim(0.7 * min(joints), 1.4 * max(joints))

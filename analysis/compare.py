@@ -9,7 +9,8 @@ vary within either job, and guesses by their label. Models and data sets are ide
 The output lists the keys in which the jobs differ, the number of tasks in both, the values that differ, and changed
 outcomes. For every guess it has the mean CG ratio in both files and the mean difference of the tasks. Its 95 %
 bootstrap interval is over draws of the random parameters ("-" for fewer than 5). Times are shown, but do not count as
-differences. The table has the first job's tolerance; --csv and --json have all.
+differences: medians over the tasks, and the median of B / A, the quotient of each task. The table has the first job's
+tolerance; --csv and --json have all.
 """
 
 import argparse
@@ -100,7 +101,11 @@ def text(found, pairs, keys, options):
     times = [[what, duration(a), duration(b), f"{quotient:.3g}", str(tasks)] for what, a, b, quotient, tasks in
              found.times()]
     if times:
-        lines += [f"times, medians{times_remark(found)}", *table([["time", "A", "B", "B / A", "tasks"], *times])]
+        lines += [f"times, medians{times_remark(found)}", *table([["time", "A", "B", "median of B / A", "tasks"], *times])]
+    apart = found.timed_apart()
+    if apart:
+        lines.append(f"no time of the whole task: {apart} task{'s' * (apart != 1)}, where a later run (run --extend) timed "
+                     "only the new guesses")
     if options.tasks and found.differing:
         lines.append("tasks that differ")
         for place, paths in found.differing.items():

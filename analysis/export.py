@@ -8,6 +8,7 @@
 The first columns identify the task and have the parameters that the job sweeps. Incomplete tasks are left out; failed
 ones have their outcome. A value that was not measured or not reached is an empty field (null in Parquet). CSV is
 written block by block, so memory use does not grow with the file. Parquet needs pyarrow and memory for all its rows.
+A terminal shows only the first rows; a file (-o) and a pipe get all.
 """
 
 import contextlib
@@ -28,6 +29,8 @@ EXAMPLES = """examples:
   analysis/export.py results/demo.h5 --level solves --tolerance 1e-2 -o demo-solves.parquet
   analysis/export.py results/long_term.h5 --level steps --columns task,sample,time_s,length_drift --where 'time_s>=100'
   analysis/export.py results/demo.h5 --level steps --list"""
+
+ON_TERMINAL = 20    # rows
 
 
 def arguments():
@@ -60,11 +63,35 @@ def main():
         if len(set(names)) < len(names):
             raise UserError(f"--columns {options.columns}: a column is named twice")
         blocks = table.blocks(names, [table.condition(text) for text in options.where])
+        if options.output is None and at_terminal():
+            blocks = Beginning(blocks, ON_TERMINAL)
         with opened(options) as out:
             write = tables.write_parquet if (options.output or "").endswith(".parquet") else tables.write_csv
             count = write(out, names, blocks)
         if options.output:
             print(f"{count} rows: {options.output}")
+        elif isinstance(blocks, Beginning) and blocks.count > count:
+            print(f"the first {count} of {blocks.count} rows; -o FILE writes all", file=sys.stderr)
+
+
+class Beginning:
+    """Blocks that have only the first rows; `count` is the number of all rows after the last block."""
+
+    def __init__(self, blocks, most):
+        self.blocks, self.left, self.count = blocks, most, 0
+
+    def __iter__(self):
+        for block in self.blocks:
+            rows = len(next(iter(block.values())))
+            self.count += rows
+            if self.left > 0:
+                kept, made = np.arange(min(rows, self.left)), {}
+                yield {name: column.at(kept, made) for name, column in block.items()}
+            self.left -= rows
+
+
+def at_terminal():
+    return sys.stdout.isatty()
 
 
 @contextlib.contextmanager

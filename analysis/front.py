@@ -39,6 +39,8 @@ def main():
         tolerances = commandline.chosen_tolerances(file, options)
         panels = groups.panels(file, shown.sims, None, pooled="scene.", most=None)
         found = [estimates(shown, panel.index) for panel in panels]
+        if not any((guess.value[shown.lines()] > 0).any() for _, guess, _ in found):
+            raise KeyNotFound(f"{file.path} has no times above 0, so the cost of guesses is not known")
         print("\n".join(table(shown, panels, found, tolerances)) + "\n")
         study.save(file, options, {"front": figure(shown, panels, found, tolerances)})
 
@@ -61,10 +63,9 @@ def table(shown, panels, found, tolerances):
     lines = [f"CG ratio over the cost of a guess, {measures.NEWTON[shown.newton]}"]
     for panel, (ratio, guess, zero) in zip(panels, found):
         rows = [[panel.title(), "us per segment"] + labels]
-        rows += [[f"  {file.guesses[g]}", f"{guess[g].value:.3f}"] +
-                 [f"{ratio[g, t].value:.3f} [{ratio[g, t].low:.3f}, {ratio[g, t].high:.3f}]" for t in tolerances]
-                 for g in shown.lines()]
-        rows.append(["  CG from zero", f"{zero:.3f}"] + [""] * len(labels))
+        rows += [[f"  {file.guesses[g]}", texts.fixed_text(guess[g].value, 3)] +
+                 [texts.interval_text(ratio[g, t], 3) for t in tolerances] for g in shown.lines()]
+        rows.append(["  CG from zero", texts.fixed_text(zero, 3)] + [""] * len(labels))
         lines += [""] + texts.aligned(rows)
     return lines
 
@@ -87,15 +88,15 @@ def figure(shown, panels, found, tolerances):
             for g in lines:
                 look = shown.style(g)
                 one = slice(g, g + 1)
-                axes.errorbar(x[one], y[one], xerr=style.whiskers(x[one], guess[one].low, guess[one].high),
-                              yerr=style.whiskers(y[one], ratio[one, t].low, ratio[one, t].high), **style.WHISKERS,
-                              **look.line())
+                style.errorbar(axes, x[one], y[one], xerr=style.whiskers(x[one], guess[one].low, guess[one].high),
+                               yerr=style.whiskers(y[one], ratio[one, t].low, ratio[one, t].high), **style.WHISKERS,
+                               **look.line())
             axes.set(xscale="log", ylim=(0, None))
-            there = [g for g in lines if np.isfinite(x[g]) and np.isfinite(y[g])]
+            there = [g for g in lines if x[g] > 0 and np.isfinite(y[g])]
             best = np.array(there, dtype=int)[unbeaten(x[there], y[there])]
             axes.plot(x[best], y[best], color="#999999", linewidth=0.8, zorder=1)
             classical = [g for g in there if not any(word in file.guesses[g] for word in OTHERS)]
-            if timed == texts.tolerance_label(file.tolerances[t]) and classical:
+            if timed == texts.tolerance_label(file.tolerances[t]) and classical and zero > 0:
                 fastest = (x[classical] + y[classical] * zero).min()
                 along = np.geomspace(x[there].min(), fastest, 60)
                 axes.plot(along, (fastest - along) / zero, color="#999999", linewidth=0.8, linestyle=(0, (3, 2)), zorder=1)

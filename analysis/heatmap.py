@@ -82,7 +82,8 @@ def chosen(file, options):
         timed = file.parameters["solve.tolerance"].values[shown.sims.any_task]
         if (timed != timed[0]).any():
             shown.sims = shown.sims.subset(timed == timed.min())
-            shown.left_out = "counts do not depend on solve.tolerance, so tasks of one value are shown"
+            said = "counts do not depend on solve.tolerance, so tasks of one value are shown"
+            shown.left_out = "; ".join(filter(None, [shown.left_out, said]))
     tolerances = commandline.chosen_tolerances(file, options) if measure.ladder else [0]
     if measure.ladder and not laddered:
         if len(tolerances) > 1 and options.tolerance:
@@ -195,11 +196,11 @@ def draw(axes, plane, file, measure, norm, colormap, with_names, cell_mm):
         axes.text(x + 0.5, y + (0.62 if name else 0.5), cell_text(value) + ("*" if plane.unreached[y, x] else ""),
                   ha="center", va="center", color=ink, fontsize=size, weight="bold" if sure else "normal")
         if name:
-            axes.text(x + 0.5, y + 0.27, name, ha="center", va="center", color=ink,
+            axes.text(x + 0.5, y + 0.27, style.literal(name), ha="center", va="center", color=ink,
                       fontsize=min(5.5, 2.83 * cell_mm / (0.62 * max(4, len(name)))))
     for axis, points in ((axes.xaxis, plane.x), (axes.yaxis, plane.y)):
         text = points.text if points.categorical else [texts.number_text(value) for value in points.position]
-        axis.set_ticks(np.arange(len(text)) + 0.5, text)
+        axis.set_ticks(np.arange(len(text)) + 0.5, map(style.literal, text))
         axis.set_tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)

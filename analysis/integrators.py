@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import accuracy, commandline, intervals, texts
+from rodsweep.reading import accuracy, commandline, intervals, measures, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
 
@@ -89,8 +89,10 @@ def frames(file, task):
 def distance(path, exact):
     start = exact[0.0]
     common = [time for time in path if time > 0 and time in exact]
+    if not common:
+        return np.nan
     squares = [np.square(path[time] - exact[time]).sum(axis=1).mean() for time in common]
-    return np.sqrt(np.mean(squares)) / np.linalg.norm(np.ptp(start, axis=0))
+    return float(measures.quotient(np.sqrt(np.mean(squares)), np.linalg.norm(np.ptp(start, axis=0))))
 
 
 def table(errors):
@@ -99,11 +101,17 @@ def table(errors):
     for title, of in errors.items():
         for which, line in of.items():
             known = {size: float(estimate.value) for size, estimate, _ in line}
-            order = np.log(known[line[-2][0]] / known[line[-1][0]]) / np.log(line[-2][0] / line[-1][0]) \
-                if len(line) > 1 else np.nan
             rows.append([f"{title}, {which}"] + [f"{known[size]:.2g}" if size in known else "-" for size in steps]
-                        + [f"{order:.2f}"])
+                        + [texts.fixed_text(order(line, known), 2)])
     return texts.aligned(rows)
+
+
+def order(line, known):
+    """Observed order from the two smallest steps; NaN if there are fewer, or if an error is 0."""
+    if len(line) < 2 or not min(known[size] for size, *_ in line[-2:]) > 0:
+        return np.nan
+    large, small = line[-2][0], line[-1][0]
+    return np.log(known[large] / known[small]) / np.log(large / small)
 
 
 def energies(file, task):
@@ -112,7 +120,7 @@ def energies(file, task):
     kinetic, potential, elastic = (file.h5[f"/steps/{kind}_energy_j"][rows] for kind in
                                    ("kinetic", "potential", "elastic"))
     total = kinetic + potential + elastic
-    return file.h5["/steps/time_s"][rows], (total - total[0]) / kinetic.max()
+    return file.h5["/steps/time_s"][rows], measures.quotient(total - total[0], kinetic.max())
 
 
 def figure(shown, errors, energy_step):
@@ -124,17 +132,19 @@ def figure(shown, errors, energy_step):
              shown.about()]
     page = layout.Page(shown.width_mm, ["Error of the motion", "Total energy"], len(errors), 5 if shown.wide else 2, 36,
                        [look.handle(which) for which, look in looks.items()], notes, left_mm=12, gap_mm=6)
+    logarithmic = all(any(estimate.value > 0 for line in of.values() for _, estimate, _ in line)
+                      for of in errors.values())
     for column, (title, of) in enumerate(errors.items()):
         upper, lower = page.axes[0][column], page.axes[1][column]
         for which, line in of.items():
             x, estimates = [entry[0] for entry in line], [entry[1] for entry in line]
             y, low, high = (np.array([float(getattr(e, part)) for e in estimates]) for part in ("value", "low", "high"))
-            upper.errorbar(x, y, style.whiskers(y, low, high), **looks[which].line(), linewidth=0.9, markersize=2.8,
-                           elinewidth=0.5)
+            style.errorbar(upper, x, y, yerr=style.whiskers(y, low, high), **looks[which].line(), linewidth=0.9,
+                           markersize=2.8, elinewidth=0.5)
             here = [tasks[0] for of_size, _, tasks in line if np.isclose(of_size, size)]
             if here:
                 lower.plot(*energies(shown.file, here[0]), color=looks[which].colour, linewidth=0.8)
-        upper.set(xscale="log", yscale="log")
+        upper.set(xscale="log", yscale="log" if logarithmic else "linear")
         steps = sorted({entry[0] for line in of.values() for entry in line})
         upper.xaxis.set_major_locator(FixedLocator(steps[::-2][::-1]))
         upper.xaxis.set_minor_locator(NullLocator())

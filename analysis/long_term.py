@@ -13,7 +13,7 @@ import sys
 
 import numpy as np
 
-from rodsweep.drawing import layout, study
+from rodsweep.drawing import layout, study, style
 from rodsweep.reading import commandline, envelopes, groups, history_table, measures, texts
 from rodsweep.reading.errors import KeyNotFound
 from rodsweep.reading.sweepfile import SweepFile
@@ -53,6 +53,8 @@ def main():
                               f"{groups.MOST_PANELS}): choose with --scene TYPE or --select KEY=VALUE")
         begin = options.after if options.after is not None else int(file.steps[shown.sims.tasks()].max()) // 10
         found = envelopes.histories(file, shown.sims.tasks(), begin, options.log_time)
+        if not found.reached.any():
+            raise KeyNotFound(f"{file.path} has no recorded step in the chosen simulations: {shown.census.text()}")
         series = [methods(shown, panel) for panel in panels]
         if options.csv:
             history_table.write_csv(sys.stdout, panels, series, found, shown.sims, file.ok)
@@ -115,7 +117,7 @@ def figure(shown, panels, series, found, options):
             if options.log_time:
                 axes.set_xscale("log")
             axes.set_xlim(x[0] if options.log_time else 0, x[-1])
-            axes.set_title(titles[k], fontsize=6, pad=2)
+            axes.set_title(style.literal(titles[k]), fontsize=6, pad=2)
             page.label_y(axes, k, "")
     page.label_x(len(names) - 1, times[0][1])
     return page

@@ -68,7 +68,7 @@ def ratio_texts(ratios):
 
 def figure(trainings, width_mm):
     looks = style.series_styles(len(trainings))
-    handles = [Line2D([], [], label=label, color=look.colour, marker=look.marker)
+    handles = [Line2D([], [], label=style.literal(label), color=look.colour, marker=look.marker)
                for label, look in zip(labels(trainings), looks)]
     grey = {"color": "#555555"}
     handles += [Line2D([], [], label="training loss", linestyle=(0, (1, 1.2)), **grey),

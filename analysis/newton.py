@@ -43,6 +43,8 @@ def main():
         shown = study.of_tasks(file, options)
         panels = groups.with_direct(shown.sims, groups.panels(file, shown.sims, AXES, most=None))
         found = newton_levels.levels(file, shown.sims.tasks())
+        if not np.isfinite(found.values["newton_residual"]).any():
+            raise KeyNotFound(f"{file.path} has no Newton residual in the chosen simulations")
         series = [methods(shown, panel) for panel in panels]
         medians = [{method: estimates(found, shown.sims, tasks, rows) for method, (_, tasks, rows) in ways.items()}
                    for ways in series]
@@ -123,7 +125,7 @@ def _levels(axes, name, ways, e, found):
         centre = values[:, 1]
         bars = style.whiskers(centre.value, centre.low, centre.high)
         axes.fill_between(j, values.value[:, 0], values.value[:, 2], color=look.colour, alpha=0.13, linewidth=0)
-        axes.errorbar(j, centre.value, yerr=bars, **style.WHISKERS, **look.line())
+        style.errorbar(axes, j, centre.value, yerr=bars, **style.WHISKERS, **look.line())
         largest = found.values[name][found.rows(tasks)][:, :, 3]
         worst = np.fmax.reduce(largest)
         axes.plot(j, worst, linestyle="", marker=".", markersize=2.5, color=look.colour)

@@ -39,6 +39,7 @@ def main():
         found = accuracy.accuracy(file, shown.sims.tasks())
         row, column = (values(file, key, found) for key in (options.rows, options.columns))
         cells = [[lines(found, file, (row == r) & (column == c)) for c in np.unique(column)] for r in np.unique(row)]
+        accuracy.require_points(file, [point for of_row in cells for ways in of_row for point in ways.values()])
         names = [[f"{texts.parameter_label(key, file.parameter(key).unit)} {texts.number_text(value)}"
                   for value in np.unique(of)] for key, of in ((options.rows, row), (options.columns, column))]
         print("\n".join(table(cells, names)) + "\n")
@@ -86,7 +87,8 @@ def figure(shown, found, cells, names):
                        shown.timing_warning(), left_mm=12)
     errors = [error.value for error in points]
     for k, row in enumerate(cells):
-        times = [point.time_us.value for ways in row for line in ways.values() for point in line]
+        times = [point.time_us.value for ways in row for line in ways.values() for point in line
+                 if point.time_us.value > 0] or [1.0]
         for column, (axes, ways) in enumerate(zip(page.axes[k], row)):
             for family, line in ways.items():
                 _draw(axes, looks[family], line)
@@ -102,7 +104,7 @@ def _draw(axes, look, line):
     x = [float(point.time_us.value) for point in line]
     y, low, high = (np.array([float(getattr(point.error, name)) for point in line])
                     for name in ("value", "low", "high"))
-    axes.errorbar(x, y, yerr=style.whiskers(y, low, high), **style.WHISKERS, **look.line())
+    style.errorbar(axes, x, y, yerr=style.whiskers(y, low, high), **style.WHISKERS, **look.line())
 
 
 if __name__ == "__main__":

@@ -50,6 +50,8 @@ def main():
     with SweepFile(options.file) as file:
         shown = make_study(file, options)
         by_newton = timings.times(file, shown.sims) if timings.timed(file) else None
+        if by_newton and not timings.measured(by_newton):
+            by_newton = None
         if by_newton and options.overview:
             made = {"overview": figures.overview_figure(shown, by_newton)}
         else:
@@ -61,7 +63,8 @@ def main():
 def all_figures(file, options, shown, by_newton):
     made = {"cg-ratio": figures.ratio_figure(shown, commandline.chosen_tolerances(file, options))}
     if by_newton is None:
-        print(f"{file.path} has no times of single solves (record.solves is \"summary\"): CG ratios only", file=sys.stderr)
+        why = "record.solves is \"summary\"" if not timings.timed(file) else "they are not numbers"
+        print(f"{file.path} has no times of single solves ({why}): CG ratios only", file=sys.stderr)
         return made
     made["speedup"] = figures.speedup_figure(shown, by_newton)
     made["time"] = figures.time_figure(shown, by_newton)
@@ -75,8 +78,7 @@ def make_study(file, options):
     base = study.of_guesses(file, options)
     everything = len(base.sims)
     base.sims = base.sims.subset(groups.applicable(file, base.sims, options.x))
-    if len(base.sims) < everything:
-        base.left_out = f"{everything - len(base.sims)} simulations without a value of {options.x} left out"
+    base.leave_out(everything - len(base.sims), f"without a value of {options.x}")
     panels = groups.panels(file, base.sims, options.x)
     points = [groups.points(file, base.sims, panel, options.x) for panel in panels]
     return Study(**vars(base), x=options.x, panels=panels, points=points)

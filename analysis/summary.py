@@ -26,6 +26,8 @@ EXAMPLES = """examples:
 FAILURES_SHOWN = 5
 TITLE_WIDTH = 24
 BESIDE = {"products": "products", "all": "all j", "all_products": "both"}
+BESIDE_MEANING = {"products": "products with A, with those of the guess, instead of iterations",
+                  "all": "iterations of all Newton iterations", "all_products": "products of all Newton iterations"}
 
 
 def arguments():
@@ -89,6 +91,10 @@ def ratio_lines(file, found, guesses, tolerances, newton):
         return ["", "No CG ratios: the job has no zero guess."] if missing else []
     lines = ["", f"CG ratio, {measures.NEWTON[newton]}: iterations over those from zero; "
                  "mean over simulations [95 % interval]"]
+    beside = [name for name in BESIDE if any(name in (block.beside or {}) for block in shown)]
+    if beside:
+        lines.append("Rows below \"the same, means\": this ratio counted otherwise. " +
+                     "; ".join(f"{BESIDE[name]}: {BESIDE_MEANING[name]}" for name in beside))
     for block in shown:
         title, first = _titled(block, block.ratio.count[guesses])
         rows = [[first] + [texts.tolerance_label(file.tolerances[t]) for t in tolerances]]

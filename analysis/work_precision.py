@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rodsweep.drawing import layout, study, style
-from rodsweep.reading import accuracy, commandline, texts
+from rodsweep.reading import accuracy, commandline, measures, texts
 from rodsweep.reading.sweepfile import SweepFile
 
 EXAMPLES = """examples:
@@ -39,6 +39,7 @@ def main():
         tasks = np.unique(shown.sims.task[:, shown.guesses or [0]])
         found = accuracy.accuracy(file, tasks[tasks >= 0])
         panels = by_panel(file, found, file.parameter(options.columns))
+        accuracy.require_points(file, sum(panels.values(), []))
         print("\n".join(table(panels)) + "\n")
         study.save(file, options, {"work-precision": figure(shown, panels)})
 
@@ -64,13 +65,14 @@ def table(panels):
             best = accuracy.cheapest(points, level)
             cg, direct = (accuracy.cheapest([point for point in points if point.way.method == method], level)
                           for method in ("cg", "direct"))
-            factor = f"{float(cg.time_us.value / direct.time_us.value):.3g}" if cg and direct else "-"
+            factor = texts.short_text(float(measures.quotient(cg.time_us.value, direct.time_us.value)), 3) \
+                if cg and direct else "-"
             rows.append(["" if k else panel, f"{level:g}", *_cells(best), *_cells(cg), factor])
     return texts.aligned(rows)
 
 
 def _cells(point):
-    return (point.way.text(), f"{float(point.time_us.value):.3g}") if point else ("-", "-")
+    return (point.way.text(), texts.short_text(float(point.time_us.value), 3)) if point else ("-", "-")
 
 
 def choices(shown, points):
@@ -119,7 +121,7 @@ def figure(shown, panels):
                 x = [float(point.time_us.value) for point in kept]
                 axes.plot(x, [max(float(point.error.value), DRAWN_FROM) for point in kept], **look.line(),
                           linewidth=0.9, markersize=2.8)
-                times += x
+                times += [time for time in x if time > 0]
             axes.set(xscale="log", yscale="log", ylim=(0.4 * DRAWN_FROM, 2))
             if times:
                 low, high = 0.7 * min(times), 1.4 * max(times)

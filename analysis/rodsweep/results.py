@@ -1,7 +1,7 @@
 """A sweep's results as pandas frames and xarray datasets. Both libraries are imported when first needed.
 
 Rows of incomplete tasks are left out; `missing` counts these tasks. A value that was not measured or not reached is
-NaN, so counts that may be missing are floating-point numbers. Units and meanings come from the file. They are in the
+NaN; in frames, counts that may be missing are of pandas' type Int64 (missing: NA). Units and meanings come from the file. They are in the
 `attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "missing": ...}) and of every variable of a
 dataset ("units", "long_name").
 """
@@ -195,15 +195,22 @@ def _column(table, name, columns):
     shared = table.shared(name)
     if shared is None:
         values = np.concatenate([column.array() for column in columns] or [np.empty(0, dtype=table.dtype(name))])
-        return _measured(values, name)
+        return _counts(values) if values.dtype.kind == "i" and name not in tidy.COUNTED else _measured(values, name)
     index = np.concatenate([column.index for column in columns] or [np.empty(0, dtype=np.int64)])
+    if shared.dtype.kind == "i" and (shared == -1).any():
+        return _counts(shared)[index]
     if shared.dtype.kind in "iuf":
-        return _present(shared)[index]
+        return shared[index]
     categories, codes = np.unique(shared, return_inverse=True)
     codes[conditions.absent(shared)] = -1
     if len(categories) and categories[0] == "":
         categories, codes = categories[1:], np.maximum(codes - 1, -1)
     return library("pandas").Categorical.from_codes(codes[index], categories)
+
+
+def _counts(values):
+    """Integers that may be missing, for a frame: of pandas' type Int64, even if none is missing."""
+    return library("pandas").arrays.IntegerArray(values.astype(np.int64), values == -1)
 
 
 def _measured(values, name):

@@ -111,7 +111,7 @@ class Sweep:
         guesses = self.guesses if guessing else ()
         h5["job/text"] = np.bytes_('{"name": "synthetic", "kind": "sweep", "seed": 7}')
         if guessing:
-            h5["axes/guess"] = np.array(guesses, dtype="S32")
+            h5["axes/guess"] = np.array([label.encode() for label in guesses], dtype="S48")
             h5["axes/tolerance"] = np.array(TOLERANCES)
         rows_per_task = self.steps * self.newton if self.solves and guessing else 0
         integer = {"point": [t[4] for t in tasks], "sample": [t[2] for t in tasks], "own_guess": [t[3] for t in tasks],
@@ -148,7 +148,9 @@ class Sweep:
             columns["guess"] = ("", [self.guesses[t[3]] for t in tasks])
         for key, (unit, values) in columns.items():
             text = isinstance(values[0], str)
-            item = h5.create_dataset(f"tasks/parameters/{key}", data=np.array(values, dtype="S32" if text else None))
+            if text:
+                values = [value.encode() for value in values]
+            item = h5.create_dataset(f"tasks/parameters/{key}", data=np.array(values, dtype="S48" if text else None))
             item.attrs.update({"unit": unit, "meaning": f"the {key}", "swept": len(set(values)) > 1})
 
     def _results(self, tasks, guesses, done, rows_per_task):

@@ -110,6 +110,18 @@ class Export(Scripts):
             read = pandas.read_csv(io.StringIO(self.run_script("export.py", "sweep.h5", "--level", level).stdout))
             pandas.testing.assert_frame_equal(frame.astype(read.dtypes), read)
 
+    def test_a_terminal_shows_the_first_rows_and_how_many_there_are(self):
+        self.write(scenes=("helix",), samples=1)
+        whole = self.run_script("export.py", "sweep.h5")
+        self.assertEqual(whole.stderr, "")
+        with unittest.mock.patch("export.at_terminal", return_value=True):
+            for level, rows in (("tasks", 96), ("steps", 6)):
+                shown = self.run_script("export.py", "sweep.h5", "--level", level)
+                self.assertEqual(len(shown.stdout.splitlines()), 1 + min(rows, 20))
+                self.assertEqual(shown.stderr, "the first 20 of 96 rows; -o FILE writes all\n" if rows > 20 else "")
+                if level == "tasks":
+                    self.assertEqual(shown.stdout.splitlines(), whole.stdout.splitlines()[:21])
+
     def test_nothing_is_overwritten_and_mistakes_are_one_line(self):
         self.write(scenes=("helix",))
         self.run_script("export.py", "sweep.h5", "-o", "out.csv")

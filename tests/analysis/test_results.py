@@ -53,6 +53,16 @@ class Frames(Opened):
         self.assertTrue(solves["scene.length_m"].isna().all())
         self.assertEqual(solves.newton.dtype.kind, "i")
 
+    def test_counts_are_whole_numbers_also_where_some_are_missing(self):
+        results = self.open()
+        tasks, solves = results.tasks(), results.solves()
+        self.assertEqual([str(tasks[name].dtype) for name in ("iterations_sum", "unreached", "task", "sample")],
+                         ["Int64", "Int64", "int64", "int64"])
+        self.assertEqual(str(solves["iterations_1e-4"].dtype), "Int64")
+        self.assertTrue(solves["iterations_1e-4"].isna().any())
+        self.assertEqual(solves["iterations_1e-4"].min(), 20)
+        self.assertEqual(results.dataset("solves").iterations.dtype.kind, "f")
+
     def test_units_meanings_and_what_is_missing_stay(self):
         results = self.open()
         steps = results.steps()

@@ -109,7 +109,7 @@ def four_curves_figure(study, by_newton):
     timed = timings.timed_rung(file)[study.sims.any_task]
     ratios = measures.cg_ratios(file, study.sims, study.newton).ratio
     speedups = timings.speedups(by_newton, study.newton)
-    curves = {"ratio": ratios[np.arange(len(timed)), :, timed], "share": part.guess_s / part.cg_s,
+    curves = {"ratio": ratios[np.arange(len(timed)), :, timed], "share": measures.quotient(part.guess_s, part.cg_s),
               "guess_cg": speedups["guess_cg"], "step": speedups["step"]}
     rows = [[{name: (intervals.mean if name == "ratio" else intervals.median)(values[i], study.sims.sample[i])
               for name, values in curves.items()} for i in points.index] for points in study.points]
@@ -208,7 +208,8 @@ def time_figure(study, by_newton):
                       34 if study.wide else 22, handles, notes + [study.about()], study.timing_warning(), gap_mm=3,
                       ticks_mm=_ticks_mm(study))
     for axes_row, points, row in zip(page.axes, study.points, rows):
-        top = 1.06 * np.nanmax([np.nanmax([e.value[study.guesses, 3:], e.high[study.guesses, 3:]]) for e in row])
+        ends = np.array([[e.value[study.guesses, 3:], e.high[study.guesses, 3:]] for e in row])
+        top = 1.06 * ends[np.isfinite(ends)].max(initial=0) or 1
         for k, (axes, g) in enumerate(zip(axes_row, study.guesses)):
             x = layout.XAxis(points, bars=True)
             _stack(axes, x, [e[g] for e in row])
@@ -230,7 +231,9 @@ def _line(axes, x, estimates, guess_style, categorical, hollow=None, size=None):
     line = {**guess_style.line(), "markersize": size}
     if categorical:
         line["linestyle"] = ""
-    container = axes.errorbar(x, value, yerr=style.whiskers(value, low, high), **style.WHISKERS, **line)
+    container = style.errorbar(axes, x, value, yerr=style.whiskers(value, low, high), **style.WHISKERS, **line)
+    if container is None:
+        return
     for bar in (*container[1], *container[2]):
         bar.set_alpha(0.75)
     hollow = np.zeros(len(value), dtype=bool) if hollow is None else np.array(hollow)
@@ -244,7 +247,7 @@ def _stack(axes, x, estimates):
     """Bars: the height is the median of the total, the parts have the proportions of their medians."""
     parts = np.array([e.value[:3] for e in estimates])
     total = np.array([e.value[4] for e in estimates])
-    parts = parts * (total / parts.sum(axis=1))[:, None]
+    parts = parts * measures.quotient(total, parts.sum(axis=1))[:, None]
     left, width = x.edges()
     bottom = np.zeros(len(total))
     for k, name in enumerate(TIME_PARTS):
@@ -253,8 +256,8 @@ def _stack(axes, x, estimates):
                  linewidth=0.3)
         bottom = bottom + np.nan_to_num(parts[:, k])
     low, high = (np.array([getattr(e, name)[4] for e in estimates], dtype=float) for name in ("low", "high"))
-    axes.errorbar(x.position, total, yerr=style.whiskers(total, low, high), fmt="none", ecolor="#222222",
-                  **{**style.WHISKERS, "capsize": 1.2})
+    style.errorbar(axes, x.position, total, yerr=style.whiskers(total, low, high), fmt="none", ecolor="#222222",
+                   **{**style.WHISKERS, "capsize": 1.2})
 
 
 def _ticks_mm(study):

@@ -67,7 +67,7 @@ class Page:
         self.columns, self.ticks_mm, self.notes_mm = columns, ticks_mm, notes_mm
 
     def _text(self, x, y, text, width, height, **text_style):
-        self.figure.text(x / width, y / height, text, va="top", ha="left", **text_style)
+        self.figure.text(x / width, y / height, style.literal(text), va="top", ha="left", **text_style)
 
     def _legend(self, handles, width_mm):
         """(legend, height in mm), with as few lines as the width allows, evenly filled."""
@@ -122,7 +122,7 @@ class Page:
                        key=lambda lines: max(map(len, lines.split("\n"))))
             size = min(5.5, 7.5 * width / (1.55 * max(map(len, text.split("\n")))))
             text_style = {"linespacing": 0.95, "pad": 1.5, **text_style}
-        axes.set_title(text, fontsize=max(4.5, min(7.5, size)), **text_style)
+        axes.set_title(style.literal(text), fontsize=max(4.5, min(7.5, size)), **text_style)
 
     def save(self, folder, name, formats=("pdf", "png"), caption=True):
         """Writes a file of each format; returns their paths. The same figure gives the same bytes."""
@@ -196,7 +196,8 @@ class XAxis:
             axes.xaxis.set_minor_locator(NullLocator())
             leaning = {} if fits or not self.words else {"rotation": 25, "ha": "right", "rotation_mode": "anchor"}
             every = 1 if self.words else -(-needed // room)    # only some numbers are labelled
-            axes.set_xticklabels([text if k % every == 0 else "" for k, text in enumerate(self.text)], **leaning)
+            axes.set_xticklabels([style.literal(text) if k % every == 0 else "" for k, text in enumerate(self.text)],
+                                 **leaning)
         elif self.log:
             axes.xaxis.set_major_locator(LogLocator(numticks=5))
             axes.xaxis.set_minor_formatter(NullFormatter())

@@ -29,6 +29,12 @@ class Study:
     def wide(self):
         return self.width_mm > 100
 
+    def leave_out(self, count, why):
+        """Adds simulations that are not shown to the last note."""
+        if count:
+            said = f"{count} simulation{'s' * (count > 1)} {why} left out"
+            self.left_out = f"{self.left_out}; {said}" if self.left_out else said
+
     def lines(self):
         """The guesses that are drawn relative to zero: all except zero."""
         return [g for g in self.guesses if g != self.file.zero]
@@ -89,7 +95,14 @@ def of_guesses(file, options):
         raise KeyNotFound(f"{file.path} has no zero guess to compare {', '.join(file.guesses)} with")
     if guesses == [file.zero]:
         raise KeyNotFound("only the zero guess is chosen: there is no guess to compare with it")
-    return _study(file, options, guessing, guesses)
+    made = _study(file, options, guessing, guesses)
+    solved = measures.solved(file, made.sims, options.newton)
+    if not solved.any():
+        raise KeyNotFound(f"{file.path} has no CG ratios: no solve of the chosen simulations took an iteration "
+                          f"({measures.NEWTON[options.newton]})")
+    made.sims = made.sims.subset(solved)
+    made.leave_out(int((~solved).sum()), "without CG iterations")
+    return made
 
 
 def of_tasks(file, options, failed_too=False):
@@ -125,7 +138,8 @@ def sample_text(estimates, of="", mark="whiskers", point="point"):
 
 
 def add_figure_arguments(made):
-    made.add_argument("-o", "--output", metavar="DIR", help="folder of the figures (default: figures/ beside the file)")
+    made.add_argument("-o", "--output", metavar="DIR", help="folder of the figures; those of the same name are "
+                      "replaced (default: figures/ beside the file)")
     made.add_argument("--width", choices=list(style.WIDTHS_MM), default="174",
                       help="width of the figures in mm: a column or a page (default: 174)")
     made.add_argument("--format", metavar="F,…", type=formats, default=("pdf", "png"),

@@ -28,7 +28,7 @@ class GuessStyle(looks.Look):
 
     def handle(self, label):
         """Its legend entry."""
-        return Line2D([], [], label=label, **self.line())
+        return Line2D([], [], label=literal(label), **self.line())
 
 
 DIRECT = GuessStyle(*KINDS["direct"])
@@ -54,6 +54,17 @@ def series_styles(count):
 def whiskers(value, low, high):
     """Lengths below and above a value for errorbar(); 0 without an interval."""
     return np.nan_to_num(np.stack([value - low, high - value]).clip(min=0))
+
+
+def errorbar(axes, x, y, **drawing):
+    """axes.errorbar() if there is a point to draw; else None. Matplotlib warns without one."""
+    there = np.isfinite(np.asarray(x, dtype=float)) & np.isfinite(np.asarray(y, dtype=float))
+    return axes.errorbar(x, y, **drawing) if there.any() else None
+
+
+def literal(text):
+    """A label or name for matplotlib, which would read dollar signs as the begin and end of a formula."""
+    return text.replace("$", r"\$")
 
 
 def use():

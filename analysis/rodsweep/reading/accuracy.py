@@ -88,6 +88,13 @@ def accuracy(file, tasks):
     return Accuracy(tasks, ways, reference == np.arange(len(tasks)), error, cost_s)
 
 
+def require_points(file, points):
+    """Raises KeyNotFound if no way is left to compare with the reference."""
+    if not points:
+        raise KeyNotFound(f"{file.path} has nothing to compare with its reference, the direct solve with the most Newton "
+                          "iterations: no other method ran all chosen simulations without a failure")
+
+
 def points(file, found, cell):
     """A Point per way among the rows of a mask, without ways that failed in any simulation. Families keep the order of
     the job; in each, the least effort comes first."""
@@ -123,11 +130,11 @@ def envelope(points, floor):
 
 def _way(file, task):
     def value(key):
-        return file.parameters[key].values[task]
+        return file.parameter(key).values[task]
 
     method = value("solve.method")
     if method in ("xpbd", "pbd"):
-        return Way(method, iterations=int(value("solve.iterations")))
+        return Way(method, iterations=measures.gauss_seidel_iterations(file, task))
     newton = int(value(NEWTON))
     if method == "cg":
         forced = "solve.forcing" in file.parameters and value("solve.forcing") == "eisenstat_walker"
@@ -141,7 +148,7 @@ def _references(file, tasks, candidate):
     keys = [p.codes()[tasks] for p in file.parameters.values()
             if p.name.startswith(("scene.", "time.")) and p.name != NEWTON]
     rod = np.unique(np.column_stack([file.sample[tasks], *keys]), axis=0, return_inverse=True)[1].ravel()
-    newton = file.parameters[NEWTON].values[tasks]
+    newton = file.parameter(NEWTON).values[tasks]
     found = np.full(len(tasks), -1)
     for group in range(rod.max() + 1):
         rows = np.flatnonzero(rod == group)
@@ -165,7 +172,7 @@ def positions(file, task):
 
 def _error(file, task, exact):
     apart = np.sqrt((np.square(positions(file, task) - exact).sum(axis=2)).mean(axis=1)).max()
-    return apart / np.linalg.norm(np.ptp(exact[0], axis=0))
+    return float(measures.quotient(apart, np.linalg.norm(np.ptp(exact[0], axis=0))))
 
 
 def step_s(file, task):

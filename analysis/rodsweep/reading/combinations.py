@@ -44,8 +44,8 @@ class Cell:
     combinations: list
 
     def cheapest(self, kind):
-        """The fastest by the median over draws, among combinations without failures; None if there is none."""
-        there = [one for one in self.combinations if one.kind == kind and np.isfinite(one.time_us).all()]
+        """The fastest by the median over draws, among combinations timed in all of them; None if there is none."""
+        there = [one for one in self.combinations if one.kind == kind and (one.time_us > 0).all()]
         return min(there, key=lambda one: np.median(one.time_us)) if there else None
 
 
@@ -93,20 +93,20 @@ class _Measured:
             self.time_us = 1e6 * (whole.assemble_s + whole.guess_s + whole.cg_s + whole.rest_s) / steps
         else:
             own = np.array([kind_of(guess) != ORACLE for guess in file.guesses])
-            self.time_us = 1e6 * (np.where(own, times.guess_s, 0) + times.cg_s) / solves
+            self.time_us = measures.quotient(1e6 * (np.where(own, times.guess_s, 0) + times.cg_s), solves)
         self.direct_us = self._direct_us(times)
         self.iterations, self.unreached = self._per_solve("iterations", newton, solves)
         self.products, _ = self._per_solve("matvecs", newton, solves)
 
     def _per_solve(self, counted, newton, solves):
         ratios = measures.cg_sums(self.file, self.sims, newton, counted)
-        return ratios.own / solves[..., None], ratios.unreached
+        return measures.quotient(ratios.own, solves[..., None]), ratios.unreached
 
     def _direct_us(self, times):
         """[simulation]"""
         if not self.sims.closed_loop:
             zero = self.file.zero or 0
-            return 1e6 * times.direct_s[:, zero] / times.solves[:, zero]
+            return measures.quotient(1e6 * times.direct_s[:, zero], times.solves[:, zero])
         return timings.direct_step_us(self.file, self.sims)
 
     def combinations(self, rows):
@@ -156,9 +156,9 @@ def solver_text(file, task):
 
 def speedup(slower, faster, draws):
     """Estimate of the time of one combination over that of a faster one: the median over draws."""
-    return intervals.median(slower.time_us / faster.time_us, draws)
+    return intervals.median(measures.quotient(slower.time_us, faster.time_us), draws)
 
 
 def ratio(one, zero, draws, tolerance):
     """Estimate of the CG ratio of a combination at a tolerance: the mean over draws."""
-    return intervals.mean(one.iterations[:, tolerance] / zero.iterations[:, tolerance], draws)
+    return intervals.mean(measures.quotient(one.iterations[:, tolerance], zero.iterations[:, tolerance]), draws)

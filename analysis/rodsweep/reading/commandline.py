@@ -96,11 +96,12 @@ def chosen_guesses(file, arguments):
 
 
 def chosen_tolerances(file, arguments):
-    """Indices of the tolerances to show."""
+    """Indices of the tolerances to show; all if the file has none of the default ones."""
+    every = list(range(len(file.tolerances)))
     if arguments.tolerance == "all":
-        return list(range(len(file.tolerances)))
+        return every
     if not arguments.tolerance:
-        return [k for k, t in enumerate(file.tolerances) if np.isclose(t, DEFAULT_TOLERANCES, rtol=1e-6, atol=0).any()]
+        return [k for k in every if np.isclose(file.tolerances[k], DEFAULT_TOLERANCES, rtol=1e-6, atol=0).any()] or every
     try:
         values = [float(part) for part in arguments.tolerance.split(",")]
     except ValueError:

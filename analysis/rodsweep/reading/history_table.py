@@ -40,17 +40,13 @@ def lines(panels, series, found, sims, ok, begin):
             r = next(every)
             low, high = (r[f"drift_per_1000_steps_{end}"] for end in ("low", "high"))
             interval = "" if np.isnan(low) else f" [{number_text(low)}, {number_text(high)}]"
-            rows.append([f"  {r['method']}", str(r["simulations"]), str(r["failed"]), _text(r["failed_after_steps"]),
+            rows.append([f"  {r['method']}", str(r["simulations"]), str(r["failed"]), number_text(r["failed_after_steps"]),
                          number_text(r["length_drift_largest"]), number_text(r["length_drift_final"]),
-                         _text(r["drift_per_1000_steps"]) + interval, number_text(r["joint_gap_largest"])])
+                         number_text(r["drift_per_1000_steps"]) + interval, number_text(r["joint_gap_largest"])])
     heading = [f"Largest and final drift, largest gap: of the worst simulation. Drift per 1000 steps: slope from step "
                f"{begin} on, median over simulations that did not fail [95 % interval]. After steps: median number of "
                "steps of the others.", ""]
     return heading + texts.aligned(rows)
-
-
-def _text(value):
-    return "-" if np.isnan(value) else number_text(value)
 
 
 def write_csv(out, panels, series, found, sims, ok):

@@ -14,6 +14,13 @@ import numpy as np
 
 # Which solves count: those of the first Newton iteration of every step, or all.
 NEWTON = {"first": "first Newton iteration (j = 0)", "all": "all Newton iterations"}
+GAUSS_SEIDEL_ITERATIONS = 20    # the program's default of solve.iterations, which has no column if no task sets it
+
+
+def quotient(above, below):
+    """above / below; NaN where `below` is not positive: nothing was counted or timed there."""
+    above, below = np.broadcast_arrays(np.asarray(above, dtype=float), np.asarray(below, dtype=float))
+    return np.divide(above, below, out=np.full(below.shape, np.nan), where=below > 0)
 
 
 @dataclass(frozen=True)
@@ -87,11 +94,18 @@ def without_guess(file, tasks):
 
 def _method_name(file, method, task):
     if method in ("end_to_end", "state_network"):
-        model = file.parameters["solve.model"].values[task]
+        model = file.parameter("solve.model").values[task]
         return f"{method} {os.path.splitext(os.path.basename(model))[0]}"
     if method in ("xpbd", "pbd"):
-        return f"{method} {file.parameters['solve.iterations'].text(task)}"
+        return f"{method} {gauss_seidel_iterations(file, task)}"
     return "direct"
+
+
+def gauss_seidel_iterations(file, task):
+    """Iterations of a step of a task with the method xpbd or pbd."""
+    parameter = file.parameters.get("solve.iterations")
+    given = parameter is not None and parameter.applies()[task]
+    return int(parameter.values[task]) if given else GAUSS_SEIDEL_ITERATIONS
 
 
 def simulations(file, chosen, failed_too=False):
@@ -152,9 +166,14 @@ def cg_sums(file, sims, newton, counted="iterations", norm=""):
 def cg_ratios(file, sims, newton, counted="iterations", norm=""):
     sums = cg_sums(file, sims, newton, counted, norm)
     own, solves = sums.own, sums.solves
-    ratio = np.divide(own, sums.zero, out=np.full(own.shape, np.nan), where=sums.zero > 0)
-    per_solve = np.divide(own, solves[..., None], out=np.full(own.shape, np.nan), where=solves[..., None] > 0)
-    return Ratios(ratio, per_solve, sums.unreached, sums.unreached_zero, solves)
+    return Ratios(quotient(own, sums.zero), quotient(own, solves[..., None]), sums.unreached, sums.unreached_zero, solves)
+
+
+def solved(file, sims, newton):
+    """Mask of the simulations in which a solve took an iteration. Others have no CG ratio: rods at rest, or in free
+    fall, need no linear solve."""
+    own = cg_sums(file, sims, newton).own.reshape(len(sims), -1)
+    return (own > 0).any(axis=1) | ~np.isfinite(own).any(axis=1)
 
 
 @dataclass(frozen=True)
@@ -185,7 +204,7 @@ def step_figures(file, sims):
             used = rows[wanted["newton_iterations"]].astype(float)
             np.add.at(newton, owners, np.add.reduceat(np.where(used >= 0, used, 0), starts))
             np.add.at(steps, owners, np.add.reduceat((used >= 0).astype(float), starts))
-    newton = np.divide(newton, steps, out=np.full(file.task_count, np.nan), where=steps > 0)
+    newton = quotient(newton, steps)
 
     def spread(values):
         return sims.gather(np.broadcast_to(values[:, None], (file.task_count, sims.task.shape[1])))

@@ -11,7 +11,9 @@ NAMES = {"scene.segments": "number of segments N", "scene.youngs_modulus_pa": "Y
 
 
 def number_text(value):
-    """Short: 0.005, 20, 1e6, 3.7e-4."""
+    """Short: 0.005, 20, 1e6, 3.7e-4; "-" if it is not finite."""
+    if not math.isfinite(value):
+        return "-"
     if value == 0 or 1e-3 <= abs(value) < 1e4:
         return f"{value:.4g}"
     mantissa, exponent = f"{value:.1e}".split("e")
@@ -42,13 +44,13 @@ def tolerance_label(value):
     return f"{float(mantissa):g}e{int(exponent)}"
 
 
-def interval_text(estimate):
+def interval_text(estimate, digits=2):
     """0.25 [0.21, 0.30] of an Estimate of one number; "-" if there is none."""
     if not math.isfinite(estimate.value):
         return "-"
     if not math.isfinite(estimate.low):
-        return f"{estimate.value:.2f}"
-    return f"{estimate.value:.2f} [{estimate.low:.2f}, {estimate.high:.2f}]"
+        return f"{estimate.value:.{digits}f}"
+    return f"{estimate.value:.{digits}f} [{estimate.low:.{digits}f}, {estimate.high:.{digits}f}]"
 
 
 def short_text(value, digits):

@@ -17,6 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rodsweep.reading.measures import quotient
+
 COLUMNS = ("/timing/solves/assemble_s", "/timing/solves/direct_s", "/timing/solves/guess_s", "/timing/solves/cg_s")
 ROWS = ("/solves/newton", "/solves/iterations", "/solves/start_matvecs")
 RENEWED = "/solves/renewed"
@@ -50,6 +52,11 @@ class Times:
 
 def timed(file):
     return bool(file.guesses) and all(file.has(path) for path in COLUMNS + ROWS)
+
+
+def measured(by_newton):
+    """Whether times() found a solve with its times."""
+    return bool(np.isfinite(by_newton["all"].cg_s).any())
 
 
 def times(file, sims):
@@ -188,16 +195,17 @@ def speedups(by_newton, newton, against="zero"):
     part, whole = by_newton[newton], by_newton["all"]
     step = whole.assemble_s + whole.guess_s + whole.cg_s + whole.rest_s
     if against == "direct":
-        return {"cg": part.direct_s / part.cg_s, "guess_cg": part.direct_s / (part.guess_s + part.cg_s),
-                "step": (whole.assemble_s + whole.direct_s + whole.rest_s) / step}
-    return {"cg": part.zero_cg_s / part.cg_s,
-            "guess_cg": (part.zero_guess_s + part.zero_cg_s) / (part.guess_s + part.cg_s),
-            "step": (whole.zero_assemble_s + whole.zero_guess_s + whole.zero_cg_s + whole.zero_rest_s) / step}
+        return {"cg": quotient(part.direct_s, part.cg_s), "guess_cg": quotient(part.direct_s, part.guess_s + part.cg_s),
+                "step": quotient(whole.assemble_s + whole.direct_s + whole.rest_s, step)}
+    zero_step = whole.zero_assemble_s + whole.zero_guess_s + whole.zero_cg_s + whole.zero_rest_s
+    return {"cg": quotient(part.zero_cg_s, part.cg_s),
+            "guess_cg": quotient(part.zero_guess_s + part.zero_cg_s, part.guess_s + part.cg_s),
+            "step": quotient(zero_step, step)}
 
 
 def direct_speedups(by_newton, newton, zero):
     """{"cg", "guess_cg", "step"}: [simulation], time of zero-guess CG over that of `direct` on the same systems."""
-    return {name: 1 / values[:, zero] for name, values in speedups(by_newton, newton, "direct").items()}
+    return {name: quotient(1, values[:, zero]) for name, values in speedups(by_newton, newton, "direct").items()}
 
 
 def direct_times(file, sims):

@@ -63,7 +63,7 @@ class Answer:
                       default=math.nan)
         found, left = [], 0.0
         for name, us in row.parts.items():
-            width = BAR_WIDTH * us / longest
+            width = BAR_WIDTH * us / longest if longest > 0 else math.nan
             if math.isfinite(width):
                 found.append((name, round(left, 1), round(max(width, 0.4), 1)))
                 left += width
