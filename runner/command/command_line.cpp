@@ -90,6 +90,10 @@ CLI::App* add(CLI::App& app, RunOptions& run) {
   command->add_option("JOB", run.job, "Job file (JSON)")->required();
   command->add_option("-o,--output", run.output, "Results file; never overwritten [results/NAME.h5]")
       ->type_name("FILE");
+  command
+      ->add_option("-n,--workers", run.workers, "Start this many workers on this machine, by mpirun [1, or the ranks]")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
   CLI::Option* resume = command->add_flag("--resume", run.resume, "Continue the results file if it exists");
   command
       ->add_flag("--retry-failed", run.retry_failed,

@@ -17,6 +17,7 @@
 #include <exception>
 
 #include "runner/command/command_line.hpp"
+#include "runner/command/launch.hpp"
 #include "runner/command/next_line.hpp"
 #include "runner/file/file_error.hpp"
 #include "runner/file/inspect.hpp"
@@ -88,7 +89,18 @@ ExitCode start(const PrintedText& answer, Console& console) {
 }
 
 ExitCode start(const RunOptions& options, Console& console) {
+  int ranks = 0;  // any number
+  if (options.workers) {
+    const Job job = read_job(options.job, MissingFiles::accepted);
+    ranks = is_training(job) ? *options.workers : ranks_for(*options.workers);
+    if (ranks > 1 && !is_launched()) launch(ranks);
+  }
   const MpiSession mpi;
+  if (ranks > 0 && mpi.size() != ranks) {
+    console.error(fmt::format("-n {} needs {} ranks, but {} were started: leave out -n under mpirun and srun",
+                              *options.workers, ranks, mpi.size()));
+    return ExitCode::user_error;
+  }
   try {
     return execute(options, mpi, console);
   } catch (const CollectiveError& error) {

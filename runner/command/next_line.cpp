@@ -29,9 +29,10 @@ int ranks_for(int workers) { return workers > 1 ? workers + 1 : 1; }
 
 std::string run_line(const RunOptions& options, int ranks) {
   std::string line;
-  if (ranks > 1)
+  if (ranks > 1 && !options.workers)
     line = fmt::format("mpirun --oversubscribe {}-n {} ", geteuid() == 0 ? "--allow-run-as-root " : "", ranks);
   line += fmt::format("{} run {}", shell_quoted(options.program), shell_quoted(options.job.native()));
+  if (options.workers) line += fmt::format(" -n {}", *options.workers);
   if (options.output) line += " -o " + shell_quoted(options.output->native());
   if (options.extend) line += " --extend " + shell_quoted(options.extend->native());
   if (options.shard) line += fmt::format(" --shard {}/{}", options.shard->number, options.shard->of);

@@ -11,7 +11,8 @@ namespace rodsweep {
 /// Ranks of a sweep with this many workers: one more for the master, which sleeps; 1 for a single worker.
 int ranks_for(int workers);
 
-/// The command for this job on this many ranks: "mpirun --oversubscribe -n 3 rodsweep run jobs/demo.json".
+/// The command for this job on this many ranks: "mpirun --oversubscribe -n 3 rodsweep run jobs/demo.json", or
+/// "rodsweep run jobs/demo.json -n 2" with options.workers.
 std::string run_line(const RunOptions& options, int ranks);
 
 /// "stopped early by SIGTERM; nothing is lost. To continue: " and the command.

@@ -162,6 +162,7 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
       else if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
         text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);
   }
+  if (workers > 1 && workers <= cores_here()) run.workers = workers;
   text += "next     " + run_line(run, ranks_for(workers));
   return text;
 }

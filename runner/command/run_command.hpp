@@ -25,6 +25,7 @@ struct RunOptions {
   std::optional<double> task_time_limit_s;      ///< replaces the job's limit
   std::optional<double> memory_limit_gb;        ///< per rank; default: a share of the host's memory
   std::optional<double> time_limit_s;           ///< of this start
+  std::optional<int> workers;                   ///< starts mpirun with these workers
   int max_crashes = 3;                          ///< a task is not retried after this many worker deaths
   double worker_timeout_s = 120;                ///< a worker without heartbeat for this long is lost; 0: no timeout
   std::string program = "rodsweep";             ///< as the user typed it
@@ -32,8 +33,9 @@ struct RunOptions {
 };
 
 inline constexpr const char* run_help =
-    "A single rank runs the tasks itself. With more ranks, rank 0 only sends tasks and sleeps: use C+1 ranks for C\n"
-    "cores. Open MPI needs --oversubscribe for more ranks than cores, and --allow-run-as-root for root.\n"
+    "A single rank runs the tasks itself. With -n N, N workers run them, and a master that sleeps sends them: mpirun\n"
+    "starts N+1 ranks on this machine. On several hosts, start mpirun or srun yourself, with one rank more than "
+    "cores.\n"
     "A training (kind \"train\") has no master. One rank uses all its cores, up to training.shards and\n"
     "OMP_NUM_THREADS. On several hosts, use one rank per host.\n\n"
     "SIGTERM, SIGINT (Ctrl-C), SIGUSR1, SIGUSR2, SIGXCPU and SIGHUP (unless ignored, as by nohup) stop the sweep\n"
@@ -43,8 +45,8 @@ inline constexpr const char* run_help =
     "A training stops between two steps; --resume continues it with bitwise equal results.\n\n"
     "Examples:\n"
     "  rodsweep run jobs/smoke.json                        one core, results/smoke.h5\n"
-    "  mpirun --oversubscribe -n 5 rodsweep run job.json   4 cores\n"
-    "  mpirun -n 5 rodsweep run job.json -o out.h5 --resume\n"
+    "  rodsweep run job.json -n 4                          4 cores\n"
+    "  mpirun -n 65 rodsweep run job.json -o out.h5 --resume\n"
     "                                                      continues or creates out.h5: for batch scripts\n"
     "  rodsweep run job.json -o out.h5 --resume --retry-failed\n"
     "                                                      also repeats errors, timeouts and crashes\n"

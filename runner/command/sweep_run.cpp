@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "runner/command/launch.hpp"
 #include "runner/command/next_line.hpp"
 #include "runner/command/sweep_summary.hpp"
 #include "runner/command/sweep_tasks.hpp"
@@ -125,9 +126,12 @@ void advise(Console& console, const RunOptions& options, const Placement& where,
     console.warn(fmt::format(
         "{} workers share {} cores: the measured times are not valid; the file records this in /runs/oversubscribed",
         where.workers, where.cores));
-  else if (where.workers < where.cores && static_cast<std::size_t>(where.workers) < pending)
+  else if (where.workers < where.cores && static_cast<std::size_t>(where.workers) < pending) {
+    RunOptions all = options;
+    if (!is_launched() || options.workers) all.workers = where.cores;
     console.note(fmt::format("{} of {} cores are used; to use all: {}", where.workers, where.cores,
-                             run_line(options, ranks_for(where.cores))));
+                             run_line(all, ranks_for(where.cores))));
+  }
 }
 
 /// Counts tries in the file. A non-zero count on an incomplete task means that its worker crashed.

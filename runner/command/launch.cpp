@@ -1,0 +1,57 @@
+#include "runner/command/launch.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace rodsweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// mpi-env.sh of an installation or of the source tree; empty if there is none.
+std::string settings_script() {
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const char* place : {"../share/rodsweep/mpi-env.sh", "../cmake/mpi-env.sh"})
+    if (const fs::path script = (folder / place).lexically_normal(); access(script.c_str(), X_OK) == 0) return script;
+  return "";
+}
+
+std::vector<std::string> own_arguments() {
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> arguments;
+  for (std::string word; std::getline(in, word, '\0');) arguments.push_back(word);
+  return arguments;
+}
+
+}  // namespace
+
+bool is_launched() {
+  constexpr const char* marks[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
+  return std::any_of(std::begin(marks), std::end(marks), [](const char* mark) { return std::getenv(mark) != nullptr; });
+}
+
+void launch(int ranks) {
+  std::vector<std::string> words;
+  if (std::string script = settings_script(); !script.empty()) words.push_back(std::move(script));
+  for (const std::string& word : {std::string("mpirun"), std::string("-n"), std::to_string(ranks)})
+    words.push_back(word);
+  for (std::string& word : own_arguments()) words.push_back(std::move(word));
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execvp(arguments[0], arguments.data());
+  throw std::runtime_error(fmt::format("mpirun cannot be started for --workers: {}", std::strerror(errno)));
+}
+
+}  // namespace rodsweep

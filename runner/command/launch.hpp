@@ -1,0 +1,13 @@
+// Starts the ranks of a run on this machine, for `run --workers`.
+#pragma once
+
+namespace rodsweep {
+
+/// Whether mpirun, srun or another launcher started this process as a rank.
+bool is_launched();
+
+/// Replaces this process by mpirun with `ranks` ranks of it, all with the arguments of this process. Settings of Open MPI
+/// for one machine are those of mpi-env.sh. Throws std::runtime_error if mpirun cannot be started.
+[[noreturn]] void launch(int ranks);
+
+}  // namespace rodsweep
