@@ -23,6 +23,12 @@ std::string path_from_here(const std::string& name) {
   return "analysis/" + name;
 }
 
+/// Quoted for a shell; a name that begins with a dash is no option.
+std::string word_of(const fs::path& path) {
+  const std::string name = path.native();
+  return shell_quoted(!name.empty() && name.front() == '-' ? "./" + name : name);
+}
+
 }  // namespace
 
 int ranks_for(int workers) { return workers > 1 ? workers + 1 : 1; }
@@ -31,10 +37,10 @@ std::string run_line(const RunOptions& options, int ranks) {
   std::string line;
   if (ranks > 1 && !options.workers)
     line = fmt::format("mpirun --oversubscribe {}-n {} ", geteuid() == 0 ? "--allow-run-as-root " : "", ranks);
-  line += fmt::format("{} run {}", shell_quoted(options.program), shell_quoted(options.job.native()));
+  line += fmt::format("{} run {}", shell_quoted(options.program), word_of(options.job));
   if (options.workers) line += fmt::format(" -n {}", *options.workers);
-  if (options.output) line += " -o " + shell_quoted(options.output->native());
-  if (options.extend) line += " --extend " + shell_quoted(options.extend->native());
+  if (options.output) line += " -o " + word_of(*options.output);
+  if (options.extend) line += " --extend " + word_of(*options.extend);
   if (options.shard) line += fmt::format(" --shard {}/{}", options.shard->number, options.shard->of);
   if (options.resume) line += " --resume";
   if (options.retry_failed) line += " --retry-failed";
@@ -59,14 +65,13 @@ std::string merge_line(const std::string& program, const fs::path& file, const S
   std::string files = "SHARDS... -o FILE";
   if (name.size() > own.size() && name.compare(name.size() - own.size(), own.size(), own) == 0) {
     const fs::path merged = file.parent_path() / name.substr(0, name.size() - own.size());
-    files = fmt::format("{}-*of{}.h5 -o {}", shell_quoted(merged.native()), shard.of,
-                        shell_quoted(merged.native() + ".h5"));
+    files = fmt::format("{}-*of{}.h5 -o {}", word_of(merged), shard.of, word_of(merged.native() + ".h5"));
   }
   return fmt::format("{} merge {}", shell_quoted(program), files);
 }
 
 std::string script_line(const std::string& script, const fs::path& file) {
-  return fmt::format("/usr/bin/python3 {} {}", shell_quoted(path_from_here(script)), shell_quoted(file.native()));
+  return fmt::format("/usr/bin/python3 {} {}", shell_quoted(path_from_here(script)), word_of(file));
 }
 
 }  // namespace rodsweep

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runner/experiment/inputs.hpp"
+#include "runner/file/file_error.hpp"
 #include "solver/cg/petsc_session.hpp"
 
 namespace rodsweep {
@@ -37,7 +38,11 @@ ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& cons
 
 fs::path output_of(const RunOptions& options, const std::string& job_name) {
   const std::string part = options.shard ? fmt::format("-{}of{}", options.shard->number, options.shard->of) : "";
-  return options.output.value_or(fs::path("results") / (job_name + part + ".h5"));
+  const std::string name = job_name + part + ".h5";
+  const fs::path path = options.output.value_or(fs::path("results") / name);
+  if (std::error_code error; fs::is_directory(path, error))
+    throw FileError(fmt::format("{} is a folder: name a file, such as -o {}", path.native(), (path / name).native()));
+  return path;
 }
 
 Provenance provenance_of(const RunOptions& options, const MpiSession& mpi, const Placement& where) {

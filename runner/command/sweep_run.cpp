@@ -271,7 +271,7 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     return made;
   });
   const StopSignal signal;  // from here until the file is closed, a signal only requests a stop
-  const fs::path path = output_of(options, job.name);
+  const fs::path path = collectively(mpi.world(), [&] { return output_of(options, job.name); });
   read_knn_sets(plan, mpi.world());
   const Placement where = placement(mpi.world());
   limit_memory(options.memory_limit_gb ? 1e9 * *options.memory_limit_gb

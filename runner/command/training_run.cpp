@@ -216,7 +216,7 @@ void TrainingRun::save() {
 
 ExitCode run_training(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
   const StopSignal signal;  // from here until the file is closed, a signal only requests a stop
-  const fs::path path = output_of(options, job.name);
+  const fs::path path = collectively(mpi.world(), [&] { return output_of(options, job.name); });
   if (const std::string left = unfinished_text(path); !left.empty()) console.warn(left);
   const auto earlier = collectively(mpi.world(), [&] {
     if (options.extend) throw job_error(job.path, "kind", "a training cannot extend results: remove --extend");

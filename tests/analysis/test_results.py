@@ -63,6 +63,15 @@ class Frames(Opened):
         self.assertEqual(solves["iterations_1e-4"].min(), 20)
         self.assertEqual(results.dataset("solves").iterations.dtype.kind, "f")
 
+    def test_data_of_a_user_in_our_groups_are_no_columns(self):
+        with self.open() as before:
+            columns = [list(getattr(before, level)().columns) for level in ("tasks", "solves", "steps")]
+        with synthetic.h5py.File(self.path, "r+") as h5:
+            h5["tasks/mine"], h5["tasks/parameters/mine"] = np.arange(3), 1.5
+            h5["steps/mine"], h5["solves/notes"] = np.zeros((2, 2)), "mine"
+        after = rodsweep.open(self.path)
+        self.assertEqual([list(getattr(after, level)().columns) for level in ("tasks", "solves", "steps")], columns)
+
     def test_units_meanings_and_what_is_missing_stay(self):
         results = self.open()
         steps = results.steps()

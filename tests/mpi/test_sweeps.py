@@ -384,6 +384,7 @@ class Alone(SweepCase):
         self.assert_same_results("alone.h5", "crew.h5")
         self.assertEqual(status("crew.h5")["runs"][0]["ranks"], 3)
         self.assert_refused_once(0, "run", path, "-n", "2", "-o", "crew.h5", says="exists already")
+        self.assert_refused_once(2, "run", path, "-o", ".", says=". is a folder: name a file, such as -o ./crew.h5")
         self.assert_refused_once(2, "run", path, "-n", "4", "-o", "more.h5", says="-n 4 needs 5 ranks, but 2 were started")
 
     def test_a_plan_tells_programs_what_it_tells_people(self):

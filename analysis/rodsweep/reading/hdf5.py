@@ -27,6 +27,11 @@ def opened(path, what):
             "not an HDF5 file; give a file written by `rodsweep run`")) from error
 
 
+def is_column(item, rows):
+    """Whether an object in a group of columns is one: a user may keep data of another length there."""
+    return isinstance(item, h5py.Dataset) and item.shape[:1] == (rows,)
+
+
 def as_text(value):
     return value.decode("utf-8", "replace").rstrip("\0") if isinstance(value, bytes) else str(value)
 

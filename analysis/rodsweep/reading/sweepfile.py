@@ -15,7 +15,7 @@ import numpy as np
 
 from rodsweep.reading import conditions
 from rodsweep.reading.errors import KeyNotFound, SweepFileError, listed, not_found
-from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, opened
+from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, is_column, opened
 from rodsweep.reading.parameters import Parameter
 
 SCHEMA_VERSION = 2
@@ -80,7 +80,7 @@ class SweepFile:
         parameters = {}
 
         def add(name, item):
-            if isinstance(item, h5py.Dataset):
+            if is_column(item, self.task_count):
                 key = name.replace("/", ".")
                 parameters[key] = Parameter(key, as_text(item.attrs.get("unit", "")),
                                             as_text(item.attrs.get("meaning", "")),

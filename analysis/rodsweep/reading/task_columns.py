@@ -11,12 +11,11 @@ A missing value (a key that does not apply, a result of a pending task, -1 of in
 
 from dataclasses import dataclass, replace
 
-import h5py
 import numpy as np
 
 from rodsweep.reading import conditions, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
-from rodsweep.reading.hdf5 import as_text, decoded
+from rodsweep.reading.hdf5 import as_text, decoded, is_column
 
 ALL_BY = "--columns help"
 OUTCOMES = ("pending", "ok", "diverged", "not_a_number", "indefinite", "iteration_limit", "timed_out", "error", "torn",
@@ -54,7 +53,7 @@ class TaskColumns:
         self._add(TaskColumn("state", meaning='"done" or "pending"', numeric=False))
         for group in ("/tasks", "/tasks/parameters", "/timing/tasks"):
             for name, item in sorted(file.h5[group].items()) if group in file.h5 else ():
-                if isinstance(item, h5py.Dataset) and (group, name) not in [("/tasks", one) for one in LEFT_OUT]:
+                if is_column(item, file.task_count) and (group, name) not in [("/tasks", one) for one in LEFT_OUT]:
                     self._add_dataset(name, f"{group}/{name}", item)
         self.names = list(self.columns)
 

@@ -9,12 +9,11 @@ and empty texts are missing values. Blocks have at most BLOCK_ROWS rows of the f
 import itertools
 from dataclasses import dataclass
 
-import h5py
 import numpy as np
 
 from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, not_found
-from rodsweep.reading.hdf5 import as_text, decoded
+from rodsweep.reading.hdf5 import as_text, decoded, is_column
 
 LEVELS = ("tasks", "solves", "steps")
 BLOCK_ROWS = 1 << 13
@@ -63,9 +62,11 @@ class Tidy:
         self.guesses, self.tolerances = list(guesses), list(tolerances)
         self.labels, self.guessing = np.array(file.guesses, dtype=str), measures.has_guesses(file)
         self.datasets, self.whole = {}, {}
+        rows = file.task_count if level == "tasks" else next(
+            (len(file.h5[f"/{level}/{name}"]) for name in MARKS if file.has(f"/{level}/{name}")), 0)
         for folder in (f"/{level}", f"/timing/{level}"):
             for name, item in (file.h5[folder].items() if folder in file.h5 else []):
-                if isinstance(item, h5py.Dataset) and item.size and name not in INTERNAL:
+                if is_column(item, rows) and item.size and name not in INTERNAL:
                     self.datasets.setdefault(name, f"{folder}/{name}")
         self.shape = {name: self._axes(path) for name, path in self.datasets.items()}
         self.by_guess = bool(file.guesses) and level != "steps" and any("guess" in axes for axes in self.shape.values())

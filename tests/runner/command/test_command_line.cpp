@@ -67,6 +67,9 @@ TEST_CASE("the command that continues a sweep can be typed as it stands") {
   const std::string as_root = geteuid() == 0 ? "--allow-run-as-root " : "";  // mpirun refuses root without it
   CHECK(run_line(run, ranks_for(4)) ==
         "mpirun --oversubscribe " + as_root + "-n 5 build/rodsweep run 'my job.json' -o out.h5 --resume");
+  run.output = "-x.h5";
+  CHECK(run_line(run, 1) == "build/rodsweep run 'my job.json' -o ./-x.h5 --resume");
+  run.output = "out.h5";
   run.workers = 4;
   CHECK(run_line(run, ranks_for(4)) == "build/rodsweep run 'my job.json' -n 4 -o out.h5 --resume");
 }
