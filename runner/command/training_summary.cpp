@@ -53,6 +53,15 @@ std::string ratio_table(const ModelCard& card) {
   return text + '\n';
 }
 
+/// The relative fall of the best validation loss in the second half of a complete training; 0 if it has too few epochs.
+double late_fall(const ModelCard& card) {
+  constexpr std::size_t fewest = 4;
+  if (card.ending != Ending::complete || card.epochs.size() < fewest || card.best_epoch == 0) return 0;
+  double halfway = HUGE_VAL;
+  for (std::size_t i = 0; i < card.epochs.size() / 2; ++i) halfway = std::min(halfway, card.epochs[i].validation_loss);
+  return std::max(0.0, 1 - best_epoch(card).validation_loss / halfway);
+}
+
 }  // namespace
 
 std::string progress_text(const ModelCard& card, double seconds_left) {
@@ -80,6 +89,12 @@ std::string training_summary(const ModelCard& card, const std::filesystem::path&
   text += '\n' + ratio_table(card);
   double seconds = 0;
   for (const Epoch& epoch : card.epochs) seconds += epoch.seconds;
+  constexpr double notable = 0.1;
+  if (const double fall = late_fall(card); fall > notable)
+    text += fmt::format(
+        "the validation loss fell by {:.0f} % in the second half of the epochs, so that more may lower it: "
+        "{} take about {} (training.epochs, with another -o FILE)\n",
+        100 * fall, counted(2 * static_cast<std::int64_t>(card.epochs.size()), "epoch"), duration_text(2 * seconds));
   return text + fmt::format("{} for {} epochs; model: {}, {}", duration_text(seconds), card.epochs.size(),
                             path.native(), bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(path))));
 }

@@ -19,7 +19,7 @@ Region region(const Box& box) {
   return {{box.low.x(), box.low.y(), box.low.z()}, {box.high.x(), box.high.y(), box.high.z()}};
 }
 
-/// Of its motion since the last call, that a box is enlarged by; at most this many margins.
+/// A box is enlarged by this many of its last motions, and at most by this many margins.
 constexpr double ahead = 8;
 
 }  // namespace

@@ -17,8 +17,8 @@
 //
 // With a coefficient of restitution e, a contact whose gap g would close by p* has an impact in this step (Moreau 1988;
 // Jean 1999): g(end) >= g(p) + e (g(p) - g(p*)), so that the velocity of separation is at least e times that of the
-// approach. Slow approaches, of less than a hundredth of a radius in the step, and contacts
-// that pressed in the last step have none: bodies come to rest.
+// approach. Slow approaches, of less than a hundredth of a radius in the step, have none, nor have contacts that pressed
+// in the last step: bodies come to rest.
 #pragma once
 
 #include <vector>

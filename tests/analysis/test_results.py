@@ -11,6 +11,7 @@ import numpy as np
 import pandas
 import rodsweep
 from rodsweep.reading import tidy
+from rodsweep.reading.errors import KeyNotFound
 from running import Folder
 
 PLANT = synthetic.Plant()
@@ -62,6 +63,10 @@ class Frames(Opened):
         self.assertTrue(solves["iterations_1e-4"].isna().any())
         self.assertEqual(solves["iterations_1e-4"].min(), 20)
         self.assertEqual(results.dataset("solves").iterations.dtype.kind, "f")
+
+    def test_a_tolerance_that_was_not_counted_is_refused(self):
+        with self.assertRaisesRegex(KeyNotFound, '"tolerance=0.02": iterations were counted at the tolerances 1e-1, 1e-2'):
+            self.open().tasks(where="tolerance=0.02")
 
     def test_data_of_a_user_in_our_groups_are_no_columns(self):
         with self.open() as before:

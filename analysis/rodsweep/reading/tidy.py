@@ -134,10 +134,15 @@ class Tidy:
         return unit, meaning if index is None else f"{meaning}; {name[len(base) + 1:]}".removeprefix("; ")
 
     def condition(self, text):
-        """Parses a condition on these columns; see conditions.py."""
-        return conditions.parse(text, {name: conditions.Column(self.dtype(name).kind in "iuf",
+        """Parses a condition on these columns; see conditions.py. Refuses a tolerance that was not counted."""
+        made = conditions.parse(text, {name: conditions.Column(self.dtype(name).kind in "iuf",
                                                                tuple(self.file.guesses) if name == "guess" else ())
                                        for name in self.names}, ALL_BY)
+        counted = self.file.tolerances[self.tolerances]
+        if made.column == "tolerance" and len(counted) and not made.met(counted).any():
+            raise KeyNotFound(f'"{text}": iterations were counted at the tolerances '
+                              f"{', '.join(map(texts.tolerance_label, counted))}")
+        return made
 
     def blocks(self, names, where=()):
         """Yields {name: Column} with the rows that meet all conditions, in the file's order."""

@@ -8,6 +8,8 @@
 namespace rodsweep {
 namespace test_training_summary {
 
+using Catch::Matchers::Contains;
+
 ModelCard card_of_two_epochs() {
   ModelCard card;
   card.name = "net";
@@ -48,6 +50,26 @@ TEST_CASE("the summary tells how a training ended, and the model's CG ratio besi
                                             "\n  the model                                0.050  0.150  0.500  0.750"
                                             "\n  its base guess alone                     0.100  0.200  0.600  1.000" +
                                             file);
+}
+
+TEST_CASE("a loss that fell to the end is told, with what twice the epochs would take") {
+  const TemporaryFolder folder;
+  const auto path = folder / "net.h5";
+  std::ofstream(path) << "model";
+  ModelCard card = card_of_two_epochs();
+  const auto trained = [&](const std::vector<double>& losses) {
+    card.epochs.clear();
+    for (const double loss : losses) card.epochs.push_back({loss, loss, 1e-3, 2, ValidationRatio::unmeasured()});
+    card.best_epoch = static_cast<int>(losses.size());
+    return training_summary(card, path);
+  };
+  card.ending = Ending::complete;
+  CHECK_THAT(trained({8, 4, 2, 1}), Contains("fell by 75 % in the second half of the epochs") &&
+                                        Contains("8 epochs take about 16.0 s (training.epochs"));
+  CHECK_THAT(trained({8, 4, 3.9, 3.8}), !Contains("second half"));
+  CHECK_THAT(trained({8, 1}), !Contains("second half"));
+  card.ending = Ending::none;
+  CHECK_THAT(trained({8, 4, 2, 1}), !Contains("second half"));
 }
 
 }  // namespace test_training_summary
