@@ -172,9 +172,11 @@ void print_steps() {
   heap.rods = 100;
   heap.height_m = 0.1;
   print_steps("heap", heap, 0.005, 300);
+  print_steps("heap, .001 s", heap, 0.001, 1500);
   auto bundle = touching<Bundle>(0.01, 1e7, 1e7);
   bundle.initial_angle_deg = 20;
   print_steps("bundle", bundle, 0.005, 200);
+  print_steps("bundle, .001 s", bundle, 0.001, 1000);
   auto knot = touching<Knot>(0.015, 1e6, 1e5);
   knot.segments = 60;
   knot.length_m = 2;
