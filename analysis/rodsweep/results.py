@@ -1,9 +1,9 @@
 """A sweep's results as pandas frames and xarray datasets. Both libraries are imported when first needed.
 
 Rows of incomplete tasks are left out; `missing` counts these tasks. A value that was not measured or not reached is
-NaN; in frames, counts that may be missing are of pandas' type Int64 (missing: NA). Units and meanings come from the file. They are in the
-`attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "missing": ...}) and of every variable of a
-dataset ("units", "long_name").
+NaN; in frames, counts that may be missing are of pandas' type Int64 (missing: NA). Units and meanings come from the
+file. They are in the `attrs` of a frame ({"unit": {column: ...}, "meaning": {column: ...}, "missing": ...}) and of every
+variable of a dataset ("units", "long_name").
 """
 
 import numpy as np

@@ -7,25 +7,15 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "runner/command/next_line.hpp"
+
 namespace rodsweep {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// mpi-env.sh of an installation or of the source tree; empty if there is none.
-std::string settings_script() {
-  std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const char* place : {"../share/rodsweep/mpi-env.sh", "../cmake/mpi-env.sh"})
-    if (const fs::path script = (folder / place).lexically_normal(); access(script.c_str(), X_OK) == 0) return script;
-  return "";
-}
 
 std::vector<std::string> own_arguments() {
   std::ifstream in("/proc/self/cmdline", std::ios::binary);
@@ -43,7 +33,8 @@ bool is_launched() {
 
 void launch(int ranks) {
   std::vector<std::string> words;
-  if (std::string script = settings_script(); !script.empty()) words.push_back(std::move(script));
+  const std::string settings = beside_program({"../share/rodsweep/mpi-env.sh", "../cmake/mpi-env.sh"});
+  if (!settings.empty()) words.push_back(settings);
   for (const std::string& word : {std::string("mpirun"), std::string("-n"), std::to_string(ranks)})
     words.push_back(word);
   for (std::string& word : own_arguments()) words.push_back(std::move(word));

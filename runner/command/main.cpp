@@ -89,18 +89,9 @@ ExitCode start(const PrintedText& answer, Console& console) {
 }
 
 ExitCode start(const RunOptions& options, Console& console) {
-  int ranks = 0;  // any number
-  if (options.workers) {
-    const Job job = read_job(options.job, MissingFiles::accepted);
-    ranks = is_training(job) ? *options.workers : ranks_for(*options.workers);
-    if (ranks > 1 && !is_launched()) launch(ranks);
-  }
+  if (options.workers.value_or(1) > 1 && !is_launched())
+    launch(ranks_of(options, read_job(options.job, MissingFiles::accepted)));
   const MpiSession mpi;
-  if (ranks > 0 && mpi.size() != ranks) {
-    console.error(fmt::format("-n {} needs {} ranks, but {} were started: leave out -n under mpirun and srun",
-                              *options.workers, ranks, mpi.size()));
-    return ExitCode::user_error;
-  }
   try {
     return execute(options, mpi, console);
   } catch (const CollectiveError& error) {

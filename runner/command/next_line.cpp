@@ -12,15 +12,12 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string path_from_here(const std::string& name) {
+  const fs::path script =
+      beside_program({fs::path("../share/rodsweep/analysis") / name, fs::path("../analysis") / name});
+  if (script.empty()) return "analysis/" + name;
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  for (const char* folder : {"../share/rodsweep/analysis", "../analysis"}) {
-    const fs::path script = (program.parent_path() / folder / name).lexically_normal();
-    if (!fs::exists(script, error)) continue;
-    const std::string here = fs::proximate(script, error).native();
-    return here.empty() || here.size() > script.native().size() ? script.native() : here;
-  }
-  return "analysis/" + name;
+  const std::string here = fs::proximate(script, error).native();
+  return here.empty() || here.size() > script.native().size() ? script.native() : here;
 }
 
 /// Quoted for a shell; a name that begins with a dash is no option.
@@ -30,6 +27,14 @@ std::string word_of(const fs::path& path) {
 }
 
 }  // namespace
+
+fs::path beside_program(std::initializer_list<fs::path> places) {
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& place : places)
+    if (const fs::path path = (folder / place).lexically_normal(); fs::exists(path, error)) return path;
+  return {};
+}
 
 int ranks_for(int workers) { return workers > 1 ? workers + 1 : 1; }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "runner/command/next_line.hpp"
 #include "runner/experiment/inputs.hpp"
 #include "runner/file/file_error.hpp"
 #include "solver/cg/petsc_session.hpp"
@@ -29,11 +30,21 @@ Job read_job_everywhere(const fs::path& path, const MpiSession& mpi) {
 ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console) {
   const PetscSession petsc;
   const Job job = read_job_everywhere(options.job, mpi);
+  if (const int ranks = ranks_of(options, job); options.workers && mpi.size() != ranks) {
+    console.error(fmt::format("-n {} needs {} ranks, but {} were started: leave out -n under mpirun and srun",
+                              *options.workers, ranks, mpi.size()));
+    return ExitCode::user_error;
+  }
   for (const std::string& warning : job.warnings) console.warn(warning);
   if (const auto idle = idle_petsc_options(); !idle.empty())
     console.warn(fmt::format("PETSC_OPTIONS: {} {} no effect: \"solve\" in the job chooses solver and preconditioner",
                              fmt::join(idle, ", "), idle.size() == 1 ? "has" : "have"));
   return is_training(job) ? run_training(options, job, mpi, console) : run_sweep(options, job, mpi, console);
+}
+
+int ranks_of(const RunOptions& options, const Job& job) {
+  const int workers = options.workers.value_or(1);
+  return is_training(job) ? workers : ranks_for(workers);
 }
 
 fs::path output_of(const RunOptions& options, const std::string& job_name) {

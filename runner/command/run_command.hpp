@@ -67,7 +67,11 @@ ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& cons
 ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console);
 ExitCode run_training(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console);
 
+/// The ranks of a run with options.workers; 1 without.
+int ranks_of(const RunOptions& options, const Job& job);
+
 /// The results file: the user's choice; default results/NAME.h5, or results/NAME-IofN.h5 for a shard.
+/// Throws FileError if it is a folder.
 std::filesystem::path output_of(const RunOptions& options, const std::string& job_name);
 
 /// The row of /runs for a start on these ranks.

@@ -410,8 +410,7 @@ void ResultsFile::check_written() const {
   if (!synced_.is_in_place())
     throw FileError(
         fmt::format("{} is not the file that this run wrote: meanwhile it was removed, moved or replaced. If it was "
-                    "moved, it is whole "
-                    "where it is now; if it was removed, its results are lost",
+                    "moved, it is whole where it is now; if it was removed, its results are lost",
                     path_.native()));
   try {
     const hdf5::File file = hdf5::open_file(path_, H5F_ACC_RDONLY, hdf5::unlocked_access().id());

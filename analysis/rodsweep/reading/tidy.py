@@ -47,9 +47,14 @@ class Column:
         return Column(self.values, made[id(self.index)])
 
 
+def mark_of(file, level):
+    """The path of the column that tells which rows of a level were reached; None if the file has no rows of it."""
+    return next((f"/{level}/{name}" for name in MARKS if file.has(f"/{level}/{name}")), None)
+
+
 def require_rows(file, level):
     """Raises KeyNotFound if a file has no rows of a level."""
-    if level != "tasks" and not any(file.has(f"/{level}/{name}") for name in MARKS):
+    if level != "tasks" and not mark_of(file, level):
         raise KeyNotFound(f"{file.path} has no rows of {level} (/{level} is empty, for example since record.solves of "
                           "the job is \"summary\")")
 
@@ -62,8 +67,8 @@ class Tidy:
         self.guesses, self.tolerances = list(guesses), list(tolerances)
         self.labels, self.guessing = np.array(file.guesses, dtype=str), measures.has_guesses(file)
         self.datasets, self.whole = {}, {}
-        rows = file.task_count if level == "tasks" else next(
-            (len(file.h5[f"/{level}/{name}"]) for name in MARKS if file.has(f"/{level}/{name}")), 0)
+        mark = mark_of(file, level)
+        rows = file.task_count if level == "tasks" else len(file.h5[mark]) if mark else 0
         for folder in (f"/{level}", f"/timing/{level}"):
             for name, item in (file.h5[folder].items() if folder in file.h5 else []):
                 if is_column(item, rows) and item.size and name not in INTERNAL:
@@ -225,7 +230,7 @@ class Tidy:
                 yield some, {path: decoded(self.file.h5[path][low:high][some - low]) for path in paths}
             return
         read = self.file.solve_blocks if self.level == "solves" else self.file.step_blocks
-        mark = next(f"/{self.level}/{name}" for name in MARKS if self.file.has(f"/{self.level}/{name}"))
+        mark = mark_of(self.file, self.level)
         for owners, starts, rows in read(chosen, list(dict.fromkeys([*paths, mark])), BLOCK_ROWS):
             tasks = np.repeat(owners, np.diff(np.append(starts, len(rows[mark]))))
             reached = np.isfinite(rows[mark]) if rows[mark].dtype.kind == "f" else rows[mark] >= 0
