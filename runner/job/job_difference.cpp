@@ -7,12 +7,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string shown(const Json& value) {
-  constexpr std::size_t longest = 80;
-  const std::string text = value.dump();
-  return text.size() <= longest ? text : text.substr(0, longest) + "...";
-}
-
 /// By JSON pointer.
 Json settings(const Job& job) {
   Json values = job.values;
@@ -21,6 +15,13 @@ Json settings(const Job& job) {
 }
 
 }  // namespace
+
+std::string shown(const Json& value) {
+  if (value.is_null()) return "nothing";
+  constexpr std::size_t longest = 80;
+  const std::string text = value.dump();
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
 
 std::optional<JobDifference> first_difference(const Job& now, const Job& before) {
   const Json a = settings(now), b = settings(before);

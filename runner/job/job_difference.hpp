@@ -12,8 +12,11 @@ namespace rodsweep {
 
 struct JobDifference {
   std::string key;          ///< "scene.length_m"
-  std::string now, before;  ///< as JSON; null: the key is missing
+  std::string now, before;  ///< shown() values
 };
+
+/// A value for a message: its JSON, shortened; "nothing" for null, which stands for a missing key.
+std::string shown(const nlohmann::ordered_json& value);
 
 /// The first difference; none if the jobs are the same. Names, descriptions and $schema may differ.
 std::optional<JobDifference> first_difference(const Job& now, const Job& before);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "runner/job/guess_keys.hpp"
+#include "runner/job/job_difference.hpp"
 #include "runner/job/sweep.hpp"
 #include "runner/text/key_path.hpp"
 
@@ -63,13 +64,6 @@ std::optional<Difference> difference(const Json& now, const Json& before, const 
   }
   if (now == before) return std::nullopt;
   return Difference{path, now, before};
-}
-
-std::string shown(const Json& value) {
-  if (value.is_null()) return "nothing";
-  constexpr std::size_t longest = 80;
-  const std::string text = value.dump();
-  return text.size() <= longest ? text : text.substr(0, longest) + "...";
 }
 
 /// Renames files with equal content to the paths in `as`, because a moved job has other paths.
