@@ -6,6 +6,7 @@ default() { eval "export $1=\"\${$1:-$2}\""; }
 
 default OMPI_ALLOW_RUN_AS_ROOT 1
 default OMPI_ALLOW_RUN_AS_ROOT_CONFIRM 1
+id -un >/dev/null 2>&1 || default HOME /                  # without HOME and passwd entry mpirun crashes
 default OMPI_MCA_rmaps_base_oversubscribe 1               # one worker per core, and the master
 default OMPI_MCA_hwloc_base_binding_policy none           # --bind-to none: the master must not share one worker's core
 default OMPI_MCA_mpi_yield_when_idle 1

@@ -44,7 +44,7 @@ ExitCode show_model(const InfoOptions& options, Console& console) {
   if (options.job) {
     console.raw_result(stored.card.job_text);
   } else if (options.json) {
-    console.result(to_json(stored, options.file).dump(2));
+    console.result(json_text(to_json(stored, options.file)));
   } else {
     console.result(training_summary(stored.card, options.file) + '\n' + provenance_text(stored));
     if (options.verify) console.result("verified: the model is intact");  // reading it checks this
@@ -90,7 +90,7 @@ ExitCode execute(const InfoOptions& options, Console& console) {
     json["momentum_residual"] = file.momentum_residual ? Json(*file.momentum_residual) : Json();
     json["tolerances"] = file.tolerances;
     if (options.verify) json["verified"] = {{"checked", verified.checked}, {"damaged", verified.damaged}};
-    console.result(json.dump(2));
+    console.result(json_text(json));
   } else {
     console.result(provenance_text(file));
     if (options.verify)

@@ -31,6 +31,19 @@ bool is_launched() {
   return std::any_of(std::begin(marks), std::end(marks), [](const char* mark) { return std::getenv(mark) != nullptr; });
 }
 
+std::string separate_processes_text(int ranks) {
+  for (const char* variable : {"SLURM_STEP_NUM_TASKS", "PMI_SIZE"}) {
+    const char* const value = std::getenv(variable);
+    const int started = value == nullptr ? 0 : std::atoi(value);
+    if (ranks == 1 && started > 1)
+      return fmt::format(
+          "{} processes were started, but they do not know of each other ({} is {}, this MPI world has one rank): use "
+          "srun --mpi=pmix, or mpirun",
+          started, variable, value);
+  }
+  return "";
+}
+
 void launch(int ranks) {
   std::vector<std::string> words;
   const std::string settings = beside_program({"../share/rodsweep/mpi-env.sh", "../cmake/mpi-env.sh"});

@@ -7,6 +7,7 @@
 // If the reader closed stdout (`| head`), the program ends with SIGPIPE, without a message.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <pwd.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -35,6 +36,11 @@ namespace {
 void occupy_standard_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(descriptor, F_GETFD) < 0) open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+/// Without HOME and an entry in passwd, as in some containers, mpirun and MPI_Init crash (PMIx 4.2).
+void provide_home() {
+  if (getpwuid(getuid()) == nullptr) setenv("HOME", "/", 0);
 }
 
 /// Under mpirun or srun every rank runs the command, but only one should print.
@@ -97,6 +103,7 @@ ExitCode start(const RunOptions& options, Console& console) {
   } catch (const CollectiveError& error) {
     leave_if_broken(mpi, error, console);
     console.error(error.what());
+    if (const std::string cause = separate_processes_text(mpi.size()); !cause.empty()) console.warn(cause);
     return ExitCode::user_error;
   } catch (const std::exception& error) {
     fmt::print(stderr, "rodsweep: error: rank {} on {} failed: {}\n", mpi.rank(), host_name(), error.what());
@@ -127,6 +134,7 @@ ExitCode run_program(int argc, const char* const* argv, Console& console) {
 int main(int argc, char** argv) {
   using namespace rodsweep;
   occupy_standard_descriptors();
+  provide_home();
   std::signal(SIGPIPE, SIG_IGN);  // a closed reader must not end a sweep
   Console console(is_first_rank());
   ExitCode code = run_program(argc, argv, console);

@@ -178,7 +178,7 @@ ExitCode execute(const PlanOptions& options, Console& console) {
   check_factors(plan);
   limit_memory((1 - memory_reserve) * host_memory());
   const std::vector<Probe> probes = options.probe ? probe(plan, evaluate_among_equals) : std::vector<Probe>();
-  console.result(options.json ? to_json(plan, probes, options).dump(2) : to_text(plan, probes, options));
+  console.result(options.json ? json_text(to_json(plan, probes, options)) : to_text(plan, probes, options));
   return ExitCode::ok;
 }
 

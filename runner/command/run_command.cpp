@@ -28,7 +28,8 @@ Job read_job_everywhere(const fs::path& path, const MpiSession& mpi) {
 }  // namespace
 
 ExitCode execute(const RunOptions& options, const MpiSession& mpi, Console& console) {
-  const PetscSession petsc;
+  std::optional<PetscSession> petsc;
+  collectively(mpi.world(), [&] { petsc.emplace(); });
   const Job job = read_job_everywhere(options.job, mpi);
   if (const int ranks = ranks_of(options, job); options.workers && mpi.size() != ranks) {
     console.error(fmt::format("-n {} needs {} ranks, but {} were started: leave out -n under mpirun and srun",

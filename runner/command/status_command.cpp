@@ -70,14 +70,15 @@ ExitCode execute(const StatusOptions& options, Console& console) {
     console.warn(left);
   if (is_model_file(options.file)) {
     const StoredModel stored = read_training(options.file);
-    console.result(options.json ? to_json(stored, options.file).dump(2) : training_summary(stored.card, options.file));
+    console.result(options.json ? json_text(to_json(stored, options.file))
+                                : training_summary(stored.card, options.file));
     return ExitCode::ok;
   }
   for (;;) {
     const FileSummary file = inspect(options.file);
     const bool last = options.watch_s == 0 || !is_alive(file);
     if (options.json)
-      console.result(to_json(file).dump(options.watch_s == 0 ? 2 : -1));  // --watch: one object per line
+      console.result(json_text(to_json(file), options.watch_s == 0 ? 2 : -1));  // --watch: one object per line
     else
       console.result(last ? status_text(file) : progress_text(file));
     if (last) return ExitCode::ok;

@@ -173,7 +173,7 @@ ExitCode show_training_plan(const PlanOptions& options, const Job& job, Console&
   const Extent extent = extent_of(training, sets);
   std::optional<Probe> probed;
   if (options.probe) probed = probe(training, sets, extent);
-  console.result(options.json ? to_json(job, training, extent, probed).dump(2)
+  console.result(options.json ? json_text(to_json(job, training, extent, probed))
                               : to_text(options, job, training, extent, probed));
   return ExitCode::ok;
 }

@@ -126,7 +126,8 @@ class StrictReader : public nlohmann::json_sax<Json> {
 
 Json parse_strict_json(const std::string& text, const std::filesystem::path& file) {
   // The parser would stop at a zero byte and ignore the rest of the text.
-  if (text.find('\0') != std::string::npos) throw job_error(file, "", "holds a zero byte, so it is not JSON text");
+  if (text.find('\0') != std::string::npos)
+    throw job_error(file, "", "holds a zero byte, so it is not JSON in UTF-8; save it as UTF-8");
   StrictReader reader(text, file);
   Json::sax_parse(text, &reader);
   return reader.take();

@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "runner/terminal/text.hpp"
+
 namespace rodsweep {
 
 namespace {
@@ -54,8 +56,8 @@ void Console::raw_error(std::string_view text) const {
 }
 
 void Console::note(std::string_view text) { line("", "", text); }
-void Console::warn(std::string_view text) { line("\x1b[33m", "warning: ", text); }
-void Console::error(std::string_view text) { line("\x1b[31m", "error: ", text); }
+void Console::warn(std::string_view text) { line("\x1b[33m", "warning: ", printable(text)); }
+void Console::error(std::string_view text) { line("\x1b[31m", "error: ", printable(text)); }
 
 void Console::line(std::string_view colour, std::string_view label, std::string_view text) {
   if (!speaks_) return;

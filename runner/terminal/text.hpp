@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -15,5 +16,8 @@ std::string counted(std::int64_t count, std::string_view noun);  ///< "1 task", 
 std::string shell_quoted(std::string_view word);                 ///< quoted for a POSIX shell if necessary
 std::string csv_text(std::string_view text);                     ///< quoted as a CSV cell if necessary (RFC 4180)
 std::size_t characters(std::string_view text);                   ///< number of UTF-8 characters
+std::string json_text(const nlohmann::ordered_json& value, int indent = 2);  ///< invalid UTF-8: U+FFFD
+std::string printable(
+    std::string_view text);  ///< other control characters than newlines and tabs: " ", invalid UTF-8: U+FFFD
 
 }  // namespace rodsweep

@@ -7,6 +7,16 @@
 #include <sstream>
 
 namespace rodsweep {
+namespace {
+
+/// Keeps the message of the first error for its text, and prints nothing.
+PetscErrorCode keep_message(MPI_Comm, int, const char*, const char*, PetscErrorCode code, PetscErrorType type,
+                            const char* message, void* kept) {
+  if (type == PETSC_ERROR_INITIAL) *static_cast<std::string*>(kept) = message;
+  return code;
+}
+
+}  // namespace
 
 PetscSession::PetscSession() {
   PetscBool running = PETSC_FALSE;
@@ -24,7 +34,11 @@ PetscSession::PetscSession() {
   char* arguments[] = {program, no_petscrc, no_handler, nullptr};
   int count = 3;
   char** argv = arguments;
-  if (PetscInitialize(&count, &argv, nullptr, nullptr) != 0) throw PetscError("PetscInitialize failed");
+  std::string problem;
+  PetscPushErrorHandler(keep_message, &problem);
+  const bool failed = PetscInitialize(&count, &argv, nullptr, nullptr) != 0;
+  PetscPopErrorHandler();
+  if (failed) throw PetscError("PETSc did not start; correct PETSC_OPTIONS: " + problem);
   owns_petsc_ = true;
 }
 

@@ -4,9 +4,10 @@
 import json
 import os
 import shutil
+import subprocess
 import unittest
 
-from program import ALL_DONE, DATA, ROD, Case, rodsweep, sweep, write_job
+from program import ALL_DONE, DATA, ROD, RODSWEEP, USER_ERROR, Case, rodsweep, sweep, write_job
 
 SOURCE_DIR = os.environ["SOURCE_DIR"]
 
@@ -34,6 +35,59 @@ class Mistyped(Case):
         self.assertEqual(done.returncode, ALL_DONE, done.stderr)
         self.assertIn("PETSC_OPTIONS: -pc_type has no effect", done.stderr)
         self.assertTrue(os.path.exists("log.txt"))
+
+
+class Surroundings(Case):
+    """What the program finds around it: environment, launcher, encodings."""
+
+    def test_petsc_options_that_cannot_be_read_are_a_users_error(self):
+        job = write_job("unread")
+        for words in (("run", job), ("run", job, "-n", 2), ("plan", job)):
+            with self.subTest(words=words):
+                done = rodsweep(*words, env={**os.environ, "PETSC_OPTIONS": "-options_file nowhere.txt"})
+                self.assertEqual(done.returncode, USER_ERROR, done.stderr)
+                self.assertEqual(done.stderr, "rodsweep: error: PETSc did not start; correct PETSC_OPTIONS: "
+                                              "Unable to open options file nowhere.txt\n")
+
+    def test_a_user_without_home_and_name_can_run(self):
+        job = write_job("nameless", samples=1)
+        nameless = {name: value for name, value in os.environ.items() if name != "HOME"} | {"TMPDIR": os.getcwd()}
+        strange = ["unshare", "--user", "--map-user=4242"]
+        if subprocess.run([*strange, "true"], stderr=subprocess.DEVNULL, check=False).returncode != 0:
+            self.skipTest("user namespaces are not allowed here")
+        for words in (("plan", job), ("run", job), ("run", job, "-n", "2", "-o", "two.h5")):
+            with self.subTest(words=words):
+                done = subprocess.run([*strange, RODSWEEP, *words], env=nameless, capture_output=True, text=True,
+                                      timeout=600, check=False)
+                self.assertEqual(done.returncode, ALL_DONE, done.stderr)
+
+    def test_processes_that_do_not_know_of_each_other_learn_why_the_file_exists(self):
+        job = write_job("alone", samples=1)
+        step = {**os.environ, "SLURM_STEP_NUM_TASKS": "3"}
+        self.assertEqual(rodsweep("run", job, env=step).stderr.count("warning"), 0)
+        refused = rodsweep("run", job, env=step)
+        self.assertEqual(refused.returncode, USER_ERROR)
+        self.assertIn("alone.h5 exists already", refused.stderr)
+        self.assertIn("3 processes were started, but they do not know of each other", refused.stderr)
+        self.assertIn("srun --mpi=pmix", refused.stderr)
+
+    def test_a_message_holds_no_raw_bytes(self):
+        with open(write_job("odd"), encoding="utf-8") as file:
+            text = file.read()
+        odd = {"utf16": text.encode("utf-16"), "latin1": text.replace("odd", "öd").encode("latin-1"),
+               "elf": b"\x7fELF\x02\x01\x01\x1b[31m" + bytes(range(128, 256))}
+        for name, content in odd.items():
+            with self.subTest(file=name):
+                with open(name + ".json", "wb") as file:
+                    file.write(content)
+                done = rodsweep("validate", name + ".json")
+                self.assertEqual(done.returncode, USER_ERROR)
+                self.assertTrue(all(c.isprintable() or c == "\n" for c in done.stderr), done.stderr)
+
+    def test_a_path_that_is_not_utf8_is_still_json(self):
+        path = os.fsdecode(b"odd-\xff.h5")
+        rodsweep("run", write_job("small"), "-o", path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.assertIn("odd-\ufffd.h5", self.shown("status", path)["file"])
 
 
 class Validate(Case):

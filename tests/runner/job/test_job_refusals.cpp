@@ -187,7 +187,7 @@ TEST_CASE("what a lenient JSON parser lets through is refused") {
   CHECK(refusal_of_text(R"({"time": {"step_s": 1e999}})") == "job.json: time.step_s: 1e999 is too large for a number");
   CHECK_THAT(refusal_of_text(std::string(100000, '[')), Catch::Matchers::EndsWith("nested deeper than 64 levels"));
   CHECK(refusal_of_text(small_job().dump() + std::string(1, '\0') + "{}") ==
-        "job.json: holds a zero byte, so it is not JSON text");
+        "job.json: holds a zero byte, so it is not JSON in UTF-8; save it as UTF-8");
 }
 
 TEST_CASE("a file that cannot be read is refused with the reason") {
