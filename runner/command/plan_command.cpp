@@ -22,6 +22,8 @@ namespace rodsweep {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Extent {
   std::int64_t least, most;
   std::string text() const { return least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most); }
@@ -65,11 +67,42 @@ std::string slurm_time(double seconds) {
 
 std::string slurm_text(const Estimate& needs, const PlanOptions& options) {
   const int workers = workers_of(options);
+  const fs::path found = beside_program({"../share/rodsweep/jobs/slurm/sweep.sbatch", "../jobs/slurm/sweep.sbatch"});
+  const fs::path script = found.empty() ? fs::path("jobs/slurm/sweep.sbatch") : found;
+  std::error_code error;
   return fmt::format(
-      "slurm    sbatch --ntasks={} --time={} jobs/slurm/sweep.sbatch {} runs it in one job; at least --time={}: task "
-      "{}, the longest, takes about {}\n",
-      workers, slurm_time(time_limit_for(needs.wall_s(workers))), shell_quoted(options.job.native()),
-      slurm_time(time_limit_for(needs.longest_s)), needs.longest, duration_text(needs.longest_s));
+      "slurm    RODSWEEP={} sbatch --ntasks={} --time={} {} {} runs it in one job; at least --time={}: task {}, the "
+      "longest, takes about {}\n",
+      shell_quoted(fs::read_symlink("/proc/self/exe", error).native()), workers,
+      slurm_time(time_limit_for(needs.wall_s(workers))), shell_quoted(script.native()),
+      shell_quoted(fs::absolute(options.job).lexically_normal().native()), slurm_time(time_limit_for(needs.longest_s)),
+      needs.longest, duration_text(needs.longest_s));
+}
+
+/// What stops or surprises the run: too little disk space, failed probes, months of computing.
+std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Probe>& probes, const PlanOptions& options) {
+  std::vector<std::string> warnings;
+  RunOptions run;
+  const fs::path output = output_of(run, plan.job().name);
+  const fs::path folder = fs::exists(output.parent_path()) ? output.parent_path() : fs::path(".");
+  const auto available = static_cast<std::int64_t>(free_bytes(folder));
+  if (const std::int64_t bytes = file_bytes(plan); bytes > available)
+    warnings.push_back(
+        fmt::format("the file needs {}, but {} has {} free: record less, or choose another disk with "
+                    "run -o",
+                    bytes_text(bytes), folder.native(), bytes_text(available)));
+  for (const Probe& p : probes)
+    if (p.outcome == TaskOutcome::timed_out && p.steps == 0)
+      warnings.push_back(fmt::format("task {}: no step finished in {}; the time above is a lower bound", p.task,
+                                     duration_text(p.seconds / static_cast<double>(p.of_steps))));
+    else if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
+      warnings.push_back(fmt::format("task {} {}: {}", p.task, to_string(p.outcome), p.message));
+  constexpr double month_s = 30 * 86400.0;
+  const int workers = workers_of(options);
+  if (const double wall_s = probes.empty() ? 0 : estimate(plan, probes).wall_s(workers); wall_s > month_s)
+    warnings.push_back(fmt::format("{} with {}: fewer samples or steps, or more workers, bring it below a month",
+                                   duration_text(wall_s), counted(workers, "worker")));
+  return warnings;
 }
 
 /// A warning if the workers need more tasks per second than one master can send; else empty.
@@ -95,6 +128,7 @@ nlohmann::ordered_json to_json(const Plan& plan, const std::vector<Probe>& probe
   json["swept"] = nlohmann::ordered_json::array();
   for (const ParameterColumn& parameter : plan.parameters())
     if (parameter.swept) json["swept"].push_back(parameter.path);
+  json["warnings"] = warnings_of(plan, probes, options);
   if (probes.empty()) return json;
   const Estimate needs = estimate(plan, probes);
   const int workers = workers_of(options);
@@ -155,13 +189,8 @@ std::string to_text(const Plan& plan, const std::vector<Probe>& probes, const Pl
       text +=
           fmt::format("memory   at most {} for each tried task; this host has memory for {:.0f} processes\n",
                       bytes_text(most), std::floor((1 - memory_reserve) * host_memory() / static_cast<double>(most)));
-    for (const Probe& p : probes)
-      if (p.outcome == TaskOutcome::timed_out && p.steps == 0)
-        text += fmt::format("warning  task {}: no step finished in {}; the time above is a lower bound\n", p.task,
-                            duration_text(p.seconds / static_cast<double>(p.of_steps)));
-      else if (p.outcome != TaskOutcome::ok && p.outcome != TaskOutcome::timed_out)
-        text += fmt::format("warning  task {} {}: {}\n", p.task, to_string(p.outcome), p.message);
   }
+  for (const std::string& warning : warnings_of(plan, probes, options)) text += fmt::format("warning  {}\n", warning);
   if (workers > 1 && workers <= cores_here()) run.workers = workers;
   text += "next     " + run_line(run, ranks_for(workers));
   return text;

@@ -10,7 +10,7 @@ namespace rodsweep {
 
 namespace {
 
-constexpr double enough_s = 0.5, too_long_s = 5;
+constexpr double enough_s = 0.5, too_long_s = 2;
 
 /// Reduces a task to its first `steps` steps.
 void truncate(Task& task, TaskSpec& spec, int steps) {

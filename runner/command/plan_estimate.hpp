@@ -1,5 +1,5 @@
 // Estimates the time and memory of a plan from probes: the cheapest, median and dearest task by Task::cost. A probe
-// runs the first steps of its task for about half a second. Seconds per unit of cost are interpolated between probes.
+// runs the first steps of its task for about half a second, at most two. Seconds per unit of cost are interpolated between probes.
 // Random parameters and later steps can be harder than those probed. Needs PETSc.
 #pragma once
 

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "network/guess/coping_net_guess.hpp"
-#include "network/training/example_builder.hpp"
 #include "network/training/threads.hpp"
 #include "runner/command/next_line.hpp"
 #include "runner/terminal/text.hpp"
@@ -17,14 +16,15 @@
 namespace rodsweep {
 namespace {
 
-constexpr std::int64_t fewest_simulations = 8;
+constexpr std::int64_t fewest_simulations = 8, all_systems = 20'000;  // all simulations of a small data set are tried
 constexpr double probed_s = 0.5;
 
-/// Sizes known without computing anything.
+/// Sizes of a training. Before a probe the numbers of examples and steps are upper bounds: a system whose base guess is
+/// exact gives no example, and later Newton iterations may be left out.
 struct Extent {
   std::size_t parameters = 0;
   std::int64_t training_simulations = 0, validation_simulations = 0;
-  std::int64_t training_examples = 0, validation_examples = 0;  ///< upper bounds
+  std::int64_t training_examples = 0, validation_examples = 0;
   std::int64_t steps_per_epoch = 0, steps = 0;
 };
 
@@ -34,7 +34,13 @@ struct Probe {
   double reading_s = 0;     ///< of all data, on each rank
   double training_s = 0;    ///< of all steps
   double validation_s = 0;  ///< of all losses and CG ratios
+  bool counted = false;     ///< all simulations were tried: the numbers of examples are exact
 };
+
+void set_steps(Extent& extent, const TrainingJob& job) {
+  extent.steps_per_epoch = extent.training_examples / job.training.batch;
+  extent.steps = extent.steps_per_epoch * job.training.epochs;
+}
 
 Extent extent_of(const TrainingJob& job, const LearningSets& sets) {
   Extent extent;
@@ -45,8 +51,7 @@ Extent extent_of(const TrainingJob& job, const LearningSets& sets) {
     extent.training_examples += (1 + job.copies().count) * systems_of(simulation);
   for (const LearningSets::Simulation& simulation : sets.validation())
     extent.validation_examples += systems_of(simulation);
-  extent.steps_per_epoch = extent.training_examples / job.training.batch;
-  extent.steps = extent.steps_per_epoch * job.training.epochs;
+  set_steps(extent, job);
   return extent;
 }
 
@@ -93,37 +98,46 @@ double seconds_of_step(Trainer& trainer, int shard_count) {
   return watch.seconds() / steps;
 }
 
-Probe probe(const TrainingJob& job, const LearningSets& sets, const Extent& extent) {
+/// Trains for a moment. Replaces the upper bounds of `extent` by the numbers found.
+Probe probe(const TrainingJob& job, const LearningSets& sets, Extent& extent) {
   Probe probe;
   const std::int64_t all = extent.training_simulations;
   const std::int64_t for_a_batch = 1 + job.training.batch * all / std::max<std::int64_t>(extent.training_examples, 1);
-  const std::int64_t tried = std::min(all, std::max(fewest_simulations, for_a_batch));
-  std::vector<Example> examples;
-  std::int64_t systems = 0;  // a system whose base guess is exact yields no example
-  const Stopwatch reading;
+  probe.counted = extent.training_examples + extent.validation_examples <= all_systems;
+  const std::int64_t tried = probe.counted ? all : std::min(all, std::max(fewest_simulations, for_a_batch));
+  std::vector<LearningSets::Simulation> simulations;
+  std::int64_t systems = 0;
   for (std::int64_t i = 0; i < tried; ++i) {
-    const LearningSets::Simulation& simulation = sets.training()[static_cast<std::size_t>(i * all / tried)];
-    add_examples(job.network, read(simulation), examples, job.copies(), job.first_iterations_only);
-    systems += (1 + job.copies().count) * systems_of(simulation);
+    simulations.push_back(sets.training()[static_cast<std::size_t>(i * all / tried)]);
+    systems += (1 + job.copies().count) * systems_of(simulations.back());
   }
+  const Stopwatch reading;
+  std::vector<Example> examples = examples_of(job, simulations, 1, job.copies());
   const double share = static_cast<double>(all + extent.validation_simulations) / static_cast<double>(tried);
   probe.reading_s = share * reading.seconds();
   for (const Example& example : examples) probe.bytes += share * bytes_of(example);
+  const double learned = static_cast<double>(examples.size()) / static_cast<double>(systems);
+  const auto part_of = [&](std::int64_t count) { return std::llround(learned * static_cast<double>(count)); };
+  extent.training_examples = part_of(extent.training_examples);
+  extent.validation_examples = probe.counted ? static_cast<std::int64_t>(examples_of(job, sets.validation(), 1).size())
+                                             : part_of(extent.validation_examples);
+  set_steps(extent, job);
   if (static_cast<int>(examples.size()) < job.training.batch)
     throw FileError(fmt::format("{} has too few examples for a batch of {}", paths_of(job.data), job.training.batch));
 
   Model model{CopingNet<float>(job.network, job.training.seed), feature_scales(job.network, examples)};
   normalise(job.network, model.scales, examples);
   Trainer trainer(model.net, examples, job.training);
-  const double learned = static_cast<double>(examples.size()) / static_cast<double>(systems);
-  probe.training_s = seconds_of_step(trainer, job.training.shards) * learned * static_cast<double>(extent.steps);
+  probe.training_s = seconds_of_step(trainer, job.training.shards) * static_cast<double>(extent.steps);
   const Stopwatch forward;
   const auto judged = trainer.losses(examples, [](int batch) { return batch < 3; }).size();
   probe.validation_s = forward.seconds() / (std::min<double>(3, static_cast<double>(judged)) * job.training.batch) *
-                       learned * static_cast<double>(extent.validation_examples) * job.training.epochs;
+                       static_cast<double>(extent.validation_examples) * job.training.epochs;
   probe.validation_s += seconds_of_ratio(job, model, read(sets.validation().front()), extent.validation_simulations);
   return probe;
 }
+
+const char* accuracy(const std::optional<Probe>& probe) { return !probe ? "at most " : probe->counted ? "" : "about "; }
 
 nlohmann::ordered_json to_json(const Job& job, const TrainingJob& training, const Extent& extent,
                                const std::optional<Probe>& probe) {
@@ -133,8 +147,9 @@ nlohmann::ordered_json to_json(const Job& job, const TrainingJob& training, cons
                               {"parameters", extent.parameters},
                               {"training_simulations", extent.training_simulations},
                               {"validation_simulations", extent.validation_simulations},
-                              {"most_training_examples", extent.training_examples},
-                              {"most_validation_examples", extent.validation_examples},
+                              {"counts_are", probe ? probe->counted ? "exact" : "estimates" : "upper bounds"},
+                              {"training_examples", extent.training_examples},
+                              {"validation_examples", extent.validation_examples},
                               {"epochs", training.training.epochs},
                               {"steps", extent.steps}};
   if (!probe) return json;
@@ -151,12 +166,12 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
   run.program = options.program;
   std::string text = fmt::format("job       {} ({})\n", job.name, job.path.native());
   text += fmt::format("data      {}\n", paths_of(training.data));
-  text += fmt::format("examples  at most {} from {} simulations for training, {} from {} for validation\n",
+  text += fmt::format("examples  {}{} from {} simulations for training, {} from {} for validation\n", accuracy(probe),
                       extent.training_examples, extent.training_simulations, extent.validation_examples,
                       extent.validation_simulations);
   text += fmt::format("network   {} parameters\n", extent.parameters);
-  text += fmt::format("steps     {}: {} in each of {} epochs\n", extent.steps, extent.steps_per_epoch,
-                      training.training.epochs);
+  text += fmt::format("steps     {}{}: {} in each of {} epochs\n", accuracy(probe), extent.steps,
+                      extent.steps_per_epoch, training.training.epochs);
   if (probe) {
     const double seconds = probe->reading_s + (probe->training_s + probe->validation_s) / threads;
     text += fmt::format("memory    about {} per rank\n", bytes_text(static_cast<std::int64_t>(probe->bytes)));
@@ -170,7 +185,7 @@ std::string to_text(const PlanOptions& options, const Job& job, const TrainingJo
 ExitCode show_training_plan(const PlanOptions& options, const Job& job, Console& console) {
   const TrainingJob training = training_job(job);
   const LearningSets sets(training, job);
-  const Extent extent = extent_of(training, sets);
+  Extent extent = extent_of(training, sets);
   std::optional<Probe> probed;
   if (options.probe) probed = probe(training, sets, extent);
   console.result(options.json ? json_text(to_json(job, training, extent, probed))

@@ -37,9 +37,13 @@ ExitCode exit_code_of(Ending ending) {
 void check_same_job(const Job& job, const std::string& earlier_text, const fs::path& path) {
   Job now = job, earlier = parse_job(earlier_text, path);
   for (Job* each : {&now, &earlier}) each->values.erase("data");  // compared by its hash
-  if (const auto found = first_difference(now, earlier))
-    throw FileError(fmt::format("{} cannot be continued with {}: {} was {} and is {}; name another file with -o FILE",
-                                path.native(), job.path.native(), found->key, found->before, found->now));
+  const auto found = first_difference(now, earlier);
+  if (!found) return;
+  const char* reason = found->key == "training.epochs"
+                           ? " (the learning rate falls over all epochs, so another number begins anew)"
+                           : "";
+  throw FileError(fmt::format("{} cannot be continued with {}: {} was {} and is {}{}; name another file with -o FILE",
+                              path.native(), job.path.native(), found->key, found->before, found->now, reason));
 }
 
 /// The training to resume; none if the file does not exist. Throws FileError if the file exists without --resume, or if

@@ -44,6 +44,7 @@ void check_job(const hdf5::File& file, const fs::path& path, const Plan& plan) {
     if (!found) return;
     refuse(fmt::format("{} was {} and is {}", found->key, found->before, found->now),
            found->key == "task_time_limit_s" ? "Use --task-time-limit to change only the time limit"
+           : found->key == "time.steps"      ? "A task cannot go on beyond its last step: resume with the original job"
            : extends(job, before)            ? "Add --extend OLD -o NEW to use its results for this larger job"
                                              : "Resume with the original job (rodsweep info FILE --job)");
   } catch (const JobError& error) {

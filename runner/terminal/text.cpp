@@ -16,7 +16,9 @@ std::string duration_text(double seconds) {
   const auto total = std::llround(seconds);
   if (total < 3600) return fmt::format("{} min {:02} s", total / 60, total % 60);
   if (total < 86400) return fmt::format("{} h {:02} min", total / 3600, total % 3600 / 60);
-  return fmt::format("{} d {:02} h", total / 86400, total % 86400 / 3600);
+  constexpr long long day = 86400, year = 365 * day;
+  if (total < 2 * year) return fmt::format("{} d {:02} h", total / day, total % day / 3600);
+  return fmt::format("{:.0f} years", seconds / year);
 }
 
 std::string short_duration_text(double seconds) {

@@ -9,7 +9,7 @@
 
 namespace rodsweep {
 
-std::string duration_text(double seconds);        ///< "850 ms", "12.3 s", "4 min 05 s", "2 h 03 min", "3 d 04 h"
+std::string duration_text(double seconds);        ///< "850 ms", "12.3 s", "4 min 05 s", "2 h 03 min", "3 d 04 h", "7 years"
 std::string short_duration_text(double seconds);  ///< three digits: "12.3 us", "4.56 ms", "789 s"; NaN: "-"
 std::string bytes_text(std::int64_t bytes);       ///< "512 B", "4.2 MB", in powers of 1000
 std::string counted(std::int64_t count, std::string_view noun);  ///< "1 task", "12 tasks"
@@ -17,7 +17,7 @@ std::string shell_quoted(std::string_view word);                 ///< quoted for
 std::string csv_text(std::string_view text);                     ///< quoted as a CSV cell if necessary (RFC 4180)
 std::size_t characters(std::string_view text);                   ///< number of UTF-8 characters
 std::string json_text(const nlohmann::ordered_json& value, int indent = 2);  ///< invalid UTF-8: U+FFFD
-std::string printable(
-    std::string_view text);  ///< other control characters than newlines and tabs: " ", invalid UTF-8: U+FFFD
+/// Control characters other than newline and tab become blanks, invalid UTF-8 becomes U+FFFD.
+std::string printable(std::string_view text);
 
 }  // namespace rodsweep

@@ -10,11 +10,8 @@
 
 namespace rodsweep {
 
-namespace {
-
-/// The examples of all simulations, in order. Threads process a few simulations at a time.
 std::vector<Example> examples_of(const TrainingJob& training, const std::vector<LearningSets::Simulation>& simulations,
-                                 int threads, const Copies& copies = {}) {
+                                 int threads, const Copies& copies) {
   std::vector<Example> out;
   for (std::size_t begin = 0; begin < simulations.size(); begin += static_cast<std::size_t>(threads)) {
     std::vector<StoredSimulation> read_now;  // by one thread: HDF5 is not thread-safe
@@ -30,8 +27,6 @@ std::vector<Example> examples_of(const TrainingJob& training, const std::vector<
   }
   return out;
 }
-
-}  // namespace
 
 TrainingData training_data(const TrainingJob& training, const LearningSets& sets, int threads) {
   TrainingData data;

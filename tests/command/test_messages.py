@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import unittest
@@ -88,6 +89,25 @@ class Surroundings(Case):
         path = os.fsdecode(b"odd-\xff.h5")
         rodsweep("run", write_job("small"), "-o", path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.assertIn("odd-\ufffd.h5", self.shown("status", path)["file"])
+
+
+class Planned(Case):
+    def test_what_nobody_can_store_or_wait_for_is_named(self):
+        time = {"step_s": 0.02, "steps": 10_000_000}
+        huge = write_job("huge", scene={**ROD, "segments": 200}, samples=5_000, time=time)
+        warnings = self.shown("plan", huge)["warnings"]
+        self.assertEqual(len(warnings), 2)
+        self.assertRegex(warnings[0], r"needs [\d.]+ [TP]B, but .* free")
+        self.assertRegex(warnings[1], r"\d years with \d+ workers?: fewer samples")
+        self.assertEqual(self.shown("plan", write_job("small"))["warnings"], [])
+
+    def test_slurms_line_needs_no_folder(self):
+        job = os.path.abspath(write_job("batch"))
+        os.makedirs("elsewhere", exist_ok=True)
+        said = self.said("plan", job, cwd="elsewhere")
+        program, script = re.search(r"RODSWEEP=(\S+) sbatch .*? (/\S+) " + re.escape(job), said).groups()
+        self.assertTrue(os.path.isabs(program) and os.access(program, os.X_OK))
+        self.assertTrue(os.path.isfile(script))
 
 
 class Validate(Case):

@@ -158,6 +158,9 @@ class Refused(TrainingCase):
         self.rodsweep(0, "run", other, "-o", "other_data.h5")
         path = train_job("moved", data="other_data.h5", training={"epochs": 1000000})
         self.assert_refused_once(2, "run", path, "-o", "moved.h5", "--resume", says=("moved.h5", "other_data.h5"))
+        longer = train_job("moved", training={"epochs": 900000})
+        self.assert_refused_once(2, "run", longer, "-o", "moved.h5", "--resume",
+                                 says=("training.epochs was 1000000 and is 900000", "another number begins anew"))
 
     def test_a_training_that_diverges_says_so_and_keeps_what_it_has(self):
         path = self.stopped_training("wild")
@@ -173,7 +176,12 @@ class Refused(TrainingCase):
     def test_plan_and_validate(self):
         path = train_job("planned")
         planned = json.loads(rodsweep(0, "plan", path, "--json").stdout)
-        self.assertEqual((planned["most_training_examples"], planned["epochs"], planned["steps"]), (180, 3, 66))
+        self.assertEqual((planned["counts_are"], planned["epochs"]), ("exact", 3))
+        examples, each = planned["training_examples"], planned["steps"] // 3
+        self.assertIn(f"{examples} examples from 18 simulations, {each} steps in each of 3 epochs",
+                      self.rodsweep(0, "run", path, "-o", "planned.h5").stderr)
+        bound = json.loads(rodsweep(0, "plan", path, "--json", "--no-probe").stdout)
+        self.assertEqual((bound["counts_are"], bound["training_examples"], bound["steps"]), ("upper bounds", 180, 66))
         self.assertGreater(planned["core_hours"], 0)
         self.assertGreater(planned["bytes_per_rank"], 1e5)
         self.assertNotIn("core_hours", json.loads(rodsweep(0, "plan", path, "--json", "--no-probe").stdout))

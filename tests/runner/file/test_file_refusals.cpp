@@ -180,6 +180,10 @@ TEST_CASE("a larger job, or one with another time limit, is told which option do
   changed = job;
   changed["task_time_limit_s"] = 100;
   CHECK_THAT(resume_refusal(folder / "a.h5", plan_of(changed)), Contains("--task-time-limit"));
+  changed = job;
+  changed["time"]["steps"] = job["time"]["steps"].get<int>() + 1;
+  CHECK_THAT(resume_refusal(folder / "a.h5", plan_of(changed)),
+             Contains("time.steps was") && Contains("A task cannot go on beyond its last step"));
 }
 
 TEST_CASE("a job that was changed in the file is damage") {
