@@ -21,9 +21,8 @@
 #include "runner/dispatch/master.hpp"
 #include "runner/dispatch/mpi_channel.hpp"
 #include "runner/dispatch/stop_signal.hpp"
-#include "runner/experiment/factor_check.hpp"
-#include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/host_memory.hpp"
+#include "runner/experiment/inputs.hpp"
 #include "runner/experiment/task_body.hpp"
 #include "runner/experiment/training_sets.hpp"
 #include "runner/file/extension.hpp"
@@ -264,9 +263,7 @@ std::string ended_text(const Dispatch& dispatch, std::int64_t too_large, const R
 ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& mpi, Console& console) {
   const auto begin = Clock::now();
   const Plan plan = collectively(mpi.world(), [&] {
-    Plan made(job);
-    check_guesses(made);
-    check_factors(made);
+    Plan made = checked_plan(job);
     if (options.task_time_limit_s) made.set_task_time_limit(*options.task_time_limit_s);
     return made;
   });

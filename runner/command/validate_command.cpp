@@ -17,7 +17,7 @@ namespace {
 
 std::string extent_text(const Job& job) {
   if (is_training(job)) return "trains a model";
-  const Plan plan(job);
+  const Plan plan = missing_files(job).empty() ? checked_plan(job) : Plan(job);
   return counted(plan.size(), "task");
 }
 

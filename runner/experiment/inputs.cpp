@@ -1,6 +1,8 @@
 #include "runner/experiment/inputs.hpp"
 
 #include "runner/dataset/dataset_reader.hpp"
+#include "runner/experiment/factor_check.hpp"
+#include "runner/experiment/guess_check.hpp"
 #include "runner/experiment/models.hpp"
 #include "runner/file/file_reading.hpp"
 
@@ -29,6 +31,13 @@ void check_inputs(const Job& job) {
       throw job_error(job.path, file.key_path, error.what());
     }
   }
+}
+
+Plan checked_plan(const Job& job) {
+  Plan plan(job);
+  check_guesses(plan);
+  check_factors(plan);
+  return plan;
 }
 
 }  // namespace rodsweep

@@ -1,12 +1,17 @@
-// Checks a job's input files before a run.
+// Checks a job before a run: its input files and its plan.
 #pragma once
 
 #include "runner/job/job.hpp"
+#include "runner/plan/plan.hpp"
 
 namespace rodsweep {
 
 /// Opens each file of the job, except accepted missing ones, as a model or a data set according to its key. Throws
 /// JobError with the key and the reason.
 void check_inputs(const Job& job);
+
+/// The plan of a sweep or data set whose input files exist, with every check that a run makes before its first task.
+/// Throws JobError or FileError.
+Plan checked_plan(const Job& job);
 
 }  // namespace rodsweep

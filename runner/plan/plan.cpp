@@ -72,8 +72,10 @@ Plan::Plan(Job job)
   expand();
 }
 
-/// Checks every parameter point and adds its tasks.
+/// Checks every parameter point and adds its tasks. Builds the scene of each first sample, up to some 50 ms in all.
 void Plan::expand() {
+  constexpr std::int64_t most_built = 100'000;
+  std::int64_t built = 0;
   const std::int64_t points = point_count(space_, job_);
   const OutputSpec output = output_spec(job_);
   bool contact = false, balance = false;
@@ -82,6 +84,7 @@ void Plan::expand() {
     fill(values, point);
     const SceneSpec scene = scene_spec(values, job_);
     check_scene(scene, job_);
+    if (point % job_.samples == 0 && (built += segment_count(scene)) <= most_built) check_built(scene, job_);
     check_method(values, job_);
     contact = contact || rod_parameters(scene).contact;
     const TimeSpec time = time_spec(values, job_);

@@ -28,4 +28,12 @@ void check_scene(const SceneSpec& scene, const Job& job) {
   }
 }
 
+void check_built(const SceneSpec& scene, const Job& job) {
+  try {
+    build_scene(scene);
+  } catch (const SceneError& error) {
+    throw job_error(job.path, "scene", error.what());
+  }
+}
+
 }  // namespace rodsweep

@@ -9,7 +9,7 @@
 
 namespace rodsweep {
 
-std::string duration_text(double seconds);        ///< "850 ms", "12.3 s", "4 min 05 s", "2 h 03 min", "3 d 04 h", "7 years"
+std::string duration_text(double seconds);  ///< "850 ms", "12.3 s", "4 min 05 s", "2 h 03 min", "3 d 04 h", "7 years"
 std::string short_duration_text(double seconds);  ///< three digits: "12.3 us", "4.56 ms", "789 s"; NaN: "-"
 std::string bytes_text(std::int64_t bytes);       ///< "512 B", "4.2 MB", in powers of 1000
 std::string counted(std::int64_t count, std::string_view noun);  ///< "1 task", "12 tasks"

@@ -118,6 +118,12 @@ class Validate(Case):
         self.assertEqual(said.returncode, ALL_DONE, said.stderr)
         return said.stdout.splitlines(), said.stderr.splitlines()
 
+    def test_a_scene_that_cannot_be_built_is_refused_by_all_in_the_same_words(self):
+        light = write_job("light", scene={**ROD, "density_kg_m3": 1e-308})
+        for command in ("validate", "plan", "run"):
+            with self.subTest(command=command):
+                self.assert_refused((command, light), "light.json: scene: segment 1: mass is ", "large enough to be inverted")
+
     def test_a_file_that_is_not_there_is_refused_unless_a_job_beside_makes_it(self):
         use = write_job("use", guesses=["zero", {"copingnet": {"model": "../results/net.h5"}}])
         data = write_job("few", **DATA)
