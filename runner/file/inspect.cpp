@@ -97,12 +97,13 @@ FileSummary inspect(const fs::path& path) {
   });
 }
 
-Verification verify(const fs::path& path) {
+Verification verify(const fs::path& path, const std::function<void()>& before_task) {
   const TaskReader file(path, TaskReader::Times::left_out);
   Verification result;
   TaskRecord record;
   for (const Task& task : file.tasks()) {
     if (!file.done(task.index)) continue;
+    before_task();
     ++result.checked;
     if (!file.read(task.index, record)) result.damaged.push_back(task.index);
   }

@@ -61,7 +61,7 @@ hdf5::Dataset create_packed(hid_t file, const std::string& path, hid_t type, con
       H5Dcreate2(file, path.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), "H5Dcreate2", path));
 }
 
-void copy_dataset(const hdf5::File& source, const hdf5::File& target, const std::string& path) {
+void copy_dataset(const hdf5::File& source, const hdf5::File& target, const std::string& path, const Continue& go_on) {
   const hdf5::Dataset from = hdf5::open_dataset(source.id(), path);
   const hdf5::Datatype type(hdf5::check(H5Dget_type(from.id()), "H5Dget_type", path));
   const std::vector<hsize_t> extent = hdf5::extent(from, path);
@@ -82,13 +82,14 @@ void copy_dataset(const hdf5::File& source, const hdf5::File& target, const std:
   const hsize_t block = chunk_rows * std::max<hsize_t>(1, 16 * chunk_bytes / (chunk_rows * row_bytes));
   std::vector<char> values(std::min(block, rows.rows()) * row_bytes);
   for (hsize_t first = 0; first < rows.rows(); first += block) {
+    go_on();
     const hsize_t count = std::min(block, rows.rows() - first);
     rows.read(type.id(), first, count, values.data());
     packed.write(type.id(), first, count, values.data());
   }
 }
 
-void copy_group(const hdf5::File& source, const hdf5::File& target, const std::string& group) {
+void copy_group(const hdf5::File& source, const hdf5::File& target, const std::string& group, const Continue& go_on) {
   std::vector<std::string> names;
   const std::string prefix = group == "/" ? group : group + "/";
   {
@@ -107,8 +108,8 @@ void copy_group(const hdf5::File& source, const hdf5::File& target, const std::s
       const hdf5::Object object(hdf5::check(H5Oopen(source.id(), path.c_str(), H5P_DEFAULT), "H5Oopen", path));
       kind = H5Iget_type(object.id());
     }
-    if (kind == H5I_GROUP) copy_group(source, target, path);
-    if (kind == H5I_DATASET) copy_dataset(source, target, path);
+    if (kind == H5I_GROUP) copy_group(source, target, path, go_on);
+    if (kind == H5I_DATASET) copy_dataset(source, target, path, go_on);
   }
 }
 
@@ -128,13 +129,13 @@ bool is_packed(const hdf5::File& file) {
   return hdf5::check(H5Pget_nfilters(creation.id()), "H5Pget_nfilters", "/runs/command") > 0;
 }
 
-Packing pack_results(const fs::path& source_path, const fs::path& target_path) {
+Packing pack_results(const fs::path& source_path, const fs::path& target_path, const Continue& go_on) {
   refuse_existing(target_path);
   const hdf5::File source = open_results(source_path);
   stored_job_text(source, source_path);
   // States before data: all data of a task with state 1 are in the file.
   const std::vector<std::uint8_t> states = read_states(source, source_path);
-  refuse_damaged(source_path, verify(source_path), "nothing was packed");
+  refuse_damaged(source_path, verify(source_path, go_on), "nothing was packed");
 
   make_folder_of(target_path);
   const UnfinishedFile unfinished(target_path);
@@ -142,13 +143,13 @@ Packing pack_results(const fs::path& source_path, const fs::path& target_path) {
   Packing packing;
   try {
     hdf5::File target = hdf5::create_file(unfinished.path());
-    copy_group(source, target, "/");
+    copy_group(source, target, "/", go_on);
     hdf5::write_all(target.id(), state_path, states);
     hdf5::close(target, "H5Fclose", unfinished.path().native());
   } catch (const Hdf5Error& failure) {
     throw writing_error(target_path, failure.what());
   }
-  const Verification verified = verify(unfinished.path());
+  const Verification verified = verify(unfinished.path(), go_on);
   refuse_damaged(unfinished.path(), verified, "the copy was deleted, and the original is unchanged");
   packing.tasks = static_cast<std::int64_t>(states.size());
   packing.verified = verified.checked;

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 #include "runner/file/hdf5.hpp"
 
@@ -19,7 +20,11 @@ struct Packing {
   std::uintmax_t bytes_before = 0, bytes_after = 0;
 };
 
-Packing pack_results(const std::filesystem::path& source, const std::filesystem::path& target);
+/// Called often; throws to end the copy, which leaves no file.
+using Continue = std::function<void()>;
+
+Packing pack_results(
+    const std::filesystem::path& source, const std::filesystem::path& target, const Continue& go_on = [] {});
 
 /// Whether pack_results() made this file.
 bool is_packed(const hdf5::File& file);

@@ -9,7 +9,7 @@ import socket
 import subprocess
 import unittest
 
-from program import ALL_DONE, DAMAGED, STOPPED, TASKS_FAILED, OUTPUT_LOST, USER_ERROR, changed, rodsweep, sweep
+from program import ALL_DONE, DAMAGED, STOPPED, TASKS_FAILED, OUTPUT_LOST, RODSWEEP, USER_ERROR, changed, rodsweep, sweep
 
 JOB = os.path.join("jobs", "small.json")
 
@@ -131,6 +131,21 @@ class Left(Plain):
         self.assertIn(name, rodsweep("status", "left.h5").stderr)
         os.remove(name)
         self.assertNotIn("unfinished", rodsweep("status", "left.h5").stderr)
+
+    def test_packing_that_is_stopped_leaves_nothing(self):
+        results = sweep()
+        for _ in range(5):
+            packing = subprocess.Popen([RODSWEEP, "pack", results, "-o", "stopped.h5"], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.PIPE, text=True)
+            while packing.poll() is None and not any("stopped.h5" in name for name in os.listdir(".")):
+                pass
+            packing.send_signal(signal.SIGTERM)
+            said = packing.communicate(timeout=600)[1]
+            self.assertIn(packing.returncode, (STOPPED, ALL_DONE), said)  # or it was faster than the signal
+            self.assertEqual([name for name in os.listdir(".") if "stopped.h5" in name],
+                             ["stopped.h5"] if packing.returncode == ALL_DONE else [])
+            if packing.returncode == ALL_DONE:
+                os.remove("stopped.h5")
 
     def test_what_a_program_makes_now_is_not(self):
         write(f"made.h5.unfinished-{socket.gethostname()}-{os.getpid()}-0123abcd", b"half")

@@ -72,6 +72,26 @@ TEST_CASE("packing overwrites nothing and leaves nothing half done") {
   CHECK(entries(made.folder.path()) == 2);
 }
 
+TEST_CASE("packing that is stopped anywhere leaves nothing") {
+  struct Stopped {};
+  const FullFile made(6);
+  int calls = 0;
+  const auto stop_at = [&](int last) {
+    calls = 0;
+    return [&calls, last] {
+      if (++calls == last) throw Stopped();
+    };
+  };
+  pack_results(made.path, made.folder / "b.h5", stop_at(-1));
+  const int all = calls;
+  CHECK(all > 12 + 6);  // verified before and after, and copied
+  fs::remove(made.folder / "b.h5");
+  for (int last = 1; last <= all; ++last) {
+    CHECK_THROWS_AS(pack_results(made.path, made.folder / "b.h5", stop_at(last)), Stopped);
+    CHECK(entries(made.folder.path()) == 1);
+  }
+}
+
 TEST_CASE("a packed copy is not continued, and what to do is said") {
   const FullFile made(2);
   pack_results(made.path, made.folder / "b.h5");
