@@ -237,9 +237,17 @@ Timeouts timeouts_of(const RunOptions& options, Clock::time_point begin) {
   return timeouts;
 }
 
-std::string ended_text(const Dispatch& dispatch, std::int64_t too_large, const RunOptions& options, int ranks) {
+std::string ended_text(const SweepSummary& summary, const RunOptions& options, int ranks) {
+  const Dispatch& dispatch = summary.dispatch;
   RunOptions again = options;
   again.resume = true;
+  if (summary.slow_start_s) {
+    again.time_limit_s.reset();
+    return fmt::format(
+        "no task was begun: planning the tasks and opening the file took {}, the time limit is {}. To continue, raise "
+        "--time-limit (under Slurm sbatch --time): {}",
+        duration_text(*summary.slow_start_s), duration_text(*options.time_limit_s), run_line(again, ranks));
+  }
   if (dispatch.too_long) {
     again.time_limit_s.reset();
     return fmt::format(
@@ -250,7 +258,7 @@ std::string ended_text(const Dispatch& dispatch, std::int64_t too_large, const R
         run_line(again, ranks));
   }
   if (dispatch.signal != 0) return stopped_text(dispatch.signal, again, ranks);
-  if (dispatch.left == too_large)
+  if (dispatch.left == summary.too_large.tasks)
     return fmt::format("the remaining tasks do not fit into memory (see above). To continue with more memory: {}",
                        run_line(again, ranks));
   return fmt::format("{}; finished tasks are kept. To continue: {}",
@@ -279,20 +287,25 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
       collectively(mpi.world(), [&] { return mpi.rank() == 0 && has_begun(options, path, extension) ? 1 : 0; });
   const bool continues = broadcast(begun, mpi.world()) != 0;
   const Provenance provenance = provenance_of(options, mpi, where);
-  const auto stop = [&] {
-    const Seconds passed = Clock::now() - begin;
-    return signal.received() != 0 || (options.time_limit_s && passed.count() > *options.time_limit_s);
+  std::optional<Clock::time_point> first_verified;
+  const auto verifying = [&] {
+    constexpr double most_of_limit = 0.25;
+    if (!first_verified) first_verified = Clock::now();
+    const Seconds took = Clock::now() - *first_verified;
+    if (signal.received() != 0) return Verify::stop;
+    return options.time_limit_s && took.count() > most_of_limit * *options.time_limit_s ? Verify::enough : Verify::on;
   };
   std::optional<ResultsFile> opened = collectively(mpi.world(), [&] {
     return continues ? ResultsFile::resume(path, plan, provenance, mpi.world(),
-                                           options.retry_failed ? Retry::failed : Retry::none, stop)
+                                           options.retry_failed ? Retry::failed : Retry::none, verifying)
                      : ResultsFile::create(path, plan, provenance, mpi.world(), free_bytes,
                                            options.extend ? std::vector{*options.extend} : std::vector<fs::path>());
   });
   if (!opened) {
-    Dispatch none;
-    none.left = plan.size(), none.signal = signal.received(), none.late = true;
-    console.note("stopped during the verification of the file: " + ended_text(none, 0, options, mpi.size()));
+    SweepSummary summary;
+    Dispatch& none = summary.dispatch;
+    none.left = plan.size(), none.signal = static_cast<int>(-least(-signal.received(), mpi.world()));
+    console.note("stopped during the verification of the file: " + ended_text(summary, options, mpi.size()));
     return ExitCode::stopped;
   }
   ResultsFile& file = *opened;
@@ -339,6 +352,10 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
     file.commit_if_due();
     if (mpi.rank() == 0) file.beat();
   };
+  const Seconds start = Clock::now() - begin;
+  const auto slow_start_s = options.time_limit_s && start.count() > *options.time_limit_s && to_do > 0
+                                ? std::optional(start.count())
+                                : std::nullopt;
   Timeouts timeouts = timeouts_of(options, begin);
   if (options.time_limit_s && continues && mpi.rank() == 0)
     learn_from_earlier_runs(path, plan, file, pending, timeouts.time);
@@ -349,14 +366,14 @@ ExitCode run_sweep(const RunOptions& options, const Job& job, const MpiSession& 
   dispatch.left += too_large.tasks;
   file.commit();
 
-  const SweepSummary summary{total, before.done_by_outcome, dispatch,  where.workers,
-                             path,  options.program,        too_large, options.shard};
+  const SweepSummary summary{total,     before.done_by_outcome, dispatch,    where.workers, path, options.program,
+                             too_large, options.shard,          slow_start_s};
   const auto end = [&](ExitCode code) {
     if (mpi.rank() == 0) file.end_run(utc_now(), static_cast<int>(code));
     dispatch.ranks_lost ? file.leave() : file.close();
     by_rank_0(dispatch.ranks_lost ? std::nullopt : std::optional(mpi.world()), [&] { file.check_written(); });
     console.result(summary_text(summary));
-    if (dispatch.left > 0) console.note(ended_text(dispatch, too_large.tasks, options, mpi.size()));
+    if (dispatch.left > 0) console.note(ended_text(summary, options, mpi.size()));
     return code;
   };
   if (dispatch.ranks_lost) {

@@ -29,6 +29,8 @@ struct SweepSummary {
   std::string program{};         ///< as the user typed it
   TooLarge too_large{};          ///< among the tasks left
   std::optional<Shard> shard{};  ///< of this start
+  /// Seconds to plan the tasks and open the file, if they took the whole time limit.
+  std::optional<double> slow_start_s{};
 };
 
 /// The exit code of the whole file, not only of this start: a resumed sweep with failed tasks returns tasks_failed.

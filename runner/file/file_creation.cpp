@@ -59,13 +59,12 @@ void create_datasets(hid_t file, const std::vector<Field>& fields) {
 void write_parameters(hid_t file, const std::vector<ParameterColumn>& parameters) {
   for (const ParameterColumn& parameter : parameters) {
     const std::string path = "/tasks/parameters/" + parameter.path;
-    if (const auto* texts = std::get_if<std::vector<std::string>>(&parameter.values)) {
-      hdf5::write_texts(file, path, *texts);
-    } else if (const auto* integers = std::get_if<std::vector<std::int64_t>>(&parameter.values)) {
-      hdf5::write_all(file, path, *integers);
-    } else {
-      hdf5::write_all(file, path, std::get<std::vector<double>>(parameter.values));
-    }
+    if (const auto* texts = std::get_if<ColumnValues<std::string>>(&parameter.values))
+      hdf5::write_texts(file, path, texts->all());
+    else if (const auto* integers = std::get_if<ColumnValues<std::int64_t>>(&parameter.values))
+      hdf5::write_all(file, path, integers->all());
+    else
+      hdf5::write_all(file, path, std::get<ColumnValues<double>>(parameter.values).all());
     hdf5::write_attribute(hdf5::open_dataset(file, path).id(), "swept", parameter.swept ? 1 : 0);
   }
 }

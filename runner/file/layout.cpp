@@ -25,9 +25,9 @@ void append_parameters(std::vector<Field>& fields, const Plan& plan, const std::
     const std::string unit = parameter.unit.empty() ? "1" : parameter.unit;
     std::vector<std::int64_t> extent{plan.size()};
     if (parameter.width > 1) extent.push_back(parameter.width);
-    if (const auto* texts = std::get_if<std::vector<std::string>>(&parameter.values)) {
-      fields.push_back(text_field(path, longest(*texts), extent, parameter.meaning));
-    } else if (std::holds_alternative<std::vector<std::int64_t>>(parameter.values)) {
+    if (const auto* texts = std::get_if<ColumnValues<std::string>>(&parameter.values)) {
+      fields.push_back(text_field(path, longest(texts->distinct()), extent, parameter.meaning));
+    } else if (std::holds_alternative<ColumnValues<std::int64_t>>(parameter.values)) {
       fields.push_back(number_field<std::int64_t>(path, extent, unit, parameter.meaning));
     } else {
       fields.push_back(number_field<double>(path, extent, unit, parameter.meaning));
@@ -65,9 +65,10 @@ std::vector<Field> layout(const Plan& plan, const std::vector<ParameterColumn>& 
   fields.push_back(number_field<double>("/axes/tolerance", {sizes.tolerances}, "1",
                                         "tolerances at which iterations are counted, relative to ||b||"));
   append_parameters(fields, plan, parameters);
-  visit_planned_values(plan, [&](const char* path, const char* meaning, const auto& values) {
-    fields.push_back(
-        number_field<typename std::decay_t<decltype(values)>::value_type>(path, {plan.size()}, "1", meaning));
+  const auto holds = [&](const RowPlace& place) { return plan.rows(place.with) > 0; };
+  visit_planned_columns(holds, [&](const char* path, const char* meaning, auto member) {
+    using Value = std::decay_t<decltype(member(std::declval<const Task&>()))>;
+    fields.push_back(number_field<Value>(path, {plan.size()}, "1", meaning));
   });
   fields.push_back(number_field<std::uint8_t>("/tasks/state", {plan.size()}, "1",
                                               "1: complete, all of its rows are valid; 0: pending, ignore its rows"));
@@ -122,10 +123,11 @@ std::string plan_hash(const Plan& plan, const std::vector<ParameterColumn>& para
   });
   for (const ParameterColumn& parameter : parameters) {
     add_text(parameter.path);
-    if (const auto* texts = std::get_if<std::vector<std::string>>(&parameter.values)) {
-      for (const std::string& text : *texts) add_text(text);
-    } else if (const auto* numbers = std::get_if<std::vector<std::int64_t>>(&parameter.values)) {
-      sum.add(numbers->data(), numbers->size() * sizeof(std::int64_t));
+    if (const auto* texts = std::get_if<ColumnValues<std::string>>(&parameter.values)) {
+      for (const std::string& text : texts->all()) add_text(text);
+    } else if (const auto* integers = std::get_if<ColumnValues<std::int64_t>>(&parameter.values)) {
+      const std::vector<std::int64_t> all = integers->all();
+      sum.add(all.data(), all.size() * sizeof(std::int64_t));
     }
   }
   for (const std::string& label : plan.guess_labels()) add_text(label);

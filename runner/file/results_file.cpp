@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <stdexcept>
 #include <string_view>
@@ -100,39 +101,57 @@ bool intact(const TaskReader& reader, std::int64_t task, TaskRecord& record, con
                   path.native(), task));
 }
 
-/// Collective: for each task, whether it is run again and why. Returns none if `stop` is true on any rank.
-std::optional<std::vector<std::uint8_t>> to_run_again(const fs::path& path, const std::vector<std::uint8_t>& done,
-                                                      Retry retry, MPI_Comm comm, const std::function<bool()>& stop) {
+struct Verified {
+  std::vector<std::uint8_t> again;  ///< for each task, whether it is run again and why
+  std::int64_t left_out = 0;        ///< finished tasks that were not verified
+};
+
+/// Collective. Begins at another task in each run, so that runs which have time for a part verify all in the end.
+/// Returns none if `verifying` is Verify::stop on any rank.
+std::optional<Verified> to_run_again(const fs::path& path, const ResumePoint& point, Retry retry, MPI_Comm comm,
+                                     const std::function<Verify()>& verifying) {
   int rank = 0, size = 1;
   check_mpi(MPI_Comm_rank(comm, &rank), "MPI_Comm_rank");
   check_mpi(MPI_Comm_size(comm, &size), "MPI_Comm_size");
-  std::vector<std::uint8_t> again(done.size(), not_again);
+  const std::vector<std::uint8_t>& done = point.done;
+  constexpr double golden = 0.618033988749895;
+  const auto first = static_cast<std::size_t>(std::fmod(golden * point.runs, 1) * static_cast<double>(done.size()));
+  Verified verified;
+  verified.again.assign(done.size(), not_again);
   std::uint8_t stopped = 0;
   collectively(comm, [&] {
     const TaskReader reader(path, TaskReader::Times::left_out);
     SyncedFile file(path);
     TaskRecord record;
-    for (auto i = static_cast<std::size_t>(rank); i < done.size(); i += static_cast<std::size_t>(size)) {
-      if (done[i] > 1) again[i] = damaged;
+    Verify state = Verify::on;
+    for (auto k = static_cast<std::size_t>(rank); k < done.size(); k += static_cast<std::size_t>(size)) {
+      const std::size_t i = (first + k) % done.size();
+      const auto task = static_cast<std::int64_t>(i);
+      if (done[i] > 1) verified.again[i] = damaged;
       if (done[i] != 1) continue;
-      if (rank == 0) file.beat();
-      if (stop()) {
+      if (state == Verify::on) {
+        if (rank == 0) file.beat();
+        state = verifying();
+      }
+      if (state == Verify::stop) {
         stopped = 1;
         return;
       }
-      const auto task = static_cast<std::int64_t>(i);
-      if (!intact(reader, task, record, path))
-        again[i] = damaged;
-      else if (retry == Retry::failed && may_change(record.outcome))
-        again[i] = failed;
+      if (state == Verify::enough) ++verified.left_out;
+      if (state == Verify::on && !intact(reader, task, record, path))
+        verified.again[i] = damaged;
+      else if (retry == Retry::failed && may_change(reader.outcome(task)))
+        verified.again[i] = failed;
     }
   });
-  again.push_back(stopped);
-  check_mpi(MPI_Allreduce(MPI_IN_PLACE, again.data(), static_cast<int>(again.size()), MPI_UINT8_T, MPI_MAX, comm),
+  verified.again.push_back(stopped);
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, verified.again.data(), static_cast<int>(verified.again.size()), MPI_UINT8_T,
+                          MPI_MAX, comm),
             "MPI_Allreduce");
-  if (again.back() != 0) return std::nullopt;
-  again.pop_back();
-  return again;
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, &verified.left_out, 1, MPI_INT64_T, MPI_SUM, comm), "MPI_Allreduce");
+  if (verified.again.back() != 0) return std::nullopt;
+  verified.again.pop_back();
+  return verified;
 }
 
 /// "task 3 is" or "4 tasks, the first being 3, are"; empty if there are none.
@@ -221,7 +240,7 @@ ResultsFile ResultsFile::create(const fs::path& path, const Plan& plan, const Pr
 }
 
 std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan& plan, const Provenance& provenance,
-                                               MPI_Comm comm, Retry retry, const std::function<bool()>& stop) {
+                                               MPI_Comm comm, Retry retry, const std::function<Verify()>& verifying) {
   ResumePoint point;
   FileLock lock;
   on_first_rank(comm, [&] {
@@ -236,16 +255,20 @@ std::optional<ResultsFile> ResultsFile::resume(const fs::path& path, const Plan&
     check_mpi(MPI_Bcast(bytes->data(), static_cast<int>(bytes->size()), MPI_UINT8_T, 0, comm), "MPI_Bcast");
   }
   point.runs = broadcast(point.runs, comm);
-  const auto again = to_run_again(path, point.done, retry, comm, stop);
-  if (!again) return std::nullopt;
-  for (std::size_t i = 0; i < again->size(); ++i) {
-    const bool is_again = again->at(i) != not_again;
+  const auto verified = to_run_again(path, point, retry, comm, verifying);
+  if (!verified) return std::nullopt;
+  const std::int64_t finished = std::count(point.done.begin(), point.done.end(), 1);
+  for (std::size_t i = 0; i < verified->again.size(); ++i) {
+    const bool is_again = verified->again[i] != not_again;
     if (is_again) point.done[i] = 0;
     if (is_again || retry == Retry::failed) point.tries[i] = 0;
   }
   ResultsFile file(path, plan, std::move(point.done), point.runs, std::move(point.tries), provenance, comm,
                    std::move(lock));
-  file.take_back(*again, comm);
+  file.take_back(verified->again, comm);
+  if (verified->left_out > 0)
+    file.add_note(fmt::format("{}: time was left to verify {} of {} finished tasks; later runs verify others",
+                              path.native(), finished - verified->left_out, finished));
   return file;
 }
 

@@ -35,6 +35,9 @@ namespace rodsweep {
 /// Which ended tasks a resumed sweep runs again.
 enum class Retry { none, failed };
 
+/// Whether to go on verifying the tasks of a resumed file, to trust the others, or to leave the file.
+enum class Verify { on, enough, stop };
+
 class ResultsFile {
  public:
   /// Collective over `comm`. All ranks throw the same FileError if the path exists or the disk is too full, before
@@ -43,12 +46,12 @@ class ResultsFile {
                             MPI_Comm comm, const FreeSpace& free_space = free_bytes,
                             const std::vector<std::filesystem::path>& earlier = {});
   /// Collective. Throws FileError for a file of another program, schema version, plan or job text, or one that another
-  /// run is writing. All ranks verify the checksums, with a heartbeat. Damaged tasks become pending again; with
-  /// Retry::failed also failed ones that may end differently (may_change()). Appends a row to /runs. Returns none on
-  /// all ranks, and leaves the file unchanged, if `stop` returns true on any rank before all tasks are verified.
+  /// run is writing. All ranks verify the checksums, with a heartbeat, each until `verifying` says Verify::enough.
+  /// Damaged tasks become pending again; with Retry::failed also failed ones that may end differently (may_change()).
+  /// Appends a row to /runs. Returns none on all ranks, and leaves the file unchanged, after Verify::stop on any rank.
   static std::optional<ResultsFile> resume(
       const std::filesystem::path& path, const Plan& plan, const Provenance& provenance, MPI_Comm comm,
-      Retry retry = Retry::none, const std::function<bool()>& stop = [] { return false; });
+      Retry retry = Retry::none, const std::function<Verify()>& verifying = [] { return Verify::on; });
 
   ResultsFile(ResultsFile&&) noexcept;
   ResultsFile& operator=(ResultsFile&&) noexcept;

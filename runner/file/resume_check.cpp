@@ -113,13 +113,13 @@ void check_parameters(const hdf5::File& file, const fs::path& path, const Plan& 
   };
   for (const ParameterColumn& parameter : parameters) {
     const std::string dataset = "/tasks/parameters/" + parameter.path;
-    if (const auto* numbers = std::get_if<std::vector<double>>(&parameter.values))
-      compare(parameter.path, parameter.width, *numbers, hdf5::read_all<double>(file.id(), dataset), same);
-    else if (const auto* integers = std::get_if<std::vector<std::int64_t>>(&parameter.values))
-      compare(parameter.path, parameter.width, *integers, hdf5::read_all<std::int64_t>(file.id(), dataset),
+    if (const auto* numbers = std::get_if<ColumnValues<double>>(&parameter.values))
+      compare(parameter.path, parameter.width, numbers->all(), hdf5::read_all<double>(file.id(), dataset), same);
+    else if (const auto* integers = std::get_if<ColumnValues<std::int64_t>>(&parameter.values))
+      compare(parameter.path, parameter.width, integers->all(), hdf5::read_all<std::int64_t>(file.id(), dataset),
               std::equal_to<>());
     else
-      compare(parameter.path, parameter.width, std::get<std::vector<std::string>>(parameter.values),
+      compare(parameter.path, parameter.width, std::get<ColumnValues<std::string>>(parameter.values).all(),
               hdf5::read_texts(file.id(), dataset), std::equal_to<>());
   }
   visit_planned_values(plan, [&](const char* column, const char*, const auto& values) {

@@ -24,7 +24,7 @@ struct Written {
 
 Written read(const fs::path& path, std::int64_t task, std::int64_t every) {
   const TaskReader file(path, TaskReader::Times::left_out);
-  Written written{reading(path, [&] { return file.tasks().at(static_cast<std::size_t>(task)); }), {}, every};
+  Written written{reading(path, [&] { return file.tasks().at(task); }), {}, every};
   file.read(task, written.record);  // even if damaged: the comparison detects this
   return written;
 }

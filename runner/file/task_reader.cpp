@@ -1,5 +1,9 @@
 #include "runner/file/task_reader.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
 #include <string>
 #include <type_traits>
 
@@ -13,28 +17,54 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<Task> read_tasks(const hdf5::File& file, std::size_t count) {
-  std::vector<Task> tasks(count);
-  const auto holds = [&](const RowPlace& place) { return hdf5::exists(file.id(), place.first); };
-  visit_planned_columns(holds, [&](const char* path, const char*, auto member) {
-    using T = std::decay_t<decltype(member(tasks[0]))>;
-    const auto values = hdf5::read_all<T>(file.id(), path);
-    if (values.size() != count) throw Damage(std::string(path) + " has another length than /tasks/state");
-    for (std::size_t i = 0; i < count; ++i) member(tasks[i]) = values[i];
-  });
+/// Completes a task whose planned columns were read. Throws Damage for numbers of rows that no file has.
+void complete(Task& task, bool contact, bool balance) {
+  constexpr std::int64_t most = 1'000'000'000'000;
+  auto& rows = task.rows;
+  task.steps = rows[Rows::step].count;
+  rows[Rows::task].count = 1;
+  if (contact) rows[Rows::contact_task].count = 1, rows[Rows::contact_step].count = task.steps;
+  if (balance) rows[Rows::balanced_segment].count = rows[Rows::system_segment].count;
+  if (__builtin_mul_overflow(task.frames, task.segments, &rows[Rows::frame_segment].count))
+    throw Damage("a task has rows outside /trajectories");
+  rows[Rows::segment].count = task.frames > 0 ? task.segments : 0;
+  for (const RowRange& range : rows)
+    if (range.count < 0 || range.count > most) throw Damage("a task has a number of rows that no file can have");
+}
+
+/// Reads some thousand tasks at a time. Throws Damage unless the rows of each task follow those of the task before.
+TaskList read_tasks(const hdf5::File& file, std::size_t count) {
+  constexpr std::size_t block = 1 << 14;
   const bool contact = hdf5::exists(file.id(), "/steps/contacts");
   const bool balance = hdf5::exists(file.id(), "/systems/segments/free_position_m");
-  for (std::size_t i = 0; i < count; ++i) {
-    Task& task = tasks[i];
-    auto& rows = task.rows;
-    task.index = static_cast<std::int64_t>(i);
-    task.steps = rows[Rows::step].count;
-    rows[Rows::task] = {task.index, 1};
-    if (contact) rows[Rows::contact_task] = rows[Rows::task], rows[Rows::contact_step] = rows[Rows::step];
-    if (balance) rows[Rows::balanced_segment] = rows[Rows::system_segment];
-    if (__builtin_mul_overflow(task.frames, task.segments, &rows[Rows::frame_segment].count))
-      throw Damage("a task has rows outside /trajectories");
-    rows[Rows::segment].count = task.frames > 0 ? task.segments : 0;
+  std::map<std::string, hdf5::RowDataset> columns;
+  const auto column = [&](const std::string& path) -> const hdf5::RowDataset& {
+    const auto [place, is_new] = columns.try_emplace(path);
+    if (is_new) place->second = hdf5::RowDataset(file.id(), path);
+    if (place->second.rows() != count) throw Damage(path + " has another length than /tasks/state");
+    return place->second;
+  };
+  const auto holds = [&](const RowPlace& place) { return hdf5::exists(file.id(), place.first); };
+  TaskList tasks;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    std::vector<Task> read(std::min(block, count - begin));
+    visit_planned_columns(holds, [&](const char* path, const char*, auto member) {
+      using T = std::decay_t<decltype(member(read[0]))>;
+      std::vector<T> values(read.size());
+      column(path).read(hdf5::type_of<T>(), begin, values.size(), values.data());
+      for (std::size_t i = 0; i < read.size(); ++i) member(read[i]) = values[i];
+    });
+    for (Task& task : read) {
+      complete(task, contact, balance);
+      tasks.add(task);
+    }
+    visit_planned_columns(holds, [&](const char* path, const char*, auto member) {
+      auto task = tasks.from(static_cast<std::int64_t>(begin));
+      for (std::size_t i = 0; i < read.size(); ++i, ++task)
+        if (const Task listed = *task; member(listed) != member(read[i]))
+          throw Damage(
+              fmt::format("{} of task {} is {}; must be {}", path, begin + i, member(read[i]), member(listed)));
+    });
   }
   return tasks;
 }
@@ -60,7 +90,8 @@ TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(o
   reading(path, [&] {
     // States before data: all data of a task with state 1 are in the file.
     states_ = read_states(file_, path);
-    outcomes_ = hdf5::read_texts(file_.id(), "/tasks/outcome");
+    for (const std::string& text : hdf5::read_texts(file_.id(), "/tasks/outcome"))
+      outcomes_.push_back(outcome_called(text));
     if (outcomes_.size() != states_.size()) throw Damage("/tasks/outcome has another length than /tasks/state");
     tasks_ = read_tasks(file_, states_.size());
     sizes_ = {axis_size(file_, "/axes/guess", 0), axis_size(file_, "/axes/tolerance", 0),
@@ -79,14 +110,14 @@ TaskReader::TaskReader(const fs::path& path, Times times) : path_(path), file_(o
 
 TaskOutcome TaskReader::outcome(std::int64_t task) const {
   if (!done(task)) return TaskOutcome::pending;
-  const std::string& text = outcomes_[static_cast<std::size_t>(task)];
-  if (const auto outcome = outcome_called(text)) return *outcome;
+  if (const auto outcome = outcomes_[static_cast<std::size_t>(task)]) return *outcome;
+  const std::string text = hdf5::read_text_row(file_.id(), "/tasks/outcome", static_cast<std::size_t>(task));
   throw damaged_error(path_, "\"" + text + "\" is not an outcome of a task");
 }
 
 bool TaskReader::read(std::int64_t index, TaskRecord& record) const {
   return reading(path_, [&] {
-    const Task& task = tasks_.at(static_cast<std::size_t>(index));
+    const Task task = tasks_.at(index);
     for (std::size_t c = 0; c < columns_.size(); ++c)
       if (const Column& column = columns()[c]; columns_[c])
         check_rows(task.rows[column.rows], row_width(column, sizes_), columns_[c]);
@@ -101,7 +132,7 @@ bool TaskReader::read(std::int64_t index, TaskRecord& record) const {
                          data_of(column, record));
     }
     record.message = hdf5::read_text_row(message_, static_cast<hsize_t>(index));
-    const auto outcome = outcome_called(outcomes_[static_cast<std::size_t>(index)]);
+    const auto outcome = outcomes_[static_cast<std::size_t>(index)];
     record.outcome = outcome.value_or(TaskOutcome::error);
     return outcome && task_checksum(index, record) == hdf5::read_row<std::uint64_t>(checksum_, index);
   });

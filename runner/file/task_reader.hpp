@@ -4,12 +4,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "runner/file/hdf5.hpp"
 #include "runner/file/provenance.hpp"
 #include "runner/file/record.hpp"
+#include "runner/plan/task_list.hpp"
+#include "runner/plan/task_outcome.hpp"
 
 namespace rodsweep {
 
@@ -19,7 +22,7 @@ class TaskReader {
   explicit TaskReader(const std::filesystem::path& path, Times times = Times::read);
 
   /// The tasks as stored: identity and rows.
-  const std::vector<Task>& tasks() const { return tasks_; }
+  const TaskList& tasks() const { return tasks_; }
 
   /// Whether the task was complete when the file was opened.
   bool done(std::int64_t task) const { return states_[static_cast<std::size_t>(task)] == 1; }
@@ -38,10 +41,10 @@ class TaskReader {
   std::filesystem::path path_;
   hdf5::File file_;
   AxisSizes sizes_;
-  std::vector<Task> tasks_;
+  TaskList tasks_;
   std::vector<std::uint8_t> states_;
-  std::vector<std::string> outcomes_;
-  std::vector<hdf5::RowDataset> columns_;  ///< in the order of columns(); empty: not in the file
+  std::vector<std::optional<TaskOutcome>> outcomes_;  ///< none: not the name of an outcome
+  std::vector<hdf5::RowDataset> columns_;             ///< in the order of columns(); empty: not in the file
   hdf5::RowDataset message_, checksum_, rank_, host_, run_, write_s_;
 };
 

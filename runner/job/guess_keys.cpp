@@ -162,7 +162,7 @@ const std::vector<Kind>& kinds() {
 }  // namespace
 
 static GuessKind read_guess(const Place& at) {
-  const std::string& name = at.point.text(at.path);
+  const std::string& name = at.text();
   const auto found =
       std::find_if(kinds().begin(), kinds().end(), [&](const Kind& kind) { return kind.key.name == name; });
   if (found == kinds().end()) throw std::logic_error("no guess is called " + name);

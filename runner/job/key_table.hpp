@@ -35,29 +35,40 @@
 
 namespace rodsweep {
 
-/// A key of a job at a parameter point.
-struct Place {
-  const Point& point;
-  const Job& job;
-  std::string path;
+/// A key of a job at a parameter point, and its value there.
+class Place {
+ public:
+  Place(const Point& point, const Job& job, std::string path)
+      : point_(point), job_(job), path_(std::move(path)), value_(point.find(path_)) {}
 
-  Place of(const std::string& name) const { return {point, job, member(path, name)}; }
+  const Job& job() const { return job_; }
+  const std::string& path() const { return path_; }
+  Place of(const std::string& name) const { return {point_, job_, member(path_, name)}; }
+  Place item(std::size_t index) const { return {point_, job_, element(path_, index)}; }
+
+  bool is_given() const { return value_ != nullptr; }
+  // These throw std::logic_error if the key has no value of this type.
+  const Point::Value& value() const { return value_ != nullptr ? *value_ : point_.at(path_); }
+  double number() const { return value().number[0]; }
+  const std::string& text() const { return value().is_text() ? *value_->text : point_.text(path_); }
+
+ private:
+  const Point& point_;
+  const Job& job_;
+  std::string path_;
+  const Point::Value* value_;
 };
 
 // Reads the value of a key that is present. Overloads for other types are beside their tables.
-inline void read_value(const Place& at, double& value) { value = at.point.number(at.path); }
-inline void read_value(const Place& at, bool& value) { value = at.point.number(at.path) != 0; }
-inline void read_value(const Place& at, int& value) { value = static_cast<int>(at.point.integer(at.path)); }
-inline void read_value(const Place& at, std::uint64_t& value) {
-  value = static_cast<std::uint64_t>(at.point.integer(at.path));
-}
-inline void read_value(const Place& at, Vector3& value) { value = Vector3::Map(at.point.at(at.path).number); }
-inline void read_value(const Place& at, std::filesystem::path& file) {
-  file = at.job.files.at(at.point.text(at.path)).path;
-}
+inline void read_value(const Place& at, double& value) { value = at.number(); }
+inline void read_value(const Place& at, bool& value) { value = at.number() != 0; }
+inline void read_value(const Place& at, int& value) { value = static_cast<int>(at.number()); }
+inline void read_value(const Place& at, std::uint64_t& value) { value = static_cast<std::uint64_t>(at.number()); }
+inline void read_value(const Place& at, Vector3& value) { value = Vector3::Map(at.value().number); }
+inline void read_value(const Place& at, std::filesystem::path& file) { file = at.job().files.at(at.text()).path; }
 inline void read_value(const Place& at, std::optional<double>& value) {
   value.reset();
-  if (!at.point.is_text(at.path)) value = at.point.number(at.path);
+  if (!at.value().is_text()) value = at.number();
 }
 
 // A value as written in a job, for the default of `key`.
@@ -156,7 +167,7 @@ class KeyTable {
     for (const auto& [word, value] : words) key.choices.emplace_back(word);
     bind<is_optional>(
         std::move(key), [&words](const Key&, Value value) { return word_of(words, value); },
-        [words](const Place& at, Value& value) { value = value_of(words, at.point.text(at.path)); }, member...);
+        [words](const Place& at, Value& value) { value = value_of(words, at.text()); }, member...);
   }
   template <bool is_optional, class Part, class... Member>
   void add(Key key, const KeyTable<Part>& part, const Member&... member) {
@@ -166,9 +177,9 @@ class KeyTable {
         [part](const Place& at, std::optional<Part>& value) {
           value.reset();
           const Place first = at.of(part.keys().front().name);
-          if (!first.point.has(first.path)) return;
+          if (!first.is_given()) return;
           value.emplace();
-          if constexpr (KindsOf<Part>::tagged) *value = kind_named<Part>(first.point.text(first.path));
+          if constexpr (KindsOf<Part>::tagged) *value = kind_named<Part>(first.text());
           part.fill(*value, at);
         },
         member...);
@@ -197,7 +208,7 @@ class KeyTable {
     readers_.emplace_back([=, name = key.name](Owner& owner, const Place& object) {
       const auto read_if_given = [&]([[maybe_unused]] auto& kind) {
         if constexpr ((std::is_invocable_v<const Member&, decltype(kind)> || ...))
-          if (const Place at = object.of(name); at.point.has(at.path)) read(at, member_of(kind, member...));
+          if (const Place at = object.of(name); at.is_given()) read(at, member_of(kind, member...));
       };
       KindsOf<Owner>::visit(read_if_given, owner);
     });

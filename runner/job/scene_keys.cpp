@@ -16,11 +16,11 @@ namespace rodsweep {
 
 // An overload used by KeyTable.
 static void read_value(const Place& at, std::shared_ptr<const Skeleton>& skeleton) {
-  const InputFile& file = at.job.files.at(at.point.text(at.path));
+  const InputFile& file = at.job().files.at(at.text());
   try {
     skeleton = shared_skeleton(file.path, file.hash);
   } catch (const SkeletonError& error) {
-    throw job_error(at.job.path, at.path, error.what());
+    throw job_error(at.job().path, at.path(), error.what());
   }
 }
 

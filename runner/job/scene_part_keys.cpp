@@ -52,7 +52,7 @@ const auto& solid_kinds() {
 
 template <class Solid>
 void read_if(const SolidKind<Solid>& kind, const Place& at, Obstacle& obstacle) {
-  if (at.point.text(at.path) != kind.name) return;
+  if (at.text() != kind.name) return;
   Solid solid;
   kind.table.fill(solid, at.of(kind.name));
   obstacle = solid;
@@ -62,7 +62,7 @@ Obstacle obstacle(const Place& at) {
   Obstacle found;
   std::apply([&](const auto&... kind) { (read_if(kind, at, found), ...); }, solid_kinds());
   if (const auto* space = std::get_if<HalfSpace>(&found); space && space->normal.isZero(0))
-    throw job_error(at.job.path, at.path + ".half_space.normal", "[0, 0, 0] is not allowed; must have a direction");
+    throw job_error(at.job().path, at.path() + ".half_space.normal", "[0, 0, 0] is not allowed; must have a direction");
   return found;
 }
 
@@ -192,8 +192,8 @@ Key obstacles_key() {
 void read_value(const Place& list, std::vector<Obstacle>& obstacles) {
   obstacles.clear();
   while (true) {
-    const Place item{list.point, list.job, element(list.path, obstacles.size())};
-    if (!item.point.has(item.path)) return;
+    const Place item = list.item(obstacles.size());
+    if (!item.is_given()) return;
     obstacles.push_back(obstacle(item));
   }
 }

@@ -27,26 +27,26 @@ std::int64_t saturated(double value) {
 
 }  // namespace
 
-bool Point::has(std::string_view path) const {
+const Point::Value* Point::find(const std::string& path) const {
   const int i = space_->find(path);
-  return i >= 0 && values_[static_cast<std::size_t>(i)].state != Value::State::absent;
+  if (i < 0 || values_[static_cast<std::size_t>(i)].state == Value::State::absent) return nullptr;
+  return &values_[static_cast<std::size_t>(i)];
 }
 
-const Point::Value& Point::at(std::string_view path) const {
-  const int i = space_->find(path);
-  if (i < 0 || values_[static_cast<std::size_t>(i)].state == Value::State::absent) {
-    throw std::logic_error(fmt::format("the job has no value for {} at this point", path));
-  }
-  return values_[static_cast<std::size_t>(i)];
+bool Point::has(const std::string& path) const { return find(path) != nullptr; }
+
+const Point::Value& Point::at(const std::string& path) const {
+  const Value* found = find(path);
+  if (found == nullptr) throw std::logic_error(fmt::format("the job has no value for {} at this point", path));
+  return *found;
 }
 
-bool Point::is_text(std::string_view path) const { return at(path).state == Value::State::text; }
-double Point::number(std::string_view path) const { return at(path).number[0]; }
-std::int64_t Point::integer(std::string_view path) const { return static_cast<std::int64_t>(at(path).number[0]); }
+double Point::number(const std::string& path) const { return at(path).number[0]; }
+std::int64_t Point::integer(const std::string& path) const { return static_cast<std::int64_t>(at(path).number[0]); }
 
-const std::string& Point::text(std::string_view path) const {
+const std::string& Point::text(const std::string& path) const {
   const Value& value = at(path);
-  if (value.state != Value::State::text) throw std::logic_error(fmt::format("{} is not a text", path));
+  if (!value.is_text()) throw std::logic_error(fmt::format("{} is not a text", path));
   return *value.text;
 }
 
@@ -68,7 +68,7 @@ SweepSpace::SweepSpace(const Json& values, const std::filesystem::path& file) : 
   sobol_.emplace(dimensions_.size());
 }
 
-int SweepSpace::find(std::string_view path) const {
+int SweepSpace::find(const std::string& path) const {
   const auto found = index_.find(path);
   return found == index_.end() ? -1 : found->second;
 }
@@ -181,7 +181,7 @@ void SweepSpace::count(Scope& scope) {
   scope.points = saturated(points);
 }
 
-bool SweepSpace::can_be(std::string_view path, const std::string& word) const {
+bool SweepSpace::can_be(const std::string& path, const std::string& word) const {
   const int i = find(path);
   return i >= 0 && can_be(root_, i, word);
 }

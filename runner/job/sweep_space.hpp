@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -36,20 +36,22 @@ struct Parameter {
 /// The parameters at one point. References the SweepSpace that filled it.
 class Point {
  public:
-  bool has(std::string_view path) const;
-  bool is_text(std::string_view path) const;  ///< also if a number key has a word
-  double number(std::string_view path) const;
-  std::int64_t integer(std::string_view path) const;
-  const std::string& text(std::string_view path) const;
+  bool has(const std::string& path) const;
+  double number(const std::string& path) const;
+  std::int64_t integer(const std::string& path) const;
+  const std::string& text(const std::string& path) const;
 
   struct Value {
     enum class State : std::uint8_t { absent, number, text };
     State state = State::absent;
     double number[3] = {0, 0, 0};  ///< also integers, which are below 2^53; a boolean: 0 or 1
     const std::string* text = nullptr;
+
+    bool is_text() const { return state == State::text; }  ///< also if a number key has a word
   };
   const Value& operator[](std::size_t parameter) const { return values_[parameter]; }
-  const Value& at(std::string_view path) const;  ///< throws std::logic_error if absent
+  const Value* find(const std::string& path) const;  ///< nullptr if absent
+  const Value& at(const std::string& path) const;    ///< throws std::logic_error if absent
   void set(std::size_t parameter, double value);
 
  private:
@@ -67,14 +69,11 @@ class SweepSpace {
   bool every_point_is_random() const { return root_.random; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
 
-  /// Index of every parameter, sorted by path.
-  const std::map<std::string, int, std::less<>>& by_path() const { return index_; }
-
   /// Index of a parameter, or -1 if not found.
-  int find(std::string_view path) const;
+  int find(const std::string& path) const;
 
   /// Whether this text parameter can have the value `word`.
-  bool can_be(std::string_view path, const std::string& word) const;
+  bool can_be(const std::string& path, const std::string& word) const;
 
   void fill(Point& point, std::int64_t grid_point, std::uint64_t seed, std::int64_t sample) const;
 
@@ -123,7 +122,7 @@ class SweepSpace {
 
   std::filesystem::path file_;
   std::vector<Parameter> parameters_;
-  std::map<std::string, int, std::less<>> index_;
+  std::unordered_map<std::string, int> index_;
   std::map<std::string, std::size_t> dimensions_;  ///< indices of the random keys, by path
   std::optional<SobolSequence> sobol_;
   Scope root_;

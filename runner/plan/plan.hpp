@@ -15,6 +15,7 @@
 #include "runner/job/job.hpp"
 #include "runner/job/sweep_space.hpp"
 #include "runner/job/task.hpp"
+#include "runner/plan/column_values.hpp"
 #include "runner/plan/task_list.hpp"
 
 namespace rodsweep {
@@ -27,7 +28,7 @@ struct ParameterColumn {
   std::string meaning;  ///< one line, from the key's description
   bool swept = false;   ///< whether it varies over the tasks to which it applies
   int width = 1;        ///< 3 for vectors
-  std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>> values;  ///< tasks x width
+  std::variant<ColumnValues<double>, ColumnValues<std::int64_t>, ColumnValues<std::string>> values;  ///< one row a task
 };
 
 /// All inputs of a task's results, as bytes that are equal in all plans with this task.

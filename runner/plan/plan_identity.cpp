@@ -36,9 +36,11 @@ TaskIdentity Plan::identity(std::int64_t index) const {
   TaskIdentity identity;
   const bool tries_guesses = solve_spec(point, job_).method == Method::cg;
   if (tries_guesses) identity.guesses.resize(guess_labels_.size());
-  for (const auto& [path, parameter] : space_.by_path()) {
-    const Point::Value& value = point[static_cast<std::size_t>(parameter)];
-    const Parameter& described = space_.parameters()[static_cast<std::size_t>(parameter)];
+  std::map<std::string, std::size_t> by_path;
+  for (std::size_t i = 0; i < space_.parameters().size(); ++i) by_path[space_.parameters()[i].path] = i;
+  for (const auto& [path, parameter] : by_path) {
+    const Point::Value& value = point[parameter];
+    const Parameter& described = space_.parameters()[parameter];
     if (value.state == State::absent || has_option_label(described.key)) continue;
     if (path.rfind(guesses, 0) != 0) {
       append(identity.trajectory, path, value, described, job_);

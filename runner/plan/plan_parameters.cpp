@@ -13,7 +13,7 @@ using State = Point::Value::State;
 
 const Key& steps_key() { return *find_key(find_key(job_key().keys, "time")->keys, "steps"); }
 
-ParameterColumn empty_column(const std::string& path, const Key& key, std::size_t tasks) {
+ParameterColumn empty_column(const std::string& path, const Key& key) {
   ParameterColumn column;
   column.path = path;
   column.unit = key.unit;
@@ -21,14 +21,12 @@ ParameterColumn empty_column(const std::string& path, const Key& key, std::size_
   if (key.kind == Key::Kind::number && !key.choices.empty()) column.meaning += "; NaN: " + quoted_list(key.choices);
   if (key.kind == Key::Kind::boolean) column.meaning += "; 1: true";
   column.width = key.kind == Key::Kind::vector ? 3 : 1;
-  if (key.kind == Key::Kind::integer || key.kind == Key::Kind::boolean) {
-    column.values = std::vector<std::int64_t>(tasks, -1);
-  } else if (key.kind == Key::Kind::number || key.kind == Key::Kind::vector) {
-    const auto width = static_cast<std::size_t>(column.width);
-    column.values = std::vector<double>(tasks * width, std::numeric_limits<double>::quiet_NaN());
-  } else {
-    column.values = std::vector<std::string>(tasks);
-  }
+  if (key.kind == Key::Kind::integer || key.kind == Key::Kind::boolean)
+    column.values = ColumnValues<std::int64_t>();
+  else if (key.kind == Key::Kind::number || key.kind == Key::Kind::vector)
+    column.values = ColumnValues<double>(static_cast<std::size_t>(column.width));
+  else
+    column.values = ColumnValues<std::string>();
   return column;
 }
 
@@ -39,15 +37,17 @@ bool equal(const Point::Value& a, const Point::Value& b) {
 
 bool is_of_guess(const ParameterColumn& column) { return column.path.rfind("guesses[", 0) == 0; }
 
-void put(ParameterColumn& column, std::size_t task, const Point::Value& value) {
-  if (auto* integers = std::get_if<std::vector<std::int64_t>>(&column.values)) {
-    (*integers)[task] = static_cast<std::int64_t>(value.number[0]);
-  } else if (auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
-    (*texts)[task] = *value.text;
-  } else if (value.state == State::number) {  // a word in a numeric column stays NaN
-    const auto width = static_cast<std::size_t>(column.width);
-    auto& numbers = std::get<std::vector<double>>(column.values);
-    std::copy_n(value.number, width, numbers.begin() + static_cast<std::ptrdiff_t>(task * width));
+void append(ParameterColumn& column, const Point::Value& value) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double no_numbers[3] = {nan, nan, nan};
+  static const std::string no_text;
+  if (auto* integers = std::get_if<ColumnValues<std::int64_t>>(&column.values)) {
+    const std::int64_t integer = value.state == State::absent ? -1 : static_cast<std::int64_t>(value.number[0]);
+    integers->append(&integer);
+  } else if (auto* texts = std::get_if<ColumnValues<std::string>>(&column.values)) {
+    texts->append(value.state == State::absent ? &no_text : value.text);
+  } else {  // a word in a numeric column is NaN
+    std::get<ColumnValues<double>>(column.values).append(value.state == State::number ? value.number : no_numbers);
   }
 }
 
@@ -55,11 +55,10 @@ void put(ParameterColumn& column, std::size_t task, const Point::Value& value) {
 
 std::vector<ParameterColumn> Plan::parameters() const {
   const std::vector<Parameter>& parameters = space_.parameters();
-  const auto task_count = static_cast<std::size_t>(size());
   std::vector<ParameterColumn> columns;
-  for (const Parameter& parameter : parameters) {
-    columns.push_back(empty_column(parameter.path, parameter.key, task_count));
-  }
+  for (const Parameter& parameter : parameters) columns.push_back(empty_column(parameter.path, parameter.key));
+  // Every job has `steps`, also if it has a duration instead.
+  ParameterColumn steps = empty_column("time.steps", steps_key());
   std::vector<Point::Value> first(parameters.size());
   Point point;
   std::int64_t filled = -1;
@@ -67,22 +66,20 @@ std::vector<ParameterColumn> Plan::parameters() const {
     if (filled != task.point) fill(point, filled = task.point);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const Point::Value& value = point[i];
+      append(columns[i], value);
       if (value.state == State::absent) continue;
-      put(columns[i], static_cast<std::size_t>(task.index), value);
       if (first[i].state == State::absent) first[i] = value;
       columns[i].swept = columns[i].swept || !equal(first[i], value);
     }
+    const std::int64_t count = task.steps;
+    std::get<ColumnValues<std::int64_t>>(steps.values).append(&count);
   }
-
-  // Every job has `steps`, also if it has a duration instead.
-  auto steps = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.path == "time.steps"; });
-  if (steps == columns.end())
-    steps = columns.insert(columns.end(), empty_column("time.steps", steps_key(), task_count));
-  auto& step_counts = std::get<std::vector<std::int64_t>>(steps->values);
-  for (const Task& task : tasks_) {
-    step_counts[static_cast<std::size_t>(task.index)] = task.steps;
-    steps->swept = steps->swept || task.steps != step_counts.front();
-  }
+  steps.swept = std::get<ColumnValues<std::int64_t>>(steps.values).distinct().size() > 1;
+  const auto given = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.path == steps.path; });
+  if (given == columns.end())
+    columns.push_back(std::move(steps));
+  else
+    *given = std::move(steps);
 
   // A constant guess is described by its label, and a key that contains others by the columns of these. A varying guess
   // keeps all parameters, also constant ones, because they describe the guess in the tasks to which they apply.
@@ -92,7 +89,7 @@ std::vector<ParameterColumn> Plan::parameters() const {
   };
   std::vector<std::string> varying;
   for (const ParameterColumn& c : columns)
-    if (is_of_guess(c) && c.swept && std::holds_alternative<std::vector<std::string>>(c.values))
+    if (is_of_guess(c) && c.swept && std::holds_alternative<ColumnValues<std::string>>(c.values))
       varying.push_back(c.path + ".");
   const auto is_settled = [&](const ParameterColumn& c) {
     return (is_of_guess(c) || is_option(c)) && !c.swept &&

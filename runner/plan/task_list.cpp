@@ -28,11 +28,13 @@ void TaskList::drop(Rows kind) {
   for (std::int64_t index = 0; index < size(); ++index) mark(index);
 }
 
-Task TaskList::at(std::int64_t index) const {
-  if (index < 0 || index >= size()) throw std::out_of_range("TaskList::at");
+Task TaskList::at(std::int64_t index) const { return task(index, first_rows(index)); }
+
+PerRows<std::int64_t> TaskList::first_rows(std::int64_t index) const {
+  if (index < 0 || index >= size()) throw std::out_of_range("TaskList: no such task");
   PerRows<std::int64_t> first = marks_[static_cast<std::size_t>(index / mark_every)];
   for (std::int64_t before = index / mark_every * mark_every; before < index; ++before) pass(before, first);
-  return task(index, first);
+  return first;
 }
 
 double TaskList::cost(std::int64_t index) const { return shape(index).cost; }

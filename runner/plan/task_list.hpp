@@ -32,6 +32,7 @@ class TaskList {
 
   class Iterator;
   Iterator begin() const;
+  Iterator from(std::int64_t index) const;
   Iterator end() const;
 
  private:
@@ -50,6 +51,7 @@ class TaskList {
   const Shape& shape(std::int64_t index) const;
   void mark(std::int64_t index);
   void pass(std::int64_t index, PerRows<std::int64_t>& first) const;  ///< advances `first` to the next task
+  PerRows<std::int64_t> first_rows(std::int64_t index) const;
   Task task(std::int64_t index, const PerRows<std::int64_t>& first) const;
 
   std::vector<Place> places_;
@@ -68,7 +70,8 @@ class TaskList::Iterator {
   using pointer = void;
   using reference = Task;
 
-  Iterator(const TaskList& list, std::int64_t index) : list_(&list), index_(index) {}
+  Iterator(const TaskList& list, std::int64_t index, const PerRows<std::int64_t>& first = {})
+      : list_(&list), index_(index), first_(first) {}
 
   Task operator*() const { return list_->task(index_, first_); }
   Iterator& operator++() {
@@ -81,10 +84,11 @@ class TaskList::Iterator {
  private:
   const TaskList* list_;
   std::int64_t index_;
-  PerRows<std::int64_t> first_{};
+  PerRows<std::int64_t> first_;
 };
 
 inline TaskList::Iterator TaskList::begin() const { return {*this, 0}; }
+inline TaskList::Iterator TaskList::from(std::int64_t index) const { return {*this, index, first_rows(index)}; }
 inline TaskList::Iterator TaskList::end() const { return {*this, size()}; }
 
 }  // namespace rodsweep

@@ -20,8 +20,8 @@ TEST_CASE("steps are the paper's unless they are to keep the balance, which may 
                                    [](const ParameterColumn& each) { return each.path == "time.balance"; });
   REQUIRE(column != parameters.end());
   CHECK(column->swept);
-  CHECK(std::get<std::vector<std::int64_t>>(column->values).front() == 0);
-  CHECK(std::get<std::vector<std::int64_t>>(column->values).back() == 1);
+  CHECK(std::get<ColumnValues<std::int64_t>>(column->values).all().front() == 0);
+  CHECK(std::get<ColumnValues<std::int64_t>>(column->values).all().back() == 1);
   CHECK_FALSE(plan_of(without("/guesses", with("/solve", R"({"method": "direct"})"))).spec(0).time.balance);
 }
 

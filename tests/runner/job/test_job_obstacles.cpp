@@ -16,7 +16,7 @@ Scene scene_of(const Plan& plan, std::int64_t task = 0) { return build_scene(pla
 
 std::vector<std::string> texts(const Plan& plan, const std::string& path) {
   for (const ParameterColumn& column : plan.parameters())
-    if (column.path == path) return std::get<std::vector<std::string>>(column.values);
+    if (column.path == path) return std::get<ColumnValues<std::string>>(column.values).all();
   return {};
 }
 

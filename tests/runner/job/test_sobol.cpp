@@ -11,7 +11,7 @@ namespace test_sobol {
 
 std::vector<double> drawn(const Plan& plan, const std::string& path) {
   for (const ParameterColumn& column : plan.parameters()) {
-    if (column.path == path) return std::get<std::vector<double>>(column.values);
+    if (column.path == path) return std::get<ColumnValues<double>>(column.values).all();
   }
   FAIL("no column " + path);
   return {};

@@ -23,13 +23,13 @@ bool has_column(const Plan& plan, const std::string& path) {
 }
 
 std::vector<double> numbers(const Plan& plan, const std::string& path) {
-  return std::get<std::vector<double>>(column(plan, path).values);
+  return std::get<ColumnValues<double>>(column(plan, path).values).all();
 }
 std::vector<std::int64_t> integers(const Plan& plan, const std::string& path) {
-  return std::get<std::vector<std::int64_t>>(column(plan, path).values);
+  return std::get<ColumnValues<std::int64_t>>(column(plan, path).values).all();
 }
 std::vector<std::string> texts(const Plan& plan, const std::string& path) {
-  return std::get<std::vector<std::string>>(column(plan, path).values);
+  return std::get<ColumnValues<std::string>>(column(plan, path).values).all();
 }
 
 TEST_CASE("grid axes are crossed in the order of the job, the last varying fastest") {
@@ -155,7 +155,7 @@ TEST_CASE("components of a vector can be swept, and whole vectors too") {
   CHECK(forces.width == 3);
   CHECK(forces.unit == "N");
   CHECK(forces.swept);
-  CHECK(std::get<std::vector<double>>(forces.values) == std::vector<double>{0, 1, 3, 0, 2, 3});
+  CHECK(std::get<ColumnValues<double>>(forces.values).all() == std::vector<double>{0, 1, 3, 0, 2, 3});
 
   const Plan whole = plan_of(with("/scene/gravity_m_s2", R"({"grid": [[0, -9.81, 0], [0, -1.62, 0]]})"));
   CHECK(std::get<BendingRod>(whole.spec(1).scene).gravity_m_s2 == Vector3(0, -1.62, 0));
@@ -180,8 +180,8 @@ TEST_CASE("a word in a column of numbers is NaN, and its change counts as varyin
   const Plan plan = plan_of(with("/scene/stretch_compliance_per_j", R"({"grid": ["from_stretch", 1e-6]})"));
   const ParameterColumn compliance = column(plan, "scene.stretch_compliance_per_j");
   CHECK(compliance.swept);
-  CHECK(std::isnan(std::get<std::vector<double>>(compliance.values)[0]));
-  CHECK(std::get<std::vector<double>>(compliance.values)[1] == 1e-6);
+  CHECK(std::isnan(std::get<ColumnValues<double>>(compliance.values).all()[0]));
+  CHECK(std::get<ColumnValues<double>>(compliance.values).all()[1] == 1e-6);
 }
 
 TEST_CASE("an object that is swept against a word has a column that says which it is, and by what it differs") {
