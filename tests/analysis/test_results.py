@@ -5,6 +5,7 @@ import subprocess
 import sys
 import unittest
 import unittest.mock
+import warnings
 
 import synthetic
 import numpy as np
@@ -42,7 +43,6 @@ class Frames(Opened):
         self.assertEqual(one[["iterations_sum", "scene.segments", "scene.type", "sample"]].values.tolist(),
                          [[2 * 404, 40, "bending_rod", 0]])
         self.assertNotIn("solve.norm", tasks)    # the same for every task
-        self.assertEqual(tasks.guess.cat.categories.tolist(), sorted(results.guesses))
 
     def test_what_was_not_reached_is_nan_and_what_has_no_meaning_too(self):
         solves = self.open(failed={}, pending=()).solves(where="scene.type=helix")
@@ -63,6 +63,7 @@ class Frames(Opened):
         self.assertTrue(solves["iterations_1e-4"].isna().any())
         self.assertEqual(solves["iterations_1e-4"].min(), 20)
         self.assertEqual(results.dataset("solves").iterations.dtype.kind, "f")
+        self.assertEqual(str(results.summary().unreached_solves.dtype), "Int64")
 
     def test_a_tolerance_that_was_not_counted_is_refused(self):
         with self.assertRaisesRegex(KeyNotFound, '"tolerance=0.02": iterations were counted at the tolerances 1e-1, 1e-2'):
@@ -99,16 +100,25 @@ class Frames(Opened):
         self.assertEqual(len(results.tasks(where="task=99")), 0)
         self.assertEqual(list(results.tasks(where="task=99")), list(results.tasks()))
 
-    def test_categories_are_what_the_rows_have_so_that_groups_are_too(self):
-        results = self.open()
-        tasks = results.tasks(where=["tolerance=1e-2", "guess!=zero", "scene.type=helix"])
-        means = tasks.groupby(["scene.segments", "guess"]).iterations_sum.mean().unstack()
+    def test_groups_of_several_columns_are_the_combinations_that_exist(self):
+        results = self.open(failed={3: "diverged", 12: "diverged"})    # of both scenes, with few segments
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            groups = results.tasks().groupby(["scene.type", "outcome", "scene.segments"]).size()
+            means = results.tasks(where=["tolerance=1e-2", "guess!=zero", "scene.type=helix"]) \
+                .groupby(["scene.segments", "guess"]).iterations_sum.mean().unstack()
+            summary = results.summary().groupby(["scene", "settings", "guess"]).size()
+        self.assertEqual(len(groups), 2 * 3 + 2)
+        self.assertGreater(groups.min(), 0)
         self.assertEqual(list(means), ["oracle(0.1)", "previous", "quadratic"])
         self.assertTrue(means.notna().all(axis=None))
-        self.assertEqual(tasks["scene.type"].cat.categories.tolist(), ["helix"])
-        self.assertEqual(tasks.attrs["missing"], results.missing)
-        for block in results.blocks("solves", where="guess!=zero", rows=50):
-            self.assertEqual(set(block.guess.cat.categories), set(results.guesses))
+        self.assertEqual(len(summary), 2 * 5)    # guesses, and the direct solve
+
+    def test_missing_texts_are_nan_and_equal_ones_share_their_memory(self):
+        message = self.open().tasks().message
+        self.assertEqual(set(message.dropna()), {"planted"})
+        self.assertEqual(message.notna().sum(), 4 * 8)
+        self.assertEqual(len({id(text) for text in message.dropna()}), 1)
 
     def test_blocks_are_the_frame_in_parts_of_bounded_size(self):
         results = self.open()
