@@ -113,10 +113,14 @@ class Results:
         the steps. `by`: a parameter whose values split the numbers. `newton`: "first" or "all" iterations."""
         if newton not in measures.NEWTON:
             raise UserError(f"newton={newton!r}: choose one of {', '.join(measures.NEWTON)}")
-        sims = measures.simulations(self.file, self.file.select(_listed(where)))
+        table = self._table("tasks")
+        tasks, guesses, tolerances, left = table.narrowed([table.condition(text) for text in _listed(where)])
+        if left:
+            raise UserError(f"{left[0].text}: {left[0].column} has a value for every guess or tolerance; cg_ratio.GUESS "
+                            "and other columns of `rodsweep query` choose simulations")
+        sims = measures.simulations(self.file, np.isin(np.arange(self.file.task_count), tasks))
         if by is not None and len(sims):
             sims = sims.subset(groups.applicable(self.file, sims, by, without=True))
-        guesses, tolerances = list(range(len(self.file.guesses))), range(len(self.file.tolerances))
         own, records = [] if by is None else [by], []
         for block in blocks.blocks(self.file, sims, by, newton):
             settings = {name: block.settings[name] for name in own}

@@ -66,8 +66,9 @@ class Frames(Opened):
         self.assertEqual(str(results.summary().unreached_solves.dtype), "Int64")
 
     def test_a_tolerance_that_was_not_counted_is_refused(self):
-        with self.assertRaisesRegex(KeyNotFound, '"tolerance=0.02": iterations were counted at the tolerances 1e-1, 1e-2'):
-            self.open().tasks(where="tolerance=0.02")
+        for reader in (self.open().tasks, self.open().summary):
+            with self.assertRaisesRegex(KeyNotFound, "no tolerance meets tolerance=0.02; known: 1e-08, .* 0.01, 0.1"):
+                reader(where="tolerance=0.02")
 
     def test_data_of_a_user_in_our_groups_are_no_columns(self):
         with self.open() as before:
@@ -97,8 +98,8 @@ class Frames(Opened):
         self.assertEqual(list(solves), ["guess", "step", "iterations_1e-2"])
         self.assertEqual(len(solves), 15 * 2 * 2)
         self.assertEqual(results.steps("task", "task<2").task.tolist(), [0, 0, 1, 1])
-        self.assertEqual(len(results.tasks(where="task=99")), 0)
-        self.assertEqual(list(results.tasks(where="task=99")), list(results.tasks()))
+        self.assertEqual(len(results.tasks(where="outcome=torn")), 0)
+        self.assertEqual(list(results.tasks(where="outcome=torn")), list(results.tasks()))
 
     def test_groups_of_several_columns_are_the_combinations_that_exist(self):
         results = self.open(failed={3: "diverged", 12: "diverged"})    # of both scenes, with few segments
@@ -154,6 +155,18 @@ class Frames(Opened):
         self.assertLessEqual(row.low, row.value)
         self.assertEqual(row.simulations, 6)
 
+    def test_conditions_choose_guesses_and_tolerances_of_the_summary(self):
+        summary = self.open(samples=6).summary(where=["tolerance=1e-2", "guess=quadratic", "scene.segments=20"])
+        ratios = summary[summary.quantity == "cg_ratio"]
+        self.assertEqual(ratios[["scene", "guess", "tolerance", "simulations"]].values.tolist(),
+                         [["bending_rod", "quadratic", 0.01, 6], ["helix", "quadratic", 0.01, 6]])
+        self.assertEqual(len(self.open().summary(where=["guess!=zero", "guess=zero"])), 0)
+
+    def test_a_closed_loop_names_the_guess_that_advances_the_rods(self):
+        results = self.open(scenes=("helix",), closed_loop=True, failed={}, pending=())
+        tasks = results.tasks(where="own_guess=quadratic")
+        self.assertEqual({*tasks.guess, *tasks.own_guess}, {"quadratic"})
+
 
 class Datasets(Opened):
     def test_guess_and_tolerance_are_axes(self):
@@ -199,6 +212,7 @@ class Refusals(Opened):
         self.refused("did you mean scene.segments?", lambda: results.steps(where="scene.segmnts=20"))
         self.refused("did you mean iterations?", lambda: results.dataset("solves", ["iterationss"]))
         self.refused("has a value for every guess", lambda: results.dataset("solves", where="cg_s>1"))
+        self.refused("has a value for every guess", lambda: results.summary(where="iterations_sum>1"))
         self.refused("choose one of tasks, solves, steps", lambda: results.blocks("task"))
         self.refused("choose one of first, all", lambda: results.summary(newton="last"))
         self.refused("has no rows of solves", self.open(solves=False).solves)

@@ -9,6 +9,7 @@ import numpy as np
 
 from rodsweep.reading import conditions, measures, texts
 from rodsweep.reading.errors import KeyNotFound, UserError, not_found
+from rodsweep.reading.task_columns import TaskColumns
 
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
@@ -21,7 +22,7 @@ def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=Tr
     made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
     made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
     made.add_argument("--select", metavar="CONDITION", action="append", default=[],
-                      help=f"only tasks that meet the condition: a parameter, {conditions.FORM}; may be repeated")
+                      help=f"only tasks that meet the condition: a column of `rodsweep query`, {conditions.FORM}; may be repeated")
     made.add_argument("--guess", metavar="LABEL,…", help="only these guesses (default: all)")
     if tolerances:
         made.add_argument("--tolerance", metavar="T,…",
@@ -77,7 +78,7 @@ def _stop(message):
 
 def chosen_tasks(file, arguments):
     """Mask of the tasks that --scene and --select choose, complete or not."""
-    mask = file.select(arguments.select)
+    mask = TaskColumns(file).select(arguments.select)
     if arguments.scene:
         scenes = file.scene_types()
         if arguments.scene not in scenes:
