@@ -12,7 +12,7 @@ import numpy as np
 import pandas
 import rodsweep
 from rodsweep.reading import tidy
-from rodsweep.reading.errors import KeyNotFound
+from rodsweep.reading.errors import IgnoredData, KeyNotFound
 from running import Folder
 
 PLANT = synthetic.Plant()
@@ -76,7 +76,10 @@ class Frames(Opened):
         with synthetic.h5py.File(self.path, "r+") as h5:
             h5["tasks/mine"], h5["tasks/parameters/mine"] = np.arange(3), 1.5
             h5["steps/mine"], h5["solves/notes"] = np.zeros((2, 2)), "mine"
-        after = rodsweep.open(self.path)
+            h5["timing/solves/mine"] = np.zeros(3)
+        with self.assertWarnsRegex(IgnoredData, "ignored /tasks/mine, /tasks/parameters/mine, /solves/notes, "
+                                                "/timing/solves/mine, /steps/mine: not a row per task, solve or step$"):
+            after = rodsweep.open(self.path)
         self.assertEqual([list(getattr(after, level)().columns) for level in ("tasks", "solves", "steps")], columns)
 
     def test_units_meanings_and_what_is_missing_stay(self):

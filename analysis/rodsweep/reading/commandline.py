@@ -4,13 +4,15 @@ import argparse
 import os
 import re
 import sys
+import warnings
 
 import numpy as np
 
 from rodsweep.reading import conditions, measures, texts
-from rodsweep.reading.errors import KeyNotFound, UserError, not_found
+from rodsweep.reading.errors import IgnoredData, KeyNotFound, UserError, not_found
 from rodsweep.reading.task_columns import TaskColumns
 
+USUAL_WARNING = warnings.formatwarning
 DEFAULT_TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
 
@@ -48,9 +50,15 @@ def whole_number(text):
     return value
 
 
+def _warning(message, category, *place):
+    """The text of a warning: those about a file do not name a line of code."""
+    return f"{os.path.basename(sys.argv[0])}: {message}\n" if category is IgnoredData else USUAL_WARNING(message, category, *place)
+
+
 def run(main):
     """Calls main(). A UserError gives one line on stderr and exit code 2. So do other errors, since a damaged file can
     make any line fail; `python3 -X dev SCRIPT` shows where."""
+    warnings.formatwarning = _warning
     try:
         main()
         sys.stdout.flush()

@@ -9,11 +9,12 @@ guess or tolerance.
 
 import json
 import os
+import warnings
 
 import h5py
 import numpy as np
 
-from rodsweep.reading.errors import SweepFileError, not_found
+from rodsweep.reading.errors import IgnoredData, SweepFileError, listed, not_found
 from rodsweep.reading.hdf5 import PROGRAM, UNREADABLE, as_text, decoded, is_column, opened
 from rodsweep.reading.parameters import Parameter
 
@@ -68,6 +69,9 @@ class SweepFile:
         self.tolerances = self.h5["/axes/tolerance"][:] if self.has("/axes/tolerance") else np.empty(0)
         self.zero = self.guesses.index("zero") if "zero" in self.guesses else None
         self.parameters = self._read_parameters()
+        ignored = self._ignored()
+        if ignored:
+            warnings.warn(f"{self.path}: ignored {listed(ignored)}: not a row per task, solve or step", IgnoredData)
 
     def _required(self, path):
         if path not in self.h5:
@@ -87,6 +91,19 @@ class SweepFile:
         if "/tasks/parameters" in self.h5:
             self.h5["/tasks/parameters"].visititems(add)
         return parameters
+
+    def _ignored(self):
+        """Paths in the groups of columns that are not columns: a user may keep other data there."""
+        found = []
+        for level, rows in (("tasks", self.task_count), ("solves", self.solves.sum()), ("steps", self.steps.sum())):
+            for group in (f"/{level}", f"/timing/{level}"):
+                def add(name, item, group=group, sizes=((rows,), (0,))):    # 0: not recorded
+                    if isinstance(item, h5py.Dataset) and item.shape[:1] not in sizes:
+                        found.append(f"{group}/{name}")
+
+                if group in self.h5:
+                    self.h5[group].visititems(add)
+        return found
 
     def has(self, path):
         """Whether a dataset exists and is not empty."""
