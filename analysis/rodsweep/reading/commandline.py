@@ -24,7 +24,8 @@ def parser(description, epilog=None, tolerances="1e-1,1e-2,1e-3,1e-4", newton=Tr
     made.add_argument(**of_files, help="results file of `rodsweep run` (results/NAME.h5); it may still be running")
     made.add_argument("--scene", metavar="TYPE", help="only this type of scene, e.g. bending_rod")
     made.add_argument("--select", metavar="CONDITION", action="append", default=[],
-                      help=f"only tasks that meet the condition: a column of `rodsweep query`, {conditions.FORM}; may be repeated")
+                      help=f"only tasks that meet the condition: a column of `rodsweep query`, {conditions.FORM}; may be "
+                           "repeated")
     made.add_argument("--guess", metavar="LABEL,…", help="only these guesses (default: all)")
     if tolerances:
         made.add_argument("--tolerance", metavar="T,…",
@@ -52,7 +53,9 @@ def whole_number(text):
 
 def _warning(message, category, *place):
     """The text of a warning: those about a file do not name a line of code."""
-    return f"{os.path.basename(sys.argv[0])}: {message}\n" if category is IgnoredData else USUAL_WARNING(message, category, *place)
+    if category is IgnoredData:
+        return f"{os.path.basename(sys.argv[0])}: {message}\n"
+    return USUAL_WARNING(message, category, *place)
 
 
 def run(main):

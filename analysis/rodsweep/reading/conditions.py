@@ -24,8 +24,8 @@ OPERATORS = ("<=", ">=", "!=", "==", "=", "<", ">", "~")   # the longer ones fir
 FORM = "one of = != < <= > >= ~ (contains), and a value; for = also A,B or LOW:HIGH"   # in help texts, after the column
 ROUNDING = 1e-9
 # What to use where rows do not have these columns: the nearest names mean something else.
-OF_ROWS = {"tolerance": "these rows have no tolerance; columns have it in their name (iterations_1e-2, cg_ratio.GUESS@1e-2), "
-                        "scripts have --tolerance; solve.tolerance is that of the timed solves",
+OF_ROWS = {"tolerance": "these rows have no tolerance; columns have it in their name (iterations_1e-2, "
+                        "cg_ratio.GUESS@1e-2), scripts have --tolerance; solve.tolerance is that of the timed solves",
            "guess": "these rows have no guess; columns have it in their name (cg_ratio.GUESS), scripts have --guess; "
                     "own_guess advances the rods in a closed loop"}
 NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity)", re.IGNORECASE)

@@ -146,7 +146,8 @@ class TaskColumns:
     def _add_parameter(self, parameter):
         """A vector is a text, and a number per component."""
         made = TaskColumn(parameter.name, parameter.name, (), without_one(parameter.unit), parameter.meaning,
-                          parameter.numeric, parameter.numeric and parameter.values.dtype.kind in "iu", parameter.swept, True)
+                          parameter.numeric, parameter.numeric and parameter.values.dtype.kind in "iu",
+                          parameter.swept, True)
         self._add(made)
         for k, letter in enumerate("xyz") if parameter.values.shape[1:] == (3,) else ():
             self._add(replace(made, name=f"{made.name}.{letter}", index=(k,), numeric=True))
